@@ -1,0 +1,37 @@
+# SPDX-FileCopyrightText: 2026 The bpa authors
+# SPDX-License-Identifier: Apache-2.0
+# One place for what every target of the project is compiled with.
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+
+# Public headers are included as <bpa/...> in the build as in an installation.
+set(BPA_INCLUDE_DIR ${CMAKE_BINARY_DIR}/include)
+file(MAKE_DIRECTORY ${BPA_INCLUDE_DIR}/bpa)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/core ${BPA_INCLUDE_DIR}/bpa/core SYMBOLIC)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/idl/wire ${BPA_INCLUDE_DIR}/bpa/wire SYMBOLIC)
+
+# bpa_compile_options(TARGET): language level, warnings as errors, sanitizers.
+function(bpa_compile_options target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-align
+    -Woverloaded-virtual -Wnull-dereference -Werror
+    -fno-math-errno -fno-trapping-math)
+  if(BPA_SANITIZE_ADDRESS)
+    target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+  endif()
+  if(BPA_SANITIZE_THREAD)
+    target_compile_options(${target} PRIVATE -fsanitize=thread)
+    target_link_options(${target} PUBLIC -fsanitize=thread)
+  endif()
+endfunction()

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include <bpa/core/base/parallel.hpp>
+
+namespace bpa {
+
+int resolve_num_threads(int num_threads) {
+  if (num_threads > 0) return num_threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+void parallel_for_pieces(int count, int grain, int num_threads,
+                         const std::function<void(int, int, int)>& body) {
+  if (count <= 0) return;
+  grain = std::max(1, grain);
+  const int pieces = (count + grain - 1) / grain;
+  const int threads = std::min(resolve_num_threads(num_threads), pieces);
+  std::atomic<int> next{0};
+  const auto work = [&](int thread) {
+    for (int piece = next++; piece < pieces; piece = next++) {
+      body(piece * grain, std::min(count, (piece + 1) * grain), thread);
+    }
+  };
+  std::vector<std::thread> helpers;
+  helpers.reserve(static_cast<std::size_t>(threads - 1));
+  for (int thread = 1; thread < threads; ++thread) helpers.emplace_back(work, thread);
+  work(0);
+  for (std::thread& helper : helpers) helper.join();
+}
+
+}  // namespace bpa

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+namespace bpa {
+
+/// The number of threads meant by `num_threads`: itself if positive, else one per core.
+int resolve_num_threads(int num_threads);
+
+/// Calls `body(first, last, thread)` for consecutive pieces of [0, count), each of at most `grain`
+/// items, on up to `num_threads` threads (0 = one per core), the caller's among them. Pieces are
+/// handed out as threads become free, so which thread does which piece is not determined: write
+/// results by index and reduce in index order, and the answer does not depend on `num_threads`.
+/// `thread` is in [0, num_threads) for scratch memory. `body` must not throw.
+void parallel_for_pieces(int count, int grain, int num_threads,
+                         const std::function<void(int first, int last, int thread)>& body);
+
+/// Calls `body(index)` for every index in [0, count); see parallel_for_pieces.
+template <class Body>
+void parallel_for(int count, int num_threads, const Body& body, int grain = 1) {
+  parallel_for_pieces(count, grain, num_threads, [&body](int first, int last, int) {
+    for (int i = first; i < last; ++i) body(i);
+  });
+}
+
+}  // namespace bpa
