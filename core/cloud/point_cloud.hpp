@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace bpa {
+
+/// Points with what is known about the surface at each of them. Every array but `points` is either
+/// empty or as long as `points`. Metres; in whatever frame the owner says.
+struct PointCloud {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;               ///< Unit length, out of the surface.
+  std::vector<Eigen::Vector3f> principal_directions;  ///< Unit length, in the tangent plane: where
+                                                      ///< the normal turns most. Sign arbitrary.
+  /// Eigenvalues c1 >= c2 of the covariance of normals in the tangent plane (paper, appendix).
+  std::vector<Eigen::Vector2f> curvatures;
+  std::vector<std::array<std::uint8_t, 3>> colors;  ///< rgb
+
+  std::size_t size() const { return points.size(); }
+  bool empty() const { return points.empty(); }
+};
+
+/// A triangle mesh. Metres once read by io.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<Eigen::Vector3f> normals;                 ///< Per vertex; may be empty.
+  std::vector<std::array<std::uint8_t, 3>> colors;      ///< Per vertex, rgb; may be empty.
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Counter-clockwise seen from outside.
+};
+
+}  // namespace bpa

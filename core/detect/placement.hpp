@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include <bpa/core/geometry/pose.hpp>
+
+namespace bpa {
+
+/// One named part of a placement's score, as an average log-likelihood (larger is better).
+struct ScoreComponent {
+  std::string name;
+  double value = 0;
+};
+
+/// Another pose that explains the view nearly as well.
+struct PoseAlternative {
+  Pose camera_from_object;
+  double weight = 0;  ///< In (0, 1]; the weights of a placement and its alternatives sum to 1.
+};
+
+/// Uncertainty of an orientation as a Bingham distribution (paper, appendix): density proportional
+/// to exp(sum_i concentrations[i] (axes.col(i) . q)^2) over unit quaternions q = (w, x, y, z).
+struct OrientationUncertainty {
+  Eigen::Matrix<double, 4, 3> axes = Eigen::Matrix<double, 4, 3>::Zero();
+  Eigen::Vector3d concentrations = Eigen::Vector3d::Zero();  ///< Not positive; 0 is uniform.
+};
+
+/// One object at one pose in a frame.
+struct Placement {
+  int model_number = 0;     ///< The model's number in its library.
+  std::string model;        ///< The model's name.
+  Pose camera_from_object;  ///< Optical frame of the camera, metres.
+  /// Covariance of (x, y, z, rotation about x, y, z), metres and radians, about the axes of the
+  /// camera frame (the order and meaning of geometry_msgs/PoseWithCovariance).
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  OrientationUncertainty orientation;
+  double score = 0;             ///< Weighted sum of the components; larger is better.
+  double probability = 0;       ///< That the object is there, within 2.5 cm and π/16; in [0, 1].
+  double visible_fraction = 0;  ///< Of the model surface that faces the camera, in [0, 1].
+  std::vector<ScoreComponent> components;
+  std::vector<PoseAlternative> alternatives;  ///< Empty when the view decides.
+};
+
+}  // namespace bpa

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <bpa/core/base/log.hpp>
+#include <bpa/core/base/status.hpp>
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/core/model/library.hpp>
+#include <bpa/core/pipeline/detector_options.hpp>
+#include <bpa/core/scene/interpretation.hpp>
+
+namespace bpa {
+
+/// What to look for in one frame.
+struct DetectRequest {
+  std::vector<std::string> models;  ///< Names; empty means every model of the library.
+  int top_k = 20;                   ///< Number of interpretations to return, 1 to 100.
+  double budget_ms = 0;             ///< Return the best so far after this long; 0 = no limit.
+  std::uint64_t seed = 0;           ///< Same frame, library, options and seed: same answer.
+  int num_threads = 0;              ///< 0 = one per core. Does not change the answer.
+};
+
+/// Finds the objects of a library in RGB-D frames. Immutable after construction; detect() may be
+/// called from several threads at once.
+class Detector {
+ public:
+  Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions options);
+
+  /// Ranked interpretations of the frame. Fails with invalid_argument on a frame, request or
+  /// library that breaks a rule (an empty library too), with not_found on a model name that the
+  /// library does not hold. An empty scene is a result, not an error.
+  Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request = {}) const;
+
+  const ModelLibrary& library() const { return *library_; }
+  const DetectorOptions& options() const { return options_; }
+
+ private:
+  std::shared_ptr<const ModelLibrary> library_;
+  DetectorOptions options_;
+};
+
+}  // namespace bpa
