@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <bpa/core/base/log.hpp>
+#include <bpa/core/base/status.hpp>
+#include <bpa/wire/discovery.hpp>
+#include <bpa/wire/names.hpp>
+
+namespace bpa::wire {
+
+namespace detail {
+class ParticipantImpl;
+}
+
+/// The size of ids in ros_discovery_info: what Humble reads, Iron and later misread, and the
+/// reverse.
+enum class GraphLayout {
+  automatic,  ///< iron16, and humble24 while every ROS 2 peer that was discovered is a Humble one.
+  iron16,
+  humble24,
+};
+
+struct ParticipantOptions {
+  NodeName node;                       ///< How ROS 2 tools show this process.
+  std::vector<Remap> remaps;           ///< Applied to every topic and service name.
+  std::optional<Discovery> discovery;  ///< None: from the environment.
+  GraphLayout graph_layout = GraphLayout::automatic;
+  int socket_buffer_bytes = 8'388'608;  ///< Asked of the kernel, which may give less (rmem_max).
+  LogHook log;                          ///< Called from DDS threads.
+};
+
+/// A process's seat in the DDS domain and its node in the ROS 2 graph; one a process. UDP over IPv4
+/// only, no shared-memory transport. Publishers, subscribers and services keep it alive.
+class Participant {
+ public:
+  /// `invalid_argument` for bad names or a bad environment, `unavailable` when DDS cannot start.
+  static Result<Participant> create(ParticipantOptions options);
+
+  const NodeName& node() const;
+  int domain_id() const;
+  /// The fully qualified name of a topic or service, remapped.
+  Result<std::string> resolve(std::string_view name) const;
+  /// The layout in use now; never `automatic`.
+  GraphLayout graph_layout() const;
+
+  const std::shared_ptr<detail::ParticipantImpl>& impl() const { return impl_; }
+
+ private:
+  explicit Participant(std::shared_ptr<detail::ParticipantImpl> impl);
+  std::shared_ptr<detail::ParticipantImpl> impl_;
+};
+
+}  // namespace bpa::wire
