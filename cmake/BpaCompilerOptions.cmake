@@ -24,7 +24,7 @@ function(bpa_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-align
-    -Woverloaded-virtual -Wnull-dereference -Werror
+    -Woverloaded-virtual -Werror
     -fno-math-errno -fno-trapping-math)
   if(BPA_SANITIZE_ADDRESS)
     target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-omit-frame-pointer)

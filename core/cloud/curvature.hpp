@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bpa/core/cloud/point_cloud.hpp>
+
+namespace bpa {
+
+/// Fills principal_directions and curvatures of a cloud with normals: the eigen-decomposition of
+/// the covariance of the neighbours' normals in the tangent plane (paper, appendix, footnote).
+/// Neighbours whose normals differ by more than 100 degrees (the far side of a thin wall) do not
+/// count.
+void estimate_curvature(PointCloud& cloud, float radius, int num_threads);
+
+/// Fills normals of a cloud by plane fits to the neighbours within `radius`, toward `viewpoint`.
+void estimate_normals(PointCloud& cloud, float radius, const Eigen::Vector3f& viewpoint,
+                      int num_threads);
+
+}  // namespace bpa

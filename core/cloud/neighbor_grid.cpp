@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <bpa/core/cloud/neighbor_grid.hpp>
+
+namespace bpa {
+namespace {
+
+constexpr int kBits = 21;
+constexpr int kOffset = 1 << (kBits - 1);
+
+// Cells ordered by z, then y, then x, so that a row along x is consecutive.
+std::uint64_t key_of(int x, int y, int z) {
+  const auto part = [](int value) {
+    return static_cast<std::uint64_t>(std::clamp(value + kOffset, 0, (1 << kBits) - 1));
+  };
+  return (part(z) << (2 * kBits)) | (part(y) << kBits) | part(x);
+}
+
+Eigen::Vector3i cell_at(const Eigen::Vector3f& point, float inverse_cell) {
+  return (point * inverse_cell).array().floor().cast<int>();
+}
+
+std::vector<std::uint32_t> sort_by_key(const std::vector<std::uint64_t>& keys) {
+  std::vector<std::uint32_t> order(keys.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return keys[a] != keys[b] ? keys[a] < keys[b] : a < b;
+  });
+  return order;
+}
+
+}  // namespace
+
+NeighborGrid::NeighborGrid(std::span<const Eigen::Vector3f> points, float radius)
+    : inverse_cell_(1 / radius), radius_squared_(radius * radius) {
+  std::vector<std::uint64_t> keys(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3i cell = cell_of(points[i]);
+    keys[i] = key_of(cell.x(), cell.y(), cell.z());
+  }
+  order_ = sort_by_key(keys);
+  keys_.resize(points.size());
+  points_.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    keys_[i] = keys[order_[i]];
+    points_[i] = points[order_[i]];
+  }
+}
+
+Eigen::Vector3i NeighborGrid::cell_of(const Eigen::Vector3f& point) const {
+  return cell_at(point, inverse_cell_);
+}
+
+std::pair<std::size_t, std::size_t> NeighborGrid::row(int x, int y, int z) const {
+  const auto first = std::lower_bound(keys_.begin(), keys_.end(), key_of(x, y, z));
+  const auto last = std::upper_bound(first, keys_.end(), key_of(x + 2, y, z));
+  return {static_cast<std::size_t>(first - keys_.begin()),
+          static_cast<std::size_t>(last - keys_.begin())};
+}
+
+namespace {
+
+struct Mean {
+  Eigen::Vector3f point = Eigen::Vector3f::Zero();
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  Eigen::Vector3f color = Eigen::Vector3f::Zero();
+  float count = 0;
+
+  void add(const PointCloud& cloud, std::size_t i) {
+    point += cloud.points[i];
+    if (!cloud.normals.empty()) normal += cloud.normals[i];
+    if (!cloud.colors.empty()) {
+      for (int k = 0; k < 3; ++k) color[k] += cloud.colors[i][static_cast<std::size_t>(k)];
+    }
+    count += 1;
+  }
+
+  void append_to(PointCloud& out, const PointCloud& source) const {
+    if (count == 0) return;
+    if (!source.normals.empty()) {
+      if (normal.squaredNorm() < 1e-6f) return;
+      out.normals.push_back(normal.normalized());
+    }
+    out.points.push_back(point / count);
+    if (source.colors.empty()) return;
+    const Eigen::Vector3f mean = (color / count).array().round();
+    out.colors.push_back({static_cast<std::uint8_t>(mean[0]), static_cast<std::uint8_t>(mean[1]),
+                          static_cast<std::uint8_t>(mean[2])});
+  }
+};
+
+}  // namespace
+
+PointCloud downsample(const PointCloud& cloud, float spacing) {
+  std::vector<std::uint64_t> keys(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3i cell = cell_at(cloud.points[i], 1 / spacing);
+    keys[i] = key_of(cell.x(), cell.y(), cell.z());
+  }
+  const std::vector<std::uint32_t> order = sort_by_key(keys);
+  PointCloud out;
+  for (std::size_t first = 0; first < order.size();) {
+    std::size_t last = first;
+    while (last < order.size() && keys[order[last]] == keys[order[first]]) ++last;
+    Mean sides[2];
+    for (std::size_t k = first; k < last; ++k) {
+      const std::size_t i = order[k];
+      const bool has_normals = !cloud.normals.empty();
+      const bool other_side = has_normals && sides[0].normal.dot(cloud.normals[i]) < 0;
+      sides[other_side ? 1 : 0].add(cloud, i);
+    }
+    for (const Mean& side : sides) side.append_to(out, cloud);
+    first = last;
+  }
+  return out;
+}
+
+}  // namespace bpa

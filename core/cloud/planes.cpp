@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include <bpa/core/base/random.hpp>
+#include <bpa/core/cloud/planes.hpp>
+
+namespace bpa {
+namespace {
+
+constexpr float kMinNormalCosine = 0.95f;
+
+float plane_tolerance(float z) { return 0.004f + 2.5f * depth_noise(z); }
+
+bool on_plane(const SurfaceMap& map, std::size_t i, const Plane& plane) {
+  const float distance = std::abs(plane.normal.dot(map.points[i]) - plane.offset);
+  return distance < plane_tolerance(map.depth[i]);
+}
+
+struct PlaneFit {
+  Plane plane;
+  double extent = 0;
+  int count = 0;
+};
+
+PlaneFit fit(const SurfaceMap& map, const std::vector<int>& candidates, const Plane& start) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  PlaneFit result;
+  for (int index : candidates) {
+    const auto i = static_cast<std::size_t>(index);
+    if (!on_plane(map, i, start) || map.normals[i].dot(start.normal) < kMinNormalCosine) continue;
+    const Eigen::Vector3d p = map.points[i].cast<double>();
+    sum += p;
+    squares += p * p.transpose();
+    ++result.count;
+  }
+  if (result.count < 10) return result;
+  const Eigen::Vector3d mean = sum / result.count;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares / result.count -
+                                                              mean * mean.transpose());
+  Eigen::Vector3d normal = solver.eigenvectors().col(0);
+  if (normal.dot(mean) > 0) normal = -normal;
+  result.plane = {normal.cast<float>(), static_cast<float>(normal.dot(mean))};
+  result.extent = std::sqrt(12 * std::sqrt(solver.eigenvalues()[1] * solver.eigenvalues()[2]));
+  return result;
+}
+
+PlaneFit best_plane(const SurfaceMap& map, const std::vector<int>& candidates,
+                    const PlaneOptions& options, std::uint64_t stream) {
+  RandomStream random(options.seed, stream);
+  Plane best;
+  int best_count = -1;
+  const std::size_t step = std::max<std::size_t>(1, candidates.size() / 1500);
+  for (int draw = 0; draw < options.num_samples; ++draw) {
+    const auto i = static_cast<std::size_t>(
+        candidates[static_cast<std::size_t>(random.index(static_cast<int>(candidates.size())))]);
+    const Plane plane{map.normals[i], map.normals[i].dot(map.points[i])};
+    int count = 0;
+    for (std::size_t k = 0; k < candidates.size(); k += step) {
+      const auto j = static_cast<std::size_t>(candidates[k]);
+      count += on_plane(map, j, plane) && map.normals[j].dot(plane.normal) > kMinNormalCosine;
+    }
+    if (count > best_count) {
+      best_count = count;
+      best = plane;
+    }
+  }
+  PlaneFit result;
+  result.plane = best;
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    result = fit(map, candidates, result.plane);
+    if (result.count < 10) break;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Plane> label_background_planes(SurfaceMap& map, const PlaneOptions& options) {
+  std::vector<int> candidates;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (map.searched[i] && map.normals[i].squaredNorm() > 0) {
+      candidates.push_back(static_cast<int>(i));
+    }
+  }
+  const double min_count = options.min_fraction * static_cast<double>(candidates.size());
+  std::vector<Plane> planes;
+  for (int k = 0; k < options.max_planes && candidates.size() > 100; ++k) {
+    const PlaneFit found = best_plane(map, candidates, options, static_cast<std::uint64_t>(k));
+    if (found.count < min_count || found.extent < options.min_extent_m) break;
+    planes.push_back(found.plane);
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      // Pixels on the plane whose normal says otherwise belong to something standing on it.
+      const bool agrees =
+          map.normals[i].squaredNorm() == 0 || map.normals[i].dot(found.plane.normal) > 0.8f;
+      if (map.searched[i] && agrees && on_plane(map, i, found.plane)) map.searched[i] = 0;
+    }
+    std::erase_if(candidates, [&](int i) { return !map.searched[static_cast<std::size_t>(i)]; });
+  }
+  return planes;
+}
+
+}  // namespace bpa

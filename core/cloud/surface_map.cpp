@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include <bpa/core/base/parallel.hpp>
+#include <bpa/core/cloud/surface_map.hpp>
+
+namespace bpa {
+namespace {
+
+// Depths of one surface differ by less than this within a few pixels, unless it is seen at a
+// grazing angle.
+float same_surface_gate(float z) { return 0.008f + 4 * depth_noise(z); }
+
+Camera reduced_camera(const Camera& camera, int reduction) {
+  const double scale = 1.0 / reduction;
+  const double shift = 0.5 * (reduction - 1);
+  return {camera.width / reduction, camera.height / reduction,   camera.fx * scale,
+          camera.fy * scale,        (camera.cx - shift) * scale, (camera.cy - shift) * scale};
+}
+
+// The mean of the block's depths near its median, 0 when less than half of the block has a depth.
+float block_depth(const Frame& frame, int u0, int v0, int reduction) {
+  float values[64];
+  int count = 0;
+  for (int v = v0; v < v0 + reduction; ++v) {
+    for (int u = u0; u < u0 + reduction; ++u) {
+      const float z = frame.depth[static_cast<std::size_t>(v * frame.camera.width + u)];
+      if (z > 0) values[count++] = z;
+    }
+  }
+  if (2 * count < reduction * reduction) return 0;
+  std::sort(values, values + count);
+  const float median = values[(count - 1) / 2];
+  float sum = 0;
+  int used = 0;
+  for (int i = 0; i < count; ++i) {
+    if (std::abs(values[i] - median) > same_surface_gate(median)) continue;
+    sum += values[i];
+    ++used;
+  }
+  return sum / static_cast<float>(used);
+}
+
+bool block_searched(const Frame& frame, int u, int v) {
+  const RegionOfInterest& roi = frame.roi;
+  if (!roi.empty() &&
+      (u < roi.x || v < roi.y || u >= roi.x + roi.width || v >= roi.y + roi.height)) {
+    return false;
+  }
+  const auto index = static_cast<std::size_t>(v * frame.camera.width + u);
+  if (!frame.mask.empty() && frame.mask[index] == 0) return false;
+  return frame.background.empty() || frame.background[index] == 0;
+}
+
+// The normal of the plane fitted to the neighbours that lie on the same surface; zero when fewer
+// than six do.
+Eigen::Vector3f fit_normal(const SurfaceMap& map, int u, int v, int radius) {
+  const int width = map.width();
+  const float z0 = map.depth[static_cast<std::size_t>(v * width + u)];
+  const Eigen::Vector3f centre = map.points[static_cast<std::size_t>(v * width + u)];
+  const float gate = same_surface_gate(z0) + 0.004f * static_cast<float>(radius);
+  const int step = radius > 4 ? 2 : 1;
+  float sx = 0, sy = 0, sz = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+  int count = 0;
+  for (int y = std::max(0, v - radius); y <= std::min(map.height() - 1, v + radius); y += step) {
+    for (int x = std::max(0, u - radius); x <= std::min(width - 1, u + radius); x += step) {
+      const auto index = static_cast<std::size_t>(y * width + x);
+      if (map.depth[index] <= 0 || std::abs(map.depth[index] - z0) > gate) continue;
+      const Eigen::Vector3f d = map.points[index] - centre;
+      sx += d.x(), sy += d.y(), sz += d.z();
+      xx += d.x() * d.x(), xy += d.x() * d.y(), xz += d.x() * d.z();
+      yy += d.y() * d.y(), yz += d.y() * d.z(), zz += d.z() * d.z();
+      ++count;
+    }
+  }
+  if (count < 6) return Eigen::Vector3f::Zero();
+  const float n = 1.0f / static_cast<float>(count);
+  Eigen::Matrix3f scatter;
+  scatter << xx - sx * sx * n, xy - sx * sy * n, xz - sx * sz * n,  //
+      xy - sx * sy * n, yy - sy * sy * n, yz - sy * sz * n,         //
+      xz - sx * sz * n, yz - sy * sz * n, zz - sz * sz * n;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(scatter / scatter.trace());
+  Eigen::Vector3f normal = solver.eigenvectors().col(0);
+  if (!normal.allFinite()) return Eigen::Vector3f::Zero();
+  if (normal.dot(centre) > 0) normal = -normal;
+  return normal.normalized();
+}
+
+}  // namespace
+
+SurfaceMap surface_map(const Frame& frame, const SurfaceMapOptions& options) {
+  SurfaceMap map;
+  map.reduction = 1;
+  while (frame.camera.width / map.reduction > options.max_width && map.reduction < 8) {
+    ++map.reduction;
+  }
+  map.camera = reduced_camera(frame.camera, map.reduction);
+  const int width = map.width();
+  const auto size = static_cast<std::size_t>(width * map.height());
+  map.depth.resize(size);
+  map.points.resize(size);
+  map.normals.assign(size, Eigen::Vector3f::Zero());
+  map.searched.assign(size, 0);
+  parallel_for(
+      map.height(), options.num_threads,
+      [&](int v) {
+        for (int u = 0; u < width; ++u) {
+          const auto index = static_cast<std::size_t>(v * width + u);
+          const float z = block_depth(frame, u * map.reduction, v * map.reduction, map.reduction);
+          map.depth[index] = z;
+          map.points[index] = map.camera.unproject(u, v, z).cast<float>();
+          map.searched[index] = z > 0 && z <= static_cast<float>(options.max_range_m) &&
+                                block_searched(frame, u * map.reduction, v * map.reduction);
+        }
+      },
+      16);
+  parallel_for(
+      map.height(), options.num_threads,
+      [&](int v) {
+        for (int u = 0; u < width; ++u) {
+          const auto index = static_cast<std::size_t>(v * width + u);
+          if (map.depth[index] <= 0) continue;
+          const double pixels = options.normal_radius_m * map.camera.fx / map.depth[index];
+          const int radius = std::clamp(static_cast<int>(std::lround(pixels)), 2, 8);
+          map.normals[index] = fit_normal(map, u, v, radius);
+        }
+      },
+      8);
+  return map;
+}
+
+}  // namespace bpa

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/core/geometry/camera.hpp>
+
+namespace bpa {
+
+/// The surface seen in a frame, pixel by pixel. Coarser than the frame by `reduction` in each
+/// direction: the depths of a block that belong to one surface are averaged, which removes noise
+/// and keeps edges. Camera frame, metres.
+struct SurfaceMap {
+  Camera camera;                         ///< Of the reduced image.
+  int reduction = 1;                     ///< Frame pixels per map pixel in each direction.
+  std::vector<float> depth;              ///< 0 where there is none.
+  std::vector<Eigen::Vector3f> points;   ///< Valid where depth > 0.
+  std::vector<Eigen::Vector3f> normals;  ///< Toward the camera; zero where unknown.
+  std::vector<std::uint8_t> searched;    ///< 0 outside the region of interest or the mask, beyond
+                                         ///< the range limit, and on labelled background.
+
+  int width() const { return camera.width; }
+  int height() const { return camera.height; }
+  std::size_t size() const { return depth.size(); }
+};
+
+struct SurfaceMapOptions {
+  double normal_radius_m = 0.010;  ///< Of the window that a normal is fitted in.
+  double max_range_m = 2.5;
+  int max_width = 400;  ///< Frames wider than this are reduced until they are not.
+  int num_threads = 0;
+};
+
+/// Standard deviation of a Kinect-class depth at distance z, metres (Nguyen, Izadi and Lovell,
+/// "Modeling Kinect Sensor Noise", 3DIMPVT 2012).
+inline float depth_noise(float z) { return 0.0012f + 0.0019f * (z - 0.4f) * (z - 0.4f); }
+
+/// The frame must be valid (validate(Frame)).
+SurfaceMap surface_map(const Frame& frame, const SurfaceMapOptions& options);
+
+}  // namespace bpa

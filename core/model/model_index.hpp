@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <bpa/core/features/feature_tree.hpp>
+#include <bpa/core/features/fpfh.hpp>
+#include <bpa/core/features/point_pairs.hpp>
+#include <bpa/core/model/object_model.hpp>
+#include <bpa/core/model/view_sphere.hpp>
+
+namespace bpa {
+
+constexpr float kFeatureSpacing = 0.005f;   ///< Of the cloud that FPFH is computed on, metres.
+constexpr float kFeatureRadius = 0.025f;    ///< Of the FPFH neighbourhood, metres.
+constexpr float kCurvatureRadius = 0.015f;  ///< Of the neighbourhood of a principal direction.
+
+/// Points of a model for fast checks of a pose: positions and normals side by side, in random
+/// order, so that any first part is a fair sample.
+struct CheckPoints {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;
+};
+
+/// What detection looks up in a model.
+struct ModelIndex {
+  CheckPoints check;             ///< Up to 1024 surface points.
+  PointCloud features;           ///< With curvature, kFeatureSpacing apart.
+  std::vector<Fpfh> fpfh;        ///< Of `features`.
+  FeatureTree feature_tree{{}};  ///< Over `fpfh`.
+  PointCloud coarse;             ///< What `pairs` is made of.
+  PointPairTable pairs{{}, 1, 1};
+  std::vector<ModelView> views;  ///< The 66 views, over `surface`.
+  float mean_visible_area = 0;   ///< Surface seen from outside, averaged over the views, m^2.
+};
+
+}  // namespace bpa

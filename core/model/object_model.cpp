@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <bpa/core/base/random.hpp>
+#include <bpa/core/cloud/curvature.hpp>
+#include <bpa/core/cloud/neighbor_grid.hpp>
+#include <bpa/core/model/model_index.hpp>
+#include <bpa/core/model/object_model.hpp>
+
+namespace bpa {
+namespace {
+
+constexpr std::size_t kMaxCheckPoints = 1024;
+constexpr float kMaxCoarsePoints = 500;
+
+CheckPoints check_points(const PointCloud& surface) {
+  std::vector<std::size_t> order(surface.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  RandomStream random(1);
+  for (std::size_t i = order.size(); i > 1; --i) {
+    std::swap(order[i - 1], order[static_cast<std::size_t>(random.index(static_cast<int>(i)))]);
+  }
+  order.resize(std::min(order.size(), kMaxCheckPoints));
+  CheckPoints check;
+  for (std::size_t i : order) {
+    check.points.push_back(surface.points[i]);
+    check.normals.push_back(surface.normals[i]);
+  }
+  return check;
+}
+
+// As many points as the pair table can take: their number grows with the inverse square of the
+// spacing.
+PointCloud coarse_points(const PointCloud& surface, double diameter) {
+  float spacing = std::max(0.004f, 0.05f * static_cast<float>(diameter));
+  PointCloud coarse = downsample(surface, spacing);
+  while (static_cast<float>(coarse.size()) > kMaxCoarsePoints) {
+    spacing *= 1.02f * std::sqrt(static_cast<float>(coarse.size()) / kMaxCoarsePoints);
+    coarse = downsample(surface, spacing);
+  }
+  return coarse;
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const ObjectModel>> make_object_model(ModelSource source, int num_threads) {
+  if (source.surface.size() < 20 || source.surface.normals.size() != source.surface.size()) {
+    return invalid_argument("model " + source.name +
+                            " has too few surface points; it must have at least 20 with normals");
+  }
+  if (!(source.diameter > 0)) {
+    return invalid_argument("model " + source.name + " has no diameter; it must be positive");
+  }
+  auto index = std::make_shared<ModelIndex>();
+  index->check = check_points(source.surface);
+  index->features = downsample(source.surface, kFeatureSpacing);
+  estimate_curvature(index->features, kCurvatureRadius, num_threads);
+  std::vector<int> all(index->features.size());
+  std::iota(all.begin(), all.end(), 0);
+  index->fpfh = compute_fpfh(index->features, all, kFeatureRadius, num_threads);
+  index->feature_tree = FeatureTree(index->fpfh);
+  index->coarse = coarse_points(source.surface, source.diameter);
+  index->pairs = PointPairTable(
+      index->coarse, std::max(0.006f, 0.05f * static_cast<float>(source.diameter)), 0.2618f);
+  const float spacing = 0.003f;
+  index->views = render_views(source.surface, spacing, num_threads);
+  auto model = std::make_shared<ObjectModel>();
+  static_cast<ModelSource&>(*model) = std::move(source);
+  model->index = std::move(index);
+  return std::shared_ptr<const ObjectModel>(std::move(model));
+}
+
+}  // namespace bpa

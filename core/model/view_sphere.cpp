@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <bpa/core/base/parallel.hpp>
+#include <bpa/core/model/view_sphere.hpp>
+
+namespace bpa {
+namespace {
+
+constexpr float kNothing = -std::numeric_limits<float>::infinity();
+
+// An orthographic depth buffer: larger is nearer to the camera.
+struct DepthBuffer {
+  int width = 0;
+  int height = 0;
+  float cell = 1;
+  Eigen::Vector2f origin = Eigen::Vector2f::Zero();
+  std::vector<float> nearest;
+
+  int column(float x) const { return static_cast<int>((x - origin.x()) / cell); }
+  int row(float y) const { return static_cast<int>((y - origin.y()) / cell); }
+  float at(int x, int y) const {
+    if (x < 0 || y < 0 || x >= width || y >= height) return kNothing;
+    return nearest[static_cast<std::size_t>(y * width + x)];
+  }
+};
+
+// Each point covers the 3x3 cells about it, so that the surface has no holes.
+DepthBuffer draw(const std::vector<Eigen::Vector3f>& points, float cell) {
+  DepthBuffer buffer;
+  buffer.cell = cell;
+  Eigen::Vector2f low = points.front().head<2>();
+  Eigen::Vector2f high = low;
+  for (const Eigen::Vector3f& p : points) {
+    low = low.cwiseMin(p.head<2>());
+    high = high.cwiseMax(p.head<2>());
+  }
+  buffer.origin = low.array() - 2 * cell;
+  buffer.width = buffer.column(high.x()) + 3;
+  buffer.height = buffer.row(high.y()) + 3;
+  buffer.nearest.assign(static_cast<std::size_t>(buffer.width * buffer.height), kNothing);
+  for (const Eigen::Vector3f& p : points) {
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        float& value = buffer.nearest[static_cast<std::size_t>(
+            (buffer.row(p.y()) + dy) * buffer.width + buffer.column(p.x()) + dx)];
+        value = std::max(value, p.z());
+      }
+    }
+  }
+  return buffer;
+}
+
+// The direction in the view plane in which the surface ends within `reach` cells; zero if none.
+Eigen::Vector2f edge_direction(const DepthBuffer& buffer, const Eigen::Vector3f& p, float drop) {
+  constexpr int kReach = 3;
+  const int x = buffer.column(p.x());
+  const int y = buffer.row(p.y());
+  Eigen::Vector2f outward = Eigen::Vector2f::Zero();
+  for (int dy = -kReach; dy <= kReach; ++dy) {
+    for (int dx = -kReach; dx <= kReach; ++dx) {
+      if (dx * dx + dy * dy > kReach * kReach) continue;
+      if (buffer.at(x + dx, y + dy) < p.z() - drop) {
+        outward += Eigen::Vector2f(static_cast<float>(dx), static_cast<float>(dy));
+      }
+    }
+  }
+  return outward;
+}
+
+ModelView render_view(const PointCloud& surface, const Eigen::Vector3f& direction, float spacing) {
+  ModelView view;
+  view.direction = direction;
+  const Eigen::Vector3f x_axis = direction.unitOrthogonal();
+  const Eigen::Vector3f y_axis = direction.cross(x_axis);
+  std::vector<Eigen::Vector3f> seen(surface.size());
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    const Eigen::Vector3f& p = surface.points[i];
+    seen[i] = {p.dot(x_axis), p.dot(y_axis), p.dot(direction)};
+  }
+  const DepthBuffer buffer = draw(seen, spacing);
+  constexpr float kDrop = 0.012f;  // a step that a Kinect-class sensor shows as a range edge
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    const float cosine = surface.normals.empty() ? 1.0f : surface.normals[i].dot(direction);
+    if (cosine <= 0.05f) continue;
+    const float slope = std::min(4.0f, std::sqrt(1 - cosine * cosine) / cosine);
+    const float nearest = buffer.at(buffer.column(seen[i].x()), buffer.row(seen[i].y()));
+    if (seen[i].z() < nearest - spacing * (1 + 2 * slope)) continue;
+    view.visible.push_back(static_cast<std::uint32_t>(i));
+    const Eigen::Vector2f outward =
+        edge_direction(buffer, seen[i], kDrop + 3 * spacing * slope * 0.5f);
+    if (outward.squaredNorm() < 4) continue;
+    view.edges.push_back(static_cast<std::uint32_t>(i));
+    const Eigen::Vector2f unit = outward.normalized();
+    view.outward.push_back(unit.x() * x_axis + unit.y() * y_axis);
+  }
+  return view;
+}
+
+}  // namespace
+
+std::array<Eigen::Vector3f, kNumViews> view_directions() {
+  std::array<Eigen::Vector3f, kNumViews> directions;
+  const double golden_angle = M_PI * (3 - std::sqrt(5.0));
+  for (int i = 0; i < kNumViews; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kNumViews;
+    const double r = std::sqrt(1 - z * z);
+    directions[static_cast<std::size_t>(i)] =
+        Eigen::Vector3d(r * std::cos(golden_angle * i), r * std::sin(golden_angle * i), z)
+            .cast<float>();
+  }
+  return directions;
+}
+
+int nearest_view(const std::vector<ModelView>& views, const Eigen::Vector3f& direction) {
+  const auto best = std::max_element(views.begin(), views.end(), [&](auto& a, auto& b) {
+    return a.direction.dot(direction) < b.direction.dot(direction);
+  });
+  return static_cast<int>(best - views.begin());
+}
+
+std::vector<ModelView> render_views(const PointCloud& surface, float spacing, int num_threads) {
+  const auto directions = view_directions();
+  std::vector<ModelView> views(kNumViews);
+  if (surface.empty()) return views;
+  parallel_for(kNumViews, num_threads, [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    views[k] = render_view(surface, directions[k], spacing);
+  });
+  return views;
+}
+
+}  // namespace bpa

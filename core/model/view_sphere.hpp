@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <bpa/core/cloud/point_cloud.hpp>
+
+namespace bpa {
+
+constexpr int kNumViews = 66;  ///< Paper section III: 66 viewing angles across the view sphere.
+
+/// What a camera far away in one direction sees of a model.
+struct ModelView {
+  Eigen::Vector3f direction;             ///< From the object to the camera, unit length.
+  std::vector<std::uint32_t> visible;    ///< Surface points that are seen, by index.
+  std::vector<std::uint32_t> edges;      ///< Those on a range edge, where the surface ends in this
+                                         ///< view (paper section III).
+  std::vector<Eigen::Vector3f> outward;  ///< For each edge point, the unit direction across the
+                                         ///< edge, away from the surface, in the view plane.
+};
+
+/// 66 directions spread evenly over the sphere (a Fibonacci lattice).
+std::array<Eigen::Vector3f, kNumViews> view_directions();
+
+/// The view whose direction is nearest to `direction` (unit length, object to camera).
+int nearest_view(const std::vector<ModelView>& views, const Eigen::Vector3f& direction);
+
+/// Renders the points into a depth buffer of cells as large as `spacing` along each direction.
+std::vector<ModelView> render_views(const PointCloud& surface, float spacing, int num_threads);
+
+}  // namespace bpa
