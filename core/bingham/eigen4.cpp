@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <bpa/core/bingham/eigen4.hpp>
+
+namespace bpa {
+namespace {
+
+using Eigen::Matrix4d;
+using Eigen::Vector4d;
+
+double off_diagonal_squared(const Matrix4d& a) {
+  double sum = 0;
+  for (int p = 0; p < 3; ++p) {
+    for (int q = p + 1; q < 4; ++q) sum += a(p, q) * a(p, q);
+  }
+  return sum;
+}
+
+// One rotation in the plane (p, q) that makes a(p, q) zero.
+void jacobi_rotate(int p, int q, Matrix4d& a, Matrix4d& v) {
+  if (a(p, q) == 0) return;
+  const double theta = (a(q, q) - a(p, p)) / (2 * a(p, q));
+  const double t = std::copysign(1 / (std::abs(theta) + std::sqrt(theta * theta + 1)), theta);
+  const double c = 1 / std::sqrt(t * t + 1);
+  const double s = t * c;
+  a(p, p) -= t * a(p, q);
+  a(q, q) += t * a(p, q);
+  a(p, q) = a(q, p) = 0;
+  for (int k = 0; k < 4; ++k) {
+    if (k != p && k != q) {
+      const double kp = a(k, p), kq = a(k, q);
+      a(k, p) = a(p, k) = c * kp - s * kq;
+      a(k, q) = a(q, k) = s * kp + c * kq;
+    }
+    const double vp = v(k, p), vq = v(k, q);
+    v(k, p) = c * vp - s * vq;
+    v(k, q) = s * vp + c * vq;
+  }
+}
+
+// The largest root of x^4 + c2 x^2 + c1 x + c0, all of whose roots are real and at most `bound`,
+// from above. Convex there, so Newton's steps never pass it but by rounding.
+double largest_root(double c2, double c1, double c0, double bound) {
+  double x = bound;
+  for (int i = 0; i < 40; ++i) {
+    const double value = ((x * x + c2) * x + c1) * x + c0;
+    const double slope = (4 * x * x + 2 * c2) * x + c1;
+    if (!(slope > 0)) break;
+    const double step = value / slope;
+    x -= step;
+    if (step < 1e-7) break;  // Quadratic: the next step would be of 1e-14.
+  }
+  return x;
+}
+
+// Cholesky factor of (shift * I - a) with the inverses of its diagonal; false if not positive.
+struct ShiftedFactor {
+  double l10, l20, l30, l21, l31, l32;
+  std::array<double, 4> inverse;
+
+  bool compute(const Matrix4d& a, double shift) {
+    const double d0 = shift - a(0, 0);
+    if (!(d0 > 0)) return false;
+    inverse[0] = 1 / d0;
+    l10 = -a(1, 0) * inverse[0], l20 = -a(2, 0) * inverse[0], l30 = -a(3, 0) * inverse[0];
+    const double d1 = shift - a(1, 1) - l10 * l10 * d0;
+    if (!(d1 > 0)) return false;
+    inverse[1] = 1 / d1;
+    l21 = (-a(2, 1) - l20 * l10 * d0) * inverse[1];
+    l31 = (-a(3, 1) - l30 * l10 * d0) * inverse[1];
+    const double d2 = shift - a(2, 2) - l20 * l20 * d0 - l21 * l21 * d1;
+    if (!(d2 > 0)) return false;
+    inverse[2] = 1 / d2;
+    l32 = (-a(3, 2) - l30 * l20 * d0 - l31 * l21 * d1) * inverse[2];
+    const double d3 = shift - a(3, 3) - l30 * l30 * d0 - l31 * l31 * d1 - l32 * l32 * d2;
+    if (!(d3 > 0)) return false;
+    inverse[3] = 1 / d3;
+    return true;
+  }
+
+  Vector4d solve(const Vector4d& b) const {
+    const double y0 = b[0];
+    const double y1 = b[1] - l10 * y0;
+    const double y2 = b[2] - l20 * y0 - l21 * y1;
+    const double y3 = b[3] - l30 * y0 - l31 * y1 - l32 * y2;
+    const double x3 = y3 * inverse[3];
+    const double x2 = y2 * inverse[2] - l32 * x3;
+    const double x1 = y1 * inverse[1] - l21 * x2 - l31 * x3;
+    const double x0 = y0 * inverse[0] - l10 * x1 - l20 * x2 - l30 * x3;
+    return {x0, x1, x2, x3};
+  }
+};
+
+// Inverse iteration beside the largest eigenvalue; false when the gap to the next is too small for
+// it, or the start happened to be orthogonal to the answer.
+bool dominant_by_inverse_iteration(const Matrix4d& matrix, Vector4d& answer) {
+  Matrix4d a = matrix;
+  a.diagonal().array() -= 0.25 * matrix.trace();
+  const double norm = a.norm();
+  if (!(norm > 1e-150 && norm < 1e150)) return false;
+  a *= 1 / norm;
+  const Matrix4d square = a * a;  // Newton's identities with trace(a) = 0, trace(a^2) = 1.
+  const double c1 = -a.cwiseProduct(square).sum() / 3;
+  const double c0 = 0.125 - 0.25 * square.squaredNorm();
+  const double shift = largest_root(-0.5, c1, c0, std::sqrt(0.75) + 1e-12) + 1e-9;
+  ShiftedFactor factor;
+  if (!factor.compute(a, shift)) return false;
+  Vector4d v = factor.solve({0.5377, 0.2833, -0.2588, 0.7512}).normalized();
+  v = factor.solve(v).normalized();
+  const Vector4d last = factor.solve(v);
+  const double size = last.norm();
+  answer = last / size;
+  // size = 1 / (shift - eigenvalue) up to second order; a small one means another eigenvector.
+  return size > 1e6 && (answer - v).squaredNorm() < 1e-16;
+}
+
+}  // namespace
+
+SymmetricEigen4 symmetric_eigen(const Matrix4d& matrix) {
+  const double scale = matrix.cwiseAbs().maxCoeff();
+  const double unit = scale > 0 ? scale : 1;  // Squares of tiny or huge entries would not fit.
+  Matrix4d a = (0.5 / unit) * (matrix + matrix.transpose());
+  Matrix4d v = Matrix4d::Identity();
+  for (int sweep = 0; sweep < 20; ++sweep) {
+    if (off_diagonal_squared(a) <= 1e-36) break;
+    for (int p = 0; p < 3; ++p) {
+      for (int q = p + 1; q < 4; ++q) jacobi_rotate(p, q, a, v);
+    }
+  }
+  std::array<int, 4> order = {0, 1, 2, 3};
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return a(i, i) > a(j, j); });
+  SymmetricEigen4 result;
+  for (int i = 0; i < 4; ++i) {
+    result.values[i] = unit * a(order[i], order[i]);
+    result.vectors.col(i) = v.col(order[i]);
+  }
+  return result;
+}
+
+Vector4d dominant_eigenvector(const Matrix4d& matrix) {
+  Vector4d answer;
+  if (dominant_by_inverse_iteration(matrix, answer)) return answer;
+  return symmetric_eigen(matrix).vectors.col(0);
+}
+
+}  // namespace bpa

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+namespace bpa {
+
+/// The spectrum of a symmetric 4x4 matrix: values descending, an orthonormal column for each.
+struct SymmetricEigen4 {
+  Eigen::Vector4d values;
+  Eigen::Matrix4d vectors;
+};
+
+/// Cyclic Jacobi: slow (under a microsecond) and accurate for any symmetric finite matrix; only the
+/// symmetric part of `matrix` counts.
+SymmetricEigen4 symmetric_eigen(const Eigen::Matrix4d& matrix);
+
+/// A unit eigenvector of the largest eigenvalue of a symmetric matrix, to rounding error over the
+/// relative gap to the next eigenvalue. Fast where that gap is clear (Newton on the characteristic
+/// polynomial from above, then inverse iteration), Jacobi where it is not.
+Eigen::Vector4d dominant_eigenvector(const Eigen::Matrix4d& matrix);
+
+}  // namespace bpa
