@@ -1,3 +1,61 @@
 # SPDX-FileCopyrightText: 2026 The bpa authors
 # SPDX-License-Identifier: Apache-2.0
-# Installation and the package config follow.
+# Installs libraries, headers, programs, settings and the package config.
+#
+# Three libraries for users: bpa::core (all rooms), bpa::wire and bpa::client. Each has its own export
+# set, so that whoever wants only the client needs only what the client needs. bpa::core_base, which
+# all three share, has one too.
+include(CMakePackageConfigHelpers)
+
+set(BPA_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/bpa)
+
+# bpa_install_libraries(COMPONENT TARGETS target...): libraries with their export set.
+function(bpa_install_libraries component)
+  cmake_parse_arguments(INSTALL "" "" "TARGETS" ${ARGN})
+  if(INSTALL_TARGETS)
+    install(TARGETS ${INSTALL_TARGETS} EXPORT bpa-${component}
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(EXPORT bpa-${component} NAMESPACE bpa:: DESTINATION ${BPA_CMAKE_DIR})
+  endif()
+endfunction()
+
+# Every room but the program's own.
+get_property(bpa_rooms GLOBAL PROPERTY BPA_CORE_ROOMS)
+list(REMOVE_ITEM bpa_rooms bpa_core_cli)
+add_library(bpa_core INTERFACE)
+add_library(bpa::core ALIAS bpa_core)
+set_target_properties(bpa_core PROPERTIES EXPORT_NAME core)
+target_link_libraries(bpa_core INTERFACE ${bpa_rooms})
+
+list(REMOVE_ITEM bpa_rooms bpa_core_base)
+bpa_install_libraries(base TARGETS bpa_core_base)
+bpa_install_libraries(core TARGETS bpa_core ${bpa_rooms})
+foreach(component wire client)
+  if(TARGET bpa_${component})
+    set_target_properties(bpa_${component} PROPERTIES EXPORT_NAME ${component})
+    bpa_install_libraries(${component} TARGETS bpa_${component})
+  endif()
+endforeach()
+
+set(bpa_header_folder ${CMAKE_INSTALL_INCLUDEDIR}/bpa)
+install(DIRECTORY core idl/wire DESTINATION ${bpa_header_folder}
+        FILES_MATCHING PATTERN "*.hpp" PATTERN "cli" EXCLUDE)
+install(DIRECTORY client/include/bpa DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+        FILES_MATCHING PATTERN "*.hpp")
+# The messages, for a ROS 2 workspace, and the settings: nothing reads these by itself.
+install(DIRECTORY idl/bpa_msgs DESTINATION ${CMAKE_INSTALL_DATADIR}/bpa)
+install(DIRECTORY config DESTINATION ${CMAKE_INSTALL_DATADIR}/bpa
+        PATTERN "apt-packages.txt" EXCLUDE PATTERN "readme" EXCLUDE)
+
+foreach(program bpa bpa-server bpa-client)
+  if(TARGET ${program})
+    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  endif()
+endforeach()
+
+configure_package_config_file(cmake/bpa-config.cmake.in ${CMAKE_BINARY_DIR}/bpa-config.cmake
+                              INSTALL_DESTINATION ${BPA_CMAKE_DIR})
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/bpa-config-version.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/bpa-config.cmake ${CMAKE_BINARY_DIR}/bpa-config-version.cmake
+        DESTINATION ${BPA_CMAKE_DIR})
