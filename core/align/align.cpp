@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
+#include <cstdint>
 
 #include <bpa/core/align/align.hpp>
 #include <bpa/core/align/moments.hpp>
@@ -28,46 +28,51 @@ struct Mode {
   Matrix3d rotation() const { return Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix(); }
 };
 
-// The pair whose curvature direction says most, or null.
-const OrientedPair* most_curved(const Correspondences& data) {
-  const OrientedPair* best = nullptr;
-  double least = 0;
-  for (const OrientedPair& pair : data.oriented) {
-    const double lambda3 = std::max(pair.model.lambda3, pair.scene.lambda3);
-    if (lambda3 < least) {
-      least = lambda3;
-      best = &pair;
-    }
-  }
-  return best;
+// Adds every curvature direction with the sign that agrees with `rotation`; returns a hash of the
+// signs.
+std::uint64_t add_agreeing(const Correspondences& data, const CurvatureTerms& curvature,
+                           const Matrix3d& rotation, Matrix3d& attitude) {
+  std::uint64_t hash = 1469598103934665603ULL;
+  curvature.for_each(data, [&](const CurvatureTerm& term) {
+    const bool reversed = term.value(rotation) < 0;
+    attitude += (reversed ? -1.0 : 1.0) * term.attitude;
+    hash = (hash ^ (reversed ? 2U : 1U)) * 1099511628211ULL;
+  });
+  return hash;
 }
 
-// Maximises over the signs of the curvature directions: given a rotation the best signs are plain,
-// given signs the best rotation is an eigenvector, and neither step lowers the value.
-Mode maximise_over_signs(const Correspondences& data, const Moments& moments, const Matrix4d& prior,
-                         const OrientedPair& strongest) {
-  const CurvatureAttitude term = curvature_attitude(strongest);
-  std::array<std::uint64_t, 3> reached{};
-  Mode best(moments, prior);
-  for (std::size_t start = 0; start < reached.size(); ++start) {
-    Mode mode = best;
-    if (start > 0) {
-      Moments with_strongest = moments;
-      with_strongest.attitude += term.with_sign(start == 2);
-      mode = Mode(with_strongest, prior);
-    }
-    std::uint64_t signs = 0;
-    bool known = false;
-    for (int iteration = 0; iteration < 20; ++iteration) {
-      Moments with_signs = moments;
-      const std::uint64_t previous = signs;
-      signs = add_curvature(data, mode.rotation(), with_signs);
-      known = signs == reached[0] || signs == reached[1];
-      if (known || signs == previous) break;
-      mode = Mode(with_signs, prior);
-    }
-    reached[start] = signs;
-    if (!known && (start == 0 || mode.value > best.value)) best = mode;
+// Given a rotation the best signs are plain, given signs the best rotation is an eigenvector, and
+// neither step lowers the value.
+Mode climb(const Correspondences& data, const Moments& moments, const CurvatureTerms& curvature,
+           const Matrix4d& prior, const Mode& start) {
+  Mode mode = start;
+  std::uint64_t signs = 0;
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    Moments with_signs = moments;
+    const std::uint64_t previous = signs;
+    signs = add_agreeing(data, curvature, mode.rotation(), with_signs.attitude);
+    if (signs == previous) break;
+    mode = Mode(with_signs, prior);
+  }
+  return mode;
+}
+
+// Maximises over the signs of the curvature directions, from the answer of positions and normals
+// and then from the other sign of the strongest direction, unless a bound says that it cannot be
+// better: no direction adds more than its `largest`.
+Mode maximise_over_signs(const Correspondences& data, const Moments& moments,
+                         const CurvatureTerms& curvature, const Matrix4d& prior) {
+  const CurvatureTerm& strongest = curvature.strongest();
+  Mode best = climb(data, moments, curvature, prior, Mode(moments, prior));
+  const double sign = strongest.value(best.rotation()) < 0 ? -1 : 1;
+  const double others = curvature.total() - strongest.largest;
+  for (const double tried : {-sign, sign}) {
+    Moments with_strongest = moments;
+    with_strongest.attitude += tried * strongest.attitude;
+    const Mode start(with_strongest, prior);
+    if (start.value + others <= best.value) break;
+    const Mode mode = climb(data, moments, curvature, prior, start);
+    if (mode.value > best.value) best = mode;
   }
   return best;
 }
@@ -93,13 +98,13 @@ Matrix4d prior_exponent(const Correspondences& data) {
 }  // namespace
 
 PoseEstimate bpa_mode(const Correspondences& data) {
-  Moments moments = accumulate(data);
+  CurvatureTerms curvature;
+  Moments moments = accumulate(data, curvature);
   const Matrix4d prior = prior_exponent(data);
-  const OrientedPair* strongest = most_curved(data);
-  if (strongest != nullptr && !data.curvature_sign_known) {
-    return make_estimate(maximise_over_signs(data, moments, prior, *strongest), moments);
+  if (curvature.count() > 0 && !data.curvature_sign_known) {
+    return make_estimate(maximise_over_signs(data, moments, curvature, prior), moments);
   }
-  if (strongest != nullptr) add_curvature(data, moments);
+  curvature.for_each(data, [&](const CurvatureTerm& term) { moments.attitude += term.attitude; });
   return make_estimate(Mode(moments, prior), moments);
 }
 
@@ -119,39 +124,8 @@ Pose bpa_sample_one(const OrientedPair& pair, RandomStream& random, bool curvatu
   return pose;
 }
 
-namespace {
-
-// Horn's moments: positions with their weights, nothing else.
-Moments position_moments(const Correspondences& data) {
-  Moments m;
-  const auto each = [&data](auto&& visit) {
-    for (const OrientedPair& pair : data.oriented) {
-      visit(pair.model.point, pair.scene.point, 1 / (pair.sigma * pair.sigma));
-    }
-    for (const PositionPair& pair : data.positions) {
-      visit(pair.model, pair.scene, 1 / (pair.sigma * pair.sigma));
-    }
-  };
-  each([&m](const Vector3d& model, const Vector3d& scene, double w) {
-    m.weight += w;
-    m.model_centroid += w * model;
-    m.scene_centroid += w * scene;
-  });
-  if (!(m.weight > 0)) return m;
-  m.model_centroid /= m.weight;
-  m.scene_centroid /= m.weight;
-  each([&m](const Vector3d& model, const Vector3d& scene, double w) {
-    const Vector3d x = model - m.model_centroid, y = scene - m.scene_centroid;
-    m.attitude += (w * x) * y.transpose();
-    m.constant -= 0.5 * w * (x.squaredNorm() + y.squaredNorm());
-  });
-  return m;
-}
-
-}  // namespace
-
 PoseEstimate icp_mode(const Correspondences& data) {
-  const Moments moments = position_moments(data);
+  const Moments moments = accumulate_positions(data);
   return make_estimate(Mode(moments, Matrix4d::Zero()), moments);
 }
 

@@ -13,101 +13,107 @@ using Eigen::Vector3d;
 double inverse_square(double sigma) { return 1 / (sigma * sigma); }
 
 // The variance of the isotropic Gaussian that stands for the prior: the mean of its covariance's
-// eigenvalues. What that leaves out is in anisotropy.hpp.
+// eigenvalues. What that leaves out is in posterior.hpp.
 double isotropic_variance(const PositionPrior& prior) { return prior.covariance.trace() / 3; }
 
-// First column of the rotation matrix.
-Vector3d axis_x(const Quaterniond& q) {
+// The first column of the rotation matrix: the normal.
+Vector3d normal_of(const Quaterniond& q) {
   return {1 - 2 * (q.y() * q.y() + q.z() * q.z()), 2 * (q.x() * q.y() + q.w() * q.z()),
           2 * (q.x() * q.z() - q.w() * q.y())};
 }
 
-}  // namespace
-
-Moments accumulate(const Correspondences& data) {
+// Weighted centroids of everything that has a position.
+Moments centroids(const Correspondences& data) {
   Moments m;
-  for (const OrientedPair& pair : data.oriented) {
-    const double w = inverse_square(pair.sigma);
+  const auto add = [&m](const Vector3d& model, const Vector3d& scene, double w) {
     m.weight += w;
-    m.model_centroid += w * pair.model.point;
-    m.scene_centroid += w * pair.scene.point;
+    m.model_centroid += w * model;
+    m.scene_centroid += w * scene;
+  };
+  for (const OrientedPair& pair : data.oriented) {
+    add(pair.model.point, pair.scene.point, inverse_square(pair.sigma));
   }
   for (const PositionPair& pair : data.positions) {
-    const double w = inverse_square(pair.sigma);
-    m.weight += w;
-    m.model_centroid += w * pair.model;
-    m.scene_centroid += w * pair.scene;
+    add(pair.model, pair.scene, inverse_square(pair.sigma));
   }
   if (data.position_prior != nullptr) {  // A pair of the object's origin.
-    const double w = 1 / isotropic_variance(*data.position_prior);
-    m.weight += w;
-    m.scene_centroid += w * data.position_prior->mean;
+    add(Vector3d::Zero(), data.position_prior->mean, 1 / isotropic_variance(*data.position_prior));
   }
   if (m.weight > 0) {
     m.model_centroid /= m.weight;
     m.scene_centroid /= m.weight;
   }
-  const auto add_position = [&m](const Vector3d& model, const Vector3d& scene, double w) {
-    const Vector3d x = model - m.model_centroid, y = scene - m.scene_centroid;
-    m.attitude += (w * x) * y.transpose();
-    m.constant -= 0.5 * w * (x.squaredNorm() + y.squaredNorm());
-  };
+  return m;
+}
+
+void add_position(const Vector3d& model, const Vector3d& scene, double weight, Moments& m) {
+  const Vector3d x = model - m.model_centroid, y = scene - m.scene_centroid;
+  m.attitude += (weight * x) * y.transpose();
+  m.constant -= 0.5 * weight * (x.squaredNorm() + y.squaredNorm());
+}
+
+void add_orientation(const OrientedPair& pair, Moments& m, CurvatureTerms& curvature) {
+  // κ (ey² + ez²) = κ/2 (1 - cos n) and λ3 ex² = λ3/4 (1 + cos n - cos p - cos p'), where cos n is
+  // the cosine between the two normals, turned by the pose.
+  const FeatureConcentration c = compose(pair.model, pair.scene);
+  const double weight = 0.25 * c.lambda3 - 0.5 * c.kappa;
+  const Vector3d model_normal = normal_of(pair.model.orientation);
+  const Vector3d scene_normal = normal_of(pair.scene.orientation);
+  const Matrix3d normals = model_normal * scene_normal.transpose();
+  m.attitude += weight * normals;
+  m.constant += 0.5 * c.kappa + 0.25 * c.lambda3;
+  if (!(c.lambda3 < 0)) return;
+  // n nᵀ + p pᵀ + p' p'ᵀ of model and scene is the product of their rotation matrices.
+  CurvatureTerm term;
+  const Quaterniond relative = pair.model.orientation * pair.scene.orientation.conjugate();
+  term.attitude = (-0.25 * c.lambda3) * (relative.toRotationMatrix() - normals);
+  term.largest = -0.5 * c.lambda3;
+  curvature.add(term);
+}
+
+}  // namespace
+
+void CurvatureTerms::add(const CurvatureTerm& term) {
+  if (count_ < kCapacity) kept_[static_cast<std::size_t>(count_)] = term;
+  ++count_;
+  total_ += term.largest;
+  if (term.largest > strongest_.largest) strongest_ = term;
+}
+
+Moments accumulate(const Correspondences& data, CurvatureTerms& curvature) {
+  Moments m = centroids(data);
   for (const OrientedPair& pair : data.oriented) {
-    add_position(pair.model.point, pair.scene.point, inverse_square(pair.sigma));
-    // κ (ey² + ez²) = κ/2 (1 - the cosine between the normals).
-    const double kappa = compose(pair.model, pair.scene).kappa;
-    if (!(kappa < 0)) continue;
-    m.attitude += (-0.5 * kappa * axis_x(pair.model.orientation)) *
-                  axis_x(pair.scene.orientation).transpose();
-    m.constant += 0.5 * kappa;
+    add_position(pair.model.point, pair.scene.point, inverse_square(pair.sigma), m);
+    if (pair.model.kappa * pair.scene.kappa > 0) add_orientation(pair, m, curvature);
   }
   for (const PositionPair& pair : data.positions) {
-    add_position(pair.model, pair.scene, inverse_square(pair.sigma));
+    add_position(pair.model, pair.scene, inverse_square(pair.sigma), m);
   }
   if (data.position_prior != nullptr) {
     add_position(Vector3d::Zero(), data.position_prior->mean,
-                 1 / isotropic_variance(*data.position_prior));
+                 1 / isotropic_variance(*data.position_prior), m);
   }
   return m;
 }
 
-CurvatureAttitude curvature_attitude(const OrientedPair& pair) {
-  CurvatureAttitude result;
-  const double lambda3 = compose(pair.model, pair.scene).lambda3;
-  if (!(lambda3 < 0)) return result;
-  // λ3 ex² = λ3/4 (1 + cos n - cos p - cos p'), of the angles between the ends' directions.
-  const Matrix3d model = pair.model.orientation.toRotationMatrix();
-  const Matrix3d scene = pair.scene.orientation.toRotationMatrix();
-  const double weight = -0.25 * lambda3;
-  result.along_normal = (-weight * model.col(0)) * scene.col(0).transpose();
-  result.along_curvature = (weight * model.col(1)) * scene.col(1).transpose() +
-                           (weight * model.col(2)) * scene.col(2).transpose();
-  result.constant = -weight;
-  result.present = true;
-  return result;
+Moments accumulate_positions(const Correspondences& data) {
+  Correspondences bare = data;
+  bare.position_prior = nullptr;
+  Moments m = centroids(bare);
+  for (const OrientedPair& pair : data.oriented) {
+    add_position(pair.model.point, pair.scene.point, inverse_square(pair.sigma), m);
+  }
+  for (const PositionPair& pair : data.positions) {
+    add_position(pair.model, pair.scene, inverse_square(pair.sigma), m);
+  }
+  return m;
 }
 
-std::uint64_t add_curvature(const Correspondences& data, const Matrix3d& rotation,
-                            Moments& moments) {
-  std::uint64_t hash = 1469598103934665603ULL;
-  for (const OrientedPair& pair : data.oriented) {
-    const CurvatureAttitude term = curvature_attitude(pair);
-    if (!term.present) continue;
-    const bool reversed = rotation.transpose().cwiseProduct(term.along_curvature).sum() < 0;
-    moments.attitude += term.with_sign(reversed);
-    moments.constant += term.constant;
-    hash = (hash ^ (reversed ? 2U : 1U)) * 1099511628211ULL;
-  }
-  return hash;
-}
-
-void add_curvature(const Correspondences& data, Moments& moments) {
-  for (const OrientedPair& pair : data.oriented) {
-    const CurvatureAttitude term = curvature_attitude(pair);
-    if (!term.present) continue;
-    moments.attitude += term.with_sign(false);
-    moments.constant += term.constant;
-  }
+CurvatureTerm curvature_term(const OrientedPair& pair) {
+  CurvatureTerms terms;
+  Moments unused;
+  if (pair.model.kappa * pair.scene.kappa > 0) add_orientation(pair, unused, terms);
+  return terms.strongest();
 }
 
 Matrix4d horn_matrix(const Matrix3d& s) {

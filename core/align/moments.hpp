@@ -3,8 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
-#include <cstdint>
+#include <array>
 
 #include <bpa/core/align/correspondence.hpp>
 
@@ -25,32 +24,66 @@ struct Moments {
   double constant = 0;
 };
 
-/// The moments of positions (a position prior among them, as if isotropic) and normals, without the
-/// curvature directions.
-Moments accumulate(const Correspondences& data);
+/// The weight 2 b of a pair's curvature direction, and b (p pᵀ + p' p'ᵀ) with the model's
+/// directions on the left: what it adds to `attitude` with its sign as given, and subtracts with
+/// the reverse.
+struct CurvatureTerm {
+  Eigen::Matrix3d attitude = Eigen::Matrix3d::Zero();
+  double largest = 0;  ///< The most it can add to the log likelihood, -λ3 / 2. 0: no direction.
 
-/// What a pair's curvature direction adds to `attitude`, for its sign as given and for the reverse.
-struct CurvatureAttitude {
-  Eigen::Matrix3d along_normal;
-  Eigen::Matrix3d along_curvature;
-  double constant = 0;
-  bool present = false;  ///< False when lambda3 is 0 at either end; then the rest is not set.
-
-  Eigen::Matrix3d with_sign(bool reversed) const {
-    return reversed ? Eigen::Matrix3d(along_normal - along_curvature)
-                    : Eigen::Matrix3d(along_normal + along_curvature);
+  /// What it adds to the log likelihood at a rotation, for the sign as given.
+  double value(const Eigen::Matrix3d& rotation) const {
+    return rotation.cwiseProduct(attitude.transpose()).sum();
   }
 };
-CurvatureAttitude curvature_attitude(const OrientedPair& pair);
 
-/// Adds all curvature directions, each with the sign that agrees with `rotation`. Returns a hash of
-/// the signs.
-std::uint64_t add_curvature(const Correspondences& data, const Eigen::Matrix3d& rotation,
-                            Moments& moments);
-/// Adds all curvature directions with the signs they came with.
-void add_curvature(const Correspondences& data, Moments& moments);
+/// The curvature terms of the first kCapacity curved pairs, kept; later ones are computed again
+/// each time, so that nothing is allocated.
+class CurvatureTerms {
+ public:
+  static constexpr int kCapacity = 24;
+
+  void add(const CurvatureTerm& term);
+  /// Of all terms, kept or not.
+  int count() const { return count_; }
+  double total() const { return total_; }  ///< Σ of `largest`.
+  const CurvatureTerm& strongest() const { return strongest_; }
+
+  /// Calls visit(term) for every pair with a curvature direction, in order.
+  template <class Visitor>
+  void for_each(const Correspondences& data, Visitor&& visit) const;
+
+ private:
+  std::array<CurvatureTerm, kCapacity> kept_;
+  CurvatureTerm strongest_;
+  int count_ = 0;
+  double total_ = 0;
+};
+
+/// The moments of positions (a position prior among them, as if isotropic) and normals. `curvature`
+/// gets the curvature directions, whose share that does not depend on their signs is in the
+/// moments.
+Moments accumulate(const Correspondences& data, CurvatureTerms& curvature);
+
+/// Of positions alone: Horn's.
+Moments accumulate_positions(const Correspondences& data);
+
+/// The curvature term of one pair.
+CurvatureTerm curvature_term(const OrientedPair& pair);
 
 /// The exponent whose value at q is trace(R(q) attitude): Horn's matrix (1987).
 Eigen::Matrix4d horn_matrix(const Eigen::Matrix3d& attitude);
+
+template <class Visitor>
+void CurvatureTerms::for_each(const Correspondences& data, Visitor&& visit) const {
+  const int kept = count_ < kCapacity ? count_ : kCapacity;
+  for (int i = 0; i < kept; ++i) visit(kept_[static_cast<std::size_t>(i)]);
+  if (kept == count_) return;
+  int seen = 0;
+  for (const OrientedPair& pair : data.oriented) {
+    const CurvatureTerm term = curvature_term(pair);
+    if (term.largest > 0 && ++seen > kept) visit(term);
+  }
+}
 
 }  // namespace bpa::align

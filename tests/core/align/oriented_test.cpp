@@ -88,10 +88,11 @@ TEST(OrientedPoint, FeatureBinghamHasThePapersAxes) {
 TEST(Moments, SayTheLogLikelihoodOfAnyPose) {
   RandomStream random(7);
   for (int i = 0; i < 200; ++i) {
-    const std::vector<OrientedPair> pairs = make_pairs(1 + random.index(6), 0.01, random);
+    const std::vector<OrientedPair> pairs = make_pairs(1 + random.index(40), 0.01, random);
     const Correspondences data{.oriented = pairs, .curvature_sign_known = true};
-    Moments moments = accumulate(data);
-    add_curvature(data, moments);
+    CurvatureTerms curvature;
+    Moments moments = accumulate(data, curvature);
+    curvature.for_each(data, [&](const CurvatureTerm& t) { moments.attitude += t.attitude; });
     const Pose pose = random_pose(random);
     const Eigen::Vector4d q = to_wxyz(pose.rotation);
     const double horn = q.dot(horn_matrix(moments.attitude) * q);
