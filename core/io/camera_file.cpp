@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <sstream>
+
+#include <yaml-cpp/yaml.h>
+
+#include <bpa/core/io/camera_file.hpp>
+
+#include "json_file.hpp"
+
+namespace bpa::io {
+namespace {
+
+Status check(const std::string& path, const CameraFile& file) {
+  const auto positive = [&path](const char* field, double value) -> Status {
+    if (std::isfinite(value) && value > 0) return {};
+    std::ostringstream text;
+    text << path << ": " << field << " is " << value << "; it must be positive";
+    return invalid_argument(text.str());
+  };
+  if (Status s = positive("fx", file.camera.fx); !s.ok()) return s;
+  if (Status s = positive("fy", file.camera.fy); !s.ok()) return s;
+  if (Status s = positive("depth_scale", file.depth_scale_mm); !s.ok()) return s;
+  if (file.camera.width == 0 && file.camera.height == 0) return {};
+  Status status = validate(file.camera);
+  if (!status.ok()) status.message = path + ": " + status.message;
+  return status;
+}
+
+CameraFile from_json(const Json& json) {
+  CameraFile file;
+  Camera& camera = file.camera;
+  if (json.contains("cam_K")) {
+    const auto k = json.at("cam_K").get<std::array<double, 9>>();
+    camera.fx = k[0];
+    camera.cx = k[2];
+    camera.fy = k[4];
+    camera.cy = k[5];
+  } else {
+    camera.fx = json.at("fx").get<double>();
+    camera.fy = json.at("fy").get<double>();
+    camera.cx = json.at("cx").get<double>();
+    camera.cy = json.at("cy").get<double>();
+  }
+  camera.width = json.value("width", 0);
+  camera.height = json.value("height", 0);
+  file.depth_scale_mm = json.value("depth_scale", 1.0);
+  return file;
+}
+
+CameraFile from_yaml(const YAML::Node& yaml) {
+  CameraFile file;
+  Camera& camera = file.camera;
+  camera.width = yaml["image_width"].as<int>();
+  camera.height = yaml["image_height"].as<int>();
+  const auto k = yaml["camera_matrix"]["data"].as<std::array<double, 9>>();
+  camera.fx = k[0];
+  camera.cx = k[2];
+  camera.fy = k[4];
+  camera.cy = k[5];
+  if (const YAML::Node distortion = yaml["distortion_coefficients"]) {
+    for (const double d : distortion["data"].as<std::vector<double>>()) {
+      if (d != 0) file.note = "its distortion is ignored: images must be rectified";
+    }
+  }
+  if (const YAML::Node scale = yaml["depth_scale"]) file.depth_scale_mm = scale.as<double>();
+  return file;
+}
+
+Result<CameraFile> read_yaml(const std::string& path) {
+  const Result<std::string> bytes = read_file(path);
+  if (!bytes.ok()) return bytes.status();
+  try {
+    return from_yaml(YAML::Load(*bytes));
+  } catch (const std::exception& error) {
+    return Status(StatusCode::corrupt,
+                  path +
+                      " is not a ROS camera_info file (image_width, image_height, "
+                      "camera_matrix.data of 9): " +
+                      error.what());
+  }
+}
+
+}  // namespace
+
+Result<CameraFile> read_camera(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  Result<CameraFile> file =
+      Status(StatusCode::unsupported, path + " is not a camera file; use .json or .yaml");
+  if (extension == "json") {
+    const Result<Json> json = read_json(path);
+    if (!json.ok()) return json.status();
+    file = with_json(path, [&]() -> Result<CameraFile> { return from_json(*json); });
+  } else if (extension == "yaml" || extension == "yml") {
+    file = read_yaml(path);
+  }
+  if (!file.ok()) return file;
+  if (Status status = check(path, *file); !status.ok()) return status;
+  return file;
+}
+
+Status write_camera(const std::string& path, const Camera& camera, double depth_scale_mm) {
+  const Json json = {{"cx", camera.cx},      {"cy", camera.cy}, {"depth_scale", depth_scale_mm},
+                     {"fx", camera.fx},      {"fy", camera.fy}, {"height", camera.height},
+                     {"width", camera.width}};
+  return write_file(path, json.dump(2) + "\n");
+}
+
+}  // namespace bpa::io

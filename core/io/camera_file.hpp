@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <bpa/core/base/status.hpp>
+#include <bpa/core/geometry/camera.hpp>
+
+namespace bpa::io {
+
+/// What a camera file says.
+struct CameraFile {
+  Camera camera;              ///< width and height are 0 where the file does not say.
+  double depth_scale_mm = 1;  ///< Millimetres of one unit of a depth image.
+  std::string note;           ///< Something people should know (distortion ignored); else empty.
+};
+
+/// Reads a BOP camera.json (fx fy cx cy width height depth_scale; also cam_K instead of fx...) or a
+/// ROS camera_info YAML (image_width, image_height, camera_matrix), by its extension. Fails with
+/// not_found, corrupt, or invalid_argument naming the field and the rule.
+Result<CameraFile> read_camera(const std::string& path);
+
+/// Writes the BOP form.
+Status write_camera(const std::string& path, const Camera& camera, double depth_scale_mm);
+
+}  // namespace bpa::io

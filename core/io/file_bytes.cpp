@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include <unistd.h>
+
+#include <bpa/core/io/file_bytes.hpp>
+
+namespace bpa::io {
+namespace fs = std::filesystem;
+namespace {
+
+std::array<std::uint32_t, 256> make_crc_table() {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t n = 0; n < 256; ++n) {
+    std::uint32_t c = n;
+    for (int k = 0; k < 8; ++k) c = (c & 1) ? 0xedb88320u ^ (c >> 1) : c >> 1;
+    table[n] = c;
+  }
+  return table;
+}
+
+}  // namespace
+
+Result<std::string> read_file(const std::string& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    return invalid_argument(path + " is a folder; a file is needed");
+  }
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return Status(StatusCode::not_found, path + " cannot be opened");
+  std::ostringstream bytes;
+  bytes << in.rdbuf();
+  if (in.bad()) return Status(StatusCode::corrupt, path + " cannot be read");
+  return std::move(bytes).str();
+}
+
+Status make_folder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (!error && fs::is_directory(path, error)) return {};
+  return Status(StatusCode::unavailable,
+                path + " cannot be made: " + (error ? error.message() : "it is not a folder"));
+}
+
+Status write_file(const std::string& path, std::string_view bytes) {
+  const fs::path parent = fs::path(path).parent_path();
+  if (!parent.empty()) {
+    if (Status status = make_folder(parent.string()); !status.ok()) return status;
+  }
+  const std::string temporary = path + ".part" + std::to_string(::getpid());
+  bool written = false;
+  {
+    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.flush();
+    written = out.good();
+  }
+  if (written && std::rename(temporary.c_str(), path.c_str()) == 0) return {};
+  std::remove(temporary.c_str());
+  return Status(StatusCode::unavailable, path + " cannot be written");
+}
+
+std::uint32_t crc32(std::string_view bytes, std::uint32_t seed) {
+  static const std::array<std::uint32_t, 256> kTable = make_crc_table();
+  std::uint32_t crc = ~seed;
+  for (const char byte : bytes)
+    crc = kTable[(crc ^ static_cast<std::uint8_t>(byte)) & 0xff] ^ (crc >> 8);
+  return ~crc;
+}
+
+std::string lower_extension(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+}  // namespace bpa::io

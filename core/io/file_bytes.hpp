@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <bpa/core/base/status.hpp>
+
+namespace bpa::io {
+
+/// The whole file. Fails with not_found when it cannot be opened, corrupt when it cannot be read.
+Result<std::string> read_file(const std::string& path);
+
+/// Replaces the file's content in one step: readers see the old bytes or the new ones, never a
+/// part. Makes missing parent folders. Fails with unavailable.
+Status write_file(const std::string& path, std::string_view bytes);
+
+/// Makes a folder and its parents; an existing one is fine. Fails with unavailable.
+Status make_folder(const std::string& path);
+
+/// CRC-32 (ISO 3309, as in PNG and zip) of some bytes, continuing from `seed`.
+std::uint32_t crc32(std::string_view bytes, std::uint32_t seed = 0);
+
+/// The lower-case extension without its dot: "png" for "a/B.PNG".
+std::string lower_extension(const std::string& path);
+
+}  // namespace bpa::io

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// OpenCV's codecs are private to this file. libpng reports damage on stderr before OpenCV can say
+// anything, so PNG bytes are checked chunk by chunk first, and only sound files reach it.
+#include <cstring>
+#include <fstream>
+#include <string_view>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include <bpa/core/io/file_bytes.hpp>
+#include <bpa/core/io/image_file.hpp>
+
+namespace bpa::io {
+namespace {
+
+constexpr std::string_view kPngSignature("\x89PNG\r\n\x1a\n", 8);
+constexpr int kMaxSide = 8192;
+
+std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
+  return value;
+}
+
+Status corrupt(const std::string& path, const std::string& why) {
+  return Status(StatusCode::corrupt, path + " " + why);
+}
+
+Result<ImageSize> parse_png_header(const std::string& path, std::string_view bytes) {
+  if (bytes.substr(0, 8) != kPngSignature) return corrupt(path, "is not a PNG image");
+  if (bytes.size() < 33 || bytes.substr(12, 4) != "IHDR") return corrupt(path, "is truncated");
+  ImageSize size;
+  size.width = static_cast<int>(big_endian(bytes, 16) & 0x7fffffff);
+  size.height = static_cast<int>(big_endian(bytes, 20) & 0x7fffffff);
+  size.bit_depth = static_cast<std::uint8_t>(bytes[24]);
+  switch (bytes[25]) {
+    case 0:
+      size.channels = 1;
+      break;
+    case 4:
+      size.channels = 2;
+      break;
+    case 6:
+      size.channels = 4;
+      break;
+    default:
+      size.channels = 3;  // rgb, or a palette of it
+  }
+  if (size.width < 1 || size.height < 1 || size.width > kMaxSide || size.height > kMaxSide) {
+    return invalid_argument(path + " has " + std::to_string(size.width) + "x" +
+                            std::to_string(size.height) + " pixels; each side must be 1 to " +
+                            std::to_string(kMaxSide));
+  }
+  return size;
+}
+
+/// Follows the chunks to IEND and compares every checksum.
+Status check_png_chunks(const std::string& path, std::string_view bytes) {
+  std::size_t at = kPngSignature.size();
+  while (bytes.size() - at >= 12) {
+    const std::size_t length = big_endian(bytes, at);
+    if (length > bytes.size() - at - 12) break;
+    const std::string_view content = bytes.substr(at + 4, length + 4);
+    if (crc32(content) != big_endian(bytes, at + 8 + length)) {
+      return corrupt(path, "is damaged: a PNG chunk does not match its checksum");
+    }
+    if (content.substr(0, 4) == "IEND") return {};
+    at += 12 + length;
+  }
+  return corrupt(path, "is truncated");
+}
+
+Result<cv::Mat> decode(const std::string& path, const std::string& bytes, int flags) {
+  try {
+    const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+    cv::Mat image = cv::imdecode(buffer, flags);
+    if (image.empty()) return corrupt(path, "is not an image that can be decoded");
+    return image;
+  } catch (const std::exception&) {
+    return corrupt(path, "is not an image that can be decoded");
+  }
+}
+
+Status encode(const std::string& path, const cv::Mat& image) {
+  std::vector<std::uint8_t> bytes;
+  try {
+    if (!cv::imencode(".png", image, bytes)) bytes.clear();
+  } catch (const std::exception&) {
+    bytes.clear();
+  }
+  if (bytes.empty()) return Status(StatusCode::internal, path + " cannot be encoded");
+  return write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+void swap_red_and_blue(std::vector<std::uint8_t>& pixels) {
+  for (std::size_t i = 0; i + 2 < pixels.size(); i += 3) std::swap(pixels[i], pixels[i + 2]);
+}
+
+}  // namespace
+
+Result<ImageSize> read_png_size(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return Status(StatusCode::not_found, path + " cannot be opened");
+  char head[33];
+  in.read(head, sizeof head);
+  return parse_png_header(path, {head, static_cast<std::size_t>(in.gcount())});
+}
+
+Result<ColorImage> read_color_image(const std::string& path) {
+  const Result<std::string> bytes = read_file(path);
+  if (!bytes.ok()) return bytes.status();
+  const bool jpeg = bytes->substr(0, 3) == "\xff\xd8\xff";
+  if (!jpeg) {
+    const Result<ImageSize> size = parse_png_header(path, *bytes);
+    if (!size.ok()) return size.status();
+    if (size->bit_depth != 8) {
+      return invalid_argument(path + " has " + std::to_string(size->bit_depth) +
+                              " bits a channel; a colour image must have 8");
+    }
+    if (Status status = check_png_chunks(path, *bytes); !status.ok()) return status;
+  }
+  const Result<cv::Mat> image =
+      decode(path, *bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+  if (!image.ok()) return image.status();
+  ColorImage result;
+  result.width = image->cols;
+  result.height = image->rows;
+  result.pixels.assign(image->datastart, image->dataend);
+  swap_red_and_blue(result.pixels);
+  return result;
+}
+
+Result<GrayImage> read_gray_png(const std::string& path) {
+  const Result<std::string> bytes = read_file(path);
+  if (!bytes.ok()) return bytes.status();
+  const Result<ImageSize> size = parse_png_header(path, *bytes);
+  if (!size.ok()) return size.status();
+  if (size->channels != 1 || (size->bit_depth != 8 && size->bit_depth != 16)) {
+    return invalid_argument(path + " has " + std::to_string(size->channels) + " channels of " +
+                            std::to_string(size->bit_depth) +
+                            " bits; a depth image must have 1 of 16");
+  }
+  if (Status status = check_png_chunks(path, *bytes); !status.ok()) return status;
+  const Result<cv::Mat> image = decode(path, *bytes, cv::IMREAD_UNCHANGED);
+  if (!image.ok()) return image.status();
+  GrayImage result;
+  result.width = image->cols;
+  result.height = image->rows;
+  const std::size_t count = image->total();
+  result.pixels.resize(count);
+  if (image->depth() == CV_16U) {
+    std::memcpy(result.pixels.data(), image->data, 2 * count);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) result.pixels[i] = image->data[i];
+  }
+  return result;
+}
+
+Status write_color_png(const std::string& path, const ColorImage& image) {
+  std::vector<std::uint8_t> bgr = image.pixels;
+  swap_red_and_blue(bgr);
+  return encode(path, cv::Mat(image.height, image.width, CV_8UC3, bgr.data()));
+}
+
+Status write_gray_png(const std::string& path, const GrayImage& image) {
+  return encode(path, cv::Mat(image.height, image.width, CV_16U,
+                              const_cast<std::uint16_t*>(image.pixels.data())));
+}
+
+Status write_mask_png(const std::string& path, int width, int height,
+                      const std::vector<std::uint8_t>& mask) {
+  return encode(path, cv::Mat(height, width, CV_8U, const_cast<std::uint8_t*>(mask.data())));
+}
+
+}  // namespace bpa::io

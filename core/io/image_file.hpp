@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <bpa/core/base/status.hpp>
+
+namespace bpa::io {
+
+/// An image as files hold it: row-major, without padding.
+struct ColorImage {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> pixels;  ///< rgb, 3 bytes a pixel.
+};
+
+/// A depth or mask image; what a unit means is the owner's business.
+struct GrayImage {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint16_t> pixels;
+};
+
+struct ImageSize {
+  int width = 0;
+  int height = 0;
+  int bit_depth = 0;  ///< Bits a channel; 0 when the format does not say (JPEG).
+  int channels = 0;
+};
+
+/// Reads an 8-bit image of 1, 3 or 4 channels (PNG; JPEG too) as rgb; alpha is dropped. Every
+/// reader here fails with not_found, corrupt (truncated, altered: the message names the file) or
+/// invalid_argument (wrong kind of image).
+Result<ColorImage> read_color_image(const std::string& path);
+/// Reads a 1-channel PNG of 8 or 16 bits.
+Result<GrayImage> read_gray_png(const std::string& path);
+/// Reads the header of a PNG only.
+Result<ImageSize> read_png_size(const std::string& path);
+
+/// Writers replace the file in one step and make missing folders.
+Status write_color_png(const std::string& path, const ColorImage& image);
+/// 16 bits a pixel.
+Status write_gray_png(const std::string& path, const GrayImage& image);
+/// 8 bits a pixel.
+Status write_mask_png(const std::string& path, int width, int height,
+                      const std::vector<std::uint8_t>& mask);
+
+}  // namespace bpa::io

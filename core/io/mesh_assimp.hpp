@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <bpa/core/base/status.hpp>
+#include <bpa/core/cloud/point_cloud.hpp>
+
+namespace bpa::io {
+
+/// Private to io: reads OBJ and STL with Assimp, in the file's unit.
+Result<TriangleMesh> read_mesh_with_assimp(const std::string& path);
+
+}  // namespace bpa::io

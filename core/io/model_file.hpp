@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <bpa/core/base/status.hpp>
+#include <bpa/core/model/object_model.hpp>
+
+// A library on disk is a folder of folders: LIBRARY/NAME/model.json says what the model is, and
+// LIBRARY/NAME/surface.ply (binary; points, normals, colours; metres) is its surface.
+
+namespace bpa::io {
+
+constexpr int kModelFileVersion = 1;
+
+/// Writes a model into a library, replacing one of the same name; the old model stays whole until
+/// the new one is. Fails with invalid_argument when the name is not of letters, digits, '_', '-'
+/// and
+/// '.' (nor starting with '.'), when the number is not positive or belongs to another model of the
+/// library; unavailable when it cannot be written.
+Status save_model(const std::string& library, const ModelSource& model);
+
+/// Reads LIBRARY/NAME. Fails with not_found, or with corrupt saying whether the file is truncated,
+/// altered (its checksum differs), or of another version.
+Result<ModelSource> load_model(const std::string& library, const std::string& name);
+
+/// Every model of a library by increasing number. Fails with not_found when the folder is not
+/// there, invalid_argument when it holds no model, corrupt when any of its models is.
+Result<std::vector<ModelSource>> load_library(const std::string& library);
+
+/// The names of a library's models, sorted by name; empty for an empty or missing folder.
+std::vector<std::string> list_models(const std::string& library);
+
+/// Fails with not_found.
+Status remove_model(const std::string& library, const std::string& name);
+
+/// A name that save_model accepts: other characters become '_'.
+std::string clean_model_name(const std::string& name);
+
+}  // namespace bpa::io

@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include <bpa/core/io/pcd_file.hpp>
+
+namespace bpa::io {
+namespace {
+
+constexpr std::size_t kMinPoints = 500;
+constexpr double kMaxMeanResidual = 2.0;  // pixels
+
+/// Least squares of pixel = f * slope + c over points with slope = x / z: one image axis.
+struct AxisFit {
+  double sum_s = 0, sum_ss = 0, sum_p = 0, sum_sp = 0, count = 0;
+
+  void add(double slope, double pixel) {
+    sum_s += slope;
+    sum_ss += slope * slope;
+    sum_p += pixel;
+    sum_sp += slope * pixel;
+    ++count;
+  }
+  bool solve(double& focal, double& centre) const {
+    const double det = count * sum_ss - sum_s * sum_s;
+    if (!(det > 1e-9 * count * count)) return false;
+    focal = (count * sum_sp - sum_s * sum_p) / det;
+    centre = (sum_p - focal * sum_s) / count;
+    return true;
+  }
+};
+
+Result<Camera> fit_camera(const PcdCloud& cloud, const std::vector<Eigen::Vector3f>& points) {
+  AxisFit horizontal, vertical;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d p = points[i].cast<double>();
+    if (!(p.z() > 0)) continue;
+    horizontal.add(p.x() / p.z(), static_cast<double>(i % static_cast<std::size_t>(cloud.width)));
+    vertical.add(p.y() / p.z(), static_cast<double>(i / static_cast<std::size_t>(cloud.width)));
+  }
+  Camera camera;
+  camera.width = cloud.width;
+  camera.height = cloud.height;
+  if (!horizontal.solve(camera.fx, camera.cx) || !vertical.solve(camera.fy, camera.cy)) {
+    return invalid_argument(
+        "the organised cloud covers too little of the image to find its camera");
+  }
+  return camera;
+}
+
+/// Mean distance in pixels between where points are stored and where the camera sees them.
+double mean_residual(const Camera& camera, const std::vector<Eigen::Vector3f>& points) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!(points[i].z() > 0)) continue;
+    const Eigen::Vector2d pixel(static_cast<double>(i % static_cast<std::size_t>(camera.width)),
+                                static_cast<double>(i / static_cast<std::size_t>(camera.width)));
+    sum += (camera.project(points[i].cast<double>()) - pixel).norm();
+    ++count;
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0;
+}
+
+/// Points with z = 0 where there is none, z forward, y down; `turned` tells if they had to be.
+Result<std::vector<Eigen::Vector3f>> to_optical(const PcdCloud& cloud, bool& turned) {
+  std::size_t before = 0, behind = 0;
+  for (const Eigen::Vector3f& p : cloud.points) {
+    if (!p.allFinite()) continue;
+    before += p.z() > 0;
+    behind += p.z() < 0;
+  }
+  if (before + behind < kMinPoints) {
+    return invalid_argument("the cloud has " + std::to_string(before + behind) +
+                            " finite points; it must have at least " + std::to_string(kMinPoints));
+  }
+  if (before > 0 && behind > 0 && std::min(before, behind) * 100 > before + behind) {
+    return invalid_argument(
+        "the cloud has points on both sides of z = 0; it must be what one "
+        "camera sees, in that camera's frame");
+  }
+  turned = behind > before;
+  std::vector<Eigen::Vector3f> points(cloud.points.size(), Eigen::Vector3f::Zero());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Eigen::Vector3f p = cloud.points[i];
+    if (!p.allFinite()) continue;
+    if (turned) p = Eigen::Vector3f(p.x(), -p.y(), -p.z());
+    if (p.z() > 0) points[i] = p;
+  }
+  return points;
+}
+
+std::string camera_note(const Camera& camera, double residual, bool estimated) {
+  std::ostringstream text;
+  text.precision(1);
+  text << std::fixed << "camera " << (estimated ? "estimated from the cloud: " : "given: ")
+       << camera.width << "x" << camera.height << ", fx " << camera.fx << ", fy " << camera.fy
+       << ", cx " << camera.cx << ", cy " << camera.cy << " pixels (";
+  text.precision(3);
+  text << "mean residual " << residual << " pixels)";
+  return text.str();
+}
+
+}  // namespace
+
+Result<OrganisedFrame> frame_from_organised_cloud(const PcdCloud& cloud, const Camera* camera) {
+  if (!cloud.organised()) {
+    return invalid_argument(
+        "the cloud is not organised (its height is 1); a frame needs one point "
+        "for each pixel");
+  }
+  bool turned = false;
+  const Result<std::vector<Eigen::Vector3f>> points = to_optical(cloud, turned);
+  if (!points.ok()) return points.status();
+  const Result<Camera> fitted = camera ? Result<Camera>(*camera) : fit_camera(cloud, *points);
+  if (!fitted.ok()) return fitted.status();
+  if (fitted->width != cloud.width || fitted->height != cloud.height) {
+    return invalid_argument("camera is " + std::to_string(fitted->width) + "x" +
+                            std::to_string(fitted->height) + "; it must be " +
+                            std::to_string(cloud.width) + "x" + std::to_string(cloud.height) +
+                            " as the cloud");
+  }
+  if (Status status = validate(*fitted); !status.ok()) return status;
+  const double residual = mean_residual(*fitted, *points);
+  if (!(residual <= kMaxMeanResidual)) {
+    std::ostringstream text;
+    text << "the points are " << residual << " pixels from where the camera sees them; the mean "
+         << "must be at most " << kMaxMeanResidual;
+    return invalid_argument(text.str());
+  }
+
+  OrganisedFrame result;
+  result.frame.camera = *fitted;
+  result.frame.depth.resize(points->size());
+  for (std::size_t i = 0; i < points->size(); ++i) result.frame.depth[i] = (*points)[i].z();
+  for (const auto& color : cloud.colors) {
+    result.frame.color.insert(result.frame.color.end(), color.begin(), color.end());
+  }
+  result.notes.push_back(camera_note(*fitted, residual, camera == nullptr));
+  if (turned) {
+    result.cloud_from_camera.rotation = Eigen::Quaterniond(0, 1, 0, 0);
+    result.notes.push_back(
+        "the cloud has y up and z toward the viewer: it was turned half round x into the optical "
+        "frame, and poses are given in the cloud's own frame");
+  }
+  return result;
+}
+
+PointCloud drop_invalid_points(const PcdCloud& cloud, double scale) {
+  PointCloud result;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    if (!cloud.points[i].allFinite()) continue;
+    result.points.push_back((scale * cloud.points[i].cast<double>()).cast<float>());
+    if (!cloud.normals.empty()) result.normals.push_back(cloud.normals[i]);
+    if (!cloud.colors.empty()) result.colors.push_back(cloud.colors[i]);
+  }
+  return result;
+}
+
+}  // namespace bpa::io

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <bpa/core/base/status.hpp>
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/core/cloud/point_cloud.hpp>
+#include <bpa/core/geometry/pose.hpp>
+
+namespace bpa::io {
+
+/// A PCD file as it is: height 1 when not organised, NaN where an organised cloud has no point.
+struct PcdCloud {
+  int width = 0;
+  int height = 0;
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;             ///< Empty when the file has none.
+  std::vector<std::array<std::uint8_t, 3>> colors;  ///< rgb; empty when the file has none.
+
+  bool organised() const { return height > 1; }
+};
+
+/// Reads ascii, binary and compressed PCD files with fields x y z and, if there, rgb or rgba and
+/// normal_x normal_y normal_z. Fails with not_found, corrupt or invalid_argument (no x y z).
+Result<PcdCloud> read_pcd(const std::string& path);
+
+/// The finite points, scaled.
+PointCloud drop_invalid_points(const PcdCloud& cloud, double scale = 1.0);
+
+/// An organised cloud as a frame.
+struct OrganisedFrame {
+  Frame frame;
+  /// Where the camera's optical frame is in the cloud's own frame: identity, or a half turn about x
+  /// for a cloud with y up and z toward the viewer. pose_in_cloud = cloud_from_camera * pose.
+  Pose cloud_from_camera;
+  /// What was found out, a sentence each, for people: the camera, and that the cloud was turned.
+  std::vector<std::string> notes;
+};
+
+/// Makes a frame of an organised cloud. The camera is the pinhole that fits pixels and points best
+/// (least squares in u z = fx x + cx z and v z = fy y + cy z), or `camera` where given. Fails with
+/// invalid_argument when the cloud is not organised, has too few points (under 500 are finite), has
+/// points on both sides of the camera, or is not what one pinhole camera sees (residual over 2
+/// pixels in the mean).
+Result<OrganisedFrame> frame_from_organised_cloud(const PcdCloud& cloud,
+                                                  const Camera* camera = nullptr);
+
+}  // namespace bpa::io

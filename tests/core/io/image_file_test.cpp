@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <bpa/core/io/frame_file.hpp>
+#include <bpa/core/io/image_file.hpp>
+
+#include "support/temporary_folder.hpp"
+
+namespace bpa::io {
+namespace {
+
+using test::slurp;
+using test::spill;
+
+ColorImage gradient(int width, int height) {
+  ColorImage image{width, height, {}};
+  for (int i = 0; i < width * height; ++i) {
+    image.pixels.push_back(static_cast<std::uint8_t>(i));
+    image.pixels.push_back(static_cast<std::uint8_t>(3 * i + 1));
+    image.pixels.push_back(static_cast<std::uint8_t>(255 - i));
+  }
+  return image;
+}
+
+GrayImage ramp(int width, int height) {
+  GrayImage image{width, height, {}};
+  for (int i = 0; i < width * height; ++i) {
+    image.pixels.push_back(static_cast<std::uint16_t>(61 * i));
+  }
+  return image;
+}
+
+TEST(ImageFile, ColorSurvivesWritingAndReading) {
+  const test::TemporaryFolder folder;
+  const ColorImage image = gradient(31, 17);
+  ASSERT_TRUE(write_color_png(folder / "deep/er/a.png", image).ok());
+  const Result<ColorImage> back = read_color_image(folder / "deep/er/a.png");
+  ASSERT_TRUE(back.ok()) << back.status().message;
+  EXPECT_EQ(back->width, 31);
+  EXPECT_EQ(back->height, 17);
+  EXPECT_EQ(back->pixels, image.pixels);
+}
+
+TEST(ImageFile, DepthKeepsAll16Bits) {
+  const test::TemporaryFolder folder;
+  const GrayImage image = ramp(40, 30);
+  ASSERT_TRUE(write_gray_png(folder / "d.png", image).ok());
+  const Result<GrayImage> back = read_gray_png(folder / "d.png");
+  ASSERT_TRUE(back.ok()) << back.status().message;
+  EXPECT_EQ(back->pixels, image.pixels);
+  const Result<ImageSize> size = read_png_size(folder / "d.png");
+  ASSERT_TRUE(size.ok());
+  EXPECT_EQ(size->width, 40);
+  EXPECT_EQ(size->height, 30);
+  EXPECT_EQ(size->bit_depth, 16);
+  EXPECT_EQ(size->channels, 1);
+}
+
+TEST(ImageFile, EveryTruncationIsCorruptAndNamesTheFile) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_color_png(folder / "a.png", gradient(20, 20)).ok());
+  const std::string bytes = slurp(folder / "a.png");
+  for (std::size_t size = 0; size < bytes.size(); size += 7) {
+    spill(folder / "cut.png", bytes.substr(0, size));
+    const Result<ColorImage> image = read_color_image(folder / "cut.png");
+    ASSERT_FALSE(image.ok());
+    EXPECT_EQ(image.status().code, StatusCode::corrupt);
+    EXPECT_NE(image.status().message.find("cut.png"), std::string::npos);
+  }
+}
+
+TEST(ImageFile, AnAlteredByteIsFound) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_gray_png(folder / "a.png", ramp(20, 20)).ok());
+  std::string bytes = slurp(folder / "a.png");
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  spill(folder / "a.png", bytes);
+  EXPECT_EQ(read_gray_png(folder / "a.png").status().code, StatusCode::corrupt);
+}
+
+TEST(ImageFile, KindsAreNotConfused) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_color_png(folder / "c.png", gradient(20, 20)).ok());
+  ASSERT_TRUE(write_gray_png(folder / "d.png", ramp(20, 20)).ok());
+  EXPECT_EQ(read_gray_png(folder / "c.png").status().code, StatusCode::invalid_argument);
+  EXPECT_EQ(read_color_image(folder / "d.png").status().code, StatusCode::invalid_argument);
+  EXPECT_EQ(read_color_image(folder / "none.png").status().code, StatusCode::not_found);
+}
+
+TEST(FrameFile, SizesMustAgree) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_color_png(folder / "c.png", gradient(40, 30)).ok());
+  ASSERT_TRUE(write_gray_png(folder / "d.png", ramp(40, 30)).ok());
+  ASSERT_TRUE(write_gray_png(folder / "small.png", ramp(20, 30)).ok());
+  const Camera camera{0, 0, 50, 50, 20, 15};
+  const Result<Frame> frame = read_frame(folder / "d.png", folder / "c.png", camera, 0.5);
+  ASSERT_TRUE(frame.ok()) << frame.status().message;
+  EXPECT_FLOAT_EQ(frame->depth[10], 610 * 0.0005f);
+  EXPECT_EQ(frame->camera.width, 40);
+  const Result<Frame> wrong = read_frame(folder / "small.png", folder / "c.png", camera, 1);
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_NE(wrong.status().message.find("depth"), std::string::npos);
+  EXPECT_NE(wrong.status().message.find("40x30"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace bpa::io
