@@ -8,7 +8,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <bpa/core/base/status.hpp>
 #include <bpa/wire/cdr.hpp>
@@ -78,6 +80,9 @@ MessageRef message_ref(const T& message) {
           }};
 }
 
+/// A message that is encoded already.
+MessageRef bytes_ref(const std::vector<std::uint8_t>& bytes);
+
 /// What an endpoint is, in DDS's names.
 struct EndpointSpec {
   std::string dds_topic;
@@ -102,9 +107,9 @@ class RawWriter {
   virtual std::size_t matched_count() const = 0;
   virtual bool wait_for_matched(std::size_t count, std::chrono::milliseconds timeout) const = 0;
   virtual Guid guid() const = 0;
-  /// How long ago the reader matched; negative when it is not matched. An entity id of zero stands
-  /// for any reader of that participant.
-  virtual std::chrono::milliseconds matched_for(const Guid& reader) const = 0;
+  /// How long ago the reader matched, none when it is not matched. An entity id of zero stands for
+  /// any reader of that participant.
+  virtual std::optional<std::chrono::milliseconds> matched_for(const Guid& reader) const = 0;
 };
 
 class RawReader {
@@ -120,6 +125,12 @@ class RawReader {
 /// whole; a failure counts it as malformed. Both run on a DDS thread.
 using RawDecode =
     std::function<Result<std::function<void(const SampleMeta&)>>(const std::uint8_t*, std::size_t)>;
+
+class Worker;
+
+/// What services need of their participant.
+const LogHook& participant_log(const Participant& participant);
+Worker& participant_worker(const Participant& participant);
 
 Result<std::unique_ptr<RawWriter>> make_writer(const Participant& participant, EndpointSpec spec);
 Result<std::unique_ptr<RawReader>> make_reader(const Participant& participant, EndpointSpec spec,

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <bpa/core/base/parallel.hpp>
+#include <bpa/core/sim/objects.hpp>
+#include <bpa/core/sim/shapes.hpp>
+
+namespace bpa::sim {
+namespace {
+
+std::vector<Shape> all_shapes() {
+  std::vector<Shape> shapes = vessel_shapes();
+  for (Shape& shape : package_shapes()) shapes.push_back(std::move(shape));
+  for (Shape& shape : toy_shapes()) shapes.push_back(std::move(shape));
+  return shapes;
+}
+
+void paint_mesh(const Paint& paint, TriangleMesh& mesh) {
+  mesh.colors.resize(mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Color color = paint(mesh.vertices[i].cast<double>(), mesh.normals[i].cast<double>());
+    for (int c = 0; c < 3; ++c) {
+      mesh.colors[i][c] =
+          static_cast<std::uint8_t>(std::lround(255 * std::clamp(color[c], 0.0, 1.0)));
+    }
+  }
+}
+
+SimulatedObject build(const Shape& shape) {
+  SimulatedObject object;
+  object.name = shape.name;
+  object.material = shape.material;
+  object.symmetry = shape.symmetry;
+  object.parts = shape.parts;
+  const Eigen::Vector3d center = (shape.low + shape.high) / 2;
+  // The grid is symmetric about the centre and has no sample on planes through it.
+  const Eigen::Vector3d half_size = (shape.high - shape.low) / 2;
+  const Eigen::Vector3d reach =
+      shape.cell * ((half_size.array() / shape.cell).ceil() + 2.5).matrix();
+  object.mesh = mesh_from_field(shape.field, center - reach, center + reach, shape.cell);
+  paint_mesh(shape.paint, object.mesh);
+  const Eigen::Vector3f shift = center.cast<float>();
+  for (Eigen::Vector3f& vertex : object.mesh.vertices) vertex -= shift;
+  for (ConvexPart& part : object.parts) {
+    for (Eigen::Vector3f& point : part) point -= shift;
+  }
+  return object;
+}
+
+std::vector<SimulatedObject> build_all(const std::vector<Shape>& shapes, int num_threads) {
+  std::vector<SimulatedObject> objects(shapes.size());
+  parallel_for(static_cast<int>(shapes.size()), num_threads,
+               [&](int i) { objects[i] = build(shapes[i]); });
+  return objects;
+}
+
+}  // namespace
+
+std::vector<SimulatedObject> household_objects(int num_threads) {
+  return build_all(all_shapes(), num_threads);
+}
+
+std::vector<SimulatedObject> household_objects(const std::vector<std::string>& names,
+                                               int num_threads) {
+  const std::vector<Shape> shapes = all_shapes();
+  std::vector<Shape> chosen;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(shapes.begin(), shapes.end(),
+                                    [&name](const Shape& shape) { return shape.name == name; });
+    if (found != shapes.end()) chosen.push_back(*found);
+  }
+  return build_all(chosen, num_threads);
+}
+
+SimulatedObject object_from_mesh(std::string name, TriangleMesh mesh,
+                                 const SymmetryGroup& symmetry) {
+  SimulatedObject object;
+  object.name = std::move(name);
+  object.symmetry = symmetry;
+  object.mesh = std::move(mesh);
+  // The outermost vertices along many directions are enough of the hull to collide.
+  ConvexPart hull;
+  constexpr int kDirections = 120;
+  for (int i = 0; i < kDirections; ++i) {
+    const float z = 1 - (2 * static_cast<float>(i) + 1) / kDirections;
+    const float angle = 2.39996323f * static_cast<float>(i);  // the golden angle
+    const float r = std::sqrt(1 - z * z);
+    const Eigen::Vector3f direction(r * std::cos(angle), r * std::sin(angle), z);
+    hull.push_back(*std::max_element(
+        object.mesh.vertices.begin(), object.mesh.vertices.end(),
+        [&](const auto& a, const auto& b) { return a.dot(direction) < b.dot(direction); }));
+  }
+  object.parts = {hull};
+  return object;
+}
+
+double diameter(const TriangleMesh& mesh) {
+  // The farthest pair lies among the vertices that are outermost along some direction.
+  std::vector<Eigen::Vector3f> outer;
+  constexpr int kDirections = 2000;
+  for (int i = 0; i < kDirections && !mesh.vertices.empty(); ++i) {
+    const float z = 1 - (2 * static_cast<float>(i) + 1) / kDirections;
+    const float angle = 2.39996323f * static_cast<float>(i);
+    const float r = std::sqrt(1 - z * z);
+    const Eigen::Vector3f direction(r * std::cos(angle), r * std::sin(angle), z);
+    std::size_t best = 0;
+    float best_dot = -1e9f;
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      const float dot = mesh.vertices[v].dot(direction);
+      if (dot > best_dot) {
+        best_dot = dot;
+        best = v;
+      }
+    }
+    outer.push_back(mesh.vertices[best]);
+  }
+  float squared = 0;
+  for (const Eigen::Vector3f& a : outer) {
+    for (const Eigen::Vector3f& b : outer) squared = std::max(squared, (a - b).squaredNorm());
+  }
+  return std::sqrt(squared);
+}
+
+}  // namespace bpa::sim

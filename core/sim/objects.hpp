@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include <bpa/core/cloud/point_cloud.hpp>
+#include <bpa/core/geometry/symmetry.hpp>
+
+namespace bpa::sim {
+
+/// What a depth sensor with a projected pattern notices of a surface.
+struct Material {
+  double infrared = 0.7;  ///< Diffuse reflectance at 830 nm, in [0, 1]; below 0.2 is dark.
+  double shine = 0.1;     ///< Mirror-like part, in [0, 1]; above 0.5 is shiny.
+
+  bool dark() const { return infrared < 0.2; }
+  bool shiny() const { return shine > 0.5; }
+};
+
+/// The corners of a convex body; its hull is what collides.
+using ConvexPart = std::vector<Eigen::Vector3f>;
+
+/// A thing that can lie in a simulated scene.
+struct SimulatedObject {
+  std::string name;
+  TriangleMesh mesh;  ///< Closed, coloured; metres.
+  Material material;
+  SymmetryGroup symmetry;         ///< Of the shape alone; colours may break it.
+  std::vector<ConvexPart> parts;  ///< Together they fill the mesh, hollows left open.
+};
+
+/// Eighteen objects of a household, always the same: mug, bowl, bottle, can, cup, tube, funnel,
+/// plate, milk_carton, cereal_box, snack_box, spray_bottle, jug, cube, l_brick, stud_block, gear,
+/// banana. Upright along +z, the origin at the centre of the bounding box. Some 15 to 60 thousand
+/// triangles each; about a second in all.
+std::vector<SimulatedObject> household_objects(int num_threads = 0);
+
+/// The same, only those named, in the order of the names; unknown names are left out.
+std::vector<SimulatedObject> household_objects(const std::vector<std::string>& names,
+                                               int num_threads = 0);
+
+/// An object from a mesh of the user's, in the mesh's own frame; collides as the hull of its
+/// vertices. `mesh` must not be empty.
+SimulatedObject object_from_mesh(std::string name, TriangleMesh mesh,
+                                 const SymmetryGroup& symmetry = {});
+
+/// The largest distance between two vertices, metres.
+double diameter(const TriangleMesh& mesh);
+
+}  // namespace bpa::sim

@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <embree3/rtcore.h>
+
+#include <bpa/core/sim/render.hpp>
+
+namespace bpa::sim {
+namespace {
+
+RTCRay ray_of(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float near,
+              float far) {
+  RTCRay ray{};
+  ray.org_x = origin.x();
+  ray.org_y = origin.y();
+  ray.org_z = origin.z();
+  ray.dir_x = direction.x();
+  ray.dir_y = direction.y();
+  ray.dir_z = direction.z();
+  ray.tnear = near;
+  ray.tfar = far;
+  ray.mask = ~0u;
+  return ray;
+}
+
+RTCScene scene_of(RTCDevice device, const TriangleMesh& mesh) {
+  RTCScene scene = rtcNewScene(device);
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                               mesh.vertices.size()));
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    for (int a = 0; a < 3; ++a) vertices[3 * i + a] = mesh.vertices[i][a];
+  }
+  auto* triangles = static_cast<unsigned*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(unsigned), mesh.triangles.size()));
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (int a = 0; a < 3; ++a) triangles[3 * i + a] = mesh.triangles[i][a];
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene);
+  return scene;
+}
+
+}  // namespace
+
+struct RayMeshes::Impl {
+  RTCDevice device = nullptr;
+  std::vector<const TriangleMesh*> meshes;
+  std::vector<RTCScene> scenes;
+
+  ~Impl() {
+    for (RTCScene scene : scenes) rtcReleaseScene(scene);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+};
+
+RayMeshes::RayMeshes(const std::vector<const TriangleMesh*>& meshes)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->device = rtcNewDevice("threads=1");  // trees are built by the caller's thread alone
+  impl_->meshes = meshes;
+  for (const TriangleMesh* mesh : meshes) impl_->scenes.push_back(scene_of(impl_->device, *mesh));
+}
+RayMeshes::~RayMeshes() = default;
+RayMeshes::RayMeshes(RayMeshes&&) noexcept = default;
+RayMeshes& RayMeshes::operator=(RayMeshes&&) noexcept = default;
+
+int RayMeshes::size() const { return static_cast<int>(impl_->meshes.size()); }
+
+const TriangleMesh& RayMeshes::mesh(int index) const { return *impl_->meshes[index]; }
+
+bool RayMeshes::hits(int mesh, const Eigen::Vector3f& origin,
+                     const Eigen::Vector3f& direction) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay ray = ray_of(origin, direction, 0, std::numeric_limits<float>::infinity());
+  rtcOccluded1(impl_->scenes[mesh], &context, &ray);
+  return ray.tfar < 0;
+}
+
+struct RayScene::Impl {
+  RTCScene scene = nullptr;
+  std::vector<Eigen::Matrix3f> rotations;
+
+  ~Impl() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+  }
+};
+
+RayScene::RayScene(const RayMeshes& meshes, std::vector<PosedMesh> instances)
+    : meshes_(&meshes), instances_(std::move(instances)), impl_(std::make_unique<Impl>()) {
+  RTCDevice device = meshes.impl().device;
+  impl_->scene = rtcNewScene(device);
+  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+  for (std::size_t i = 0; i < instances_.size(); ++i) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, meshes.impl().scenes[instances_[i].mesh]);
+    rtcSetGeometryTimeStepCount(geometry, 1);
+    Eigen::Matrix<float, 3, 4> transform;
+    transform.leftCols<3>() = instances_[i].world_from_mesh.matrix().cast<float>();
+    transform.col(3) = instances_[i].world_from_mesh.translation.cast<float>();
+    impl_->rotations.push_back(transform.leftCols<3>());
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(impl_->scene, geometry, static_cast<unsigned>(i));
+    rtcReleaseGeometry(geometry);
+  }
+  rtcCommitScene(impl_->scene);
+}
+RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+
+std::optional<RayHit> RayScene::cast(const Eigen::Vector3f& origin,
+                                     const Eigen::Vector3f& direction) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit query{};
+  query.ray = ray_of(origin, direction, 0, std::numeric_limits<float>::infinity());
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(impl_->scene, &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+
+  RayHit hit;
+  hit.distance = query.ray.tfar;
+  hit.instance = static_cast<int>(query.hit.instID[0]);
+  const TriangleMesh& mesh = *meshes_->impl().meshes[instances_[hit.instance].mesh];
+  const auto& triangle = mesh.triangles[query.hit.primID];
+  const std::array<float, 3> weight{1 - query.hit.u - query.hit.v, query.hit.u, query.hit.v};
+  const Eigen::Vector3f& a = mesh.vertices[triangle[0]];
+  const Eigen::Vector3f edge = mesh.vertices[triangle[1]] - a;
+  hit.face_normal = edge.cross(mesh.vertices[triangle[2]] - a).normalized();
+  hit.normal = hit.face_normal;
+  hit.color = Eigen::Vector3f::Constant(0.6f);
+  if (!mesh.normals.empty()) {
+    hit.normal.setZero();
+    for (int k = 0; k < 3; ++k) hit.normal += weight[k] * mesh.normals[triangle[k]];
+    hit.normal.normalize();
+  }
+  if (!mesh.colors.empty()) {
+    hit.color.setZero();
+    for (int k = 0; k < 3; ++k) {
+      const auto& c = mesh.colors[triangle[k]];
+      hit.color += weight[k] / 255 * Eigen::Vector3f(c[0], c[1], c[2]);
+    }
+  }
+  for (Eigen::Vector3f* normal : {&hit.normal, &hit.face_normal}) {
+    *normal = impl_->rotations[hit.instance] * *normal;
+    if (normal->dot(direction) > 0) *normal = -*normal;
+  }
+  return hit;
+}
+
+bool RayScene::blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  const Eigen::Vector3f direction = to - from;
+  const float margin = 2e-4f / direction.norm();
+  RTCRay ray = ray_of(from, direction, margin, 1 - margin);
+  rtcOccluded1(impl_->scene, &context, &ray);
+  return ray.tfar < 0;
+}
+
+}  // namespace bpa::sim

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <bpa/core/base/parallel.hpp>
+#include <bpa/core/sim/render.hpp>
+
+namespace bpa::sim {
+namespace {
+
+Eigen::Vector3f shade(const RayScene& scene, const Shading& shading, const Eigen::Vector3f& origin,
+                      const Eigen::Vector3f& direction, const RayHit& hit) {
+  const Eigen::Vector3f point = origin + hit.distance * direction;
+  const Eigen::Vector3f lifted = point + 3e-4f * hit.face_normal;
+  const Eigen::Vector3f reflected =
+      (direction - 2 * direction.dot(hit.normal) * hit.normal).normalized();
+  const auto index = static_cast<std::size_t>(hit.instance);
+  const Material material =
+      index < shading.materials.size() ? shading.materials[index] : Material{0.7, 0};
+  // The sky is brighter than the ground.
+  float diffuse = static_cast<float>(shading.ambient) * (0.75f + 0.25f * hit.normal.z());
+  float highlight = 0;
+  for (const Light& light : shading.lights) {
+    const Eigen::Vector3f position = light.position.cast<float>();
+    const Eigen::Vector3f to_light = (position - point).normalized();
+    const float cosine = hit.normal.dot(to_light);
+    if (cosine <= 0 || scene.blocked(lifted, position)) continue;
+    const auto power = static_cast<float>(light.power);
+    diffuse += power * cosine;
+    const float mirror = std::max(0.0f, reflected.dot(to_light));
+    highlight += power * static_cast<float>(material.shine) * std::pow(mirror, 40.0f);
+  }
+  return diffuse * hit.color + Eigen::Vector3f::Constant(highlight);
+}
+
+}  // namespace
+
+RenderedImage render(const RayScene& scene, const Camera& camera, const Pose& world_from_camera,
+                     const std::optional<Shading>& shading, int num_threads) {
+  const std::size_t count = static_cast<std::size_t>(camera.width) * camera.height;
+  RenderedImage image;
+  image.depth.assign(count, 0);
+  image.instance.assign(count, -1);
+  image.normals.assign(count, Eigen::Vector3f::Zero());
+  if (shading) image.color.assign(3 * count, 0);
+  const Eigen::Matrix3f rotation = world_from_camera.matrix().cast<float>();
+  const Eigen::Vector3f origin = world_from_camera.translation.cast<float>();
+  parallel_for(
+      camera.height, num_threads,
+      [&](int y) {
+        for (int x = 0; x < camera.width; ++x) {
+          const std::size_t i = static_cast<std::size_t>(y) * camera.width + x;
+          const Eigen::Vector3f direction =
+              rotation * camera.unproject(x, y, 1).cast<float>();  // z = 1: distance is depth
+          const std::optional<RayHit> hit = scene.cast(origin, direction);
+          if (hit) {
+            image.depth[i] = hit->distance;
+            image.instance[i] = hit->instance;
+            image.normals[i] = rotation.transpose() * hit->normal;
+          }
+          if (!shading) continue;
+          const Eigen::Vector3f color = hit ? shade(scene, *shading, origin, direction, *hit)
+                                            : shading->background.cast<float>();
+          for (int c = 0; c < 3; ++c) {
+            image.color[3 * i + c] =
+                static_cast<std::uint8_t>(std::lround(255 * std::clamp(color[c], 0.0f, 1.0f)));
+          }
+        }
+      },
+      8);
+  return image;
+}
+
+namespace {
+
+// The pixels a mesh's corners span, at most one image beyond each border.
+struct PixelBox {
+  int left = 0, top = 0, right = -1, bottom = -1;
+};
+
+PixelBox box_of(const TriangleMesh& mesh, const Pose& camera_from_mesh, const Camera& camera) {
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
+  bool behind = false;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    const Eigen::Vector3d p = camera_from_mesh * vertex.cast<double>();
+    if (p.z() < 1e-3) {
+      behind = true;
+      continue;
+    }
+    const Eigen::Vector2d pixel = camera.project(p);
+    low = low.cwiseMin(pixel);
+    high = high.cwiseMax(pixel);
+  }
+  if (behind) {
+    low = Eigen::Vector2d::Constant(-1e9);
+    high = -low;
+  }
+  const double width = camera.width, height = camera.height;
+  return {static_cast<int>(std::floor(std::max(low.x(), -width))),
+          static_cast<int>(std::floor(std::max(low.y(), -height))),
+          static_cast<int>(std::ceil(std::min(high.x(), 2 * width - 1))),
+          static_cast<int>(std::ceil(std::min(high.y(), 2 * height - 1)))};
+}
+
+}  // namespace
+
+std::vector<InstanceVisibility> visibility(const RayScene& scene, const RenderedImage& image,
+                                           const Camera& camera, const Pose& world_from_camera,
+                                           int num_instances, int num_threads) {
+  std::vector<InstanceVisibility> result(num_instances);
+  for (const std::int32_t instance : image.instance) {
+    if (instance >= 0 && instance < num_instances) ++result[instance].visible_pixels;
+  }
+  parallel_for(num_instances, num_threads, [&](int i) {
+    const PosedMesh& posed = scene.instances()[i];
+    const Pose mesh_from_camera = posed.world_from_mesh.inverse() * world_from_camera;
+    const PixelBox box =
+        box_of(scene.meshes().mesh(posed.mesh), mesh_from_camera.inverse(), camera);
+    const Eigen::Matrix3f rotation = mesh_from_camera.matrix().cast<float>();
+    const Eigen::Vector3f origin = mesh_from_camera.translation.cast<float>();
+    for (int y = box.top; y <= box.bottom; ++y) {
+      for (int x = box.left; x <= box.right; ++x) {
+        const Eigen::Vector3f direction = rotation * camera.unproject(x, y, 1).cast<float>();
+        result[i].all_pixels += scene.meshes().hits(posed.mesh, origin, direction);
+      }
+    }
+    // Rounding may differ by a pixel between the two frames.
+    result[i].all_pixels = std::max(result[i].all_pixels, result[i].visible_pixels);
+  });
+  return result;
+}
+
+}  // namespace bpa::sim

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <bpa/core/cloud/point_cloud.hpp>
+#include <bpa/core/geometry/camera.hpp>
+#include <bpa/core/geometry/pose.hpp>
+#include <bpa/core/sim/objects.hpp>
+
+// Ray casting of posed meshes (Embree).
+
+namespace bpa::sim {
+
+/// Where a ray meets a surface first.
+struct RayHit {
+  float distance = 0;  ///< In units of the ray's direction vector.
+  int instance = -1;   ///< Index of the posed mesh.
+  Eigen::Vector3f
+      normal;  ///< Unit length, toward the ray's origin; smooth if the mesh has normals.
+  Eigen::Vector3f face_normal;  ///< Of the triangle, toward the ray's origin.
+  Eigen::Vector3f color;        ///< rgb in [0, 1]; grey for a mesh without colours.
+};
+
+/// Meshes prepared for ray casting, to be posed in any number of scenes. The meshes must outlive
+/// it.
+class RayMeshes {
+ public:
+  explicit RayMeshes(const std::vector<const TriangleMesh*>& meshes);
+  ~RayMeshes();
+  RayMeshes(RayMeshes&&) noexcept;
+  RayMeshes& operator=(RayMeshes&&) noexcept;
+
+  int size() const;
+  const TriangleMesh& mesh(int index) const;
+  /// Whether a ray in the frame of one mesh meets it.
+  bool hits(int mesh, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;
+
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+/// One mesh standing in the world.
+struct PosedMesh {
+  int mesh = 0;  ///< Index in RayMeshes.
+  Pose world_from_mesh;
+};
+
+/// An immutable arrangement of meshes. Safe to use from many threads; `meshes` must outlive it.
+class RayScene {
+ public:
+  RayScene(const RayMeshes& meshes, std::vector<PosedMesh> instances);
+  ~RayScene();
+  RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
+
+  const std::vector<PosedMesh>& instances() const { return instances_; }
+  const RayMeshes& meshes() const { return *meshes_; }
+
+  /// The first surface along the ray, seen from either side.
+  std::optional<RayHit> cast(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;
+  /// Whether anything lies strictly between two points, but for the first and last 0.2 mm.
+  bool blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
+
+ private:
+  struct Impl;
+  const RayMeshes* meshes_;
+  std::vector<PosedMesh> instances_;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// What an ideal camera sees, row-major.
+struct RenderedImage {
+  std::vector<float> depth;              ///< Metres along z; 0 where there is nothing.
+  std::vector<std::int32_t> instance;    ///< Index of the posed mesh; -1 where there is nothing.
+  std::vector<Eigen::Vector3f> normals;  ///< In the camera's frame.
+  std::vector<std::uint8_t> color;       ///< rgb, shaded; empty if not asked for.
+};
+
+/// A lamp of the scene.
+struct Light {
+  Eigen::Vector3d position{0.5, -0.5, 2.0};  ///< World, metres.
+  double power = 0.6;                        ///< Of a white surface facing it.
+};
+
+/// How colours are made: ambient light, lamps with shadows, a highlight by the material's shine.
+struct Shading {
+  std::vector<Light> lights{{}};
+  double ambient = 0.4;
+  std::vector<Material> materials;  ///< By posed mesh; those beyond its end are matt.
+  Eigen::Vector3d background{0.05, 0.05, 0.05};
+};
+
+/// One ray through every pixel centre. The same for any number of threads.
+RenderedImage render(const RayScene& scene, const Camera& camera, const Pose& world_from_camera,
+                     const std::optional<Shading>& shading, int num_threads = 0);
+
+/// How much of one posed mesh an image shows.
+struct InstanceVisibility {
+  int visible_pixels = 0;
+  int all_pixels = 0;  ///< If it stood alone and the image went on beyond its border.
+
+  double fraction() const { return all_pixels > 0 ? double(visible_pixels) / all_pixels : 0; }
+};
+
+/// Counts for every posed mesh; `image` is of the same scene and camera. As BOP defines it, the
+/// whole silhouette counts, within an image three times as wide and high.
+std::vector<InstanceVisibility> visibility(const RayScene& scene, const RenderedImage& image,
+                                           const Camera& camera, const Pose& world_from_camera,
+                                           int num_instances, int num_threads = 0);
+
+}  // namespace bpa::sim

@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstring>
+
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
+#include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
+
+#include <bpa/wire/fastdds/log_bridge.hpp>
+#include <bpa/wire/fastdds/participant_impl.hpp>
+#include <bpa/wire/fastdds/participant_qos.hpp>
+#include <bpa/wire/msg/rmw_dds_common.hpp>
+
+namespace bpa::wire::detail {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+
+Guid to_guid(const rtps::GUID_t& guid) {
+  Guid result;
+  std::memcpy(result.data(), guid.guidPrefix.value, 12);
+  std::memcpy(result.data() + 12, guid.entityId.value, 4);
+  return result;
+}
+
+Guid to_guid(const rtps::InstanceHandle_t& handle) { return to_guid(rtps::iHandle2GUID(handle)); }
+
+rtps::GUID_t from_guid(const Guid& guid) {
+  rtps::GUID_t result;
+  std::memcpy(result.guidPrefix.value, guid.data(), 12);
+  std::memcpy(result.entityId.value, guid.data() + 12, 4);
+  return result;
+}
+
+ParticipantImpl::ParticipantImpl(ParticipantOptions options, Discovery discovery)
+    : options_(std::move(options)), discovery_(std::move(discovery)) {}
+
+Status ParticipantImpl::start() {
+  bridge_log(options_.log);
+  auto* factory = dds::DomainParticipantFactory::get_instance();
+  Result<dds::DomainParticipantQos> qos = participant_qos(discovery_, options_.socket_buffer_bytes);
+  if (!qos.ok()) return qos.status();
+  participant_ = factory->create_participant(static_cast<dds::DomainId_t>(discovery_.domain_id),
+                                             *qos, this, dds::StatusMask::none());
+  if (participant_ == nullptr) {
+    return Status(StatusCode::unavailable, "cannot join DDS domain " +
+                                               std::to_string(discovery_.domain_id) +
+                                               ": no UDP port or no network interface is free");
+  }
+  publisher_ = participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
+  subscriber_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
+  if (publisher_ == nullptr || subscriber_ == nullptr) {
+    return Status(StatusCode::internal, "Fast DDS refused a publisher or subscriber");
+  }
+
+  EndpointSpec spec =
+      endpoint_spec<rmw_dds_common::ParticipantEntitiesInfo>(kGraphTopic, qos::latched(), 0);
+  spec.user_data += kOwnMark;
+  spec.in_graph = false;
+  auto writer = make_raw_writer(*this, nullptr, std::move(spec));
+  if (!writer.ok()) return writer.status();
+  {
+    const std::lock_guard<std::mutex> lock(graph_mutex_);
+    graph_writer_ = std::move(writer).value();
+  }
+  publish_graph();
+  return {};
+}
+
+ParticipantImpl::~ParticipantImpl() {
+  std::unique_ptr<RawWriter> graph_writer;
+  {
+    const std::lock_guard<std::mutex> lock(graph_mutex_);
+    graph_writer.swap(graph_writer_);
+  }
+  graph_writer.reset();
+  if (participant_ == nullptr) return;
+  participant_->set_listener(nullptr);
+  participant_->delete_contained_entities();
+  dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+}
+
+dds::Topic* ParticipantImpl::acquire_topic(const EndpointSpec& spec, std::string* error) {
+  dds::TypeSupport& type = types_[spec.dds_type];
+  if (type.empty()) {
+    type = dds::TypeSupport(new RawType(spec.dds_type));
+    type.register_type(participant_);
+  }
+  static_cast<RawType*>(type.get())->set_bound(spec.shared_bytes);
+
+  TopicEntry& entry = topics_[spec.dds_topic];
+  if (entry.topic == nullptr) {
+    entry.topic = participant_->create_topic(spec.dds_topic, spec.dds_type, dds::TOPIC_QOS_DEFAULT);
+    entry.dds_type = spec.dds_type;
+  }
+  if (entry.topic == nullptr || entry.dds_type != spec.dds_type) {
+    *error = entry.topic == nullptr ? "Fast DDS refused the topic"
+                                    : "this process uses it with type " + entry.dds_type;
+    if (entry.topic == nullptr) topics_.erase(spec.dds_topic);
+    return nullptr;
+  }
+  ++entry.users;
+  const std::lock_guard<std::mutex> lock(discovery_mutex_);
+  our_types_[spec.dds_topic] = spec.dds_type;
+  return entry.topic;
+}
+
+void ParticipantImpl::release_topic(const std::string& dds_topic) {
+  const auto entry = topics_.find(dds_topic);
+  if (entry == topics_.end() || --entry->second.users > 0) return;
+  participant_->delete_topic(entry->second.topic);
+  topics_.erase(entry);
+  const std::lock_guard<std::mutex> lock(discovery_mutex_);
+  our_types_.erase(dds_topic);
+}
+
+GraphLayout ParticipantImpl::graph_layout() const {
+  if (options_.graph_layout != GraphLayout::automatic) return options_.graph_layout;
+  const std::lock_guard<std::mutex> lock(discovery_mutex_);
+  return guess_.layout();
+}
+
+void ParticipantImpl::graph_add(const Guid& endpoint, bool is_reader) {
+  {
+    const std::lock_guard<std::mutex> lock(graph_mutex_);
+    (is_reader ? readers_ : writers_).insert(endpoint);
+  }
+  publish_graph();
+}
+
+void ParticipantImpl::graph_remove(const Guid& endpoint) {
+  {
+    const std::lock_guard<std::mutex> lock(graph_mutex_);
+    readers_.erase(endpoint);
+    writers_.erase(endpoint);
+  }
+  publish_graph();
+}
+
+void ParticipantImpl::publish_graph() {
+  const GraphLayout layout = graph_layout();
+  const std::lock_guard<std::mutex> lock(graph_mutex_);
+  if (graph_writer_ == nullptr) return;
+  const std::vector<std::uint8_t> bytes =
+      encode_graph(layout, to_guid(participant_->guid()), options_.node, readers_, writers_);
+  const Status status = graph_writer_->write(bytes_ref(bytes), nullptr, nullptr);
+  if (!status.ok()) log(LogLevel::warning, "ros_discovery_info: " + status.message);
+}
+
+void ParticipantImpl::watch_graph(const std::string& topic, const Guid& endpoint,
+                                  const std::string& user_data, bool removed) {
+  if (topic != kGraphTopic || options_.graph_layout != GraphLayout::automatic) return;
+  const GraphLayout before = graph_layout();
+  {
+    const std::lock_guard<std::mutex> lock(discovery_mutex_);
+    if (removed) guess_.removed(endpoint);
+    if (!removed) guess_.discovered(endpoint, user_data);
+  }
+  if (graph_layout() == before) return;
+  // Not from here: the caller holds the locks of the discovery protocol.
+  worker_.run_at(Worker::Clock::now(), [this] { publish_graph(); });
+}
+
+void ParticipantImpl::check_type(const char* whose, const std::string& topic,
+                                 const std::string& type) {
+  std::string ours;
+  {
+    const std::lock_guard<std::mutex> lock(discovery_mutex_);
+    const auto entry = our_types_.find(topic);
+    if (entry != our_types_.end()) ours = entry->second;
+  }
+  if (ours.empty() || ours == type) return;
+  log(LogLevel::warning, "topic " + topic + ": a peer's " + whose + " has type " + type +
+                             ", ours is " + ours +
+                             "; they will not talk: remap one of them or correct its type");
+}
+
+void ParticipantImpl::on_publisher_discovery(dds::DomainParticipant*,
+                                             rtps::WriterDiscoveryInfo&& info) {
+  const auto& data = info.info.m_qos.m_userData.data_vec();
+  const bool removed = info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER;
+  const std::string topic = info.info.topicName().to_string();
+  watch_graph(topic, to_guid(info.info.guid()), std::string(data.begin(), data.end()), removed);
+  if (info.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) {
+    check_type("publisher", topic, info.info.typeName().to_string());
+  }
+}
+
+void ParticipantImpl::on_subscriber_discovery(dds::DomainParticipant*,
+                                              rtps::ReaderDiscoveryInfo&& info) {
+  const auto& data = info.info.m_qos.m_userData.data_vec();
+  const bool removed = info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER;
+  const std::string topic = info.info.topicName().to_string();
+  watch_graph(topic, to_guid(info.info.guid()), std::string(data.begin(), data.end()), removed);
+  if (info.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER) {
+    check_type("subscriber", topic, info.info.typeName().to_string());
+  }
+}
+
+}  // namespace bpa::wire::detail

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
+#include <bpa/wire/fastdds/raw_type.hpp>
+#include <bpa/wire/graph.hpp>
+#include <bpa/wire/participant.hpp>
+#include <bpa/wire/worker.hpp>
+
+// Private to idl/wire/fastdds, the only folder that includes Fast DDS.
+
+namespace bpa::wire::detail {
+
+Guid to_guid(const eprosima::fastrtps::rtps::GUID_t& guid);
+Guid to_guid(const eprosima::fastrtps::rtps::InstanceHandle_t& handle);
+eprosima::fastrtps::rtps::GUID_t from_guid(const Guid& guid);
+
+/// Owns the DDS participant, its topics and types, and what the ROS 2 graph says of it.
+class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
+                        private eprosima::fastdds::dds::DomainParticipantListener {
+ public:
+  ParticipantImpl(ParticipantOptions options, Discovery discovery);
+  ~ParticipantImpl() override;
+  Status start();
+
+  const ParticipantOptions& options() const { return options_; }
+  int domain_id() const { return discovery_.domain_id; }
+  GraphLayout graph_layout() const;
+  void log(LogLevel level, const std::string& text) const { bpa::log(options_.log, level, text); }
+
+  eprosima::fastdds::dds::Publisher* publisher() { return publisher_; }
+  eprosima::fastdds::dds::Subscriber* subscriber() { return subscriber_; }
+  Worker& worker() { return worker_; }
+
+  /// Held while an endpoint is made or ended.
+  std::mutex& endpoint_mutex() { return endpoint_mutex_; }
+  /// The topic, made when it is the first of its name; null when another type has the name. The
+  /// caller of both holds endpoint_mutex.
+  eprosima::fastdds::dds::Topic* acquire_topic(const EndpointSpec& spec, std::string* error);
+  void release_topic(const std::string& dds_topic);
+
+  /// Lists an endpoint in the graph, or takes it off.
+  void graph_add(const Guid& endpoint, bool is_reader);
+  void graph_remove(const Guid& endpoint);
+
+ private:
+  struct TopicEntry {
+    eprosima::fastdds::dds::Topic* topic = nullptr;
+    std::string dds_type;
+    int users = 0;
+  };
+
+  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
+                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+  void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant*,
+                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+  /// Says so when a peer uses one of our topics with another type: DDS itself is silent.
+  void check_type(const char* whose, const std::string& topic, const std::string& type);
+  void watch_graph(const std::string& topic, const Guid& endpoint, const std::string& user_data,
+                   bool removed);
+  void publish_graph();
+
+  const ParticipantOptions options_;
+  const Discovery discovery_;
+  eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
+  eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
+  eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
+
+  std::mutex endpoint_mutex_;
+  std::map<std::string, TopicEntry> topics_;                          // by DDS name
+  std::map<std::string, eprosima::fastdds::dds::TypeSupport> types_;  // by DDS name
+
+  std::mutex graph_mutex_;
+  std::set<Guid> readers_, writers_;
+  std::unique_ptr<RawWriter> graph_writer_;
+
+  // What discovery callbacks read and write. They hold locks of Fast DDS, so whoever holds this one
+  // calls nothing of it.
+  mutable std::mutex discovery_mutex_;
+  GraphLayoutGuess guess_;
+  std::map<std::string, std::string> our_types_;  // by DDS name of the topic
+
+  Worker worker_;
+};
+
+/// As make_writer, for a participant that is not public yet. `keep` holds the participant alive.
+Result<std::unique_ptr<RawWriter>> make_raw_writer(ParticipantImpl& participant,
+                                                   std::shared_ptr<ParticipantImpl> keep,
+                                                   EndpointSpec spec);
+
+}  // namespace bpa::wire::detail

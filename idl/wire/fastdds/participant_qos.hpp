@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+
+#include <bpa/core/base/status.hpp>
+#include <bpa/wire/discovery.hpp>
+
+// Private to idl/wire/fastdds, the only folder that includes Fast DDS.
+
+namespace bpa::wire::detail {
+
+/// UDP over IPv4 alone, with large buffers; discovery as rmw_fastrtps sets it up; the user data by
+/// which ROS 2 knows one of its own. `invalid_argument` when a static peer's name is unknown.
+Result<eprosima::fastdds::dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
+                                                                     int socket_buffer_bytes);
+
+}  // namespace bpa::wire::detail

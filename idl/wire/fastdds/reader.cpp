@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <atomic>
+
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+
+#include <bpa/wire/fastdds/endpoint_qos.hpp>
+#include <bpa/wire/fastdds/matches.hpp>
+#include <bpa/wire/fastdds/participant_impl.hpp>
+
+namespace bpa::wire::detail {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+using ReturnCode = eprosima::fastrtps::types::ReturnCode_t;
+
+namespace {
+
+SampleId to_id(const rtps::SampleIdentity& identity) {
+  SampleId id;
+  if (identity.writer_guid() != rtps::c_Guid_Unknown) {
+    id.writer = to_guid(identity.writer_guid());
+    id.sequence = static_cast<std::int64_t>(identity.sequence_number().to64long());
+  }
+  return id;
+}
+
+SampleMeta to_meta(const dds::SampleInfo& info) {
+  SampleMeta meta;
+  meta.id = to_id(info.sample_identity);
+  meta.related = to_id(info.related_sample_identity);
+  meta.source_time_ns = info.source_timestamp.to_ns();
+  meta.receive_time_ns = info.reception_timestamp.to_ns();
+  return meta;
+}
+
+class Reader : public RawReader, private dds::DataReaderListener {
+ public:
+  Reader(const Participant& participant, EndpointSpec spec, RawDecode decode)
+      : participant_(participant.impl()), spec_(std::move(spec)), decode_(std::move(decode)) {}
+
+  Status open() {
+    const std::lock_guard<std::mutex> lock(participant_->endpoint_mutex());
+    std::string error = "Fast DDS refused the reader";
+    dds::Topic* topic = participant_->acquire_topic(spec_, &error);
+    if (topic == nullptr) return fail(error);
+    reader_ = participant_->subscriber()->create_datareader(topic, reader_qos(spec_), this);
+    if (reader_ == nullptr) {
+      participant_->release_topic(spec_.dds_topic);
+      return fail(error);
+    }
+    guid_ = to_guid(reader_->guid());
+    if (spec_.in_graph) participant_->graph_add(guid_, true);
+    return {};
+  }
+
+  ~Reader() override {
+    if (reader_ == nullptr) return;
+    {
+      const std::lock_guard<std::mutex> lock(callback_mutex_);
+      closed_ = true;
+    }
+    if (spec_.in_graph) participant_->graph_remove(guid_);
+    const std::lock_guard<std::mutex> lock(participant_->endpoint_mutex());
+    reader_->set_listener(nullptr);
+    participant_->subscriber()->delete_datareader(reader_);
+    participant_->release_topic(spec_.dds_topic);
+  }
+
+  std::size_t matched_count() const override { return matches_.count(); }
+  bool wait_for_matched(std::size_t count, std::chrono::milliseconds timeout) const override {
+    return matches_.wait_for(count, timeout);
+  }
+  Guid guid() const override { return guid_; }
+  ReaderStatistics statistics() const override { return {received_, malformed_, lost_}; }
+
+ private:
+  Status fail(const std::string& why) const {
+    return Status(StatusCode::internal, "cannot subscribe to " + spec_.dds_topic + ": " + why);
+  }
+
+  // Samples come over UDP on one thread and through shared memory on another; one at a time.
+  void on_data_available(dds::DataReader* reader) override {
+    const std::lock_guard<std::mutex> lock(callback_mutex_);
+    while (!closed_) {
+      IncomingSample sample;
+      sample.decode = &decode_;
+      dds::SampleInfo info;
+      if (reader->take_next_sample(&sample, &info) != ReturnCode::RETCODE_OK) return;
+      if (!info.valid_data) continue;
+      if (sample.deliver) {
+        ++received_;
+        sample.deliver(to_meta(info));
+      } else {
+        ++malformed_;
+        participant_->log(LogLevel::warning, "topic " + spec_.dds_topic +
+                                                 ": refused a sample: " + sample.status.message);
+      }
+    }
+  }
+
+  void on_subscription_matched(dds::DataReader*,
+                               const dds::SubscriptionMatchedStatus& status) override {
+    const Guid writer = to_guid(status.last_publication_handle);
+    if (status.current_count_change > 0) matches_.add(writer);
+    if (status.current_count_change < 0) matches_.remove(writer);
+  }
+
+  void on_requested_incompatible_qos(dds::DataReader*,
+                                     const dds::RequestedIncompatibleQosStatus& status) override {
+    participant_->log(LogLevel::warning,
+                      incompatible_qos_text(spec_.dds_topic, false, status.last_policy_id));
+  }
+
+  void on_sample_lost(dds::DataReader*, const dds::SampleLostStatus& status) override {
+    lost_ += static_cast<std::uint64_t>(std::max(status.total_count_change, 0));
+  }
+
+  void on_sample_rejected(dds::DataReader*,
+                          const eprosima::fastrtps::SampleRejectedStatus& status) override {
+    lost_ += status.total_count_change;
+  }
+
+  const std::shared_ptr<ParticipantImpl> participant_;
+  const EndpointSpec spec_;
+  const RawDecode decode_;
+  Matches matches_;
+  Guid guid_{};
+  std::atomic<std::uint64_t> received_{0}, malformed_{0}, lost_{0};
+  std::mutex callback_mutex_;
+  bool closed_ = false;
+  dds::DataReader* reader_ = nullptr;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<RawReader>> make_reader(const Participant& participant, EndpointSpec spec,
+                                               RawDecode decode) {
+  auto reader = std::make_unique<Reader>(participant, std::move(spec), std::move(decode));
+  Status status = reader->open();
+  if (!status.ok()) return status;
+  return std::unique_ptr<RawReader>(std::move(reader));
+}
+
+}  // namespace bpa::wire::detail

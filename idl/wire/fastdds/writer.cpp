@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
+
+#include <bpa/wire/fastdds/endpoint_qos.hpp>
+#include <bpa/wire/fastdds/matches.hpp>
+#include <bpa/wire/fastdds/participant_impl.hpp>
+
+namespace bpa::wire::detail {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+
+namespace {
+
+rtps::SampleIdentity to_identity(const SampleId& id) {
+  rtps::SampleIdentity identity;
+  identity.writer_guid(from_guid(id.writer));
+  if (id.sequence != 0) {  // else unknown, as in a request
+    identity.sequence_number(rtps::SequenceNumber_t(static_cast<std::uint64_t>(id.sequence)));
+  }
+  return identity;
+}
+
+class Writer : public RawWriter, private dds::DataWriterListener {
+ public:
+  Writer(ParticipantImpl& participant, std::shared_ptr<ParticipantImpl> keep, EndpointSpec spec)
+      : participant_(participant), keep_(std::move(keep)), spec_(std::move(spec)) {}
+
+  Status open() {
+    const std::lock_guard<std::mutex> lock(participant_.endpoint_mutex());
+    std::string error = "Fast DDS refused the writer";
+    dds::Topic* topic = participant_.acquire_topic(spec_, &error);
+    if (topic == nullptr) return fail(error);
+    writer_ = participant_.publisher()->create_datawriter(topic, writer_qos(spec_), this);
+    if (writer_ == nullptr) {
+      participant_.release_topic(spec_.dds_topic);
+      return fail(error);
+    }
+    if (spec_.in_graph) participant_.graph_add(guid(), false);
+    return {};
+  }
+
+  ~Writer() override {
+    if (writer_ == nullptr) return;
+    if (spec_.in_graph) participant_.graph_remove(guid());
+    const std::lock_guard<std::mutex> lock(participant_.endpoint_mutex());
+    writer_->set_listener(nullptr);
+    participant_.publisher()->delete_datawriter(writer_);
+    participant_.release_topic(spec_.dds_topic);
+  }
+
+  Status write(const MessageRef& message, const SampleId* related, SampleId* written) override {
+    if (spec_.shared_bytes > 0) {
+      const std::size_t size = message.encoded_size(message.message);
+      if (size > spec_.shared_bytes) {
+        return invalid_argument("the message of " + std::to_string(size) + " bytes on " +
+                                spec_.dds_topic + " is larger than shared_bytes, which is " +
+                                std::to_string(spec_.shared_bytes));
+      }
+    }
+    rtps::WriteParams params;
+    if (related != nullptr) params.related_sample_identity(to_identity(*related));
+    MessageRef data = message;
+    // Of the return value only the truth is kept; 2.x says true, 3.x will say RETCODE_OK.
+    const bool done = writer_->write(&data, params);
+    if (!done) {
+      return Status(StatusCode::timeout,
+                    "could not write to " + spec_.dds_topic +
+                        ": the history is full, or the message breaks a bound");
+    }
+    if (written != nullptr) {
+      written->writer = to_guid(params.sample_identity().writer_guid());
+      written->sequence =
+          static_cast<std::int64_t>(params.sample_identity().sequence_number().to64long());
+    }
+    return {};
+  }
+
+  std::size_t matched_count() const override { return matches_.count(); }
+  bool wait_for_matched(std::size_t count, std::chrono::milliseconds timeout) const override {
+    return matches_.wait_for(count, timeout);
+  }
+  Guid guid() const override { return to_guid(writer_->guid()); }
+  std::optional<std::chrono::milliseconds> matched_for(const Guid& reader) const override {
+    return matches_.matched_for(reader);
+  }
+
+ private:
+  Status fail(const std::string& why) const {
+    return Status(StatusCode::internal, "cannot publish on " + spec_.dds_topic + ": " + why);
+  }
+
+  void on_publication_matched(dds::DataWriter*,
+                              const dds::PublicationMatchedStatus& status) override {
+    const Guid reader = to_guid(status.last_subscription_handle);
+    if (status.current_count_change > 0) matches_.add(reader);
+    if (status.current_count_change < 0) matches_.remove(reader);
+  }
+
+  void on_offered_incompatible_qos(dds::DataWriter*,
+                                   const dds::OfferedIncompatibleQosStatus& status) override {
+    participant_.log(LogLevel::warning,
+                     incompatible_qos_text(spec_.dds_topic, true, status.last_policy_id));
+  }
+
+  ParticipantImpl& participant_;
+  const std::shared_ptr<ParticipantImpl> keep_;
+  const EndpointSpec spec_;
+  Matches matches_;
+  dds::DataWriter* writer_ = nullptr;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<RawWriter>> make_raw_writer(ParticipantImpl& participant,
+                                                   std::shared_ptr<ParticipantImpl> keep,
+                                                   EndpointSpec spec) {
+  auto writer = std::make_unique<Writer>(participant, std::move(keep), std::move(spec));
+  Status status = writer->open();
+  if (!status.ok()) return status;
+  return std::unique_ptr<RawWriter>(std::move(writer));
+}
+
+Result<std::unique_ptr<RawWriter>> make_writer(const Participant& participant, EndpointSpec spec) {
+  return make_raw_writer(*participant.impl(), participant.impl(), std::move(spec));
+}
+
+}  // namespace bpa::wire::detail

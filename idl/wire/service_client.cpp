@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+
+#include <bpa/wire/service.hpp>
+
+namespace bpa::wire::detail {
+
+using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+using Bytes = std::vector<std::uint8_t>;
+
+class ServiceClientImpl : public std::enable_shared_from_this<ServiceClientImpl> {
+ public:
+  Status open(const Participant& participant, EndpointSpec request, EndpointSpec reply) {
+    name_ = request.dds_topic;
+    const std::weak_ptr<ServiceClientImpl> weak = weak_from_this();
+    auto take = [weak](const std::uint8_t* data,
+                       std::size_t size) -> Result<std::function<void(const SampleMeta&)>> {
+      auto copy = std::make_shared<Bytes>(data, data + size);
+      return std::function<void(const SampleMeta&)>([weak, copy](const SampleMeta& meta) {
+        if (const auto self = weak.lock()) self->on_reply(std::move(*copy), meta);
+      });
+    };
+    auto reader = make_reader(participant, std::move(reply), std::move(take));
+    if (!reader.ok()) return reader.status();
+    replies_ = std::move(reader).value();
+    auto writer = make_writer(participant, std::move(request));
+    if (!writer.ok()) return writer.status();
+    requests_ = std::move(writer).value();
+    return {};
+  }
+
+  bool wait(milliseconds timeout) const {
+    const Clock::time_point deadline = Clock::now() + timeout;
+    return requests_->wait_for_matched(1, timeout) && replies_->wait_for_matched(1, left(deadline));
+  }
+
+  Result<Bytes> call(const MessageRef& request, milliseconds timeout) {
+    const Clock::time_point deadline = Clock::now() + timeout;
+    if (!wait(timeout)) return Status(StatusCode::unavailable, "nobody serves " + name_);
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      ++writing_;
+    }
+    SampleId related;
+    related.writer = replies_->guid();
+    SampleId written;
+    const Status status = requests_->write(request, &related, &written);
+
+    std::unique_lock<std::mutex> lock(mutex_);
+    --writing_;
+    if (!status.ok()) return status;
+    Bytes& reply = calls_[written.sequence];
+    if (const auto early = early_.find(written.sequence); early != early_.end()) {
+      reply = std::move(early->second);
+    }
+    if (writing_ == 0) early_.clear();
+    const bool answered = answered_.wait_until(lock, deadline, [&] { return !reply.empty(); });
+    Bytes result = std::move(reply);
+    calls_.erase(written.sequence);
+    if (!answered) return Status(StatusCode::timeout, name_ + " did not answer in time");
+    return result;
+  }
+
+ private:
+  static milliseconds left(Clock::time_point deadline) {
+    return std::max(std::chrono::duration_cast<milliseconds>(deadline - Clock::now()),
+                    milliseconds{0});
+  }
+
+  void on_reply(Bytes bytes, const SampleMeta& meta) {
+    const bool ours =
+        meta.related.writer == replies_->guid() || meta.related.writer == requests_->guid();
+    if (!ours) return;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      const auto call = calls_.find(meta.related.sequence);
+      if (call != calls_.end()) {
+        call->second = std::move(bytes);
+      } else if (writing_ > 0) {  // perhaps of a request whose write has not returned yet
+        early_[meta.related.sequence] = std::move(bytes);
+      }
+    }
+    answered_.notify_all();
+  }
+
+  std::string name_;
+  std::mutex mutex_;
+  std::condition_variable answered_;
+  std::map<std::int64_t, Bytes> calls_;  ///< By sequence number; empty: not answered yet.
+  std::map<std::int64_t, Bytes> early_;  ///< Replies that came while a write was going on.
+  int writing_ = 0;
+  std::unique_ptr<RawReader> replies_;
+  std::unique_ptr<RawWriter> requests_;
+};
+
+Result<std::shared_ptr<ServiceClientImpl>> make_client(const Participant& participant,
+                                                       EndpointSpec request, EndpointSpec reply) {
+  auto client = std::make_shared<ServiceClientImpl>();
+  Status status = client->open(participant, std::move(request), std::move(reply));
+  if (!status.ok()) return status;
+  return client;
+}
+
+bool client_wait(ServiceClientImpl& client, milliseconds timeout) { return client.wait(timeout); }
+
+Result<Bytes> client_call(ServiceClientImpl& client, const MessageRef& request,
+                          milliseconds timeout) {
+  return client.call(request, timeout);
+}
+
+}  // namespace bpa::wire::detail

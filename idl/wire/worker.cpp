@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include <bpa/wire/worker.hpp>
+
+namespace bpa::wire::detail {
+
+struct Worker::State {
+  std::mutex mutex;
+  std::condition_variable wake;
+  std::multimap<Clock::time_point, std::function<void()>> tasks;
+  bool stop = false;
+};
+
+Worker::Worker() : state_(std::make_shared<State>()), thread_([state = state_] { loop(*state); }) {}
+
+Worker::~Worker() {
+  {
+    const std::lock_guard<std::mutex> lock(state_->mutex);
+    state_->stop = true;
+  }
+  state_->wake.notify_all();
+  // A task may have been the last to hold what owns the worker.
+  if (thread_.get_id() == std::this_thread::get_id()) {
+    thread_.detach();
+  } else {
+    thread_.join();
+  }
+}
+
+void Worker::run_at(Clock::time_point time, std::function<void()> task) {
+  {
+    const std::lock_guard<std::mutex> lock(state_->mutex);
+    state_->tasks.emplace(time, std::move(task));
+  }
+  state_->wake.notify_all();
+}
+
+void Worker::loop(State& state) {
+  std::unique_lock<std::mutex> lock(state.mutex);
+  while (!state.stop) {
+    if (state.tasks.empty()) {
+      state.wake.wait(lock);
+      continue;
+    }
+    const Clock::time_point next = state.tasks.begin()->first;
+    if (next > Clock::now()) {
+      state.wake.wait_until(lock, next);
+      continue;
+    }
+    std::function<void()> task = std::move(state.tasks.begin()->second);
+    state.tasks.erase(state.tasks.begin());
+    lock.unlock();
+    task();
+    task = nullptr;  // what it held may go here, not under the lock
+    lock.lock();
+  }
+}
+
+}  // namespace bpa::wire::detail

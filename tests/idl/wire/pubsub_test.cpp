@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <bpa/wire/messages.hpp>
+#include <bpa/wire/publisher.hpp>
+#include <bpa/wire/subscriber.hpp>
+
+#include "idl/wire/domain.hpp"
+
+namespace bpa::wire {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// Collects what callbacks say.
+template <class T>
+class Inbox {
+ public:
+  void put(T value) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      values_.push_back(std::move(value));
+    }
+    changed_.notify_all();
+  }
+  bool wait_for(std::size_t count, seconds timeout = seconds(5)) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    return changed_.wait_for(lock, timeout, [&] { return values_.size() >= count; });
+  }
+  std::vector<T> values() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return values_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<T> values_;
+};
+
+bpa_msgs::RgbdFrame frame_of(std::uint32_t width, std::uint32_t height) {
+  bpa_msgs::RgbdFrame frame;
+  frame.header.stamp = {12, 34};
+  frame.header.frame_id = "camera";
+  frame.width = width;
+  frame.height = height;
+  frame.color_encoding = "rgb8";
+  frame.color.resize(3U * width * height);
+  for (std::size_t i = 0; i < frame.color.size(); ++i) {
+    frame.color[i] = static_cast<std::uint8_t>(i * 7 + i / 251);
+  }
+  frame.depth_encoding = "16UC1";
+  frame.depth.assign(2U * width * height, 3);
+  frame.k = {500, 0, 320, 0, 500, 240, 0, 0, 1};
+  return frame;
+}
+
+void exchange_frames(std::size_t publisher_shares, std::size_t subscriber_shares) {
+  auto one = test_participant("one");
+  auto two = test_participant("two");
+  ASSERT_TRUE(one.ok() && two.ok());
+  PublisherOptions publisher_options;
+  publisher_options.qos = qos::frames();
+  publisher_options.shared_bytes = publisher_shares;
+  auto publisher = Publisher<bpa_msgs::RgbdFrame>::create(*one, "frames", publisher_options);
+  ASSERT_TRUE(publisher.ok()) << publisher.status().message;
+  Inbox<bpa_msgs::RgbdFrame> inbox;
+  SubscriberOptions subscriber_options;
+  subscriber_options.qos = qos::reliable_input();
+  subscriber_options.shared_bytes = subscriber_shares;
+  auto subscriber = Subscriber<bpa_msgs::RgbdFrame>::create(
+      *two, "/frames", subscriber_options,
+      [&inbox](bpa_msgs::RgbdFrame&& frame, const SampleMeta& meta) {
+        EXPECT_NE(meta.source_time_ns, 0);
+        inbox.put(std::move(frame));
+      });
+  ASSERT_TRUE(subscriber.ok()) << subscriber.status().message;
+  ASSERT_TRUE(publisher->wait_for_matched(seconds(5)));
+  ASSERT_TRUE(subscriber->wait_for_matched(seconds(5)));
+  EXPECT_EQ(publisher->matched_count(), 1U);
+
+  const bpa_msgs::RgbdFrame frame = frame_of(640, 480);
+  constexpr std::size_t kFrames = 20;
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    bpa_msgs::RgbdFrameView view;
+    view.header = frame.header;
+    view.header.stamp.sec = static_cast<int>(i);
+    view.width = frame.width;
+    view.height = frame.height;
+    view.color_encoding = frame.color_encoding;
+    view.color = {frame.color.data(), frame.color.size()};
+    view.depth_encoding = frame.depth_encoding;
+    view.depth = {frame.depth.data(), frame.depth.size()};
+    view.k = frame.k;
+    const Status status = publisher->publish(view);
+    ASSERT_TRUE(status.ok()) << status.message;
+    ASSERT_TRUE(inbox.wait_for(i + 1)) << i;
+  }
+  const auto frames = inbox.values();
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    EXPECT_EQ(frames[i].header.stamp.sec, static_cast<int>(i));
+    EXPECT_EQ(frames[i].header.frame_id, "camera");
+    EXPECT_EQ(frames[i].color, frame.color);
+    EXPECT_EQ(frames[i].depth, frame.depth);
+    EXPECT_EQ(frames[i].k, frame.k);
+  }
+  EXPECT_EQ(subscriber->statistics().received, kFrames);
+  EXPECT_EQ(subscriber->statistics().malformed, 0U);
+}
+
+TEST(PubSub, OverUdp) { exchange_frames(0, 0); }
+TEST(PubSub, ThroughSharedMemory) { exchange_frames(kFrameBytes, kFrameBytes); }
+TEST(PubSub, SharingPublisherToPlainSubscriber) { exchange_frames(kFrameBytes, 0); }
+TEST(PubSub, PlainPublisherToSharingSubscriber) { exchange_frames(0, kFrameBytes); }
+
+TEST(PubSub, TooLargeForSharingIsRefused) {
+  auto one = test_participant("one");
+  ASSERT_TRUE(one.ok());
+  PublisherOptions options;
+  options.shared_bytes = 100'000;
+  auto publisher = Publisher<bpa_msgs::RgbdFrame>::create(*one, "small", options);
+  ASSERT_TRUE(publisher.ok());
+  const Status status = publisher->publish(frame_of(640, 480));
+  EXPECT_EQ(status.code, StatusCode::invalid_argument);
+  EXPECT_NE(status.message.find("100000"), std::string::npos) << status.message;
+  EXPECT_TRUE(publisher->publish(frame_of(64, 48)).ok());
+}
+
+TEST(PubSub, LateSubscriberGetsWhatIsLatched) {
+  auto one = test_participant("one");
+  auto two = test_participant("two");
+  ASSERT_TRUE(one.ok() && two.ok());
+  PublisherOptions options;
+  options.qos = qos::latched();
+  auto publisher = Publisher<vision_msgs::VisionInfo>::create(*one, "vision_info", options);
+  ASSERT_TRUE(publisher.ok());
+  vision_msgs::VisionInfo info;
+  info.method = "bpa";
+  info.database_version = 7;
+  ASSERT_TRUE(publisher->publish(info).ok());
+  Inbox<vision_msgs::VisionInfo> inbox;
+  SubscriberOptions subscriber_options;
+  subscriber_options.qos = qos::latched();
+  auto subscriber = Subscriber<vision_msgs::VisionInfo>::create(
+      *two, "vision_info", subscriber_options,
+      [&inbox](vision_msgs::VisionInfo&& got, const SampleMeta&) { inbox.put(std::move(got)); });
+  ASSERT_TRUE(subscriber.ok());
+  ASSERT_TRUE(inbox.wait_for(1));
+  EXPECT_EQ(inbox.values()[0].database_version, 7);
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(PubSub, MismatchesAreLoggedWithTheRemedy) {
+  Inbox<std::string> log;
+  const LogHook hook = [&log](LogLevel level, std::string_view text) {
+    if (level == LogLevel::warning) log.put(std::string(text));
+  };
+  auto one = test_participant("one", hook);
+  auto two = test_participant("two");
+  ASSERT_TRUE(one.ok() && two.ok());
+  PublisherOptions best_effort;
+  best_effort.qos.reliability = Reliability::best_effort;
+  auto image = Publisher<sensor_msgs::Image>::create(*one, "image", best_effort);
+  auto text = Publisher<std_msgs::String>::create(*one, "text");
+  ASSERT_TRUE(image.ok() && text.ok());
+  SubscriberOptions reliable;
+  reliable.qos = qos::reliable_input();
+  auto image_subscriber = Subscriber<sensor_msgs::Image>::create(
+      *two, "image", reliable, [](sensor_msgs::Image&&, const SampleMeta&) {});
+  auto other_type = Subscriber<std_msgs::Header>::create(
+      *two, "text", reliable, [](std_msgs::Header&&, const SampleMeta&) {});
+  ASSERT_TRUE(image_subscriber.ok() && other_type.ok());
+  ASSERT_TRUE(log.wait_for(2));
+  std::string all;
+  for (const std::string& line : log.values()) all += line + "\n";
+  EXPECT_TRUE(contains(all, "rt/image")) << all;
+  EXPECT_TRUE(contains(all, "reliability")) << all;
+  EXPECT_TRUE(contains(all, "best_effort")) << all;
+  EXPECT_TRUE(contains(all, "std_msgs::msg::dds_::Header_")) << all;
+  EXPECT_EQ(image->matched_count(), 0U);
+}
+
+TEST(PubSub, MatchesComeAndGo) {
+  auto one = test_participant("one");
+  auto two = test_participant("two");
+  ASSERT_TRUE(one.ok() && two.ok());
+  auto publisher = Publisher<std_msgs::String>::create(*one, "text");
+  ASSERT_TRUE(publisher.ok());
+  EXPECT_FALSE(publisher->wait_for_matched(milliseconds(20)));
+  {
+    auto subscriber = Subscriber<std_msgs::String>::create(
+        *two, "text", {}, [](std_msgs::String&&, const SampleMeta&) {});
+    ASSERT_TRUE(subscriber.ok());
+    EXPECT_TRUE(publisher->wait_for_matched(seconds(5)));
+  }
+  for (int i = 0; i < 100 && publisher->matched_count() > 0; ++i) usleep(20'000);
+  EXPECT_EQ(publisher->matched_count(), 0U);
+}
+
+TEST(PubSub, OneTopicTwoTypesInOneProcessIsRefused) {
+  auto one = test_participant("one");
+  ASSERT_TRUE(one.ok());
+  auto text = Publisher<std_msgs::String>::create(*one, "x");
+  auto header = Publisher<std_msgs::Header>::create(*one, "x");
+  ASSERT_TRUE(text.ok());
+  ASSERT_FALSE(header.ok());
+  EXPECT_TRUE(contains(header.status().message, "std_msgs::msg::dds_::String_"));
+}
+
+}  // namespace
+}  // namespace bpa::wire
