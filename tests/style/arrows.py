@@ -71,6 +71,8 @@ class Rooms:
 
 def included_path(path, bracket, header):
     """Where an included header of the project lies, relative to the root; None for any other."""
+    if header.startswith(tuple(folder + "/" for folder in CHECKED_FOLDERS)):
+        return header
     if bracket == '"':
         return os.path.normpath(Path(path).parent / header)
     if header.startswith("bpa/core/"):

@@ -58,6 +58,7 @@ class StyleChecks(unittest.TestCase):
         for path, include, problem in (
                 ("core/base/a.cpp", "<bpa/core/cloud/frame.hpp>", "core/base may not include"),
                 ("core/base/a.cpp", '"../cloud/frame.hpp"', "core/base may not include"),
+                ("core/base/a.cpp", '"core/cloud/frame.hpp"', "core/base may not include"),
                 ("core/cloud/a.hpp", "<bpa/wire/qos.hpp>", "core/cloud may not include"),
                 ("client/src/a.cpp", "<bpa/core/cloud/frame.hpp>", "client may not include"),
                 ("core/cloud/a.cpp", "<bpa/core/util/x.hpp>", "lies in no room"),
