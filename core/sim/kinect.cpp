@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <bpa/core/base/parallel.hpp>
+#include <bpa/core/base/random.hpp>
+#include <bpa/core/sim/kinect.hpp>
+#include <bpa/core/sim/noise_field.hpp>
+
+namespace bpa::sim {
+namespace {
+
+constexpr int kWindow = 4;           // pixels on each side: 9 x 9
+constexpr float kSameDisparity = 1;  // pixels
+constexpr float kEnoughOfWindow = 0.4f;
+
+// What the infrared camera gets to see, row-major.
+struct Measurement {
+  Camera camera;
+  std::vector<float> depth;      // true, metres
+  std::vector<float> disparity;  // true, pixels; 0 where the pattern is not seen
+  std::vector<float> angle;      // of incidence, radians
+  std::vector<float> signal;     // returned light; 1 = white, facing, at 1 m
+  std::vector<float> glare;      // in [0, 1]
+};
+
+float smooth_step(float low, float high, float x) {
+  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
+  return t * t * (3 - 2 * t);
+}
+
+// Steps 1 and 3 for the pixels of one row.
+void see_row(const RayScene& scene, const Pose& world_from_infrared, const Shading& shading,
+             const KinectOptions& options, int y, Measurement& m) {
+  const Eigen::Matrix3f rotation = world_from_infrared.matrix().cast<float>();
+  const Eigen::Vector3f origin = world_from_infrared.translation.cast<float>();
+  const Eigen::Vector3f projector = origin + static_cast<float>(options.baseline) * rotation.col(0);
+  for (int x = 0; x < m.camera.width; ++x) {
+    const std::size_t i = static_cast<std::size_t>(y) * m.camera.width + x;
+    const Eigen::Vector3f direction = rotation * m.camera.unproject(x, y, 1).cast<float>();
+    const std::optional<RayHit> hit = scene.cast(origin, direction);
+    if (!hit || hit->distance < options.min_range || hit->distance > options.max_range) continue;
+    const Eigen::Vector3f point = origin + hit->distance * direction;
+    const Eigen::Vector3f to_camera = -direction.normalized();
+    const Eigen::Vector3f to_projector = (projector - point).normalized();
+    const float lit = hit->face_normal.dot(to_projector);
+    m.depth[i] = hit->distance;
+    m.angle[i] = std::acos(std::clamp(hit->normal.dot(to_camera), 0.0f, 1.0f));
+    if (options.shadows &&
+        (lit <= 0 || scene.blocked(point + 3e-4f * hit->face_normal, projector))) {
+      continue;
+    }
+    const auto index = static_cast<std::size_t>(hit->instance);
+    const Material material =
+        index < shading.materials.size() ? shading.materials[index] : Material{};
+    const float brightness = hit->color.sum() / 3;
+    const auto shine = static_cast<float>(material.shine);
+    const float away = 1 - 0.6f * shine * m.angle[i] / (std::numbers::pi_v<float> / 2);
+    m.signal[i] = static_cast<float>(material.infrared) * (0.6f + 0.4f * brightness) *
+                  std::max(lit, 0.0f) * away / (hit->distance * hit->distance);
+    const float facing = hit->normal.dot((to_camera + to_projector).normalized());
+    m.glare[i] = smooth_step(0.25f, 1.0f, shine) * smooth_step(0.965f, 0.998f, facing);
+    m.disparity[i] =
+        static_cast<float>(m.camera.fx * std::max(options.baseline, 1e-3) / hit->distance);
+  }
+}
+
+Measurement see(const RayScene& scene, const Camera& camera, const Pose& world_from_infrared,
+                const Shading& shading, const KinectOptions& options, int num_threads) {
+  const std::size_t count = static_cast<std::size_t>(camera.width) * camera.height;
+  Measurement m;
+  m.camera = camera;
+  for (std::vector<float>* image : {&m.depth, &m.disparity, &m.angle, &m.signal, &m.glare}) {
+    image->assign(count, 0);
+  }
+  parallel_for(
+      camera.height, num_threads,
+      [&](int y) { see_row(scene, world_from_infrared, shading, options, y, m); }, 8);
+  return m;
+}
+
+// The share of the matching window round (x, y) that is lit and has about this disparity.
+float window_agreement(const Measurement& m, int x, int y, float disparity) {
+  int agree = 0;
+  for (int v = std::max(y - kWindow, 0); v <= std::min(y + kWindow, m.camera.height - 1); ++v) {
+    const float* row = m.disparity.data() + static_cast<std::size_t>(v) * m.camera.width;
+    for (int u = std::max(x - kWindow, 0); u <= std::min(x + kWindow, m.camera.width - 1); ++u) {
+      agree += std::abs(row[u] - disparity) <= kSameDisparity;
+    }
+  }
+  return static_cast<float>(agree) / ((2 * kWindow + 1) * (2 * kWindow + 1));
+}
+
+// The random images that the measurement draws on.
+struct Noise {
+  std::vector<float> lateral_x, lateral_y, shared, own, match, drop;
+
+  Noise(const Camera& camera, std::uint64_t seed, int num_threads) {
+    std::uint64_t stream = 0;
+    const auto make = [&](int radius) {
+      return noise_field(camera.width, camera.height, radius, RandomStream(seed, stream++)(),
+                         num_threads);
+    };
+    lateral_x = make(1);
+    lateral_y = make(1);
+    shared = make(3);
+    own = make(0);
+    match = make(1);
+    drop = make(2);
+  }
+};
+
+// Steps 2 to 5 for one pixel: its depth, or 0.
+float measure(const Measurement& m, const Noise& noise, const KinectOptions& options, int x,
+              int y) {
+  const int width = m.camera.width;
+  const std::size_t i = static_cast<std::size_t>(y) * width + x;
+  // Which surface answers: edges are ragged.
+  const double bend =
+      std::min(m.angle[i], 1.5f) / (std::numbers::pi / 2 - std::min(m.angle[i], 1.5f));
+  const double lateral = options.lateral_noise * (0.8 + 0.035 * bend);
+  const int u =
+      std::clamp(x + static_cast<int>(std::lround(lateral * noise.lateral_x[i])), 0, width - 1);
+  const int v = std::clamp(y + static_cast<int>(std::lround(lateral * noise.lateral_y[i])), 0,
+                           m.camera.height - 1);
+  const std::size_t j = static_cast<std::size_t>(v) * width + u;
+  const bool other_surface = std::abs(m.disparity[j] - m.disparity[i]) > kSameDisparity;
+  const std::size_t source = other_surface ? j : i;
+  if (m.disparity[source] <= 0) return 0;
+
+  const auto dropouts = static_cast<float>(options.dropouts);
+  if (dropouts > 0) {
+    const float agreement = window_agreement(m, x, y, m.disparity[source]);
+    if (agreement < kEnoughOfWindow + 0.06f * noise.match[i]) return 0;
+    constexpr float kWeakSignal = 0.03f;
+    const float ratio = m.signal[source] / kWeakSignal;
+    const float faint = 1 / (1 + ratio * ratio * ratio * ratio);
+    const float chance = dropouts * (0.0004f + faint + 0.9f * m.glare[source]);
+    if (0.5f * std::erfc(-noise.drop[i] / std::numbers::sqrt2_v<float>) < chance) return 0;
+  }
+
+  const double depth = m.depth[source];
+  const double pixels_per_metre = m.disparity[source] / depth;
+  const double wanted =
+      options.axial_noise * published_axial_noise(depth, m.angle[source]) * pixels_per_metre;
+  const double variance = wanted * wanted - options.disparity_step * options.disparity_step / 12;
+  constexpr double kShared = 0.85;  // of the variance
+  const double unit = std::sqrt(kShared) * noise.shared[i] + std::sqrt(1 - kShared) * noise.own[i];
+  double disparity = m.disparity[source] +
+                     (options.axial_noise > 0 ? std::sqrt(std::max(variance, 4e-4)) * unit : 0.0);
+  if (options.disparity_step > 0) {
+    disparity = options.disparity_step * std::round(disparity / options.disparity_step);
+    if (disparity <= 0) return 0;
+    return static_cast<float>(1e-3 * std::round(1e3 * m.disparity[source] * depth / disparity));
+  }
+  return static_cast<float>(m.disparity[source] * depth / disparity);
+}
+
+// Step 6: every measured pixel covers the colour pixels under it; the nearest wins.
+std::vector<float> carried_over(const std::vector<float>& depth, const Camera& infrared,
+                                const Camera& color, double color_x) {
+  std::vector<float> result(static_cast<std::size_t>(color.width) * color.height, 0);
+  const double half_x = 0.5 * color.fx / infrared.fx, half_y = 0.5 * color.fy / infrared.fy;
+  for (int y = 0; y < infrared.height; ++y) {
+    for (int x = 0; x < infrared.width; ++x) {
+      const float z = depth[static_cast<std::size_t>(y) * infrared.width + x];
+      if (z <= 0) continue;
+      Eigen::Vector3d point = infrared.unproject(x, y, z);
+      point.x() -= color_x;
+      const Eigen::Vector2d pixel = color.project(point);
+      const auto first = [](double p, double half) {
+        return static_cast<int>(std::ceil(p - std::max(half, 0.5) - 1e-9));
+      };
+      const auto last = [](double p, double half) {
+        return static_cast<int>(std::floor(p + std::max(half, 0.5) - 1e-6));
+      };
+      for (int v = std::max(first(pixel.y(), half_y), 0);
+           v <= std::min(last(pixel.y(), half_y), color.height - 1); ++v) {
+        for (int u = std::max(first(pixel.x(), half_x), 0);
+             u <= std::min(last(pixel.x(), half_x), color.width - 1); ++u) {
+          float& target = result[static_cast<std::size_t>(v) * color.width + u];
+          if (target == 0 || z < target) target = z;
+        }
+      }
+    }
+  }
+  return result;
+}
+
+// Exposure, white balance, a lens and a mosaic of filters (blur), noise that grows with light.
+std::vector<std::uint8_t> photograph(const std::vector<std::uint8_t>& ideal, const Camera& camera,
+                                     const KinectOptions& options, std::uint64_t seed,
+                                     int num_threads) {
+  RandomStream random(seed, 0);
+  const double exposure = std::exp(options.exposure_spread * random.normal());
+  Eigen::Array3d gain;
+  for (int c = 0; c < 3; ++c) {
+    gain[c] = exposure * std::exp(0.3 * options.exposure_spread * random.normal());
+  }
+  std::vector<std::vector<float>> noise;
+  for (int c = 0; c < 3; ++c) {
+    noise.push_back(noise_field(camera.width, camera.height, 1, random(), num_threads));
+  }
+  std::vector<std::uint8_t> image(ideal.size());
+  parallel_for(
+      camera.height, num_threads,
+      [&](int y) {
+        for (int x = 0; x < camera.width; ++x) {
+          const std::size_t i = static_cast<std::size_t>(y) * camera.width + x;
+          for (int c = 0; c < 3; ++c) {
+            double sum = 0;  // the 3 x 3 binomial
+            for (int dy = -1; dy <= 1; ++dy) {
+              for (int dx = -1; dx <= 1; ++dx) {
+                const int u = std::clamp(x + dx, 0, camera.width - 1);
+                const int v = std::clamp(y + dy, 0, camera.height - 1);
+                sum += (2 - std::abs(dx)) * (2 - std::abs(dy)) *
+                       ideal[3 * (static_cast<std::size_t>(v) * camera.width + u) + c] / 16.0;
+              }
+            }
+            const double light = gain[c] * sum;
+            const double sigma = options.color_noise * std::sqrt(6 + 0.12 * light);
+            const double value = light + sigma * noise[c][i];
+            image[3 * i + c] =
+                static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
+          }
+        }
+      },
+      16);
+  return image;
+}
+
+}  // namespace
+
+double published_axial_noise(double depth, double angle) {
+  constexpr double kSteep = std::numbers::pi / 3;
+  double sigma = 0.0012 + 0.0019 * (depth - 0.4) * (depth - 0.4);
+  if (angle > kSteep) {
+    const double left = std::max(std::numbers::pi / 2 - angle, 0.05);
+    sigma += 0.0001 / std::sqrt(depth) * angle * angle / (left * left);
+  }
+  return sigma;
+}
+
+KinectImage simulate_kinect(const RayScene& scene, const Camera& camera,
+                            const Pose& world_from_camera, const Shading& shading,
+                            const KinectOptions& options, std::uint64_t seed, int num_threads) {
+  KinectImage image;
+  Camera infrared = camera;
+  Pose camera_from_infrared;
+  if (options.registered) {
+    infrared = {640, 480, options.infrared_focal, options.infrared_focal, 319.5, 239.5};
+    camera_from_infrared.translation.x() = -options.color_baseline;
+  }
+  const Measurement m =
+      see(scene, infrared, world_from_camera * camera_from_infrared, shading, options, num_threads);
+  const Noise noise(infrared, seed, num_threads);
+  std::vector<float> depth(m.depth.size(), 0);
+  parallel_for(
+      infrared.height, num_threads,
+      [&](int y) {
+        for (int x = 0; x < infrared.width; ++x) {
+          depth[static_cast<std::size_t>(y) * infrared.width + x] =
+              measure(m, noise, options, x, y);
+        }
+      },
+      8);
+  image.frame.camera = camera;
+  image.frame.depth = options.registered
+                          ? carried_over(depth, infrared, camera, options.color_baseline)
+                          : std::move(depth);
+  image.ideal = render(scene, camera, world_from_camera, shading, num_threads);
+  const std::vector<std::uint8_t>* color = &image.ideal.color;
+  RenderedImage shifted;
+  RandomStream random(seed, 100);
+  if (options.misregistration > 0) {
+    const double direction = random.uniform(0, 2 * std::numbers::pi);
+    Camera moved = camera;
+    moved.cx += options.misregistration * std::cos(direction);
+    moved.cy += options.misregistration * std::sin(direction);
+    shifted = render(scene, moved, world_from_camera, shading, num_threads);
+    color = &shifted.color;
+  }
+  image.frame.color = photograph(*color, camera, options, random(), num_threads);
+  return image;
+}
+
+}  // namespace bpa::sim

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include <bpa/core/base/options.hpp>
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/core/sim/render.hpp>
+
+// A depth camera with a projected dot pattern (Kinect v1, Xtion, PrimeSense), simulated step by
+// step:
+//
+//  1. Triangulation. An infrared camera sees what a projector 7.5 cm to its right lights: what the
+//     projector does not reach has no depth (shadows left of everything that stands out).
+//  2. Matching. A 9 x 9 window is looked up in the stored pattern (Khoshelham and Elberink 2012,
+//     "Accuracy and resolution of Kinect depth data", Sensors 12): it needs enough lit pixels of
+//     one disparity, so depth ends before an edge does, and edges are ragged by about 0.8 pixels
+//     (lateral noise of Nguyen, Izadi and Lovell 2012, "Modeling Kinect sensor noise", 3DIMPVT).
+//  3. Signal. Matching fails where little light returns (dark, far or grazing surfaces) and where a
+//     mirror-like surface throws the projector's light straight back (Mallick, Das and Majumdar
+//     2014, "Characterizations of noise in Kinect depth images", IEEE Sensors J. 14).
+//  4. Noise. Disparity has noise such that depth gets the axial noise of Nguyen et al.,
+//     0.0012 + 0.0019 (z - 0.4)^2 m, plus 0.0001 / sqrt(z) * angle^2 / (pi/2 - angle)^2 m beyond
+//     60 degrees of incidence. Since windows overlap, neighbours share most of it.
+//  5. Quantisation. Disparity comes in steps of 1/8 pixel (Khoshelham and Elberink), 2.9 mm of
+//  depth
+//     at 1 m and growing with z^2, and depth in millimetres.
+//  6. Registration. Depth is carried over to the colour camera, 2.5 cm beside the infrared one.
+//
+// The colour image has exposure, white balance, blur and noise of its own.
+
+namespace bpa::sim {
+
+/// Every effect can be turned down to none.
+struct KinectOptions {
+  double baseline = 0.075;
+  double disparity_step = 0.125;
+  double infrared_focal = 570.3;
+  double axial_noise = 1;
+  double lateral_noise = 1;
+  double dropouts = 1;
+  bool shadows = true;
+  bool registered = true;
+  double color_baseline = 0.025;
+  double misregistration = 0;
+  double color_noise = 1;
+  double exposure_spread = 0.12;
+  double min_range = 0.4;
+  double max_range = 4.5;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("baseline", baseline, {0, 0.5, "Infrared camera to projector, metres."});
+    visit("disparity_step", disparity_step, {0, 4, "Steps of disparity, pixels; 0 = none."});
+    visit("infrared_focal", infrared_focal,
+          {200, 4000, "Focal length of the 640x480 infrared image, pixels."});
+    visit("axial_noise", axial_noise, {0, 10, "Times the published noise along the axis."});
+    visit("lateral_noise", lateral_noise, {0, 10, "Times the published noise of edges."});
+    visit("dropouts", dropouts, {0, 10, "Times the usual chance that a pixel has no depth."});
+    visit("shadows", shadows, {0, 1, "No depth where the projector does not reach."});
+    visit("registered", registered,
+          {0, 1, "Measure from beside the colour camera and carry over."});
+    visit("color_baseline", color_baseline, {0, 0.5, "Infrared to colour camera, metres."});
+    visit("misregistration", misregistration, {0, 50, "Shift of colour against depth, pixels."});
+    visit("color_noise", color_noise, {0, 10, "Times the usual noise of colours."});
+    visit("exposure_spread", exposure_spread, {0, 2, "Standard deviation of the log exposure."});
+    visit("min_range", min_range, {0, 20, "Nearest depth measured, metres."});
+    visit("max_range", max_range, {0, 20, "Farthest depth measured, metres."});
+  }
+};
+
+/// The standard deviation of depth along the axis that is asked of the model, metres (step 4), for
+/// a surface at `depth` metres seen at `angle` radians from its normal.
+double published_axial_noise(double depth, double angle);
+
+/// A camera's two images, and the truth about them.
+struct KinectImage {
+  Frame frame;          ///< As measured.
+  RenderedImage ideal;  ///< The same view without any error.
+};
+
+/// What the camera measures. `camera` is the colour camera (also the depth camera if not
+/// `registered`); `shading` holds the materials of the posed meshes. The same options and seed give
+/// the same image for any number of threads.
+KinectImage simulate_kinect(const RayScene& scene, const Camera& camera,
+                            const Pose& world_from_camera, const Shading& shading,
+                            const KinectOptions& options, std::uint64_t seed, int num_threads = 0);
+
+}  // namespace bpa::sim
