@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include <bpa/core/detect/scene_features.hpp>
+#include <bpa/core/model/object_model.hpp>
+
+namespace bpa {
+
+struct RefinementOptions {
+  int iterations = 6;
+  int max_points = 200;         ///< Model points used.
+  float start_gate_m = 0.030f;  ///< Correspondences further apart do not count, at first
+  float end_gate_m = 0.010f;    ///< and in the end.
+};
+
+struct Refinement {
+  Pose camera_from_object;
+  /// Information (inverse covariance) about the camera's axes, of (translation of the object's
+  /// origin, rotation), from the correspondences used last.
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+  int num_correspondences = 0;
+};
+
+/// Gradient-based alignment (paper section V): Gauss-Newton on the distances from model points to
+/// the observed surface's tangent planes, each model point matched with the pixel it falls on.
+Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
+                       const RefinementOptions& options);
+
+/// One round-two alignment step by BPA (paper section V): up to `count` model points that fall near
+/// the observed surface are matched with it as oriented pairs. The start where fewer than four do.
+Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
+                      float gate, int count, std::uint64_t seed);
+
+}  // namespace bpa

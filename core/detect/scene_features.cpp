@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <numeric>
+
+#include <bpa/core/base/random.hpp>
+#include <bpa/core/cloud/curvature.hpp>
+#include <bpa/core/cloud/neighbor_grid.hpp>
+#include <bpa/core/detect/scene_features.hpp>
+#include <bpa/core/model/model_index.hpp>
+
+namespace bpa {
+namespace {
+
+PointCloud searched_points(const SurfaceMap& map) {
+  PointCloud cloud;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (!map.searched[i] || map.normals[i].squaredNorm() == 0) continue;
+    cloud.points.push_back(map.points[i]);
+    cloud.normals.push_back(map.normals[i]);
+  }
+  return cloud;
+}
+
+std::vector<int> choose(std::size_t available, int wanted, std::uint64_t seed) {
+  std::vector<int> all(available);
+  std::iota(all.begin(), all.end(), 0);
+  RandomStream random(seed, 11);
+  for (std::size_t i = all.size(); i > 1; --i) {
+    std::swap(all[i - 1], all[static_cast<std::size_t>(random.index(static_cast<int>(i)))]);
+  }
+  if (all.size() > static_cast<std::size_t>(wanted)) all.resize(static_cast<std::size_t>(wanted));
+  return all;
+}
+
+}  // namespace
+
+SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
+                             const SceneFeatureOptions& options) {
+  SceneFeatures scene;
+  scene.image = make_check_image(map);
+  scene.planes = std::move(planes);
+  const PointCloud searched = searched_points(map);
+  scene.map = std::move(map);
+  scene.surface = downsample(searched, kFeatureSpacing);
+  scene.coarse = downsample(searched, static_cast<float>(options.coarse_spacing_m));
+  estimate_curvature(scene.surface, kCurvatureRadius, options.num_threads);
+  scene.keypoints = choose(scene.surface.size(), options.max_keypoints, options.seed);
+  scene.fpfh = compute_fpfh(scene.surface, scene.keypoints, kFeatureRadius, options.num_threads);
+  return scene;
+}
+
+}  // namespace bpa

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <bpa/core/cloud/planes.hpp>
+#include <bpa/core/cloud/point_cloud.hpp>
+#include <bpa/core/cloud/surface_map.hpp>
+#include <bpa/core/features/fpfh.hpp>
+#include <bpa/core/score/pose_check.hpp>
+
+namespace bpa {
+
+/// What detection reads of a frame; made once, shared by all models. Camera frame, metres.
+struct SceneFeatures {
+  SurfaceMap map;
+  CheckImage image;
+  std::vector<Plane> planes;   ///< Labelled background.
+  PointCloud surface;          ///< Searched surface, kFeatureSpacing apart, with curvature.
+  std::vector<int> keypoints;  ///< Indices into `surface` where FPFH was computed.
+  std::vector<Fpfh> fpfh;      ///< Of the keypoints.
+  PointCloud coarse;           ///< Searched surface, for point pairs.
+};
+
+struct SceneFeatureOptions {
+  int max_keypoints = 2000;
+  double coarse_spacing_m = 0.010;
+  std::uint64_t seed = 0;
+  int num_threads = 0;
+};
+
+/// `map` with its background labelled.
+SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
+                             const SceneFeatureOptions& options);
+
+}  // namespace bpa

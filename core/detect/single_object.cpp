@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include <bpa/core/detect/single_object.hpp>
+#include <bpa/core/model/model_index.hpp>
+
+namespace bpa {
+namespace {
+
+struct Aligned {
+  Pose pose;
+  float score = 0;
+};
+
+CheckTolerance tight_tolerance() {
+  CheckTolerance tolerance;
+  tolerance.depth = 0.008f;
+  tolerance.free_depth = 0.02f;
+  tolerance.normal_cosine = 0.8f;
+  return tolerance;
+}
+
+float check_score(const SceneFeatures& scene, const ObjectModel& model, const Pose& pose) {
+  return check_pose(scene.image, model.index->check, to_fast(pose), 300, tight_tolerance()).score();
+}
+
+// Round two (paper section V): propose an alignment, accept it if the score has improved.
+Aligned round_two(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
+                  const SingleObjectOptions& options) {
+  Aligned best{start, check_score(scene, model, start)};
+  float gate = 0.030f;
+  for (int step = 0; step < options.bpa_steps; ++step) {
+    const Pose proposed = align_to_surface(scene, model, best.pose, gate, 12,
+                                           options.seed + static_cast<std::uint64_t>(step));
+    const float score = check_score(scene, model, proposed);
+    if (score > best.score) best = {proposed, score};
+    gate *= 0.8f;
+  }
+  RefinementOptions refinement;
+  refinement.iterations = 4;
+  refinement.max_points = 160;
+  refinement.start_gate_m = 0.025f;
+  refinement.end_gate_m = 0.012f;
+  const Pose refined = refine_pose(scene, model, best.pose, refinement).camera_from_object;
+  const float score = check_score(scene, model, refined);
+  if (score > best.score) best = {refined, score};
+  return best;
+}
+
+bool similar(const Pose& a, const Pose& b, const SymmetryGroup& symmetry) {
+  if ((a.translation - b.translation).norm() > 0.05) return false;
+  const PoseError error = pose_error(a, b, symmetry);
+  return error.position < 0.008 && error.angle < 0.1;
+}
+
+// Sorts by falling score and drops whatever is nearly the same as something better.
+template <class Item, class PoseOf>
+void remove_similar(std::vector<Item>& items, const SymmetryGroup& symmetry,
+                    const PoseOf& pose_of) {
+  std::stable_sort(items.begin(), items.end(),
+                   [](const Item& a, const Item& b) { return a.score > b.score; });
+  std::vector<Item> kept;
+  for (Item& item : items) {
+    const bool seen = std::any_of(kept.begin(), kept.end(), [&](const Item& other) {
+      return similar(pose_of(item), pose_of(other), symmetry);
+    });
+    if (!seen) kept.push_back(std::move(item));
+  }
+  items = std::move(kept);
+}
+
+Candidate evaluate(const SceneFeatures& scene, const std::shared_ptr<const ObjectModel>& model,
+                   Refinement refinement) {
+  Candidate candidate;
+  candidate.model = model;
+  candidate.components =
+      score_placement(scene.image, *model, refinement.camera_from_object, &candidate.explained);
+  candidate.refinement = std::move(refinement);
+  candidate.score = placement_score(candidate.components);
+  candidate.probability = placement_probability(candidate.components);
+  return candidate;
+}
+
+}  // namespace
+
+std::vector<Candidate> detect_object(const SceneFeatures& scene,
+                                     const std::shared_ptr<const ObjectModel>& model,
+                                     const SingleObjectOptions& options) {
+  const std::vector<Hypothesis> sampled = sample_hypotheses(scene, *model, options.hypotheses);
+  const std::vector<Hypothesis> clustered =
+      cluster_hypotheses(scene, *model, sampled, options.max_clusters);
+  std::vector<Aligned> aligned;
+  for (const Hypothesis& hypothesis : clustered) {
+    aligned.push_back(round_two(scene, *model, to_pose(hypothesis.camera_from_object), options));
+  }
+  remove_similar(aligned, model->symmetry, [](const Aligned& a) -> const Pose& { return a.pose; });
+  if (aligned.size() > static_cast<std::size_t>(options.max_refined)) {
+    aligned.resize(static_cast<std::size_t>(options.max_refined));
+  }
+  RefinementOptions last;
+  last.iterations = 8;
+  last.max_points = 500;
+  last.start_gate_m = 0.015f;
+  last.end_gate_m = 0.008f;
+  std::vector<Candidate> candidates;
+  for (const Aligned& start : aligned) {
+    Candidate refined = evaluate(scene, model, refine_pose(scene, *model, start.pose, last));
+    if (refined.score >= options.min_score) candidates.push_back(std::move(refined));
+  }
+  remove_similar(candidates, model->symmetry,
+                 [](const Candidate& c) -> const Pose& { return c.pose(); });
+  if (candidates.size() > static_cast<std::size_t>(options.max_placements)) {
+    candidates.resize(static_cast<std::size_t>(options.max_placements));
+  }
+  return candidates;
+}
+
+namespace {
+
+// Depth errors of neighbouring pixels go together, so that the correspondences count for fewer.
+constexpr double kCorrelatedPoints = 12;
+
+Eigen::Matrix<double, 6, 6> pose_covariance(const Refinement& refinement) {
+  Eigen::Matrix<double, 6, 6> information = refinement.information / kCorrelatedPoints;
+  const double position = 1 / (0.02 * 0.02);
+  const double angle = 1 / (0.5 * 0.5);
+  information.diagonal().head<3>().array() += position;
+  information.diagonal().tail<3>().array() += angle;
+  const Eigen::Matrix<double, 6, 6> inverse = information.inverse();
+  return 0.5 * (inverse + inverse.transpose());
+}
+
+// A small rotation by d about the camera's axes has the quaternion (1, d / 2), so that a Gaussian
+// of covariance C in d is a Bingham with the exponent -2 v^T C^-1 v in v = d / 2.
+OrientationUncertainty orientation_uncertainty(const Pose& pose,
+                                               const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  OrientationUncertainty out;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d axis = solver.eigenvectors().col(k);
+    const Eigen::Quaterniond turned =
+        Eigen::Quaterniond(0, axis.x(), axis.y(), axis.z()) * pose.rotation;
+    out.axes.col(k) = to_wxyz(turned);
+    out.concentrations[k] = -2 / solver.eigenvalues()[k];
+  }
+  return out;
+}
+
+}  // namespace
+
+Placement to_placement(const Candidate& candidate) {
+  Placement out;
+  out.model_number = candidate.model->number;
+  out.model = candidate.model->name;
+  out.camera_from_object = candidate.pose();
+  out.covariance = pose_covariance(candidate.refinement);
+  out.orientation =
+      orientation_uncertainty(out.camera_from_object, out.covariance.bottomRightCorner<3, 3>());
+  out.score = candidate.score;
+  out.probability = candidate.probability;
+  const ScoreComponents& c = candidate.components;
+  out.visible_fraction = c.visibility;
+  out.components = {{"range", c.range},
+                    {"normal", c.normal},
+                    {"visibility", c.visibility},
+                    {"edge", c.edge},
+                    {"edge_visibility", c.edge_visibility},
+                    {"free_space", c.free_space},
+                    {"agreeing", c.agreeing},
+                    {"explained_pixels", c.explained_pixels},
+                    {"expected_pixels", c.expected_pixels}};
+  return out;
+}
+
+}  // namespace bpa

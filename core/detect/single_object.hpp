@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <bpa/core/detect/hypotheses.hpp>
+#include <bpa/core/detect/placement.hpp>
+#include <bpa/core/detect/refinement.hpp>
+#include <bpa/core/score/placement_score.hpp>
+
+namespace bpa {
+
+/// One model at one pose, scored, before it is known what else is in the scene.
+struct Candidate {
+  std::shared_ptr<const ObjectModel> model;
+  Refinement refinement;  ///< The pose and what the last alignment knew of it.
+  ScoreComponents components;
+  double score = 0;                      ///< placement_score of the components: log odds.
+  double probability = 0;                ///< placement_probability of the components.
+  std::vector<std::uint32_t> explained;  ///< Sorted pixels of the reduced image on the model.
+
+  const Pose& pose() const { return refinement.camera_from_object; }
+};
+
+struct SingleObjectOptions {
+  HypothesisOptions hypotheses;
+  int max_clusters = 100;       ///< Pose clusters that round two looks at.
+  int max_refined = 30;         ///< Of those, how many are aligned to the end.
+  int bpa_steps = 3;            ///< Round-two alignments by BPA.
+  bool use_orientation = true;  ///< False: align by positions only (ICP, the paper's ablation).
+  double min_score = -3;        ///< Log odds below which a placement is dropped.
+  int max_placements = 50;      ///< Paper section VI.
+  std::uint64_t seed = 0;
+};
+
+/// The best placements of one model in the scene (paper section V), best first. Deterministic.
+std::vector<Candidate> detect_object(const SceneFeatures& scene,
+                                     const std::shared_ptr<const ObjectModel>& model,
+                                     const SingleObjectOptions& options);
+
+/// The candidate as it is reported: with covariance, orientation uncertainty and named components.
+Placement to_placement(const Candidate& candidate);
+
+}  // namespace bpa

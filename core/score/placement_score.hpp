@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <bpa/core/geometry/pose.hpp>
+#include <bpa/core/model/object_model.hpp>
+#include <bpa/core/score/pose_check.hpp>
+
+namespace bpa {
+
+/// The score components of a placement (paper section V, round two). Log-likelihoods are truncated
+/// averages in [-1, 0], 0 where observation and model agree exactly.
+struct ScoreComponents {
+  double range = -1;            ///< Range differences, weighted by visibility probability.
+  double normal = -1;           ///< Normal differences, weighted likewise.
+  double visibility = 0;        ///< Share of the facing model points that is not hidden, [0, 1].
+  double edge = -1;             ///< Model range edges against the observed surface beyond them.
+  double edge_visibility = 0;   ///< Share of the model's edge points that is not hidden.
+  double free_space = 0;        ///< Share of the visible points more than 2 cm in front.
+  double agreeing = 0;          ///< Share of the visible points on the observed surface.
+  double explained_pixels = 0;  ///< Observed pixels (of the reduced image) on the model surface.
+  double expected_pixels = 0;   ///< Pixels the model would cover were nothing in front of it.
+};
+
+/// Scores `model` at `pose`. `explained`, if given, receives the sorted indices of the observed
+/// pixels that lie on the model.
+ScoreComponents score_placement(const CheckImage& image, const ObjectModel& model, const Pose& pose,
+                                std::vector<std::uint32_t>* explained = nullptr);
+
+/// The probability that a placement with these components is right (within 2.5 cm and π/16): one
+/// logistic layer over the components.
+double placement_probability(const ScoreComponents& components);
+
+/// The weighted sum under the logistic.
+double placement_score(const ScoreComponents& components);
+
+}  // namespace bpa
