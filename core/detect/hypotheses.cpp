@@ -5,6 +5,7 @@
 
 #include <bpa/core/align/align.hpp>
 #include <bpa/core/base/random.hpp>
+#include <bpa/core/cloud/neighbor_grid.hpp>
 #include <bpa/core/detect/hypotheses.hpp>
 #include <bpa/core/model/model_index.hpp>
 

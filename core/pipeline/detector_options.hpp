@@ -12,14 +12,58 @@ namespace bpa {
 /// objects; config/detector.yaml lists them all.
 struct DetectorOptions {
   double max_range_m = 2.5;
+  double normal_radius_m = 0.010;
+  bool label_planes = true;
+  double plane_min_extent_m = 0.35;
+  int max_keypoints = 2000;
+  int matches_per_keypoint = 2;
+  int draws_per_match = 3;
+  int pair_draws = 12000;
+  int max_matches_per_pair = 12;
+  int max_clusters = 100;
+  int max_refined = 30;
+  bool use_orientation = true;
   double min_probability = 0.5;
+  double object_penalty = 0.5;
+  double explained_weight = 4;
+  int annealing_steps = 20000;
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
     visit("max_range_m", max_range_m,
-          FieldRule{0.2, 20, "Surface further away than this is ignored."});
+          FieldRule{0.2, 20, "Surface further away than this is ignored, metres."});
+    visit("normal_radius_m", normal_radius_m,
+          FieldRule{0.003, 0.05, "Radius of the window a surface normal is fitted in, metres."});
+    visit("label_planes", label_planes,
+          FieldRule{0, 1, "Label large planes (table, wall) as background."});
+    visit("plane_min_extent_m", plane_min_extent_m,
+          FieldRule{0.1, 10, "Smaller planes may be faces of objects and are kept, metres."});
+    visit("max_keypoints", max_keypoints,
+          FieldRule{10, 100000, "Scene points whose features are matched with the models."});
+    visit("matches_per_keypoint", matches_per_keypoint,
+          FieldRule{1, 20, "Nearest model features tried for each of them."});
+    visit("draws_per_match", draws_per_match,
+          FieldRule{1, 50, "Poses drawn by BPA for each correspondence."});
+    visit("pair_draws", pair_draws,
+          FieldRule{0, 1000000, "Oriented point pairs of the scene looked up in each model."});
+    visit("max_matches_per_pair", max_matches_per_pair,
+          FieldRule{1, 1000, "Model pairs tried for each scene pair."});
+    visit("max_clusters", max_clusters,
+          FieldRule{1, 10000, "Pose clusters of each model that go on to round two."});
+    visit("max_refined", max_refined,
+          FieldRule{1, 10000, "Placements of each model that are aligned to the end."});
+    visit("use_orientation", use_orientation,
+          FieldRule{0, 1, "Align with orientations (BPA); false aligns by positions only (ICP)."});
     visit("min_probability", min_probability,
-          FieldRule{0, 1, "Placements less probable than this are not reported."});
+          FieldRule{0, 1,
+                    "Placements less probable than this are not part of the best "
+                    "interpretation."});
+    visit("object_penalty", object_penalty,
+          FieldRule{0, 100, "Log odds that each further object of an interpretation costs."});
+    visit("explained_weight", explained_weight,
+          FieldRule{0, 1000, "Weight of the ratio of explained to observed surface."});
+    visit("annealing_steps", annealing_steps,
+          FieldRule{0, 10000000, "Moves of the search for interpretations."});
   }
 };
 

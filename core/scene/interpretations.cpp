@@ -22,26 +22,26 @@ class SubsetScore {
       if (!c.explained.empty()) last_pixel = std::max(last_pixel, c.explained.back());
     }
     owners_.assign(last_pixel + 1, 0);
-    chosen_.assign(candidates.size(), 0);
+    chosen_.assign(candidates.size(), false);
     find_conflicts();
   }
 
-  bool chosen(std::size_t i) const { return chosen_[i] != 0; }
-  const std::vector<std::uint8_t>& subset() const { return chosen_; }
+  bool chosen(std::size_t i) const { return chosen_[i]; }
+  const std::vector<bool>& subset() const { return chosen_; }
 
   /// True when some chosen placement lies on the same pixels.
   bool blocked(std::size_t i) const {
     return std::any_of(conflicts_[i].begin(), conflicts_[i].end(),
-                       [&](std::size_t j) { return chosen_[j] != 0; });
+                       [&](std::size_t j) { return bool(chosen_[j]); });
   }
   const std::vector<std::size_t>& conflicts(std::size_t i) const { return conflicts_[i]; }
 
   void add(std::size_t i) {
-    chosen_[i] = 1;
+    chosen_[i] = true;
     for (std::uint32_t pixel : candidates_[i].explained) explained_ += ++owners_[pixel] == 1;
   }
   void remove(std::size_t i) {
-    chosen_[i] = 0;
+    chosen_[i] = false;
     for (std::uint32_t pixel : candidates_[i].explained) explained_ -= --owners_[pixel] == 0;
   }
 
@@ -95,7 +95,7 @@ class SubsetScore {
   const InterpretationOptions& options_;
   int observed_;
   int explained_ = 0;
-  std::vector<std::uint8_t> chosen_;
+  std::vector<bool> chosen_;
   std::vector<std::uint16_t> owners_;
   std::vector<std::vector<std::size_t>> conflicts_;
 };
@@ -105,7 +105,7 @@ class BestSubsets {
  public:
   explicit BestSubsets(int capacity) : capacity_(static_cast<std::size_t>(capacity)) {}
 
-  void offer(const std::vector<std::uint8_t>& subset, double score) {
+  void offer(const std::vector<bool>& subset, double score) {
     if (best_.size() >= capacity_ && score <= best_.rbegin()->negated_score * -1) return;
     if (!known_.insert(subset).second) return;
     best_.insert({-score, subset});
@@ -118,7 +118,7 @@ class BestSubsets {
 
   struct Entry {
     double negated_score;
-    std::vector<std::uint8_t> subset;
+    std::vector<bool> subset;
     bool operator<(const Entry& other) const {
       return negated_score != other.negated_score ? negated_score < other.negated_score
                                                   : subset < other.subset;
@@ -129,7 +129,7 @@ class BestSubsets {
  private:
   std::size_t capacity_;
   std::set<Entry> best_;
-  std::set<std::vector<std::uint8_t>> known_;
+  std::set<std::vector<bool>> known_;
 };
 
 // Adds what improves most, again and again.

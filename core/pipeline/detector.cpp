@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include <bpa/core/base/parallel.hpp>
+#include <bpa/core/base/stopwatch.hpp>
+#include <bpa/core/detect/single_object.hpp>
+#include <bpa/core/pipeline/detector.hpp>
+#include <bpa/core/scene/interpretations.hpp>
+
+namespace bpa {
+namespace {
+
+using Models = std::vector<std::shared_ptr<const ObjectModel>>;
+
+Status check_request(const DetectRequest& request) {
+  if (request.top_k < 1 || request.top_k > 100) {
+    return invalid_argument("top_k is " + std::to_string(request.top_k) +
+                            "; it must be between 1 and 100");
+  }
+  if (!(request.budget_ms >= 0)) {
+    return invalid_argument("budget_ms is " + std::to_string(request.budget_ms) +
+                            "; it must be 0 (no limit) or more");
+  }
+  return {};
+}
+
+Result<Models> chosen_models(const ModelLibrary& library, const DetectRequest& request) {
+  if (library.empty()) {
+    return invalid_argument("the model library is empty; add models with 'bpa model'");
+  }
+  if (request.models.empty()) return library.models();
+  Models chosen;
+  for (const std::string& name : request.models) {
+    auto model = library.find(name);
+    if (!model) {
+      return Status(StatusCode::not_found, "the library holds no model named \"" + name + "\"");
+    }
+    chosen.push_back(std::move(model));
+  }
+  return chosen;
+}
+
+SurfaceMapOptions surface_options(const DetectorOptions& options, int num_threads) {
+  SurfaceMapOptions out;
+  out.normal_radius_m = options.normal_radius_m;
+  out.max_range_m = options.max_range_m;
+  out.num_threads = num_threads;
+  return out;
+}
+
+SingleObjectOptions object_options(const DetectorOptions& options, std::uint64_t seed) {
+  SingleObjectOptions out;
+  out.hypotheses.matches_per_keypoint = options.matches_per_keypoint;
+  out.hypotheses.draws_per_match = options.draws_per_match;
+  out.hypotheses.pair_draws = options.pair_draws;
+  out.hypotheses.max_matches_per_pair = options.max_matches_per_pair;
+  out.hypotheses.seed = seed;
+  out.max_clusters = options.max_clusters;
+  out.max_refined = options.max_refined;
+  out.use_orientation = options.use_orientation;
+  out.seed = seed;
+  return out;
+}
+
+InterpretationOptions interpretation_options(const DetectorOptions& options, std::uint64_t seed) {
+  InterpretationOptions out;
+  out.object_penalty = options.object_penalty;
+  out.explained_weight = options.explained_weight;
+  out.annealing_steps = options.annealing_steps;
+  out.seed = seed;
+  return out;
+}
+
+}  // namespace
+
+Detector::Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions options)
+    : library_(std::move(library)), options_(std::move(options)) {}
+
+Result<SceneInterpretations> Detector::detect(const Frame& frame,
+                                              const DetectRequest& request) const {
+  if (Status status = validate(frame); !status.ok()) return status;
+  if (Status status = check_request(request); !status.ok()) return status;
+  const Result<Models> models = chosen_models(*library_, request);
+  if (!models.ok()) return models.status();
+
+  Stopwatch total;
+  Stopwatch stage;
+  SceneInterpretations out;
+  out.stamp_ns = frame.stamp_ns;
+  out.frame_id = frame.frame_id;
+  const auto finish_stage = [&](const char* name) {
+    out.timings.push_back({name, stage.lap_milliseconds()});
+  };
+
+  SurfaceMap map = surface_map(frame, surface_options(options_, request.num_threads));
+  finish_stage("surface");
+
+  std::vector<Plane> planes;
+  if (options_.label_planes && frame.background.empty()) {
+    PlaneOptions plane_options;
+    plane_options.min_extent_m = options_.plane_min_extent_m;
+    plane_options.seed = request.seed;
+    planes = label_background_planes(map, plane_options);
+  }
+  finish_stage("planes");
+
+  SceneFeatureOptions feature_options;
+  feature_options.max_keypoints = options_.max_keypoints;
+  feature_options.seed = request.seed;
+  feature_options.num_threads = request.num_threads;
+  const SceneFeatures scene = scene_features(std::move(map), std::move(planes), feature_options);
+  finish_stage("features");
+
+  // The budget is looked at between models: whoever is not begun in time is left out, and said so.
+  const SingleObjectOptions single = object_options(options_, request.seed);
+  std::vector<std::vector<Candidate>> found(models->size());
+  std::vector<std::uint8_t> late(models->size(), 0);
+  parallel_for(static_cast<int>(models->size()), request.num_threads, [&](int m) {
+    const auto i = static_cast<std::size_t>(m);
+    late[i] = request.budget_ms > 0 && total.milliseconds() > request.budget_ms;
+    if (!late[i]) found[i] = detect_object(scene, (*models)[i], single);
+  });
+  out.budget_exhausted = std::find(late.begin(), late.end(), 1) != late.end();
+  finish_stage("objects");
+
+  std::vector<Candidate> candidates;
+  for (auto& of_model : found) {
+    std::move(of_model.begin(), of_model.end(), std::back_inserter(candidates));
+  }
+  const auto searched = static_cast<int>(
+      std::count(scene.map.searched.begin(), scene.map.searched.end(), std::uint8_t{1}));
+  out.interpretations =
+      interpret(candidates, searched, interpretation_options(options_, request.seed));
+  if (out.interpretations.size() > static_cast<std::size_t>(request.top_k)) {
+    out.interpretations.resize(static_cast<std::size_t>(request.top_k));
+  }
+  finish_stage("interpretations");
+  out.total_milliseconds = total.milliseconds();
+  return out;
+}
+
+}  // namespace bpa
