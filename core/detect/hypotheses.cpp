@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include <bpa/core/align/align.hpp>
 #include <bpa/core/base/random.hpp>
@@ -118,12 +119,26 @@ class Sampler {
     }
   }
 
+  // Looks again at everything that was kept, with more points.
   std::vector<Hypothesis> take() {
-    const auto keep = static_cast<std::size_t>(options_.max_kept);
-    std::stable_sort(kept_.begin(), kept_.end(),
+    std::vector<std::pair<std::uint64_t, const PoseCell*>> cells;
+    for (const auto& [key, cell] : cells_) cells.push_back({key, &cell});
+    std::sort(cells.begin(), cells.end());
+    std::vector<Hypothesis> kept;
+    for (const auto& [key, cell] : cells) {
+      for (int k = 0; k < cell->count; ++k) {
+        Hypothesis hypothesis = cell->members[k];
+        hypothesis.score = check_pose(scene_.image, model_.index->check,
+                                      hypothesis.camera_from_object, 256, tolerance_)
+                               .score();
+        kept.push_back(hypothesis);
+      }
+    }
+    std::stable_sort(kept.begin(), kept.end(),
                      [](const auto& a, const auto& b) { return a.score > b.score; });
-    if (kept_.size() > keep) kept_.resize(keep);
-    return std::move(kept_);
+    const auto keep = static_cast<std::size_t>(options_.max_kept);
+    if (kept.size() > keep) kept.resize(keep);
+    return kept;
   }
 
  private:
@@ -172,16 +187,54 @@ class Sampler {
     if (5 * check.free_space > check.seen || check.seen < 6) return;
     hypothesis.score = check.score();
     if (hypothesis.score < static_cast<float>(options_.min_check_score)) return;
-    kept_.push_back(hypothesis);
-    if (kept_.size() >= 8 * static_cast<std::size_t>(options_.max_kept)) kept_ = take();
+    keep(hypothesis);
   }
+
+  // The best few of each pose cell, so that an easy object does not crowd out a hard one.
+  void keep(const Hypothesis& hypothesis) {
+    PoseCell& cell = cells_[pose_cell(hypothesis.camera_from_object)];
+    if (cell.count < kPerCell) {
+      cell.members[cell.count++] = hypothesis;
+      return;
+    }
+    Hypothesis* worst = std::min_element(
+        cell.members, cell.members + kPerCell,
+        [](const Hypothesis& a, const Hypothesis& b) { return a.score < b.score; });
+    if (hypothesis.score > worst->score) *worst = hypothesis;
+  }
+
+  // Cells of 25 mm and about 25 degrees; of an object that may be turned about an axis, the turn
+  // does not count.
+  std::uint64_t pose_cell(const FastPose& pose) const {
+    const Eigen::Vector3i place = (pose.translation * 40).array().floor().cast<int>() + 512;
+    std::uint64_t key = static_cast<std::uint64_t>(place.x() & 1023) << 20 |
+                        static_cast<std::uint64_t>(place.y() & 1023) << 10 |
+                        static_cast<std::uint64_t>(place.z() & 1023);
+    const auto add_direction = [&key](const Eigen::Vector3f& direction) {
+      const Eigen::Vector3i cell = ((direction.array() + 1) * 2.5f).floor().cast<int>();
+      key = key * 216 + static_cast<std::uint64_t>(cell.x() + 6 * cell.y() + 36 * cell.z());
+    };
+    if (model_.symmetry.continuous.empty()) {
+      add_direction(pose.rotation.col(0));
+      add_direction(pose.rotation.col(1));
+    } else {
+      add_direction(pose.rotation * model_.symmetry.continuous.front().axis.cast<float>());
+    }
+    return key;
+  }
+
+  static constexpr int kPerCell = 3;
+  struct PoseCell {
+    int count = 0;
+    Hypothesis members[kPerCell];
+  };
 
   const SceneFeatures& scene_;
   const ObjectModel& model_;
   const HypothesisOptions& options_;
   CheckTolerance tolerance_;
   RandomStream random_;
-  std::vector<Hypothesis> kept_;
+  std::unordered_map<std::uint64_t, PoseCell> cells_;
 };
 
 struct Cluster {

@@ -27,7 +27,7 @@ struct HypothesisOptions {
   int pair_draws = 12000;         ///< Scene point pairs looked up.
   int max_matches_per_pair = 12;  ///< Model pairs tried for each of them.
   int check_points = 64;          ///< Model points that a pose is checked with.
-  int max_kept = 500;             ///< Best hypotheses that go on.
+  int max_kept = 1500;            ///< Best hypotheses that go on.
   double min_check_score = 0.25;
   std::uint64_t seed = 0;
 };

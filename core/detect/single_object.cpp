@@ -13,7 +13,7 @@ namespace {
 
 struct Aligned {
   Pose pose;
-  float score = 0;
+  double score = 0;
 };
 
 CheckTolerance tight_tolerance() {
@@ -36,7 +36,7 @@ Aligned round_two(const SceneFeatures& scene, const ObjectModel& model, const Po
   for (int step = 0; step < options.bpa_steps; ++step) {
     const Pose proposed = align_to_surface(scene, model, best.pose, gate, 12,
                                            options.seed + static_cast<std::uint64_t>(step));
-    const float score = check_score(scene, model, proposed);
+    const double score = check_score(scene, model, proposed);
     if (score > best.score) best = {proposed, score};
     gate *= 0.8f;
   }
@@ -46,8 +46,8 @@ Aligned round_two(const SceneFeatures& scene, const ObjectModel& model, const Po
   refinement.start_gate_m = 0.025f;
   refinement.end_gate_m = 0.012f;
   const Pose refined = refine_pose(scene, model, best.pose, refinement).camera_from_object;
-  const float score = check_score(scene, model, refined);
-  if (score > best.score) best = {refined, score};
+  if (check_score(scene, model, refined) > best.score) best.pose = refined;
+  best.score = placement_score(score_placement(scene.image, model, best.pose));
   return best;
 }
 
@@ -169,6 +169,8 @@ Placement to_placement(const Candidate& candidate) {
                     {"visibility", c.visibility},
                     {"edge", c.edge},
                     {"edge_visibility", c.edge_visibility},
+                    {"edge_support", c.edge_support},
+                    {"shape", c.shape},
                     {"free_space", c.free_space},
                     {"agreeing", c.agreeing},
                     {"explained_pixels", c.explained_pixels},

@@ -27,8 +27,8 @@ struct Candidate {
 
 struct SingleObjectOptions {
   HypothesisOptions hypotheses;
-  int max_clusters = 100;       ///< Pose clusters that round two looks at.
-  int max_refined = 30;         ///< Of those, how many are aligned to the end.
+  int max_clusters = 200;       ///< Pose clusters that round two looks at.
+  int max_refined = 40;         ///< Of those, how many are aligned to the end.
   int bpa_steps = 3;            ///< Round-two alignments by BPA.
   bool use_orientation = true;  ///< False: align by positions only (ICP, the paper's ablation).
   double min_score = -3;        ///< Log odds below which a placement is dropped.

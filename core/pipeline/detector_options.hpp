@@ -18,14 +18,14 @@ struct DetectorOptions {
   int max_keypoints = 2000;
   int matches_per_keypoint = 2;
   int draws_per_match = 3;
-  int pair_draws = 12000;
+  int pair_draws = 24000;
   int max_matches_per_pair = 12;
-  int max_clusters = 100;
-  int max_refined = 30;
+  int max_clusters = 200;
+  int max_refined = 40;
   bool use_orientation = true;
   double min_probability = 0.5;
-  double object_penalty = 0.5;
-  double explained_weight = 4;
+  double object_penalty = 0.2;
+  double explained_weight = 2;
   int annealing_steps = 20000;
 
   template <class Visitor>

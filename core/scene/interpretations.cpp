@@ -10,94 +10,106 @@
 namespace bpa {
 namespace {
 
+// What two placements have in common.
+struct Overlap {
+  std::size_t other;
+  int common;        // pixels that both explain
+  double lost;       // score that the pair loses by sharing them
+  bool conflicting;  // too many to stand together
+};
+
+// Single scores weighted by the observed points explained (paper section VI, component 1), less the
+// penalty (component 3). A placement that is more likely wrong than right costs.
+double single_worth(const Candidate& c, const InterpretationOptions& options) {
+  const double quality = 2 * c.probability - 1;
+  return quality * static_cast<double>(c.explained.size()) / options.pixels_per_unit -
+         options.object_penalty;
+}
+
+// Finds the overlaps through an index from pixels to the candidates that explain them.
+std::vector<std::vector<Overlap>> find_overlaps(const std::vector<Candidate>& candidates,
+                                                const InterpretationOptions& options) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> by_pixel;
+  for (std::uint32_t i = 0; i < candidates.size(); ++i) {
+    for (std::uint32_t pixel : candidates[i].explained) by_pixel.push_back({pixel, i});
+  }
+  std::sort(by_pixel.begin(), by_pixel.end());
+  const std::size_t count = candidates.size();
+  std::vector<int> common(count * count, 0);
+  for (std::size_t first = 0; first < by_pixel.size();) {
+    std::size_t last = first;
+    while (last < by_pixel.size() && by_pixel[last].first == by_pixel[first].first) ++last;
+    for (std::size_t a = first; a < last; ++a) {
+      for (std::size_t b = first; b < last; ++b) {
+        ++common[by_pixel[a].second * count + by_pixel[b].second];
+      }
+    }
+    first = last;
+  }
+  std::vector<std::vector<Overlap>> overlaps(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < count; ++j) {
+      const int shared = common[i * count + j];
+      if (i == j || shared == 0) continue;
+      const double part_of_i = shared / static_cast<double>(candidates[i].explained.size());
+      const double part_of_j = shared / static_cast<double>(candidates[j].explained.size());
+      // A shared pixel counts half for each of the two.
+      const double lost = 0.5 * (part_of_i * std::max(0.0, single_worth(candidates[i], options)) +
+                                 part_of_j * std::max(0.0, single_worth(candidates[j], options)));
+      overlaps[i].push_back({j, shared, lost, std::max(part_of_i, part_of_j) > options.max_shared});
+    }
+  }
+  return overlaps;
+}
+
 // The score of a subset, kept up to date as placements come and go: a move costs as much as the
-// placement has pixels.
+// placement has overlaps.
 class SubsetScore {
  public:
   SubsetScore(const std::vector<Candidate>& candidates, int observed_pixels,
               const InterpretationOptions& options)
-      : candidates_(candidates), options_(options), observed_(std::max(1, observed_pixels)) {
-    std::uint32_t last_pixel = 0;
-    for (const Candidate& c : candidates) {
-      if (!c.explained.empty()) last_pixel = std::max(last_pixel, c.explained.back());
-    }
-    owners_.assign(last_pixel + 1, 0);
-    chosen_.assign(candidates.size(), false);
-    find_conflicts();
-  }
+      : candidates_(candidates),
+        options_(options),
+        per_pixel_(options.explained_weight / std::max(1, observed_pixels)),
+        overlaps_(find_overlaps(candidates, options)),
+        chosen_(candidates.size(), false) {}
 
   bool chosen(std::size_t i) const { return chosen_[i]; }
   const std::vector<bool>& subset() const { return chosen_; }
+  double total() const { return total_; }
+  const std::vector<Overlap>& overlaps(std::size_t i) const { return overlaps_[i]; }
 
   /// True when some chosen placement lies on the same pixels.
   bool blocked(std::size_t i) const {
-    return std::any_of(conflicts_[i].begin(), conflicts_[i].end(),
-                       [&](std::size_t j) { return bool(chosen_[j]); });
+    return std::any_of(overlaps_[i].begin(), overlaps_[i].end(), [&](const Overlap& overlap) {
+      return overlap.conflicting && chosen_[overlap.other];
+    });
   }
-  const std::vector<std::size_t>& conflicts(std::size_t i) const { return conflicts_[i]; }
-
-  void add(std::size_t i) {
-    chosen_[i] = true;
-    for (std::uint32_t pixel : candidates_[i].explained) explained_ += ++owners_[pixel] == 1;
-  }
-  void remove(std::size_t i) {
-    chosen_[i] = false;
-    for (std::uint32_t pixel : candidates_[i].explained) explained_ -= --owners_[pixel] == 0;
-  }
-
-  double total() const {
-    double sum = options_.explained_weight * explained_ / observed_;
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-      if (!chosen_[i]) continue;
-      sum += share(i) * std::min(8.0, candidates_[i].score) - options_.object_penalty;
+  /// What adding i would change the score by, or has.
+  double worth(std::size_t i) const {
+    const Candidate& c = candidates_[i];
+    double sum = single_worth(c, options_) + per_pixel_ * static_cast<double>(c.explained.size());
+    for (const Overlap& overlap : overlaps_[i]) {
+      if (chosen_[overlap.other]) sum -= overlap.lost + per_pixel_ * overlap.common;
     }
     return sum;
   }
+  void add(std::size_t i) {
+    total_ += worth(i);
+    chosen_[i] = true;
+  }
+  void remove(std::size_t i) {
+    chosen_[i] = false;
+    total_ -= worth(i);
+  }
 
  private:
-  // Pixels explained by k placements count 1 / k for each of them.
-  double share(std::size_t i) const {
-    const auto& pixels = candidates_[i].explained;
-    if (pixels.empty()) return 0;
-    double own = 0;
-    for (std::uint32_t pixel : pixels) own += 1.0 / owners_[pixel];
-    const double part = own / static_cast<double>(pixels.size());
-    return candidates_[i].score > 0 ? part : 1;
-  }
-
-  void find_conflicts() {
-    conflicts_.resize(candidates_.size());
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        if (!too_much_shared(candidates_[i], candidates_[j])) continue;
-        conflicts_[i].push_back(j);
-        conflicts_[j].push_back(i);
-      }
-    }
-  }
-
-  bool too_much_shared(const Candidate& a, const Candidate& b) const {
-    std::size_t common = 0;
-    auto x = a.explained.begin();
-    auto y = b.explained.begin();
-    while (x != a.explained.end() && y != b.explained.end()) {
-      if (*x == *y) ++common;
-      const bool advance_x = *x <= *y;
-      const bool advance_y = *y <= *x;
-      x += advance_x;
-      y += advance_y;
-    }
-    const auto smaller = std::min(a.explained.size(), b.explained.size());
-    return static_cast<double>(common) > options_.max_shared * static_cast<double>(smaller);
-  }
-
   const std::vector<Candidate>& candidates_;
   const InterpretationOptions& options_;
-  int observed_;
-  int explained_ = 0;
+  double per_pixel_;
+  std::vector<std::vector<Overlap>> overlaps_;
   std::vector<bool> chosen_;
-  std::vector<std::uint16_t> owners_;
-  std::vector<std::vector<std::size_t>> conflicts_;
+  double total_ = 0;
 };
 
 // The best distinct subsets met so far.
@@ -134,22 +146,18 @@ class BestSubsets {
 
 // Adds what improves most, again and again.
 void greedy(SubsetScore& state, const std::vector<Candidate>& candidates, BestSubsets& best) {
-  double current = state.total();
-  best.offer(state.subset(), current);
+  best.offer(state.subset(), state.total());
   for (;;) {
     double gain = 0;
     std::size_t pick = candidates.size();
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       if (state.chosen(i) || state.blocked(i)) continue;
-      state.add(i);
-      const double improved = state.total() - current;
-      state.remove(i);
+      const double improved = state.worth(i);
       if (improved > gain) gain = improved, pick = i;
     }
     if (pick == candidates.size()) return;
     state.add(pick);
-    current += gain;
-    best.offer(state.subset(), current);
+    best.offer(state.subset(), state.total());
   }
 }
 
@@ -167,10 +175,10 @@ void anneal(SubsetScore& state, std::size_t count, const InterpretationOptions& 
     if (was_chosen) {
       state.remove(i);
     } else {
-      for (std::size_t j : state.conflicts(i)) {
-        if (!state.chosen(j)) continue;
-        state.remove(j);
-        removed.push_back(j);
+      for (const Overlap& overlap : state.overlaps(i)) {
+        if (!overlap.conflicting || !state.chosen(overlap.other)) continue;
+        state.remove(overlap.other);
+        removed.push_back(overlap.other);
       }
       state.add(i);
     }

@@ -11,8 +11,9 @@
 namespace bpa {
 
 struct InterpretationOptions {
-  double object_penalty = 0.5;   ///< Log odds that each further object costs.
-  double explained_weight = 4;   ///< Of the ratio of explained to observed pixels.
+  double pixels_per_unit = 300;  ///< Explained pixels of a certain placement worth one unit.
+  double object_penalty = 0.2;   ///< Units that each further object costs.
+  double explained_weight = 2;   ///< Of the ratio of explained to observed pixels.
   double max_shared = 0.3;       ///< Two placements may share this part of the smaller one.
   double min_probability = 0.5;  ///< Placements below are never part of the best.
   int annealing_steps = 20000;

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -12,11 +13,12 @@ constexpr float kVisibilitySigma = 0.01f;  // paper section V, footnote: 1 cm
 constexpr float kNormalSigma = 0.35f;      // radians
 constexpr float kTruncation = 4.5f;        // three standard deviations, squared and halved
 constexpr float kModelSigma = 0.0025f;     // metres: what models and their poses are off by
-constexpr float kOnSurface = 0.008f;       // metres, plus noise
+constexpr float kOnSurface = 0.006f;       // metres, plus noise
 
 struct Sums {
   double weight = 0, range = 0, normal = 0, free = 0, agreeing = 0;
   int facing = 0, visible = 0;
+  Eigen::Matrix3f normals = Eigen::Matrix3f::Zero();  // of agreeing points, squared
 };
 
 float visibility_probability(float difference) {
@@ -66,6 +68,7 @@ void add_point(const CheckPixel& pixel, const Eigen::Vector3f& point, const Eige
   sums.free += weight * (difference > 0.02f);
   const bool on_surface = std::abs(difference) < (kOnSurface + 2 * noise) / slant && cosine > 0.6f;
   sums.agreeing += weight * on_surface;
+  if (on_surface) sums.normals += normal * normal.transpose();
 }
 
 // Beyond a range edge of the model the observed surface must not simply go on: it may be further
@@ -76,8 +79,7 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const FastPo
   const auto& views = model.index->views;
   const ModelView& view = views[static_cast<std::size_t>(nearest_view(views, to_camera))];
   const std::size_t step = std::max<std::size_t>(1, view.edges.size() / 200);
-  int visible = 0, total = 0;
-  double sum = 0;
+  int visible = 0, total = 0, ends = 0, goes_on = 0;
   for (std::size_t k = 0; k < view.edges.size(); k += step) {
     const std::uint32_t i = view.edges[k];
     const Eigen::Vector3f point = pose.rotation * model.surface.points[i] + pose.translation;
@@ -96,10 +98,11 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const FastPo
     // Where the model's tangent plane would be if the surface went on.
     const bool continues = std::abs(beyond.depth - point.z()) < 0.012f + 2 * depth_noise(point.z());
     const bool turns = normal_of(beyond).dot(normal) < 0.8f;
-    if (continues && !turns) sum -= 1;
+    (continues && !turns ? goes_on : ends) += 1;
   }
   out.edge_visibility = total > 0 ? static_cast<double>(visible) / total : 0;
-  out.edge = visible > 0 ? sum / visible : -1;
+  out.edge_support = total > 0 ? static_cast<double>(ends) / total : 0;
+  out.edge = visible > 0 ? -static_cast<double>(goes_on) / visible : -1;
 }
 
 }  // namespace
@@ -142,6 +145,9 @@ ScoreComponents score_placement(const CheckImage& image, const ObjectModel& mode
     out.normal = sums.normal / (kTruncation * sums.weight);
     out.free_space = sums.free / sums.weight;
     out.agreeing = sums.agreeing / sums.weight;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver(sums.normals);
+    const float trace = sums.normals.trace();
+    out.shape = trace > 0 ? static_cast<double>(solver.eigenvalues()[1] / trace) : 0;
   }
   out.visibility = sums.facing > 0 ? static_cast<double>(sums.visible) / sums.facing : 0;
   score_edges(image, model, fast, out);
@@ -150,11 +156,11 @@ ScoreComponents score_placement(const CheckImage& image, const ObjectModel& mode
 }
 
 double placement_score(const ScoreComponents& c) {
-  // Little visible surface carries little evidence.
-  const double evidence =
-      std::min(1.0, c.explained_pixels / 150) + std::min(1.0, c.explained_pixels / 600);
-  return -9.5 + 9 * c.agreeing + 4 * c.range + 4 * c.normal - 8 * c.free_space + 5 * c.edge +
-         3 * std::min(1.0, c.visibility / 0.6) + 1.5 * evidence;
+  // Little visible surface carries little evidence, and one flat face less.
+  const double evidence = std::clamp(std::log(std::max(1.0, c.explained_pixels) / 300), -2.0, 1.5);
+  return -11.5 + 7 * c.agreeing + 10 * c.range + 6 * c.normal - 6 * c.free_space + 20 * c.edge +
+         3 * std::min(1.0, c.edge_support / 0.5) + 2 * std::min(1.0, c.visibility / 0.6) +
+         1.5 * evidence + 1.5 * std::min(1.0, c.shape / 0.05);
 }
 
 double placement_probability(const ScoreComponents& components) {

@@ -19,6 +19,9 @@ struct ScoreComponents {
   double visibility = 0;        ///< Share of the facing model points that is not hidden, [0, 1].
   double edge = -1;             ///< Model range edges against the observed surface beyond them.
   double edge_visibility = 0;   ///< Share of the model's edge points that is not hidden.
+  double edge_support = 0;      ///< Share of the model's edge points where the surface does end.
+  double shape = 0;             ///< Spread of the normals of the agreeing points: the second
+                                ///< eigenvalue of their mean square, 0 for one flat face.
   double free_space = 0;        ///< Share of the visible points more than 2 cm in front.
   double agreeing = 0;          ///< Share of the visible points on the observed surface.
   double explained_pixels = 0;  ///< Observed pixels (of the reduced image) on the model surface.
