@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include <bpa/core/align/posterior.hpp>
+#include <bpa/core/align/samples.hpp>
+
+// What the isotropic derivation leaves out. Claims 1 and 2 need Σi = σi² I: then |R x + t - y|²
+// depends on R through xᵀRᵀy only, which is linear in R and so quadratic in q. A general Σi leaves
+// (R x)ᵀ Σi⁻¹ (R x), quartic in q: the posterior is no Bingham, and position and orientation no
+// longer come apart. The Bingham is then a proposal, and importance weights correct it. A position
+// prior that is not isotropic is the same case.
+
+namespace bpa::align {
+
+/// The true covariances of scene points, camera frame, m²: parallel to Correspondences::oriented
+/// and
+/// ::positions, or empty where σ² I is meant. The pairs' σ should stand for them, as the root of
+/// the mean variance does.
+struct Anisotropy {
+  std::span<const Eigen::Matrix3d> oriented = {};
+  std::span<const Eigen::Matrix3d> positions = {};
+};
+
+/// The correction itself: log of the true likelihood of the positions (and the position prior) over
+/// the isotropic one that bpa_mode and posterior use, at a pose.
+double log_anisotropic_weight(const Correspondences& data, const Anisotropy& anisotropy,
+                              const Pose& camera_from_object);
+
+/// The best pose under the true covariances near `start` and the Gaussian there.
+struct RefinedPose {
+  Pose camera_from_object;
+  /// Inverse curvature of the log posterior, (x, y, z, rotX, rotY, rotZ) as Posterior::covariance.
+  /// What the data say nothing about has the variance of a uniform rotation angle, or 1 m².
+  Matrix6d covariance = Matrix6d::Identity();
+  int iterations = 0;
+  bool converged = false;
+};
+RefinedPose refine(const Correspondences& data, const Anisotropy& anisotropy, const Pose& start,
+                   int max_iterations = 30);
+
+/// Draws from the joint posterior p(q, t | Z) with importance weights against it.
+struct SampledPosterior {
+  std::vector<WeightedPose> samples;  ///< Weights sum to 1.
+  double effective_sample_size = 0;   ///< At most the number of samples.
+};
+
+/// Orientations from the Bingham mixture of the isotropic model and, where the true one is not
+/// isotropic, from Binghams shaped like it at its maxima as well; positions from their exact
+/// Gaussian given the orientation; weights of the true posterior, both signs of open curvature
+/// directions included. In the isotropic case all weights are equal.
+SampledPosterior sample_posterior(const Correspondences& data, const Anisotropy& anisotropy,
+                                  int count, RandomStream& random,
+                                  const PosteriorOptions& options = {});
+
+/// The sampler as the paper words it: t from a Gaussian about the least-squares translation, q from
+/// the Bingham p(q | t, Z), weights p(q, t | Z) over both. Isotropic, curvature signs as given.
+/// Kept to compare with: sample_posterior does the same with less loss.
+SampledPosterior sample_translation_first(const Correspondences& data, int count,
+                                          RandomStream& random);
+
+}  // namespace bpa::align

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include <bpa/core/align/align.hpp>
+#include <bpa/core/align/samples.hpp>
+#include <bpa/core/base/options.hpp>
+#include <bpa/core/bingham/mixture.hpp>
+
+namespace bpa::align {
+
+struct PosteriorOptions {
+  int max_hypotheses = 16;        ///< Of the signs of curvature directions, kept side by side.
+  double smallest_weight = 1e-6;  ///< Hypotheses of a smaller share are left out.
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("max_hypotheses", max_hypotheses,
+          {1, 4096, "Most hypotheses about curvature signs that are kept side by side."});
+    visit("smallest_weight", smallest_weight,
+          {0, 0.1, "Sign hypotheses of a smaller share of the probability are left out."});
+  }
+};
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// The whole posterior of camera_from_object under isotropic noise (equation 7 of the paper and
+/// what it did not write down: p(t | Z)). With x̄ and ȳ the centroids weighted by 1 / σ²,
+///
+///   R x̄ + t ~ N(ȳ, I / weight), independently of the orientation,
+///
+/// which is a mixture of Binghams, one for each hypothesis about the curvature directions' signs (a
+/// single one when they are known or absent). A value; it does not refer to the correspondences.
+struct Posterior {
+  PoseEstimate map;            ///< Over signs too; see bpa_mode.
+  BinghamMixture orientation;  ///< The heaviest component first.
+  double weight = 0;           ///< Σ 1 / σ². 0: no positions, t is left at 0.
+  Eigen::Vector3d model_centroid = Eigen::Vector3d::Zero();
+  Eigen::Vector3d scene_centroid = Eigen::Vector3d::Zero();
+
+  /// An exact draw.
+  Pose sample(RandomStream& random) const;
+  /// log p(t, q | Z), normalised over R3 x S3 (both signs of q).
+  double log_density(const Pose& camera_from_object) const;
+  /// Covariance of (x, y, z, rotX, rotY, rotZ) in the order and the fixed axes of ROS: the object's
+  /// origin and the rotation vector about the camera's axes, both relative to the MAP pose. From
+  /// the component that the MAP pose belongs to; position is linearised in the rotation.
+  Matrix6d covariance() const;
+};
+
+Posterior posterior(const Correspondences& data, const PosteriorOptions& options = {});
+
+/// p(q | t, Z) for a given translation of camera_from_object: claims 1 and 2 of the paper, with the
+/// signs of curvature directions as given. The product of one Bingham per pair.
+Bingham conditional_orientation(const Correspondences& data, const Eigen::Vector3d& translation);
+
+/// Claim 2: the Bingham with Λ = (-2ab/σ², -2ab/σ², 0), V = s' ∘ W ∘ s, that one position pair
+/// leaves when `model` (of length a, about the centre of rotation) turns towards `scene` (of length
+/// b).
+Bingham position_bingham(const Eigen::Vector3d& model, const Eigen::Vector3d& scene, double sigma);
+
+}  // namespace bpa::align
