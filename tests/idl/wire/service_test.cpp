@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <future>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <bpa/wire/messages.hpp>
+#include <bpa/wire/service.hpp>
+#include <bpa/wire/service_framing.hpp>
+
+#include "idl/wire/domain.hpp"
+
+namespace bpa::wire {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using Unload = bpa_msgs::UnloadModel;
+using UnloadServer = ServiceServer<Unload>;
+using UnloadClient = ServiceClient<Unload>;
+
+void answer(Unload::Request&& request, const ReplyToken<Unload>& token) {
+  Unload::Response response;
+  response.success = true;
+  response.status.message = "hello " + request.name;
+  EXPECT_TRUE(token.reply(response).ok());
+}
+
+TEST(Service, AnswersAtOnce) {
+  auto one = test_participant("server");
+  auto two = test_participant("client");
+  ASSERT_TRUE(one.ok() && two.ok());
+  auto server = UnloadServer::create(*one, "unload_model", answer);
+  auto client = UnloadClient::create(*two, "unload_model");
+  ASSERT_TRUE(server.ok() && client.ok());
+  for (int i = 0; i < 20; ++i) {
+    Unload::Request request;
+    request.name = std::to_string(i);
+    auto response = client->call(request, seconds(5));
+    ASSERT_TRUE(response.ok()) << response.status().message;
+    EXPECT_EQ(response->status.message, "hello " + request.name);
+  }
+  EXPECT_EQ(server->statistics().received, 20U);
+}
+
+TEST(Service, AnswersLaterFromAnotherThreadAndOutOfOrder) {
+  auto one = test_participant("server");
+  auto two = test_participant("client");
+  ASSERT_TRUE(one.ok() && two.ok());
+  std::mutex mutex;
+  std::vector<std::pair<Unload::Request, ReplyToken<Unload>>> requests;
+  auto server = UnloadServer::create(*one, "later", [&](Unload::Request&& request, auto token) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    requests.emplace_back(std::move(request), std::move(token));
+  });
+  auto client = UnloadClient::create(*two, "later");
+  ASSERT_TRUE(server.ok() && client.ok());
+  constexpr std::size_t kCalls = 8;
+  std::vector<std::future<Result<Unload::Response>>> calls;
+  for (std::size_t i = 0; i < kCalls; ++i) {
+    calls.push_back(std::async(std::launch::async, [&client, i] {
+      Unload::Request request;
+      request.name = std::to_string(i);
+      return client->call(request, seconds(10));
+    }));
+  }
+  for (int i = 0; i < 500; ++i) {
+    std::this_thread::sleep_for(milliseconds(10));
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (requests.size() == kCalls) break;
+  }
+  ASSERT_EQ(requests.size(), kCalls);
+  for (auto request = requests.rbegin(); request != requests.rend(); ++request) {
+    answer(std::move(request->first), request->second);
+  }
+  for (std::size_t i = 0; i < kCalls; ++i) {
+    const auto response = calls[i].get();
+    ASSERT_TRUE(response.ok()) << response.status().message;
+    EXPECT_EQ(response.value().status.message, "hello " + std::to_string(i));
+  }
+  EXPECT_EQ(requests[0].second.reply({}).code, StatusCode::invalid_argument);
+}
+
+TEST(Service, SaysWhyThereIsNoAnswer) {
+  auto one = test_participant("server");
+  auto two = test_participant("client");
+  ASSERT_TRUE(one.ok() && two.ok());
+  auto client = UnloadClient::create(*two, "silent");
+  ASSERT_TRUE(client.ok());
+  EXPECT_EQ(client->call({}, milliseconds(50)).status().code, StatusCode::unavailable);
+  std::optional<ReplyToken<Unload>> kept;
+  {
+    auto server = UnloadServer::create(
+        *one, "silent", [&kept](Unload::Request&&, ReplyToken<Unload> token) { kept = token; });
+    ASSERT_TRUE(server.ok());
+    ASSERT_TRUE(client->wait_for_service(seconds(5)));
+    EXPECT_EQ(client->call({}, milliseconds(100)).status().code, StatusCode::timeout);
+  }
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->reply({}).code, StatusCode::unavailable);
+}
+
+TEST(Service, ClientGoesOnWithTheNextServer) {
+  auto two = test_participant("client");
+  ASSERT_TRUE(two.ok());
+  auto client = UnloadClient::create(*two, "restarts");
+  ASSERT_TRUE(client.ok());
+  for (int life = 0; life < 3; ++life) {
+    auto one = test_participant("server");
+    ASSERT_TRUE(one.ok());
+    auto server = UnloadServer::create(*one, "restarts", answer);
+    ASSERT_TRUE(server.ok());
+    Unload::Request request;
+    request.name = "x";
+    bool answered = false;  // a call may still go to the server that has just ended
+    for (int i = 0; i < 10 && !answered; ++i) answered = client->call(request, seconds(1)).ok();
+    EXPECT_TRUE(answered);
+  }
+}
+
+// A Detect request as rmw_cyclonedds frames it, in both byte orders.
+TEST(ServiceFraming, CycloneHeaderIsEchoedInTheRepliesOrder) {
+  SampleMeta meta;
+  meta.id.writer = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0, 0, 0x10, 3};
+  std::vector<std::uint8_t> request = {0, 1, 0, 0};
+  for (int i = 0; i < 16; ++i) request.push_back(static_cast<std::uint8_t>(i));
+  request.insert(request.end(), {3, 0, 0, 0, 'a', 'b', 0});
+  detail::ReplyAddress address;
+  std::size_t offset = 0;
+  bool swap = true;
+  ASSERT_TRUE(detail::read_request_frame(request, meta, &address, &offset, &swap).ok());
+  EXPECT_FALSE(swap);
+  EXPECT_EQ(offset, 20U);
+  EXPECT_EQ(address.framing, detail::Framing::cyclone);
+  EXPECT_EQ(address.reader, (Guid{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0, 0, 0, 0}));
+  Unload::Response response;
+  response.success = true;
+  const auto reply = detail::frame_reply(address, detail::message_ref(response));
+  const auto plain = encode(response);
+  ASSERT_EQ(reply.size(), plain.size() + 16);
+  EXPECT_TRUE(std::equal(reply.begin() + 4, reply.begin() + 20, request.begin() + 4));
+  EXPECT_TRUE(std::equal(reply.begin() + 20, reply.end(), plain.begin() + 4));
+
+  request[1] = 0;  // big-endian
+  ASSERT_TRUE(detail::read_request_frame(request, meta, &address, &offset, &swap).ok());
+  EXPECT_TRUE(swap);
+  EXPECT_EQ(address.header[0], 7);
+  EXPECT_EQ(address.header[8], 15);
+}
+
+TEST(ServiceFraming, ShortRequestsAreRefused) {
+  detail::ReplyAddress address;
+  std::size_t offset = 0;
+  bool swap = false;
+  for (std::size_t size = 0; size < 20; ++size) {
+    std::vector<std::uint8_t> bytes(size, 0);
+    if (size > 1) bytes[1] = 1;
+    EXPECT_FALSE(detail::read_request_frame(bytes, {}, &address, &offset, &swap).ok());
+  }
+}
+
+TEST(ServiceFraming, FastDdsRepliesGoToTheReaderThatTheRequestNames) {
+  SampleMeta meta;
+  meta.id = {{9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 0, 0, 1, 3}, 42};
+  meta.related.writer = {9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 0, 0, 2, 4};
+  detail::ReplyAddress address;
+  std::size_t offset = 0;
+  bool swap = false;
+  const std::vector<std::uint8_t> request = {0, 1, 0, 0, 1, 0, 0, 0, 0};
+  ASSERT_TRUE(detail::read_request_frame(request, meta, &address, &offset, &swap).ok());
+  EXPECT_EQ(address.framing, detail::Framing::fastdds);
+  EXPECT_EQ(offset, 4U);
+  EXPECT_EQ(address.reader, meta.related.writer);
+  EXPECT_EQ(address.related.writer, meta.related.writer);
+  EXPECT_EQ(address.related.sequence, 42);
+}
+
+}  // namespace
+}  // namespace bpa::wire
