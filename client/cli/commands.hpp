@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include <bpa/client.hpp>
+
+// One function per subcommand: each adds itself to the program and sets `exit_code` when it ran.
+// 0 done, 1 failed with one clear line; usage errors are 2.
+
+namespace bpa::cli {
+
+/// What every subcommand has.
+struct Common {
+  ClientOptions options;
+  bool localhost = false;
+  double timeout_s = 5;
+  int exit_code = 0;
+
+  /// Connects with these options.
+  Result<Client> connect() const;
+  /// Prints the one line and remembers the exit code.
+  void fail(const Status& status);
+};
+
+void add_send(CLI::App& program, Common& common);
+void add_watch(CLI::App& program, Common& common);
+void add_detect(CLI::App& program, Common& common);
+void add_models(CLI::App& program, Common& common);  ///< models, load, unload
+void add_status(CLI::App& program, Common& common);
+
+/// True after SIGINT or SIGTERM.
+bool interrupted();
+
+}  // namespace bpa::cli

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <bpa/status.hpp>
+#include <bpa/types.hpp>
+
+#include "frame_files.hpp"
+
+namespace bpa::cli {
+
+/// Where results go.
+struct Sinks {
+  std::string json;       ///< File of `bpa detect --json`'s form; empty: none.
+  std::string annotated;  ///< Folder of PNGs; empty: none.
+  int top = 5;            ///< Interpretations to print a frame; 0 prints nothing.
+};
+
+void add_frame_options(CLI::App& command, FrameFiles& files);
+void add_sink_options(CLI::App& command, Sinks& sinks);
+
+/// `invalid_argument` unless the options name frames in one way; `needed` false allows none.
+Status check_frame_options(const FrameFiles& files, bool needed);
+
+/// Writes FOLDER/SCENE_IMAGE.png (or the stamp, for frames that are of no data set).
+Status write_annotated(const std::string& folder, const AnnotatedImage& image);
+
+}  // namespace bpa::cli

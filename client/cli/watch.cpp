@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <atomic>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "options.hpp"
+#include "output.hpp"
+
+namespace bpa::cli {
+namespace {
+
+struct WatchOptions {
+  bool json = false;
+  std::string annotated;
+  int top = 5;
+  int count = 0;  ///< Stop after so many results; 0: never.
+};
+
+Status watch(Client& client, const WatchOptions& options) {
+  std::atomic<int> seen{0};
+  Status status = client.subscribe([&](const DetectionSet& set) {
+    if (options.count > 0 && seen >= options.count) return;
+    if (options.json) {
+      std::cout << to_json(set).dump() << std::endl;
+    } else {
+      print_detections(std::cout, set, options.top);
+      std::cout.flush();
+    }
+    ++seen;
+  });
+  if (status.ok() && !options.annotated.empty()) {
+    status = client.subscribe_annotated([&](const AnnotatedImage& image) {
+      const Status written = write_annotated(options.annotated, image);
+      if (!written.ok()) std::cerr << "bpa-client: " << written.message << '\n';
+    });
+  }
+  if (!status.ok()) return status;
+  while (!interrupted() && (options.count == 0 || seen < options.count)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_watch(CLI::App& program, Common& common) {
+  CLI::App* command =
+      program.add_subcommand("watch", "print what the server finds until interrupted");
+  auto options = std::make_shared<WatchOptions>();
+  command->add_flag("--json", options->json, "one line of JSON for each frame");
+  command->add_option("--annotated", options->annotated, "write annotated images to this folder");
+  command->add_option("--top", options->top, "interpretations to print for each frame")
+      ->capture_default_str();
+  command->add_option("--count", options->count, "stop after so many frames");
+  command->callback([options, &common] {
+    auto client = common.connect();
+    if (!client.ok()) return common.fail(client.status());
+    const Status status = watch(*client, *options);
+    // The client goes before what its callbacks refer to.
+    client = Status(StatusCode::unavailable, "closed");
+    if (!status.ok()) common.fail(status);
+  });
+}
+
+}  // namespace bpa::cli

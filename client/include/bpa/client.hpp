@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <bpa/status.hpp>
+#include <bpa/types.hpp>
+
+// Talk to a running bpa-server, from any process and any host. C++17; no DDS, PCL or OpenCV type
+// appears here.
+//
+//   auto client = bpa::Client::connect();
+//   if (!client.ok()) return fail(client.status().message);
+//   auto found = client->detect({{"mug"}});
+//   if (!found.ok()) return fail(found.status().message);
+//   for (const auto& d : found->best()) std::cout << d.model << ' ' << d.probability << '\n';
+
+namespace bpa {
+
+/// How far discovery reaches; the meaning of ROS_AUTOMATIC_DISCOVERY_RANGE.
+enum class DiscoveryRange { subnet, localhost, off };
+
+struct ClientOptions {
+  /// DDS domain, 0 to 232; -1 takes ROS_DOMAIN_ID, and 0 without it.
+  int domain = -1;
+  /// The server's ROS 2 namespace.
+  std::string server_namespace = "/bpa";
+  /// The longest that connect() and any call but the following wait.
+  std::chrono::milliseconds timeout{5000};
+  /// The longest that a detect or load_model call waits which names no time of its own.
+  std::chrono::milliseconds detect_timeout{60000};
+  /// Frames of up to so many MB go to a server on this machine through shared memory; larger ones
+  /// are refused. 0: always over UDP.
+  std::size_t shared_frame_mb = 24;
+  /// Where connect() and the calls look for servers; the environment (ROS_LOCALHOST_ONLY,
+  /// ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS) decides where this is not set.
+  bool range_from_environment = true;
+  DiscoveryRange range = DiscoveryRange::subnet;
+  std::vector<std::string> peers;  ///< Host names or addresses to look at besides.
+  /// Receives what the SDK has to say (such as a type or QoS that does not match), from any thread.
+  std::function<void(const std::string&)> log;
+};
+
+/// One connection. Every call may be made from any thread and ends within its time-out. A server
+/// that restarts is found again by itself: calls made meanwhile fail with `unavailable`, and
+/// subscriptions go on. After a move the source may only be destroyed or assigned to.
+class Client {
+ public:
+  /// Joins the domain and waits for a server. Fails with `unavailable` when none answers in time,
+  /// with `invalid_argument` on an option that breaks its rule.
+  static Result<Client> connect(const ClientOptions& options = {});
+
+  /// The models that the server looks for, by number.
+  Result<std::vector<KnownModel>> models();
+
+  /// Searches the next frame that the server's camera sees. `timeout` 0 means detect_timeout.
+  /// Fails with `busy` when the server's queue is full, `timeout`, `unavailable`, `not_found` (a
+  /// model name), `invalid_argument` (naming the field and the rule).
+  Result<DetectionSet> detect(const DetectQuery& query = {},
+                              std::chrono::milliseconds timeout = {});
+  /// Searches a frame of your own instead.
+  Result<DetectionSet> detect_in(const FrameView& frame, const DetectQuery& query = {},
+                                 std::chrono::milliseconds timeout = {});
+
+  /// Hands a frame to the server's stream; what is found comes to the subscribers. When frames come
+  /// faster than they are searched, the server takes the newest. Returns once the frame is sent,
+  /// not when it is searched; fails with `unavailable` when no server listens within the time-out.
+  Status publish_frame(const FrameView& frame);
+
+  /// `on_result` runs on one thread of the SDK for every frame that the server searched, until the
+  /// client is destroyed (not by that function); DetectionSet::status tells why a frame could not
+  /// be searched. A second call replaces the first one's function.
+  Status subscribe(std::function<void(const DetectionSet&)> on_result);
+  /// The same for the annotated images, which the server draws only while somebody subscribes.
+  Status subscribe_annotated(std::function<void(const AnnotatedImage&)> on_image);
+
+  Result<ServerStatus> status();
+
+  /// Adds a model of the server's library directory by name, or a model file of the server's disk.
+  Status load_model(const std::string& source, const std::string& name = "");
+  /// Stops looking for a model.
+  Status unload_model(const std::string& name);
+
+  Client(Client&&) noexcept;
+  Client& operator=(Client&&) noexcept;
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+  ~Client();
+
+ private:
+  struct Impl;
+  explicit Client(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace bpa

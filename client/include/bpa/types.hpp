@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <bpa/status.hpp>
+
+// What goes to the server and what comes back: plain structs, C++17, SI units.
+//
+// Camera frame means the optical frame of the camera that took the image: x right, y down, z
+// forward, metres.
+
+namespace bpa {
+
+/// Where an object is: the transform from the object's frame to the camera frame.
+struct ObjectPose {
+  std::array<double, 3> position{};                         ///< x, y, z in metres.
+  std::array<double, 4> orientation{{0.0, 0.0, 0.0, 1.0}};  ///< Unit quaternion x, y, z, w.
+};
+
+/// How sure an orientation is: a Bingham distribution, density proportional to
+/// exp(sum_i concentrations[i] (axes[i] . q)^2) over unit quaternions q = (w, x, y, z).
+struct OrientationSpread {
+  std::array<std::array<double, 4>, 3> axes{};  ///< Orthonormal, each in the order w, x, y, z.
+  std::array<double, 3> concentrations{};       ///< Not positive; all zero is uniform.
+};
+
+/// One named part of a detection's score.
+struct ScorePart {
+  std::string name;
+  double value = 0;
+};
+
+/// Another pose that the view cannot tell from the reported one.
+struct AlternativePose {
+  ObjectPose camera_from_object;
+  double weight = 0;  ///< In (0, 1].
+};
+
+/// One object found in one frame.
+struct Detection {
+  std::string model;     ///< A name that Client::models returns.
+  int model_number = 0;  ///< The model's number in the server's library.
+  int instance = 0;      ///< Counts the detections of this model in one interpretation, from 0.
+  ObjectPose camera_from_object;
+  /// Row-major 6x6 covariance of (x, y, z, rotation about x, y, z) about the axes of the camera
+  /// frame, m^2 and rad^2.
+  std::array<double, 36> covariance{};
+  OrientationSpread orientation_spread;
+  double score = 0;             ///< Larger is better; comparable within one model only.
+  double probability = 0;       ///< That the detection is right, in [0, 1].
+  double visible_fraction = 0;  ///< Of the surface that faces the camera, in [0, 1].
+  std::vector<ScorePart> score_parts;
+  std::vector<AlternativePose> alternatives;  ///< Empty when the view decides.
+};
+
+/// One way to explain the frame: detections that fit together.
+struct RankedInterpretation {
+  int rank = 1;  ///< 1 is the best.
+  double score = 0;
+  double probability = 0;             ///< Among the interpretations of one frame.
+  std::vector<Detection> detections;  ///< Most probable first.
+};
+
+struct StageTime {
+  std::string stage;
+  double milliseconds = 0;
+};
+
+/// What was found in one frame. An empty scene is an answer, not an error.
+struct DetectionSet {
+  std::int64_t stamp_ns = 0;  ///< Exposure time of the frame that was searched, UTC.
+  std::string frame_id;       ///< Name of its camera frame.
+  Status status;              ///< Why the frame could not be searched; ok when it was.
+  std::vector<RankedInterpretation> interpretations;  ///< Best first.
+  std::vector<StageTime> stage_times;                 ///< In the order in which the stages ran.
+  double total_ms = 0;
+  bool budget_exhausted = false;  ///< The time budget ended the search: the best found so far.
+  int models_searched = 0;
+  std::uint64_t seed = 0;  ///< Gives the same answer again for the same frame and options.
+
+  /// The detections of the best interpretation; none when there is no interpretation.
+  const std::vector<Detection>& best() const {
+    static const std::vector<Detection> none;
+    return interpretations.empty() ? none : interpretations.front().detections;
+  }
+};
+
+/// One RGB-D image that stays the caller's: nothing is copied before it is sent. Depth is
+/// registered to colour; rows run from top to bottom without padding.
+struct FrameView {
+  int width = 0;  ///< Pixels, 16 to 8192.
+  int height = 0;
+  const std::uint8_t* rgb = nullptr;        ///< 3 bytes a pixel; nullptr without colour.
+  const std::uint16_t* depth_mm = nullptr;  ///< Millimetres along z, 0 = none. This one ...
+  const float* depth_m = nullptr;           ///< ... or metres along z, 0 or NaN = none.
+  double fx = 0;                            ///< Focal lengths and principal point, pixels; the
+  double fy = 0;                            ///< centre of the top left pixel is (0, 0).
+  double cx = 0;
+  double cy = 0;
+  std::int64_t stamp_ns = 0;  ///< Exposure time, UTC.
+  std::string frame_id = "camera";
+  const std::uint8_t* mask =
+      nullptr;               ///< One byte a pixel, 0 = do not search; nullptr: search all.
+  std::array<int, 4> roi{};  ///< x, y, width, height; all zero: the whole image.
+};
+
+/// What to look for. Zero and empty fields leave the choice to the server.
+struct DetectQuery {
+  std::vector<std::string> models;  ///< Names; empty means every model of the library.
+  int top_k = 0;                    ///< Number of interpretations wanted, at most 100.
+  double budget_ms = 0;             ///< Time for the search; the best so far is returned.
+  std::uint64_t seed = 0;
+};
+
+/// One model of the server's library.
+struct KnownModel {
+  std::string name;
+  int number = 0;
+  double diameter = 0;              ///< Metres.
+  std::array<double, 3> box_min{};  ///< Corners of the box along the model's axes, metres.
+  std::array<double, 3> box_max{};
+  int point_count = 0;
+  int discrete_symmetries = 0;  ///< How many, without the identity.
+  int continuous_symmetries = 0;
+};
+
+/// How the server is doing. Counters start at zero when it starts.
+struct ServerStatus {
+  std::string version;
+  std::string state;  ///< "idle", "running" or "paused".
+  double uptime_s = 0;
+  std::uint64_t frames_received = 0;
+  std::uint64_t frames_processed = 0;
+  std::uint64_t frames_dropped = 0;   ///< A newer frame took the place.
+  std::uint64_t frames_rejected = 0;  ///< Broke a rule; the server's log says which.
+  std::uint64_t requests_served = 0;
+  std::uint64_t requests_refused = 0;
+  int queue_length = 0;
+  int queue_capacity = 0;
+  int model_count = 0;
+  std::string library;  ///< Where it lies on the server.
+  std::uint64_t memory_bytes = 0;
+  std::vector<StageTime> stage_times;                        ///< Medians over the last frames.
+  std::vector<std::pair<std::string, std::string>> details;  ///< Such as drops by cause.
+};
+
+/// The server's drawing of what it found.
+struct AnnotatedImage {
+  std::int64_t stamp_ns = 0;
+  std::string frame_id;
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;  ///< Row-major, 3 bytes a pixel.
+};
+
+}  // namespace bpa

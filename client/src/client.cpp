@@ -1,0 +1,289 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include <bpa/client.hpp>
+#include <bpa/wire/messages.hpp>
+#include <bpa/wire/participant.hpp>
+#include <bpa/wire/publisher.hpp>
+#include <bpa/wire/service.hpp>
+#include <bpa/wire/subscriber.hpp>
+
+#include "callback_thread.hpp"
+#include "convert.hpp"
+
+namespace bpa {
+namespace {
+
+namespace msgs = wire::bpa_msgs;
+using Milliseconds = std::chrono::milliseconds;
+
+Result<wire::Discovery> discovery_of(const ClientOptions& options) {
+  auto environment = wire::discovery_from_environment();
+  if (!environment.ok()) return environment.status();
+  wire::Discovery discovery = *environment;
+  if (options.domain > 232 || options.domain < -1) {
+    return invalid_argument("domain is " + std::to_string(options.domain) +
+                            "; it must be between 0 and 232, or -1 for ROS_DOMAIN_ID");
+  }
+  if (options.domain >= 0) discovery.domain_id = options.domain;
+  if (!options.range_from_environment) {
+    discovery.static_peers.clear();
+    discovery.range = options.range == DiscoveryRange::subnet      ? wire::DiscoveryRange::subnet
+                      : options.range == DiscoveryRange::localhost ? wire::DiscoveryRange::localhost
+                                                                   : wire::DiscoveryRange::off;
+  }
+  discovery.static_peers.insert(discovery.static_peers.end(), options.peers.begin(),
+                                options.peers.end());
+  return discovery;
+}
+
+Result<wire::Participant> join(const ClientOptions& options) {
+  if (options.timeout <= Milliseconds(0)) {
+    return invalid_argument("timeout is " + std::to_string(options.timeout.count()) +
+                            " ms; it must be positive");
+  }
+  auto discovery = discovery_of(options);
+  if (!discovery.ok()) return discovery.status();
+  wire::ParticipantOptions seat;
+  seat.node.node_namespace = options.server_namespace;
+  seat.node.name = "client";
+  seat.discovery = *discovery;
+  if (options.log) {
+    seat.log = [hook = options.log](LogLevel, std::string_view text) { hook(std::string(text)); };
+  }
+  return wire::Participant::create(std::move(seat));
+}
+
+/// A failure of the request itself, or the one that the server answered.
+template <class Response>
+Status outcome(const Result<Response>& response) {
+  if (!response.ok()) return response.status();
+  if (response->success) return {};
+  Status status = sdk::to_status(response->status);
+  if (status.ok()) status = Status(StatusCode::internal, "the server refused without a reason");
+  return status;
+}
+
+/// No exception may leave the SDK; what is left over (no memory, no thread) becomes a Status.
+template <class Call>
+auto guarded(Call call) -> decltype(call()) {
+  try {
+    return call();
+  } catch (const std::exception& error) {
+    return Status(StatusCode::internal, std::string("the SDK failed: ") + error.what());
+  }
+}
+
+}  // namespace
+
+struct Client::Impl {
+  template <class Service>
+  using Caller = wire::ServiceClient<Service>;
+
+  ClientOptions options;
+  wire::Participant participant;
+  Caller<msgs::Detect> detect;
+  Caller<msgs::ListModels> list_models;
+  Caller<msgs::LoadModel> load_model;
+  Caller<msgs::UnloadModel> unload_model;
+  Caller<msgs::GetStatus> get_status;
+
+  struct Made {  ///< On first use.
+    std::mutex mutex;
+    std::optional<wire::Publisher<msgs::RgbdFrame>> frames;
+    sdk::CallbackThread callbacks;
+    // Last: they post to the thread above until they are destroyed.
+    std::optional<wire::Subscriber<msgs::SceneInterpretations>> results;
+    std::optional<wire::Subscriber<wire::sensor_msgs::Image>> images;
+  };
+  std::unique_ptr<Made> made = std::make_unique<Made>();
+
+  static Result<std::unique_ptr<Impl>> create(const ClientOptions& options);
+
+  Result<DetectionSet> search(msgs::Detect_Request request, const DetectQuery& query,
+                              Milliseconds asked) const;
+  Result<wire::Publisher<msgs::RgbdFrame>*> frame_publisher();
+};
+
+Result<std::unique_ptr<Client::Impl>> Client::Impl::create(const ClientOptions& options) {
+  auto participant = join(options);
+  if (!participant.ok()) return participant.status();
+  auto detect = Caller<msgs::Detect>::create(*participant, "detect");
+  if (!detect.ok()) return detect.status();
+  auto list_models = Caller<msgs::ListModels>::create(*participant, "list_models");
+  if (!list_models.ok()) return list_models.status();
+  auto load_model = Caller<msgs::LoadModel>::create(*participant, "load_model");
+  if (!load_model.ok()) return load_model.status();
+  auto unload_model = Caller<msgs::UnloadModel>::create(*participant, "unload_model");
+  if (!unload_model.ok()) return unload_model.status();
+  auto get_status = Caller<msgs::GetStatus>::create(*participant, "get_status");
+  if (!get_status.ok()) return get_status.status();
+  return std::unique_ptr<Impl>(
+      new Impl{options, std::move(participant).value(), std::move(detect).value(),
+               std::move(list_models).value(), std::move(load_model).value(),
+               std::move(unload_model).value(), std::move(get_status).value()});
+}
+
+Result<DetectionSet> Client::Impl::search(msgs::Detect_Request request, const DetectQuery& query,
+                                          Milliseconds asked) const {
+  if (query.top_k < 0 || query.top_k > 100) {
+    return invalid_argument("top_k is " + std::to_string(query.top_k) +
+                            "; it must be between 1 and 100, or 0 for the server's setting");
+  }
+  const Milliseconds timeout = asked > Milliseconds(0) ? asked : options.detect_timeout;
+  request.models = query.models;
+  request.top_k = static_cast<std::uint32_t>(query.top_k);
+  request.time_budget_ms = query.budget_ms;
+  request.seed = query.seed;
+  // The server gives up a little earlier than we do, so that it can say why.
+  request.timeout_ms = std::max(1.0, 0.9 * static_cast<double>(timeout.count()));
+  const auto response = detect.call(request, timeout);
+  if (Status status = outcome(response); !status.ok()) return status;
+  return sdk::to_detections(response->result);
+}
+
+Result<wire::Publisher<msgs::RgbdFrame>*> Client::Impl::frame_publisher() {
+  const std::lock_guard<std::mutex> lock(made->mutex);
+  if (!made->frames) {
+    wire::PublisherOptions publishing;
+    publishing.qos = wire::qos::frames();
+    publishing.shared_bytes = options.shared_frame_mb << 20U;
+    auto publisher = wire::Publisher<msgs::RgbdFrame>::create(participant, "frames", publishing);
+    if (!publisher.ok()) return publisher.status();
+    made->frames.emplace(std::move(publisher).value());
+  }
+  return &*made->frames;
+}
+
+Client::Client(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Client::Client(Client&&) noexcept = default;
+Client& Client::operator=(Client&&) noexcept = default;
+Client::~Client() = default;
+
+Result<Client> Client::connect(const ClientOptions& options) {
+  return guarded([&]() -> Result<Client> {
+    auto impl = Impl::create(options);
+    if (!impl.ok()) return impl.status();
+    if (!(*impl)->get_status.wait_for_service(options.timeout)) {
+      return Status(StatusCode::unavailable,
+                    "no bpa-server answers as " + (*impl)->get_status.name() + " in domain " +
+                        std::to_string((*impl)->participant.domain_id()) + " within " +
+                        std::to_string(options.timeout.count()) +
+                        " ms; is it running, with this namespace, domain and discovery range?");
+    }
+    return Client(std::move(impl).value());
+  });
+}
+
+Result<std::vector<KnownModel>> Client::models() {
+  return guarded([&]() -> Result<std::vector<KnownModel>> {
+    const auto response = impl_->list_models.call({}, impl_->options.timeout);
+    if (Status status = outcome(response); !status.ok()) return status;
+    std::vector<KnownModel> models;
+    for (const auto& model : response->models) models.push_back(sdk::to_model(model));
+    return models;
+  });
+}
+
+Result<DetectionSet> Client::detect(const DetectQuery& query, Milliseconds timeout) {
+  return guarded([&] { return impl_->search({}, query, timeout); });
+}
+
+Result<DetectionSet> Client::detect_in(const FrameView& frame, const DetectQuery& query,
+                                       Milliseconds timeout) {
+  return guarded([&]() -> Result<DetectionSet> {
+    if (Status status = sdk::check(frame); !status.ok()) return status;
+    msgs::Detect_Request request;
+    request.has_frame = true;
+    request.frame = sdk::to_owned_message(frame);
+    return impl_->search(std::move(request), query, timeout);
+  });
+}
+
+Status Client::publish_frame(const FrameView& frame) {
+  return guarded([&]() -> Status {
+    if (Status status = sdk::check(frame); !status.ok()) return status;
+    auto publisher = impl_->frame_publisher();
+    if (!publisher.ok()) return publisher.status();
+    auto& frames = **publisher;
+    if (!frames.wait_for_matched(impl_->options.timeout)) {
+      return Status(StatusCode::unavailable, "no server listens to " + frames.topic() + " within " +
+                                                 std::to_string(impl_->options.timeout.count()) +
+                                                 " ms");
+    }
+    return frames.publish(sdk::to_message(frame));
+  });
+}
+
+Status Client::subscribe(std::function<void(const DetectionSet&)> on_result) {
+  return guarded([&]() -> Status {
+    const std::lock_guard<std::mutex> lock(impl_->made->mutex);
+    Impl::Made& made = *impl_->made;
+    made.results.reset();
+    wire::SubscriberOptions subscription;
+    subscription.qos = wire::qos::results();
+    auto subscriber = wire::Subscriber<msgs::SceneInterpretations>::create(
+        impl_->participant, "interpretations", subscription,
+        [&made, on_result = std::move(on_result)](msgs::SceneInterpretations&& message,
+                                                  const wire::SampleMeta&) {
+          made.callbacks.post([on_result, set = sdk::to_detections(message)] { on_result(set); });
+        });
+    if (!subscriber.ok()) return subscriber.status();
+    made.results.emplace(std::move(subscriber).value());
+    made.results->wait_for_matched(impl_->options.timeout);
+    return {};
+  });
+}
+
+Status Client::subscribe_annotated(std::function<void(const AnnotatedImage&)> on_image) {
+  return guarded([&]() -> Status {
+    const std::lock_guard<std::mutex> lock(impl_->made->mutex);
+    Impl::Made& made = *impl_->made;
+    made.images.reset();
+    wire::SubscriberOptions subscription;
+    subscription.qos = wire::qos::results();
+    auto subscriber = wire::Subscriber<wire::sensor_msgs::Image>::create(
+        impl_->participant, "annotated", subscription,
+        [&made, on_image = std::move(on_image)](wire::sensor_msgs::Image&& message,
+                                                const wire::SampleMeta&) {
+          auto image = std::make_shared<AnnotatedImage>(sdk::to_image(std::move(message)));
+          made.callbacks.post([on_image, image] { on_image(*image); });
+        });
+    if (!subscriber.ok()) return subscriber.status();
+    made.images.emplace(std::move(subscriber).value());
+    made.images->wait_for_matched(impl_->options.timeout);
+    return {};
+  });
+}
+
+Result<ServerStatus> Client::status() {
+  return guarded([&]() -> Result<ServerStatus> {
+    const auto response = impl_->get_status.call({}, impl_->options.timeout);
+    if (Status status = outcome(response); !status.ok()) return status;
+    return sdk::to_server_status(*response);
+  });
+}
+
+Status Client::load_model(const std::string& source, const std::string& name) {
+  return guarded([&]() -> Status {
+    msgs::LoadModel_Request request;
+    request.source = source;
+    request.name = name;
+    return outcome(impl_->load_model.call(request, impl_->options.detect_timeout));
+  });
+}
+
+Status Client::unload_model(const std::string& name) {
+  return guarded([&]() -> Status {
+    msgs::UnloadModel_Request request;
+    request.name = name;
+    return outcome(impl_->unload_model.call(request, impl_->options.detect_timeout));
+  });
+}
+
+}  // namespace bpa

@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "convert.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace bpa::sdk {
+namespace {
+
+namespace msgs = wire::bpa_msgs;
+
+ObjectPose to_pose(const wire::geometry_msgs::Pose& message) {
+  const auto& p = message.position;
+  const auto& q = message.orientation;
+  return {{{p.x, p.y, p.z}}, {{q.x, q.y, q.z, q.w}}};
+}
+
+Detection to_detection(const msgs::Placement& message) {
+  Detection detection;
+  detection.model = message.model;
+  detection.model_number = static_cast<int>(message.model_number);
+  detection.instance = static_cast<int>(message.instance);
+  detection.camera_from_object = to_pose(message.pose.pose);
+  detection.covariance = message.pose.covariance;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      detection.orientation_spread.axes[axis][i] = message.orientation.axes[4 * axis + i];
+    }
+  }
+  detection.orientation_spread.concentrations = message.orientation.concentrations;
+  detection.score = message.score;
+  detection.probability = message.probability;
+  detection.visible_fraction = message.visible_fraction;
+  for (const auto& part : message.score_components) {
+    detection.score_parts.push_back({part.name, part.value});
+  }
+  for (const auto& alternative : message.alternatives) {
+    detection.alternatives.push_back({to_pose(alternative.pose), alternative.weight});
+  }
+  return detection;
+}
+
+std::array<double, 3> to_array(const wire::geometry_msgs::Point& p) { return {{p.x, p.y, p.z}}; }
+
+std::vector<StageTime> to_stage_times(const std::vector<msgs::StageTiming>& timings) {
+  std::vector<StageTime> times;
+  for (const auto& timing : timings) times.push_back({timing.name, timing.duration_ms});
+  return times;
+}
+
+template <class Bytes>
+Bytes bytes(const void* data, std::size_t size);
+
+template <>
+wire::ByteView bytes<wire::ByteView>(const void* data, std::size_t size) {
+  return {static_cast<const std::uint8_t*>(data), data == nullptr ? 0 : size};
+}
+
+template <>
+std::vector<std::uint8_t> bytes<std::vector<std::uint8_t>>(const void* data, std::size_t size) {
+  const auto* first = static_cast<const std::uint8_t*>(data);
+  return first == nullptr ? std::vector<std::uint8_t>()
+                          : std::vector<std::uint8_t>(first, first + size);
+}
+
+template <class Bytes>
+msgs::BasicRgbdFrame<Bytes> make_message(const FrameView& frame) {
+  msgs::BasicRgbdFrame<Bytes> message;
+  const std::size_t pixels =
+      static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
+  message.header = {wire::builtin_interfaces::from_ns(frame.stamp_ns), frame.frame_id};
+  message.width = static_cast<std::uint32_t>(frame.width);
+  message.height = static_cast<std::uint32_t>(frame.height);
+  if (frame.rgb != nullptr) message.color_encoding = "rgb8";
+  message.color = bytes<Bytes>(frame.rgb, 3 * pixels);
+  if (frame.depth_mm != nullptr) {
+    message.depth_encoding = "16UC1";
+    message.depth = bytes<Bytes>(frame.depth_mm, 2 * pixels);
+  } else {
+    message.depth_encoding = "32FC1";
+    message.depth = bytes<Bytes>(frame.depth_m, 4 * pixels);
+  }
+  message.k = {{frame.fx, 0, frame.cx, 0, frame.fy, frame.cy, 0, 0, 1}};
+  message.mask = bytes<Bytes>(frame.mask, pixels);
+  message.roi.x_offset = static_cast<std::uint32_t>(std::max(0, frame.roi[0]));
+  message.roi.y_offset = static_cast<std::uint32_t>(std::max(0, frame.roi[1]));
+  message.roi.width = static_cast<std::uint32_t>(std::max(0, frame.roi[2]));
+  message.roi.height = static_cast<std::uint32_t>(std::max(0, frame.roi[3]));
+  return message;
+}
+
+}  // namespace
+
+Status to_status(const msgs::Status& message) {
+  if (message.code <= static_cast<std::uint8_t>(StatusCode::internal)) {
+    return {static_cast<StatusCode>(message.code), message.message};
+  }
+  return {StatusCode::internal,
+          "the server answered with code " + std::to_string(message.code) + ": " + message.message};
+}
+
+DetectionSet to_detections(const msgs::SceneInterpretations& message) {
+  DetectionSet set;
+  set.stamp_ns = to_ns(message.header.stamp);
+  set.frame_id = message.header.frame_id;
+  set.status = to_status(message.status);
+  for (const auto& interpretation : message.interpretations) {
+    RankedInterpretation ranked;
+    ranked.rank = static_cast<int>(interpretation.rank);
+    ranked.score = interpretation.score;
+    ranked.probability = interpretation.probability;
+    for (const auto& placement : interpretation.placements) {
+      ranked.detections.push_back(to_detection(placement));
+    }
+    set.interpretations.push_back(std::move(ranked));
+  }
+  set.stage_times = to_stage_times(message.stage_timings);
+  set.total_ms = message.total_ms;
+  set.budget_exhausted = message.budget_exhausted;
+  set.models_searched = static_cast<int>(message.models_searched);
+  set.seed = message.seed;
+  return set;
+}
+
+KnownModel to_model(const msgs::ModelInfo& message) {
+  KnownModel model;
+  model.name = message.name;
+  model.number = static_cast<int>(message.number);
+  model.diameter = message.diameter;
+  model.box_min = to_array(message.box_min);
+  model.box_max = to_array(message.box_max);
+  model.point_count = static_cast<int>(message.point_count);
+  model.discrete_symmetries = static_cast<int>(message.discrete_symmetries.size());
+  model.continuous_symmetries = static_cast<int>(message.continuous_symmetries.size());
+  return model;
+}
+
+ServerStatus to_server_status(const msgs::GetStatus_Response& message) {
+  ServerStatus status;
+  status.version = message.version;
+  status.state = message.state == msgs::GetStatus_Response::kIdle     ? "idle"
+                 : message.state == msgs::GetStatus_Response::kPaused ? "paused"
+                                                                      : "running";
+  status.uptime_s = message.uptime_s;
+  status.frames_received = message.frames_received;
+  status.frames_processed = message.frames_processed;
+  status.frames_dropped = message.frames_dropped;
+  status.frames_rejected = message.frames_rejected;
+  status.requests_served = message.requests_served;
+  status.requests_refused = message.requests_refused;
+  status.queue_length = static_cast<int>(message.queue_length);
+  status.queue_capacity = static_cast<int>(message.queue_capacity);
+  status.model_count = static_cast<int>(message.model_count);
+  status.library = message.library;
+  status.memory_bytes = message.memory_bytes;
+  status.stage_times = to_stage_times(message.stage_timings);
+  for (const auto& detail : message.details) {
+    status.details.emplace_back(detail.key, detail.value);
+  }
+  return status;
+}
+
+AnnotatedImage to_image(wire::sensor_msgs::Image&& message) {
+  AnnotatedImage image;
+  image.stamp_ns = to_ns(message.header.stamp);
+  image.frame_id = message.header.frame_id;
+  image.width = static_cast<int>(message.width);
+  image.height = static_cast<int>(message.height);
+  image.rgb = std::move(message.data);
+  return image;
+}
+
+Status check(const FrameView& frame) {
+  if (frame.width < 16 || frame.width > 8192 || frame.height < 16 || frame.height > 8192) {
+    return invalid_argument("frame is " + std::to_string(frame.width) + "x" +
+                            std::to_string(frame.height) +
+                            "; each side must be between 16 and 8192");
+  }
+  if ((frame.depth_mm == nullptr) == (frame.depth_m == nullptr)) {
+    return invalid_argument("frame has " + std::string(frame.depth_m ? "two depths" : "no depth") +
+                            "; exactly one of depth_mm and depth_m must be set");
+  }
+  for (const int value : frame.roi) {
+    if (value < 0) return invalid_argument("frame roi has a negative value; none may be");
+  }
+  return {};
+}
+
+wire::bpa_msgs::RgbdFrameView to_message(const FrameView& frame) {
+  return make_message<wire::ByteView>(frame);
+}
+
+wire::bpa_msgs::RgbdFrame to_owned_message(const FrameView& frame) {
+  return make_message<std::vector<std::uint8_t>>(frame);
+}
+
+}  // namespace bpa::sdk

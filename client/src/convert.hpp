@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bpa/status.hpp>
+#include <bpa/types.hpp>
+#include <bpa/wire/messages.hpp>
+
+// The SDK's structs <-> messages.
+
+namespace bpa::sdk {
+
+/// The message's status; `internal` for a code that this version does not know.
+Status to_status(const wire::bpa_msgs::Status& message);
+DetectionSet to_detections(const wire::bpa_msgs::SceneInterpretations& message);
+KnownModel to_model(const wire::bpa_msgs::ModelInfo& message);
+ServerStatus to_server_status(const wire::bpa_msgs::GetStatus_Response& message);
+AnnotatedImage to_image(wire::sensor_msgs::Image&& message);
+
+/// Checks what would otherwise be read beyond its end; the rest is the server's to judge.
+Status check(const FrameView& frame);
+/// The frame as a message that points to the caller's pixels.
+wire::bpa_msgs::RgbdFrameView to_message(const FrameView& frame);
+/// The same with copies of the pixels.
+wire::bpa_msgs::RgbdFrame to_owned_message(const FrameView& frame);
+
+}  // namespace bpa::sdk
