@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <sstream>
+#include <utility>
+
+#include <bpa/server/convert/frames.hpp>
+#include <bpa/server/convert/images.hpp>
+#include <bpa/wire/msg/builtin_interfaces.hpp>
+
+namespace bpa::server {
+namespace {
+
+namespace msgs = wire::bpa_msgs;
+namespace sensor = wire::sensor_msgs;
+
+Status check_distortion(const std::vector<double>& d) {
+  if (d.size() <= 8) return {};
+  return Status(StatusCode::unsupported, "distortion d has " + std::to_string(d.size()) +
+                                             " coefficients; at most 8 are supported (plumb_bob, "
+                                             "rational_polynomial): rectify the images");
+}
+
+/// The camera of a row-major 3x3 matrix whose rows are `stride` long.
+Camera camera_of(std::uint32_t width, std::uint32_t height, const double* k, std::size_t stride) {
+  constexpr std::uint32_t kTooLarge = 1U << 20U;  // validate() refuses it; int holds it
+  Camera camera;
+  camera.width = static_cast<int>(std::min(width, kTooLarge));
+  camera.height = static_cast<int>(std::min(height, kTooLarge));
+  camera.fx = k[0];
+  camera.fy = k[stride + 1];
+  camera.cx = k[2];
+  camera.cy = k[stride + 2];
+  return camera;
+}
+
+template <class Pixel, std::size_t kChannels>
+void remap(const std::vector<std::int32_t>& map, std::vector<Pixel>& pixels) {
+  if (pixels.empty()) return;
+  std::vector<Pixel> out(pixels.size(), Pixel{});
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (map[i] < 0) continue;
+    const std::size_t from = static_cast<std::size_t>(map[i]);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      out[kChannels * i + c] = pixels[kChannels * from + c];
+    }
+  }
+  pixels = std::move(out);
+}
+
+void undistort(const Distortion& distortion, Frame& frame) {
+  if (distortion.none()) return;
+  const std::vector<std::int32_t> map = undistortion_map(frame.camera, distortion);
+  remap<float, 1>(map, frame.depth);
+  remap<std::uint8_t, 3>(map, frame.color);
+}
+
+/// Limits that int arithmetic and validate(Frame) can work with.
+RegionOfInterest roi_of(const sensor::RegionOfInterest& roi) {
+  constexpr std::uint32_t kTooLarge = 1U << 20U;
+  return {static_cast<int>(std::min(roi.x_offset, kTooLarge)),
+          static_cast<int>(std::min(roi.y_offset, kTooLarge)),
+          static_cast<int>(std::min(roi.width, kTooLarge)),
+          static_cast<int>(std::min(roi.height, kTooLarge))};
+}
+
+Result<Frame> checked(Frame frame) {
+  clean_depth(frame);
+  if (Status status = validate(frame); !status.ok()) return status;
+  return frame;
+}
+
+ImageView view_of(const char* field, const sensor::Image& image) {
+  return {field,      image.encoding,          image.width,       image.height,
+          image.step, image.is_bigendian != 0, image.data.data(), image.data.size()};
+}
+
+Status check_same_size(const char* what, std::uint32_t width, std::uint32_t height,
+                       const sensor::Image& depth) {
+  if (width == depth.width && height == depth.height) return {};
+  std::ostringstream text;
+  text << what << " is " << width << "x" << height << " but the depth image is " << depth.width
+       << "x" << depth.height << "; they must be equal (depth registered to colour)";
+  return invalid_argument(text.str());
+}
+
+}  // namespace
+
+Result<Frame> frame_from_message(const msgs::RgbdFrame& message) {
+  Frame frame;
+  frame.stamp_ns = to_ns(message.header.stamp);
+  frame.frame_id = message.header.frame_id;
+  frame.camera = camera_of(message.width, message.height, message.k.data(), 3);
+  if (Status status = validate(frame.camera); !status.ok()) return status;
+  if (Status status = check_distortion(message.d); !status.ok()) return status;
+  if (!message.priors.empty()) {
+    return Status(StatusCode::unsupported,
+                  "priors has " + std::to_string(message.priors.size()) +
+                      " entries; this server takes none yet, so it must be empty");
+  }
+  auto depth = depth_from_image({"depth", message.depth_encoding, message.width, message.height, 0,
+                                 false, message.depth.data(), message.depth.size()});
+  if (!depth.ok()) return depth.status();
+  frame.depth = std::move(depth).value();
+  if (!message.color_encoding.empty() || !message.color.empty()) {
+    auto color = color_from_image({"color", message.color_encoding, message.width, message.height,
+                                   0, false, message.color.data(), message.color.size()});
+    if (!color.ok()) return color.status();
+    frame.color = std::move(color).value();
+  }
+  undistort({message.d}, frame);
+  frame.roi = roi_of(message.roi);
+  frame.mask = message.mask;
+  return checked(std::move(frame));
+}
+
+Status restrict_frame(const msgs::RgbdFrame& message, Frame& frame) {
+  if (!message.priors.empty()) {
+    return Status(StatusCode::unsupported, "priors must be empty; this server takes none yet");
+  }
+  const RegionOfInterest roi = roi_of(message.roi);
+  if (roi.empty() && message.mask.empty()) return {};
+  if (!roi.empty()) frame.roi = roi;
+  if (!message.mask.empty()) frame.mask = message.mask;
+  return validate(frame);
+}
+
+Result<Frame> frame_from_images(const CameraImages& images, bool rectified) {
+  const sensor::Image& depth_image = *images.depth;
+  const sensor::CameraInfo& info = *images.info;
+  if (Status s = check_same_size("camera info", info.width, info.height, depth_image); !s.ok())
+    return s;
+  Frame frame;
+  frame.stamp_ns = to_ns(depth_image.header.stamp);
+  frame.frame_id = depth_image.header.frame_id;
+  const bool use_projection = rectified && info.p[0] > 0;
+  frame.camera = use_projection ? camera_of(info.width, info.height, info.p.data(), 4)
+                                : camera_of(info.width, info.height, info.k.data(), 3);
+  if (Status status = validate(frame.camera); !status.ok()) return status;
+  auto depth = depth_from_image(view_of("depth", depth_image));
+  if (!depth.ok()) return depth.status();
+  frame.depth = std::move(depth).value();
+  if (images.color) {
+    const sensor::Image& image = *images.color;
+    if (Status s = check_same_size("colour image", image.width, image.height, depth_image); !s.ok())
+      return s;
+    auto color = color_from_image(view_of("color", image));
+    if (!color.ok()) return color.status();
+    frame.color = std::move(color).value();
+  }
+  if (!rectified) {
+    if (Status status = check_distortion(info.d); !status.ok()) return status;
+    undistort({info.d}, frame);
+  }
+  return checked(std::move(frame));
+}
+
+}  // namespace bpa::server

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <bpa/core/base/status.hpp>
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/wire/msg/bpa_msgs.hpp>
+#include <bpa/wire/msg/sensor_msgs.hpp>
+
+// Messages -> frames that are fit for the detector: sizes, camera and depth are checked here, once,
+// and everything behind may rely on them. Failures name the field, its value and the rule.
+
+namespace bpa::server {
+
+/// A frame of bpa_msgs/RgbdFrame. Lens distortion is taken out (nearest pixel). `unsupported` when
+/// it carries priors.
+Result<Frame> frame_from_message(const wire::bpa_msgs::RgbdFrame& message);
+
+/// Puts the region of interest and the mask of a message on a frame that has been checked; a
+/// message without them changes nothing.
+Status restrict_frame(const wire::bpa_msgs::RgbdFrame& message, Frame& frame);
+
+/// Images of one camera that belong together.
+struct CameraImages {
+  std::shared_ptr<const wire::sensor_msgs::Image> color;  ///< nullptr without colour.
+  std::shared_ptr<const wire::sensor_msgs::Image> depth;
+  std::shared_ptr<const wire::sensor_msgs::CameraInfo> info;
+};
+
+/// A frame of a colour image, the depth image registered to it and their camera. `rectified` says
+/// that the images have no distortion any more, so that the projection matrix p of the camera info
+/// holds; otherwise k and d do. Stamp and frame_id are the depth image's.
+Result<Frame> frame_from_images(const CameraImages& images, bool rectified);
+
+}  // namespace bpa::server

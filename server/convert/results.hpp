@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <bpa/core/base/status.hpp>
+#include <bpa/core/model/object_model.hpp>
+#include <bpa/core/scene/interpretation.hpp>
+#include <bpa/wire/msg/bpa_msgs.hpp>
+#include <bpa/wire/msg/sensor_msgs.hpp>
+#include <bpa/wire/msg/tf2_msgs.hpp>
+#include <bpa/wire/msg/vision_msgs.hpp>
+#include <bpa/wire/msg/visualization_msgs.hpp>
+
+// What the core found -> messages. Stamp and frame_id are always those of the frame.
+
+namespace bpa::server {
+
+/// The models of a library, for their boxes.
+using Models = std::vector<std::shared_ptr<const ObjectModel>>;
+
+/// What a frame's result is about.
+struct ResultContext {
+  std::int64_t stamp_ns = 0;
+  std::string frame_id;
+  int models_searched = 0;
+  std::uint64_t seed = 0;
+};
+
+wire::bpa_msgs::Status to_message(const Status& status);
+
+/// All interpretations; `status` not ok and none when the frame could not be searched.
+wire::bpa_msgs::SceneInterpretations interpretations_message(
+    const Result<SceneInterpretations>& result, const ResultContext& context);
+
+/// The placements of the best interpretation: class_id is the model's name, score the probability,
+/// bbox the box along the model's axes, id "NAME_INSTANCE".
+wire::vision_msgs::Detection3DArray detections_message(const SceneInterpretations& result,
+                                                       const Models& models);
+
+/// One box and one name per placement of the best interpretation, after a marker that deletes those
+/// of the last frame. The colour follows the model's number.
+wire::visualization_msgs::MarkerArray markers_message(const SceneInterpretations& result,
+                                                      const Models& models);
+
+/// A transform per placement of the best interpretation, child frame "PREFIX/NAME_INSTANCE".
+wire::tf2_msgs::TFMessage transforms_message(const SceneInterpretations& result,
+                                             const std::string& prefix);
+
+/// An rgb8 image of `width` x `height`.
+wire::sensor_msgs::Image image_message(const SceneInterpretations& result, int width, int height,
+                                       std::vector<std::uint8_t> rgb);
+
+wire::bpa_msgs::ModelInfo model_message(const ObjectModel& model);
+
+}  // namespace bpa::server

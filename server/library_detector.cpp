@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <utility>
+
+#include <bpa/core/io/model_file.hpp>
+#if __has_include(<bpa/core/pipeline/annotate.hpp>)
+#include <bpa/core/pipeline/annotate.hpp>
+#define BPA_HAS_ANNOTATE 1
+#endif
+#include <bpa/server/library_detector.hpp>
+
+namespace bpa::server {
+namespace {
+
+Status add_model(ModelSource source, int num_threads, ModelLibrary& library) {
+  auto model = make_object_model(std::move(source), num_threads);
+  if (!model.ok()) return model.status();
+  return library.add(std::move(model).value());
+}
+
+}  // namespace
+
+LibraryDetector::LibraryDetector(std::string folder, const DetectorOptions& options,
+                                 int num_threads)
+    : folder_(std::move(folder)), options_(options), num_threads_(num_threads) {
+  replace(std::make_shared<const ModelLibrary>());
+}
+
+Result<std::shared_ptr<LibraryDetector>> LibraryDetector::create(const std::string& folder,
+                                                                 const DetectorOptions& options,
+                                                                 int num_threads,
+                                                                 const LogHook& hook) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) {
+    return Status(StatusCode::not_found, "library " + folder + ": there is no such folder");
+  }
+  std::shared_ptr<LibraryDetector> self(new LibraryDetector(folder, options, num_threads));
+  if (io::list_models(folder).empty()) {
+    log(hook, LogLevel::warning,
+        "library " + folder +
+            " holds no model: every search fails until one is loaded; make some "
+            "with `bpa model from-mesh` or `bpa model from-bop`");
+    return self;
+  }
+  auto sources = io::load_library(folder);
+  if (!sources.ok()) return sources.status();
+  auto library = std::make_shared<ModelLibrary>();
+  for (ModelSource& source : *sources) {
+    const std::string name = source.name;
+    if (Status s = add_model(std::move(source), num_threads, *library); !s.ok()) {
+      return Status(s.code, "model " + name + " of " + folder + ": " + s.message);
+    }
+  }
+  log(hook, LogLevel::info,
+      "library " + folder + ": " + std::to_string(library->size()) + " models");
+  self->replace(std::move(library));
+  return self;
+}
+
+std::shared_ptr<const Detector> LibraryDetector::current() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return detector_;
+}
+
+int LibraryDetector::version() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return version_;
+}
+
+void LibraryDetector::replace(std::shared_ptr<const ModelLibrary> library) {
+  auto detector = std::make_shared<const Detector>(std::move(library), options_);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  detector_.swap(detector);
+  ++version_;
+}
+
+Result<std::shared_ptr<const ObjectModel>> LibraryDetector::load(const std::string& source,
+                                                                 const std::string& name) {
+  const std::lock_guard<std::mutex> lock(change_mutex_);
+  // A model of our folder by name, or the path of a model's folder anywhere.
+  const std::filesystem::path path(source);
+  const bool is_path = source.find('/') != std::string::npos;
+  auto read = is_path ? io::load_model(path.parent_path().string(), path.filename().string())
+                      : io::load_model(folder_, source);
+  if (!read.ok()) return read.status();
+  if (!name.empty()) read->name = name;
+  const std::string wanted = read->name;
+  ModelLibrary library = current()->library();
+  if (const auto old = library.find(wanted)) {
+    read->number = old->number;
+    if (Status s = library.remove(wanted); !s.ok()) return s;
+  } else {
+    for (const auto& model : library.models()) {
+      if (model->number == read->number) {
+        read->number = library.next_number();
+        break;
+      }
+    }
+  }
+  if (Status s = add_model(std::move(read).value(), num_threads_, library); !s.ok()) return s;
+  auto model = library.find(wanted);
+  replace(std::make_shared<const ModelLibrary>(std::move(library)));
+  return model;
+}
+
+Status LibraryDetector::unload(const std::string& name) {
+  const std::lock_guard<std::mutex> lock(change_mutex_);
+  ModelLibrary library = current()->library();
+  if (Status s = library.remove(name); !s.ok()) return s;
+  replace(std::make_shared<const ModelLibrary>(std::move(library)));
+  return {};
+}
+
+Recognition LibraryDetector::recognition(std::shared_ptr<LibraryDetector> self) {
+  Recognition recognition;
+  recognition.detect = [self](const Frame& frame, const DetectRequest& request) {
+    return self->current()->detect(frame, request);
+  };
+#ifdef BPA_HAS_ANNOTATE
+  recognition.annotate =
+      [self](const Frame& frame,
+             const Interpretation& interpretation) -> Result<std::vector<std::uint8_t>> {
+    return annotate(frame, interpretation, self->current()->library());
+  };
+#endif
+  recognition.models = [self] { return self->current()->library().models(); };
+  recognition.load = [self](const std::string& source, const std::string& name) {
+    return self->load(source, name);
+  };
+  recognition.unload = [self](const std::string& name) { return self->unload(name); };
+  recognition.version = [self] { return self->version(); };
+  recognition.library = self->folder_;
+  return recognition;
+}
+
+}  // namespace bpa::server

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include <bpa/core/base/log.hpp>
+#include <bpa/core/base/status.hpp>
+#include <bpa/core/pipeline/detector.hpp>
+#include <bpa/server/recognition.hpp>
+
+namespace bpa::server {
+
+/// The real detector with a library from disk whose models may come and go while it serves. A
+/// search that runs keeps the library it began with.
+class LibraryDetector {
+ public:
+  /// Reads the library. A folder without models is no failure (searches fail until one is loaded);
+  /// a folder that is not there or a broken model is.
+  static Result<std::shared_ptr<LibraryDetector>> create(const std::string& folder,
+                                                         const DetectorOptions& options,
+                                                         int num_threads, const LogHook& log);
+
+  /// The functions that the server calls; they share the ownership.
+  static Recognition recognition(std::shared_ptr<LibraryDetector> self);
+
+ private:
+  LibraryDetector(std::string folder, const DetectorOptions& options, int num_threads);
+  std::shared_ptr<const Detector> current() const;
+  Result<std::shared_ptr<const ObjectModel>> load(const std::string& source,
+                                                  const std::string& name);
+  Status unload(const std::string& name);
+  void replace(std::shared_ptr<const ModelLibrary> library);
+  int version() const;
+
+  const std::string folder_;
+  const DetectorOptions options_;
+  const int num_threads_;
+  std::mutex change_mutex_;   ///< Held while a change is being made.
+  mutable std::mutex mutex_;  ///< Guards what follows, never held for long.
+  std::shared_ptr<const Detector> detector_;
+  int version_ = 0;
+};
+
+}  // namespace bpa::server

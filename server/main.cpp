@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <csignal>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <bpa/core/pipeline/detector_options.hpp>
+#include <bpa/server/library_detector.hpp>
+#include <bpa/server/options.hpp>
+#include <bpa/server/server.hpp>
+
+// The daemon: command line, log and signals. Exits 0 after SIGINT or SIGTERM, 1 when it cannot
+// start (one clear line), 2 on a wrong command line.
+
+namespace {
+
+using bpa::LogLevel;
+using bpa::Status;
+using bpa::server::ServerOptions;
+
+struct CommandLine {
+  std::string config;
+  std::vector<std::string> settings;
+  bool localhost = false;
+  bool print_config = false;
+};
+
+void add_options(CLI::App& program, CommandLine& line) {
+  program.add_option("--config", line.config, "file with settings, such as config/server.yaml");
+  program.add_flag("--localhost", line.localhost, "talk to this machine only");
+  program.add_flag("--print-config", line.print_config, "print all settings and stop");
+  program.add_option("--set", line.settings, "group.key=value, any setting (repeatable)");
+  const struct {
+    const char* option;
+    const char* setting;
+    const char* description;
+  } shortcuts[] = {
+      {"--library", "detection.library", "folder of the model library"},
+      {"--detector", "detection.detector", "file with settings of the detector"},
+      {"--threads", "detection.threads", "0: one per core"},
+      {"--seed", "detection.seed", "same frame, library and seed: same answer"},
+      {"--namespace", "node.namespace", "ROS namespace, default /bpa"},
+      {"--domain", "network.domain", "DDS domain; default ROS_DOMAIN_ID, else 0"},
+      {"--log-level", "log.level", "debug, info, warning or error"},
+  };
+  for (const auto& s : shortcuts) {
+    program.add_option_function<std::string>(
+        s.option,
+        [&line, setting = s.setting](const std::string& value) {
+          line.settings.push_back(std::string(setting) + "=" + value);
+        },
+        s.description);
+  }
+}
+
+bpa::Result<ServerOptions> settle(const CommandLine& line) {
+  ServerOptions options;
+  if (!line.config.empty()) {
+    if (Status s = bpa::server::load_options(line.config, options); !s.ok()) return s;
+  }
+  for (const std::string& setting : line.settings) {
+    if (Status s = bpa::server::set_option(setting, options); !s.ok()) return s;
+  }
+  if (line.localhost) options.network.range = "localhost";
+  return options;
+}
+
+bpa::LogHook make_log(const std::string& level) {
+  auto logger = spdlog::stderr_color_mt("bpa-server");
+  logger->set_pattern("%Y-%m-%d %H:%M:%S.%e %^%-7l%$ %v");
+  logger->set_level(spdlog::level::from_str(level));
+  logger->flush_on(spdlog::level::info);
+  return [logger](LogLevel severity, std::string_view text) {
+    const auto spd = severity == LogLevel::debug     ? spdlog::level::debug
+                     : severity == LogLevel::info    ? spdlog::level::info
+                     : severity == LogLevel::warning ? spdlog::level::warn
+                                                     : spdlog::level::err;
+    logger->log(spd, "{}", text);
+  };
+}
+
+Status serve(const ServerOptions& options, const bpa::LogHook& hook, const sigset_t& signals) {
+  if (options.detection.library.empty()) {
+    return bpa::invalid_argument("no model library: give --library DIR (or detection.library)");
+  }
+  bpa::DetectorOptions detector;
+  if (!options.detection.detector.empty()) {
+    auto loaded = bpa::load_detector_options(options.detection.detector);
+    if (!loaded.ok()) return loaded.status();
+    detector = *loaded;
+  }
+  auto library = bpa::server::LibraryDetector::create(options.detection.library, detector,
+                                                      options.detection.threads, hook);
+  if (!library.ok()) return library.status();
+  auto server = bpa::server::Server::create(
+      options, bpa::server::LibraryDetector::recognition(*library), hook);
+  if (!server.ok()) return server.status();
+  bpa::log(hook, LogLevel::info, "ready in namespace " + options.node.ros_namespace);
+  int signal = 0;
+  sigwait(&signals, &signal);
+  bpa::log(hook, LogLevel::info,
+           "stopping; a second signal does not wait for the search that runs");
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Blocked in all threads, so that only sigwait() sees them.
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
+  CLI::App program("Finds known objects in the RGB-D frames of a DDS domain.", "bpa-server");
+  CommandLine line;
+  add_options(program, line);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : 2;
+  }
+  const bpa::Result<ServerOptions> options = settle(line);
+  if (!options.ok()) {
+    std::cerr << "bpa-server: " << options.status().message << '\n';
+    return 2;
+  }
+  if (line.print_config) {
+    std::cout << bpa::server::to_yaml(*options);
+    return 0;
+  }
+  const bpa::LogHook hook = make_log(options->log.level);
+  const Status status = serve(*options, hook, signals);
+  if (status.ok()) return 0;
+  bpa::log(hook, LogLevel::error, status.message);
+  return 1;
+}

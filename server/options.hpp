@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <bpa/core/base/options.hpp>
+#include <bpa/core/base/status.hpp>
+
+// Every setting of the server, in groups. Each field describes itself once; reading server.yaml,
+// --set, --print-config and the checks all use that. config/server.yaml shows them all.
+
+namespace bpa::server {
+
+struct NodeOptions {
+  std::string name = "server";
+  std::string ros_namespace = "/bpa";
+  std::vector<std::string> remaps;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("name", name, FieldRule{0, 0, "How ROS 2 tools show the server in its namespace."});
+    visit("namespace", ros_namespace,
+          FieldRule{0, 0, "Goes in front of every name below that has no leading '/'."});
+    visit("remaps", remaps, FieldRule{0, 0, "Other names for topics and services: [from:=to]."});
+  }
+};
+
+struct NetworkOptions {
+  int domain = -1;
+  std::string range = "environment";
+  std::vector<std::string> peers;
+  int shared_frame_mb = 24;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("domain", domain, FieldRule{-1, 232, "DDS domain; -1 takes ROS_DOMAIN_ID, else 0."});
+    visit("range", range,
+          FieldRule{0, 0,
+                    "How far to look for others: environment (as ROS_AUTOMATIC_DISCOVERY_RANGE and "
+                    "ROS_LOCALHOST_ONLY say), subnet, localhost, off."});
+    visit("peers", peers, FieldRule{0, 0, "Host names or addresses to look at besides."});
+    visit("shared_frame_mb", shared_frame_mb,
+          FieldRule{0, 256,
+                    "Frames of up to so many MB come through shared memory from clients on this "
+                    "machine; larger ones are refused. 0: always over UDP."});
+  }
+};
+
+struct InputOptions {
+  std::string frames = "frames";
+  bool frames_reliable = true;
+  std::string color = "/camera/color/image_raw";
+  std::string depth = "/camera/aligned_depth_to_color/image_raw";
+  std::string camera_info = "/camera/color/camera_info";
+  bool reliable = false;
+  bool rectified = false;
+  double sync_tolerance_ms = 10;
+  int sync_queue = 10;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("frames", frames, FieldRule{0, 0, "Topic of bpa_msgs/RgbdFrame; empty: none."});
+    visit("frames_reliable", frames_reliable,
+          FieldRule{0, 0, "Lose none of them; best-effort publishers then do not match."});
+    visit("color", color, FieldRule{0, 0, "Topic of colour images; empty: depth alone."});
+    visit("depth", depth,
+          FieldRule{0, 0, "Topic of depth images registered to colour; empty: no camera."});
+    visit("camera_info", camera_info, FieldRule{0, 0, "Topic of their sensor_msgs/CameraInfo."});
+    visit(
+        "reliable", reliable,
+        FieldRule{0, 0, "Ask for reliable camera topics; best-effort cameras then do not match."});
+    visit("rectified", rectified,
+          FieldRule{0, 0,
+                    "The camera's images have no lens distortion any more, so that the projection "
+                    "matrix p holds; otherwise k and d do."});
+    visit("sync_tolerance_ms", sync_tolerance_ms,
+          FieldRule{0, 1000, "Largest difference of stamps of images that belong together."});
+    visit("sync_queue", sync_queue, FieldRule{2, 100, "Images of one topic that may wait."});
+  }
+};
+
+struct QueueOptions {
+  int frames = 1;
+  int requests = 8;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("frames", frames,
+          FieldRule{1, 100, "Frames that may wait; a newer one displaces the oldest."});
+    visit("requests", requests,
+          FieldRule{1, 1000, "Detect requests that may wait; more are refused as busy."});
+  }
+};
+
+struct OutputOptions {
+  std::string interpretations = "interpretations";
+  std::string detections = "detections";
+  std::string annotated = "annotated";
+  std::string markers = "markers";
+  std::string vision_info = "vision_info";
+  std::string tf = "/tf";
+  std::string diagnostics = "/diagnostics";
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("interpretations", interpretations,
+          FieldRule{0, 0, "bpa_msgs/SceneInterpretations: everything, ranked."});
+    visit("detections", detections,
+          FieldRule{0, 0, "vision_msgs/Detection3DArray: the best interpretation."});
+    visit("annotated", annotated,
+          FieldRule{0, 0, "sensor_msgs/Image, drawn only while somebody subscribes."});
+    visit("markers", markers, FieldRule{0, 0, "visualization_msgs/MarkerArray for RViz."});
+    visit("vision_info", vision_info, FieldRule{0, 0, "vision_msgs/VisionInfo, latched."});
+    visit("tf", tf, FieldRule{0, 0, "tf2_msgs/TFMessage: a transform per object; empty: none."});
+    visit("diagnostics", diagnostics,
+          FieldRule{0, 0, "diagnostic_msgs/DiagnosticArray, once a second; empty: none."});
+  }
+};
+
+struct DetectionOptions {
+  std::string library;
+  std::string detector;
+  bool continuous = true;
+  int top_k = 20;
+  double budget_ms = 0;
+  std::uint64_t seed = 0;
+  int threads = 0;
+  double request_timeout_ms = 30000;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("library", library, FieldRule{0, 0, "Folder of the model library."});
+    visit("detector", detector,
+          FieldRule{0, 0, "File with settings of the detector (detector.yaml); empty: defaults."});
+    visit("continuous", continuous,
+          FieldRule{0, 0, "Search every frame; false: only when a request asks for one."});
+    visit("top_k", top_k, FieldRule{1, 100, "Interpretations to report."});
+    visit("budget_ms", budget_ms,
+          FieldRule{0, 1e6, "Report the best so far after this long; 0: no limit."});
+    visit("seed", seed, FieldRule{0, 9.0e15, "Same frame, library and seed: same answer."});
+    visit("threads", threads, FieldRule{0, 256, "0: one per core. Does not change the answer."});
+    visit("request_timeout_ms", request_timeout_ms,
+          FieldRule{1, 1e7, "Longest wait of a detect request that names none."});
+  }
+};
+
+struct LogOptions {
+  std::string level = "info";
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("level", level, FieldRule{0, 0, "debug, info, warning or error."});
+  }
+};
+
+struct ServerOptions {
+  NodeOptions node;
+  NetworkOptions network;
+  InputOptions input;
+  QueueOptions queue;
+  OutputOptions output;
+  DetectionOptions detection;
+  LogOptions log;
+
+  /// visit(name of the group, the group, what it is about).
+  template <class Visitor>
+  void visit_groups(Visitor&& visit) {
+    visit("node", node, "Names.");
+    visit("network", network, "Discovery and transport.");
+    visit("input", input, "Where frames come from.");
+    visit("queue", queue, "What may wait while a frame is searched.");
+    visit("output", output, "Topics of the results; an empty name switches one off.");
+    visit("detection", detection, "The search.");
+    visit("log", log, "What is said on the terminal.");
+  }
+};
+
+/// Checks every field; the message names group.field, its value and the rule.
+Status validate(const ServerOptions& options);
+
+/// Overrides the fields that a YAML file names. Fails with not_found, or with invalid_argument
+/// naming file, line, key and rule; unknown keys are errors.
+Status load_options(const std::string& path, ServerOptions& options);
+
+/// Sets one field from text such as "queue.requests=4".
+Status set_option(const std::string& assignment, ServerOptions& options);
+
+/// All fields as a YAML file with a comment each, such as config/server.yaml.
+std::string to_yaml(const ServerOptions& options);
+
+}  // namespace bpa::server

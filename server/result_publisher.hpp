@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <bpa/core/base/log.hpp>
+#include <bpa/core/base/status.hpp>
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/server/options.hpp>
+#include <bpa/server/recognition.hpp>
+#include <bpa/wire/messages.hpp>
+#include <bpa/wire/participant.hpp>
+#include <bpa/wire/publisher.hpp>
+
+namespace bpa::server {
+
+/// Publishes what was found. Everything but the interpretations is made only while somebody
+/// subscribes to it.
+class ResultPublisher {
+ public:
+  static Result<std::unique_ptr<ResultPublisher>> create(
+      const wire::Participant& participant, const OutputOptions& options,
+      std::shared_ptr<const Recognition> recognition, LogHook log);
+
+  /// `frame` is null when the frame broke a rule; then only the failed interpretations go out.
+  void publish(const Frame* frame, const Result<SceneInterpretations>& result,
+               const ResultContext& context);
+  /// The latched vision_info: again after each change of the library.
+  void publish_vision_info();
+  void publish(const wire::diagnostic_msgs::DiagnosticArray& diagnostics);
+  bool diagnostics_wanted() const;
+
+ private:
+  ResultPublisher(std::shared_ptr<const Recognition> recognition, LogHook log)
+      : recognition_(std::move(recognition)), log_(std::move(log)) {}
+  void publish_annotated(const Frame& frame, const SceneInterpretations& result);
+
+  template <class T>
+  using Output = std::optional<wire::Publisher<T>>;
+
+  const std::shared_ptr<const Recognition> recognition_;
+  const LogHook log_;
+  std::string tf_prefix_;
+  Output<wire::bpa_msgs::SceneInterpretations> interpretations_;
+  Output<wire::vision_msgs::Detection3DArray> detections_;
+  Output<wire::sensor_msgs::Image> annotated_;
+  Output<wire::visualization_msgs::MarkerArray> markers_;
+  Output<wire::vision_msgs::VisionInfo> vision_info_;
+  Output<wire::tf2_msgs::TFMessage> tf_;
+  Output<wire::diagnostic_msgs::DiagnosticArray> diagnostics_;
+};
+
+}  // namespace bpa::server

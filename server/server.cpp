@@ -1,0 +1,271 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <sstream>
+#include <utility>
+
+#include <bpa/server/server.hpp>
+
+#ifndef BPA_VERSION
+#define BPA_VERSION "0"
+#endif
+
+namespace bpa::server {
+namespace {
+
+namespace msgs = wire::bpa_msgs;
+using wire::diagnostic_msgs::DiagnosticArray;
+using wire::diagnostic_msgs::DiagnosticStatus;
+using wire::diagnostic_msgs::KeyValue;
+
+constexpr auto kReportPeriod = std::chrono::seconds(1);
+constexpr auto kRepeatAfter = std::chrono::seconds(10);
+
+Result<std::optional<wire::Discovery>> discovery_of(const NetworkOptions& options) {
+  auto environment = wire::discovery_from_environment();
+  if (!environment.ok()) return environment.status();
+  wire::Discovery discovery = *environment;
+  if (options.domain >= 0) discovery.domain_id = options.domain;
+  if (options.range == "subnet") discovery.range = wire::DiscoveryRange::subnet;
+  if (options.range == "localhost") discovery.range = wire::DiscoveryRange::localhost;
+  if (options.range == "off") discovery.range = wire::DiscoveryRange::off;
+  discovery.static_peers.insert(discovery.static_peers.end(), options.peers.begin(),
+                                options.peers.end());
+  return std::optional<wire::Discovery>(discovery);
+}
+
+WorkerOptions worker_options(const ServerOptions& options) {
+  WorkerOptions worker;
+  worker.frame_capacity = static_cast<std::size_t>(options.queue.frames);
+  worker.request_capacity = static_cast<std::size_t>(options.queue.requests);
+  worker.continuous = options.detection.continuous;
+  worker.request.top_k = options.detection.top_k;
+  worker.request.budget_ms = options.detection.budget_ms;
+  worker.request.seed = options.detection.seed;
+  worker.request.num_threads = options.detection.threads;
+  return worker;
+}
+
+template <class Service>
+Status keep(Result<Service> service, std::optional<Service>& place) {
+  if (!service.ok()) return service.status();
+  place.emplace(std::move(service).value());
+  return {};
+}
+
+}  // namespace
+
+Server::Server(const ServerOptions& options, Recognition recognition, LogHook log)
+    : options_(options),
+      recognition_(std::make_shared<const Recognition>(std::move(recognition))),
+      log_(std::move(log)) {}
+
+Result<std::unique_ptr<Server>> Server::create(const ServerOptions& options,
+                                               Recognition recognition, LogHook log) {
+  if (Status status = validate(options); !status.ok()) return status;
+  std::unique_ptr<Server> server(new Server(options, std::move(recognition), std::move(log)));
+  if (Status status = server->start(); !status.ok()) return status;
+  return server;
+}
+
+Server::~Server() {
+  {
+    const std::lock_guard<std::mutex> lock(report_mutex_);
+    stopping_ = true;
+  }
+  stop_report_.notify_all();
+  if (reporter_.joinable()) reporter_.join();
+  if (worker_) worker_->stop();  // answers what waits, while the services can still send it
+}
+
+Status Server::start() {
+  auto discovery = discovery_of(options_.network);
+  if (!discovery.ok()) return discovery.status();
+  wire::ParticipantOptions seat;
+  seat.node.node_namespace = options_.node.ros_namespace;
+  seat.node.name = options_.node.name;
+  seat.discovery = *discovery;
+  seat.log = log_;
+  for (const std::string& text : options_.node.remaps) {
+    auto remap = wire::parse_remap(text);
+    if (!remap.ok()) return remap.status();
+    seat.remaps.push_back(*remap);
+  }
+  auto participant = wire::Participant::create(std::move(seat));
+  if (!participant.ok()) return participant.status();
+  participant_.emplace(std::move(participant).value());
+
+  auto publisher = ResultPublisher::create(*participant_, options_.output, recognition_, log_);
+  if (!publisher.ok()) return publisher.status();
+  publisher_ = std::move(publisher).value();
+  publisher_->publish_vision_info();
+
+  worker_ = std::make_unique<Worker>(
+      recognition_, worker_options(options_), statistics_,
+      [this](const IncomingFrame& incoming, const Frame* frame,
+             const Result<SceneInterpretations>& result) { on_result(incoming, frame, result); },
+      log_);
+  auto source = TopicSource::create(
+      *participant_, options_, [this](IncomingFrame&& frame) { worker_->push(std::move(frame)); },
+      log_);
+  if (!source.ok()) return source.status();
+  source_ = std::move(source).value();
+  if (Status status = offer_services(); !status.ok()) return status;
+  reporter_ = std::thread([this] { report(); });
+  return {};
+}
+
+Status Server::offer_services() {
+  const ServiceContext context{*participant_,
+                               options_,
+                               recognition_,
+                               *worker_,
+                               statistics_,
+                               [this] { return status(); },
+                               [this] { publisher_->publish_vision_info(); },
+                               log_};
+  if (Status s = keep(offer_detect(context), detect_); !s.ok()) return s;
+  if (Status s = keep(offer_list_models(context), list_models_); !s.ok()) return s;
+  if (Status s = keep(offer_load_model(context), load_model_); !s.ok()) return s;
+  if (Status s = keep(offer_unload_model(context), unload_model_); !s.ok()) return s;
+  return keep(offer_get_status(context), get_status_);
+}
+
+void Server::on_result(const IncomingFrame& incoming, const Frame* frame,
+                       const Result<SceneInterpretations>& result) {
+  const int models = recognition_->models ? static_cast<int>(recognition_->models().size()) : 0;
+  publisher_->publish(frame, result,
+                      {incoming.stamp_ns, incoming.frame_id, models, options_.detection.seed});
+  if (!result.ok()) {
+    log_failure(result.status());
+    return;
+  }
+  std::ostringstream text;
+  const std::size_t found =
+      result->interpretations.empty() ? 0 : result->interpretations.front().placements.size();
+  text << "frame " << incoming.stamp_ns << ": " << found << " objects, "
+       << result->interpretations.size() << " interpretations, "
+       << static_cast<long>(result->total_milliseconds) << " ms";
+  log(log_, LogLevel::debug, text.str());
+}
+
+void Server::log_failure(const Status& status) {
+  const std::lock_guard<std::mutex> lock(failure_mutex_);
+  const auto now = Clock::now();
+  if (status.message == last_failure_ && now - last_logged_ < kRepeatAfter) return;
+  last_failure_ = status.message;
+  last_logged_ = now;
+  log(log_, LogLevel::error, "frame not searched: " + status.message);
+}
+
+msgs::GetStatus_Response Server::status() const {
+  const Counts counts = statistics_.counts();
+  msgs::GetStatus_Response response;
+  response.success = true;
+  response.version = BPA_VERSION;
+  response.state = counts.frames_received + counts.requests_served > 0
+                       ? msgs::GetStatus_Response::kRunning
+                       : msgs::GetStatus_Response::kIdle;
+  response.uptime_s = std::chrono::duration<double>(Clock::now() - started_).count();
+  response.frames_received = counts.frames_received;
+  response.frames_processed = counts.frames_processed;
+  response.frames_dropped = counts.frames_dropped;
+  response.frames_rejected = counts.frames_rejected;
+  response.requests_served = counts.requests_served;
+  response.requests_refused = counts.requests_refused;
+  response.queue_length = static_cast<std::uint32_t>(worker_->queue_length());
+  response.queue_capacity =
+      static_cast<std::uint32_t>(options_.queue.frames + options_.queue.requests);
+  if (recognition_->models) {
+    response.model_count = static_cast<std::uint32_t>(recognition_->models().size());
+  }
+  response.library = recognition_->library;
+  response.database_version = recognition_->version ? recognition_->version() : 1;
+  response.memory_bytes = resident_bytes();
+  for (const StageTiming& timing : statistics_.median_timings()) {
+    response.stage_timings.push_back({timing.stage, timing.milliseconds});
+  }
+  response.details = details();
+  return response;
+}
+
+std::vector<KeyValue> Server::details() const {
+  std::vector<KeyValue> details;
+  const auto add = [&details](const std::string& key, std::uint64_t value) {
+    details.push_back({key, std::to_string(value)});
+  };
+  add("frames failed in the search", statistics_.counts().frames_failed);
+  for (const auto& [cause, count] : statistics_.rejections()) add("rejected: " + cause, count);
+  const SyncCounts sync = source_->sync_counts();
+  add("camera sets with equal stamps", sync.exact);
+  add("camera sets with near stamps", sync.approximate);
+  add("depth images without a colour image", sync.depth_without_color);
+  add("depth images without a camera info", sync.depth_without_info);
+  add("colour images unused", sync.color_unused);
+  add("camera clock restarts", sync.restarts);
+  const wire::ReaderStatistics readers = source_->reader_statistics();
+  add("messages malformed", readers.malformed);
+  add("messages lost by DDS", readers.lost);
+  add("publishers of frames", source_->publishers());
+  return details;
+}
+
+DiagnosticArray Server::diagnostics() const {
+  const msgs::GetStatus_Response now = status();
+  DiagnosticStatus one;
+  one.name = participant_->node().full() + ": detection";
+  one.hardware_id = "bpa-server " + now.version;
+  one.level = now.model_count > 0 ? DiagnosticStatus::kOk : DiagnosticStatus::kError;
+  one.message = now.model_count > 0 ? "serving" : "the model library is empty";
+  const auto add = [&one](const char* key, std::uint64_t value) {
+    one.values.push_back({key, std::to_string(value)});
+  };
+  add("models", now.model_count);
+  add("frames received", now.frames_received);
+  add("frames searched", now.frames_processed);
+  add("frames dropped for newer ones", now.frames_dropped);
+  add("frames rejected", now.frames_rejected);
+  add("requests served", now.requests_served);
+  add("requests refused", now.requests_refused);
+  add("queue length", now.queue_length);
+  add("memory bytes", now.memory_bytes);
+  for (const auto& timing : now.stage_timings) {
+    one.values.push_back({"median ms of " + timing.name, std::to_string(timing.duration_ms)});
+  }
+  one.values.insert(one.values.end(), now.details.begin(), now.details.end());
+  DiagnosticArray array;
+  const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
+  array.header.stamp = wire::builtin_interfaces::from_ns(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(since_epoch).count());
+  array.status.push_back(std::move(one));
+  return array;
+}
+
+void Server::report() {
+  std::unique_lock<std::mutex> lock(report_mutex_);
+  while (!stop_report_.wait_for(lock, kReportPeriod, [this] { return stopping_; })) {
+    if (publisher_->diagnostics_wanted()) publisher_->publish(diagnostics());
+    report_losses();
+  }
+}
+
+void Server::report_losses() {
+  const SyncCounts sync = source_->sync_counts();
+  const std::uint64_t losses = sync.depth_without_color + sync.depth_without_info;
+  // Says it at 10, 100, 1000 ... so that a camera that never fits is heard, and not for ever.
+  if (losses < 10 || losses < 10 * losses_reported_) return;
+  losses_reported_ = losses;
+  std::ostringstream text;
+  text << losses << " depth images had no partner: " << sync.depth_without_color
+       << " without a colour image, " << sync.depth_without_info << " without a camera info";
+  if (sync.nearest_miss_ns > 0) {
+    text << "; the nearest one was " << static_cast<double>(sync.nearest_miss_ns) * 1e-6
+         << " ms away (input.sync_tolerance_ms is " << options_.input.sync_tolerance_ms << ")";
+  } else {
+    text << "; are " << options_.input.color << " and " << options_.input.camera_info
+         << " published?";
+  }
+  log(log_, LogLevel::warning, text.str());
+}
+
+}  // namespace bpa::server

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include <bpa/core/base/log.hpp>
+#include <bpa/core/base/status.hpp>
+#include <bpa/server/capture/topic_source.hpp>
+#include <bpa/server/options.hpp>
+#include <bpa/server/recognition.hpp>
+#include <bpa/server/result_publisher.hpp>
+#include <bpa/server/services/services.hpp>
+#include <bpa/server/statistics.hpp>
+#include <bpa/server/worker.hpp>
+#include <bpa/wire/participant.hpp>
+
+namespace bpa::server {
+
+/// The daemon without its main(): takes frames from topics, has them searched, publishes what was
+/// found and answers services, from create() until it is destroyed. A frame or request that breaks
+/// a rule is reported and forgotten.
+class Server {
+ public:
+  /// Fails with `invalid_argument` on options that break a rule, `unavailable` when DDS cannot
+  /// start.
+  static Result<std::unique_ptr<Server>> create(const ServerOptions& options,
+                                                Recognition recognition, LogHook log);
+  ~Server();
+
+  Counts counts() const { return statistics_.counts(); }
+  SyncCounts sync_counts() const { return source_->sync_counts(); }
+
+ private:
+  Server(const ServerOptions& options, Recognition recognition, LogHook log);
+  Status start();
+  Status offer_services();
+  void on_result(const IncomingFrame& incoming, const Frame* frame,
+                 const Result<SceneInterpretations>& result);
+  void log_failure(const Status& status);
+  wire::bpa_msgs::GetStatus_Response status() const;
+  std::vector<wire::diagnostic_msgs::KeyValue> details() const;
+  wire::diagnostic_msgs::DiagnosticArray diagnostics() const;
+  void report();
+  void report_losses();
+
+  const ServerOptions options_;
+  const std::shared_ptr<const Recognition> recognition_;
+  const LogHook log_;
+  const Clock::time_point started_ = Clock::now();
+  Statistics statistics_;
+  std::mutex failure_mutex_;
+  std::string last_failure_;       ///< Text of the last failed frame, and
+  Clock::time_point last_logged_;  ///< when one was logged: the same is said once in 10 s.
+  std::uint64_t losses_reported_ = 0;
+
+  // In the order in which they come up; destroyed from the last to the first, so that nothing calls
+  // into what is gone.
+  std::optional<wire::Participant> participant_;
+  std::unique_ptr<ResultPublisher> publisher_;
+  std::unique_ptr<Worker> worker_;
+  std::unique_ptr<TopicSource> source_;
+  std::optional<DetectServer> detect_;
+  std::optional<ListModelsServer> list_models_;
+  std::optional<LoadModelServer> load_model_;
+  std::optional<UnloadModelServer> unload_model_;
+  std::optional<GetStatusServer> get_status_;
+
+  std::mutex report_mutex_;
+  std::condition_variable stop_report_;
+  bool stopping_ = false;
+  std::thread reporter_;
+};
+
+}  // namespace bpa::server

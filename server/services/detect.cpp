@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include <bpa/server/convert/frames.hpp>
+#include <bpa/server/convert/results.hpp>
+#include <bpa/server/services/services.hpp>
+
+namespace bpa::server {
+namespace {
+
+namespace msgs = wire::bpa_msgs;
+using Token = wire::ReplyToken<msgs::Detect>;
+
+void reply(const Token& token, const msgs::Detect_Response& response, const LogHook& hook) {
+  const Status status = token.reply(response);
+  if (!status.ok()) log(hook, LogLevel::info, "detect: reply not delivered: " + status.message);
+}
+
+msgs::Detect_Response refusal(const Status& status) {
+  msgs::Detect_Response response;
+  response.status = to_message(status);
+  response.result.status = response.status;
+  return response;
+}
+
+/// The server's settings where the request leaves the choice.
+Result<DetectRequest> search_of(const msgs::Detect_Request& request,
+                                const DetectionOptions& options) {
+  if (request.top_k > 100) {
+    return invalid_argument("top_k is " + std::to_string(request.top_k) +
+                            "; it must be between 1 and 100, or 0 for the server's setting");
+  }
+  if (!(request.time_budget_ms >= 0 && request.time_budget_ms <= 1e6)) {
+    return invalid_argument("time_budget_ms is " + std::to_string(request.time_budget_ms) +
+                            "; it must be between 0 and 1000000");
+  }
+  if (!(request.timeout_ms >= 0 && request.timeout_ms <= 1e7)) {
+    return invalid_argument("timeout_ms is " + std::to_string(request.timeout_ms) +
+                            "; it must be between 0 and 10000000");
+  }
+  DetectRequest search;
+  search.models = request.models;
+  search.top_k = request.top_k > 0 ? static_cast<int>(request.top_k) : options.top_k;
+  search.budget_ms = request.time_budget_ms > 0 ? request.time_budget_ms : options.budget_ms;
+  search.seed = request.seed > 0 ? request.seed : options.seed;
+  search.num_threads = options.threads;
+  return search;
+}
+
+int models_searched(const Recognition& recognition, const DetectRequest& search) {
+  if (!search.models.empty()) return static_cast<int>(search.models.size());
+  return recognition.models ? static_cast<int>(recognition.models().size()) : 0;
+}
+
+/// Makes the job of a request whose fields are legal.
+DetectJob job_of(std::shared_ptr<msgs::Detect_Request> request, const DetectRequest& search,
+                 const DetectionOptions& options) {
+  DetectJob job;
+  job.request = search;
+  const double timeout_ms =
+      request->timeout_ms > 0 ? request->timeout_ms : options.request_timeout_ms;
+  job.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                    std::chrono::duration<double, std::milli>(timeout_ms));
+  if (request->has_frame) {
+    job.decode = [request] { return frame_from_message(request->frame); };
+  } else if (request->frame.roi.width > 0 || !request->frame.mask.empty() ||
+             !request->frame.priors.empty()) {
+    job.restrict_frame = [request](Frame& frame) { return restrict_frame(request->frame, frame); };
+  }
+  return job;
+}
+
+}  // namespace
+
+Result<DetectServer> offer_detect(const ServiceContext& context) {
+  const auto handle = [recognition = context.recognition, &worker = context.worker,
+                       &statistics = context.statistics, options = context.options.detection,
+                       hook = context.log](msgs::Detect_Request&& message, Token token) {
+    const auto refuse = [&](const Status& status) {
+      statistics.add(&Counts::requests_refused);
+      log(hook, LogLevel::info, "detect refused: " + status.message);
+      reply(token, refusal(status), hook);
+    };
+    auto request = std::make_shared<msgs::Detect_Request>(std::move(message));
+    const Result<DetectRequest> search = search_of(*request, options);
+    if (!search.ok()) return refuse(search.status());
+    DetectJob job = job_of(request, *search, options);
+    // Before the push, which may finish the job at once.
+    const auto position = static_cast<std::uint32_t>(worker.queue_length());
+    job.done = [recognition, search = *search, position, token, hook](
+                   const Frame* frame, const Result<SceneInterpretations>& result) {
+      msgs::Detect_Response response = refusal(result.status());
+      response.success = result.ok();
+      response.queue_position = position;
+      if (frame != nullptr) {
+        response.result = interpretations_message(
+            result,
+            {frame->stamp_ns, frame->frame_id, models_searched(*recognition, search), search.seed});
+      }
+      if (!result.ok()) log(hook, LogLevel::info, "detect failed: " + result.status().message);
+      reply(token, response, hook);
+    };
+    const Result<std::size_t> accepted = worker.push(std::move(job));
+    if (!accepted.ok()) refuse(accepted.status());
+  };
+  return DetectServer::create(context.participant, "detect", handle);
+}
+
+}  // namespace bpa::server

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
+#include <bpa/server/convert/results.hpp>
+#include <bpa/server/services/services.hpp>
+
+// Loading takes seconds, so it waits for its turn on the worker.
+
+namespace bpa::server {
+namespace {
+
+namespace msgs = wire::bpa_msgs;
+
+Status fixed_library() {
+  return Status(StatusCode::unsupported, "this server's library cannot be changed");
+}
+
+/// Fills in what both responses have, logs, tells the others and replies.
+template <class Service>
+void finish(const ServiceContext& context, const char* what, const Status& status,
+            typename Service::Response& response, const wire::ReplyToken<Service>& token) {
+  response.success = status.ok();
+  response.status = to_message(status);
+  response.database_version = context.recognition->version ? context.recognition->version() : 1;
+  log(context.log, LogLevel::info,
+      std::string(what) + (status.ok() ? ": done" : " failed: " + status.message));
+  if (status.ok()) context.library_changed();
+  const Status sent = token.reply(response);
+  if (!sent.ok()) log(context.log, LogLevel::info, std::string(what) + ": " + sent.message);
+}
+
+void load(const ServiceContext& context, const msgs::LoadModel_Request& request,
+          const wire::ReplyToken<msgs::LoadModel>& token) {
+  msgs::LoadModel_Response response;
+  const Recognition& recognition = *context.recognition;
+  Status status = fixed_library();
+  if (recognition.load) {
+    const auto model = recognition.load(request.source, request.name);
+    status = model.status();
+    if (model.ok()) response.model = model_message(**model);
+  }
+  finish(context, "load_model", status, response, token);
+}
+
+void unload(const ServiceContext& context, const msgs::UnloadModel_Request& request,
+            const wire::ReplyToken<msgs::UnloadModel>& token) {
+  msgs::UnloadModel_Response response;
+  const Recognition& recognition = *context.recognition;
+  const Status status = recognition.unload ? recognition.unload(request.name) : fixed_library();
+  finish(context, "unload_model", status, response, token);
+}
+
+/// A service whose requests `work` answers on the worker.
+template <class Service, class Work>
+Result<wire::ServiceServer<Service>> offer(const ServiceContext& context, const char* name,
+                                           Work work) {
+  return wire::ServiceServer<Service>::create(
+      context.participant, name,
+      [context, name, work](typename Service::Request&& request, wire::ReplyToken<Service> token) {
+        const Status queued =
+            context.worker.run_later([context, work, token, request = std::move(request)] {
+              work(context, request, token);
+            });
+        if (queued.ok()) return;
+        typename Service::Response response;
+        finish(context, name, queued, response, token);
+      });
+}
+
+}  // namespace
+
+Result<LoadModelServer> offer_load_model(const ServiceContext& context) {
+  return offer<msgs::LoadModel>(context, "load_model", load);
+}
+
+Result<UnloadModelServer> offer_unload_model(const ServiceContext& context) {
+  return offer<msgs::UnloadModel>(context, "unload_model", unload);
+}
+
+}  // namespace bpa::server

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <fstream>
+
+#include <unistd.h>
+
+#include <bpa/server/statistics.hpp>
+
+namespace bpa::server {
+namespace {
+
+constexpr std::size_t kRemembered = 50;
+constexpr std::size_t kMaxReasons = 32;  ///< Bounds what a hostile publisher can make us remember.
+
+void remember(std::deque<double>& values, double value) {
+  values.push_back(value);
+  if (values.size() > kRemembered) values.pop_front();
+}
+
+double median(const std::deque<double>& values) {
+  if (values.empty()) return 0;
+  std::vector<double> sorted(values.begin(), values.end());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
+
+}  // namespace
+
+void Statistics::add(std::uint64_t Counts::*counter) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++(counts_.*counter);
+}
+
+void Statistics::add_rejection(const std::string& reason) {
+  // "frame depth has 12 values; ..." and "frame depth has 13 values; ..." are one cause.
+  std::string cause = reason.substr(0, reason.find_first_of("0123456789;"));
+  while (!cause.empty() && cause.back() == ' ') cause.pop_back();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++counts_.frames_rejected;
+  if (rejections_.size() >= kMaxReasons && rejections_.count(cause) == 0) cause = "other";
+  ++rejections_[cause];
+}
+
+void Statistics::add_timings(const SceneInterpretations& result) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  remember(totals_, result.total_milliseconds);
+  for (const StageTiming& timing : result.timings) {
+    auto stage = std::find_if(stages_.begin(), stages_.end(),
+                              [&](const auto& s) { return s.first == timing.stage; });
+    if (stage == stages_.end()) stage = stages_.insert(stage, {timing.stage, {}});
+    remember(stage->second, timing.milliseconds);
+  }
+}
+
+Counts Statistics::counts() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return counts_;
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> Statistics::rejections() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return {rejections_.begin(), rejections_.end()};
+}
+
+std::vector<StageTiming> Statistics::median_timings() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<StageTiming> timings;
+  for (const auto& [stage, values] : stages_) timings.push_back({stage, median(values)});
+  if (!totals_.empty()) timings.push_back({"total", median(totals_)});
+  return timings;
+}
+
+double Statistics::median_total_ms() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return median(totals_);
+}
+
+std::uint64_t resident_bytes() {
+  std::ifstream file("/proc/self/statm");
+  std::uint64_t total = 0, resident = 0;
+  file >> total >> resident;
+  return file ? resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+}  // namespace bpa::server

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <bpa/core/scene/interpretation.hpp>
+
+namespace bpa::server {
+
+/// What the server counted since it started.
+struct Counts {
+  std::uint64_t frames_received = 0;
+  std::uint64_t frames_processed = 0;
+  std::uint64_t frames_dropped = 0;   ///< A newer one took the place.
+  std::uint64_t frames_rejected = 0;  ///< Broke a rule.
+  std::uint64_t frames_failed = 0;    ///< Legal, but the search failed.
+  std::uint64_t requests_served = 0;
+  std::uint64_t requests_refused = 0;  ///< Busy, too late or not legal.
+};
+
+/// The server's memory of how it is doing. Thread-safe.
+class Statistics {
+ public:
+  /// Adds to one counter: add(&Counts::frames_dropped).
+  void add(std::uint64_t Counts::*counter);
+  /// Counts a rejected frame under its message's first words.
+  void add_rejection(const std::string& reason);
+  void add_timings(const SceneInterpretations& result);
+
+  Counts counts() const;
+  /// Reason and count of every rejection.
+  std::vector<std::pair<std::string, std::uint64_t>> rejections() const;
+  /// Medians over the last 50 frames, in the order of the stages, "total" last.
+  std::vector<StageTiming> median_timings() const;
+  /// Median of the whole search; 0 before the first.
+  double median_total_ms() const;
+
+ private:
+  mutable std::mutex mutex_;
+  Counts counts_;
+  std::map<std::string, std::uint64_t> rejections_;
+  std::vector<std::pair<std::string, std::deque<double>>> stages_;
+  std::deque<double> totals_;
+};
+
+/// Resident memory of this process in bytes; 0 when unknown.
+std::uint64_t resident_bytes();
+
+}  // namespace bpa::server

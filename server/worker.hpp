@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include <bpa/core/base/log.hpp>
+#include <bpa/core/base/status.hpp>
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/server/newest_queue.hpp>
+#include <bpa/server/recognition.hpp>
+#include <bpa/server/statistics.hpp>
+
+// Between DDS and the detector: DDS threads put frames and requests into bounded queues and go; one
+// worker takes them out, computes with no lock held and hands the results on.
+
+namespace bpa::server {
+
+using Clock = std::chrono::steady_clock;
+
+/// A frame as it came in. Turning it into a Frame is work, so the worker does it.
+struct IncomingFrame {
+  std::function<Result<Frame>()> decode;
+  std::int64_t stamp_ns = 0;
+  std::string frame_id;
+};
+
+/// One detect request that waits for its answer.
+struct DetectJob {
+  /// Empty: search the next frame that comes in.
+  std::function<Result<Frame>()> decode;
+  /// Narrows the next frame down (region, mask); may be empty.
+  std::function<Status(Frame&)> restrict_frame;
+  DetectRequest request;
+  Clock::time_point deadline;  ///< No answer is wanted after this.
+  /// Called once: with the answer, or with why there is none. `frame` is null when there is none.
+  std::function<void(const Frame* frame, const Result<SceneInterpretations>& result)> done;
+};
+
+struct WorkerOptions {
+  std::size_t frame_capacity = 1;
+  std::size_t request_capacity = 8;
+  bool continuous = true;  ///< Search frames that nobody requested.
+  DetectRequest request;   ///< For those.
+};
+
+class Worker {
+ public:
+  /// `on_result` runs on the worker for every frame of the stream; `frame` is null when the frame
+  /// broke a rule.
+  using OnResult = std::function<void(const IncomingFrame& incoming, const Frame* frame,
+                                      const Result<SceneInterpretations>& result)>;
+
+  Worker(std::shared_ptr<const Recognition> recognition, const WorkerOptions& options,
+         Statistics& statistics, OnResult on_result, LogHook log);
+  ~Worker();
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  /// Ends after the search that runs now; jobs that wait or come later are answered with
+  /// `unavailable`. Not to be called from two threads at once.
+  void stop();
+
+  /// Never waits; the oldest frame goes when there are too many.
+  void push(IncomingFrame frame);
+  /// Accepts the job and returns how many stand before it, or refuses it: `busy` when the queue is
+  /// full, `timeout` when its turn would come after its deadline. `done` is not called then.
+  Result<std::size_t> push(DetectJob job);
+
+  /// Runs a task (such as loading a model) between two searches; `busy` when too many wait.
+  Status run_later(std::function<void()> task);
+
+  /// Frames and requests that wait.
+  std::size_t queue_length() const;
+
+ private:
+  void run();
+  bool has_work() const;
+  std::optional<Clock::time_point> first_deadline() const;
+  std::vector<DetectJob> take_expired();
+  void expire(std::vector<DetectJob> jobs);
+  void work_on_frame(IncomingFrame incoming, std::vector<DetectJob> waiting);
+  void work_on_request(DetectJob job);
+  void answer_next_frame(const Frame& frame, const DetectJob& job,
+                         const Result<SceneInterpretations>* shared);
+  Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request);
+
+  const std::shared_ptr<const Recognition> recognition_;
+  const WorkerOptions options_;
+  Statistics& statistics_;
+  const OnResult on_result_;
+  const LogHook log_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  NewestQueue<IncomingFrame> frames_;
+  std::deque<DetectJob> requests_;         ///< With frames of their own.
+  std::vector<DetectJob> awaiting_frame_;  ///< For the next frame.
+  std::deque<std::function<void()>> tasks_;
+  bool frame_was_last_ = false;  ///< Whose turn it is when both wait.
+  bool stopping_ = false;
+  std::thread thread_;  ///< Last: starts when all else is there.
+};
+
+}  // namespace bpa::server

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include <bpa/server/convert/frames.hpp>
+
+#include "support/wall_messages.hpp"
+
+namespace bpa::server {
+namespace {
+
+using wire::bpa_msgs::RgbdFrame;
+
+TEST(FrameFromMessage, KeepsEverything) {
+  RgbdFrame message = support::wall_frame(1'234'567'890'123);
+  message.roi.x_offset = 4;
+  message.roi.width = 20;
+  message.roi.height = 48;
+  message.mask.assign(support::kWidth * support::kHeight, 1);
+  const auto frame = frame_from_message(message);
+  ASSERT_TRUE(frame.ok()) << frame.status().message;
+  EXPECT_EQ(frame->stamp_ns, 1'234'567'890'123);
+  EXPECT_EQ(frame->frame_id, "wall_camera");
+  EXPECT_EQ(frame->camera.width, 64);
+  EXPECT_EQ(frame->camera.cy, 23.5);
+  EXPECT_FLOAT_EQ(frame->depth[5], 0.71f);
+  EXPECT_EQ(frame->color, support::wall_rgb());
+  EXPECT_EQ(frame->roi.x, 4);
+  EXPECT_EQ(frame->mask.size(), message.mask.size());
+}
+
+TEST(FrameFromMessage, NeedsNoColor) {
+  RgbdFrame message = support::wall_frame();
+  message.color.clear();
+  message.color_encoding.clear();
+  const auto frame = frame_from_message(message);
+  ASSERT_TRUE(frame.ok()) << frame.status().message;
+  EXPECT_TRUE(frame->color.empty());
+}
+
+struct BadFrame {
+  const char* name;
+  std::function<void(RgbdFrame&)> spoil;
+  std::vector<const char*> words;  ///< The message must hold them: the field and the rule.
+  StatusCode code = StatusCode::invalid_argument;
+};
+
+class BadFrames : public testing::TestWithParam<BadFrame> {};
+
+TEST_P(BadFrames, AreRefusedWithFieldAndRule) {
+  RgbdFrame message = support::wall_frame();
+  GetParam().spoil(message);
+  const auto frame = frame_from_message(message);
+  ASSERT_FALSE(frame.ok());
+  EXPECT_EQ(frame.status().code, GetParam().code);
+  for (const char* word : GetParam().words) {
+    EXPECT_NE(frame.status().message.find(word), std::string::npos) << frame.status().message;
+  }
+}
+
+const BadFrame kBadFrames[] = {
+    {"DepthTooShort", [](RgbdFrame& f) { f.depth.resize(100); }, {"depth", "100", "must have"}},
+    {"DepthMissing", [](RgbdFrame& f) { f.depth.clear(); }, {"depth", "0", "must have"}},
+    {"DepthTooLong", [](RgbdFrame& f) { f.depth.resize(99999); }, {"depth", "99999"}},
+    {"ColorTooShort", [](RgbdFrame& f) { f.color.resize(7); }, {"color", "7", "must have"}},
+    {"ColorEncoding",
+     [](RgbdFrame& f) { f.color_encoding = "bayer"; },
+     {"color", "bayer", "rgb8"},
+     StatusCode::unsupported},
+    {"DepthEncoding",
+     [](RgbdFrame& f) { f.depth_encoding = ""; },
+     {"depth", "16UC1"},
+     StatusCode::unsupported},
+    {"ZeroFocalLength", [](RgbdFrame& f) { f.k[0] = 0; }, {"fx", "0"}},
+    {"NanPrincipalPoint", [](RgbdFrame& f) { f.k[2] = std::nan(""); }, {"cx", "nan"}},
+    {"ZeroWidth", [](RgbdFrame& f) { f.width = 0; }, {"width", "0"}},
+    {"HugeSize", [](RgbdFrame& f) { f.width = f.height = 4000000000U; }, {"width"}},
+    {"AllZeroDepth", [](RgbdFrame& f) { f.depth.assign(f.depth.size(), 0); }, {"depth", "500"}},
+    {"AllNanDepth",
+     [](RgbdFrame& f) {
+       f.depth_encoding = "32FC1";
+       f.depth = support::as_bytes(std::vector<float>(f.width * f.height, std::nanf("")));
+     },
+     {"depth", "500"}},
+    {"RoiOutside",
+     [](RgbdFrame& f) {
+       f.roi = {60, 0, 10, 10, false};
+     },
+     {"roi", "inside"}},
+    {"MaskSize", [](RgbdFrame& f) { f.mask.resize(3); }, {"mask", "3"}},
+    {"ManyDistortions",
+     [](RgbdFrame& f) { f.d.resize(14); },
+     {"d has 14", "8"},
+     StatusCode::unsupported},
+    {"Priors", [](RgbdFrame& f) { f.priors.resize(1); }, {"priors"}, StatusCode::unsupported},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, BadFrames, testing::ValuesIn(kBadFrames),
+                         [](const auto& test) { return test.param.name; });
+
+CameraImages wall_images() {
+  return {std::make_shared<wire::sensor_msgs::Image>(support::wall_color_image(5)),
+          std::make_shared<wire::sensor_msgs::Image>(support::wall_depth_image(7)),
+          std::make_shared<wire::sensor_msgs::CameraInfo>(support::wall_camera_info(6))};
+}
+
+TEST(FrameFromImages, EqualsTheFrameMessage) {
+  const auto frame = frame_from_images(wall_images(), false);
+  const auto expected = frame_from_message(support::wall_frame());
+  ASSERT_TRUE(frame.ok()) << frame.status().message;
+  EXPECT_EQ(frame->stamp_ns, 7);  // the depth image's
+  EXPECT_EQ(frame->depth, expected->depth);
+  EXPECT_EQ(frame->color, expected->color);
+  EXPECT_EQ(frame->camera.fx, 60);
+}
+
+TEST(FrameFromImages, RectifiedImagesUseTheProjectionMatrix) {
+  const auto frame = frame_from_images(wall_images(), true);
+  ASSERT_TRUE(frame.ok());
+  EXPECT_EQ(frame->camera.fx, 58);
+  EXPECT_EQ(frame->camera.cy, 23);
+}
+
+TEST(FrameFromImages, RefusesUnregisteredDepth) {
+  CameraImages images = wall_images();
+  auto small = support::wall_color_image(5);
+  small.width = 32;
+  images.color = std::make_shared<wire::sensor_msgs::Image>(small);
+  const auto frame = frame_from_images(images, false);
+  EXPECT_EQ(frame.status().code, StatusCode::invalid_argument);
+  EXPECT_NE(frame.status().message.find("32x48"), std::string::npos) << frame.status().message;
+}
+
+TEST(RestrictFrame, AddsRegionAndMask) {
+  Frame frame = *frame_from_message(support::wall_frame());
+  RgbdFrame message;
+  EXPECT_TRUE(restrict_frame(message, frame).ok());
+  EXPECT_TRUE(frame.roi.empty());
+  message.roi = {1, 2, 30, 40, false};  // x, y, height, width
+  EXPECT_TRUE(restrict_frame(message, frame).ok());
+  EXPECT_EQ(frame.roi.width, 40);
+  message.mask.resize(5);
+  EXPECT_FALSE(restrict_frame(message, frame).ok());
+}
+
+}  // namespace
+}  // namespace bpa::server

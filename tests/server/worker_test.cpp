@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include <bpa/server/convert/frames.hpp>
+#include <bpa/server/worker.hpp>
+
+#include "support/wall_messages.hpp"
+
+namespace bpa::server {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// A detector that waits at a gate and says what it was asked.
+class Gate {
+ public:
+  Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    stamps_.push_back(frame.stamp_ns);
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return open_; });
+    if (request.seed == 666) throw std::runtime_error("out of luck");
+    SceneInterpretations result;
+    result.stamp_ns = frame.stamp_ns;
+    result.total_milliseconds = 1;
+    return result;
+  }
+  void open() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    open_ = true;
+    changed_.notify_all();
+  }
+  bool wait_for_started(std::size_t count) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    return changed_.wait_for(lock, milliseconds(5000), [&] { return stamps_.size() >= count; });
+  }
+  std::vector<std::int64_t> stamps() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return stamps_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::int64_t> stamps_;
+  bool open_ = false;
+};
+
+/// Collects answers and lets the test wait for them.
+class Answers {
+ public:
+  std::function<void(const Frame*, const Result<SceneInterpretations>&)> collector() {
+    return [this](const Frame*, const Result<SceneInterpretations>& result) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      statuses_.push_back(result.status());
+      changed_.notify_all();
+    };
+  }
+  bool wait_for(std::size_t count) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    return changed_.wait_for(lock, milliseconds(5000), [&] { return statuses_.size() >= count; });
+  }
+  StatusCode code(std::size_t i) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return statuses_.at(i).code;
+  }
+  std::size_t size() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return statuses_.size();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Status> statuses_;
+};
+
+class WorkerTest : public testing::Test {
+ protected:
+  std::unique_ptr<Worker> make(WorkerOptions options = {}) {
+    auto recognition = std::make_shared<Recognition>();
+    recognition->detect = [this](const Frame& frame, const DetectRequest& request) {
+      return gate.detect(frame, request);
+    };
+    return std::make_unique<Worker>(
+        recognition, options, statistics,
+        [collect = streamed.collector()](const IncomingFrame&, const Frame* frame,
+                                         const Result<SceneInterpretations>& result) {
+          collect(frame, result);
+        },
+        LogHook());
+  }
+  static IncomingFrame frame(std::int64_t stamp) {
+    return {[stamp] { return frame_from_message(support::wall_frame(stamp)); }, stamp, "c"};
+  }
+  static IncomingFrame bad_frame() {
+    return {[]() -> Result<Frame> { return invalid_argument("frame depth has 3 values"); }, 0, "c"};
+  }
+  DetectJob job(bool with_frame, milliseconds time = milliseconds(5000)) {
+    DetectJob job;
+    if (with_frame) job.decode = [] { return frame_from_message(support::wall_frame(77)); };
+    job.deadline = Clock::now() + time;
+    job.done = answers.collector();
+    return job;
+  }
+
+  Gate gate;
+  Statistics statistics;
+  Answers streamed;
+  Answers answers;
+};
+
+TEST_F(WorkerTest, NewestFrameWinsAndDropsAreCounted) {
+  auto worker = make();
+  worker->push(frame(0));
+  ASSERT_TRUE(gate.wait_for_started(1));
+  for (int stamp = 1; stamp <= 9; ++stamp) worker->push(frame(stamp));
+  EXPECT_EQ(worker->queue_length(), 1U);
+  gate.open();
+  ASSERT_TRUE(streamed.wait_for(2));
+  EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 9}));
+  const Counts counts = statistics.counts();
+  EXPECT_EQ(counts.frames_received, 10U);
+  EXPECT_EQ(counts.frames_dropped, 8U);
+  EXPECT_EQ(counts.frames_processed, 2U);
+}
+
+TEST_F(WorkerTest, FullQueueOfRequestsIsBusyAndFramesDoNotCount) {
+  WorkerOptions options;
+  options.request_capacity = 2;
+  auto worker = make(options);
+  worker->push(frame(0));
+  ASSERT_TRUE(gate.wait_for_started(1));
+  worker->push(frame(1));
+  EXPECT_TRUE(worker->push(job(true)).ok());
+  const auto second = worker->push(job(false));
+  ASSERT_TRUE(second.ok());
+  EXPECT_EQ(*second, 1U);  // one stands before it
+  EXPECT_EQ(worker->push(job(true)).status().code, StatusCode::busy);
+  gate.open();
+  ASSERT_TRUE(answers.wait_for(2));
+  EXPECT_EQ(answers.code(0), StatusCode::ok);
+  EXPECT_EQ(answers.code(1), StatusCode::ok);
+  EXPECT_EQ(statistics.counts().requests_served, 2U);
+}
+
+TEST_F(WorkerTest, FramesAndRequestsTakeTurns) {
+  WorkerOptions options;
+  options.frame_capacity = 10;
+  auto worker = make(options);
+  worker->push(frame(0));
+  ASSERT_TRUE(gate.wait_for_started(1));
+  for (int i = 1; i <= 3; ++i) worker->push(frame(i));
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(worker->push(job(true)).ok());
+  gate.open();
+  ASSERT_TRUE(answers.wait_for(3));
+  ASSERT_TRUE(streamed.wait_for(4));
+  EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 77, 1, 77, 2, 77, 3}));
+}
+
+TEST_F(WorkerTest, NextFrameRequestsShareTheStreamsSearch) {
+  auto worker = make();
+  gate.open();
+  ASSERT_TRUE(worker->push(job(false)).ok());
+  ASSERT_TRUE(worker->push(job(false)).ok());
+  worker->push(bad_frame());  // they go on waiting
+  ASSERT_TRUE(streamed.wait_for(1));
+  EXPECT_EQ(answers.size(), 0U);
+  worker->push(frame(5));
+  ASSERT_TRUE(answers.wait_for(2));
+  EXPECT_EQ(gate.stamps(), std::vector<std::int64_t>{5});
+  EXPECT_EQ(statistics.counts().frames_rejected, 1U);
+  EXPECT_EQ(statistics.rejections().front().first, "frame depth has");
+}
+
+TEST_F(WorkerTest, NextFrameRequestsWithoutAFrameTimeOut) {
+  auto worker = make();
+  ASSERT_TRUE(worker->push(job(false, milliseconds(30))).ok());
+  ASSERT_TRUE(answers.wait_for(1));
+  EXPECT_EQ(answers.code(0), StatusCode::timeout);
+}
+
+TEST_F(WorkerTest, OnDemandSearchesNothingUnasked) {
+  WorkerOptions options;
+  options.continuous = false;
+  auto worker = make(options);
+  gate.open();
+  worker->push(frame(1));
+  ASSERT_TRUE(worker->push(job(true)).ok());
+  ASSERT_TRUE(answers.wait_for(1));
+  EXPECT_EQ(gate.stamps(), std::vector<std::int64_t>{77});
+  ASSERT_TRUE(worker->push(job(false)).ok());
+  ASSERT_TRUE(answers.wait_for(2));
+  EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{77, 1}));
+  EXPECT_EQ(streamed.size(), 0U);
+}
+
+TEST_F(WorkerTest, SurvivesADetectorThatThrows) {
+  auto worker = make();
+  gate.open();
+  DetectJob bad = job(true);
+  bad.request.seed = 666;
+  ASSERT_TRUE(worker->push(std::move(bad)).ok());
+  ASSERT_TRUE(worker->push(job(true)).ok());
+  ASSERT_TRUE(answers.wait_for(2));
+  EXPECT_EQ(answers.code(0), StatusCode::internal);
+  EXPECT_EQ(answers.code(1), StatusCode::ok);
+}
+
+TEST_F(WorkerTest, StoppingAnswersWhatWaits) {
+  auto worker = make();
+  worker->push(frame(0));
+  ASSERT_TRUE(gate.wait_for_started(1));
+  ASSERT_TRUE(worker->push(job(true)).ok());
+  ASSERT_TRUE(worker->push(job(false)).ok());
+  std::thread stopper([&] { worker->stop(); });
+  gate.open();
+  stopper.join();
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_EQ(worker->push(job(true)).status().code, StatusCode::unavailable);
+}
+
+}  // namespace
+}  // namespace bpa::server
