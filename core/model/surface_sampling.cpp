@@ -92,8 +92,9 @@ Status check_size(const std::string& name, double diameter) {
   return invalid_argument(text.str());
 }
 
-// Keeps what some view sees; turns normals that are seen from behind more often than from the
-// front (flipped faces).
+// Keeps what some view sees; turns normals that are only ever seen from behind (flipped faces). The
+// inside of a thin wall lies so close to its outside that it seems to be seen from behind as well:
+// being seen from the front at all decides.
 PointCloud visible_surface(const PointCloud& cloud, float spacing, int num_threads) {
   PointCloud flipped = cloud;
   for (Eigen::Vector3f& normal : flipped.normals) normal = -normal;
@@ -109,7 +110,7 @@ PointCloud visible_surface(const PointCloud& cloud, float spacing, int num_threa
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (front[i] + back[i] == 0) continue;
     out.points.push_back(cloud.points[i]);
-    out.normals.push_back(front[i] >= back[i] ? cloud.normals[i] : flipped.normals[i]);
+    out.normals.push_back(front[i] > 0 ? cloud.normals[i] : flipped.normals[i]);
     if (!cloud.colors.empty()) out.colors.push_back(cloud.colors[i]);
   }
   return out;

@@ -26,6 +26,13 @@ double single_worth(const Candidate& c, const InterpretationOptions& options) {
          options.object_penalty;
 }
 
+// Two solid things cannot have nearly the same place.
+bool same_place(const Candidate& a, const Candidate& b) {
+  const double distance = (a.pose().translation - b.pose().translation).norm();
+  const double smaller = std::min(a.model->diameter, b.model->diameter);
+  return distance < (a.model == b.model ? 0.4 : 0.2) * smaller;
+}
+
 // Finds the overlaps through an index from pixels to the candidates that explain them.
 std::vector<std::vector<Overlap>> find_overlaps(const std::vector<Candidate>& candidates,
                                                 const InterpretationOptions& options) {
@@ -50,13 +57,19 @@ std::vector<std::vector<Overlap>> find_overlaps(const std::vector<Candidate>& ca
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < count; ++j) {
       const int shared = common[i * count + j];
-      if (i == j || shared == 0) continue;
-      const double part_of_i = shared / static_cast<double>(candidates[i].explained.size());
-      const double part_of_j = shared / static_cast<double>(candidates[j].explained.size());
+      if (i == j) continue;
+      const bool colliding = same_place(candidates[i], candidates[j]);
+      if (shared == 0 && !colliding) continue;
+      const auto part_of = [shared](const Candidate& c) {
+        return shared / std::max(1.0, static_cast<double>(c.explained.size()));
+      };
+      const double part_of_i = part_of(candidates[i]);
+      const double part_of_j = part_of(candidates[j]);
       // A shared pixel counts half for each of the two.
       const double lost = 0.5 * (part_of_i * std::max(0.0, single_worth(candidates[i], options)) +
                                  part_of_j * std::max(0.0, single_worth(candidates[j], options)));
-      overlaps[i].push_back({j, shared, lost, std::max(part_of_i, part_of_j) > options.max_shared});
+      overlaps[i].push_back(
+          {j, shared, lost, colliding || std::max(part_of_i, part_of_j) > options.max_shared});
     }
   }
   return overlaps;
