@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <bpa/core/align/iterate.hpp>
+#include <bpa/core/base/options.hpp>
+#include <bpa/core/cloud/point_cloud.hpp>
+#include <bpa/core/geometry/symmetry.hpp>
+
+// The paper's experiment of BPA against ICP (its section "BPA vs. ICP"), on plain clouds.
+
+namespace bpa::align {
+
+/// One object that is truly in a scene. Both clouds have normals, and curvatures with principal
+/// directions where those are to count.
+struct TruePlacement {
+  const PointCloud* model = nullptr;  ///< Object frame.
+  const PointCloud* scene = nullptr;  ///< Camera frame, the whole scene, normals to the camera.
+  Pose camera_from_object;
+  SymmetryGroup symmetry;
+};
+
+struct ConvergenceOptions {
+  int starts = 50;                 ///< Noisy starts for each true placement.
+  int iterations = 20;             ///< Alignment steps from each.
+  int points = 10;                 ///< Scene points matched in a step.
+  double start_position_m = 0.02;  ///< Standard deviation of a start's position per axis.
+  double start_angle_deg = 15;     ///< Standard deviation of a start's rotation per axis.
+  double gate_m = 0.03;            ///< Scene points further from the placed model do not match.
+  double gate_deg = 45;            ///< Nor those whose normal differs by more.
+  double sigma_m = 0.01;           ///< Of a correspondence's position, for BPA.
+  std::uint64_t seed = 0;
+  int num_threads = 0;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("starts", starts, FieldRule{1, 100000, "Noisy starts for each true placement."});
+    visit("iterations", iterations, FieldRule{1, 1000, "Alignment steps from each start."});
+    visit("points", points, FieldRule{3, 1000, "Scene points matched in a step."});
+    visit("start_position_m", start_position_m, FieldRule{0, 1, "Noise of a start, metres."});
+    visit("start_angle_deg", start_angle_deg, FieldRule{0, 180, "Noise of a start, degrees."});
+    visit("gate_m", gate_m, FieldRule{0.001, 1, "Largest distance of a match, metres."});
+    visit("gate_deg", gate_deg, FieldRule{1, 180, "Largest angle between normals, degrees."});
+    visit("sigma_m", sigma_m, FieldRule{1e-5, 1, "Standard deviation of a match, metres."});
+    visit("seed", seed, FieldRule{0, 1.8e19, "Same seed, same answer."});
+    visit("num_threads", num_threads, FieldRule{0, 256, "0 = one per core."});
+  }
+};
+
+/// Entry k: the mean over all trials of the least error within the first k steps; entry 0 is the
+/// start's.
+struct ConvergenceCurve {
+  std::vector<double> position_m;
+  std::vector<double> angle_rad;
+};
+
+struct ConvergenceResult {
+  ConvergenceCurve bpa;
+  ConvergenceCurve icp;
+  int trials = 0;
+};
+
+/// From each start, in each step: scene points near the placed model are drawn at random and
+/// matched with their nearest model point on the side that faces the camera; both methods get the
+/// same draws at the same pose. Angles and positions are modulo the symmetry. Does not depend on
+/// num_threads.
+ConvergenceResult run_convergence(const std::vector<TruePlacement>& placements,
+                                  const ConvergenceOptions& options = {});
+
+}  // namespace bpa::align
