@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <bpa/core/eval/depth_render.hpp>
+
+namespace bpa::eval {
+namespace {
+
+constexpr double kNearest = 0.01;
+
+struct Vertex {
+  Eigen::Vector2d pixel;
+  double inverse_depth = 0;  // linear in the image
+  bool visible = false;
+};
+
+void draw_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Camera& camera,
+                   std::vector<float>& depth) {
+  const Eigen::Vector2d ab = b.pixel - a.pixel;
+  const Eigen::Vector2d ac = c.pixel - a.pixel;
+  const double area = ab.x() * ac.y() - ab.y() * ac.x();
+  if (area == 0 || !std::isfinite(area)) return;
+  const Eigen::Vector2d low = a.pixel.cwiseMin(b.pixel).cwiseMin(c.pixel);
+  const Eigen::Vector2d high = a.pixel.cwiseMax(b.pixel).cwiseMax(c.pixel);
+  const int left = static_cast<int>(std::ceil(std::max(low.x(), 0.0)));
+  const int right = static_cast<int>(std::floor(std::min(high.x(), camera.width - 1.0)));
+  const int top = static_cast<int>(std::ceil(std::max(low.y(), 0.0)));
+  const int bottom = static_cast<int>(std::floor(std::min(high.y(), camera.height - 1.0)));
+  for (int v = top; v <= bottom; ++v) {
+    for (int u = left; u <= right; ++u) {
+      const Eigen::Vector2d p = Eigen::Vector2d(u, v) - a.pixel;
+      const double wb = (p.x() * ac.y() - p.y() * ac.x()) / area;
+      const double wc = (ab.x() * p.y() - ab.y() * p.x()) / area;
+      if (wb < 0 || wc < 0 || wb + wc > 1) continue;
+      const double inverse =
+          (1 - wb - wc) * a.inverse_depth + wb * b.inverse_depth + wc * c.inverse_depth;
+      float& z = depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) +
+                       static_cast<std::size_t>(u)];
+      const auto here = static_cast<float>(1 / inverse);
+      if (z == 0 || here < z) z = here;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<float> render_depth(const TriangleMesh& mesh, const Pose& camera_from_object,
+                                const Camera& camera) {
+  std::vector<float> depth(
+      static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height), 0.0f);
+  std::vector<Vertex> vertices(mesh.vertices.size());
+  const Eigen::Matrix3d rotation = camera_from_object.matrix();
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Eigen::Vector3d point =
+        rotation * mesh.vertices[i].cast<double>() + camera_from_object.translation;
+    vertices[i].visible = point.z() > kNearest;
+    if (!vertices[i].visible) continue;
+    vertices[i].pixel = camera.project(point);
+    vertices[i].inverse_depth = 1 / point.z();
+  }
+  for (const auto& triangle : mesh.triangles) {
+    const Vertex& a = vertices[triangle[0]];
+    const Vertex& b = vertices[triangle[1]];
+    const Vertex& c = vertices[triangle[2]];
+    if (a.visible && b.visible && c.visible) draw_triangle(a, b, c, camera, depth);
+  }
+  return depth;
+}
+
+}  // namespace bpa::eval

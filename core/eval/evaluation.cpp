@@ -1,0 +1,250 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+#include <optional>
+
+#include <bpa/core/base/parallel.hpp>
+#include <bpa/core/eval/evaluation.hpp>
+
+#include "frame_evaluation.hpp"
+
+namespace bpa::eval {
+namespace {
+
+constexpr double kMetresPerMillimetre = 0.001;
+constexpr int kRanks[] = {1, 2, 3, 5, 10, 20};
+constexpr int kBins = 10;
+// 50, 90 and 95 % quantiles of chi-squared with 6 degrees of freedom.
+constexpr std::pair<double, double> kChiSquared6[] = {
+    {0.5, 5.3481}, {0.9, 10.6446}, {0.95, 12.5916}};
+
+std::string frame_name(int scene_id, int im_id) {
+  return "scene " + std::to_string(scene_id) + " image " + std::to_string(im_id);
+}
+
+/// The result of each frame; null where there is none.
+Result<std::vector<const io::FrameResult*>> assign(const std::vector<io::BopFrame>& frames,
+                                                   const EvalObjects& objects,
+                                                   const std::vector<io::FrameResult>& results) {
+  std::map<std::pair<int, int>, std::size_t> index;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    index[{frames[i].scene_id, frames[i].im_id}] = i;
+    if (!frames[i].has_truth) {
+      return invalid_argument(frame_name(frames[i].scene_id, frames[i].im_id) +
+                              " has no truth (scene_gt.json); evaluation needs it");
+    }
+    for (const io::BopInstance& instance : frames[i].truth) {
+      if (objects.count(instance.obj_id) == 0) {
+        return invalid_argument("the truth of " + frame_name(frames[i].scene_id, frames[i].im_id) +
+                                " has obj_id " + std::to_string(instance.obj_id) +
+                                ", which is not among the models");
+      }
+    }
+  }
+  std::vector<const io::FrameResult*> assigned(frames.size(), nullptr);
+  for (const io::FrameResult& result : results) {
+    const auto found = index.find({result.scene_id, result.im_id});
+    if (found == index.end()) {
+      return invalid_argument("the results have " + frame_name(result.scene_id, result.im_id) +
+                              ", which is not in the data set");
+    }
+    for (const io::ResultInterpretation& interpretation : result.interpretations) {
+      for (const io::ResultPlacement& placement : interpretation.placements) {
+        if (objects.count(placement.obj_id) == 0) {
+          return invalid_argument("the results have obj_id " + std::to_string(placement.obj_id) +
+                                  ", which is not among the data set's models");
+        }
+      }
+    }
+    assigned[found->second] = &result;
+  }
+  return assigned;
+}
+
+void count(Ratio& ratio, bool hit) {
+  ratio.hits += hit;
+  ++ratio.total;
+}
+
+std::string range_name(double low, double high, const char* unit) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.1f-%.1f%s", low, high, unit);
+  return text;
+}
+
+/// Rows of equal width from `first`; the last one takes everything beyond.
+std::vector<Group> range_groups(double first, double width, int rows, const char* unit) {
+  std::vector<Group> groups(static_cast<std::size_t>(rows));
+  for (int i = 0; i < rows; ++i) {
+    groups[static_cast<std::size_t>(i)].name =
+        range_name(first + i * width, first + (i + 1) * width, unit);
+  }
+  return groups;
+}
+
+Group& group_of(std::vector<Group>& groups, double first, double width, double value) {
+  const int row = static_cast<int>((value - first) / width + 1e-9);
+  return groups[static_cast<std::size_t>(std::clamp(row, 0, static_cast<int>(groups.size()) - 1))];
+}
+
+void add_groups(const EvalObjects& objects, EvaluationReport& report) {
+  std::map<int, Group> by_object;
+  report.by_visible_fraction = range_groups(0.1, 0.1, 9, "");
+  report.by_distance = range_groups(0.4, 0.2, 8, " m");
+  for (const FrameOutcome& frame : report.outcomes) {
+    for (const TruthOutcome& truth : frame.truth) {
+      if (!truth.counts) continue;
+      count(by_object[truth.obj_id].recall, truth.found);
+      count(group_of(report.by_visible_fraction, 0.1, 0.1, truth.visible_fraction).recall,
+            truth.found);
+      count(group_of(report.by_distance, 0.4, 0.2, truth.distance).recall, truth.found);
+    }
+    for (const EstimateOutcome& estimate : frame.estimates) {
+      if (estimate.ignored) continue;
+      count(by_object[estimate.obj_id].precision, estimate.truth >= 0);
+      count(group_of(report.by_distance, 0.4, 0.2, estimate.distance).precision,
+            estimate.truth >= 0);
+    }
+  }
+  for (auto& [obj_id, group] : by_object) {
+    group.name = objects.at(obj_id).name;
+    report.by_object.push_back(group);
+  }
+  const auto empty = [](const Group& g) { return g.recall.total + g.precision.total == 0; };
+  std::erase_if(report.by_visible_fraction, empty);
+  std::erase_if(report.by_distance, empty);
+}
+
+void add_calibration(EvaluationReport& report) {
+  report.reliability.resize(kBins);
+  for (int i = 0; i < kBins; ++i) {
+    ReliabilityBin& bin = report.reliability[static_cast<std::size_t>(i)];
+    bin.low = i / static_cast<double>(kBins);
+    bin.high = (i + 1) / static_cast<double>(kBins);
+  }
+  for (const auto& [level, quantile] : kChiSquared6) report.coverage.push_back({level, {}});
+  double squared = 0;
+  int reported = 0;
+  for (const FrameOutcome& frame : report.outcomes) {
+    for (const EstimateOutcome& estimate : frame.estimates) {
+      if (estimate.ignored) continue;
+      const bool correct = estimate.truth >= 0;
+      const double p = std::clamp(estimate.probability, 0.0, 1.0);
+      squared += (p - correct) * (p - correct);
+      ++reported;
+      ReliabilityBin& bin = report.reliability[static_cast<std::size_t>(
+          std::min(static_cast<int>(p * kBins), kBins - 1))];
+      bin.mean_probability += p;
+      count(bin.correct, correct);
+      if (!correct || !estimate.has_covariance) continue;
+      for (std::size_t i = 0; i < std::size(kChiSquared6); ++i) {
+        count(report.coverage[i].covered, estimate.mahalanobis_squared <= kChiSquared6[i].second);
+      }
+    }
+  }
+  report.brier = reported > 0 ? squared / reported : 0;
+  for (ReliabilityBin& bin : report.reliability) {
+    if (bin.correct.total > 0) bin.mean_probability /= bin.correct.total;
+  }
+}
+
+void add_time(EvaluationReport& report) {
+  std::vector<double> seconds;
+  for (const FrameOutcome& frame : report.outcomes) {
+    if (frame.reported && frame.seconds >= 0) seconds.push_back(frame.seconds);  // BOP: -1 unknown
+  }
+  if (seconds.empty()) return;
+  std::sort(seconds.begin(), seconds.end());
+  const std::size_t n = seconds.size();
+  report.time.frames = static_cast<int>(n);
+  report.time.mean = std::accumulate(seconds.begin(), seconds.end(), 0.0) / static_cast<double>(n);
+  report.time.median = 0.5 * (seconds[(n - 1) / 2] + seconds[n / 2]);
+  report.time.max = seconds.back();
+}
+
+void add_paper(EvaluationReport& report) {
+  int found = 0;
+  for (const FrameOutcome& frame : report.outcomes) {
+    for (const EstimateOutcome& estimate : frame.estimates) {
+      if (!estimate.ignored) count(report.precision, estimate.truth >= 0);
+    }
+    report.rmse_precision.hits += frame.rmse_correct;
+    report.rmse_precision.total += frame.rmse_reported;
+    for (const TruthOutcome& truth : frame.truth) {
+      if (!truth.counts) continue;
+      count(report.recall, truth.found);
+      count(report.rmse_recall, truth.found_rmse);
+      for (const int rank : kRanks) {
+        count(report.recall_at[rank], truth.found_at_rank > 0 && truth.found_at_rank <= rank);
+      }
+      if (!truth.found) continue;
+      ++found;
+      report.mean_add += truth.add;
+      report.mean_adds += truth.adds;
+    }
+  }
+  if (found == 0) return;
+  report.mean_add /= found;
+  report.mean_adds /= found;
+}
+
+void add_bop(EvaluationReport& report) {
+  report.has_bop = true;
+  double vsd = 0, mssd = 0, mspd = 0;
+  for (const FrameOutcome& frame : report.outcomes) {
+    report.add_recall.hits += frame.add_correct;
+    mssd += std::accumulate(frame.mssd.begin(), frame.mssd.end(), 0.0);
+    mspd += std::accumulate(frame.mspd.begin(), frame.mspd.end(), 0.0);
+    for (const auto& row : frame.vsd) vsd += std::accumulate(row.begin(), row.end(), 0.0);
+  }
+  report.add_recall.total = report.recall.total;
+  if (report.recall.total == 0) return;
+  report.vsd = vsd / (100.0 * report.recall.total);
+  report.mssd = mssd / (10.0 * report.recall.total);
+  report.mspd = mspd / (10.0 * report.recall.total);
+  report.average_recall = (report.vsd + report.mssd + report.mspd) / 3;
+}
+
+}  // namespace
+
+Result<EvalObjects> load_eval_objects(const std::string& dataset) {
+  const Result<std::vector<io::BopModel>> models = io::read_bop_models(dataset);
+  if (!models.ok()) return models.status();
+  EvalObjects objects;
+  for (const io::BopModel& model : *models) {
+    Result<TriangleMesh> mesh = io::read_mesh(model.path, kMetresPerMillimetre);
+    if (!mesh.ok()) return mesh.status();
+    objects[model.obj_id] = {model.name, model.diameter, model.symmetry, std::move(*mesh)};
+  }
+  return objects;
+}
+
+Result<EvaluationReport> evaluate(const std::vector<io::BopFrame>& frames,
+                                  const EvalObjects& objects,
+                                  const std::vector<io::FrameResult>& results,
+                                  const EvaluationOptions& options) {
+  if (Status status = validate(options); !status.ok()) return status;
+  const auto assigned = assign(frames, objects, results);
+  if (!assigned.ok()) return assigned.status();
+  std::vector<std::optional<Result<FrameOutcome>>> outcomes(frames.size());
+  parallel_for(static_cast<int>(frames.size()), options.num_threads, [&](int index) {
+    const auto i = static_cast<std::size_t>(index);
+    outcomes[i] = evaluate_frame(frames[i], objects, (*assigned)[i], options);
+  });
+  EvaluationReport report;
+  report.frames = static_cast<int>(frames.size());
+  for (auto& outcome : outcomes) {
+    if (!outcome->ok()) return outcome->status();
+    report.outcomes.push_back(std::move(**outcome));
+  }
+  add_paper(report);
+  if (options.bop_errors) add_bop(report);
+  add_groups(objects, report);
+  add_calibration(report);
+  add_time(report);
+  return report;
+}
+
+}  // namespace bpa::eval

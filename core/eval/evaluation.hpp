@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <bpa/core/base/options.hpp>
+#include <bpa/core/base/status.hpp>
+#include <bpa/core/io/bop_dataset.hpp>
+#include <bpa/core/io/mesh_file.hpp>
+#include <bpa/core/io/results.hpp>
+
+namespace bpa::eval {
+
+/// When a placement counts as right (paper section VII: 2.5 cm and π/16 "with respect to the
+/// model's symmetry group" on Clutter, RMSE 1 cm on Kinect), and what counts at all.
+struct EvaluationOptions {
+  double position_m = 0.025;
+  double angle_rad = 0.19634954084936207;
+  double rmse_m = 0.01;
+  double min_visible_fraction = 0.1;
+  bool bop_errors = true;
+  int num_threads = 0;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("position_m", position_m, FieldRule{0.001, 1, "Largest position error of a find."});
+    visit("angle_rad", angle_rad, FieldRule{0.001, 3.2, "Largest orientation error of a find."});
+    visit("rmse_m", rmse_m, FieldRule{0.001, 1, "Largest RMSE of a find by that criterion."});
+    visit("min_visible_fraction", min_visible_fraction,
+          FieldRule{0, 1, "Instances less visible are neither required nor false."});
+    visit("bop_errors", bop_errors, FieldRule{0, 1, "Also compute ADD, VSD, MSSD and MSPD."});
+    visit("num_threads", num_threads, FieldRule{0, 256, "0 = one per core."});
+  }
+};
+
+/// An object with the mesh that errors are measured on.
+struct EvalObject {
+  std::string name;
+  double diameter = 0;
+  SymmetryGroup symmetry;
+  TriangleMesh mesh;
+};
+
+/// By obj_id.
+using EvalObjects = std::map<int, EvalObject>;
+
+/// The objects of a BOP data set, meshes in metres.
+Result<EvalObjects> load_eval_objects(const std::string& dataset);
+
+/// Counts behind a precision or recall.
+struct Ratio {
+  int hits = 0;
+  int total = 0;
+
+  double value() const { return total > 0 ? static_cast<double>(hits) / total : 0.0; }
+};
+
+/// Everything known about one placement of the best interpretation.
+struct EstimateOutcome {
+  int obj_id = 0;
+  double probability = 0;
+  double distance = 0;   ///< Of the estimate from the camera, metres.
+  int truth = -1;        ///< Index of the instance it is right about (of its frame's truth), or -1.
+  bool ignored = false;  ///< Right about an instance that does not count.
+  bool has_covariance = false;
+  double mahalanobis_squared = 0;  ///< Of the error of a right one, under its covariance.
+};
+
+/// Everything known about one true instance.
+struct TruthOutcome {
+  int obj_id = 0;
+  double visible_fraction = 0;
+  double distance = 0;
+  bool counts = true;
+  bool found = false;       ///< By the best interpretation.
+  bool found_rmse = false;  ///< By it, with the RMSE criterion.
+  int found_at_rank = 0;    ///< The first interpretation that finds it, from 1; 0 = none.
+  double add = -1;          ///< Of the estimate that found it, metres; -1 when not found.
+  double adds = -1;
+};
+
+struct FrameOutcome {
+  int scene_id = 0;
+  int im_id = 0;
+  double seconds = 0;
+  bool reported = false;  ///< Whether the results have this frame.
+  std::vector<EstimateOutcome> estimates;
+  std::vector<TruthOutcome> truth;
+  int rmse_correct = 0;
+  int rmse_reported = 0;
+  /// BOP: matched truths for each threshold of correctness; VSD for each tolerance and threshold.
+  std::array<int, 10> mssd{};
+  std::array<int, 10> mspd{};
+  std::array<std::array<int, 10>, 10> vsd{};
+  int add_correct = 0;  ///< Truths matched with ADD (ADD-S when symmetric) under 0.1 diameters.
+};
+
+/// A row of a break-down.
+struct Group {
+  std::string name;
+  Ratio recall;
+  Ratio precision;  ///< total 0 where it has no meaning (by visible fraction).
+};
+
+struct ReliabilityBin {
+  double low = 0;
+  double high = 0;
+  double mean_probability = 0;
+  Ratio correct;
+};
+
+struct Coverage {
+  double level = 0;  ///< The credible region's, such as 0.95.
+  Ratio covered;
+};
+
+struct TimeStatistics {
+  int frames = 0;
+  double mean = 0, median = 0, max = 0;  ///< Seconds.
+};
+
+struct EvaluationReport {
+  int frames = 0;
+  Ratio precision, recall;            ///< Paper: 2.5 cm, π/16.
+  Ratio rmse_precision, rmse_recall;  ///< Paper: RMSE 1 cm.
+  std::map<int, Ratio> recall_at;     ///< By number of interpretations: 1, 2, 3, 5, 10, 20.
+  bool has_bop = false;
+  Ratio add_recall;
+  double vsd = 0, mssd = 0, mspd = 0, average_recall = 0;  ///< BOP's average recalls.
+  double mean_add = 0, mean_adds = 0;                      ///< Of what was found, metres.
+  std::vector<Group> by_object, by_visible_fraction, by_distance;
+  double brier = 0;
+  std::vector<ReliabilityBin> reliability;
+  std::vector<Coverage> coverage;
+  TimeStatistics time;
+  std::vector<FrameOutcome> outcomes;
+};
+
+/// Compares results with the truth of `frames`. Frames without a result count as if nothing was
+/// found in them. Fails with invalid_argument when a result names a frame or an object that the
+/// data set does not have, or frames have no truth; with what loading depth fails with (VSD).
+Result<EvaluationReport> evaluate(const std::vector<io::BopFrame>& frames,
+                                  const EvalObjects& objects,
+                                  const std::vector<io::FrameResult>& results,
+                                  const EvaluationOptions& options = {});
+
+}  // namespace bpa::eval

@@ -1,0 +1,259 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "frame_evaluation.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <functional>
+
+#include <bpa/core/eval/depth_render.hpp>
+#include <bpa/core/eval/matching.hpp>
+#include <bpa/core/eval/pose_errors.hpp>
+
+namespace bpa::eval {
+namespace {
+
+using Estimates = std::vector<io::ResultPlacement>;
+using Instances = std::vector<io::BopInstance>;
+using Costs = std::vector<std::vector<double>>;
+using Cost = std::function<double(const io::ResultPlacement&, const io::BopInstance&)>;
+
+constexpr double kAddDiameters = 0.1;
+constexpr double kMspdPixelsPerThreshold = 100;  // 0.05 -> 5 pixels, at 640 pixels of width
+
+Costs pair_costs(const Estimates& estimates, const Instances& truth, const Cost& cost) {
+  Costs costs(estimates.size(), std::vector<double>(truth.size(), kNoMatch));
+  for (std::size_t e = 0; e < estimates.size(); ++e) {
+    for (std::size_t t = 0; t < truth.size(); ++t) {
+      if (estimates[e].obj_id == truth[t].obj_id) costs[e][t] = cost(estimates[e], truth[t]);
+    }
+  }
+  return costs;
+}
+
+std::vector<double> scores_of(const Estimates& estimates) {
+  std::vector<double> scores;
+  for (const io::ResultPlacement& estimate : estimates) scores.push_back(estimate.probability);
+  return scores;
+}
+
+/// Costs above a threshold become "not correct".
+Costs below(Costs costs, double threshold) {
+  for (auto& row : costs) {
+    for (double& cost : row) cost = cost < threshold ? cost : kNoMatch;
+  }
+  return costs;
+}
+
+/// The paper's criterion: both errors relative to their limits, the larger one.
+double paper_cost(const EvalObjects& objects, const EvaluationOptions& options,
+                  const io::ResultPlacement& estimate, const io::BopInstance& truth) {
+  const PoseError error =
+      pose_error(estimate.camera_from_object, truth.camera_from_object,
+                 objects.at(truth.obj_id).symmetry, options.position_m, options.angle_rad);
+  const double cost =
+      std::max(error.position / options.position_m, error.angle / options.angle_rad);
+  return cost <= 1 ? cost : kNoMatch;
+}
+
+/// Squared length of the error in units of the reported covariance; negative when that is not
+/// positive definite.
+double mahalanobis_squared(const io::ResultPlacement& estimate, const io::BopInstance& truth,
+                           const SymmetryGroup& symmetry) {
+  const Pose nearest =
+      nearest_symmetric_pose(truth.camera_from_object, estimate.camera_from_object, symmetry);
+  Eigen::Matrix<double, 6, 1> error;
+  error.head<3>() = nearest.translation - estimate.camera_from_object.translation;
+  error.tail<3>() = vector_from_rotation(
+      (nearest.rotation * estimate.camera_from_object.rotation.conjugate()).normalized());
+  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(estimate.covariance);
+  if (factor.info() != Eigen::Success || estimate.covariance.diagonal().minCoeff() <= 0) return -1;
+  return error.dot(factor.solve(error));
+}
+
+/// Only what counts takes part in BOP's errors, and for each object at most as many estimates, the
+/// most probable ones, as there are instances.
+struct BopCase {
+  Estimates estimates;
+  Instances truth;
+};
+
+BopCase bop_case(const Estimates& estimates, const Instances& truth, double min_visible) {
+  BopCase result;
+  std::map<int, int> room;
+  for (const io::BopInstance& instance : truth) {
+    if (instance.visible_fraction < min_visible) continue;
+    result.truth.push_back(instance);
+    ++room[instance.obj_id];
+  }
+  Estimates sorted = estimates;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
+  for (const io::ResultPlacement& estimate : sorted) {
+    if (room[estimate.obj_id]-- > 0) result.estimates.push_back(estimate);
+  }
+  return result;
+}
+
+int matched(const std::vector<double>& scores, const Costs& costs, double threshold) {
+  const std::vector<int> truth_of = match_greedily(scores, below(costs, threshold));
+  return static_cast<int>(
+      truth_of.size() - static_cast<std::size_t>(std::count(truth_of.begin(), truth_of.end(), -1)));
+}
+
+/// VSD of every pair of the same object, for each tolerance.
+std::array<Costs, 10> vsd_costs(const BopCase& bop, const EvalObjects& objects,
+                                const Frame& measured) {
+  std::array<Costs, 10> costs;
+  costs.fill(Costs(bop.estimates.size(), std::vector<double>(bop.truth.size(), kNoMatch)));
+  const auto render = [&](int obj_id, const Pose& pose) {
+    return render_depth(objects.at(obj_id).mesh, pose, measured.camera);
+  };
+  for (std::size_t e = 0; e < bop.estimates.size(); ++e) {
+    const io::ResultPlacement& estimate = bop.estimates[e];
+    const std::vector<float> at_estimate = render(estimate.obj_id, estimate.camera_from_object);
+    for (std::size_t t = 0; t < bop.truth.size(); ++t) {
+      const io::BopInstance& truth = bop.truth[t];
+      if (estimate.obj_id != truth.obj_id) continue;
+      const std::array<double, 10> errors = visible_surface_discrepancy(
+          at_estimate, render(truth.obj_id, truth.camera_from_object), measured.depth,
+          measured.camera, objects.at(truth.obj_id).diameter);
+      for (std::size_t k = 0; k < errors.size(); ++k) costs[k][e][t] = errors[k];
+    }
+  }
+  return costs;
+}
+
+Status add_bop_errors(const io::BopFrame& frame, const EvalObjects& objects,
+                      const Estimates& estimates, const EvaluationOptions& options,
+                      FrameOutcome& outcome) {
+  const BopCase bop = bop_case(estimates, frame.truth, options.min_visible_fraction);
+  if (bop.estimates.empty() || bop.truth.empty()) return {};
+  const Result<Frame> measured = io::load_bop_frame(frame);
+  if (!measured.ok()) return measured.status();
+  std::map<int, std::vector<Pose>> symmetries;
+  for (const io::BopInstance& truth : bop.truth) {
+    symmetries.try_emplace(truth.obj_id, discretised_symmetries(objects.at(truth.obj_id).symmetry));
+  }
+  const std::vector<double> scores = scores_of(bop.estimates);
+  const Costs mssd = pair_costs(bop.estimates, bop.truth, [&](const auto& e, const auto& t) {
+    const EvalObject& object = objects.at(t.obj_id);
+    return max_surface_distance(object.mesh.vertices, e.camera_from_object, t.camera_from_object,
+                                symmetries.at(t.obj_id)) /
+           object.diameter;
+  });
+  const Costs mspd = pair_costs(bop.estimates, bop.truth, [&](const auto& e, const auto& t) {
+    return max_projection_distance(objects.at(t.obj_id).mesh.vertices, e.camera_from_object,
+                                   t.camera_from_object, symmetries.at(t.obj_id), frame.camera) *
+           640 / frame.camera.width / kMspdPixelsPerThreshold;
+  });
+  const Costs add = pair_costs(bop.estimates, bop.truth, [&](const auto& e, const auto& t) {
+    const EvalObject& object = objects.at(t.obj_id);
+    const auto error = object.symmetry.trivial() ? average_distance : average_nearest_distance;
+    return error(object.mesh.vertices, e.camera_from_object, t.camera_from_object) /
+           object.diameter;
+  });
+  const std::array<Costs, 10> vsd = vsd_costs(bop, objects, *measured);
+  outcome.add_correct = matched(scores, add, kAddDiameters);
+  for (std::size_t k = 0; k < kBopThresholds.size(); ++k) {
+    outcome.mssd[k] = matched(scores, mssd, kBopThresholds[k]);
+    outcome.mspd[k] = matched(scores, mspd, kBopThresholds[k]);
+    for (std::size_t tolerance = 0; tolerance < vsd.size(); ++tolerance) {
+      outcome.vsd[tolerance][k] = matched(scores, vsd[tolerance], kBopThresholds[k]);
+    }
+  }
+  return {};
+}
+
+/// The RMSE criterion over the best interpretation.
+void add_rmse(const io::BopFrame& frame, const EvalObjects& objects, const Estimates& estimates,
+              const EvaluationOptions& options, FrameOutcome& outcome) {
+  const Costs costs = pair_costs(estimates, frame.truth, [&](const auto& e, const auto& t) {
+    const EvalObject& object = objects.at(t.obj_id);
+    // The symmetric truth nearest in orientation: one of the whole group need not be tried.
+    const Pose nearest =
+        nearest_symmetric_pose(t.camera_from_object, e.camera_from_object, object.symmetry);
+    return rms_distance(object.mesh.vertices, e.camera_from_object, nearest, {Pose{}});
+  });
+  const std::vector<int> truth_of =
+      match_greedily(scores_of(estimates), below(costs, options.rmse_m));
+  for (const int t : truth_of) {
+    TruthOutcome* truth = t >= 0 ? &outcome.truth[static_cast<std::size_t>(t)] : nullptr;
+    if (truth != nullptr && !truth->counts) continue;
+    ++outcome.rmse_reported;
+    if (truth == nullptr) continue;
+    ++outcome.rmse_correct;
+    truth->found_rmse = true;
+  }
+}
+
+void add_estimates(const io::BopFrame& frame, const EvalObjects& objects,
+                   const Estimates& estimates, const std::vector<int>& truth_of,
+                   FrameOutcome& outcome) {
+  for (std::size_t e = 0; e < estimates.size(); ++e) {
+    const io::ResultPlacement& estimate = estimates[e];
+    EstimateOutcome result;
+    result.obj_id = estimate.obj_id;
+    result.probability = estimate.probability;
+    result.distance = estimate.camera_from_object.translation.norm();
+    result.truth = truth_of[e];
+    if (result.truth >= 0) {
+      const auto t = static_cast<std::size_t>(result.truth);
+      const EvalObject& object = objects.at(estimate.obj_id);
+      result.ignored = !outcome.truth[t].counts;
+      outcome.truth[t].found = true;
+      const Pose& truth = frame.truth[t].camera_from_object;
+      const Pose nearest =
+          nearest_symmetric_pose(truth, estimate.camera_from_object, object.symmetry);
+      outcome.truth[t].add =
+          average_distance(object.mesh.vertices, estimate.camera_from_object, nearest);
+      outcome.truth[t].adds =
+          average_nearest_distance(object.mesh.vertices, estimate.camera_from_object, truth);
+      result.mahalanobis_squared = mahalanobis_squared(estimate, frame.truth[t], object.symmetry);
+      result.has_covariance = result.mahalanobis_squared >= 0;
+    }
+    outcome.estimates.push_back(result);
+  }
+}
+
+}  // namespace
+
+Result<FrameOutcome> evaluate_frame(const io::BopFrame& frame, const EvalObjects& objects,
+                                    const io::FrameResult* result,
+                                    const EvaluationOptions& options) {
+  FrameOutcome outcome;
+  outcome.scene_id = frame.scene_id;
+  outcome.im_id = frame.im_id;
+  outcome.reported = result != nullptr;
+  for (const io::BopInstance& instance : frame.truth) {
+    TruthOutcome truth;
+    truth.obj_id = instance.obj_id;
+    truth.visible_fraction = instance.visible_fraction;
+    truth.distance = instance.camera_from_object.translation.norm();
+    truth.counts = instance.visible_fraction >= options.min_visible_fraction;
+    outcome.truth.push_back(truth);
+  }
+  if (result == nullptr) return outcome;
+  outcome.seconds = result->seconds;
+  const Cost cost = [&](const auto& e, const auto& t) {
+    return paper_cost(objects, options, e, t);
+  };
+  for (std::size_t rank = 0; rank < result->interpretations.size(); ++rank) {
+    const Estimates& estimates = result->interpretations[rank].placements;
+    const std::vector<int> truth_of =
+        match_greedily(scores_of(estimates), pair_costs(estimates, frame.truth, cost));
+    for (const int t : truth_of) {
+      if (t < 0) continue;
+      int& first = outcome.truth[static_cast<std::size_t>(t)].found_at_rank;
+      if (first == 0) first = static_cast<int>(rank) + 1;
+    }
+    if (rank > 0) continue;
+    add_estimates(frame, objects, estimates, truth_of, outcome);
+    add_rmse(frame, objects, estimates, options, outcome);
+    if (!options.bop_errors) continue;
+    if (Status s = add_bop_errors(frame, objects, estimates, options, outcome); !s.ok()) return s;
+  }
+  return outcome;
+}
+
+}  // namespace bpa::eval

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <numeric>
+
+#include <bpa/core/eval/matching.hpp>
+
+namespace bpa::eval {
+
+std::vector<int> match_greedily(const std::vector<double>& scores,
+                                const std::vector<std::vector<double>>& costs) {
+  std::vector<int> order(scores.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&scores](int a, int b) {
+    return scores[static_cast<std::size_t>(a)] > scores[static_cast<std::size_t>(b)];
+  });
+  std::vector<int> truth_of(scores.size(), -1);
+  std::vector<bool> taken(costs.empty() ? 0 : costs.front().size(), false);
+  for (const int index : order) {
+    const auto e = static_cast<std::size_t>(index);
+    double best = kNoMatch;
+    for (std::size_t t = 0; t < taken.size(); ++t) {
+      if (taken[t] || !(costs[e][t] < best)) continue;
+      best = costs[e][t];
+      truth_of[e] = static_cast<int>(t);
+    }
+    if (truth_of[e] >= 0) taken[static_cast<std::size_t>(truth_of[e])] = true;
+  }
+  return truth_of;
+}
+
+}  // namespace bpa::eval

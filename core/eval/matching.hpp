@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <vector>
+
+namespace bpa::eval {
+
+/// The cost of a pair that cannot be matched.
+constexpr double kNoMatch = std::numeric_limits<double>::infinity();
+
+/// Greedy one-to-one matching, as BOP does it: estimates by falling score (by index where equal)
+/// each take the free truth of the smallest cost. costs[e][t] is kNoMatch where the estimate is not
+/// correct for the truth. Returns the truth of each estimate, -1 for none.
+std::vector<int> match_greedily(const std::vector<double>& scores,
+                                const std::vector<std::vector<double>>& costs);
+
+}  // namespace bpa::eval

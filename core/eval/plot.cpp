@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdio>
+
+#include <opencv2/imgproc.hpp>
+
+#include <bpa/core/eval/plot.hpp>
+#include <bpa/core/eval/report.hpp>
+
+namespace bpa::eval {
+namespace {
+
+const cv::Scalar kInk(40, 40, 40);
+const cv::Scalar kGrid(222, 222, 222);
+const cv::Scalar kColors[] = {{31, 119, 180}, {214, 39, 40}, {44, 160, 44}, {148, 103, 189}};
+constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+
+void write(cv::Mat& image, const std::string& text, cv::Point at, double size = 0.45) {
+  cv::putText(image, text, at, kFont, size, kInk, 1, cv::LINE_AA);
+}
+
+void write_centred(cv::Mat& image, const std::string& text, cv::Point at, double size = 0.45) {
+  int base = 0;
+  const int width = cv::getTextSize(text, kFont, size, 1, &base).width;
+  write(image, text, {at.x - width / 2, at.y}, size);
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
+io::ColorImage to_image(const cv::Mat& image) {
+  return {image.cols, image.rows, {image.datastart, image.dataend}};
+}
+
+/// From values to pixels.
+struct Mapping {
+  PlotAxes axes;
+  cv::Rect area{70, 50, 540, 360};
+
+  cv::Point operator()(double x, double y) const {
+    const double u = (x - axes.x_min) / (axes.x_max - axes.x_min);
+    const double v = (y - axes.y_min) / (axes.y_max - axes.y_min);
+    return {area.x + cvRound(u * area.width), area.y + area.height - cvRound(v * area.height)};
+  }
+};
+
+void draw_axes(cv::Mat& image, const Mapping& map) {
+  const PlotAxes& axes = map.axes;
+  for (int i = 0; i <= 5; ++i) {
+    const double x = axes.x_min + (axes.x_max - axes.x_min) * i / 5;
+    const double y = axes.y_min + (axes.y_max - axes.y_min) * i / 5;
+    cv::line(image, map(x, axes.y_min), map(x, axes.y_max), kGrid);
+    cv::line(image, map(axes.x_min, y), map(axes.x_max, y), kGrid);
+    write_centred(image, number(x), map(x, axes.y_min) + cv::Point(0, 18), 0.4);
+    write_centred(image, number(y), map(axes.x_min, y) + cv::Point(-22, 4), 0.4);
+  }
+  cv::rectangle(image, map.area, kInk);
+  if (axes.diagonal) {
+    cv::line(image, map(axes.x_min, axes.y_min), map(axes.x_max, axes.y_max), {150, 150, 150}, 1,
+             cv::LINE_AA);
+  }
+  write_centred(image, axes.title, {image.cols / 2, 26}, 0.6);
+  write_centred(image, axes.x_name, {map.area.x + map.area.width / 2, 452});
+  write(image, axes.y_name, {8, 44});
+}
+
+}  // namespace
+
+io::ColorImage line_plot(const PlotAxes& axes, const std::vector<Series>& series) {
+  cv::Mat image(480, 640, CV_8UC3, cv::Scalar::all(255));
+  const Mapping map{axes};
+  draw_axes(image, map);
+  for (std::size_t s = 0; s < series.size(); ++s) {
+    const cv::Scalar& color = kColors[s % std::size(kColors)];
+    cv::Point last;
+    for (std::size_t i = 0; i < series[s].x.size(); ++i) {
+      const cv::Point here = map(series[s].x[i], series[s].y[i]);
+      if (!map.area.contains(here) && !map.area.contains(here - cv::Point(1, 1))) continue;
+      if (i > 0) cv::line(image, last, here, color, 2, cv::LINE_AA);
+      cv::circle(image, here, 4, color, cv::FILLED, cv::LINE_AA);
+      last = here;
+    }
+    const cv::Point legend(map.area.x + 12, map.area.y + 20 + 20 * static_cast<int>(s));
+    cv::line(image, legend + cv::Point(0, -4), legend + cv::Point(20, -4), color, 2, cv::LINE_AA);
+    write(image, series[s].name, legend + cv::Point(28, 0));
+  }
+  return to_image(image);
+}
+
+io::ColorImage bar_plot(const std::string& title, const std::vector<std::string>& names,
+                        const std::vector<double>& values, const std::vector<std::string>& notes) {
+  constexpr int kRow = 24, kLeft = 230, kWidth = 320;
+  const int height = 60 + kRow * static_cast<int>(names.size());
+  cv::Mat image(height, 640, CV_8UC3, cv::Scalar::all(255));
+  write_centred(image, title, {320, 26}, 0.6);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const int y = 44 + kRow * static_cast<int>(i);
+    write(image, names[i].substr(0, 28), {8, y + 14}, 0.4);
+    cv::rectangle(image, cv::Rect(kLeft, y, kWidth, kRow - 6), kGrid);
+    const int length = cvRound(kWidth * std::clamp(values[i], 0.0, 1.0));
+    if (length > 0) {
+      cv::rectangle(image, cv::Rect(kLeft, y, length, kRow - 6), kColors[0], cv::FILLED);
+    }
+    write(image, notes[i], {kLeft + kWidth + 8, y + 14}, 0.4);
+  }
+  return to_image(image);
+}
+
+namespace {
+
+io::ColorImage groups_plot(const std::string& title, const std::vector<Group>& groups) {
+  std::vector<std::string> names, notes;
+  std::vector<double> values;
+  for (const Group& group : groups) {
+    names.push_back(group.name);
+    values.push_back(group.recall.value());
+    notes.push_back(std::to_string(group.recall.hits) + "/" + std::to_string(group.recall.total));
+  }
+  return bar_plot(title, names, values, notes);
+}
+
+io::ColorImage recall_plot(const EvaluationReport& report) {
+  Series recall{"recall", {}, {}};
+  for (const auto& [rank, ratio] : report.recall_at) {
+    recall.x.push_back(rank);
+    recall.y.push_back(ratio.value());
+  }
+  PlotAxes axes{
+      "recall by number of interpretations", "interpretations", "recall", 0, 20, 0, 1, false};
+  return line_plot(axes, {recall});
+}
+
+io::ColorImage reliability_plot(const EvaluationReport& report) {
+  Series series{"Brier score " + number(report.brier), {}, {}};
+  for (const ReliabilityBin& bin : report.reliability) {
+    if (bin.correct.total == 0) continue;
+    series.x.push_back(bin.mean_probability);
+    series.y.push_back(bin.correct.value());
+  }
+  PlotAxes axes{
+      "calibration of probabilities", "probability said", "fraction right", 0, 1, 0, 1, true};
+  return line_plot(axes, {series});
+}
+
+}  // namespace
+
+Status write_plots(const std::string& folder, const EvaluationReport& report) {
+  const std::pair<const char*, io::ColorImage> plots[] = {
+      {"recall.png", recall_plot(report)},
+      {"reliability.png", reliability_plot(report)},
+      {"visible_fraction.png",
+       groups_plot("recall by visible fraction", report.by_visible_fraction)},
+      {"distance.png", groups_plot("recall by distance", report.by_distance)},
+      {"objects.png", groups_plot("recall by object", report.by_object)}};
+  for (const auto& [name, image] : plots) {
+    if (Status s = io::write_color_png(folder + "/" + name, image); !s.ok()) return s;
+  }
+  return {};
+}
+
+}  // namespace bpa::eval

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <bpa/core/io/image_file.hpp>
+
+namespace bpa::eval {
+
+/// Values over x, both in [0, 1] for the usual plots; drawn as a line with dots.
+struct Series {
+  std::string name;
+  std::vector<double> x;
+  std::vector<double> y;
+};
+
+struct PlotAxes {
+  std::string title, x_name, y_name;
+  double x_min = 0, x_max = 1, y_min = 0, y_max = 1;
+  bool diagonal = false;  ///< Also a thin line from corner to corner.
+};
+
+/// 640x480 rgb. Points outside the axes are left out.
+io::ColorImage line_plot(const PlotAxes& axes, const std::vector<Series>& series);
+
+/// One horizontal bar for each name, values in [0, 1], with a note at its right end.
+io::ColorImage bar_plot(const std::string& title, const std::vector<std::string>& names,
+                        const std::vector<double>& values, const std::vector<std::string>& notes);
+
+}  // namespace bpa::eval

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include <bpa/core/geometry/camera.hpp>
+#include <bpa/core/geometry/pose.hpp>
+#include <bpa/core/geometry/symmetry.hpp>
+
+// How wrong a pose is, by the definitions of the BOP benchmark (Hodan et al. 2016, 2020) and of
+// Hinterstoisser et al. 2012. `points` are the vertices of the object's mesh. Metres and pixels.
+
+namespace bpa::eval {
+
+using Points = std::vector<Eigen::Vector3f>;
+
+/// The discrete symmetries times the continuous one in steps so small that no vertex moves by more
+/// than `max_step` diameters (BOP: 0.01, which makes ceil(π / 0.01) steps). The identity is first.
+std::vector<Pose> discretised_symmetries(const SymmetryGroup& group, double max_step = 0.01);
+
+/// ADD: mean distance of corresponding vertices.
+double average_distance(const Points& points, const Pose& estimate, const Pose& truth);
+
+/// ADD-S (ADI): mean distance from a vertex of the true object to the nearest vertex of the
+/// estimated one. Of more than 2000 vertices every n-th is asked for, so that at most 2000 are.
+double average_nearest_distance(const Points& points, const Pose& estimate, const Pose& truth);
+
+/// Root mean squared distance of corresponding vertices; the smallest over the symmetries.
+double rms_distance(const Points& points, const Pose& estimate, const Pose& truth,
+                    const std::vector<Pose>& symmetries);
+
+/// MSSD: the largest distance of corresponding vertices; the smallest of it over the symmetries.
+double max_surface_distance(const Points& points, const Pose& estimate, const Pose& truth,
+                            const std::vector<Pose>& symmetries);
+
+/// MSPD: the same after projection, in pixels. Vertices behind the camera make it infinite.
+double max_projection_distance(const Points& points, const Pose& estimate, const Pose& truth,
+                               const std::vector<Pose>& symmetries, const Camera& camera);
+
+/// BOP's ten tolerances and thresholds of correctness: 0.05, 0.1, ... 0.5.
+constexpr std::array<double, 10> kBopThresholds = {0.05, 0.10, 0.15, 0.20, 0.25,
+                                                   0.30, 0.35, 0.40, 0.45, 0.50};
+
+/// VSD for tolerances kBopThresholds x diameter: the fraction of the union of both visible
+/// silhouettes in which the rendered distances differ by the tolerance or more, or only one of the
+/// two is visible. The three images are row-major depths in metres (0: nothing): rendered at the
+/// estimate, rendered at the truth, and measured. Visible is what is at most `delta` behind the
+/// measured surface, or where nothing was measured.
+std::array<double, 10> visible_surface_discrepancy(const std::vector<float>& depth_estimate,
+                                                   const std::vector<float>& depth_truth,
+                                                   const std::vector<float>& depth_measured,
+                                                   const Camera& camera, double diameter,
+                                                   double delta = 0.015);
+
+}  // namespace bpa::eval

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <bpa/core/eval/evaluation.hpp>
+
+namespace bpa::eval {
+
+/// The report as tables for people.
+std::string report_text(const EvaluationReport& report);
+
+/// The report as JSON; every ratio with its counts.
+std::string report_json(const EvaluationReport& report);
+
+/// Writes recall.png, reliability.png, visible_fraction.png, distance.png and objects.png.
+Status write_plots(const std::string& folder, const EvaluationReport& report);
+
+}  // namespace bpa::eval
