@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <bpa/core/base/status.hpp>
+
+namespace CLI {
+class App;
+}
+
+namespace bpa::cli {
+
+/// What the command line asked for: set while it is parsed, run afterwards. A failure is one line
+/// on stderr and exit code 1.
+using Action = std::function<Status()>;
+
+/// What every command has.
+struct CommonOptions {
+  int threads = 0;
+  std::uint64_t seed = 0;
+};
+
+/// Adds --threads and --seed.
+void add_common_options(CLI::App& command, CommonOptions& options);
+
+/// A command declares itself and its options on the program and sets `action` when it is chosen;
+/// see the list in main.cpp. Wrong usage is a CLI::ParseError.
+void add_model_command(CLI::App& program, Action& action);
+void add_detect_command(CLI::App& program, Action& action);
+void add_evaluate_command(CLI::App& program, Action& action);
+
+/// "a,b,,c" as a, b, c.
+std::vector<std::string> split_commas(const std::string& list);
+
+}  // namespace bpa::cli

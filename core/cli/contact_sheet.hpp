@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/core/io/bop_dataset.hpp>
+#include <bpa/core/io/image_file.hpp>
+#include <bpa/core/model/library.hpp>
+#include <bpa/core/scene/interpretation.hpp>
+
+namespace bpa::cli {
+
+/// Truth (left) beside the result (right). Instances that nothing was found for are outlined in red
+/// as MISSED on the left, placements that are not right (2.5 cm, π/16 modulo symmetry) in red as
+/// FALSE on the right. Objects that the library does not hold cannot be drawn and are left out.
+io::ColorImage truth_beside_result(const Frame& frame, const std::vector<io::BopInstance>& truth,
+                                   const Interpretation& result, const ModelLibrary& library,
+                                   const std::string& caption);
+
+/// Images, all made as wide as `cell_width`, in a grid.
+io::ColorImage contact_sheet(const std::vector<io::ColorImage>& images, int columns,
+                             int cell_width);
+
+}  // namespace bpa::cli

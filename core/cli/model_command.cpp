@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// bpa model: what a library holds, and how models get into it.
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include <bpa/core/cli/command.hpp>
+#include <bpa/core/cli/progress.hpp>
+#include <bpa/core/io/bop_dataset.hpp>
+#include <bpa/core/io/file_bytes.hpp>
+#include <bpa/core/io/mesh_file.hpp>
+#include <bpa/core/io/model_file.hpp>
+
+namespace bpa::cli {
+namespace {
+
+constexpr double kMetresPerMillimetre = 0.001;
+
+struct ModelArguments {
+  CommonOptions common;
+  std::string library;
+  std::string input;  // a mesh, a data set
+  std::string name;
+  double scale = 1;
+  int number = 0;
+  ModelOptions options;
+};
+
+void print_saved(const ModelSource& model, const std::string& library) {
+  std::printf("%s: number %d, diameter %.1f mm, %zu points -> %s\n", model.name.c_str(),
+              model.number, 1000 * model.diameter, model.surface.size(),
+              (std::filesystem::path(library) / model.name).c_str());
+}
+
+/// The number of a model of that name, else the first that is free.
+Result<int> choose_number(const std::string& library, const std::string& name) {
+  int largest = 0;
+  for (const std::string& other : io::list_models(library)) {
+    const Result<ModelSource> model = io::load_model(library, other);
+    if (!model.ok()) return model.status();
+    if (other == name) return model->number;
+    largest = std::max(largest, model->number);
+  }
+  return largest + 1;
+}
+
+Result<ModelSource> source_from_file(const ModelArguments& a) {
+  if (io::lower_extension(a.input) != "pcd") {
+    const Result<TriangleMesh> mesh = io::read_mesh(a.input, a.scale);
+    if (!mesh.ok()) return mesh.status();
+    if (!mesh->triangles.empty()) {
+      return model_source_from_mesh(*mesh, a.name, a.number, a.options);
+    }
+  }
+  const Result<PointCloud> cloud = io::read_point_cloud(a.input, a.scale);
+  if (!cloud.ok()) return cloud.status();
+  return model_source_from_points(*cloud, a.name, a.number, a.options);
+}
+
+Status from_mesh(ModelArguments a) {
+  if (a.number == 0) {
+    const Result<int> number = choose_number(a.library, a.name);
+    if (!number.ok()) return number.status();
+    a.number = *number;
+  }
+  a.options.num_threads = a.common.threads;
+  Result<ModelSource> source = source_from_file(a);
+  if (!source.ok()) {
+    Status status = source.status();
+    if (status.message.find(a.input) == std::string::npos) {
+      status.message = a.input + ": " + status.message;
+    }
+    return status;
+  }
+  source->source = std::filesystem::path(a.input).filename().string();
+  if (Status s = io::save_model(a.library, *source); !s.ok()) return s;
+  print_saved(*source, a.library);
+  return {};
+}
+
+Status from_bop(ModelArguments a) {
+  const Result<std::vector<io::BopModel>> models = io::read_bop_models(a.input);
+  if (!models.ok()) return models.status();
+  a.options.num_threads = a.common.threads;
+  Progress progress("models", static_cast<int>(models->size()));
+  for (std::size_t i = 0; i < models->size(); ++i) {
+    const io::BopModel& model = (*models)[i];
+    progress.show(static_cast<int>(i), model.name);
+    const Result<TriangleMesh> mesh = io::read_mesh(model.path, kMetresPerMillimetre);
+    if (!mesh.ok()) return mesh.status();
+    Result<ModelSource> source =
+        model_source_from_mesh(*mesh, io::clean_model_name(model.name), model.obj_id, a.options);
+    if (!source.ok()) {
+      return Status(source.status().code, model.path + ": " + source.status().message);
+    }
+    source->source = std::filesystem::path(model.path).filename().string();
+    source->symmetry = model.symmetry;
+    source->diameter = model.diameter;
+    if (Status s = io::save_model(a.library, *source); !s.ok()) return s;
+    progress.clear();
+    print_saved(*source, a.library);
+  }
+  return {};
+}
+
+Status info(const ModelArguments& a) {
+  const Result<ModelSource> model = io::load_model(a.library, a.name);
+  if (!model.ok()) return model.status();
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& point : model->surface.points) box.extend(point);
+  const Eigen::Vector3f size = 1000 * box.sizes();
+  std::printf("name        %s\nnumber      %d\nsource      %s\n", model->name.c_str(),
+              model->number, model->source.c_str());
+  std::printf("diameter    %.1f mm\nsize        %.1f x %.1f x %.1f mm\n", 1000 * model->diameter,
+              static_cast<double>(size.x()), static_cast<double>(size.y()),
+              static_cast<double>(size.z()));
+  std::printf("points      %zu%s%s\n", model->surface.size(),
+              model->surface.normals.empty() ? "" : ", normals",
+              model->surface.colors.empty() ? "" : ", colours");
+  std::printf("symmetries  %zu discrete, %zu continuous\n", model->symmetry.discrete.size(),
+              model->symmetry.continuous.size());
+  return {};
+}
+
+Status list(const ModelArguments& a) {
+  const Result<std::vector<ModelSource>> models = io::load_library(a.library);
+  if (!models.ok()) return models.status();
+  std::printf("%6s  %-28s %12s %8s  %s\n", "number", "name", "diameter", "points", "symmetries");
+  for (const ModelSource& model : *models) {
+    std::printf("%6d  %-28s %9.1f mm %8zu  %zu discrete, %zu continuous\n", model.number,
+                model.name.c_str(), 1000 * model.diameter, model.surface.size(),
+                model.symmetry.discrete.size(), model.symmetry.continuous.size());
+  }
+  return {};
+}
+
+Status remove(const ModelArguments& a) {
+  if (Status s = io::remove_model(a.library, a.name); !s.ok()) return s;
+  std::printf("removed %s from %s\n", a.name.c_str(), a.library.c_str());
+  return {};
+}
+
+/// A subcommand of `bpa model` with the options that all of them have.
+CLI::App& add(CLI::App& model, const char* name, const char* description,
+              const std::shared_ptr<ModelArguments>& a, Action& action,
+              Status (*run)(ModelArguments)) {
+  CLI::App& command = *model.add_subcommand(name, description);
+  add_common_options(command, a->common);
+  command.add_option("--library", a->library, "Folder of the model library")
+      ->required()
+      ->type_name("DIR");
+  command.callback([&action, a, run] { action = [a, run] { return run(*a); }; });
+  return command;
+}
+
+}  // namespace
+
+void add_model_command(CLI::App& program, Action& action) {
+  CLI::App& model = *program.add_subcommand("model", "Make, list and remove object models");
+  model.require_subcommand(1);
+  const auto a = std::make_shared<ModelArguments>();
+
+  CLI::App& mesh = add(model, "from-mesh", "One mesh or point cloud to a model", a, action,
+                       [](ModelArguments m) { return from_mesh(std::move(m)); });
+  mesh.add_option("mesh", a->input, "PLY, OBJ or STL mesh; PLY or PCD point cloud")->required();
+  mesh.add_option("--name", a->name, "Name of the model")->required();
+  mesh.add_option("--scale", a->scale, "Metres of one unit of the file; 0.001 for millimetres")
+      ->check(CLI::PositiveNumber);
+  mesh.add_option("--number", a->number,
+                  "Number of the model (obj_id); the next free one if not given")
+      ->check(CLI::PositiveNumber);
+  mesh.add_option("--spacing", a->options.spacing_m, "Distance of surface points, metres")
+      ->check(CLI::PositiveNumber);
+
+  CLI::App& bop = add(model, "from-bop", "Every model of a BOP data set", a, action,
+                      [](ModelArguments m) { return from_bop(std::move(m)); });
+  bop.add_option("dataset", a->input, "Folder of the data set")->required();
+  bop.add_option("--spacing", a->options.spacing_m, "Distance of surface points, metres")
+      ->check(CLI::PositiveNumber);
+
+  add(model, "info", "What a model is", a, action, [](ModelArguments m) { return info(m); })
+      .add_option("name", a->name, "Name of the model")
+      ->required();
+  add(model, "list", "The models of a library", a, action,
+      [](ModelArguments m) { return list(m); });
+  add(model, "remove", "Take a model out of a library", a, action,
+      [](ModelArguments m) { return remove(m); })
+      .add_option("name", a->name, "Name of the model")
+      ->required();
+}
+
+}  // namespace bpa::cli

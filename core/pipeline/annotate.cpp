@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+
+#include <opencv2/imgproc.hpp>
+
+#include <bpa/core/pipeline/annotate.hpp>
+
+namespace bpa {
+namespace {
+
+constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+constexpr double kFillOpacity = 0.35;
+
+cv::Mat grey_depth(const Frame& frame) {
+  float nearest = std::numeric_limits<float>::max(), furthest = 0;
+  for (const float z : frame.depth) {
+    if (!(z > 0)) continue;
+    nearest = std::min(nearest, z);
+    furthest = std::max(furthest, z);
+  }
+  cv::Mat image(frame.camera.height, frame.camera.width, CV_8UC3, cv::Scalar::all(0));
+  const float range = std::max(furthest - nearest, 1e-3f);
+  for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+    const float z = frame.depth[i];
+    if (!(z > 0)) continue;
+    const auto grey = static_cast<std::uint8_t>(230 - 180 * (z - nearest) / range);
+    std::fill_n(image.data + 3 * i, 3, grey);
+  }
+  return image;
+}
+
+cv::Mat canvas(const Frame& frame) {
+  if (frame.color.empty()) return grey_depth(frame);
+  cv::Mat image(frame.camera.height, frame.camera.width, CV_8UC3);
+  std::copy(frame.color.begin(), frame.color.end(), image.data);
+  return image;
+}
+
+/// About the distance of neighbouring points: the median over a few of them.
+double point_spacing(const std::vector<Eigen::Vector3f>& points) {
+  constexpr std::size_t kSamples = 15;
+  if (points.size() < 2) return 0.003;
+  std::vector<float> nearest;
+  for (std::size_t s = 0; s < kSamples; ++s) {
+    const std::size_t i = s * (points.size() - 1) / kSamples;
+    float best = std::numeric_limits<float>::max();
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      if (j != i) best = std::min(best, (points[j] - points[i]).squaredNorm());
+    }
+    nearest.push_back(best);
+  }
+  std::nth_element(nearest.begin(), nearest.begin() + kSamples / 2, nearest.end());
+  return std::sqrt(nearest[kSamples / 2]);
+}
+
+/// What the points cover when each is a disc that reaches its neighbours.
+cv::Mat silhouette(const Camera& camera, const DrawnObject& object) {
+  cv::Mat mask(camera.height, camera.width, CV_8U, cv::Scalar(0));
+  const double spacing = point_spacing(object.surface->points);
+  const Eigen::Matrix3d rotation = object.camera_from_object.matrix();
+  double radius = 1;
+  for (const Eigen::Vector3f& p : object.surface->points) {
+    const Eigen::Vector3d at = rotation * p.cast<double>() + object.camera_from_object.translation;
+    if (!(at.z() > 0.05)) continue;
+    const Eigen::Vector2d pixel = camera.project(at);
+    if (!camera.contains(pixel.x(), pixel.y())) continue;
+    radius = std::clamp(0.9 * spacing * camera.fx / at.z(), 1.0, 30.0);
+    cv::circle(mask, {cvRound(pixel.x()), cvRound(pixel.y())}, cvRound(radius), {255}, cv::FILLED);
+  }
+  // Discs make the outline too wide by their radius, and bumpy.
+  const int size = 2 * cvRound(radius) + 1;
+  const cv::Mat disc = cv::getStructuringElement(cv::MORPH_ELLIPSE, {size, size});
+  cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, disc);
+  cv::erode(mask, mask, disc);
+  return mask;
+}
+
+void fill(cv::Mat& image, const cv::Mat& mask, const cv::Scalar& color) {
+  for (int v = 0; v < mask.rows; ++v) {
+    for (int u = 0; u < mask.cols; ++u) {
+      if (mask.at<std::uint8_t>(v, u) == 0) continue;
+      auto& pixel = image.at<cv::Vec3b>(v, u);
+      for (int k = 0; k < 3; ++k) {
+        pixel[k] = cv::saturate_cast<std::uint8_t>((1 - kFillOpacity) * pixel[k] +
+                                                   kFillOpacity * color[k]);
+      }
+    }
+  }
+}
+
+/// Draws outline and fill; returns the box of what is in the image, empty when nothing is.
+cv::Rect draw_silhouette(cv::Mat& image, const Camera& camera, const DrawnObject& object) {
+  const cv::Mat mask = silhouette(camera, object);
+  const cv::Scalar color(object.color[0], object.color[1], object.color[2]);
+  if (!object.emphasised) fill(image, mask, color);
+  std::vector<std::vector<cv::Point>> contours;
+  cv::findContours(mask, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+  const int thickness = object.emphasised ? 3 : 2;
+  cv::drawContours(image, contours, -1, {20, 20, 20}, thickness + 2, cv::LINE_AA);
+  cv::drawContours(image, contours, -1, color, thickness, cv::LINE_AA);
+  return cv::boundingRect(mask);
+}
+
+/// The place nearest to the wished one that covers none of `taken`, looked for up and down.
+cv::Rect free_place(cv::Rect wished, cv::Size image, const std::vector<cv::Rect>& taken) {
+  wished.x = std::clamp(wished.x, 0, std::max(0, image.width - wished.width));
+  wished.y = std::clamp(wished.y, 0, std::max(0, image.height - wished.height));
+  for (int step = 0; step < 2 * image.height; ++step) {
+    cv::Rect place = wished;
+    place.y += (step % 2 == 0 ? 1 : -1) * ((step + 1) / 2) * 2;
+    if (place.y < 0 || place.y + place.height > image.height) continue;
+    const bool free = std::none_of(taken.begin(), taken.end(),
+                                   [&](const cv::Rect& t) { return (t & place).area() > 0; });
+    if (free) return place;
+  }
+  return wished;
+}
+
+void draw_label(cv::Mat& image, const DrawnObject& object, const cv::Rect& box,
+                std::vector<cv::Rect>& taken) {
+  const double scale = 0.42 * std::max(1.0, image.cols / 640.0);
+  int base = 0;
+  const cv::Size text = cv::getTextSize(object.label, kFont, scale, 1, &base);
+  const int margin = 3;
+  const cv::Size size(text.width + 2 * margin, text.height + base + 2 * margin);
+  const cv::Point middle(box.x + box.width / 2, box.y + box.height / 2);
+  const cv::Rect place =
+      free_place({middle.x - size.width / 2, box.y - size.height - 2, size.width, size.height},
+                 image.size(), taken);
+  taken.push_back(place);
+  const cv::Scalar color(object.color[0], object.color[1], object.color[2]);
+  const cv::Point anchor(std::clamp(middle.x, place.x, place.x + place.width),
+                         place.y + place.height / 2);
+  if (!place.contains(middle)) cv::line(image, anchor, middle, color, 1, cv::LINE_AA);
+  cv::rectangle(image, place, color, cv::FILLED);
+  cv::rectangle(image, place, {20, 20, 20}, 1);
+  const double luminance = 0.3 * color[0] + 0.59 * color[1] + 0.11 * color[2];
+  cv::putText(image, object.label, {place.x + margin, place.y + margin + text.height}, kFont, scale,
+              luminance > 130 ? cv::Scalar(0, 0, 0) : cv::Scalar(255, 255, 255), 1, cv::LINE_AA);
+}
+
+}  // namespace
+
+Rgb object_color(int number) {
+  // Turn the hue by the golden ratio: neighbours are far apart, and no two of the first 30 are
+  // near.
+  const double turns = 0.61803398875 * number;
+  const double hue = 6 * (turns - std::floor(turns));
+  const double bright = number % 2 == 0 ? 255 : 215;
+  Rgb color{};
+  const double offsets[] = {5, 3, 1};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double x = std::fmod(offsets[k] + hue, 6.0);
+    const double level = std::clamp(std::min(x, 4 - x), 0.0, 1.0);
+    color[k] = static_cast<std::uint8_t>(bright * (1 - 0.85 * level));
+  }
+  return color;
+}
+
+io::ColorImage draw_objects(const Frame& frame, const std::vector<DrawnObject>& objects) {
+  cv::Mat image = canvas(frame);
+  std::vector<std::size_t> order(objects.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&objects](std::size_t a, std::size_t b) {
+    return objects[a].camera_from_object.translation.z() >
+           objects[b].camera_from_object.translation.z();
+  });
+  std::vector<cv::Rect> boxes(objects.size());
+  for (const std::size_t i : order) {
+    boxes[i] = draw_silhouette(image, frame.camera, objects[i]);
+  }
+  std::vector<cv::Rect> taken;
+  for (const std::size_t i : order) {
+    if (!boxes[i].empty()) draw_label(image, objects[i], boxes[i], taken);
+  }
+  return {image.cols, image.rows, {image.datastart, image.dataend}};
+}
+
+io::ColorImage annotate(const Frame& frame, const Interpretation& interpretation,
+                        const ModelLibrary& library) {
+  std::vector<DrawnObject> objects;
+  std::vector<std::shared_ptr<const ObjectModel>> keep;
+  for (const Placement& placement : interpretation.placements) {
+    const std::shared_ptr<const ObjectModel> model = library.find(placement.model);
+    if (!model) continue;
+    keep.push_back(model);
+    char probability[16];
+    std::snprintf(probability, sizeof probability, " %.2f", placement.probability);
+    objects.push_back({&model->surface, placement.camera_from_object, placement.model + probability,
+                       object_color(placement.model_number), false});
+  }
+  return draw_objects(frame, objects);
+}
+
+}  // namespace bpa

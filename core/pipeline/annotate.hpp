@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/core/io/image_file.hpp>
+#include <bpa/core/model/library.hpp>
+#include <bpa/core/scene/interpretation.hpp>
+
+namespace bpa {
+
+using Rgb = std::array<std::uint8_t, 3>;
+
+/// One object to draw into an image.
+struct DrawnObject {
+  const PointCloud* surface = nullptr;  ///< Object frame; not owned.
+  Pose camera_from_object;
+  std::string label;
+  Rgb color{};
+  bool emphasised = false;  ///< Thick outline without fill: something is the matter with it.
+};
+
+/// A colour for each object number, far apart for neighbouring numbers, the same in every picture.
+Rgb object_color(int number);
+
+/// The frame's colour image (depth as grey where it has none) with, for each object, the outline of
+/// its projected surface, a translucent fill and its label; nearer objects over further ones.
+/// Labels are moved so that they do not cover each other as long as there is room.
+io::ColorImage draw_objects(const Frame& frame, const std::vector<DrawnObject>& objects);
+
+/// The placements of an interpretation with names and probabilities. Placements whose model is not
+/// in the library are left out.
+io::ColorImage annotate(const Frame& frame, const Interpretation& interpretation,
+                        const ModelLibrary& library);
+
+}  // namespace bpa
