@@ -150,7 +150,7 @@ Rgb object_color(int number) {
   // Turn the hue by the golden ratio: neighbours are far apart, and no two of the first 30 are
   // near.
   const double turns = 0.61803398875 * number;
-  const double hue = 6 * (turns - std::floor(turns));
+  const double hue = 6 * (0.08 + 0.84 * (turns - std::floor(turns)));  // red means trouble
   const double bright = number % 2 == 0 ? 255 : 215;
   Rgb color{};
   const double offsets[] = {5, 3, 1};
