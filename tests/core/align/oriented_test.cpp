@@ -6,6 +6,8 @@
 
 #include <bpa/core/align/align.hpp>
 #include <bpa/core/align/moments.hpp>
+#include <bpa/core/bingham/fit.hpp>
+#include <bpa/core/bingham/normalizer.hpp>
 
 #include "core/align/align_problems.hpp"
 
@@ -83,6 +85,33 @@ TEST(OrientedPoint, FeatureBinghamHasThePapersAxes) {
   EXPECT_LT((bingham.concentrations() - Eigen::Vector4d(0, -30, -100, -100)).norm(), 1e-12);
   const Eigen::Vector4d v3 = bingham.axes().col(1);
   EXPECT_NEAR(std::abs(v3.dot(to_wxyz(reversed_curvature(feature.orientation)))), 1, 1e-12);
+}
+
+TEST(Compose, IsNearTheExactSecondMoments) {
+  double worst = 0;
+  for (double kappa_a : {-10.0, -100.0, -1e3}) {
+    for (double kappa_b : {-30.0, -100.0, -1e4}) {
+      for (double share_a : {0.0, 0.01, 0.1, 0.5, 1.0}) {
+        for (double share_b : {0.0, 0.03, 0.3, 1.0}) {
+          OrientedPoint a, b;
+          a.kappa = kappa_a, a.lambda3 = share_a * kappa_a;
+          b.kappa = kappa_b, b.lambda3 = share_b * kappa_b;
+          const FeatureConcentration ours = compose(a, b);
+          const Bingham exact = bpa::compose(feature_bingham(a), feature_bingham(b).inverse());
+          const Eigen::Vector4d lambda = exact.concentrations();
+          // Compared by what they say about the spread: E[ex²] and E[ey²].
+          const Eigen::Vector4d tau =
+              exact.axes().cwiseAbs2() * bingham_normalizer(lambda).gradient;
+          const Eigen::Vector4d our_tau =
+              bingham_normalizer({0, ours.lambda3, ours.kappa, ours.kappa}).gradient;
+          worst = std::max(worst, std::abs(our_tau[1] / tau[1] - 1));
+          worst = std::max(worst, std::abs(our_tau[2] / tau[2] - 1));
+        }
+      }
+    }
+  }
+  std::printf("second moments within %.1f %%\n", 100 * worst);
+  EXPECT_LT(worst, 0.15);
 }
 
 TEST(Moments, SayTheLogLikelihoodOfAnyPose) {
