@@ -25,6 +25,9 @@ struct CheckPoints {
 
 /// What detection looks up in a model.
 struct ModelIndex {
+  /// Normals of the surface points, averaged over what a fitted normal averages over: what a
+  /// sensor reports beside a crease.
+  std::vector<Eigen::Vector3f> soft_normals;
   CheckPoints check;             ///< Up to 1024 surface points.
   PointCloud features;           ///< With curvature, kFeatureSpacing apart.
   std::vector<Fpfh> fpfh;        ///< Of `features`.

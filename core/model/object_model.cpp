@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include <bpa/core/base/parallel.hpp>
 #include <bpa/core/base/random.hpp>
 #include <bpa/core/cloud/curvature.hpp>
 #include <bpa/core/cloud/neighbor_grid.hpp>
@@ -44,6 +45,25 @@ PointCloud coarse_points(const PointCloud& surface, double diameter) {
   return coarse;
 }
 
+std::vector<Eigen::Vector3f> soften_normals(const PointCloud& surface, int num_threads) {
+  constexpr float kFitRadius = 0.008f;
+  const NeighborGrid grid(surface.points, kFitRadius);
+  std::vector<Eigen::Vector3f> soft(surface.size());
+  parallel_for(
+      static_cast<int>(surface.size()), num_threads,
+      [&](int index) {
+        const auto i = static_cast<std::size_t>(index);
+        Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+        grid.for_each_neighbor(surface.points[i], [&](int j, float) {
+          const Eigen::Vector3f& other = surface.normals[static_cast<std::size_t>(j)];
+          if (other.dot(surface.normals[i]) > -0.2f) sum += other;
+        });
+        soft[i] = sum.normalized();
+      },
+      64);
+  return soft;
+}
+
 }  // namespace
 
 Result<std::shared_ptr<const ObjectModel>> make_object_model(ModelSource source, int num_threads) {
@@ -55,6 +75,7 @@ Result<std::shared_ptr<const ObjectModel>> make_object_model(ModelSource source,
     return invalid_argument("model " + source.name + " has no diameter; it must be positive");
   }
   auto index = std::make_shared<ModelIndex>();
+  index->soft_normals = soften_normals(source.surface, num_threads);
   index->check = check_points(source.surface);
   index->features = downsample(source.surface, kFeatureSpacing);
   estimate_curvature(index->features, kCurvatureRadius, num_threads);

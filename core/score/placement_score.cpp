@@ -50,7 +50,7 @@ Eigen::Vector3f normal_of(const CheckPixel& pixel) {
 
 // The pixel's part of the range and normal likelihoods.
 void add_point(const CheckPixel& pixel, const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
-               Sums& sums) {
+               const Eigen::Vector3f& soft_normal, Sums& sums) {
   const float difference = pixel.depth - point.z();
   const float weight = visibility_probability(difference);
   sums.visible += weight > 0.5f;
@@ -61,7 +61,9 @@ void add_point(const CheckPixel& pixel, const Eigen::Vector3f& point, const Eige
   const float z = difference / sigma;
   sums.weight += weight;
   sums.range += weight * -std::min(0.5f * z * z, kTruncation);
-  const float cosine = normal.dot(normal_of(pixel));
+  // Beside a crease either the face's own normal is seen or the mean across the crease.
+  const Eigen::Vector3f observed = normal_of(pixel);
+  const float cosine = std::max(normal.dot(observed), soft_normal.dot(observed));
   const float angle = std::acos(std::clamp(cosine, -1.0f, 1.0f)) / kNormalSigma;
   const bool known = pixel.normal[0] != 0 || pixel.normal[1] != 0 || pixel.normal[2] != 0;
   sums.normal += weight * (known ? -std::min(0.5f * angle * angle, kTruncation) : -1.0f);
@@ -129,7 +131,7 @@ ScoreComponents score_placement(const CheckImage& image, const ObjectModel& mode
     const CheckPixel& pixel = image.pixels[index];
     if (pixel.depth <= 0) continue;
     const double before = sums.agreeing;
-    add_point(pixel, point, normal, sums);
+    add_point(pixel, point, normal, fast.rotation * model.index->soft_normals[i], sums);
     if (sums.agreeing > before + 0.5) on_model.push_back(index);
   }
   const auto unique = [](std::vector<std::uint32_t>& values) {
@@ -158,7 +160,7 @@ ScoreComponents score_placement(const CheckImage& image, const ObjectModel& mode
 double placement_score(const ScoreComponents& c) {
   // Little visible surface carries little evidence, and one flat face less.
   const double evidence = std::clamp(std::log(std::max(1.0, c.explained_pixels) / 300), -2.0, 1.5);
-  return -12.7 + 7 * c.agreeing + 10 * c.range + 6 * c.normal - 6 * c.free_space + 20 * c.edge +
+  return -13.7 + 7 * c.agreeing + 10 * c.range + 6 * c.normal - 6 * c.free_space + 20 * c.edge +
          3 * std::min(1.0, c.edge_support / 0.5) + 2 * std::min(1.0, c.visibility / 0.6) +
          1.5 * evidence + 1.5 * std::min(1.0, c.shape / 0.05);
 }
