@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -107,9 +106,8 @@ class RawWriter {
   virtual std::size_t matched_count() const = 0;
   virtual bool wait_for_matched(std::size_t count, std::chrono::milliseconds timeout) const = 0;
   virtual Guid guid() const = 0;
-  /// How long ago the reader matched, none when it is not matched. An entity id of zero stands for
-  /// any reader of that participant.
-  virtual std::optional<std::chrono::milliseconds> matched_for(const Guid& reader) const = 0;
+  /// An entity id of zero stands for any reader of that participant.
+  virtual bool is_matched_with(const Guid& reader) const = 0;
 };
 
 class RawReader {
@@ -127,6 +125,9 @@ using RawDecode =
     std::function<Result<std::function<void(const SampleMeta&)>>(const std::uint8_t*, std::size_t)>;
 
 class Worker;
+
+/// Of events that a peer can cause at will, the 1st, 2nd, 4th, 8th ... are logged.
+inline bool is_power_of_two(std::uint64_t count) { return (count & (count - 1)) == 0; }
 
 /// What services need of their participant.
 const LogHook& participant_log(const Participant& participant);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <atomic>
 #include <mutex>
+#include <set>
 
 #include <bpa/wire/service.hpp>
 #include <bpa/wire/service_framing.hpp>
@@ -16,10 +17,16 @@ using std::chrono::milliseconds;
 /// A reply waits so long for its client's reader to be matched.
 constexpr milliseconds kClientPatience{2000};
 constexpr milliseconds kRetryPeriod{5};
-/// A reader of Eclipse Cyclone starts behind what the first heartbeat after matching covers, so a
-/// reply sent sooner than the second one may be lost.
-constexpr milliseconds kCycloneGrace{200};
+constexpr milliseconds kRepeatAfter[] = {milliseconds{200}, milliseconds{600}};
 constexpr int kMaxWaitingReplies = 256;
+constexpr std::size_t kMaxGreeted = 1024;
+
+struct Reply {
+  ReplyAddress address;
+  std::vector<std::uint8_t> bytes;
+  Clock::time_point deadline;
+};
+using ReplyPtr = std::shared_ptr<const Reply>;
 
 }  // namespace
 
@@ -63,52 +70,87 @@ class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl>
   }
 
   Status send(const ReplyAddress& address, const MessageRef& response) {
-    std::vector<std::uint8_t> bytes = frame_reply(address, response);
-    if (bytes.empty())
+    auto reply = std::make_shared<Reply>();
+    reply->address = address;
+    reply->bytes = frame_reply(address, response);
+    reply->deadline = Clock::now() + kClientPatience;
+    if (reply->bytes.empty()) {
       return invalid_argument("the reply of " + name_ + " breaks one of its bounds");
+    }
     if (waiting_ >= kMaxWaitingReplies) {
       return Status(StatusCode::busy, "too many replies of " + name_ + " wait for their clients");
     }
-    return try_send(address, std::move(bytes), Clock::now() + kClientPatience);
+    return send_when_matched(std::move(reply));
   }
 
  private:
   void on_request(const std::vector<std::uint8_t>& bytes, const SampleMeta& meta);
 
-  Status try_send(const ReplyAddress& address, std::vector<std::uint8_t> bytes,
-                  Clock::time_point deadline) {
-    std::shared_ptr<RawWriter> writer;
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      writer = replies_;
-    }
-    if (!writer) return Status(StatusCode::unavailable, "the service " + name_ + " has ended");
-    const auto matched = writer->matched_for(address.reader);
-    const milliseconds grace =
-        address.framing == Framing::cyclone ? kCycloneGrace : milliseconds{0};
-    if (matched && *matched >= grace) {
-      const bool beside = address.framing == Framing::fastdds;
-      return writer->write(bytes_ref(bytes), beside ? &address.related : nullptr, nullptr);
-    }
-    if (Clock::now() > deadline) {
-      log(participant_log(participant_), LogLevel::info,
-          name_ + ": dropped a reply, its client does not listen any more");
+  std::shared_ptr<RawWriter> writer() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return replies_;
+  }
+
+  Status send_when_matched(ReplyPtr reply) {
+    const auto to = writer();
+    if (!to) return Status(StatusCode::unavailable, "the service " + name_ + " has ended");
+    if (!to->is_matched_with(reply->address.reader)) {
+      if (Clock::now() > reply->deadline) {
+        log(participant_log(participant_), LogLevel::info,
+            name_ + ": dropped a reply, its client does not listen any more");
+      } else {
+        run_after(kRetryPeriod, [reply = std::move(reply)](ServiceServerImpl& self) {
+          self.warn(self.send_when_matched(reply));
+        });
+      }
       return {};
     }
+    Status status = write(*to, *reply);
+    if (reply->address.framing == Framing::cyclone && !is_greeted(reply->address.reader)) {
+      repeat(reply);
+    }
+    return status;
+  }
+
+  /// A reader of Eclipse Cyclone starts after what the first heartbeat that it sees covers, so the
+  /// first reply may have been lost on it; two heartbeats later it goes out again, and once more. A
+  /// client ignores what it has got already.
+  void repeat(const ReplyPtr& reply) {
+    for (const milliseconds after : kRepeatAfter) {
+      run_after(after, [reply](ServiceServerImpl& self) {
+        const auto to = self.writer();
+        if (to) self.warn(write(*to, *reply));
+        const std::lock_guard<std::mutex> lock(self.mutex_);
+        if (self.greeted_.size() >= kMaxGreeted) self.greeted_.clear();
+        self.greeted_.insert(reply->address.reader);
+      });
+    }
+  }
+
+  static Status write(RawWriter& writer, const Reply& reply) {
+    const bool beside = reply.address.framing == Framing::fastdds;
+    return writer.write(bytes_ref(reply.bytes), beside ? &reply.address.related : nullptr, nullptr);
+  }
+
+  bool is_greeted(const Guid& reader) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return greeted_.count(reader) != 0;
+  }
+
+  /// Runs it later on the worker, if the server still exists.
+  void run_after(milliseconds time, std::function<void(ServiceServerImpl&)> task) {
     ++waiting_;
-    const std::weak_ptr<ServiceServerImpl> weak = weak_from_this();
     participant_worker(participant_)
-        .run_at(Clock::now() + kRetryPeriod,
-                [weak, address, deadline,
-                 shared = std::make_shared<std::vector<std::uint8_t>>(std::move(bytes))] {
-                  const auto self = weak.lock();
-                  if (!self) return;
-                  --self->waiting_;
-                  const Status status = self->try_send(address, std::move(*shared), deadline);
-                  if (!status.ok())
-                    log(participant_log(self->participant_), LogLevel::warning, status.message);
-                });
-    return {};
+        .run_at(Clock::now() + time, [weak = weak_from_this(), task = std::move(task)] {
+          const auto self = weak.lock();
+          if (!self) return;
+          --self->waiting_;
+          task(*self);
+        });
+  }
+
+  void warn(const Status& status) {
+    if (!status.ok()) log(participant_log(participant_), LogLevel::warning, status.message);
   }
 
   const Participant participant_;
@@ -117,6 +159,7 @@ class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl>
   std::unique_ptr<RawReader> requests_;
   std::mutex mutex_;
   std::shared_ptr<RawWriter> replies_;
+  std::set<Guid> greeted_;  ///< Clients on Cyclone that are past their first reply.
   std::atomic<int> waiting_{0};
   std::atomic<std::uint64_t> received_{0}, malformed_{0};
 };
@@ -158,9 +201,10 @@ void ServiceServerImpl::on_request(const std::vector<std::uint8_t>& bytes, const
     }
     status = handle.status();
   }
-  ++malformed_;
+  const std::uint64_t count = ++malformed_;
+  if (!is_power_of_two(count)) return;
   log(participant_log(participant_), LogLevel::warning,
-      name_ + ": refused a request: " + status.message);
+      name_ + ": refused a request (" + std::to_string(count) + " so far): " + status.message);
 }
 
 Result<std::shared_ptr<ServiceServerImpl>> make_server(const Participant& participant,

@@ -9,7 +9,7 @@ namespace bpa::wire::detail {
 void Matches::add(const Guid& peer) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    since_.emplace(peer, Clock::now());
+    peers_.insert(peer);
   }
   changed_.notify_all();
 }
@@ -17,34 +17,30 @@ void Matches::add(const Guid& peer) {
 void Matches::remove(const Guid& peer) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    since_.erase(peer);
+    peers_.erase(peer);
   }
   changed_.notify_all();
 }
 
 std::size_t Matches::count() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return since_.size();
+  return peers_.size();
 }
 
 bool Matches::wait_for(std::size_t count, std::chrono::milliseconds timeout) const {
   std::unique_lock<std::mutex> lock(mutex_);
-  return changed_.wait_for(lock, timeout, [&] { return since_.size() >= count; });
+  return changed_.wait_for(lock, timeout, [&] { return peers_.size() >= count; });
 }
 
-std::optional<std::chrono::milliseconds> Matches::matched_for(const Guid& peer) const {
+bool Matches::contains(const Guid& peer) const {
   constexpr std::ptrdiff_t kPrefix = 12;
   const bool any_entity =
       std::all_of(peer.begin() + kPrefix, peer.end(), [](std::uint8_t byte) { return byte == 0; });
-  const std::ptrdiff_t compared = any_entity ? kPrefix : 16;
-  std::optional<Clock::time_point> newest;
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (const auto& [guid, since] : since_) {
-    const bool same = std::equal(guid.begin(), guid.begin() + compared, peer.begin());
-    if (same && (!newest || since > *newest)) newest = since;
-  }
-  if (!newest) return std::nullopt;
-  return std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - *newest);
+  if (!any_entity) return peers_.count(peer) != 0;
+  return std::any_of(peers_.begin(), peers_.end(), [&peer](const Guid& guid) {
+    return std::equal(guid.begin(), guid.begin() + kPrefix, peer.begin());
+  });
 }
 
 }  // namespace bpa::wire::detail

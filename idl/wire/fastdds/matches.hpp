@@ -4,9 +4,8 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <map>
 #include <mutex>
-#include <optional>
+#include <set>
 
 #include <bpa/wire/endpoint.hpp>
 
@@ -19,15 +18,13 @@ class Matches {
   void remove(const Guid& peer);
   std::size_t count() const;
   bool wait_for(std::size_t count, std::chrono::milliseconds timeout) const;
-  /// As RawWriter::matched_for; of several, the one that came last.
-  std::optional<std::chrono::milliseconds> matched_for(const Guid& peer) const;
+  /// As RawWriter::is_matched_with.
+  bool contains(const Guid& peer) const;
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
-  std::map<Guid, Clock::time_point> since_;
+  std::set<Guid> peers_;
 };
 
 }  // namespace bpa::wire::detail

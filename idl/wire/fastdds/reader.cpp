@@ -95,11 +95,16 @@ class Reader : public RawReader, private dds::DataReaderListener {
         ++received_;
         sample.deliver(to_meta(info));
       } else {
-        ++malformed_;
-        participant_->log(LogLevel::warning, "topic " + spec_.dds_topic +
-                                                 ": refused a sample: " + sample.status.message);
+        refuse(sample.status);
       }
     }
+  }
+
+  void refuse(const Status& status) {
+    const std::uint64_t count = ++malformed_;
+    if (!is_power_of_two(count)) return;  // a bad peer must not fill the log
+    participant_->log(LogLevel::warning, "topic " + spec_.dds_topic + ": refused a sample (" +
+                                             std::to_string(count) + " so far): " + status.message);
   }
 
   void on_subscription_matched(dds::DataReader*,

@@ -83,9 +83,7 @@ class Writer : public RawWriter, private dds::DataWriterListener {
     return matches_.wait_for(count, timeout);
   }
   Guid guid() const override { return to_guid(writer_->guid()); }
-  std::optional<std::chrono::milliseconds> matched_for(const Guid& reader) const override {
-    return matches_.matched_for(reader);
-  }
+  bool is_matched_with(const Guid& reader) const override { return matches_.contains(reader); }
 
  private:
   Status fail(const std::string& why) const {

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
@@ -206,6 +207,76 @@ TEST(PubSub, MatchesComeAndGo) {
   }
   for (int i = 0; i < 100 && publisher->matched_count() > 0; ++i) usleep(20'000);
   EXPECT_EQ(publisher->matched_count(), 0U);
+}
+
+TEST(PubSub, MalformedSamplesAreCountedAndTheNextIsRead) {
+  Inbox<std::string> log;
+  auto one = test_participant("one");
+  auto two = test_participant("two", [&log](LogLevel level, std::string_view text) {
+    if (level == LogLevel::warning) log.put(std::string(text));
+  });
+  ASSERT_TRUE(one.ok() && two.ok());
+  auto spec = detail::endpoint_spec<sensor_msgs::Image>("rt/image", qos::results(), 0);
+  auto writer = detail::make_writer(*one, spec);
+  ASSERT_TRUE(writer.ok());
+  Inbox<std::uint32_t> heights;
+  SubscriberOptions options;
+  options.qos = qos::reliable_input();
+  auto subscriber = Subscriber<sensor_msgs::Image>::create(
+      *two, "image", options,
+      [&heights](sensor_msgs::Image&& image, const SampleMeta&) { heights.put(image.height); });
+  ASSERT_TRUE(subscriber.ok());
+  ASSERT_TRUE(writer.value()->wait_for_matched(1, seconds(5)));
+  sensor_msgs::Image image;
+  image.height = 5;
+  std::vector<std::uint8_t> bytes = encode(image);
+  bytes.back() = 0x7f;  // 2 GB of pixels
+  ASSERT_TRUE(writer.value()->write(detail::bytes_ref(bytes), nullptr, nullptr).ok());
+  ASSERT_TRUE(writer.value()->write(detail::message_ref(image), nullptr, nullptr).ok());
+  ASSERT_TRUE(heights.wait_for(1));
+  EXPECT_EQ(subscriber->statistics().malformed, 1U);
+  EXPECT_EQ(subscriber->statistics().received, 1U);
+  ASSERT_TRUE(log.wait_for(1));
+  EXPECT_TRUE(contains(log.values()[0], "rt/image") && contains(log.values()[0], "data"))
+      << log.values()[0];
+}
+
+TEST(PubSub, TheGraphShowsTheNodeAndItsEndpoints) {
+  using Info = rmw_dds_common::ParticipantEntitiesInfo;
+  auto one = test_participant("one");
+  auto two = test_participant("two");
+  ASSERT_TRUE(one.ok() && two.ok());
+  Inbox<Info> graph;
+  auto spec = detail::endpoint_spec<Info>("ros_discovery_info", qos::latched(), 0);
+  spec.in_graph = false;
+  auto reader = detail::make_reader(
+      *two, spec,
+      [&graph](const std::uint8_t* bytes,
+               std::size_t size) -> Result<std::function<void(const SampleMeta&)>> {
+        auto info = std::make_shared<Info>();
+        Status status = decode(bytes, size, *info);
+        if (!status.ok()) return status;
+        return std::function<void(const SampleMeta&)>([&graph, info](const SampleMeta&) {
+          const auto& nodes = info->node_entities_info_seq;
+          if (nodes.size() == 1 && nodes[0].node_name == "one") graph.put(*info);
+        });
+      });
+  ASSERT_TRUE(reader.ok());
+  ASSERT_TRUE(graph.wait_for(1));
+  auto writer = detail::make_writer(
+      *one, detail::endpoint_spec<std_msgs::String>("rt/text", qos::results(), 0));
+  ASSERT_TRUE(writer.ok());
+  ASSERT_TRUE(graph.wait_for(2));
+  const Guid guid = writer.value()->guid();
+  writer.value().reset();
+  ASSERT_TRUE(graph.wait_for(3));
+  const auto states = graph.values();
+  EXPECT_EQ(states[0].node_entities_info_seq[0].node_namespace, "/");
+  EXPECT_TRUE(states[0].node_entities_info_seq[0].writer_gid_seq.empty());
+  ASSERT_EQ(states[1].node_entities_info_seq[0].writer_gid_seq.size(), 1U);
+  EXPECT_EQ(states[1].node_entities_info_seq[0].writer_gid_seq[0].data, guid);
+  EXPECT_TRUE(states[2].node_entities_info_seq[0].writer_gid_seq.empty());
+  EXPECT_TRUE(std::equal(guid.begin(), guid.begin() + 12, states[0].gid.data.begin()));
 }
 
 TEST(PubSub, OneTopicTwoTypesInOneProcessIsRefused) {

@@ -123,7 +123,31 @@ TEST(Service, ClientGoesOnWithTheNextServer) {
   }
 }
 
-// A Detect request as rmw_cyclonedds frames it, in both byte orders.
+TEST(Service, MalformedRequestsAreCountedAndTheNextIsServed) {
+  auto one = test_participant("server");
+  auto two = test_participant("client");
+  ASSERT_TRUE(one.ok() && two.ok());
+  auto server = UnloadServer::create(*one, "strict", answer);
+  auto client = UnloadClient::create(*two, "strict");
+  ASSERT_TRUE(server.ok() && client.ok());
+  auto writer = detail::make_writer(
+      *two, detail::endpoint_spec<Unload::Request>("rq/strictRequest", qos::services(), 0));
+  ASSERT_TRUE(writer.ok());
+  ASSERT_TRUE(client->wait_for_service(seconds(5)));
+  ASSERT_TRUE(writer.value()->wait_for_matched(1, seconds(5)));
+  const SampleId client_id{{1, 2, 3}, 0};
+  const std::vector<std::uint8_t> long_name = {0, 1, 0, 0, 0xff, 0xff, 0xff, 0xff, 'a', 0};
+  const std::vector<std::uint8_t> no_header = {0, 1, 0, 0, 2, 0, 0, 0, 'a', 0};
+  ASSERT_TRUE(writer.value()->write(detail::bytes_ref(long_name), &client_id, nullptr).ok());
+  ASSERT_TRUE(writer.value()->write(detail::bytes_ref(no_header), nullptr, nullptr).ok());
+  Unload::Request request;
+  request.name = "x";
+  EXPECT_TRUE(client->call(request, seconds(5)).ok());
+  EXPECT_EQ(server->statistics().malformed, 2U);
+  EXPECT_EQ(server->statistics().received, 1U);
+}
+
+// A request as rmw_cyclonedds frames it, in both byte orders.
 TEST(ServiceFraming, CycloneHeaderIsEchoedInTheRepliesOrder) {
   SampleMeta meta;
   meta.id.writer = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0, 0, 0x10, 3};
