@@ -1,0 +1,307 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// A data set of two frames whose every figure is worked out by hand.
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <bpa/core/eval/evaluation.hpp>
+#include <bpa/core/eval/matching.hpp>
+#include <bpa/core/eval/report.hpp>
+#include <bpa/core/io/bop_writer.hpp>
+#include <bpa/core/io/image_file.hpp>
+
+#include "support/temporary_folder.hpp"
+
+namespace bpa::eval {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+Pose at(double x, double z, double turn = 0) {
+  return {rotation_from_vector({0, 0, turn}), {x, 0, z}};
+}
+
+/// A cube of 10 cm around the origin.
+TriangleMesh cube() {
+  TriangleMesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.vertices.emplace_back(i & 1 ? 0.05f : -0.05f, i & 2 ? 0.05f : -0.05f,
+                               i & 4 ? 0.05f : -0.05f);
+  }
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+/// Object 1 has no symmetry, object 2 a half turn about z.
+EvalObjects objects() {
+  EvalObjects result;
+  const double diameter = 0.1 * std::sqrt(3.0);
+  result[1] = {"plain", diameter, {}, cube()};
+  result[2] = {"turned", diameter, {}, cube()};
+  result[2].symmetry.discrete = {{rotation_from_vector({0, 0, kPi}), Eigen::Vector3d::Zero()}};
+  return result;
+}
+
+io::BopFrame frame(int im_id, std::vector<io::BopInstance> truth) {
+  io::BopFrame result;
+  result.scene_id = 1;
+  result.im_id = im_id;
+  result.camera = {64, 48, 60, 60, 31.5, 23.5};
+  result.has_truth = true;
+  result.truth = std::move(truth);
+  return result;
+}
+
+io::ResultPlacement placement(int obj_id, const Pose& pose, double probability) {
+  io::ResultPlacement result;
+  result.obj_id = obj_id;
+  result.camera_from_object = pose;
+  result.probability = probability;
+  result.covariance = 1e-4 * Eigen::Matrix<double, 6, 6>::Identity();
+  return result;
+}
+
+io::FrameResult result(int im_id, double seconds,
+                       std::vector<std::vector<io::ResultPlacement>> interpretations) {
+  io::FrameResult frame;
+  frame.scene_id = 1;
+  frame.im_id = im_id;
+  frame.seconds = seconds;
+  for (auto& placements : interpretations) {
+    frame.interpretations.emplace_back();
+    frame.interpretations.back().placements = std::move(placements);
+  }
+  return frame;
+}
+
+EvaluationOptions without_bop() {
+  EvaluationOptions options;
+  options.bop_errors = false;
+  return options;
+}
+
+TEST(Matching, IsGreedyByScoreAndOneToOne) {
+  // The second estimate scores higher, so it takes truth 0, which both want most.
+  EXPECT_EQ(match_greedily({0.2, 0.9, 0.5}, {{0.1, 0.2}, {0.3, 0.4}, {kNoMatch, kNoMatch}}),
+            (std::vector<int>{1, 0, -1}));
+  EXPECT_EQ(match_greedily({0.9, 0.2}, {{0.1}, {0.0}}), (std::vector<int>{0, -1}));
+  EXPECT_TRUE(match_greedily({}, {}).empty());
+}
+
+struct Case {
+  std::vector<io::BopFrame> frames;
+  std::vector<io::FrameResult> results;
+};
+
+/// Frame 0: two plain and one turned object and one that is too hidden to count; frame 1: one plain
+/// one at 1.3 m.
+Case two_frames() {
+  Case c;
+  c.frames = {frame(0, {{1, at(0, 0.7), 1.0},
+                        {1, at(0.3, 0.7), 0.35},
+                        {2, at(-0.3, 0.7), 0.95},
+                        {1, at(0.6, 0.7), 0.05}}),
+              frame(1, {{1, at(0, 1.3), 0.5}})};
+  c.results = {
+      result(0, 0.4,
+             {{placement(1, at(0.02, 0.7), 0.9),        // right: 20 mm off
+               placement(1, at(0.012, 0.7), 0.6),       // the same instance again: false
+               placement(2, at(-0.3, 0.7, kPi), 0.95),  // right by symmetry
+               placement(1, at(0.6, 0.7), 0.8)},        // of the one that does not count: ignored
+              {placement(1, at(0.3, 0.7), 0.7)},        // the second finds what the first missed
+              {}}),
+      result(1, 0.8, {{placement(1, at(0.03, 1.3), 0.55)}})};  // 30 mm off: false
+  return c;
+}
+
+TEST(Evaluation, PaperProtocolByHand) {
+  const Case c = two_frames();
+  const auto report = evaluate(c.frames, objects(), c.results, without_bop());
+  ASSERT_TRUE(report.ok()) << report.status().message;
+  EXPECT_EQ(report->frames, 2);
+  EXPECT_EQ(report->precision.hits, 2);
+  EXPECT_EQ(report->precision.total, 4);
+  EXPECT_EQ(report->recall.hits, 2);
+  EXPECT_EQ(report->recall.total, 4);
+  EXPECT_EQ(report->recall_at.at(1).hits, 2);
+  EXPECT_EQ(report->recall_at.at(2).hits, 3);
+  EXPECT_EQ(report->recall_at.at(20).hits, 3);
+  EXPECT_EQ(report->recall_at.at(20).total, 4);
+  // RMSE 1 cm: the 20 mm one is wrong; the one 12 mm off too.
+  EXPECT_EQ(report->rmse_recall.hits, 1);
+  EXPECT_EQ(report->rmse_precision.total, 4);
+  // ADD of what was found: 20 mm and, modulo symmetry, 0.
+  EXPECT_NEAR(report->mean_add, 0.010, 1e-9);
+  EXPECT_NEAR(report->time.median, 0.6, 1e-12);
+  EXPECT_NEAR(report->time.max, 0.8, 1e-12);
+}
+
+TEST(Evaluation, AngleCountsToo) {
+  const std::vector<io::BopFrame> frames = {frame(0, {{1, at(0, 0.7), 1.0}})};
+  for (const auto& [factor, hits] : {std::pair(0.99, 1), std::pair(1.01, 0)}) {
+    const auto report = evaluate(
+        frames, objects(), {result(0, 0, {{placement(1, at(0, 0.7, factor * kPi / 16), 0.9)}})},
+        without_bop());
+    ASSERT_TRUE(report.ok());
+    EXPECT_EQ(report->recall.hits, hits) << factor;
+  }
+}
+
+TEST(Evaluation, BreakDownsByHand) {
+  const Case c = two_frames();
+  const auto report = evaluate(c.frames, objects(), c.results, without_bop());
+  ASSERT_TRUE(report.ok());
+  ASSERT_EQ(report->by_object.size(), 2u);
+  EXPECT_EQ(report->by_object[0].name, "plain");
+  EXPECT_EQ(report->by_object[0].recall.hits, 1);
+  EXPECT_EQ(report->by_object[0].recall.total, 3);
+  EXPECT_EQ(report->by_object[0].precision.hits, 1);
+  EXPECT_EQ(report->by_object[0].precision.total, 3);
+  EXPECT_EQ(report->by_object[1].recall.value(), 1);
+  std::map<std::string, Ratio> visible;
+  for (const Group& group : report->by_visible_fraction) visible[group.name] = group.recall;
+  ASSERT_EQ(visible.size(), 3u);
+  EXPECT_EQ(visible.at("0.3-0.4").hits, 0);
+  EXPECT_EQ(visible.at("0.5-0.6").total, 1);
+  EXPECT_EQ(visible.at("0.9-1.0").hits, 2);
+  std::map<std::string, Group> distance;
+  for (const Group& group : report->by_distance) distance[group.name] = group;
+  EXPECT_EQ(distance.at("0.6-0.8 m").recall.total, 3);
+  EXPECT_EQ(distance.at("1.2-1.4 m").precision.total, 1);
+  EXPECT_EQ(distance.at("1.2-1.4 m").precision.hits, 0);
+}
+
+TEST(Evaluation, CalibrationByHand) {
+  const Case c = two_frames();
+  const auto report = evaluate(c.frames, objects(), c.results, without_bop());
+  ASSERT_TRUE(report.ok());
+  const double brier = (0.1 * 0.1 + 0.6 * 0.6 + 0.05 * 0.05 + 0.55 * 0.55) / 4;
+  EXPECT_NEAR(report->brier, brier, 1e-12);
+  ASSERT_EQ(report->reliability.size(), 10u);
+  EXPECT_EQ(report->reliability[9].correct.total, 2);
+  EXPECT_EQ(report->reliability[9].correct.hits, 2);
+  EXPECT_NEAR(report->reliability[9].mean_probability, 0.925, 1e-12);
+  EXPECT_EQ(report->reliability[5].correct.total, 1);
+  EXPECT_EQ(report->reliability[5].correct.hits, 0);
+}
+
+TEST(Evaluation, CoverageByHand) {
+  // Errors of 20 mm and 0 with a standard deviation of 10 mm: squared lengths 4 and 0, both within
+  // the 50 % region (5.35). With 7 mm: 8.16, within 90 % (10.64) but not 50 %.
+  Case c = two_frames();
+  auto report = evaluate(c.frames, objects(), c.results, without_bop());
+  ASSERT_TRUE(report.ok());
+  ASSERT_EQ(report->coverage.size(), 3u);
+  EXPECT_EQ(report->coverage[0].covered.hits, 2);
+  EXPECT_EQ(report->coverage[0].covered.total, 2);
+  c.results[0].interpretations[0].placements[0].covariance *= 0.49;
+  report = evaluate(c.frames, objects(), c.results, without_bop());
+  EXPECT_EQ(report->coverage[0].covered.hits, 1);
+  EXPECT_EQ(report->coverage[1].covered.hits, 2);
+  c.results[0].interpretations[0].placements[0].covariance.setZero();
+  report = evaluate(c.frames, objects(), c.results, without_bop());
+  EXPECT_EQ(report->coverage[2].covered.total, 1) << "no covariance, no count";
+}
+
+TEST(Evaluation, MissingFramesCountAsNothingFound) {
+  Case c = two_frames();
+  c.results.resize(1);
+  const auto report = evaluate(c.frames, objects(), c.results, without_bop());
+  ASSERT_TRUE(report.ok());
+  EXPECT_EQ(report->recall.total, 4);
+  EXPECT_EQ(report->time.frames, 1);
+}
+
+TEST(Evaluation, RefusesWhatDoesNotFit) {
+  Case c = two_frames();
+  c.results[0].im_id = 77;
+  EXPECT_EQ(evaluate(c.frames, objects(), c.results).status().code, StatusCode::invalid_argument);
+  c = two_frames();
+  c.results[0].interpretations[0].placements[0].obj_id = 5;
+  EXPECT_EQ(evaluate(c.frames, objects(), c.results).status().code, StatusCode::invalid_argument);
+  c = two_frames();
+  c.frames[1].has_truth = false;
+  EXPECT_EQ(evaluate(c.frames, objects(), c.results).status().code, StatusCode::invalid_argument);
+}
+
+/// One frame on disk with a cube before a wall of nothing, seen at exactly its depth.
+TEST(Evaluation, BopErrorsByHand) {
+  const test::TemporaryFolder folder;
+  Frame image;
+  image.camera = {64, 48, 60, 60, 31.5, 23.5};
+  image.depth.assign(64 * 48, 0.0f);
+  io::BopSceneWriter writer(folder.path(), "test", 1);
+  io::BopInstanceRecord truth;
+  truth.obj_id = 1;
+  truth.camera_from_object = at(0, 0.7);
+  ASSERT_TRUE(writer.add(0, image, {truth}).ok());
+  ASSERT_TRUE(writer.finish().ok());
+  const auto frames = io::read_bop_frames(folder.path(), "test");
+  ASSERT_TRUE(frames.ok()) << frames.status().message;
+
+  const auto exact =
+      evaluate(*frames, objects(), {result(0, 0, {{placement(1, at(0, 0.7), 0.9)}})});
+  ASSERT_TRUE(exact.ok()) << exact.status().message;
+  EXPECT_EQ(exact->mssd, 1);
+  EXPECT_EQ(exact->mspd, 1);
+  EXPECT_EQ(exact->vsd, 1);
+  EXPECT_EQ(exact->average_recall, 1);
+  EXPECT_EQ(exact->add_recall.hits, 1);
+
+  // 40 mm to the side: 0.231 diameters, so MSSD is right at 0.25, 0.30 ... 0.50: 6 of 10. The near
+  // face is at 0.65 m: 60 * 40 / 650 = 3.69 pixels, at a width of 64 as good as 36.9 of 640: right
+  // under 40, 45 and 50: 3 of 10. ADD is 0.231 diameters: wrong.
+  const auto off =
+      evaluate(*frames, objects(), {result(0, 0, {{placement(1, at(0.04, 0.7), 0.9)}})});
+  ASSERT_TRUE(off.ok());
+  EXPECT_NEAR(off->mssd, 0.6, 1e-12);
+  EXPECT_NEAR(off->mspd, 0.3, 1e-12);
+  EXPECT_EQ(off->add_recall.hits, 0);
+  EXPECT_NEAR(off->average_recall, (off->vsd + off->mssd + off->mspd) / 3, 1e-12);
+  // 15 mm deeper: the front faces lie 0.087 diameters apart: VSD is bad for the first tolerance.
+  const auto deep =
+      evaluate(*frames, objects(), {result(0, 0, {{placement(1, at(0, 0.715), 0.9)}})});
+  EXPECT_LT(deep->vsd, 1);
+  EXPECT_GE(deep->vsd, 0.85);
+
+  // BOP takes as many estimates of an object as there are instances: the most probable.
+  const auto two =
+      evaluate(*frames, objects(),
+               {result(0, 0, {{placement(1, at(0, 0.7), 0.5), placement(1, at(0.5, 0.7), 0.9)}})});
+  EXPECT_EQ(two->average_recall, 0);
+}
+
+TEST(Report, TextJsonAndPlots) {
+  const test::TemporaryFolder folder;
+  const Case c = two_frames();
+  auto report = evaluate(c.frames, objects(), c.results, without_bop());
+  ASSERT_TRUE(report.ok());
+  EXPECT_NE(report_text(*report).find("50.0 % (2/4)"), std::string::npos);
+  const auto json = nlohmann::json::parse(report_json(*report));
+  EXPECT_EQ(json.at("recall_at").at("2").at("hits"), 3);
+  EXPECT_EQ(json.at("precision").at("value"), 0.5);
+  ASSERT_TRUE(write_plots(folder.path(), *report).ok());
+  for (const char* name : {"recall", "reliability", "visible_fraction", "distance", "objects"}) {
+    EXPECT_TRUE(io::read_color_image(folder / (std::string(name) + ".png")).ok()) << name;
+  }
+  EXPECT_FALSE(report_text(EvaluationReport{}).empty()) << "nothing at all";
+  EXPECT_TRUE(write_plots(folder.path(), EvaluationReport{}).ok());
+}
+
+TEST(Evaluation, DoesNotDependOnThreads) {
+  const Case c = two_frames();
+  EvaluationOptions options = without_bop();
+  options.num_threads = 1;
+  const auto one = evaluate(c.frames, objects(), c.results, options);
+  options.num_threads = 4;
+  const auto four = evaluate(c.frames, objects(), c.results, options);
+  ASSERT_TRUE(one.ok() && four.ok());
+  EXPECT_EQ(report_json(*one), report_json(*four));
+}
+
+}  // namespace
+}  // namespace bpa::eval

@@ -1,0 +1,269 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// The program bpa as a user meets it: bad input is one clear line and exit code 1, wrong usage
+// is 2.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <bpa/core/eval/depth_render.hpp>
+#include <bpa/core/io/bop_writer.hpp>
+#include <bpa/core/io/camera_file.hpp>
+#include <bpa/core/io/image_file.hpp>
+#include <bpa/core/io/mesh_file.hpp>
+#include <bpa/core/io/results.hpp>
+
+#include "support/temporary_folder.hpp"
+
+namespace bpa {
+namespace {
+
+using test::slurp;
+using test::spill;
+
+struct Outcome {
+  int code = -1;
+  std::string out;  // stdout and stderr
+};
+
+Outcome run(const std::string& arguments) {
+  const std::string command = std::string(BPA_BINARY_DIR) + "/bin/bpa " + arguments + " 2>&1";
+  Outcome outcome;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return outcome;
+  std::array<char, 4096> buffer;
+  for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+    outcome.out.append(buffer.data(), n);
+  }
+  const int status = pclose(pipe);
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+  return outcome;
+}
+
+/// Exit code 1 and exactly one line, which has all the words.
+void expect_failure(const std::string& arguments, const std::vector<std::string>& words) {
+  const Outcome outcome = run(arguments);
+  EXPECT_EQ(outcome.code, 1) << arguments << "\n" << outcome.out;
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
+  EXPECT_EQ(outcome.out.rfind("bpa: ", 0), 0u) << outcome.out;
+  for (const std::string& word : words) {
+    EXPECT_NE(outcome.out.find(word), std::string::npos)
+        << "no \"" << word << "\" in " << outcome.out;
+  }
+}
+
+TriangleMesh box(float x, float y, float z) {
+  TriangleMesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.vertices.emplace_back(i & 1 ? x : -x, i & 2 ? y : -y, i & 4 ? z : -z);
+  }
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+constexpr Camera kCamera{160, 120, 140, 140, 79.5, 59.5};
+
+/// A box over a wall, as depth.
+Frame box_frame(const Pose& camera_from_box) {
+  Frame frame;
+  frame.camera = kCamera;
+  frame.depth = eval::render_depth(box(0.06f, 0.04f, 0.09f), camera_from_box, kCamera);
+  for (float& z : frame.depth) {
+    if (z == 0) z = 0.9f;
+  }
+  frame.color.assign(3 * frame.depth.size(), 128);
+  return frame;
+}
+
+Pose box_pose() {
+  return {rotation_from_vector({0.7, 0.5, 0.2}), Eigen::Vector3d(0.01, 0.02, 0.6)};
+}
+
+/// A library with one box, and a good frame to spoil.
+class BadInput : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(io::write_ply(folder_ / "box.ply", box(0.06f, 0.04f, 0.09f)).ok());
+    const Outcome made = run("model from-mesh " + (folder_ / "box.ply") + " --name box --library " +
+                             (folder_ / "L"));
+    ASSERT_EQ(made.code, 0) << made.out;
+    write_depth("d.png", 160, 120, 700);
+    io::ColorImage color{160, 120, {}};
+    color.pixels.assign(3 * 160 * 120, 100);
+    ASSERT_TRUE(io::write_color_png(folder_ / "c.png", color).ok());
+    ASSERT_TRUE(io::write_camera(folder_ / "camera.json", kCamera, 1.0).ok());
+  }
+
+  void write_depth(const std::string& name, int width, int height, std::uint16_t value) {
+    io::GrayImage depth{width, height, {}};
+    depth.pixels.assign(static_cast<std::size_t>(width * height), value);
+    ASSERT_TRUE(io::write_gray_png(folder_ / name, depth).ok());
+  }
+
+  std::string detect(const std::string& depth, const std::string& camera = "camera.json",
+                     const std::string& more = "") const {
+    return "detect --library " + (folder_ / "L") + " --depth " + (folder_ / depth) + " --color " +
+           (folder_ / "c.png") + " --camera " + (folder_ / camera) + " " + more;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(BadInput, DepthOfTheWrongSize) {
+  write_depth("small.png", 80, 60, 700);
+  expect_failure(detect("small.png"), {"depth", "80x60", "160x120"});
+  ASSERT_TRUE(io::write_camera(folder_ / "s.json", {80, 60, 70, 70, 40, 30}, 1.0).ok());
+  expect_failure(detect("small.png", "s.json"), {"depth", "80x60", "colour", "160x120"});
+}
+
+TEST_F(BadInput, DepthOfNothingButZero) {
+  write_depth("zero.png", 160, 120, 0);
+  expect_failure(detect("zero.png"), {"depth", "0 valid pixels", "500"});
+}
+
+TEST_F(BadInput, CloudOfNothingButNan) {
+  std::ostringstream pcd;
+  pcd << "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 40\nHEIGHT 30\n"
+         "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 1200\nDATA ascii\n";
+  for (int i = 0; i < 1200; ++i) pcd << "nan nan nan\n";
+  spill(folder_ / "nan.pcd", pcd.str());
+  expect_failure("detect --library " + (folder_ / "L") + " --pcd " + (folder_ / "nan.pcd"),
+                 {"nan.pcd", "0 finite points", "500"});
+}
+
+TEST_F(BadInput, FocalLengthOfZero) {
+  spill(folder_ / "zero.json", R"({"fx": 0.0, "fy": 140, "cx": 80, "cy": 60})");
+  expect_failure(detect("d.png", "zero.json"), {"zero.json", "fx is 0", "must be positive"});
+}
+
+TEST_F(BadInput, TruncatedPng) {
+  spill(folder_ / "cut.png", slurp(folder_ / "d.png").substr(0, 90));
+  expect_failure(detect("cut.png"), {"cut.png", "truncated"});
+  spill(folder_ / "c.png", slurp(folder_ / "c.png").substr(0, 100));
+  expect_failure(detect("d.png"), {"c.png", "truncated"});
+}
+
+TEST_F(BadInput, MeshInTheWrongUnit) {
+  const std::string library = " --name b --library " + (folder_ / "M");
+  ASSERT_TRUE(io::write_ply(folder_ / "mm.ply", box(0.06f, 0.04f, 0.09f), 1000).ok());
+  expect_failure("model from-mesh " + (folder_ / "mm.ply") + library, {"mm.ply", "3 m", "scale 0.001"});
+  const Outcome scaled =
+      run("model from-mesh " + (folder_ / "mm.ply") + library + " --scale 0.001");
+  EXPECT_EQ(scaled.code, 0) << scaled.out;
+  expect_failure("model from-mesh " + (folder_ / "box.ply") + library + " --scale 0.001",
+                 {"box.ply", "0.005", "scale"});
+}
+
+TEST_F(BadInput, EmptyAndMissingLibraries) {
+  std::filesystem::create_directories(folder_ / "empty");
+  const std::string rest =
+      " --depth " + (folder_ / "d.png") + " --camera " + (folder_ / "camera.json");
+  expect_failure("detect --library " + (folder_ / "empty") + rest,
+                 {"library", "empty", "at least one"});
+  expect_failure("detect --library " + (folder_ / "none") + rest, {"library", "none"});
+  expect_failure("model list --library " + (folder_ / "empty"), {"library", "empty"});
+  expect_failure(detect("d.png", "camera.json", "--models box,teapot"), {"teapot"});
+}
+
+TEST_F(BadInput, DamagedModel) {
+  const std::string path = folder_ / "L/box/surface.ply";
+  const std::string bytes = slurp(path);
+  spill(path, bytes.substr(0, bytes.size() - 1));
+  expect_failure(detect("d.png"), {"surface.ply", "truncated"});
+}
+
+TEST_F(BadInput, ConfigurationFile) {
+  spill(folder_ / "a.yaml", "max_range_m: 2\nmax_rnage: 3\n");
+  expect_failure(detect("d.png", "camera.json", "--config " + (folder_ / "a.yaml")),
+                 {"a.yaml:2", "unknown key \"max_rnage\""});
+  spill(folder_ / "a.yaml", "max_range_m: 2000\n");
+  expect_failure(detect("d.png", "camera.json", "--config " + (folder_ / "a.yaml")),
+                 {"a.yaml", "max_range_m is 2000", "between"});
+}
+
+TEST_F(BadInput, DataSets) {
+  expect_failure("detect --library " + (folder_ / "L") + " --bop " + (folder_ / "none"),
+                 {"none/test"});
+  expect_failure("model from-bop " + (folder_ / "none") + " --library " + (folder_ / "X"),
+                 {"models_info.json"});
+  expect_failure("evaluate --bop " + (folder_ / "none") + " --csv x.csv", {"none/test"});
+}
+
+TEST(Usage, IsExitCodeTwo) {
+  for (const char* arguments :
+       {"", "teapot", "detect", "detect --library L", "detect --library L --pcd a --bop b",
+        "detect --library L --depth a", "detect --library L --pcd a --top 0",
+        "detect --library L --pcd a --threads x", "model", "model from-mesh a", "evaluate --bop b",
+        "evaluate --bop b --csv a --json c", "model list --library L --colour red"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.out;
+    EXPECT_FALSE(outcome.out.empty());
+  }
+}
+
+TEST(Usage, HelpIsExitCodeZeroEverywhere) {
+  for (const char* command : {"", "model", "model from-mesh", "model from-bop", "model info",
+                              "model list", "model remove", "detect", "evaluate"}) {
+    const Outcome outcome = run(std::string(command) + " --help");
+    EXPECT_EQ(outcome.code, 0) << command;
+    if (std::string(command).empty() || std::string(command) == "model") continue;
+    EXPECT_NE(outcome.out.find("--threads"), std::string::npos) << command;
+    EXPECT_NE(outcome.out.find("--seed"), std::string::npos) << command;
+  }
+}
+
+TEST(Commands, FromADataSetToFigures) {
+  const test::TemporaryFolder folder;
+  io::BopMesh model;
+  model.obj_id = 4;
+  model.name = "box";
+  model.diameter = 0.23;
+  model.mesh = box(0.06f, 0.04f, 0.09f);
+  for (const Eigen::Vector3d& axis :
+       {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, 1)}) {
+    model.symmetry.discrete.push_back(
+        {Eigen::Quaterniond(0, axis.x(), axis.y(), axis.z()), Eigen::Vector3d::Zero()});
+  }
+  ASSERT_TRUE(io::write_bop_models(folder / "set", {model}).ok());
+  io::BopSceneWriter writer(folder / "set", "test", 3);
+  io::BopInstanceRecord truth;
+  truth.obj_id = 4;
+  truth.camera_from_object = box_pose();
+  ASSERT_TRUE(writer.add(9, box_frame(box_pose()), {truth}).ok());
+  ASSERT_TRUE(writer.finish().ok());
+
+  Outcome outcome = run("model from-bop " + (folder / "set") + " --library " + (folder / "L"));
+  ASSERT_EQ(outcome.code, 0) << outcome.out;
+  outcome = run("model list --library " + (folder / "L"));
+  EXPECT_NE(outcome.out.find("3 discrete"), std::string::npos) << outcome.out;
+  outcome = run("detect --library " + (folder / "L") + " --bop " + (folder / "set") +
+                " --scenes 3 --csv " + (folder / "r.csv") + " --json " + (folder / "r.json") +
+                " --annotate " + (folder / "pictures"));
+  ASSERT_EQ(outcome.code, 0) << outcome.out;
+  EXPECT_NE(outcome.out.find("scene 3 image 9"), std::string::npos) << outcome.out;
+  const auto results = io::read_results_json(folder / "r.json");
+  ASSERT_TRUE(results.ok()) << results.status().message;
+  ASSERT_EQ(results->size(), 1u);
+  EXPECT_EQ(results->at(0).im_id, 9);
+  for (const char* picture : {"pictures/000003_000009.png", "pictures/contact_sheet.png"}) {
+    EXPECT_TRUE(io::read_color_image(folder / picture).ok()) << picture;
+  }
+  for (const std::string& file : {"--csv " + (folder / "r.csv"), "--json " + (folder / "r.json")}) {
+    outcome = run("evaluate --bop " + (folder / "set") + " " + file + " --plots " +
+                  (folder / "plots") + " --json-out " + (folder / "e.json"));
+    EXPECT_EQ(outcome.code, 0) << outcome.out;
+    EXPECT_NE(outcome.out.find("1 instances that count"), std::string::npos) << outcome.out;
+  }
+  EXPECT_FALSE(slurp(folder / "e.json").empty());
+  outcome = run("model remove box --library " + (folder / "L"));
+  EXPECT_EQ(outcome.code, 0) << outcome.out;
+}
+
+}  // namespace
+}  // namespace bpa
