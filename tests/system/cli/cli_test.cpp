@@ -152,7 +152,8 @@ TEST_F(BadInput, TruncatedPng) {
 TEST_F(BadInput, MeshInTheWrongUnit) {
   const std::string library = " --name b --library " + (folder_ / "M");
   ASSERT_TRUE(io::write_ply(folder_ / "mm.ply", box(0.06f, 0.04f, 0.09f), 1000).ok());
-  expect_failure("model from-mesh " + (folder_ / "mm.ply") + library, {"mm.ply", "3 m", "scale 0.001"});
+  expect_failure("model from-mesh " + (folder_ / "mm.ply") + library,
+                 {"mm.ply", "3 m", "scale 0.001"});
   const Outcome scaled =
       run("model from-mesh " + (folder_ / "mm.ply") + library + " --scale 0.001");
   EXPECT_EQ(scaled.code, 0) << scaled.out;
