@@ -76,7 +76,8 @@ class ServiceServer {
  public:
   using Request = typename Service::Request;
   using Response = typename Service::Response;
-  /// Runs on a DDS thread: keep the token, hand the request to a worker and return.
+  /// Runs on a DDS thread: keep the token, hand the request to a worker and return. It may run
+  /// before `create` returns.
   using Handler = std::function<void(Request&&, ReplyToken<Service>)>;
 
   static Result<ServiceServer> create(const Participant& participant, std::string_view service,

@@ -13,17 +13,16 @@ using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 using Bytes = std::vector<std::uint8_t>;
 
-class ServiceClientImpl : public std::enable_shared_from_this<ServiceClientImpl> {
+class ServiceClientImpl {
  public:
   Status open(const Participant& participant, EndpointSpec request, EndpointSpec reply) {
     name_ = request.dds_topic;
-    const std::weak_ptr<ServiceClientImpl> weak = weak_from_this();
-    auto take = [weak](const std::uint8_t* data,
+    // The reader is a member: while it calls back, this exists.
+    auto take = [this](const std::uint8_t* data,
                        std::size_t size) -> Result<std::function<void(const SampleMeta&)>> {
       auto copy = std::make_shared<Bytes>(data, data + size);
-      return std::function<void(const SampleMeta&)>([weak, copy](const SampleMeta& meta) {
-        if (const auto self = weak.lock()) self->on_reply(std::move(*copy), meta);
-      });
+      return std::function<void(const SampleMeta&)>(
+          [this, copy](const SampleMeta& meta) { on_reply(std::move(*copy), meta); });
     };
     auto reader = make_reader(participant, std::move(reply), std::move(take));
     if (!reader.ok()) return reader.status();
@@ -31,6 +30,8 @@ class ServiceClientImpl : public std::enable_shared_from_this<ServiceClientImpl>
     auto writer = make_writer(participant, std::move(request));
     if (!writer.ok()) return writer.status();
     requests_ = std::move(writer).value();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    our_ids_ = {replies_->guid(), requests_->guid()};
     return {};
   }
 
@@ -73,11 +74,10 @@ class ServiceClientImpl : public std::enable_shared_from_this<ServiceClientImpl>
   }
 
   void on_reply(Bytes bytes, const SampleMeta& meta) {
-    const bool ours =
-        meta.related.writer == replies_->guid() || meta.related.writer == requests_->guid();
-    if (!ours) return;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
+      const Guid& addressee = meta.related.writer;
+      if (std::find(our_ids_.begin(), our_ids_.end(), addressee) == our_ids_.end()) return;
       const auto call = calls_.find(meta.related.sequence);
       if (call != calls_.end()) {
         call->second = std::move(bytes);
@@ -91,6 +91,7 @@ class ServiceClientImpl : public std::enable_shared_from_this<ServiceClientImpl>
   std::string name_;
   std::mutex mutex_;
   std::condition_variable answered_;
+  std::vector<Guid> our_ids_;            ///< Of the reply reader and the request writer.
   std::map<std::int64_t, Bytes> calls_;  ///< By sequence number; empty: not answered yet.
   std::map<std::int64_t, Bytes> early_;  ///< Replies that came while a write was going on.
   int writing_ = 0;

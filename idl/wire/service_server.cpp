@@ -40,13 +40,12 @@ class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl>
     if (!writer.ok()) return writer.status();
     replies_ = std::move(writer).value();
     // The bytes are copied out: whose request it is, is known only once the sample has been taken.
-    const std::weak_ptr<ServiceServerImpl> weak = weak_from_this();
-    auto take = [weak](const std::uint8_t* bytes,
+    // The reader is a member: while it calls back, this exists.
+    auto take = [this](const std::uint8_t* bytes,
                        std::size_t size) -> Result<std::function<void(const SampleMeta&)>> {
       auto copy = std::make_shared<std::vector<std::uint8_t>>(bytes, bytes + size);
-      return std::function<void(const SampleMeta&)>([weak, copy](const SampleMeta& meta) {
-        if (const auto self = weak.lock()) self->on_request(*copy, meta);
-      });
+      return std::function<void(const SampleMeta&)>(
+          [this, copy](const SampleMeta& meta) { on_request(*copy, meta); });
     };
     auto reader = make_reader(participant_, std::move(request), std::move(take));
     if (!reader.ok()) return reader.status();

@@ -19,7 +19,7 @@ template <class T>
 class Subscriber {
  public:
   /// Runs on a DDS thread that other subscriptions share: move the message into a bounded queue and
-  /// return. It must not throw, and not destroy this object.
+  /// return. It must not throw, and not destroy this object. It may run before `create` returns.
   using Callback = std::function<void(T&&, const SampleMeta&)>;
 
   /// `topic` is resolved by the participant's node name and remaps.
