@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kWindow = 4;           // pixels on each side: 9 x 9
 constexpr float kSameDisparity = 1;  // pixels
-constexpr float kEnoughOfWindow = 0.4f;
+constexpr float kEnoughOfWindow = 0.32f;
+constexpr float kEnoughOfOther = 0.2f;  // where the surface beside answers
 
 // What the infrared camera gets to see, row-major.
 struct Measurement {
@@ -60,7 +61,7 @@ void see_row(const RayScene& scene, const Pose& world_from_infrared, const Shadi
     const auto shine = static_cast<float>(material.shine);
     const float away = 1 - 0.6f * shine * m.angle[i] / (std::numbers::pi_v<float> / 2);
     m.signal[i] = static_cast<float>(material.infrared) * (0.6f + 0.4f * brightness) *
-                  std::max(lit, 0.0f) * away / (hit->distance * hit->distance);
+                  std::max(lit, 0.0f) * away / std::pow(hit->distance, 1.5f);
     const float facing = hit->normal.dot((to_camera + to_projector).normalized());
     m.glare[i] = smooth_step(0.25f, 1.0f, shine) * smooth_step(0.965f, 0.998f, facing);
     m.disparity[i] =
@@ -106,7 +107,7 @@ struct Noise {
     };
     lateral_x = make(1);
     lateral_y = make(1);
-    shared = make(3);
+    shared = make(4);
     own = make(0);
     match = make(1);
     drop = make(2);
@@ -134,11 +135,12 @@ float measure(const Measurement& m, const Noise& noise, const KinectOptions& opt
   const auto dropouts = static_cast<float>(options.dropouts);
   if (dropouts > 0) {
     const float agreement = window_agreement(m, x, y, m.disparity[source]);
-    if (agreement < kEnoughOfWindow + 0.06f * noise.match[i]) return 0;
-    constexpr float kWeakSignal = 0.03f;
+    const float enough = other_surface ? kEnoughOfOther : kEnoughOfWindow;
+    if (agreement < enough + 0.06f * noise.match[i]) return 0;
+    constexpr float kWeakSignal = 0.035f;
     const float ratio = m.signal[source] / kWeakSignal;
     const float faint = 1 / (1 + ratio * ratio * ratio * ratio);
-    const float chance = dropouts * (0.0004f + faint + 0.9f * m.glare[source]);
+    const float chance = dropouts * (0.0001f + faint + 0.9f * m.glare[source]);
     if (0.5f * std::erfc(-noise.drop[i] / std::numbers::sqrt2_v<float>) < chance) return 0;
   }
 

@@ -17,7 +17,8 @@
 //     "Accuracy and resolution of Kinect depth data", Sensors 12): it needs enough lit pixels of
 //     one disparity, so depth ends before an edge does, and edges are ragged by about 0.8 pixels
 //     (lateral noise of Nguyen, Izadi and Lovell 2012, "Modeling Kinect sensor noise", 3DIMPVT).
-//  3. Signal. Matching fails where little light returns (dark, far or grazing surfaces) and where a
+//  3. Signal (its strength falls with z^1.5, between the law of light and a gain control). Matching
+//  fails where little light returns (dark, far or grazing surfaces) and where a
 //     mirror-like surface throws the projector's light straight back (Mallick, Das and Majumdar
 //     2014, "Characterizations of noise in Kinect depth images", IEEE Sensors J. 14).
 //  4. Noise. Disparity has noise such that depth gets the axial noise of Nguyen et al.,

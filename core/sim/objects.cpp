@@ -28,7 +28,9 @@ void paint_mesh(const Paint& paint, TriangleMesh& mesh) {
   }
 }
 
-SimulatedObject build(const Shape& shape) {
+}  // namespace
+
+SimulatedObject build_object(const Shape& shape) {
   SimulatedObject object;
   object.name = shape.name;
   object.material = shape.material;
@@ -49,10 +51,12 @@ SimulatedObject build(const Shape& shape) {
   return object;
 }
 
+namespace {
+
 std::vector<SimulatedObject> build_all(const std::vector<Shape>& shapes, int num_threads) {
   std::vector<SimulatedObject> objects(shapes.size());
   parallel_for(static_cast<int>(shapes.size()), num_threads,
-               [&](int i) { objects[i] = build(shapes[i]); });
+               [&](int i) { objects[i] = build_object(shapes[i]); });
   return objects;
 }
 

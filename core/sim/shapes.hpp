@@ -28,6 +28,9 @@ struct Shape {
   std::vector<ConvexPart> parts;
 };
 
+/// Meshes and paints a shape.
+SimulatedObject build_object(const Shape& shape);
+
 std::vector<Shape> vessel_shapes();   ///< mug, bowl, bottle, can, cup, tube, funnel, plate
 std::vector<Shape> package_shapes();  ///< milk_carton, cereal_box, snack_box, spray_bottle, jug
 std::vector<Shape> toy_shapes();      ///< cube, l_brick, stud_block, gear, banana

@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <bpa/core/base/parallel.hpp>
+#include <bpa/core/base/random.hpp>
+#include <bpa/core/sim/scenery.hpp>
+#include <bpa/core/sim/shapes.hpp>
+
+namespace bpa::sim {
+namespace {
+
+using Texture = Color (*)(const Eigen::Vector3d& p);
+
+Color wood(const Eigen::Vector3d& p) {
+  const double grain = smooth_noise({p.x() * 0.08, p.y(), 1}, 0.008);
+  const double board = lattice_noise(static_cast<int>(std::floor(p.y() / 0.11)), 3, 5);
+  return mix(Color(0.55, 0.38, 0.22), Color(0.4, 0.26, 0.14), 0.6 * grain + 0.4 * board);
+}
+Color laminate(const Eigen::Vector3d& p) {
+  return mix(Color(0.78, 0.77, 0.74), Color(0.7, 0.69, 0.67), smooth_noise(p, 0.006));
+}
+Color slate(const Eigen::Vector3d& p) {
+  return mix(Color(0.2, 0.21, 0.23), Color(0.27, 0.28, 0.3), smooth_noise(p, 0.02));
+}
+Color cloth(const Eigen::Vector3d& p) {
+  const double x = p.x() / 0.05, y = p.y() / 0.05;
+  const double bands = (x - std::floor(x) < 0.5) + (y - std::floor(y) < 0.5);
+  return mix(Color(0.85, 0.83, 0.78), Color(0.55, 0.2, 0.22), 0.5 * bands);
+}
+Color carpet(const Eigen::Vector3d& p) {
+  return mix(Color(0.35, 0.31, 0.26), Color(0.55, 0.5, 0.42), smooth_noise(p, 0.03));
+}
+Color plaster(const Eigen::Vector3d& p) {
+  return mix(Color(0.72, 0.71, 0.68), Color(0.78, 0.77, 0.75), smooth_noise(p, 0.3));
+}
+
+// Adds a rectangle spanned by u and v from `corner` as a grid of `steps` x `steps_v` cells.
+void add_sheet(const Eigen::Vector3d& corner, const Eigen::Vector3d& u, const Eigen::Vector3d& v,
+               int steps_u, int steps_v, Texture texture, TriangleMesh& mesh) {
+  const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+  const Eigen::Vector3f normal = u.cross(v).normalized().cast<float>();
+  for (int j = 0; j <= steps_v; ++j) {
+    for (int i = 0; i <= steps_u; ++i) {
+      const Eigen::Vector3d p = corner + u * i / steps_u + v * j / steps_v;
+      const Color c = texture(p);
+      mesh.vertices.push_back(p.cast<float>());
+      mesh.normals.push_back(normal);
+      std::array<std::uint8_t, 3> rgb{};
+      for (int k = 0; k < 3; ++k) rgb[k] = static_cast<std::uint8_t>(255 * c[k]);
+      mesh.colors.push_back(rgb);
+    }
+  }
+  const auto at = [&](int i, int j) {
+    return base + static_cast<std::uint32_t>(j * (steps_u + 1) + i);
+  };
+  for (int j = 0; j < steps_v; ++j) {
+    for (int i = 0; i < steps_u; ++i) {
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+}
+
+SimulatedObject make_table(Texture texture, const Material& material) {
+  constexpr double kThickness = 0.03;
+  const Eigen::Vector3d x(2 * kTableHalfX, 0, 0), y(0, 2 * kTableHalfY, 0), down(0, 0, -kThickness);
+  const Eigen::Vector3d corner(-kTableHalfX, -kTableHalfY, 0);
+  SimulatedObject table;
+  table.name = "table";
+  table.material = material;
+  add_sheet(corner, x, y, 240, 180, texture, table.mesh);
+  add_sheet(corner, down, x, 1, 60, texture, table.mesh);
+  add_sheet(corner + y, x, down, 60, 1, texture, table.mesh);
+  add_sheet(corner, y, down, 60, 1, texture, table.mesh);
+  add_sheet(corner + x, down, y, 1, 60, texture, table.mesh);
+  add_sheet(corner + down, y, x, 1, 1, texture, table.mesh);
+  return table;
+}
+
+// A random solid: two rounded boxes, drums or eggs that have grown together.
+Shape distractor(std::uint64_t index) {
+  RandomStream random(0xd157, index);
+  struct Lump {
+    int kind;
+    Eigen::Vector3d center, half_size;
+  };
+  std::vector<Lump> lumps;
+  for (int i = 0; i < 2; ++i) {
+    Lump lump;
+    lump.kind = random.index(3);
+    for (int a = 0; a < 3; ++a) lump.half_size[a] = random.uniform(0.014, 0.055);
+    if (lump.kind == 1) lump.half_size.y() = lump.half_size.x();
+    lump.center.setZero();
+    if (i == 1) {
+      for (int a = 0; a < 3; ++a) lump.center[a] = random.uniform(-1, 1) * lumps[0].half_size[a];
+    }
+    lumps.push_back(lump);
+  }
+  Shape shape;
+  shape.name = "distractor_" + std::to_string(index);
+  shape.field = [lumps](const Eigen::Vector3d& p) {
+    double d = 1e9;
+    for (const Lump& lump : lumps) {
+      const Eigen::Vector3d q = p - lump.center;
+      double one = 0;
+      if (lump.kind == 0) one = box_distance(q, lump.half_size, 0.004);
+      if (lump.kind == 1) one = cylinder_distance(q, lump.half_size.x(), lump.half_size.z(), 0.003);
+      if (lump.kind == 2) {
+        const double k = q.cwiseQuotient(lump.half_size).norm();
+        const double g = q.cwiseQuotient(lump.half_size.cwiseAbs2()).norm();
+        one = g > 1e-9 ? k * (k - 1) / g : -lump.half_size.minCoeff();
+      }
+      d = smooth_union(d, one, 0.006);
+    }
+    return d;
+  };
+  shape.low = Eigen::Vector3d::Constant(-0.115);
+  shape.high = Eigen::Vector3d::Constant(0.115);
+  shape.cell = 0.0035;
+  const Color base(random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9));
+  const Color second(random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9));
+  shape.paint = [base, second](const Eigen::Vector3d& p, const Eigen::Vector3d&) {
+    return mix(base, second, smooth_noise(p, 0.03) > 0.5 ? 1 : 0);
+  };
+  shape.material = {random.uniform(0.25, 0.8), random.uniform(0, 0.4)};
+  for (const Lump& lump : lumps) {
+    ConvexPart part;
+    if (lump.kind == 0) part = box_part(lump.center, lump.half_size);
+    constexpr int kTurns = 16;
+    for (int ring = -2; ring <= 2 && lump.kind != 0; ++ring) {
+      const double z = lump.kind == 1 ? ring / 2.0 : std::sin(0.75 * ring);
+      const double r = lump.kind == 1 ? 1 : std::cos(0.75 * ring);
+      for (int i = 0; i < kTurns; ++i) {
+        const double a = 6.283185307179586 * i / kTurns;
+        const Eigen::Vector3d unit(r * std::cos(a), r * std::sin(a), z);
+        part.push_back((lump.center + lump.half_size.cwiseProduct(unit)).cast<float>());
+      }
+    }
+    shape.parts.push_back(part);
+  }
+  return shape;
+}
+
+}  // namespace
+
+std::vector<SimulatedObject> make_tables() {
+  return {make_table(wood, {0.6, 0.1}), make_table(laminate, {0.75, 0.2}),
+          make_table(slate, {0.45, 0.1}), make_table(cloth, {0.75, 0.0})};
+}
+
+SimulatedObject make_room() {
+  constexpr double kHalf = 2.5, kHeight = 3;
+  const Eigen::Vector3d x(2 * kHalf, 0, 0), y(0, 2 * kHalf, 0), up(0, 0, kHeight);
+  const Eigen::Vector3d corner(-kHalf, -kHalf, kFloorHeight);
+  SimulatedObject room;
+  room.name = "room";
+  room.material = {0.55, 0};
+  add_sheet(corner, x, y, 200, 200, carpet, room.mesh);
+  add_sheet(corner, up, x, 10, 20, plaster, room.mesh);
+  add_sheet(corner + y, x, up, 20, 10, plaster, room.mesh);
+  add_sheet(corner, y, up, 20, 10, plaster, room.mesh);
+  add_sheet(corner + x, up, y, 10, 20, plaster, room.mesh);
+  return room;
+}
+
+SimulatedObject make_bin() {
+  constexpr double kWall = 0.004, kHeight = 0.075;
+  const auto gray = [](const Eigen::Vector3d&) { return Color(0.42, 0.45, 0.5); };
+  SimulatedObject bin;
+  bin.name = "bin";
+  bin.material = {0.6, 0.1};
+  const auto add_box = [&](const Eigen::Vector3d& center, const Eigen::Vector3d& half) {
+    bin.parts.push_back(box_part(center, half));
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d n = half[axis] * Eigen::Vector3d::Unit(axis);
+      const Eigen::Vector3d u = 2 * half[(axis + 1) % 3] * Eigen::Vector3d::Unit((axis + 1) % 3);
+      const Eigen::Vector3d v = 2 * half[(axis + 2) % 3] * Eigen::Vector3d::Unit((axis + 2) % 3);
+      add_sheet(center + n - u / 2 - v / 2, u, v, 1, 1, gray, bin.mesh);
+      add_sheet(center - n - u / 2 - v / 2, v, u, 1, 1, gray, bin.mesh);
+    }
+  };
+  add_box({0, 0, kWall / 2}, {kBinHalfX, kBinHalfY, kWall / 2});
+  for (const double side : {-1.0, 1.0}) {
+    add_box({side * (kBinHalfX + kWall / 2), 0, kHeight / 2}, {kWall / 2, kBinHalfY, kHeight / 2});
+    add_box({0, side * (kBinHalfY + kWall / 2), kHeight / 2},
+            {kBinHalfX + kWall, kWall / 2, kHeight / 2});
+  }
+  return bin;
+}
+
+SimulatedObject make_turntable_plate(double radius, double height) {
+  Shape shape;
+  shape.name = "turntable";
+  shape.field = [radius, height](const Eigen::Vector3d& p) {
+    return cylinder_distance(p + Eigen::Vector3d(0, 0, height / 2), radius, height / 2, 0.001);
+  };
+  shape.low = {-radius, -radius, -height};
+  shape.high = {radius, radius, 0};
+  SimulatedObject plate;
+  plate.name = shape.name;
+  plate.material = {0.7, 0.05};
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(0.0105);
+  plate.mesh = mesh_from_field(shape.field, shape.low - reach, shape.high + reach, 0.004);
+  for (const Eigen::Vector3f& vertex : plate.mesh.vertices) {
+    const double sector = 12 * (std::atan2(vertex.y(), vertex.x()) + 3.2) / 3.141592653589793;
+    const double r = vertex.head<2>().norm() / radius;
+    const bool mark = r > 0.9 && r < 0.97 && sector - std::floor(sector) < 0.3;
+    const auto level = static_cast<std::uint8_t>(mark ? 60 : 205);
+    plate.mesh.colors.push_back({level, level, level});
+  }
+  return plate;
+}
+
+std::vector<SimulatedObject> make_distractors(int num_threads) {
+  constexpr int kCount = 12;
+  std::vector<SimulatedObject> result(kCount);
+  parallel_for(kCount, num_threads,
+               [&](int i) { result[i] = build_object(distractor(static_cast<std::uint64_t>(i))); });
+  return result;
+}
+
+}  // namespace bpa::sim

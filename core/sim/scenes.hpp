@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <bpa/core/sim/kinect.hpp>
+#include <bpa/core/sim/objects.hpp>
+#include <bpa/core/sim/render.hpp>
+
+// Whole scenes: objects fall on a table and are looked at as a robot would, with the truth.
+
+namespace bpa::sim {
+
+/// What a scene is made of.
+enum class SceneKind {
+  pile,         ///< Objects, from apart on the table to a heap, and perhaps a few distractors.
+  empty_table,  ///< Nothing on the table.
+  distractors,  ///< Only things that are no objects of the set.
+  border,       ///< A pile of which one object is cut by the image's border.
+};
+
+/// The ranges that scenes are drawn from.
+struct SceneOptions {
+  int min_objects = 8;
+  int max_objects = 14;
+  double min_clutter = 0.3;
+  double max_clutter = 1;
+  double bin_share = 1;
+  int max_distractors = 2;
+  double min_distance = 0.6;
+  double max_distance = 1.4;
+  double min_elevation_deg = 25;
+  double max_elevation_deg = 65;
+  int views = 1;
+  double empty_share = 0;
+  double distractor_share = 0;
+  double border_share = 0.1;
+  Camera camera{640, 480, 525, 525, 319.5, 239.5};  ///< Of the colour image and the frame.
+  KinectOptions kinect;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("min_objects", min_objects, {0, 100, "Fewest objects in a pile."});
+    visit("max_objects", max_objects, {0, 100, "Most objects in a pile."});
+    visit("min_clutter", min_clutter, {0, 1, "0 = apart on the table, 1 = a heap."});
+    visit("max_clutter", max_clutter, {0, 1, "0 = apart on the table, 1 = a heap."});
+    visit("bin_share", bin_share, {0, 1, "Chance that a heap lies in an open bin."});
+    visit("max_distractors", max_distractors, {0, 20, "Most other things in a pile."});
+    visit("min_distance", min_distance, {0.3, 4, "Camera to the middle of the pile, metres."});
+    visit("max_distance", max_distance, {0.3, 4, "Camera to the middle of the pile, metres."});
+    visit("min_elevation_deg", min_elevation_deg, {5, 89, "Camera above the table, degrees."});
+    visit("max_elevation_deg", max_elevation_deg, {5, 89, "Camera above the table, degrees."});
+    visit("views", views, {1, 1000, "Frames of each scene, from all around."});
+    visit("empty_share", empty_share, {0, 1, "Share of scenes with an empty table."});
+    visit("distractor_share", distractor_share, {0, 1, "Share of scenes without any object."});
+    visit("border_share", border_share, {0, 1, "Share of scenes with an object at the border."});
+    kinect.visit_fields(visit);
+  }
+};
+
+/// One object in one frame.
+struct SimulatedInstance {
+  int object = 0;  ///< Index in the stage's objects.
+  Pose camera_from_object;
+  InstanceVisibility visibility;
+};
+
+/// What one view gives, with the truth.
+struct SimulatedFrame {
+  Frame frame;
+  Pose camera_from_world;                    ///< The table is z = 0, z up.
+  std::vector<SimulatedInstance> instances;  ///< All that lie on the table, seen or not.
+  std::vector<std::int16_t> instance_image;  ///< Row-major: index in `instances`, or -1.
+  std::vector<float> ideal_depth;            ///< Row-major, metres, without any error.
+};
+
+/// A scene and its views.
+struct SimulatedScene {
+  SceneKind kind = SceneKind::pile;
+  std::vector<SimulatedFrame> frames;
+};
+
+/// The objects, the distractors, tables, a bin and the room, made ready for rendering once.
+/// Immutable.
+class Stage {
+ public:
+  explicit Stage(std::vector<SimulatedObject> objects, int num_threads = 0);
+  ~Stage();
+  Stage(Stage&&) noexcept;
+  Stage& operator=(Stage&&) noexcept;
+
+  const std::vector<SimulatedObject>& objects() const;
+
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+/// One scene. The same stage, options and seed give the same scene for any number of threads.
+SimulatedScene simulate_scene(const Stage& stage, const SceneOptions& options, std::uint64_t seed,
+                              int num_threads = 0);
+
+/// The seed of scene `index` of a set.
+std::uint64_t scene_seed(std::uint64_t set_seed, int index);
+
+/// The mask of one instance's visible pixels: 255 or 0, row-major.
+std::vector<std::uint8_t> visible_mask(const SimulatedFrame& frame, int instance);
+
+/// Where a camera stands that looks at `target` from `distance` metres, `elevation` radians above
+/// the horizon, turned by `azimuth` about the vertical and by `roll` about its own axis.
+Pose camera_looking_at(const Eigen::Vector3d& target, double distance, double elevation,
+                       double azimuth, double roll);
+
+}  // namespace bpa::sim

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <bpa/core/sim/scenes.hpp>
+
+// What building a model from scans starts from (paper, section on noise-aware models): an object on
+// a turntable, seen by a fixed camera, in two or three resting positions.
+
+namespace bpa::sim {
+
+/// How an object is scanned.
+struct TurntableOptions {
+  int resting_positions = 2;
+  double step_deg = 10;
+  int max_views = 90;
+  double distance = 0.8;
+  double elevation_deg = 35;
+  double spread = 0.03;
+  double plate_radius = 0.16;
+  Camera camera{640, 480, 525, 525, 319.5, 239.5};
+  KinectOptions kinect;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("resting_positions", resting_positions, {1, 6, "Ways the object is put down."});
+    visit("step_deg", step_deg, {1, 90, "Turn of the plate between views, degrees."});
+    visit("max_views", max_views, {3, 2000, "Views in all; shared among the resting positions."});
+    visit("distance", distance, {0.4, 3, "Camera to the middle of the plate, metres."});
+    visit("elevation_deg", elevation_deg, {5, 85, "Camera above the plate, degrees."});
+    visit("spread", spread, {0, 0.2, "How far off centre the object and the axis are, metres."});
+    visit("plate_radius", plate_radius, {0.05, 0.5, "Of the turning plate, metres."});
+    kinect.visit_fields(visit);
+  }
+};
+
+/// One view; the frame's only instance is the object.
+struct TurntableView {
+  int resting_position = 0;
+  double turn =
+      0;  ///< Radians since the first view of this position, counter-clockwise from above.
+  SimulatedFrame frame;
+};
+
+/// A scan. `axis_in_camera` is what a scanner does not know.
+struct TurntableScan {
+  std::vector<TurntableView> views;   ///< Grouped by resting position, each from turn 0 on.
+  ContinuousSymmetry axis_in_camera;  ///< The plate's axis, upward, in the camera's frame; one for
+                                      ///< all views since neither camera nor plate is moved.
+};
+
+/// Scans an object. The same input and seed give the same scan for any number of threads.
+TurntableScan simulate_turntable(const SimulatedObject& object, const TurntableOptions& options,
+                                 std::uint64_t seed, int num_threads = 0);
+
+/// Different ways in which an object comes to lie on a level surface, found by letting it fall: at
+/// most `count`, the first one drawn first, then those whose upward direction differs most. Each
+/// puts the object on z = 0 about the origin.
+std::vector<Pose> resting_poses(const SimulatedObject& object, int count, std::uint64_t seed);
+
+}  // namespace bpa::sim

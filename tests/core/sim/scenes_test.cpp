@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <bpa/core/sim/physics.hpp>
+#include <bpa/core/sim/scenes.hpp>
+
+namespace bpa::sim {
+namespace {
+
+const Stage& stage() {
+  static const Stage the_stage(
+      household_objects({"mug", "milk_carton", "can", "gear", "funnel", "l_brick"}));
+  return the_stage;
+}
+
+SceneOptions small_options() {
+  SceneOptions options;
+  options.min_objects = 3;
+  options.max_objects = 6;
+  options.border_share = 0;
+  options.camera = {320, 240, 262.5, 262.5, 159.5, 119.5};
+  options.kinect.registered = false;
+  return options;
+}
+
+double lowest(const SimulatedObject& object, const Pose& world_from_object) {
+  double z = 1e9;
+  for (const Eigen::Vector3f& v : object.mesh.vertices) {
+    z = std::min(z, (world_from_object * v.cast<double>()).z());
+  }
+  return z;
+}
+
+TEST(Physics, ABoxComesToRestOnItsFace) {
+  const SimulatedObject box = household_objects(std::vector<std::string>{"cereal_box"}).front();
+  const Pose start{rotation_from_vector({0.3, 0.4, 0.1}), {0, 0, 0.2}};
+  const RestingBody rest = drop({{&box, start}}, {}).front();
+  EXPECT_TRUE(rest.on_table);
+  EXPECT_LT(rest.speed, 1e-3);
+  EXPECT_NEAR(lowest(box, rest.world_from_object), 0, 1e-3);
+  // One of the axes is vertical.
+  EXPECT_GT(rest.world_from_object.matrix().row(2).cwiseAbs().maxCoeff(), 0.9999);
+}
+
+TEST(Physics, AHollowThingCanHoldAnother) {
+  const auto objects = household_objects({"bowl", "cube"});
+  const RestingBody cube =
+      drop({{&objects[0], {}}, {&objects[1], {Eigen::Quaterniond::Identity(), {0, 0, 0.1}}}}, {})
+          .back();
+  EXPECT_LT(cube.world_from_object.translation.head<2>().norm(), 0.04);
+  EXPECT_GT(cube.world_from_object.translation.z(), 0.03);
+  EXPECT_LT(cube.world_from_object.translation.z(), 0.055);  // inside, not on top of a hull
+}
+
+TEST(Physics, CentreOfMassOfABox) {
+  SimulatedObject box = household_objects(std::vector<std::string>{"cube"}).front();
+  for (Eigen::Vector3f& v : box.mesh.vertices) v += Eigen::Vector3f(0.1f, -0.2f, 0.3f);
+  EXPECT_LT((center_of_mass(box.mesh) - Eigen::Vector3d(0.1, -0.2, 0.3)).norm(), 1e-4);
+}
+
+TEST(Scenes, EverythingLiesStillOnTheTableAndNothingInIt) {
+  SceneOptions options = small_options();
+  options.bin_share = 0;
+  for (int i = 0; i < 3; ++i) {
+    const SimulatedScene scene = simulate_scene(stage(), options, scene_seed(1, i), 2);
+    const SimulatedFrame& frame = scene.frames.front();
+    const Pose world_from_camera = frame.camera_from_world.inverse();
+    EXPECT_GE(frame.instances.size(), 3u);
+    for (const SimulatedInstance& instance : frame.instances) {
+      const double z = lowest(stage().objects()[instance.object],
+                              world_from_camera * instance.camera_from_object);
+      EXPECT_GT(z, -0.003);
+      EXPECT_LT(z, 0.25);
+    }
+  }
+}
+
+// The truth must explain the picture: cast the object alone and compare where it is visible.
+TEST(Scenes, TruthAgreesWithDepth) {
+  const SceneOptions options = small_options();
+  const SimulatedScene scene = simulate_scene(stage(), options, 7, 2);
+  const SimulatedFrame& frame = scene.frames.front();
+  std::vector<const TriangleMesh*> pointers;
+  for (const SimulatedObject& object : stage().objects()) pointers.push_back(&object.mesh);
+  const RayMeshes meshes(pointers);
+  for (std::size_t i = 0; i < frame.instances.size(); ++i) {
+    const SimulatedInstance& instance = frame.instances[i];
+    const RayScene alone(meshes, {{instance.object, instance.camera_from_object}});
+    const RenderedImage image = render(alone, options.camera, Pose{}, std::nullopt, 1);
+    const std::vector<std::uint8_t> mask = visible_mask(frame, static_cast<int>(i));
+    int visible = 0, wrong = 0;
+    std::vector<double> errors;
+    for (std::size_t p = 0; p < mask.size(); ++p) {
+      if (mask[p] == 0) continue;
+      ++visible;
+      wrong += std::abs(image.depth[p] - frame.ideal_depth[p]) > 1e-3;
+      if (frame.frame.depth[p] > 0) {
+        errors.push_back(std::abs(frame.frame.depth[p] - image.depth[p]));
+      }
+    }
+    EXPECT_EQ(visible, instance.visibility.visible_pixels);
+    EXPECT_LE(wrong, 2 + visible / 100);
+    if (errors.size() < 50) continue;
+    std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
+    EXPECT_LT(errors[errors.size() / 2], 0.008);
+  }
+}
+
+TEST(Scenes, AreTheSameForAnyNumberOfThreads) {
+  SceneOptions options = small_options();
+  options.views = 2;
+  const SimulatedScene one = simulate_scene(stage(), options, 3, 1);
+  const SimulatedScene two = simulate_scene(stage(), options, 3, 2);
+  ASSERT_EQ(one.frames.size(), 2u);
+  ASSERT_EQ(two.frames.size(), 2u);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(one.frames[i].frame.depth, two.frames[i].frame.depth);
+    EXPECT_EQ(one.frames[i].frame.color, two.frames[i].frame.color);
+    EXPECT_EQ(one.frames[i].instance_image, two.frames[i].instance_image);
+    for (std::size_t k = 0; k < one.frames[i].instances.size(); ++k) {
+      EXPECT_EQ(one.frames[i].instances[k].camera_from_object.translation,
+                two.frames[i].instances[k].camera_from_object.translation);
+      EXPECT_EQ(one.frames[i].instances[k].visibility.all_pixels,
+                two.frames[i].instances[k].visibility.all_pixels);
+    }
+  }
+  const SimulatedScene other = simulate_scene(stage(), options, 4, 1);
+  EXPECT_NE(one.frames[0].frame.depth, other.frames[0].frame.depth);
+}
+
+TEST(Scenes, HeapsHideMoreThanTidyTables) {
+  const auto mean_visible = [](double clutter) {
+    SceneOptions options = small_options();
+    options.min_objects = 6;
+    options.min_clutter = options.max_clutter = clutter;
+    options.max_distractors = 0;
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < 3; ++i) {
+      const SimulatedScene scene = simulate_scene(stage(), options, scene_seed(9, i), 2);
+      for (const SimulatedInstance& instance : scene.frames[0].instances) {
+        sum += instance.visibility.fraction();
+        ++count;
+      }
+    }
+    return sum / count;
+  };
+  const double tidy = mean_visible(0), heap = mean_visible(1);
+  EXPECT_GT(tidy, 0.85);
+  EXPECT_LT(heap, tidy - 0.1);
+}
+
+TEST(Scenes, FreeAndBadFrames) {
+  SceneOptions options = small_options();
+  options.empty_share = 1;
+  EXPECT_TRUE(simulate_scene(stage(), options, 1, 1).frames[0].instances.empty());
+  options.empty_share = 0;
+  options.distractor_share = 1;
+  const SimulatedScene distractors = simulate_scene(stage(), options, 1, 1);
+  EXPECT_EQ(distractors.kind, SceneKind::distractors);
+  EXPECT_TRUE(distractors.frames[0].instances.empty());
+  options.distractor_share = 0;
+  options.border_share = 1;
+  const SimulatedScene border = simulate_scene(stage(), options, 2, 1);
+  EXPECT_EQ(border.kind, SceneKind::border);
+  const auto cut = [](const SimulatedFrame& frame, const Camera& camera, std::size_t instance) {
+    for (int y = 0; y < camera.height; ++y) {
+      const auto* row = frame.instance_image.data() + static_cast<std::size_t>(y) * camera.width;
+      if (row[0] == static_cast<int>(instance)) return true;
+      if (row[camera.width - 1] == static_cast<int>(instance)) return true;
+    }
+    return false;
+  };
+  bool any = false;
+  for (std::size_t i = 0; i < border.frames[0].instances.size(); ++i) {
+    any = any || cut(border.frames[0], options.camera, i);
+  }
+  EXPECT_TRUE(any);
+}
+
+TEST(Scenes, CamerasLookAtTheirTarget) {
+  const Pose pose = camera_looking_at({0.1, 0.2, 0.3}, 1.2, 0.7, 1.9, 0.05);
+  const Eigen::Vector3d target = pose.inverse() * Eigen::Vector3d(0.1, 0.2, 0.3);
+  EXPECT_LT((target - Eigen::Vector3d(0, 0, 1.2)).norm(), 1e-9);
+  EXPECT_NEAR(pose.translation.z(), 0.3 + 1.2 * std::sin(0.7), 1e-9);
+  EXPECT_LT((pose.rotation * Eigen::Vector3d::UnitY()).z(), -0.5);  // image y points down
+}
+
+}  // namespace
+}  // namespace bpa::sim
