@@ -197,7 +197,7 @@ std::vector<std::uint8_t> photograph(const std::vector<std::uint8_t>& ideal, con
                                      const KinectOptions& options, std::uint64_t seed,
                                      int num_threads) {
   RandomStream random(seed, 0);
-  const double exposure = std::exp(options.exposure_spread * random.normal());
+  const double exposure = 0.9 * std::exp(options.exposure_spread * random.normal());
   Eigen::Array3d gain;
   for (int c = 0; c < 3; ++c) {
     gain[c] = exposure * std::exp(0.3 * options.exposure_spread * random.normal());

@@ -167,7 +167,7 @@ SimulatedObject make_room() {
 }
 
 SimulatedObject make_bin() {
-  constexpr double kWall = 0.004, kHeight = 0.075;
+  constexpr double kWall = 0.004, kHeight = 0.1;
   const auto gray = [](const Eigen::Vector3d&) { return Color(0.42, 0.45, 0.5); };
   SimulatedObject bin;
   bin.name = "bin";

@@ -14,8 +14,8 @@ constexpr double kTableHalfX = 0.6;  ///< Metres; the top is at z = 0.
 constexpr double kTableHalfY = 0.45;
 constexpr double kFloorHeight = -0.72;
 
-constexpr double kBinHalfX = 0.15;
-constexpr double kBinHalfY = 0.115;
+constexpr double kBinHalfX = 0.19;
+constexpr double kBinHalfY = 0.14;
 
 /// Tables with different tops.
 std::vector<SimulatedObject> make_tables();

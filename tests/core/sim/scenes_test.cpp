@@ -65,7 +65,7 @@ TEST(Physics, CentreOfMassOfABox) {
 TEST(Scenes, EverythingLiesStillOnTheTableAndNothingInIt) {
   SceneOptions options = small_options();
   options.bin_share = 0;
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 2; ++i) {
     const SimulatedScene scene = simulate_scene(stage(), options, scene_seed(1, i), 2);
     const SimulatedFrame& frame = scene.frames.front();
     const Pose world_from_camera = frame.camera_from_world.inverse();
@@ -140,7 +140,7 @@ TEST(Scenes, HeapsHideMoreThanTidyTables) {
     options.max_distractors = 0;
     double sum = 0;
     int count = 0;
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 2; ++i) {
       const SimulatedScene scene = simulate_scene(stage(), options, scene_seed(9, i), 2);
       for (const SimulatedInstance& instance : scene.frames[0].instances) {
         sum += instance.visibility.fraction();

@@ -12,8 +12,9 @@ namespace {
 
 TurntableOptions small_options() {
   TurntableOptions options;
-  options.step_deg = 45;
+  options.step_deg = 60;
   options.camera = {320, 240, 262.5, 262.5, 159.5, 119.5};
+  options.kinect.registered = false;
   return options;
 }
 
@@ -37,7 +38,7 @@ TEST(Turntable, RestingPosesDifferAndTouchThePlate) {
 TEST(Turntable, ViewsTurnAboutOneAxis) {
   const SimulatedObject brick = household_objects(std::vector<std::string>{"l_brick"}).front();
   const TurntableScan scan = simulate_turntable(brick, small_options(), 5, 2);
-  ASSERT_EQ(scan.views.size(), 16u);
+  ASSERT_EQ(scan.views.size(), 12u);
   for (std::size_t i = 1; i < scan.views.size(); ++i) {
     const TurntableView& a = scan.views[i - 1];
     const TurntableView& b = scan.views[i];
@@ -47,7 +48,7 @@ TEST(Turntable, ViewsTurnAboutOneAxis) {
     const Pose motion =
         b.frame.instances[0].camera_from_object * a.frame.instances[0].camera_from_object.inverse();
     const Eigen::Vector3d turn = vector_from_rotation(motion.rotation);
-    EXPECT_LT((turn - std::numbers::pi / 4 * scan.axis_in_camera.axis).norm(), 1e-6);
+    EXPECT_LT((turn - std::numbers::pi / 3 * scan.axis_in_camera.axis).norm(), 1e-6);
     EXPECT_LT((motion * scan.axis_in_camera.point - scan.axis_in_camera.point).norm(), 1e-9);
   }
 }
