@@ -192,6 +192,28 @@ TEST(PubSub, MismatchesAreLoggedWithTheRemedy) {
   EXPECT_EQ(image->matched_count(), 0U);
 }
 
+/// Whether two participants with this range find each other.
+bool find_each_other(DiscoveryRange range, std::vector<std::string> peers, milliseconds patience) {
+  ParticipantOptions options;
+  options.discovery = test_discovery();
+  options.discovery->range = range;
+  options.discovery->static_peers = std::move(peers);
+  auto one = Participant::create(options);
+  auto two = Participant::create(options);
+  EXPECT_TRUE(one.ok() && two.ok());
+  auto publisher = Publisher<std_msgs::String>::create(*one, "text");
+  auto subscriber = Subscriber<std_msgs::String>::create(
+      *two, "text", {}, [](std_msgs::String&&, const SampleMeta&) {});
+  return publisher->wait_for_matched(patience);
+}
+
+TEST(PubSub, RangesOfDiscovery) {
+  EXPECT_TRUE(find_each_other(DiscoveryRange::localhost, {}, seconds(5)));
+  EXPECT_TRUE(find_each_other(DiscoveryRange::localhost, {"127.0.0.1"}, seconds(5)));
+  EXPECT_TRUE(find_each_other(DiscoveryRange::humble_localhost, {}, seconds(5)));
+  EXPECT_FALSE(find_each_other(DiscoveryRange::off, {}, milliseconds(300)));
+}
+
 TEST(PubSub, MatchesComeAndGo) {
   auto one = test_participant("one");
   auto two = test_participant("two");
