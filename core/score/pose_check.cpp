@@ -8,9 +8,15 @@
 namespace bpa {
 namespace {
 
-constexpr int kFirstLook = 24;  // facing points before a hopeless pose is given up
+// Facing points after which a pose is looked at, and given up if it is hopeless. Most poses are, and
+// go at the first look.
+constexpr int kFirstLook = 8;
+constexpr int kLastLook = 24;
 
 bool hopeless(const PoseCheck& check) {
+  if (check.facing == kFirstLook) {
+    return check.seen > 4 && (check.agreeing == 0 || 2 * check.free_space > check.seen);
+  }
   return check.seen > 8 && (5 * check.free_space > 2 * check.seen ||  //
                             5 * check.agreeing < check.seen);
 }
@@ -42,7 +48,6 @@ PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const Fa
   PoseCheck check;
   const int last = std::min(count, static_cast<int>(model.points.size()));
   const float cosine_127 = 127 * tolerance.normal_cosine;
-  bool looked = false;
   for (int k = 0; k < last; ++k) {
     const auto i = static_cast<std::size_t>(k);
     const Eigen::Vector3f normal = pose.rotation * model.normals[i];
@@ -65,10 +70,8 @@ PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const Fa
     } else if (difference > tolerance.free_depth) {
       ++check.free_space;
     }
-    if (!looked && check.facing >= kFirstLook) {
-      looked = true;
-      if (hopeless(check)) return check;
-    }
+    const bool look = check.facing == kFirstLook || check.facing == kLastLook;
+    if (look && hopeless(check)) return check;
   }
   return check;
 }
