@@ -16,12 +16,17 @@ constexpr float kFeatureSpacing = 0.005f;   ///< Of the cloud that FPFH is compu
 constexpr float kFeatureRadius = 0.025f;    ///< Of the FPFH neighbourhood, metres.
 constexpr float kCurvatureRadius = 0.015f;  ///< Of the neighbourhood of a principal direction.
 
-/// Points of a model for fast checks of a pose: positions and normals side by side, in random
-/// order, so that any first part is a fair sample.
+/// Points of a model for fast checks of a pose: in random order, so that any first part is a fair
+/// sample; coordinate by coordinate, so that several are checked at once.
 struct CheckPoints {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
+  /// The same again: x, y, z of the points, then of the normals; each padded to a multiple of
+  /// kCheckBlock with points that face nowhere.
+  std::vector<float> coordinates[6];
 };
+
+constexpr int kCheckBlock = 8;  ///< Points that are checked together.
 
 /// What detection looks up in a model.
 struct ModelIndex {

@@ -30,6 +30,15 @@ CheckPoints check_points(const PointCloud& surface) {
     check.points.push_back(surface.points[i]);
     check.normals.push_back(surface.normals[i]);
   }
+  const std::size_t padded = (check.points.size() + kCheckBlock - 1) / kCheckBlock * kCheckBlock;
+  for (int axis = 0; axis < 3; ++axis) {
+    check.coordinates[axis].assign(padded, 0);
+    check.coordinates[axis + 3].assign(padded, 0);
+    for (std::size_t i = 0; i < check.points.size(); ++i) {
+      check.coordinates[axis][i] = check.points[i][axis];
+      check.coordinates[axis + 3][i] = check.normals[i][axis];
+    }
+  }
   return check;
 }
 

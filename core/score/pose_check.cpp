@@ -8,8 +8,8 @@
 namespace bpa {
 namespace {
 
-// Facing points after which a pose is looked at, and given up if it is hopeless. Most poses are, and
-// go at the first look.
+// Facing points after which a pose is looked at, and given up if it is hopeless. Most poses are,
+// and go at the first look.
 constexpr int kFirstLook = 8;
 constexpr int kLastLook = 24;
 
@@ -19,6 +19,45 @@ bool hopeless(const PoseCheck& check) {
   }
   return check.seen > 8 && (5 * check.free_space > 2 * check.seen ||  //
                             5 * check.agreeing < check.seen);
+}
+
+// What a block of model points looks like from the camera.
+struct Block {
+  float u[kCheckBlock], v[kCheckBlock], z[kCheckBlock];
+  float facing[kCheckBlock];  // negative where the surface faces the camera
+  float normal[3][kCheckBlock];
+};
+
+// Straight-line code over arrays, so that the compiler uses the widest vectors there are. Without
+// fused multiply-add, so that every machine rounds alike.
+__attribute__((target_clones("avx2", "default"))) void project_block(const CheckImage& image,
+                                                                     const CheckPoints& model,
+                                                                     const FastPose& pose,
+                                                                     int first, Block& out) {
+  const float* r = pose.rotation.data();  // column by column
+  const Eigen::Vector3f& t = pose.translation;
+  const float tx = t.x(), ty = t.y(), tz = t.z();
+  const float fx = image.fx, fy = image.fy, cx = image.cx + 0.5f, cy = image.cy + 0.5f;
+  const float* px = model.coordinates[0].data() + first;
+  const float* py = model.coordinates[1].data() + first;
+  const float* pz = model.coordinates[2].data() + first;
+  const float* nx = model.coordinates[3].data() + first;
+  const float* ny = model.coordinates[4].data() + first;
+  const float* nz = model.coordinates[5].data() + first;
+  for (int k = 0; k < kCheckBlock; ++k) {
+    const float x = r[0] * px[k] + r[3] * py[k] + r[6] * pz[k] + tx;
+    const float y = r[1] * px[k] + r[4] * py[k] + r[7] * pz[k] + ty;
+    const float z = r[2] * px[k] + r[5] * py[k] + r[8] * pz[k] + tz;
+    const float a = r[0] * nx[k] + r[3] * ny[k] + r[6] * nz[k];
+    const float b = r[1] * nx[k] + r[4] * ny[k] + r[7] * nz[k];
+    const float c = r[2] * nx[k] + r[5] * ny[k] + r[8] * nz[k];
+    const float inverse_z = 1 / z;
+    out.u[k] = fx * x * inverse_z + cx;
+    out.v[k] = fy * y * inverse_z + cy;
+    out.z[k] = z;
+    out.facing[k] = a * x + b * y + c * z + 0.15f * z;
+    out.normal[0][k] = a, out.normal[1][k] = b, out.normal[2][k] = c;
+  }
 }
 
 }  // namespace
@@ -48,30 +87,35 @@ PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const Fa
   PoseCheck check;
   const int last = std::min(count, static_cast<int>(model.points.size()));
   const float cosine_127 = 127 * tolerance.normal_cosine;
-  for (int k = 0; k < last; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const Eigen::Vector3f normal = pose.rotation * model.normals[i];
-    const Eigen::Vector3f point = pose.rotation * model.points[i] + pose.translation;
-    if (point.z() < 0.1f || normal.dot(point) > -0.15f * point.z()) continue;
-    const float inverse_z = 1 / point.z();
-    const auto u = static_cast<int>(image.fx * point.x() * inverse_z + image.cx + 0.5f);
-    const auto v = static_cast<int>(image.fy * point.y() * inverse_z + image.cy + 0.5f);
-    if (u < 0 || v < 0 || u >= image.width || v >= image.height) continue;
-    ++check.facing;
-    const CheckPixel& pixel = image.pixels[static_cast<std::size_t>(v * image.width + u)];
-    if (pixel.depth <= 0) continue;
-    const float difference = pixel.depth - point.z();
-    if (difference < -tolerance.depth) continue;  // hidden behind something
-    ++check.seen;
-    if (difference <= tolerance.depth) {
-      const float cosine = normal.x() * pixel.normal[0] + normal.y() * pixel.normal[1] +
-                           normal.z() * pixel.normal[2];
-      check.agreeing += pixel.searched && cosine > cosine_127;
-    } else if (difference > tolerance.free_depth) {
-      ++check.free_space;
+  const auto width = static_cast<float>(image.width);
+  const auto height = static_cast<float>(image.height);
+  Block block;
+  for (int first = 0; first < last; first += kCheckBlock) {
+    project_block(image, model, pose, first, block);
+    for (int k = 0; k < std::min(kCheckBlock, last - first); ++k) {
+      const float z = block.z[k];
+      if (block.facing[k] > 0 || z < 0.1f) continue;
+      if (!(block.u[k] >= 0 && block.v[k] >= 0 && block.u[k] < width && block.v[k] < height)) {
+        continue;
+      }
+      ++check.facing;
+      const CheckPixel& pixel = image.pixels[static_cast<std::size_t>(
+          static_cast<int>(block.v[k]) * image.width + static_cast<int>(block.u[k]))];
+      if (pixel.depth <= 0) continue;
+      const float difference = pixel.depth - z;
+      if (difference < -tolerance.depth) continue;  // hidden behind something
+      ++check.seen;
+      if (difference <= tolerance.depth) {
+        const float cosine = block.normal[0][k] * pixel.normal[0] +
+                             block.normal[1][k] * pixel.normal[1] +
+                             block.normal[2][k] * pixel.normal[2];
+        check.agreeing += pixel.searched && cosine > cosine_127;
+      } else if (difference > tolerance.free_depth) {
+        ++check.free_space;
+      }
+      const bool look = check.facing == kFirstLook || check.facing == kLastLook;
+      if (look && hopeless(check)) return check;
     }
-    const bool look = check.facing == kFirstLook || check.facing == kLastLook;
-    if (look && hopeless(check)) return check;
   }
   return check;
 }
