@@ -19,6 +19,7 @@ constexpr void (*kCommands[])(CLI::App&, Action&) = {
     add_model_command,
     add_detect_command,
     add_evaluate_command,
+    add_simulate_command,
 };
 
 int run(int argc, char** argv) {

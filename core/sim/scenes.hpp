@@ -26,7 +26,7 @@ enum class SceneKind {
 struct SceneOptions {
   int min_objects = 8;
   int max_objects = 14;
-  double min_clutter = 0.3;
+  double min_clutter = 0.45;
   double max_clutter = 1;
   double bin_share = 1;
   int max_distractors = 2;
