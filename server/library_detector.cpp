@@ -4,10 +4,7 @@
 #include <utility>
 
 #include <bpa/core/io/model_file.hpp>
-#if __has_include(<bpa/core/pipeline/annotate.hpp>)
 #include <bpa/core/pipeline/annotate.hpp>
-#define BPA_HAS_ANNOTATE 1
-#endif
 #include <bpa/server/library_detector.hpp>
 
 namespace bpa::server {
@@ -117,13 +114,11 @@ Recognition LibraryDetector::recognition(std::shared_ptr<LibraryDetector> self) 
   recognition.detect = [self](const Frame& frame, const DetectRequest& request) {
     return self->current()->detect(frame, request);
   };
-#ifdef BPA_HAS_ANNOTATE
   recognition.annotate =
       [self](const Frame& frame,
              const Interpretation& interpretation) -> Result<std::vector<std::uint8_t>> {
-    return annotate(frame, interpretation, self->current()->library());
+    return annotate(frame, interpretation, self->current()->library()).pixels;
   };
-#endif
   recognition.models = [self] { return self->current()->library().models(); };
   recognition.load = [self](const std::string& source, const std::string& name) {
     return self->load(source, name);
