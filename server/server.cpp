@@ -206,7 +206,8 @@ std::vector<KeyValue> Server::details() const {
   const wire::ReaderStatistics readers = source_->reader_statistics();
   add("messages malformed", readers.malformed);
   add("messages lost by DDS", readers.lost);
-  add("publishers of frames", source_->publishers());
+  add("publishers of frames", source_->frame_publishers());  // the SDK waits for itself in it
+  add("publishers of depth images", source_->camera_publishers());
   return details;
 }
 

@@ -4,6 +4,7 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include <bpa/client.hpp>
@@ -96,6 +97,7 @@ struct Client::Impl {
   struct Made {  ///< On first use.
     std::mutex mutex;
     std::optional<wire::Publisher<msgs::RgbdFrame>> frames;
+    bool listened = false;  ///< The server has told that it takes our frames.
     sdk::CallbackThread callbacks;
     // Last: they post to the thread above until they are destroyed.
     std::optional<wire::Subscriber<msgs::SceneInterpretations>> results;
@@ -108,6 +110,7 @@ struct Client::Impl {
   Result<DetectionSet> search(msgs::Detect_Request request, const DetectQuery& query,
                               Milliseconds asked) const;
   Result<wire::Publisher<msgs::RgbdFrame>*> frame_publisher();
+  Status wait_for_listener(const wire::Publisher<msgs::RgbdFrame>& frames);
 };
 
 Result<std::unique_ptr<Client::Impl>> Client::Impl::create(const ClientOptions& options) {
@@ -140,8 +143,9 @@ Result<DetectionSet> Client::Impl::search(msgs::Detect_Request request, const De
   request.top_k = static_cast<std::uint32_t>(query.top_k);
   request.time_budget_ms = query.budget_ms;
   request.seed = query.seed;
-  // The server gives up a little earlier than we do, so that it can say why.
-  request.timeout_ms = std::max(1.0, 0.9 * static_cast<double>(timeout.count()));
+  // The server gives up earlier than we do, so that it can say why.
+  const auto total_ms = static_cast<double>(timeout.count());
+  request.timeout_ms = std::max(1.0, total_ms - std::clamp(0.25 * total_ms, 50.0, 1000.0));
   const auto response = detect.call(request, timeout);
   if (Status status = outcome(response); !status.ok()) return status;
   return sdk::to_detections(response->result);
@@ -158,6 +162,33 @@ Result<wire::Publisher<msgs::RgbdFrame>*> Client::Impl::frame_publisher() {
     made->frames.emplace(std::move(publisher).value());
   }
   return &*made->frames;
+}
+
+// That we know the server does not mean that it knows us already; what is sent before that is lost.
+// So the server is asked once, and again after it was away.
+Status Client::Impl::wait_for_listener(const wire::Publisher<msgs::RgbdFrame>& frames) {
+  const auto end = std::chrono::steady_clock::now() + options.timeout;
+  {
+    const std::lock_guard<std::mutex> lock(made->mutex);
+    if (made->listened && frames.matched_count() > 0) return {};
+    made->listened = false;
+  }
+  const Status nobody(StatusCode::unavailable, "no server listens to " + frames.topic() +
+                                                   " within " +
+                                                   std::to_string(options.timeout.count()) + " ms");
+  if (!frames.wait_for_matched(options.timeout)) return nobody;
+  while (std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(Milliseconds(50));
+    const auto response = get_status.call({}, options.timeout);
+    if (Status status = outcome(response); !status.ok()) return status;
+    for (const auto& detail : response->details) {
+      if (detail.key != "publishers of frames" || detail.value == "0") continue;
+      const std::lock_guard<std::mutex> lock(made->mutex);
+      made->listened = true;
+      return {};
+    }
+  }
+  return nobody;
 }
 
 Client::Client(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

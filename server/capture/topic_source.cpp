@@ -150,8 +150,4 @@ wire::ReaderStatistics TopicSource::reader_statistics() const {
   return sum;
 }
 
-std::size_t TopicSource::publishers() const {
-  return (frames_ ? frames_->matched_count() : 0) + (depth_ ? depth_->matched_count() : 0);
-}
-
 }  // namespace bpa::server

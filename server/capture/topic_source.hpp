@@ -34,8 +34,9 @@ class TopicSource {
   SyncCounts sync_counts() const;
   /// Messages that were no legal encoding of their type, and those lost by DDS.
   wire::ReaderStatistics reader_statistics() const;
-  /// Publishers of frames and of camera topics at present.
-  std::size_t publishers() const;
+  /// Publishers of whole frames, and of depth images, at present.
+  std::size_t frame_publishers() const { return frames_ ? frames_->matched_count() : 0; }
+  std::size_t camera_publishers() const { return depth_ ? depth_->matched_count() : 0; }
 
  private:
   TopicSource(const InputOptions& options, OnFrame on_frame, LogHook log);

@@ -7,7 +7,6 @@
 #include <memory>
 #include <vector>
 
-#include <bpa/core/cloud/frame.hpp>
 #include <bpa/wire/msg/bpa_msgs.hpp>
 #include <bpa/wire/msg/builtin_interfaces.hpp>
 #include <bpa/wire/msg/sensor_msgs.hpp>

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// A bpa-server whose detector is a stand-in, for tests and for measuring everything but detection.
+// It "finds" one object called "stub" as far away as the middle of the frame is deep.
+
+#include <csignal>
+#include <iostream>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+
+#include <bpa/server/server.hpp>
+
+namespace {
+
+using bpa::Status;
+
+bpa::server::Models stub_models() {
+  auto model = std::make_shared<bpa::ObjectModel>();
+  model->name = "stub";
+  model->number = 7;
+  model->diameter = 0.2;
+  model->surface.points = {{-0.1f, 0, 0}, {0.1f, 0.05f, 0.02f}};
+  return {model};
+}
+
+bpa::Result<bpa::SceneInterpretations> detect(const bpa::Frame& frame,
+                                              const bpa::DetectRequest& request, int delay_ms) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
+  for (const std::string& name : request.models) {
+    if (name != "stub") {
+      return Status(bpa::StatusCode::not_found, "there is no model named \"" + name + "\"");
+    }
+  }
+  const auto middle = static_cast<std::size_t>(frame.camera.height / 2 * frame.camera.width +
+                                               frame.camera.width / 2);
+  bpa::Placement placement;
+  placement.model = "stub";
+  placement.model_number = 7;
+  placement.camera_from_object.translation.z() = static_cast<double>(frame.depth[middle]);
+  placement.probability = 0.875;
+  bpa::SceneInterpretations result;
+  result.stamp_ns = frame.stamp_ns;
+  result.frame_id = frame.frame_id;
+  result.interpretations.push_back({1, 0.5, 1.0, {placement}});
+  result.timings = {{"sleep", static_cast<double>(delay_ms)}};
+  result.total_milliseconds = delay_ms;
+  return result;
+}
+
+bpa::Result<std::vector<std::uint8_t>> annotate(const bpa::Frame& frame,
+                                                const bpa::Interpretation&) {
+  return std::vector<std::uint8_t>(3 * frame.depth.size(), 200);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  CLI::App program("bpa-server without a detector");
+  std::vector<std::string> settings;
+  int delay_ms = 0;
+  program.add_option("--set", settings, "group.key=value");
+  program.add_option("--delay-ms", delay_ms, "how long a search takes");
+  CLI11_PARSE(program, argc, argv);
+  bpa::server::ServerOptions options;
+  options.network.range = "localhost";
+  for (const std::string& setting : settings) {
+    const Status status = bpa::server::set_option(setting, options);
+    if (!status.ok()) return std::cerr << status.message << '\n', 2;
+  }
+  bpa::server::Recognition recognition;
+  recognition.detect = [delay_ms](const bpa::Frame& frame, const bpa::DetectRequest& request) {
+    return detect(frame, request, delay_ms);
+  };
+  recognition.annotate = annotate;
+  recognition.models = stub_models;
+  recognition.library = "stub";
+  const auto server = bpa::server::Server::create(
+      options, recognition,
+      [](bpa::LogLevel, std::string_view text) { std::cerr << text << std::endl; });
+  if (!server.ok()) return std::cerr << server.status().message << '\n', 1;
+  int signal = 0;
+  sigwait(&signals, &signal);
+  return 0;
+}

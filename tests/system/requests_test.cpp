@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <functional>
+#include <future>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include <bpa/wire/messages.hpp>
+#include <bpa/wire/service.hpp>
+
+#include "support/stub_server.hpp"
+#include "support/wall_messages.hpp"
+
+// Requests from another process, good and bad: each gets its answer and the server goes on.
+
+namespace bpa {
+namespace {
+
+namespace msgs = wire::bpa_msgs;
+using std::chrono::milliseconds;
+
+struct WallView {
+  std::vector<std::uint16_t> depth = support::wall_depth_mm();
+  std::vector<std::uint8_t> rgb = support::wall_rgb();
+
+  FrameView view() const {
+    FrameView view;
+    view.width = static_cast<int>(support::kWidth);
+    view.height = static_cast<int>(support::kHeight);
+    view.rgb = rgb.data();
+    view.depth_mm = depth.data();
+    view.fx = view.fy = 60;
+    view.cx = 31.5;
+    view.cy = 23.5;
+    view.stamp_ns = 123'456'789'012'345;
+    view.frame_id = "wall";
+    return view;
+  }
+  double middle() const {
+    return static_cast<double>(static_cast<float>(
+        depth[support::kHeight / 2 * support::kWidth + support::kWidth / 2] * 0.001));
+  }
+};
+
+TEST(Requests, AnswersCarryTheFramesStampAndPose) {
+  support::StubServer server;
+  auto client = Client::connect(support::client_options());
+  ASSERT_TRUE(client.ok()) << client.status().message << server.log();
+  const WallView wall;
+  const auto found = client->detect_in(wall.view());
+  ASSERT_TRUE(found.ok()) << found.status().message;
+  EXPECT_EQ(found->stamp_ns, 123'456'789'012'345);
+  EXPECT_EQ(found->frame_id, "wall");
+  EXPECT_EQ(found->models_searched, 1);
+  ASSERT_EQ(found->interpretations.size(), 1U);
+  EXPECT_EQ(found->interpretations[0].rank, 1);
+  ASSERT_EQ(found->best().size(), 1U);
+  EXPECT_EQ(found->best()[0].model, "stub");
+  EXPECT_EQ(found->best()[0].camera_from_object.position[2], wall.middle());
+  EXPECT_EQ(found->best()[0].probability, 0.875);
+
+  const auto models = client->models();
+  ASSERT_TRUE(models.ok());
+  ASSERT_EQ(models->size(), 1U);
+  EXPECT_EQ((*models)[0].name, "stub");
+  EXPECT_NEAR((*models)[0].box_max[0], 0.1, 1e-7);
+
+  const auto missing = client->detect_in(wall.view(), {{"teapot"}});
+  EXPECT_EQ(missing.status().code, StatusCode::not_found);
+  EXPECT_NE(missing.status().message.find("teapot"), std::string::npos);
+  EXPECT_EQ(client->load_model("x").code, StatusCode::unsupported);
+
+  const auto status = client->status();
+  ASSERT_TRUE(status.ok());
+  EXPECT_EQ(status->requests_served, 1U);
+  EXPECT_EQ(status->requests_refused, 1U);
+  EXPECT_EQ(status->model_count, 1);
+  EXPECT_GT(status->memory_bytes, 1'000'000U);
+
+  server.process().signal(SIGTERM);
+  EXPECT_EQ(server.process().wait(milliseconds(5000)), 0) << server.log();
+}
+
+TEST(Requests, BadInputIsAFailedReplyAndTheServerGoesOn) {
+  support::StubServer server;
+  auto participant = support::test_participant("tester");
+  ASSERT_TRUE(participant.ok()) << participant.status().message;
+  auto service = wire::ServiceClient<msgs::Detect>::create(*participant, "detect");
+  ASSERT_TRUE(service.ok());
+  ASSERT_TRUE(service->wait_for_service(milliseconds(10000))) << server.log();
+
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const struct {
+    const char* name;
+    std::function<void(msgs::Detect_Request&)> spoil;
+    const char* word;
+  } cases[] = {
+      {"short depth", [](auto& r) { r.frame.depth.resize(10); }, "depth data has 10 bytes"},
+      {"long depth", [](auto& r) { r.frame.depth.resize(100000); }, "must have"},
+      {"no depth", [](auto& r) { r.frame.depth.clear(); }, "depth"},
+      {"short colour", [](auto& r) { r.frame.color.resize(10); }, "color data has 10 bytes"},
+      {"zero focal length", [](auto& r) { r.frame.k[0] = 0; }, "fx"},
+      {"NaN focal length", [](auto& r) { r.frame.k[4] = std::nan(""); }, "fy"},
+      {"empty intrinsics", [](auto& r) { r.frame.k = {}; }, "fx"},
+      {"zero size", [](auto& r) { r.frame.width = 0; }, "width"},
+      {"huge size", [](auto& r) { r.frame.height = 0xffffffffU; }, "height"},
+      {"all-zero depth", [](auto& r) { r.frame.depth.assign(r.frame.depth.size(), 0); }, "500"},
+      {"all-NaN depth",
+       [nan](auto& r) {
+         r.frame.depth_encoding = "32FC1";
+         r.frame.depth =
+             support::as_bytes(std::vector<float>(support::kWidth * support::kHeight, nan));
+       },
+       "500"},
+      {"unknown encoding", [](auto& r) { r.frame.depth_encoding = "64FC1"; }, "16UC1"},
+      {"roi outside",
+       [](auto& r) {
+         r.frame.roi = {60, 40, 20, 20, false};
+       },
+       "roi"},
+      {"mask of another size", [](auto& r) { r.frame.mask.resize(9); }, "mask"},
+      {"top_k", [](auto& r) { r.top_k = 101; }, "top_k is 101"},
+      {"NaN budget", [](auto& r) { r.time_budget_ms = std::nan(""); }, "time_budget_ms"},
+      {"negative timeout", [](auto& r) { r.timeout_ms = -1; }, "timeout_ms"},
+      {"unknown model", [](auto& r) { r.models = {"teapot"}; }, "teapot"},
+  };
+  for (const auto& c : cases) {
+    msgs::Detect_Request request;
+    request.has_frame = true;
+    request.frame = support::wall_frame();
+    c.spoil(request);
+    const auto reply = service->call(request, milliseconds(5000));
+    ASSERT_TRUE(reply.ok()) << c.name << ": " << reply.status().message;
+    EXPECT_FALSE(reply->success) << c.name;
+    EXPECT_NE(reply->status.code, 0) << c.name;
+    EXPECT_NE(reply->status.message.find(c.word), std::string::npos)
+        << c.name << ": " << reply->status.message;
+  }
+  msgs::Detect_Request good;
+  good.has_frame = true;
+  good.frame = support::wall_frame();
+  const auto reply = service->call(good, milliseconds(5000));
+  ASSERT_TRUE(reply.ok()) << reply.status().message;
+  EXPECT_TRUE(reply->success) << reply->status.message;
+}
+
+TEST(Requests, AFullQueueIsBusyAndNobodyWaitsForEver) {
+  support::StubServer server({"queue.requests=2"}, 400);
+  auto client = Client::connect(support::client_options());
+  ASSERT_TRUE(client.ok()) << client.status().message;
+  const WallView wall;
+  std::vector<std::future<StatusCode>> answers;
+  for (int i = 0; i < 6; ++i) {
+    answers.push_back(std::async(std::launch::async,
+                                 [&] { return client->detect_in(wall.view()).status().code; }));
+  }
+  int served = 0, busy = 0;
+  for (auto& answer : answers) {
+    const StatusCode code = answer.get();
+    served += code == StatusCode::ok ? 1 : 0;
+    busy += code == StatusCode::busy ? 1 : 0;
+  }
+  EXPECT_EQ(served + busy, 6);
+  EXPECT_GE(served, 2);
+  EXPECT_GE(busy, 3);  // one is searched and two wait
+}
+
+TEST(Requests, WithoutAFrameTheNextOneIsAwaitedInVainAndSaidSo) {
+  support::StubServer server;
+  auto client = Client::connect(support::client_options());
+  ASSERT_TRUE(client.ok()) << client.status().message;
+  const auto found = client->detect({}, milliseconds(1500));
+  EXPECT_EQ(found.status().code, StatusCode::timeout);
+  EXPECT_NE(found.status().message.find("camera"), std::string::npos) << found.status().message;
+}
+
+TEST(Requests, NoServerIsUnavailable) {
+  ClientOptions options = support::client_options();
+  options.timeout = milliseconds(300);
+  const auto client = Client::connect(options);
+  EXPECT_EQ(client.status().code, StatusCode::unavailable);
+  options.timeout = milliseconds(0);
+  EXPECT_EQ(Client::connect(options).status().code, StatusCode::invalid_argument);
+  options = support::client_options();
+  options.server_namespace = "no good";
+  EXPECT_EQ(Client::connect(options).status().code, StatusCode::invalid_argument);
+}
+
+}  // namespace
+}  // namespace bpa

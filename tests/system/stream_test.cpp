@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <condition_variable>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include <bpa/wire/messages.hpp>
+#include <bpa/wire/publisher.hpp>
+#include <bpa/wire/subscriber.hpp>
+
+#include "support/stub_server.hpp"
+#include "support/wall_messages.hpp"
+
+// Frames published by the SDK, results in another process.
+
+namespace bpa {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// What came, by whatever the test calls it; waits for it.
+template <class T>
+class Arrivals {
+ public:
+  void add(T item) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    items_.push_back(std::move(item));
+    changed_.notify_all();
+  }
+  bool wait_for(std::size_t count, milliseconds time = milliseconds(10000)) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    return changed_.wait_for(lock, time, [&] { return items_.size() >= count; });
+  }
+  std::vector<T> items() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return items_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<T> items_;
+};
+
+class Stream : public testing::Test {
+ protected:
+  FrameView view(std::int64_t stamp_ns) const {
+    FrameView view;
+    view.width = static_cast<int>(support::kWidth);
+    view.height = static_cast<int>(support::kHeight);
+    view.rgb = rgb.data();
+    view.depth_mm = depth.data();
+    view.fx = view.fy = 60;
+    view.cx = 31.5;
+    view.cy = 23.5;
+    view.stamp_ns = stamp_ns;
+    view.frame_id = "wall";
+    return view;
+  }
+
+  const std::vector<std::uint16_t> depth = support::wall_depth_mm();
+  const std::vector<std::uint8_t> rgb = support::wall_rgb();
+};
+
+TEST_F(Stream, EveryFrameComesBackWithItsStamp) {
+  support::StubServer server({"queue.frames=30"});
+  Arrivals<DetectionSet> results;
+  Arrivals<AnnotatedImage> images;
+  auto client = Client::connect(support::client_options());
+  ASSERT_TRUE(client.ok()) << client.status().message << server.log();
+  ASSERT_TRUE(client->subscribe([&](const DetectionSet& set) { results.add(set); }).ok());
+  ASSERT_TRUE(
+      client->subscribe_annotated([&](const AnnotatedImage& image) { images.add(image); }).ok());
+  for (int i = 1; i <= 20; ++i) {
+    ASSERT_TRUE(client->publish_frame(view(i * 1'000'000'007LL)).ok());
+    ASSERT_TRUE(results.wait_for(static_cast<std::size_t>(i))) << i << server.log();
+  }
+  ASSERT_TRUE(images.wait_for(20));
+  for (int i = 1; i <= 20; ++i) {
+    const DetectionSet set = results.items()[static_cast<std::size_t>(i - 1)];
+    EXPECT_TRUE(set.status.ok());
+    EXPECT_EQ(set.stamp_ns, i * 1'000'000'007LL);
+    EXPECT_EQ(set.frame_id, "wall");
+    EXPECT_EQ(set.best().size(), 1U);
+  }
+  EXPECT_EQ(images.items()[3].stamp_ns, 4 * 1'000'000'007LL);
+  EXPECT_EQ(images.items()[3].rgb, std::vector<std::uint8_t>(rgb.size(), 200));
+}
+
+TEST_F(Stream, ASlowSearchDropsOldFramesAndCountsThem) {
+  support::StubServer server({}, 150);
+  Arrivals<DetectionSet> results;
+  auto client = Client::connect(support::client_options());
+  ASSERT_TRUE(client.ok()) << client.status().message;
+  ASSERT_TRUE(client->subscribe([&](const DetectionSet& set) { results.add(set); }).ok());
+  constexpr int kSent = 20;
+  for (int i = 1; i <= kSent; ++i) {
+    ASSERT_TRUE(client->publish_frame(view(i)).ok());
+    std::this_thread::sleep_for(milliseconds(20));
+  }
+  ASSERT_TRUE(results.wait_for(2));
+  Result<ServerStatus> status = client->status();
+  for (int i = 0; i < 50 && status.ok(); ++i) {
+    if (status->frames_processed + status->frames_dropped == kSent) break;
+    std::this_thread::sleep_for(milliseconds(50));
+    status = client->status();
+  }
+  ASSERT_TRUE(status.ok()) << status.status().message;
+  EXPECT_EQ(status->frames_received, static_cast<std::uint64_t>(kSent));
+  EXPECT_EQ(status->frames_processed + status->frames_dropped, static_cast<std::uint64_t>(kSent));
+  EXPECT_GT(status->frames_dropped, 5U);
+  EXPECT_EQ(results.items().back().stamp_ns, kSent);  // the newest wins
+}
+
+TEST_F(Stream, ABadFrameIsReportedToSubscribersAndForgotten) {
+  support::StubServer server;
+  Arrivals<DetectionSet> results;
+  auto client = Client::connect(support::client_options());
+  ASSERT_TRUE(client.ok()) << client.status().message;
+  ASSERT_TRUE(client->subscribe([&](const DetectionSet& set) { results.add(set); }).ok());
+  FrameView bad = view(5);
+  bad.fx = 0;
+  ASSERT_TRUE(client->publish_frame(bad).ok());
+  ASSERT_TRUE(results.wait_for(1));
+  EXPECT_EQ(results.items()[0].status.code, StatusCode::invalid_argument);
+  EXPECT_NE(results.items()[0].status.message.find("fx"), std::string::npos);
+  EXPECT_EQ(results.items()[0].stamp_ns, 5);
+  ASSERT_TRUE(client->publish_frame(view(6)).ok());
+  ASSERT_TRUE(results.wait_for(2));
+  EXPECT_TRUE(results.items()[1].status.ok());
+  const auto status = client->status();
+  ASSERT_TRUE(status.ok());
+  EXPECT_EQ(status->frames_rejected, 1U);
+  EXPECT_NE(server.log().find("fx"), std::string::npos);
+
+  bad = view(7);
+  bad.depth_mm = nullptr;
+  EXPECT_EQ(client->publish_frame(bad).code, StatusCode::invalid_argument);
+}
+
+TEST_F(Stream, AClientSurvivesAServerThatRestarts) {
+  support::StubServer server;
+  Arrivals<DetectionSet> results;
+  ClientOptions options = support::client_options();
+  auto client = Client::connect(options);
+  ASSERT_TRUE(client.ok()) << client.status().message;
+  ASSERT_TRUE(client->subscribe([&](const DetectionSet& set) { results.add(set); }).ok());
+  ASSERT_TRUE(client->publish_frame(view(1)).ok());
+  ASSERT_TRUE(results.wait_for(1));
+
+  server.process().signal(SIGTERM);
+  ASSERT_EQ(server.process().wait(milliseconds(5000)), 0);
+  server.start();
+  const auto models = client->models();
+  ASSERT_TRUE(models.ok()) << models.status().message;
+  const auto found = client->detect_in(view(2));
+  ASSERT_TRUE(found.ok()) << found.status().message;
+  // The stream as well: frames reach the new server and its results come here.
+  for (int i = 0; i < 20 && results.items().size() < 2; ++i) {
+    ASSERT_TRUE(client->publish_frame(view(10 + i)).ok());
+    results.wait_for(2, milliseconds(250));
+  }
+  EXPECT_GE(results.items().size(), 2U);
+}
+
+TEST_F(Stream, StandardTopicsCarryTheSameResult) {
+  support::StubServer server;
+  auto client = Client::connect(support::client_options());
+  ASSERT_TRUE(client.ok()) << client.status().message;
+  auto participant = support::test_participant("listener");
+  ASSERT_TRUE(participant.ok());
+  Arrivals<wire::vision_msgs::Detection3DArray> detections;
+  Arrivals<wire::visualization_msgs::MarkerArray> markers;
+  Arrivals<wire::tf2_msgs::TFMessage> transforms;
+  Arrivals<wire::vision_msgs::VisionInfo> infos;
+  Arrivals<wire::diagnostic_msgs::DiagnosticArray> diagnostics;
+  const auto listen = [&](const char* topic, wire::Qos qos, auto& arrivals, auto tag) {
+    using Message = decltype(tag);
+    wire::SubscriberOptions options;
+    options.qos = qos;
+    return wire::Subscriber<Message>::create(
+        *participant, topic, options,
+        [&arrivals](Message&& m, const wire::SampleMeta&) { arrivals.add(std::move(m)); });
+  };
+  const auto s1 =
+      listen("detections", wire::qos::results(), detections, wire::vision_msgs::Detection3DArray());
+  const auto s2 =
+      listen("markers", wire::qos::results(), markers, wire::visualization_msgs::MarkerArray());
+  const auto s3 = listen("tf", wire::qos::transforms(), transforms, wire::tf2_msgs::TFMessage());
+  const auto s4 =
+      listen("vision_info", wire::qos::latched(), infos, wire::vision_msgs::VisionInfo());
+  const auto s5 = listen("diagnostics", wire::qos::results(), diagnostics,
+                         wire::diagnostic_msgs::DiagnosticArray());
+  ASSERT_TRUE(s1.ok() && s2.ok() && s3.ok() && s4.ok() && s5.ok());
+  for (int i = 0; i < 40 && (detections.items().empty() || transforms.items().empty() ||
+                             markers.items().empty());
+       ++i) {
+    ASSERT_TRUE(client->publish_frame(view(77'000'000'123)).ok());
+    detections.wait_for(1, milliseconds(250));
+  }
+  ASSERT_TRUE(detections.wait_for(1));
+  const auto detection = detections.items()[0];
+  EXPECT_EQ(to_ns(detection.header.stamp), 77'000'000'123);
+  EXPECT_EQ(detection.header.frame_id, "wall");
+  ASSERT_EQ(detection.detections.size(), 1U);
+  EXPECT_EQ(detection.detections[0].results.at(0).hypothesis.class_id, "stub");
+  ASSERT_TRUE(markers.wait_for(1));
+  EXPECT_EQ(markers.items()[0].markers.size(), 3U);
+  ASSERT_TRUE(transforms.wait_for(1));
+  EXPECT_EQ(transforms.items()[0].transforms.at(0).child_frame_id,
+            support::test_namespace().substr(1) + "/stub_0");
+  ASSERT_TRUE(infos.wait_for(1));  // latched: sent before we came
+  EXPECT_EQ(infos.items()[0].database_location, "stub");
+  ASSERT_TRUE(diagnostics.wait_for(1));
+  EXPECT_EQ(diagnostics.items()[0].status.at(0).message, "serving");
+}
+
+}  // namespace
+}  // namespace bpa
