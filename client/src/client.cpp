@@ -164,8 +164,9 @@ Result<wire::Publisher<msgs::RgbdFrame>*> Client::Impl::frame_publisher() {
   return &*made->frames;
 }
 
-// That we know the server does not mean that it knows us already; what is sent before that is lost.
-// So the server is asked once, and again after it was away.
+// That we know the server does not mean that it knows us already, and what is sent before the two
+// have exchanged their first heartbeats (every 100 ms) is lost. So the server is asked once, and
+// given one more heartbeat; again after it was away.
 Status Client::Impl::wait_for_listener(const wire::Publisher<msgs::RgbdFrame>& frames) {
   const auto end = std::chrono::steady_clock::now() + options.timeout;
   {
@@ -183,6 +184,7 @@ Status Client::Impl::wait_for_listener(const wire::Publisher<msgs::RgbdFrame>& f
     if (Status status = outcome(response); !status.ok()) return status;
     for (const auto& detail : response->details) {
       if (detail.key != "publishers of frames" || detail.value == "0") continue;
+      std::this_thread::sleep_for(Milliseconds(100));
       const std::lock_guard<std::mutex> lock(made->mutex);
       made->listened = true;
       return {};
@@ -242,11 +244,7 @@ Status Client::publish_frame(const FrameView& frame) {
     auto publisher = impl_->frame_publisher();
     if (!publisher.ok()) return publisher.status();
     auto& frames = **publisher;
-    if (!frames.wait_for_matched(impl_->options.timeout)) {
-      return Status(StatusCode::unavailable, "no server listens to " + frames.topic() + " within " +
-                                                 std::to_string(impl_->options.timeout.count()) +
-                                                 " ms");
-    }
+    if (Status status = impl_->wait_for_listener(frames); !status.ok()) return status;
     return frames.publish(sdk::to_message(frame));
   });
 }
