@@ -48,6 +48,7 @@ Json model_json(const ModelSource& model, const std::string& surface) {
           {"number", model.number},
           {"source", model.source},
           {"diameter_m", model.diameter},
+          {"complete", model.complete},
           {"symmetries", symmetries},
           {"points", model.surface.size()},
           {"surface_bytes", surface.size()},
@@ -77,6 +78,7 @@ Result<Description> parse_description(const std::string& path, const Json& json)
   result.model.number = json.at("number").get<int>();
   result.model.source = json.at("source").get<std::string>();
   result.model.diameter = json.at("diameter_m").get<double>();
+  result.model.complete = json.at("complete").get<bool>();
   for (const Json& pose : json.at("symmetries").at("discrete")) {
     result.model.symmetry.discrete.push_back(pose_from_json(pose));
   }

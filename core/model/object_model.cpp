@@ -97,6 +97,9 @@ Result<std::shared_ptr<const ObjectModel>> make_object_model(ModelSource source,
       index->coarse, std::max(0.006f, 0.05f * static_cast<float>(source.diameter)), 0.2618f);
   const float spacing = 0.003f;
   index->views = render_views(source.surface, spacing, num_threads);
+  if (!source.complete) {
+    for (ModelView& view : index->views) view.edges.clear(), view.outward.clear();
+  }
   auto model = std::make_shared<ObjectModel>();
   static_cast<ModelSource&>(*model) = std::move(source);
   model->index = std::move(index);

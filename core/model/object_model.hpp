@@ -15,10 +15,12 @@ namespace bpa {
 
 /// What a model file holds; everything else of an ObjectModel follows from it.
 struct ModelSource {
-  std::string name;     ///< Letters, digits, '_', '-' and '.'; unique in a library.
-  int number = 1;       ///< Positive; unique in a library. A BOP data set's obj_id.
-  std::string source;   ///< Where it came from, for people: a file name.
-  double diameter = 0;  ///< Largest distance of two surface points, metres.
+  std::string name;      ///< Letters, digits, '_', '-' and '.'; unique in a library.
+  int number = 1;        ///< Positive; unique in a library. A BOP data set's obj_id.
+  std::string source;    ///< Where it came from, for people: a file name.
+  double diameter = 0;   ///< Largest distance of two surface points, metres.
+  bool complete = true;  ///< False when the surface was seen from one side only: then its rim is
+                         ///< where looking ended, not where the object does.
   SymmetryGroup symmetry;
   PointCloud surface;  ///< Points, normals, colours where known; object frame, metres. Evenly
                        ///< spaced, only what a camera outside can see.

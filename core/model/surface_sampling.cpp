@@ -156,7 +156,9 @@ Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std:
   // One view of an object, in its camera's frame: normals point to the origin.
   PointCloud even = downsample(cloud, spacing);
   estimate_normals(even, 4 * spacing, Eigen::Vector3f::Zero(), options.num_threads);
-  return make_source(std::move(even), name, number);
+  ModelSource source = make_source(std::move(even), name, number);
+  source.complete = false;
+  return source;
 }
 
 }  // namespace bpa

@@ -80,6 +80,11 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const FastPo
   const Eigen::Vector3f to_camera = -(pose.rotation.transpose() * pose.translation).normalized();
   const auto& views = model.index->views;
   const ModelView& view = views[static_cast<std::size_t>(nearest_view(views, to_camera))];
+  if (!model.complete) {  // has no edges to speak for or against it
+    out.edge = 0;
+    out.edge_support = 0.5;
+    return;
+  }
   const std::size_t step = std::max<std::size_t>(1, view.edges.size() / 200);
   int visible = 0, total = 0, ends = 0, goes_on = 0;
   for (std::size_t k = 0; k < view.edges.size(); k += step) {
