@@ -105,7 +105,7 @@ Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, con
 }
 
 Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
-                      float gate, int count, std::uint64_t seed) {
+                      float gate, int count, std::uint64_t seed, bool use_orientation) {
   constexpr int kMax = 32;
   align::OrientedPair pairs[kMax];
   RandomStream random(seed, 17);
@@ -127,7 +127,7 @@ Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, cons
   if (found < 4) return start;
   align::Correspondences data;
   data.oriented = std::span<const align::OrientedPair>(pairs, static_cast<std::size_t>(found));
-  return align::bpa_mode(data).camera_from_object;
+  return (use_orientation ? align::bpa_mode(data) : align::icp_mode(data)).camera_from_object;
 }
 
 }  // namespace bpa

@@ -30,8 +30,10 @@ Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, con
                        const RefinementOptions& options);
 
 /// One round-two alignment step by BPA (paper section V): up to `count` model points that fall near
-/// the observed surface are matched with it as oriented pairs. The start where fewer than four do.
+/// the observed surface are matched with it as oriented pairs; without `use_orientation` by their
+/// positions only, which is what ICP does (the paper's ablation). The start where fewer than four
+/// points match.
 Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
-                      float gate, int count, std::uint64_t seed);
+                      float gate, int count, std::uint64_t seed, bool use_orientation = true);
 
 }  // namespace bpa

@@ -34,8 +34,9 @@ Aligned round_two(const SceneFeatures& scene, const ObjectModel& model, const Po
   Aligned best{start, check_score(scene, model, start)};
   float gate = 0.030f;
   for (int step = 0; step < options.bpa_steps; ++step) {
-    const Pose proposed = align_to_surface(scene, model, best.pose, gate, 12,
-                                           options.seed + static_cast<std::uint64_t>(step));
+    const Pose proposed =
+        align_to_surface(scene, model, best.pose, gate, 12,
+                         options.seed + static_cast<std::uint64_t>(step), options.use_orientation);
     const double score = check_score(scene, model, proposed);
     if (score > best.score) best = {proposed, score};
     gate *= 0.8f;

@@ -65,6 +65,7 @@ SingleObjectOptions object_options(const DetectorOptions& options, std::uint64_t
 
 InterpretationOptions interpretation_options(const DetectorOptions& options, std::uint64_t seed) {
   InterpretationOptions out;
+  out.min_probability = options.min_probability;
   out.object_penalty = options.object_penalty;
   out.explained_weight = options.explained_weight;
   out.annealing_steps = options.annealing_steps;

@@ -19,9 +19,14 @@ struct Overlap {
 };
 
 // Single scores weighted by the observed points explained (paper section VI, component 1), less the
-// penalty (component 3). A placement that is more likely wrong than right costs.
+// penalty (component 3). A placement that is less probable than is asked for costs by how much it
+// is, however small, so that the alternatives that come first are the likely ones.
 double single_worth(const Candidate& c, const InterpretationOptions& options) {
-  const double quality = 2 * c.probability - 1;
+  const double least = std::clamp(options.min_probability, 1e-3, 1 - 1e-3);
+  if (c.probability < least) {
+    return c.score - std::log(least / (1 - least)) - options.object_penalty;
+  }
+  const double quality = (c.probability - least) / (1 - least);
   return quality * static_cast<double>(c.explained.size()) / options.pixels_per_unit -
          options.object_penalty;
 }

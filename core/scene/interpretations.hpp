@@ -15,7 +15,7 @@ struct InterpretationOptions {
   double object_penalty = 0.2;   ///< Units that each further object costs.
   double explained_weight = 2;   ///< Of the ratio of explained to observed pixels.
   double max_shared = 0.3;       ///< Two placements may share this part of the smaller one.
-  double min_probability = 0.5;  ///< Placements below are never part of the best.
+  double min_probability = 0.5;  ///< A placement less probable than this lowers the score.
   int annealing_steps = 20000;
   int max_interpretations = 100;  ///< Paper section VI: the 100 best are kept.
   std::uint64_t seed = 0;

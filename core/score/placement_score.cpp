@@ -165,7 +165,7 @@ ScoreComponents score_placement(const CheckImage& image, const ObjectModel& mode
 double placement_score(const ScoreComponents& c) {
   // Little visible surface carries little evidence, and one flat face less.
   const double evidence = std::clamp(std::log(std::max(1.0, c.explained_pixels) / 300), -2.0, 1.5);
-  return -13.7 + 7 * c.agreeing + 10 * c.range + 6 * c.normal - 6 * c.free_space + 20 * c.edge +
+  return -13.2 + 7 * c.agreeing + 10 * c.range + 6 * c.normal - 6 * c.free_space + 20 * c.edge +
          3 * std::min(1.0, c.edge_support / 0.5) + 2 * std::min(1.0, c.visibility / 0.6) +
          1.5 * evidence + 1.5 * std::min(1.0, c.shape / 0.05);
 }
