@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include <bpa/core/io/bop_dataset.hpp>
+#include <bpa/core/io/mesh_file.hpp>
+#include <bpa/core/io/model_file.hpp>
+#include <bpa/core/pipeline/detector.hpp>
+#include <bpa/server/convert/results.hpp>
+#include <bpa/wire/cdr.hpp>
+#include <bpa/wire/messages.hpp>
+#include <bpa/wire/service.hpp>
+
+#include "support/process.hpp"
+#include "support/stub_server.hpp"
+
+// The same frame, library and seed through bpa-server and through the detector itself: the same
+// interpretations, bit for bit, for 1 and 2 threads.
+
+namespace bpa {
+namespace {
+
+namespace fs = std::filesystem;
+namespace msgs = wire::bpa_msgs;
+using std::chrono::milliseconds;
+
+std::vector<std::uint8_t> bits(msgs::SceneInterpretations message) {
+  message.stage_timings.clear();  // the clock is allowed to differ
+  message.total_ms = 0;
+  std::vector<std::uint8_t> bytes(wire::encoded_size(message));
+  wire::encode(message, bytes.data(), bytes.size());
+  return bytes;
+}
+
+msgs::RgbdFrame message_of(const Frame& frame) {
+  msgs::RgbdFrame message;
+  message.header = {wire::builtin_interfaces::from_ns(frame.stamp_ns), frame.frame_id};
+  message.width = static_cast<std::uint32_t>(frame.camera.width);
+  message.height = static_cast<std::uint32_t>(frame.camera.height);
+  if (!frame.color.empty()) message.color_encoding = "rgb8";
+  message.color = frame.color;
+  message.depth_encoding = "32FC1";
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(frame.depth.data());
+  message.depth.assign(bytes, bytes + frame.depth.size() * sizeof(float));
+  const Camera& c = frame.camera;
+  message.k = {c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1};
+  return message;
+}
+
+/// Detects `frame` with the library both ways.
+void expect_identity(const std::string& folder, const Frame& frame) {
+  constexpr std::uint64_t kSeed = 5;
+  auto sources = io::load_library(folder);
+  ASSERT_TRUE(sources.ok()) << sources.status().message;
+  auto library = std::make_shared<ModelLibrary>();
+  for (ModelSource& source : *sources) {
+    auto model = make_object_model(std::move(source));
+    ASSERT_TRUE(model.ok()) << model.status().message;
+    ASSERT_TRUE(library->add(*model).ok());
+  }
+  const Detector detector(library, DetectorOptions());
+  DetectRequest request;
+  request.seed = kSeed;
+  request.num_threads = 1;
+  const auto offline = detector.detect(frame, request);
+  ASSERT_TRUE(offline.ok()) << offline.status().message;
+  const auto expected = bits(server::interpretations_message(
+      offline, {frame.stamp_ns, frame.frame_id, library->size(), kSeed}));
+
+  for (const char* threads : {"1", "2"}) {
+    const std::string log = support::scratch_folder() + "/identity.log";
+    const support::Process server(
+        {BPA_BINARY_DIR "/bin/bpa-server", "--localhost", "--library", folder, "--threads", threads,
+         "--namespace", support::test_namespace(), "--domain",
+         std::to_string(support::test_domain())},
+        log);
+    auto participant = support::test_participant("tester");
+    ASSERT_TRUE(participant.ok()) << participant.status().message;
+    auto detect = wire::ServiceClient<msgs::Detect>::create(*participant, "detect");
+    ASSERT_TRUE(detect.ok());
+    msgs::Detect_Request call;
+    call.has_frame = true;
+    call.frame = message_of(frame);
+    call.seed = kSeed;
+    const auto reply = detect->call(call, milliseconds(90000));
+    ASSERT_TRUE(reply.ok()) << reply.status().message << support::read_text(log);
+    ASSERT_TRUE(reply->success) << reply->status.message;
+    EXPECT_EQ(reply->result.interpretations.size(), offline->interpretations.size());
+    EXPECT_TRUE(bits(reply->result) == expected) << "with " << threads << " threads";
+  }
+}
+
+/// A box of 60 x 90 x 40 mm with a smaller one on top.
+TriangleMesh stepped_box() {
+  TriangleMesh mesh;
+  const auto add_box = [&mesh](const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (int i = 0; i < 8; ++i) {
+      mesh.vertices.emplace_back((i & 1) != 0 ? high.x() : low.x(),
+                                 (i & 2) != 0 ? high.y() : low.y(),
+                                 (i & 4) != 0 ? high.z() : low.z());
+    }
+    const std::uint32_t faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                       {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    for (const auto& f : faces) {
+      mesh.triangles.push_back({first + f[0], first + f[1], first + f[2]});
+      mesh.triangles.push_back({first + f[0], first + f[2], first + f[3]});
+    }
+  };
+  add_box({-0.03f, -0.045f, -0.02f}, {0.03f, 0.045f, 0.02f});
+  add_box({-0.03f, -0.045f, 0.02f}, {0.0f, 0.0f, 0.05f});
+  return mesh;
+}
+
+/// The stepped box seen from above, straight on, on a wall 0.6 m away.
+Frame box_frame() {
+  Frame frame;
+  frame.camera = {160, 120, 150, 150, 79.5, 59.5};
+  frame.stamp_ns = 1'234'567'891;
+  frame.frame_id = "box_camera";
+  for (int v = 0; v < 120; ++v) {
+    for (int u = 0; u < 160; ++u) {
+      const auto inside = [&](double z, double x0, double x1, double y0, double y1) {
+        const Eigen::Vector3d p = frame.camera.unproject(u, v, z);
+        return p.x() >= x0 && p.x() <= x1 && p.y() >= y0 && p.y() <= y1;
+      };
+      double z = 0.6;
+      if (inside(0.56, -0.03, 0.03, -0.045, 0.045)) z = 0.56;
+      if (inside(0.53, -0.03, 0.0, 0.0, 0.045)) z = 0.53;
+      frame.depth.push_back(static_cast<float>(z));
+    }
+  }
+  frame.color.assign(3 * frame.depth.size(), 128);
+  return frame;
+}
+
+TEST(Identity, OfASyntheticFrame) {
+  const std::string folder = support::scratch_folder() + "/library";
+  const auto model = model_source_from_mesh(stepped_box(), "step", 4);
+  ASSERT_TRUE(model.ok()) << model.status().message;
+  ASSERT_TRUE(io::save_model(folder, *model).ok());
+  expect_identity(folder, box_frame());
+}
+
+TEST(Identity, OfARealFrame) {
+  const char* named = std::getenv("BPA_DATA");
+  const std::string data =
+      (named != nullptr ? std::string(named) : BPA_SOURCE_DIR "/../shared/data") + "/ycbv";
+  if (!fs::exists(data + "/models")) GTEST_SKIP() << data << " is not there";
+  const auto models = io::read_bop_models(data);
+  const auto frames = io::read_bop_frames(data, "test");
+  ASSERT_TRUE(models.ok() && frames.ok());
+  const auto frame = io::load_bop_frame(frames->front());
+  ASSERT_TRUE(frame.ok()) << frame.status().message;
+  const std::string folder = support::scratch_folder() + "/ycbv_library";
+  for (std::size_t i = 0; i < 2 && i < frames->front().truth.size(); ++i) {
+    for (const io::BopModel& model : *models) {
+      if (model.obj_id != frames->front().truth[i].obj_id) continue;
+      const auto mesh = io::read_mesh(model.path, 0.001);
+      ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+      const auto source = model_source_from_mesh(*mesh, model.name, model.obj_id);
+      ASSERT_TRUE(source.ok()) << source.status().message;
+      ASSERT_TRUE(io::save_model(folder, *source).ok());
+    }
+  }
+  expect_identity(folder, *frame);
+}
+
+}  // namespace
+}  // namespace bpa
