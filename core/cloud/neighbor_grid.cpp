@@ -110,6 +110,7 @@ PointCloud downsample(const PointCloud& cloud, float spacing) {
     for (std::size_t k = first; k < last; ++k) {
       const std::size_t i = order[k];
       const bool has_normals = !cloud.normals.empty();
+      if (has_normals && cloud.normals[i].squaredNorm() == 0) continue;
       const bool other_side = has_normals && sides[0].normal.dot(cloud.normals[i]) < 0;
       sides[other_side ? 1 : 0].add(cloud, i);
     }

@@ -47,9 +47,9 @@ class NeighborGrid {
 };
 
 /// One point for each occupied cube of side `spacing`: the means of points, normals (normalised)
-/// and colours. Points without a normal are left out when the cloud has normals and there are
-/// others in the cube; opposite sides of a thin wall are kept apart (normals that differ by more
-/// than 90 degrees are averaged separately). Deterministic.
+/// and colours. Points without a normal (a zero one) are left out when the cloud has normals;
+/// opposite sides of a thin wall are kept apart (normals that differ by more than 90 degrees are
+/// averaged separately). Deterministic.
 PointCloud downsample(const PointCloud& cloud, float spacing);
 
 }  // namespace bpa
