@@ -17,8 +17,23 @@ namespace {
 constexpr double kMinDiameter = 0.005;
 constexpr double kMaxDiameter = 3.0;
 
-// Points on the triangles, `per_square_metre` on average, with the triangles' normals.
+// Six times the volume that the triangles enclose, negative when they face inwards.
+double signed_volume(const TriangleMesh& mesh) {
+  const Eigen::Vector3f origin = mesh.vertices.front();
+  double volume = 0;
+  for (const auto& triangle : mesh.triangles) {
+    const Eigen::Vector3f a = mesh.vertices[triangle[0]] - origin;
+    const Eigen::Vector3f b = mesh.vertices[triangle[1]] - origin;
+    const Eigen::Vector3f c = mesh.vertices[triangle[2]] - origin;
+    volume += static_cast<double>(a.dot(b.cross(c)));
+  }
+  return volume;
+}
+
+// Points on the triangles, `per_square_metre` on average, with the triangles' normals,
+// those of a mesh that is inside out turned.
 PointCloud sample_triangles(const TriangleMesh& mesh, double per_square_metre) {
+  const float side = signed_volume(mesh) < 0 ? -1.0f : 1.0f;
   PointCloud cloud;
   RandomStream random(1);
   double carry = 0;
@@ -35,7 +50,7 @@ PointCloud sample_triangles(const TriangleMesh& mesh, double per_square_metre) {
       auto t = static_cast<float>(random.uniform());
       if (s + t > 1) s = 1 - s, t = 1 - t;
       cloud.points.push_back(a + s * ab + t * ac);
-      cloud.normals.push_back(cross.normalized());
+      cloud.normals.push_back(side * cross.normalized());
       if (mesh.colors.empty()) continue;
       std::array<std::uint8_t, 3> color{};
       for (std::size_t k = 0; k < 3; ++k) {

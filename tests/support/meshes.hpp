@@ -98,11 +98,9 @@ inline TriangleMesh cup_mesh(double radius, double wall, double height) {
   return mesh;
 }
 
-/// The same surface with every second triangle turned inside out.
-inline TriangleMesh with_flipped_faces(TriangleMesh mesh) {
-  for (std::size_t k = 0; k < mesh.triangles.size(); k += 2) {
-    std::swap(mesh.triangles[k][1], mesh.triangles[k][2]);
-  }
+/// The same surface with every triangle turned over.
+inline TriangleMesh inside_out(TriangleMesh mesh) {
+  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   return mesh;
 }
 
