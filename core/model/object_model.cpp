@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <bpa/core/base/parallel.hpp>
@@ -54,6 +55,22 @@ PointCloud coarse_points(const PointCloud& surface, double diameter) {
   return coarse;
 }
 
+// The mean distance of a point to its nearest neighbour, from some 100 of them.
+float mean_spacing(const std::vector<Eigen::Vector3f>& points) {
+  const std::size_t step = std::max<std::size_t>(1, points.size() / 100);
+  float sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    float nearest = std::numeric_limits<float>::infinity();
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      if (j != i) nearest = std::min(nearest, (points[j] - points[i]).squaredNorm());
+    }
+    sum += std::sqrt(nearest);
+    ++count;
+  }
+  return sum / static_cast<float>(count);
+}
+
 std::vector<Eigen::Vector3f> soften_normals(const PointCloud& surface, int num_threads) {
   constexpr float kFitRadius = 0.008f;
   const NeighborGrid grid(surface.points, kFitRadius);
@@ -95,7 +112,8 @@ Result<std::shared_ptr<const ObjectModel>> make_object_model(ModelSource source,
   index->coarse = coarse_points(source.surface, source.diameter);
   index->pairs = PointPairTable(
       index->coarse, std::max(0.006f, 0.05f * static_cast<float>(source.diameter)), 0.2618f);
-  const float spacing = 0.003f;
+  // A sparse surface is drawn with larger cells, so that it has no holes.
+  const float spacing = std::max(0.003f, 1.3f * mean_spacing(source.surface.points));
   index->views = render_views(source.surface, spacing, num_threads);
   if (!source.complete) {
     for (ModelView& view : index->views) view.edges.clear(), view.outward.clear();
