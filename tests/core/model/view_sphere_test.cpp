@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include <bpa/core/base/random.hpp>
+#include <bpa/core/model/view_sphere.hpp>
+
+namespace bpa {
+namespace {
+
+// Points evenly spread over a sphere (a Fibonacci lattice).
+PointCloud sphere(double radius, int count) {
+  PointCloud cloud;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count;
+    const double angle = M_PI * (3 - std::sqrt(5.0)) * i;
+    const double r = std::sqrt(1 - z * z);
+    const Eigen::Vector3d normal(r * std::cos(angle), r * std::sin(angle), z);
+    cloud.points.push_back((radius * normal).cast<float>());
+    cloud.normals.push_back(normal.cast<float>());
+  }
+  return cloud;
+}
+
+TEST(ViewSphere, DirectionsAreSpreadEvenly) {
+  const auto directions = view_directions();
+  double narrowest = M_PI, widest = 0;
+  for (const auto& a : directions) {
+    EXPECT_NEAR(a.norm(), 1, 1e-6);
+    double nearest = M_PI;
+    for (const auto& b : directions) {
+      if (&a == &b) continue;
+      nearest = std::min(nearest, std::acos(std::clamp(static_cast<double>(a.dot(b)), -1.0, 1.0)));
+    }
+    narrowest = std::min(narrowest, nearest);
+    widest = std::max(widest, nearest);
+  }
+  // 66 equal discs on the sphere have a radius of 14 degrees.
+  EXPECT_GT(narrowest, 17 * M_PI / 180);
+  EXPECT_LT(widest, 32 * M_PI / 180);
+}
+
+TEST(ViewSphere, NearestViewIsTheNearest) {
+  std::vector<ModelView> views(kNumViews);
+  const auto directions = view_directions();
+  for (std::size_t k = 0; k < views.size(); ++k) views[k].direction = directions[k];
+  RandomStream random(1);
+  for (int trial = 0; trial < 300; ++trial) {
+    const Eigen::Vector3f d = Eigen::Vector3d(random.normal(), random.normal(), random.normal())
+                                  .normalized()
+                                  .cast<float>();
+    const auto found = static_cast<std::size_t>(nearest_view(views, d));
+    float smallest = 10;
+    for (const auto& other : directions) smallest = std::min(smallest, (other - d).norm());
+    EXPECT_NEAR((directions[found] - d).norm(), smallest, 1e-5);
+  }
+}
+
+TEST(ViewSphere, HalfOfASphereIsSeen) {
+  constexpr double kRadius = 0.05;
+  const PointCloud surface = sphere(kRadius, 6000);
+  for (const ModelView& view : render_views(surface, 0.003f, 0)) {
+    const std::set<std::uint32_t> visible(view.visible.begin(), view.visible.end());
+    ASSERT_EQ(visible.size(), view.visible.size());
+    for (std::uint32_t i = 0; i < surface.size(); ++i) {
+      const float cosine = surface.normals[i].dot(view.direction);
+      EXPECT_TRUE(cosine <= 0.1f || visible.count(i) == 1) << cosine;
+      EXPECT_TRUE(cosine >= 0 || visible.count(i) == 0) << cosine;
+    }
+  }
+}
+
+TEST(ViewSphere, EdgesOfASphereAreItsOutline) {
+  constexpr double kRadius = 0.05;
+  constexpr double kSpacing = 0.003;
+  const PointCloud surface = sphere(kRadius, 6000);
+  for (const ModelView& view : render_views(surface, kSpacing, 0)) {
+    ASSERT_EQ(view.outward.size(), view.edges.size());
+    std::vector<double> around;
+    for (std::size_t k = 0; k < view.edges.size(); ++k) {
+      const Eigen::Vector3f& p = surface.points[view.edges[k]];
+      const Eigen::Vector3f in_view = p - p.dot(view.direction) * view.direction;
+      EXPECT_GT(in_view.norm(), kRadius - 4.5 * kSpacing) << "within a few cells of the outline";
+      EXPECT_NEAR(view.outward[k].norm(), 1, 1e-5);
+      EXPECT_NEAR(view.outward[k].dot(view.direction), 0, 1e-5);
+      EXPECT_GT(view.outward[k].dot(in_view.normalized()), 0.8f);
+      const Eigen::Vector3f x = view.direction.unitOrthogonal();
+      around.push_back(std::atan2(in_view.dot(view.direction.cross(x)), in_view.dot(x)));
+    }
+    // All round it, without a gap.
+    ASSERT_GT(around.size(), 100u);
+    std::sort(around.begin(), around.end());
+    for (std::size_t k = 1; k < around.size(); ++k) EXPECT_LT(around[k] - around[k - 1], 0.2);
+  }
+}
+
+TEST(ViewSphere, WhatIsBehindIsHidden) {
+  // Two plates that face +z, 5 cm apart; seen from +z the lower one is hidden but for its border.
+  PointCloud surface;
+  for (int k = 0; k < 50 * 50; ++k) {
+    const float x = 0.002f * static_cast<float>(k % 50 - 25);
+    const float y = 0.002f * static_cast<float>(k / 50 - 25);
+    for (const float z : {0.0f, 0.05f}) {
+      surface.points.push_back({x, y, z});
+      surface.normals.push_back(Eigen::Vector3f::UnitZ());
+    }
+  }
+  const auto views = render_views(surface, 0.003f, 1);
+  const auto best = static_cast<std::size_t>(nearest_view(views, Eigen::Vector3f::UnitZ()));
+  const ModelView& view = views[best];
+  ASSERT_GT(view.direction.z(), 0.97f);
+  int lower = 0, upper = 0;
+  for (const std::uint32_t i : view.visible) (surface.points[i].z() > 0.02f ? upper : lower) += 1;
+  EXPECT_EQ(upper, 2500);
+  EXPECT_LT(lower, 700);  // what the slanted view shows beside the upper one
+}
+
+TEST(ViewSphere, OfNothingSeesNothing) {
+  const auto views = render_views(PointCloud{}, 0.003f, 1);
+  ASSERT_EQ(views.size(), static_cast<std::size_t>(kNumViews));
+  for (const ModelView& view : views) EXPECT_TRUE(view.visible.empty());
+}
+
+}  // namespace
+}  // namespace bpa
