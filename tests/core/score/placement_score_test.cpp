@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <bpa/core/model/model_index.hpp>
+#include <bpa/core/score/placement_score.hpp>
+
+#include "support/posed_models.hpp"
+
+namespace bpa {
+namespace {
+
+using test::Solid;
+
+const Pose kCameraFromWorld = test::look_at({0.1, -0.6, 0.5}, {0, 0, 0});
+
+class PlacementScore : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    l_ = test::l_model();
+    brick_ = test::brick_model();
+  }
+  static void TearDownTestSuite() {
+    l_.reset();
+    brick_.reset();
+  }
+  static SurfaceMap map_of(const std::vector<Solid>& solids, float noise = 0) {
+    return surface_map(test::render(solids, test::kinect_camera(), noise, 8).frame, {});
+  }
+  static CheckImage image_of(const std::vector<Solid>& solids, float noise = 0) {
+    return make_check_image(map_of(solids, noise));
+  }
+  static std::vector<Solid> l_on_table() {
+    return test::together({test::table(kCameraFromWorld)}, test::l_solids(truth_));
+  }
+
+  static inline std::shared_ptr<const ObjectModel> l_, brick_;
+  static inline const Pose truth_ = kCameraFromWorld * test::standing_at(0, 0, 0.02, 0.7);
+};
+
+TEST_F(PlacementScore, ComponentsOfTheTruthAreNearlyPerfect) {
+  const ScoreComponents c = score_placement(image_of(l_on_table()), *l_, truth_);
+  EXPECT_GT(c.range, -0.15);
+  EXPECT_GT(c.normal, -0.2);
+  EXPECT_GT(c.visibility, 0.9);
+  EXPECT_GT(c.agreeing, 0.85);
+  EXPECT_LT(c.free_space, 0.05);
+  EXPECT_GT(c.edge, -0.25);
+  EXPECT_GT(c.edge_visibility, 0.9);
+  EXPECT_GT(c.shape, 0.05) << "several faces are seen";
+  EXPECT_GT(placement_probability(c), 0.5);
+}
+
+TEST_F(PlacementScore, TruthScoresHigherThanWhatIsBesideIt) {
+  for (const float noise : {0.0f, 1.0f}) {
+    const CheckImage image = image_of(l_on_table(), noise);
+    const double best = placement_score(score_placement(image, *l_, truth_));
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+      const auto score = [&](double distance, double angle) {
+        return placement_score(
+            score_placement(image, *l_, test::disturbed(truth_, distance, angle, seed)));
+      };
+      EXPECT_LT(score(0.03, 0), best);
+      EXPECT_LT(score(0, 0.3), best);
+      EXPECT_LT(score(0.2, 2), best - 3);
+    }
+  }
+}
+
+TEST_F(PlacementScore, WhatHidesItDoesNotCountAgainstIt) {
+  const Eigen::Vector3d middle = truth_ * Eigen::Vector3d(0, 0, 0.02);
+  const Solid board{Solid::Kind::box,
+                    {0.5, 0.5, 0.005},
+                    {Eigen::Quaterniond::Identity(), 0.6 * middle + Eigen::Vector3d(0.5, 0, 0)}};
+  const ScoreComponents open = score_placement(image_of(l_on_table()), *l_, truth_);
+  const CheckImage image = image_of(test::together(l_on_table(), {board}));
+  const ScoreComponents hidden = score_placement(image, *l_, truth_);
+  EXPECT_LT(hidden.visibility, open.visibility - 0.2);
+  EXPECT_GT(hidden.range, open.range - 0.1);
+  EXPECT_GT(hidden.normal, open.normal - 0.1);
+  EXPECT_GT(hidden.agreeing, open.agreeing - 0.1);
+  EXPECT_LT(hidden.free_space, 0.05);
+  EXPECT_LT(hidden.explained_pixels, open.explained_pixels);
+  EXPECT_NEAR(hidden.expected_pixels, open.expected_pixels, 1);
+}
+
+TEST_F(PlacementScore, FreeSpaceCountsAgainstIt) {
+  const CheckImage image = image_of({test::table(kCameraFromWorld)});
+  const Pose above = kCameraFromWorld * test::standing_at(0, 0, 0.15, 0.7);
+  const ScoreComponents c = score_placement(image, *l_, above);
+  EXPECT_GT(c.free_space, 0.9);
+  EXPECT_LT(c.agreeing, 0.1);
+  EXPECT_LT(placement_probability(c), 0.01);
+}
+
+TEST_F(PlacementScore, AFaceInTheMiddleOfALargePlaneIsPenalised) {
+  // The brick sunk into the table: its top is where the table is, but nothing ends there.
+  const Pose sunk =
+      kCameraFromWorld * test::standing_at(0, 0, -static_cast<double>(test::kBrickHalf.z()), 0.3);
+  const ScoreComponents flush =
+      score_placement(image_of({test::table(kCameraFromWorld)}), *brick_, sunk);
+  const Pose on =
+      kCameraFromWorld * test::standing_at(0, 0, static_cast<double>(test::kBrickHalf.z()), 0.3);
+  const ScoreComponents standing = score_placement(
+      image_of({test::table(kCameraFromWorld), test::brick_solid(on)}), *brick_, on);
+  EXPECT_LT(flush.edge, -0.4);
+  EXPECT_GT(standing.edge, -0.25);
+  EXPECT_LT(flush.edge_support, standing.edge_support - 0.3);
+  EXPECT_LT(flush.shape, 0.02) << "one flat face";
+  EXPECT_LT(placement_probability(flush), 0.1);
+  EXPECT_GT(placement_score(standing), placement_score(flush) + 5);
+}
+
+TEST_F(PlacementScore, ExplainsThePixelsOfTheObject) {
+  const auto rendered = test::render(l_on_table(), test::kinect_camera());
+  const SurfaceMap map = surface_map(rendered.frame, {});
+  std::vector<std::uint32_t> explained;
+  const ScoreComponents c = score_placement(make_check_image(map), *l_, truth_, &explained);
+  EXPECT_EQ(static_cast<double>(explained.size()), c.explained_pixels);
+  EXPECT_LE(c.explained_pixels, c.expected_pixels);
+  EXPECT_TRUE(std::is_sorted(explained.begin(), explained.end()));
+  EXPECT_EQ(std::adjacent_find(explained.begin(), explained.end()), explained.end());
+  int on_object = 0, seen = 0;
+  const auto is_l = [&](std::size_t i) { return rendered.solid[rendered.index_of(map, i)] >= 1; };
+  for (const std::uint32_t i : explained) on_object += is_l(i);
+  for (std::size_t i = 0; i < map.size(); ++i) seen += is_l(i);
+  EXPECT_GT(on_object, 0.95 * static_cast<double>(explained.size()));
+  EXPECT_GT(on_object, 0.7 * seen);
+}
+
+TEST_F(PlacementScore, OutOfViewIsImprobable) {
+  const CheckImage image = image_of(l_on_table());
+  for (const Eigen::Vector3d& place : {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(9, 0, 1),
+                                       Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, 0, 1e4)}) {
+    const ScoreComponents c = score_placement(image, *l_, {truth_.rotation, place});
+    EXPECT_LT(placement_probability(c), 0.01);
+    EXPECT_TRUE(std::isfinite(placement_score(c)));
+  }
+}
+
+TEST_F(PlacementScore, NoDepthIsNeitherForNorAgainst) {
+  auto rendered = test::render(l_on_table(), test::kinect_camera());
+  for (std::size_t i = 0; i < rendered.frame.depth.size(); ++i) {
+    if (rendered.solid[i] >= 1 && i % 640 < 320) rendered.frame.depth[i] = 0;
+  }
+  const ScoreComponents c =
+      score_placement(make_check_image(surface_map(rendered.frame, {})), *l_, truth_);
+  EXPECT_GT(c.agreeing, 0.8);
+  EXPECT_GT(c.range, -0.2);
+  EXPECT_LT(c.free_space, 0.05);
+}
+
+TEST(PlacementProbability, IsALogisticOfTheScore) {
+  ScoreComponents c;
+  EXPECT_LT(placement_probability(c), 1e-3);
+  c = {0, 0, 1, 0, 1, 1, 0.2, 0, 1, 2000, 2000};
+  EXPECT_GT(placement_probability(c), 0.5);
+  EXPECT_NEAR(placement_probability(c), 1 / (1 + std::exp(-placement_score(c))), 1e-12);
+  ScoreComponents worse = c;
+  worse.free_space = 0.2;
+  EXPECT_LT(placement_probability(worse), placement_probability(c));
+}
+
+}  // namespace
+}  // namespace bpa
