@@ -36,6 +36,7 @@ Result<Models> chosen_models(const ModelLibrary& library, const DetectRequest& r
     if (!model) {
       return Status(StatusCode::not_found, "the library holds no model named \"" + name + "\"");
     }
+    if (std::find(chosen.begin(), chosen.end(), model) != chosen.end()) continue;  // named twice
     chosen.push_back(std::move(model));
   }
   return chosen;
