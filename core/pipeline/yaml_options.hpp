@@ -27,6 +27,10 @@ Status read_yaml_options(const YAML::Node& map, const std::string& path, Options
     return invalid_argument(yaml_place(path, map) + "expected a map of \"key: value\" lines");
   }
   for (const auto& entry : map) {
+    if (!entry.first.IsScalar()) {
+      return invalid_argument(yaml_place(path, entry.first) +
+                              "expected a map of \"key: value\" lines");
+    }
     const auto key = entry.first.as<std::string>();
     bool known = false;
     std::string names;
@@ -43,7 +47,7 @@ Status read_yaml_options(const YAML::Node& map, const std::string& path, Options
                            : std::is_integral_v<Value>       ? "a whole number"
                            : std::is_floating_point_v<Value> ? "a number"
                                                              : "a text";
-        status = invalid_argument(yaml_place(path, entry.second) + key + " must be " + kind);
+        status = invalid_argument(yaml_place(path, entry.first) + key + " must be " + kind);
       }
     });
     if (!known) {
@@ -51,9 +55,10 @@ Status read_yaml_options(const YAML::Node& map, const std::string& path, Options
                               "\"; known keys are " + names);
     }
     if (!status.ok()) return status;
-  }
-  if (Status status = validate(options); !status.ok()) {
-    return Status(status.code, path + ": " + status.message);
+    // What came before was valid: whatever breaks its rule now is this key.
+    if (Status broken = validate(options); !broken.ok()) {
+      return Status(broken.code, yaml_place(path, entry.first) + broken.message);
+    }
   }
   return {};
 }
