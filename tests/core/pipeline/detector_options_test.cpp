@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include <bpa/core/pipeline/detector_options.hpp>
+
+#include "support/temporary_folder.hpp"
+
+namespace bpa {
+namespace {
+
+class DetectorOptionsFile : public ::testing::Test {
+ protected:
+  Result<DetectorOptions> load(const std::string& text) const {
+    test::spill(path(), text);
+    return load_detector_options(path());
+  }
+  // What is said after "FILE:LINE: ".
+  std::string refusal(const std::string& text, int line) const {
+    const auto options = load(text);
+    EXPECT_EQ(options.status().code, StatusCode::invalid_argument) << text;
+    const std::string place = path() + ":" + std::to_string(line) + ": ";
+    const std::string& message = options.status().message;
+    EXPECT_EQ(message.substr(0, place.size()), place);
+    return message.size() > place.size() ? message.substr(place.size()) : "";
+  }
+  std::string path() const { return folder_ / "detector.yaml"; }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+// Every field as text.
+std::map<std::string, std::string> values(DetectorOptions options) {
+  std::map<std::string, std::string> out;
+  options.visit_fields([&](const char* name, auto& value, const FieldRule&) {
+    std::ostringstream text;
+    text << std::boolalpha << value;
+    out[name] = text.str();
+  });
+  return out;
+}
+
+TEST_F(DetectorOptionsFile, OverridesOnlyWhatItNames) {
+  const auto options = load("max_range_m: 1.5\nmax_keypoints: 700\nlabel_planes: false\n");
+  ASSERT_TRUE(options.ok()) << options.status().message;
+  auto expected = values({});
+  expected["max_range_m"] = "1.5";
+  expected["max_keypoints"] = "700";
+  expected["label_planes"] = "false";
+  EXPECT_EQ(values(*options), expected);
+}
+
+TEST_F(DetectorOptionsFile, EmptyFilesChangeNothing) {
+  for (const char* text : {"", "\n\n", "# only a comment\n", "---\n", "{}\n"}) {
+    const auto options = load(text);
+    ASSERT_TRUE(options.ok()) << options.status().message;
+    EXPECT_EQ(values(*options), values({}));
+  }
+}
+
+TEST_F(DetectorOptionsFile, UnknownKeyIsNamedWithItsPlace) {
+  const std::string said = refusal("max_range_m: 2\n\nmax_rang_m: 3\n", 3);
+  EXPECT_EQ(said.find("unknown key \"max_rang_m\"; known keys are max_range_m, normal_radius_m"),
+            0u);
+}
+
+TEST_F(DetectorOptionsFile, WrongKindIsNamedWithItsPlace) {
+  EXPECT_EQ(refusal("max_range_m: far\n", 1), "max_range_m must be a number");
+  EXPECT_EQ(refusal("max_range_m:\n", 1), "max_range_m must be a number");
+  EXPECT_EQ(refusal("# hello\nmax_keypoints: 3.5\n", 2), "max_keypoints must be a whole number");
+  EXPECT_EQ(refusal("max_keypoints: [1, 2]\n", 1), "max_keypoints must be a whole number");
+  EXPECT_EQ(refusal("label_planes: 7\n", 1), "label_planes must be true or false");
+}
+
+TEST_F(DetectorOptionsFile, ValueOutOfRangeIsNamedWithItsPlaceAndTheRule) {
+  EXPECT_EQ(refusal("max_keypoints: 500\nmax_range_m: 50\n", 2),
+            "max_range_m is 50; it must be between 0.2 and 20");
+  EXPECT_EQ(refusal("max_range_m: .nan\n", 1), "max_range_m is nan; it must be between 0.2 and 20");
+  EXPECT_EQ(refusal("max_keypoints: -1\n", 1),
+            "max_keypoints is -1; it must be between 10 and 100000");
+}
+
+TEST_F(DetectorOptionsFile, WhatIsNoMapIsRefused) {
+  EXPECT_NE(refusal("- max_range_m\n", 1).find("key: value"), std::string::npos);
+  EXPECT_NE(refusal("just words\n", 1).find("key: value"), std::string::npos);
+  EXPECT_NE(refusal("[1, 2]: 3\n", 1).find("key: value"), std::string::npos);
+}
+
+TEST_F(DetectorOptionsFile, WhatIsNoYamlIsRefused) {
+  refusal("max_range_m: 2\nmax_keypoints: [1, 2\n", 3);
+  EXPECT_FALSE(load("a: *nobody\n").ok());
+}
+
+TEST_F(DetectorOptionsFile, MissingFileIsNotFound) {
+  const auto options = load_detector_options(path() + ".not");
+  EXPECT_EQ(options.status().code, StatusCode::not_found);
+  EXPECT_EQ(options.status().message, path() + ".not cannot be read");
+}
+
+// The lines of config/detector.yaml below its heading.
+std::string documented() {
+  std::ostringstream text;
+  text.precision(10);
+  DetectorOptions defaults;
+  defaults.visit_fields([&](const char* name, auto& value, const FieldRule& rule) {
+    text << "\n# " << rule.description;
+    if constexpr (!std::is_same_v<std::decay_t<decltype(value)>, bool>) {
+      text << ' ' << rule.min << " to " << rule.max << '.';
+    }
+    text << "\n#" << name << ": " << std::boolalpha << value << '\n';
+  });
+  return text.str();
+}
+
+std::string config_file() { return test::slurp(BPA_SOURCE_DIR "/config/detector.yaml"); }
+
+TEST(DetectorYaml, ShowsEveryKeyWithItsDefault) {
+  const std::string text = config_file();
+  const std::string expected = documented();
+  EXPECT_EQ(text.substr(text.size() - std::min(text.size(), expected.size())), expected)
+      << "the end of config/detector.yaml is to read as the right-hand side does";
+}
+
+TEST(DetectorYaml, ChangesNothingAsItIsAndWithEveryKeyInForce) {
+  std::string text = config_file();
+  test::TemporaryFolder folder;
+  test::spill(folder / "a.yaml", text);
+  for (std::size_t at = text.find("\n#"); at != std::string::npos; at = text.find("\n#", at + 1)) {
+    if (text[at + 2] != ' ') text.erase(at + 1, 1);
+  }
+  test::spill(folder / "b.yaml", text);
+  for (const char* name : {"a.yaml", "b.yaml"}) {
+    const auto options = load_detector_options(folder / name);
+    ASSERT_TRUE(options.ok()) << options.status().message;
+    EXPECT_EQ(values(*options), values({}));
+  }
+}
+
+TEST(DetectorOptions, DefaultsKeepTheirOwnRules) { EXPECT_TRUE(validate(DetectorOptions{}).ok()); }
+
+}  // namespace
+}  // namespace bpa
