@@ -74,6 +74,15 @@ InterpretationOptions interpretation_options(const DetectorOptions& options, std
   return out;
 }
 
+// The first `count`, their probabilities scaled to sum to 1 again.
+void keep_best(std::vector<Interpretation>& interpretations, std::size_t count) {
+  if (interpretations.size() <= count) return;
+  interpretations.resize(count);
+  double sum = 0;
+  for (const Interpretation& interpretation : interpretations) sum += interpretation.probability;
+  for (Interpretation& interpretation : interpretations) interpretation.probability /= sum;
+}
+
 }  // namespace
 
 Detector::Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions options)
@@ -134,9 +143,7 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame,
       std::count(scene.map.searched.begin(), scene.map.searched.end(), std::uint8_t{1}));
   out.interpretations =
       interpret(candidates, searched, interpretation_options(options_, request.seed));
-  if (out.interpretations.size() > static_cast<std::size_t>(request.top_k)) {
-    out.interpretations.resize(static_cast<std::size_t>(request.top_k));
-  }
+  keep_best(out.interpretations, static_cast<std::size_t>(request.top_k));
   finish_stage("interpretations");
   out.total_milliseconds = total.milliseconds();
   return out;
