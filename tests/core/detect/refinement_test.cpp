@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <bpa/core/detect/refinement.hpp>
+
+#include "support/l_scene.hpp"
+
+namespace bpa {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+
+class RefinementOf : public test::LScene {
+ protected:
+  static RefinementOptions long_run() {
+    RefinementOptions options;
+    options.iterations = 20;
+    options.max_points = 1024;
+    return options;
+  }
+};
+
+TEST_F(RefinementOf, CleanDataConvergesToTheTruth) {
+  const SceneFeatures scene = features_of(everything());
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Pose start = test::disturbed(l_truth_, 0.01, 5 * kDegree, seed);
+    const Refinement refined = refine_pose(scene, *l_, start, long_run());
+    const PoseError error = pose_error(refined.camera_from_object, l_truth_);
+    EXPECT_LT(error.position, 0.001);
+    EXPECT_LT(error.angle, 0.7 * kDegree);
+    EXPECT_GT(refined.num_correspondences, 200);
+  }
+}
+
+TEST_F(RefinementOf, NoisyDataComesNear) {
+  const SceneFeatures scene = features_of(everything(), 1);
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const Pose start = test::disturbed(l_truth_, 0.01, 5 * kDegree, seed);
+    const PoseError error =
+        pose_error(refine_pose(scene, *l_, start, long_run()).camera_from_object, l_truth_);
+    EXPECT_LT(error.position, 0.002);
+    EXPECT_LT(error.angle, 1.5 * kDegree);
+  }
+}
+
+TEST_F(RefinementOf, InformationIsSymmetricAndPositive) {
+  const SceneFeatures scene = features_of(everything());
+  const Refinement refined = refine_pose(scene, *l_, l_truth_, {});
+  EXPECT_TRUE(refined.information.isApprox(refined.information.transpose(), 1e-5));
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(refined.information);
+  EXPECT_GT(solver.eigenvalues()[0], 0);
+  // Three faces are seen: a millimetre in any direction is noticed.
+  EXPECT_GT(refined.information.topLeftCorner(3, 3).eigenvalues().real().minCoeff(), 1e6);
+}
+
+TEST_F(RefinementOf, FarFromEverythingItStaysWhereItIs) {
+  const SceneFeatures scene = features_of(everything());
+  Pose start = l_truth_;
+  start.translation.z() -= 0.3;
+  const Refinement refined = refine_pose(scene, *l_, start, {});
+  EXPECT_LT(refined.num_correspondences, 6);
+  EXPECT_LT(pose_error(refined.camera_from_object, start).position, 1e-6);
+  EXPECT_TRUE(is_valid(refined.camera_from_object));
+  const Pose behind{start.rotation, {0, 0, -1}};
+  EXPECT_EQ(refine_pose(scene, *l_, behind, {}).num_correspondences, 0);
+  const Pose aligned = align_to_surface(scene, *l_, behind, 0.03f, 12, 0);
+  EXPECT_EQ(aligned.translation, behind.translation);
+}
+
+TEST_F(RefinementOf, AlignmentByBpaComesNearer) {
+  const SceneFeatures scene = features_of(everything());
+  double before = 0, after = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Pose start = test::disturbed(l_truth_, 0.015, 8 * kDegree, seed);
+    const Pose aligned = align_to_surface(scene, *l_, start, 0.03f, 30, seed);
+    ASSERT_TRUE(is_valid(aligned));
+    before += pose_error(start, l_truth_).angle;
+    after += pose_error(aligned, l_truth_).angle;
+  }
+  EXPECT_LT(after, 0.7 * before);
+}
+
+TEST_F(RefinementOf, SameStartSameEnd) {
+  const SceneFeatures scene = features_of(everything(), 1);
+  const Pose start = test::disturbed(l_truth_, 0.01, 5 * kDegree, 3);
+  const Pose first = align_to_surface(scene, *l_, start, 0.03f, 12, 7);
+  const Pose second = align_to_surface(scene, *l_, start, 0.03f, 12, 7);
+  EXPECT_EQ(first.translation, second.translation);
+  EXPECT_EQ(first.rotation.coeffs(), second.rotation.coeffs());
+}
+
+}  // namespace
+}  // namespace bpa

@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <bpa/core/detect/single_object.hpp>
+
+#include "support/l_scene.hpp"
+
+namespace bpa {
+namespace {
+
+class SingleObject : public test::LScene {};
+
+TEST_F(SingleObject, BestPlacementIsTheTruth) {
+  for (const float noise : {0.0f, 1.0f}) {
+    const SceneFeatures scene = features_of(everything(), noise);
+    for (const auto& [model, truth] : {std::pair(l_, l_truth_), std::pair(brick_, brick_truth_)}) {
+      const auto candidates = detect_object(scene, model, {});
+      ASSERT_FALSE(candidates.empty()) << model->name;
+      const PoseError error = pose_error(candidates[0].pose(), truth, model->symmetry);
+      EXPECT_LT(error.position, 0.004) << model->name;
+      EXPECT_LT(error.angle, 0.05) << model->name;
+    }
+  }
+}
+
+TEST_F(SingleObject, PlacementsAreRankedAndDistinct) {
+  const SceneFeatures scene = features_of(everything(), 1);
+  SingleObjectOptions options;
+  options.min_score = -20;
+  const auto candidates = detect_object(scene, l_, options);
+  ASSERT_GT(candidates.size(), 1u);
+  EXPECT_LE(candidates.size(), static_cast<std::size_t>(options.max_placements));
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& c = candidates[i];
+    EXPECT_EQ(c.model, l_);
+    EXPECT_GE(c.score, options.min_score);
+    EXPECT_LE(c.score, candidates[i > 0 ? i - 1 : 0].score);
+    EXPECT_NEAR(c.probability, 1 / (1 + std::exp(-c.score)), 1e-9);
+    EXPECT_TRUE(std::is_sorted(c.explained.begin(), c.explained.end()));
+    for (std::size_t j = 0; j < i; ++j) {
+      const PoseError error = pose_error(c.pose(), candidates[j].pose());
+      EXPECT_FALSE(error.position < 0.004 && error.angle < 0.05) << i << " repeats " << j;
+    }
+  }
+  options.max_placements = 1;
+  EXPECT_EQ(detect_object(scene, l_, options).size(), 1u);
+  options.min_score = 1e9;
+  EXPECT_TRUE(detect_object(scene, l_, options).empty());
+}
+
+TEST_F(SingleObject, SameSeedSameCandidates) {
+  const SceneFeatures one = features_of(everything(), 1, 1);
+  const SceneFeatures many = features_of(everything(), 1, 8);
+  const auto a = detect_object(one, l_, {});
+  const auto b = detect_object(many, l_, {});
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].pose().translation, b[i].pose().translation);
+    EXPECT_EQ(a[i].pose().rotation.coeffs(), b[i].pose().rotation.coeffs());
+    EXPECT_EQ(a[i].score, b[i].score);
+    EXPECT_EQ(a[i].explained, b[i].explained);
+  }
+}
+
+TEST_F(SingleObject, EmptyTableHoldsNothingProbable) {
+  for (const Candidate& c : detect_object(features_of(table_only()), l_, {})) {
+    EXPECT_LT(c.probability, 0.5);
+  }
+}
+
+TEST_F(SingleObject, UncertaintyIsReportedInBothForms) {
+  const SceneFeatures scene = features_of(everything(), 1);
+  const auto candidates = detect_object(scene, l_, {});
+  ASSERT_FALSE(candidates.empty());
+  const Placement placement = to_placement(candidates[0]);
+  EXPECT_EQ(placement.model, "l");
+  EXPECT_EQ(placement.model_number, 1);
+  EXPECT_EQ(placement.probability, candidates[0].probability);
+  EXPECT_GT(placement.visible_fraction, 0.5);
+  EXPECT_GE(placement.components.size(), 5u);
+
+  const auto& covariance = placement.covariance;
+  EXPECT_EQ(covariance, covariance.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(covariance);
+  EXPECT_GT(solver.eigenvalues()[0], 0);
+  EXPECT_LT(std::sqrt(solver.eigenvalues()[5]), 0.1);
+
+  // The Bingham's mode is the pose, and for small turns d about the camera's axes its logarithm
+  // falls by d^T C^-1 d / 2.
+  const Eigen::Vector4d mode = to_wxyz(placement.camera_from_object.rotation);
+  Eigen::Matrix4d frame;
+  frame << placement.orientation.axes, mode;
+  EXPECT_LT((frame.transpose() * frame - Eigen::Matrix4d::Identity()).norm(), 1e-9);
+  const Eigen::Matrix3d precision = covariance.bottomRightCorner<3, 3>().inverse();
+  for (int k = 0; k < 20; ++k) {
+    const Pose turned = test::disturbed(placement.camera_from_object, 0, 1e-3, 100u + k);
+    const Eigen::Vector3d d =
+        vector_from_rotation(turned.rotation * placement.camera_from_object.rotation.conjugate());
+    const Eigen::Vector3d along = placement.orientation.axes.transpose() * to_wxyz(turned.rotation);
+    const double logarithm = placement.orientation.concentrations.dot(along.cwiseAbs2());
+    EXPECT_NEAR(logarithm, -0.5 * d.dot(precision * d), 1e-4 * std::abs(logarithm));
+  }
+}
+
+}  // namespace
+}  // namespace bpa
