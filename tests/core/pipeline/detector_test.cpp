@@ -1,0 +1,237 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <bpa/core/pipeline/detector.hpp>
+
+#include "support/l_scene.hpp"
+
+namespace bpa {
+namespace {
+
+// Bit for bit the same, but for the times.
+void expect_same(const SceneInterpretations& a, const SceneInterpretations& b) {
+  ASSERT_EQ(a.interpretations.size(), b.interpretations.size());
+  for (std::size_t k = 0; k < a.interpretations.size(); ++k) {
+    const Interpretation& x = a.interpretations[k];
+    const Interpretation& y = b.interpretations[k];
+    ASSERT_EQ(x.score, y.score);
+    ASSERT_EQ(x.probability, y.probability);
+    ASSERT_EQ(x.placements.size(), y.placements.size());
+    for (std::size_t i = 0; i < x.placements.size(); ++i) {
+      const Placement& p = x.placements[i];
+      const Placement& q = y.placements[i];
+      ASSERT_EQ(p.model, q.model);
+      ASSERT_EQ(p.camera_from_object.translation, q.camera_from_object.translation);
+      ASSERT_EQ(p.camera_from_object.rotation.coeffs(), q.camera_from_object.rotation.coeffs());
+      ASSERT_EQ(p.covariance, q.covariance);
+      ASSERT_EQ(p.orientation.concentrations, q.orientation.concentrations);
+      ASSERT_EQ(p.score, q.score);
+      ASSERT_EQ(p.probability, q.probability);
+    }
+  }
+}
+
+std::vector<std::string> names(const Interpretation& interpretation) {
+  std::vector<std::string> out;
+  for (const Placement& placement : interpretation.placements) out.push_back(placement.model);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+class DetectorOf : public test::LScene {
+ protected:
+  static void SetUpTestSuite() {
+    LScene::SetUpTestSuite();
+    auto library = std::make_shared<ModelLibrary>();
+    EXPECT_TRUE(library->add(l_).ok());
+    EXPECT_TRUE(library->add(brick_).ok());
+    library_ = library;
+    frame_ = test::render(everything(), test::kinect_camera(), 1, 8).frame;
+    frame_.stamp_ns = 1234567890123;
+    frame_.frame_id = "kinect_optical";
+  }
+  static void TearDownTestSuite() {
+    library_.reset();
+    LScene::TearDownTestSuite();
+  }
+
+  static Result<SceneInterpretations> detect(const DetectRequest& request,
+                                             const Frame& frame = frame_) {
+    DetectorOptions options;  // enough for two objects, and quick
+    options.pair_draws = 5000;
+    options.max_refined = 10;
+    options.annealing_steps = 3000;
+    return Detector(library_, options).detect(frame, request);
+  }
+  static SceneInterpretations found(const DetectRequest& request, const Frame& frame = frame_) {
+    auto result = detect(request, frame);
+    EXPECT_TRUE(result.ok()) << result.status().message;
+    return result.ok() ? std::move(result).value() : SceneInterpretations{};
+  }
+  static std::string refusal(const DetectRequest& request) {
+    const auto result = detect(request);
+    EXPECT_EQ(result.status().code, StatusCode::invalid_argument);
+    return result.status().message;
+  }
+
+  static inline std::shared_ptr<const ModelLibrary> library_;
+  static inline Frame frame_;
+};
+
+TEST_F(DetectorOf, FindsBothObjectsWhereTheyAre) {
+  const SceneInterpretations result = found({});
+  EXPECT_EQ(result.stamp_ns, frame_.stamp_ns);
+  EXPECT_EQ(result.frame_id, frame_.frame_id);
+  EXPECT_FALSE(result.budget_exhausted);
+  EXPECT_GE(result.timings.size(), 4u);
+  ASSERT_FALSE(result.interpretations.empty());
+  EXPECT_LE(result.interpretations.size(), 20u);
+  const Interpretation& best = result.interpretations[0];
+  EXPECT_EQ(names(best), (std::vector<std::string>{"brick", "l"}));
+  for (const Placement& placement : best.placements) {
+    const bool is_l = placement.model == "l";
+    const PoseError error = pose_error(placement.camera_from_object, is_l ? l_truth_ : brick_truth_,
+                                       (is_l ? l_ : brick_)->symmetry);
+    EXPECT_LT(error.position, 0.005);
+    EXPECT_LT(error.angle, 0.06);
+    EXPECT_GT(placement.probability, 0.5);
+  }
+}
+
+TEST_F(DetectorOf, GivesTheSameAnswerForAnyThreads) {
+  DetectRequest request;
+  request.num_threads = 1;
+  const SceneInterpretations one = found(request);
+  for (const int threads : {2, 8}) {
+    request.num_threads = threads;
+    expect_same(one, found(request));
+  }
+}
+
+TEST_F(DetectorOf, LooksOnlyForTheModelsNamed) {
+  DetectRequest request;
+  request.models = {"brick"};
+  const SceneInterpretations result = found(request);
+  EXPECT_EQ(names(result.interpretations[0]), std::vector<std::string>{"brick"});
+  for (const Interpretation& interpretation : result.interpretations) {
+    for (const Placement& placement : interpretation.placements) {
+      EXPECT_EQ(placement.model, "brick");
+    }
+  }
+  request.models = {"brick", "brick"};
+  expect_same(result, found(request));
+}
+
+TEST_F(DetectorOf, ReturnsNoMoreThanTopK) {
+  DetectRequest request;
+  const SceneInterpretations many = found(request);
+  ASSERT_GT(many.interpretations.size(), 2u);
+  request.top_k = 2;
+  const SceneInterpretations two = found(request);
+  ASSERT_EQ(two.interpretations.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(two.interpretations[k].score, many.interpretations[k].score);
+  }
+}
+
+TEST_F(DetectorOf, ProbabilitiesOfWhatIsReturnedSumToOne) {
+  DetectRequest request;
+  for (request.top_k = 1; request.top_k <= 2; ++request.top_k) {
+    double sum = 0;
+    for (const Interpretation& interpretation : found(request).interpretations) {
+      sum += interpretation.probability;
+    }
+    EXPECT_NEAR(sum, 1, 1e-9) << request.top_k;
+  }
+}
+
+TEST_F(DetectorOf, RefusesRequestsThatBreakARule) {
+  DetectRequest request;
+  for (const int top_k : {0, -1, 101}) {
+    request.top_k = top_k;
+    EXPECT_EQ(refusal(request),
+              "top_k is " + std::to_string(top_k) + "; it must be between 1 and 100");
+  }
+  request = {};
+  for (const double budget : {-1.0, std::nan("")}) {
+    request.budget_ms = budget;
+    EXPECT_NE(refusal(request).find("it must be 0 (no limit) or more"), std::string::npos);
+  }
+}
+
+TEST_F(DetectorOf, NamesTheModelItDoesNotKnow) {
+  DetectRequest request;
+  request.models = {"brick", "teapot"};
+  const auto result = detect(request);
+  EXPECT_EQ(result.status().code, StatusCode::not_found);
+  EXPECT_EQ(result.status().message, "the library holds no model named \"teapot\"");
+}
+
+TEST_F(DetectorOf, RefusesAnEmptyLibrary) {
+  const auto result = Detector(std::make_shared<ModelLibrary>(), {}).detect(frame_);
+  EXPECT_EQ(result.status().code, StatusCode::invalid_argument);
+  EXPECT_EQ(result.status().message, "the model library is empty; add models with 'bpa model'");
+}
+
+TEST_F(DetectorOf, RefusesABadFrame) {
+  Frame frame = frame_;
+  frame.depth.pop_back();
+  EXPECT_EQ(detect({}, frame).status().code, StatusCode::invalid_argument);
+  EXPECT_FALSE(detect({}, Frame{}).ok());
+}
+
+TEST_F(DetectorOf, SaysWhenTheBudgetIsUsedUp) {
+  DetectRequest request;
+  request.budget_ms = 1e-6;
+  const SceneInterpretations late = found(request);
+  EXPECT_TRUE(late.budget_exhausted);
+  ASSERT_FALSE(late.interpretations.empty());
+  EXPECT_TRUE(late.interpretations[0].placements.empty());
+  request.budget_ms = 1e9;
+  const SceneInterpretations in_time = found(request);
+  EXPECT_FALSE(in_time.budget_exhausted);
+  expect_same(in_time, found({}));
+}
+
+TEST_F(DetectorOf, AnEmptySceneIsAResult) {
+  const Frame frame = test::render(table_only(), test::kinect_camera(), 1, 8).frame;
+  const SceneInterpretations result = found({}, frame);
+  ASSERT_FALSE(result.interpretations.empty());
+  EXPECT_TRUE(result.interpretations[0].placements.empty());
+}
+
+TEST_F(DetectorOf, SearchesOnlyTheRegionOfInterest) {
+  // The image's part about the brick; the mask does the same.
+  const Eigen::Vector2d middle = frame_.camera.project(brick_truth_.translation);
+  Frame by_roi = frame_;
+  by_roi.roi = {static_cast<int>(middle.x()) / 2 * 2 - 70,
+                static_cast<int>(middle.y()) / 2 * 2 - 70, 140, 140};
+  Frame by_mask = frame_;
+  by_mask.mask.assign(frame_.depth.size(), 0);
+  for (int v = 0; v < by_roi.roi.height; ++v) {
+    for (int u = 0; u < by_roi.roi.width; ++u) {
+      by_mask.mask[static_cast<std::size_t>((v + by_roi.roi.y) * frame_.camera.width + u +
+                                            by_roi.roi.x)] = 1;
+    }
+  }
+  const SceneInterpretations result = found({}, by_roi);
+  EXPECT_EQ(names(result.interpretations[0]), std::vector<std::string>{"brick"});
+  expect_same(result, found({}, by_mask));
+}
+
+TEST_F(DetectorOf, InvalidDepthIsLikeNone) {
+  Frame zeros = frame_;
+  Frame nans = frame_;
+  for (std::size_t i = 0; i < frame_.depth.size(); i += 7) {
+    zeros.depth[i] = 0;
+    nans.depth[i] = std::nanf("");
+  }
+  expect_same(found({}, zeros), found({}, nans));
+}
+
+}  // namespace
+}  // namespace bpa
