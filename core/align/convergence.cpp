@@ -12,11 +12,11 @@
 namespace bpa::align {
 namespace {
 
-OrientedPoint oriented_point(const PointCloud& cloud, std::size_t i) {
+OrientedPoint oriented_point(const PointCloud& cloud, std::size_t i, bool curvature) {
   OrientedPoint out;
   out.point = cloud.points[i].cast<double>();
   const Eigen::Vector3d normal = cloud.normals[i].cast<double>();
-  if (cloud.principal_directions.empty() || cloud.curvatures.empty()) {
+  if (!curvature || cloud.principal_directions.empty() || cloud.curvatures.empty()) {
     out.orientation = feature_orientation(normal);
     return out;
   }
@@ -32,45 +32,95 @@ class Matcher {
       : model_(*placement.model),
         scene_(*placement.scene),
         options_(options),
-        model_grid_(placement.model->points, static_cast<float>(options.gate_m)) {
+        model_grid_(placement.model->points, static_cast<float>(options.gate_m)),
+        fit_grid_(placement.model->points, static_cast<float>(options.assign_m)),
+        fitting_cosine_(static_cast<float>(std::cos(options.assign_deg * M_PI / 180))) {
     // Only what any start may reach.
-    float radius = 0;
-    for (const Eigen::Vector3f& p : model_.points) radius = std::max(radius, p.norm());
-    const double reach = radius + options.gate_m + 4 * options.start_position_m + 0.05;
+    for (const Eigen::Vector3f& p : model_.points) radius_ = std::max(radius_, p.norm());
+    const double reach = radius_ + options.gate_m + 4 * options.start_position_m;
+    PointCloud near;
+    std::vector<std::size_t> indices;
     for (std::size_t i = 0; i < scene_.size(); ++i) {
       const Eigen::Vector3d p = scene_.points[i].cast<double>();
       if ((p - placement.camera_from_object.translation).norm() < reach &&
           scene_.normals[i].squaredNorm() > 0.5f) {
-        candidates_.push_back(i);
+        near.points.push_back(scene_.points[i]);
+        near.normals.push_back(scene_.normals[i]);
+        indices.push_back(i);
       }
     }
+    make_patches(near, indices);
   }
 
-  void operator()(const Pose& pose, RandomStream& random, Matches& matches) const {
-    const int count = static_cast<int>(candidates_.size());
-    if (count == 0) return;
-    const Pose object_from_camera = pose.inverse();
-    const Eigen::Matrix3d rotation = object_from_camera.matrix();
-    const auto cosine = static_cast<float>(std::cos(options_.gate_deg * M_PI / 180));
-    for (int tries = 0; tries < 40 * options_.points; ++tries) {
-      const std::size_t i = candidates_[static_cast<std::size_t>(random.index(count))];
+  void find(const Pose& pose, bool curvature, RandomStream& random, Matches& matches) const {
+    const FastPose object_from_camera(pose.inverse());
+    std::vector<std::size_t> assigned;
+    for (const std::vector<std::size_t>& patch : patches_) {
+      const int size = static_cast<int>(patch.size());
+      int fitting = 0;
+      for (int k = 0; k < kFitSamples; ++k) {
+        const std::size_t i = patch[static_cast<std::size_t>(random.index(size))];
+        fitting += fits(object_from_camera, i) ? 1 : 0;
+      }
+      if (random.uniform() * kFitSamples < fitting) {
+        assigned.insert(assigned.end(), patch.begin(), patch.end());
+      }
+    }
+    if (assigned.empty()) return;
+    for (int tries = 0; tries < 4 * options_.points; ++tries) {
+      const std::size_t i =
+          assigned[static_cast<std::size_t>(random.index(static_cast<int>(assigned.size())))];
       const Eigen::Vector3f p =
-          (object_from_camera * scene_.points[i].cast<double>()).cast<float>();
-      const Eigen::Vector3f n = (rotation * scene_.normals[i].cast<double>()).cast<float>();
-      const int nearest = nearest_facing(p, n, cosine);
+          object_from_camera.rotation * scene_.points[i] + object_from_camera.translation;
+      const Eigen::Vector3f n = object_from_camera.rotation * scene_.normals[i];
+      const int nearest = nearest_model_point(model_grid_, p, n);
       if (nearest < 0) continue;
-      matches.oriented.push_back({oriented_point(model_, static_cast<std::size_t>(nearest)),
-                                  oriented_point(scene_, i), options_.sigma_m});
+      matches.oriented.push_back(
+          {oriented_point(model_, static_cast<std::size_t>(nearest), curvature),
+           oriented_point(scene_, i, curvature), options_.sigma_m});
       if (static_cast<int>(matches.oriented.size()) == options_.points) break;
     }
   }
 
  private:
-  int nearest_facing(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float cosine) const {
+  static constexpr int kFitSamples = 4;
+
+  struct FastPose {
+    Eigen::Matrix3f rotation;
+    Eigen::Vector3f translation;
+    explicit FastPose(const Pose& pose)
+        : rotation(pose.matrix().cast<float>()), translation(pose.translation.cast<float>()) {}
+  };
+
+  // Every point goes to the nearest patch centre that faces the same way.
+  void make_patches(const PointCloud& near, const std::vector<std::size_t>& indices) {
+    const auto size = static_cast<float>(options_.patch_m);
+    const PointCloud centres = downsample(near, size);
+    const NeighborGrid grid(centres.points, size);
+    patches_.resize(centres.size());
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      int nearest = -1;
+      float least = INFINITY;
+      grid.for_each_neighbor(near.points[k], [&](int c, float squared) {
+        const float facing = centres.normals[static_cast<std::size_t>(c)].dot(near.normals[k]);
+        const float cost = squared / (size * size) + 2 * (1 - facing);
+        if (cost < least) {
+          least = cost;
+          nearest = c;
+        }
+      });
+      if (nearest >= 0) patches_[static_cast<std::size_t>(nearest)].push_back(indices[k]);
+    }
+    std::erase_if(patches_, [](const std::vector<std::size_t>& p) { return p.size() < 3; });
+  }
+
+  // The nearest model point that does not face away, or -1.
+  int nearest_model_point(const NeighborGrid& grid, const Eigen::Vector3f& p,
+                          const Eigen::Vector3f& n) const {
     int nearest = -1;
     float least = INFINITY;
-    model_grid_.for_each_neighbor(p, [&](int index, float squared) {
-      if (squared < least && model_.normals[static_cast<std::size_t>(index)].dot(n) > cosine) {
+    grid.for_each_neighbor(p, [&](int index, float squared) {
+      if (squared < least && model_.normals[static_cast<std::size_t>(index)].dot(n) > 0) {
         least = squared;
         nearest = index;
       }
@@ -78,11 +128,24 @@ class Matcher {
     return nearest;
   }
 
+  bool fits(const FastPose& object_from_camera, std::size_t i) const {
+    const Eigen::Vector3f p =
+        object_from_camera.rotation * scene_.points[i] + object_from_camera.translation;
+    if (p.norm() > radius_ + static_cast<float>(options_.assign_m)) return false;
+    const Eigen::Vector3f n = object_from_camera.rotation * scene_.normals[i];
+    const int nearest = nearest_model_point(fit_grid_, p, n);
+    return nearest >= 0 &&
+           model_.normals[static_cast<std::size_t>(nearest)].dot(n) > fitting_cosine_;
+  }
+
   const PointCloud& model_;
   const PointCloud& scene_;
   const ConvergenceOptions& options_;
   NeighborGrid model_grid_;
-  std::vector<std::size_t> candidates_;
+  NeighborGrid fit_grid_;
+  float fitting_cosine_;
+  float radius_ = 0;                               // Of the model about its origin.
+  std::vector<std::vector<std::size_t>> patches_;  // Scene points by index.
 };
 
 Pose disturb(const Pose& truth, const ConvergenceOptions& options, RandomStream& random) {
@@ -94,12 +157,15 @@ Pose disturb(const Pose& truth, const ConvergenceOptions& options, RandomStream&
 
 // The least errors so far, after each step of one trial.
 ConvergenceCurve run_trial(const TruePlacement& placement, const Matcher& matcher,
-                           const Pose& start, Method method, RandomStream random, int iterations) {
+                           const Pose& start, Method method, bool curvature, RandomStream random,
+                           int iterations) {
   IterationOptions iteration;
   iteration.method = method;
   iteration.max_iterations = iterations;
-  const IterationResult result = iterate(
-      start, [&](const Pose& pose, Matches& m) { matcher(pose, random, m); }, iteration);
+  const MatchFunction match = [&](const Pose& pose, Matches& matches) {
+    matcher.find(pose, curvature, random, matches);
+  };
+  const IterationResult result = iterate(start, match, iteration);
   ConvergenceCurve curve;
   double position = INFINITY, angle = INFINITY;
   for (int k = 0; k <= iterations; ++k) {
@@ -136,18 +202,26 @@ ConvergenceResult run_convergence(const std::vector<TruePlacement>& placements,
   for (const TruePlacement& p : placements)
     matchers.push_back(std::make_unique<Matcher>(p, options));
   const int trials = static_cast<int>(placements.size()) * options.starts;
-  std::vector<ConvergenceCurve> bpa(static_cast<std::size_t>(trials)), icp(bpa.size());
+  std::vector<ConvergenceCurve> bpa(static_cast<std::size_t>(trials));
+  std::vector<ConvergenceCurve> normals(bpa.size()), icp(bpa.size());
   parallel_for(trials, options.num_threads, [&](int trial) {
     const auto t = static_cast<std::size_t>(trial);
     const auto p = static_cast<std::size_t>(trial / options.starts);
     RandomStream random(options.seed, t);
     const Pose start = disturb(placements[p].camera_from_object, options, random);
-    bpa[t] = run_trial(placements[p], *matchers[p], start, Method::bpa, random, options.iterations);
-    icp[t] = run_trial(placements[p], *matchers[p], start, Method::icp, random, options.iterations);
+    const auto run = [&](Method method, bool curvature) {
+      return run_trial(placements[p], *matchers[p], start, method, curvature, random,
+                       options.iterations);
+    };
+    bpa[t] = run(Method::bpa, true);
+    normals[t] = run(Method::bpa, false);
+    icp[t] = run(Method::icp, false);
   });
   ConvergenceResult result;
   result.trials = trials;
+  if (trials == 0) return result;
   add_mean(bpa, result.bpa);
+  add_mean(normals, result.bpa_normals);
   add_mean(icp, result.icp);
   return result;
 }

@@ -27,10 +27,12 @@ struct ConvergenceOptions {
   int starts = 50;                 ///< Noisy starts for each true placement.
   int iterations = 20;             ///< Alignment steps from each.
   int points = 10;                 ///< Scene points matched in a step.
-  double start_position_m = 0.02;  ///< Standard deviation of a start's position per axis.
-  double start_angle_deg = 15;     ///< Standard deviation of a start's rotation per axis.
+  double start_position_m = 0.01;  ///< Standard deviation of a start's position per axis.
+  double start_angle_deg = 8;      ///< Standard deviation of a start's rotation per axis.
   double gate_m = 0.03;            ///< Scene points further from the placed model do not match.
-  double gate_deg = 45;            ///< Nor those whose normal differs by more.
+  double patch_m = 0.02;           ///< Size of the patches that the scene is cut into.
+  double assign_m = 0.015;         ///< A patch belongs to the model with the probability that its
+  double assign_deg = 22.5;        ///< points are within these of the nearest model point.
   double sigma_m = 0.01;           ///< Of a correspondence's position, for BPA.
   std::uint64_t seed = 0;
   int num_threads = 0;
@@ -43,7 +45,9 @@ struct ConvergenceOptions {
     visit("start_position_m", start_position_m, FieldRule{0, 1, "Noise of a start, metres."});
     visit("start_angle_deg", start_angle_deg, FieldRule{0, 180, "Noise of a start, degrees."});
     visit("gate_m", gate_m, FieldRule{0.001, 1, "Largest distance of a match, metres."});
-    visit("gate_deg", gate_deg, FieldRule{1, 180, "Largest angle between normals, degrees."});
+    visit("patch_m", patch_m, FieldRule{0.001, 1, "Size of scene patches, metres."});
+    visit("assign_m", assign_m, FieldRule{1e-4, 1, "Distance of a point that fits, metres."});
+    visit("assign_deg", assign_deg, FieldRule{1, 180, "Its normal's angle, degrees."});
     visit("sigma_m", sigma_m, FieldRule{1e-5, 1, "Standard deviation of a match, metres."});
     visit("seed", seed, FieldRule{0, 1.8e19, "Same seed, same answer."});
     visit("num_threads", num_threads, FieldRule{0, 256, "0 = one per core."});
@@ -58,7 +62,8 @@ struct ConvergenceCurve {
 };
 
 struct ConvergenceResult {
-  ConvergenceCurve bpa;
+  ConvergenceCurve bpa;          ///< Normals and curvature directions, as in the paper.
+  ConvergenceCurve bpa_normals;  ///< Normals only.
   ConvergenceCurve icp;
   int trials = 0;
 };

@@ -15,7 +15,10 @@ IterationResult iterate(const Pose& start, const MatchFunction& match,
     matches.positions.clear();
     match(before, matches);
     const std::size_t count = matches.oriented.size() + matches.positions.size();
-    if (count < static_cast<std::size_t>(options.min_matches)) break;
+    if (count < static_cast<std::size_t>(options.min_matches)) {
+      result.poses.push_back(before);  // The next matches may be others.
+      continue;
+    }
     const Correspondences data{.oriented = matches.oriented, .positions = matches.positions};
     result.estimate = options.method == Method::bpa ? bpa_mode(data) : icp_mode(data);
     const Pose& after = result.estimate.camera_from_object;

@@ -27,7 +27,7 @@ enum class Method {
 struct IterationOptions {
   Method method = Method::bpa;
   int max_iterations = 20;
-  int min_matches = 3;        ///< With fewer the pose stays as it is and the iteration ends.
+  int min_matches = 3;        ///< With fewer a step leaves the pose as it is.
   double position_tol_m = 0;  ///< Ends when a step is smaller than this and
   double angle_tol_rad = 0;   ///< than this. 0: never, as with correspondences drawn at random.
 

@@ -34,6 +34,7 @@ void add_model_command(CLI::App& program, Action& action);
 void add_detect_command(CLI::App& program, Action& action);
 void add_evaluate_command(CLI::App& program, Action& action);
 void add_simulate_command(CLI::App& program, Action& action);
+void add_bench_command(CLI::App& program, Action& action);
 
 /// "a,b,,c" as a, b, c.
 std::vector<std::string> split_commas(const std::string& list);

@@ -20,6 +20,7 @@ constexpr void (*kCommands[])(CLI::App&, Action&) = {
     add_detect_command,
     add_evaluate_command,
     add_simulate_command,
+    add_bench_command,
 };
 
 int run(int argc, char** argv) {

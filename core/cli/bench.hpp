@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bpa/core/cli/command.hpp>
+
+namespace bpa::cli {
+
+/// `bpa bench alignment`: the paper's comparison of BPA with ICP from noisy starts.
+void add_bench_alignment(CLI::App& bench, Action& action);
+
+}  // namespace bpa::cli
