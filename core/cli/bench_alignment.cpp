@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // bpa bench alignment: BPA against ICP from noisy starts, on true placements of a data set.
-#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <list>
 #include <map>
@@ -133,6 +133,15 @@ constexpr Quantity kPosition = {"position", "mm", 1e3, &align::ConvergenceCurve:
 constexpr Quantity kOrientation = {"orientation", "degrees", kDegrees,
                                    &align::ConvergenceCurve::angle_rad};
 
+// The least 5, 10, 25 or 50 times a power of ten that is not below `value`: five even divisions.
+double round_up(double value) {
+  double size = 5 * std::pow(10, std::floor(std::log10(value / 5)));
+  for (const double step : {1.0, 2.0, 5.0, 10.0}) {
+    if (step * size >= value) return step * size;
+  }
+  return value;
+}
+
 Status write_plot(const std::string& folder, const Quantity& quantity,
                   const align::ConvergenceResult& result) {
   eval::PlotAxes axes;
@@ -141,7 +150,7 @@ Status write_plot(const std::string& folder, const Quantity& quantity,
   axes.y_name = quantity.unit;
   const std::vector<double>& first = result.bpa.*quantity.values;
   axes.x_max = static_cast<double>(first.size() - 1);
-  axes.y_max = 1.05 * quantity.scale * first[0];
+  axes.y_max = first[0] > 0 ? round_up(quantity.scale * first[0]) : 1;
   std::vector<eval::Series> all;
   const auto add = [&](const char* name, const align::ConvergenceCurve& curve) {
     eval::Series series{name, {}, {}};
