@@ -133,10 +133,10 @@ constexpr Quantity kPosition = {"position", "mm", 1e3, &align::ConvergenceCurve:
 constexpr Quantity kOrientation = {"orientation", "degrees", kDegrees,
                                    &align::ConvergenceCurve::angle_rad};
 
-// The least 5, 10, 25 or 50 times a power of ten that is not below `value`: five even divisions.
+// A round number not below `value` that is easily divided by five.
 double round_up(double value) {
   double size = 5 * std::pow(10, std::floor(std::log10(value / 5)));
-  for (const double step : {1.0, 2.0, 5.0, 10.0}) {
+  for (const double step : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.5, 10.0}) {
     if (step * size >= value) return step * size;
   }
   return value;

@@ -209,8 +209,9 @@ TEST(Usage, IsExitCodeTwo) {
 }
 
 TEST(Usage, HelpIsExitCodeZeroEverywhere) {
-  for (const char* command : {"", "model", "model from-mesh", "model from-bop", "model info",
-                              "model list", "model remove", "detect", "evaluate"}) {
+  for (const char* command :
+       {"", "model", "model from-mesh", "model from-bop", "model info", "model list",
+        "model remove", "detect", "evaluate", "bench alignment"}) {
     const Outcome outcome = run(std::string(command) + " --help");
     EXPECT_EQ(outcome.code, 0) << command;
     if (std::string(command).empty() || std::string(command) == "model") continue;
@@ -262,6 +263,12 @@ TEST(Commands, FromADataSetToFigures) {
     EXPECT_NE(outcome.out.find("1 instances that count"), std::string::npos) << outcome.out;
   }
   EXPECT_FALSE(slurp(folder / "e.json").empty());
+  outcome = run("bench alignment --bop " + (folder / "set") + " --library " + (folder / "L") +
+                " --starts 3 --iterations 5 --plots " + (folder / "alignment"));
+  EXPECT_EQ(outcome.code, 0) << outcome.out;
+  EXPECT_NE(outcome.out.find("1 placements, 3 trials"), std::string::npos) << outcome.out;
+  EXPECT_NE(slurp(folder / "alignment/alignment.json").find("bpa_normals"), std::string::npos);
+  EXPECT_TRUE(io::read_color_image(folder / "alignment/alignment_position.png").ok());
   outcome = run("model remove box --library " + (folder / "L"));
   EXPECT_EQ(outcome.code, 0) << outcome.out;
 }
