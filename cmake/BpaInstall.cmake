@@ -39,7 +39,7 @@ endforeach()
 
 set(bpa_header_folder ${CMAKE_INSTALL_INCLUDEDIR}/bpa)
 install(DIRECTORY core idl/wire DESTINATION ${bpa_header_folder}
-        FILES_MATCHING PATTERN "*.hpp" PATTERN "cli" EXCLUDE)
+        FILES_MATCHING PATTERN "*.hpp" PATTERN "cli" EXCLUDE PATTERN "fastdds" EXCLUDE)
 install(DIRECTORY client/include/bpa DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
         FILES_MATCHING PATTERN "*.hpp")
 # The messages, for a ROS 2 workspace, and the settings: nothing reads these by itself.

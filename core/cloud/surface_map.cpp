@@ -28,7 +28,7 @@ float block_depth(const Frame& frame, int u0, int v0, int reduction) {
   for (int v = v0; v < v0 + reduction; ++v) {
     for (int u = u0; u < u0 + reduction; ++u) {
       const float z = frame.depth[static_cast<std::size_t>(v * frame.camera.width + u)];
-      if (z > 0) values[count++] = z;
+      if (z > 0 && std::isfinite(z)) values[count++] = z;
     }
   }
   if (2 * count < reduction * reduction) return 0;

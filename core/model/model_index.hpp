@@ -40,7 +40,6 @@ struct ModelIndex {
   PointCloud coarse;             ///< What `pairs` is made of.
   PointPairTable pairs{{}, 1, 1};
   std::vector<ModelView> views;  ///< The 66 views, over `surface`.
-  float mean_visible_area = 0;   ///< Surface seen from outside, averaged over the views, m^2.
 };
 
 }  // namespace bpa

@@ -50,8 +50,8 @@ struct ModelOptions {
 /// (with a hint about units).
 Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::string& name,
                                            int number, const ModelOptions& options = {});
-/// The same for points; normals are estimated and oriented outwards (toward `viewpoint` if the
-/// cloud was seen from one place) where the cloud has none.
+/// The same for points. Where the cloud has no normals they are estimated, and point to the origin:
+/// such a cloud is one view of the object, in its camera's frame, and the model is not complete.
 Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std::string& name,
                                              int number, const ModelOptions& options = {});
 

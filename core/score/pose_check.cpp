@@ -98,6 +98,8 @@ PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const Fa
       if (!(block.u[k] >= 0 && block.v[k] >= 0 && block.u[k] < width && block.v[k] < height)) {
         continue;
       }
+      const bool look = check.facing == kFirstLook || check.facing == kLastLook;
+      if (look && hopeless(check)) return check;
       ++check.facing;
       const CheckPixel& pixel = image.pixels[static_cast<std::size_t>(
           static_cast<int>(block.v[k]) * image.width + static_cast<int>(block.u[k]))];
@@ -113,8 +115,6 @@ PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const Fa
       } else if (difference > tolerance.free_depth) {
         ++check.free_space;
       }
-      const bool look = check.facing == kFirstLook || check.facing == kLastLook;
-      if (look && hopeless(check)) return check;
     }
   }
   return check;
