@@ -24,9 +24,9 @@ enum class SceneKind {
 
 /// The ranges that scenes are drawn from.
 struct SceneOptions {
-  int min_objects = 8;
+  int min_objects = 10;
   int max_objects = 14;
-  double min_clutter = 0.45;
+  double min_clutter = 0.6;
   double max_clutter = 1;
   double bin_share = 1;
   int max_distractors = 2;
