@@ -9,4 +9,7 @@ namespace bpa::cli {
 /// `bpa bench alignment`: the paper's comparison of BPA with ICP from noisy starts.
 void add_bench_alignment(CLI::App& bench, Action& action);
 
+/// `bpa bench accuracy`: where on its way through the detector an object is lost.
+void add_bench_accuracy(CLI::App& bench, Action& action);
+
 }  // namespace bpa::cli

@@ -12,6 +12,7 @@ void add_bench_command(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand("bench", "Run an experiment");
   command.require_subcommand(1);
   add_bench_alignment(command, action);
+  add_bench_accuracy(command, action);
 }
 
 }  // namespace bpa::cli

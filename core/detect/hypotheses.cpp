@@ -49,31 +49,14 @@ align::OrientedPair oriented_pair(const SceneFeatures& scene, const ModelIndex& 
   return pair;
 }
 
-// The pose that lays one pair of oriented points on another: the frames of their lines and mean
-// normals.
-bool pose_of_pair(const Eigen::Vector3f& p1, const Eigen::Vector3f& n1, const Eigen::Vector3f& p2,
-                  const Eigen::Vector3f& n2, Eigen::Matrix3f& frame) {
-  const Eigen::Vector3f x = (p2 - p1).normalized();
-  Eigen::Vector3f up = n1 + n2;
-  up -= x * x.dot(up);
-  const float norm = up.norm();
-  if (norm < 0.2f) {
-    up = n1 - x * x.dot(n1);
-    if (up.norm() < 0.2f) return false;
-  }
-  up.normalize();
-  frame.col(0) = x;
-  frame.col(1) = up;
-  frame.col(2) = x.cross(up);
-  return true;
-}
-
 class Sampler {
  public:
-  Sampler(const SceneFeatures& scene, const ObjectModel& model, const HypothesisOptions& options)
+  Sampler(const SceneFeatures& scene, const ObjectModel& model, const HypothesisOptions& options,
+          std::vector<FastPose>* considered)
       : scene_(scene),
         model_(model),
         options_(options),
+        considered_(considered),
         tolerance_(loose_tolerance(model)),
         random_(options.seed, static_cast<std::uint64_t>(model.number)) {}
 
@@ -96,26 +79,24 @@ class Sampler {
   }
 
   void from_pairs() {
-    const int count = static_cast<int>(scene_.coarse.size());
-    if (count < 2) return;
-    const auto reach =
-        std::min(model_.index->pairs.max_distance(), 0.9f * static_cast<float>(model_.diameter));
-    const NeighborGrid grid(scene_.coarse.points, reach);
-    std::vector<int> partners;
-    const int per_point = 8;
-    for (int draw = 0; draw < options_.pair_draws / per_point; ++draw) {
-      const int first = random_.index(count);
-      partners.clear();
-      grid.for_each_neighbor(scene_.coarse.points[static_cast<std::size_t>(first)],
-                             [&](int j, float squared) {
-                               if (squared > 0.04f * reach * reach) partners.push_back(j);
-                             });
-      if (partners.empty()) continue;
-      for (int k = 0; k < per_point; ++k) {
-        from_pair(
-            first,
-            partners[static_cast<std::size_t>(random_.index(static_cast<int>(partners.size())))]);
-      }
+    const ModelIndex& index = *model_.index;
+    const auto count = static_cast<int>(index.coarse.size());
+    std::vector<Eigen::Matrix3f> bases;
+    for (const Eigen::Vector3f& normal : index.coarse.normals) bases.push_back(basis_of(normal));
+    for (const VotedPose& voted :
+         vote_poses(scene_.pairs, index.pairs, count, options_.peaks_per_reference)) {
+      const auto s = static_cast<std::size_t>(voted.reference);
+      const auto m = static_cast<std::size_t>(voted.model_point);
+      Hypothesis hypothesis;
+      hypothesis.source = Hypothesis::Source::pairs;
+      hypothesis.scene = voted.reference;
+      hypothesis.model = voted.model_point;
+      FastPose& pose = hypothesis.camera_from_object;
+      pose.rotation = basis_of(scene_.coarse.normals[s]) *
+                      Eigen::AngleAxisf(voted.turn, Eigen::Vector3f::UnitZ()) *
+                      bases[m].transpose();
+      pose.translation = scene_.coarse.points[s] - pose.rotation * index.coarse.points[m];
+      consider(hypothesis);
     }
   }
 
@@ -142,44 +123,8 @@ class Sampler {
   }
 
  private:
-  void from_pair(int first, int second) {
-    const PointCloud& cloud = scene_.coarse;
-    const auto i = static_cast<std::size_t>(first);
-    const auto j = static_cast<std::size_t>(second);
-    const PointPairFeature feature =
-        point_pair_feature(cloud.points[i], cloud.normals[i], cloud.points[j], cloud.normals[j]);
-    if (!PointPairTable::informative(feature)) return;
-    const auto candidates = model_.index->pairs.lookup(feature);
-    if (candidates.empty()) return;
-    Eigen::Matrix3f scene_frame;
-    if (!pose_of_pair(cloud.points[i], cloud.normals[i], cloud.points[j], cloud.normals[j],
-                      scene_frame)) {
-      return;
-    }
-    const Eigen::Vector3f scene_middle = 0.5f * (cloud.points[i] + cloud.points[j]);
-    const PointCloud& coarse = model_.index->coarse;
-    const int available = static_cast<int>(candidates.size());
-    const int tries = std::min(available, options_.max_matches_per_pair);
-    for (int k = 0; k < tries; ++k) {
-      const auto& [a, b] =
-          candidates[static_cast<std::size_t>(tries < available ? random_.index(available) : k)];
-      Eigen::Matrix3f model_frame;
-      if (!pose_of_pair(coarse.points[a], coarse.normals[a], coarse.points[b], coarse.normals[b],
-                        model_frame)) {
-        continue;
-      }
-      Hypothesis hypothesis;
-      hypothesis.scene = first, hypothesis.second_scene = second;
-      hypothesis.model = a, hypothesis.second_model = b;
-      FastPose& pose = hypothesis.camera_from_object;
-      pose.rotation = scene_frame * model_frame.transpose();
-      pose.translation =
-          scene_middle - pose.rotation * (0.5f * (coarse.points[a] + coarse.points[b]));
-      consider(hypothesis);
-    }
-  }
-
   void consider(Hypothesis& hypothesis) {
+    if (considered_) considered_->push_back(hypothesis.camera_from_object);
     const PoseCheck check =
         check_pose(scene_.image, model_.index->check, hypothesis.camera_from_object,
                    options_.check_points, tolerance_);
@@ -232,6 +177,7 @@ class Sampler {
   const SceneFeatures& scene_;
   const ObjectModel& model_;
   const HypothesisOptions& options_;
+  std::vector<FastPose>* considered_;
   CheckTolerance tolerance_;
   RandomStream random_;
   std::unordered_map<std::uint64_t, PoseCell> cells_;
@@ -242,21 +188,16 @@ struct Cluster {
   std::vector<std::size_t> members;
 };
 
-int correspondences_of(const Hypothesis& hypothesis) { return hypothesis.second_scene < 0 ? 1 : 2; }
-
 // BPA from the cluster's correspondences, up to ten of them, those of its best members first.
 Pose align_cluster(const SceneFeatures& scene, const ObjectModel& model,
                    const std::vector<Hypothesis>& hypotheses, const Cluster& cluster) {
   align::OrientedPair pairs[10];
   std::size_t count = 0;
   for (std::size_t member : cluster.members) {
+    if (count == 10) break;
     const Hypothesis& h = hypotheses[member];
-    const bool feature = h.second_scene < 0;
-    if (count + 2 > 10) break;
-    pairs[count++] = oriented_pair(scene, *model.index, h.scene, h.model, feature);
-    if (!feature) {
-      pairs[count++] = oriented_pair(scene, *model.index, h.second_scene, h.second_model, false);
-    }
+    pairs[count++] = oriented_pair(scene, *model.index, h.scene, h.model,
+                                   h.source == Hypothesis::Source::feature);
   }
   align::Correspondences data;
   data.oriented = std::span<const align::OrientedPair>(pairs, count);
@@ -266,8 +207,9 @@ Pose align_cluster(const SceneFeatures& scene, const ObjectModel& model,
 }  // namespace
 
 std::vector<Hypothesis> sample_hypotheses(const SceneFeatures& scene, const ObjectModel& model,
-                                          const HypothesisOptions& options) {
-  Sampler sampler(scene, model, options);
+                                          const HypothesisOptions& options,
+                                          std::vector<FastPose>* considered) {
+  Sampler sampler(scene, model, options, considered);
   sampler.from_features();
   sampler.from_pairs();
   return sampler.take();
@@ -293,7 +235,9 @@ std::vector<Hypothesis> cluster_hypotheses(const SceneFeatures& scene, const Obj
     }
   }
   std::erase_if(clusters, [&](const Cluster& cluster) {
-    return cluster.members.size() < 2 && correspondences_of(hypotheses[cluster.members[0]]) < 2;
+    // A voted pose stands for many pairs.
+    return cluster.members.size() < 2 &&
+           hypotheses[cluster.members[0]].source == Hypothesis::Source::feature;
   });
   const CheckTolerance tolerance = loose_tolerance(model);
   std::vector<Hypothesis> out;

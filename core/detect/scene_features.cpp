@@ -46,6 +46,9 @@ SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
   estimate_curvature(scene.surface, kCurvatureRadius, options.num_threads);
   scene.keypoints = choose(scene.surface.size(), options.max_keypoints, options.seed);
   scene.fpfh = compute_fpfh(scene.surface, scene.keypoints, kFeatureRadius, options.num_threads);
+  scene.pairs =
+      scene_pairs(scene.coarse, choose(scene.coarse.size(), options.max_references, options.seed),
+                  static_cast<float>(options.pair_reach_m), options.num_threads);
   return scene;
 }
 

@@ -8,6 +8,7 @@
 #include <bpa/core/cloud/point_cloud.hpp>
 #include <bpa/core/cloud/surface_map.hpp>
 #include <bpa/core/features/fpfh.hpp>
+#include <bpa/core/features/pair_voting.hpp>
 #include <bpa/core/score/pose_check.hpp>
 
 namespace bpa {
@@ -21,11 +22,14 @@ struct SceneFeatures {
   std::vector<int> keypoints;  ///< Indices into `surface` where FPFH was computed.
   std::vector<Fpfh> fpfh;      ///< Of the keypoints.
   PointCloud coarse;           ///< Searched surface, for point pairs.
+  ScenePairs pairs;            ///< Of points of `coarse`.
 };
 
 struct SceneFeatureOptions {
-  int max_keypoints = 2000;
+  int max_keypoints = 600;
   double coarse_spacing_m = 0.010;
+  int max_references = 800;    ///< Points whose pairs vote for poses.
+  double pair_reach_m = 0.30;  ///< Longest pairs.
   std::uint64_t seed = 0;
   int num_threads = 0;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <bpa/core/base/stopwatch.hpp>
 #include <bpa/core/detect/single_object.hpp>
 #include <bpa/core/model/model_index.hpp>
 
@@ -90,14 +91,28 @@ Candidate evaluate(const SceneFeatures& scene, const std::shared_ptr<const Objec
 
 std::vector<Candidate> detect_object(const SceneFeatures& scene,
                                      const std::shared_ptr<const ObjectModel>& model,
-                                     const SingleObjectOptions& options) {
-  const std::vector<Hypothesis> sampled = sample_hypotheses(scene, *model, options.hypotheses);
+                                     const SingleObjectOptions& options, ObjectTrace* trace) {
+  Stopwatch watch;
+  const auto finish_stage = [&](const char* name, const auto& items, const auto& pose_of) {
+    if (!trace) return;
+    trace->stages.push_back({name, {}, watch.lap_milliseconds()});
+    for (const auto& item : items) trace->stages.back().poses.push_back(pose_of(item));
+  };
+  const auto of_hypothesis = [](const Hypothesis& h) { return h.camera_from_object; };
+
+  std::vector<FastPose> considered;
+  const std::vector<Hypothesis> sampled =
+      sample_hypotheses(scene, *model, options.hypotheses, trace ? &considered : nullptr);
+  finish_stage("sampled", considered, [](const FastPose& pose) { return pose; });
+  finish_stage("free_space", sampled, of_hypothesis);
   const std::vector<Hypothesis> clustered =
       cluster_hypotheses(scene, *model, sampled, options.max_clusters);
+  finish_stage("clusters", clustered, of_hypothesis);
   std::vector<Aligned> aligned;
   for (const Hypothesis& hypothesis : clustered) {
     aligned.push_back(round_two(scene, *model, to_pose(hypothesis.camera_from_object), options));
   }
+  finish_stage("round_two", aligned, [](const Aligned& a) { return to_fast(a.pose); });
   remove_similar(aligned, model->symmetry, [](const Aligned& a) -> const Pose& { return a.pose; });
   if (aligned.size() > static_cast<std::size_t>(options.max_refined)) {
     aligned.resize(static_cast<std::size_t>(options.max_refined));
@@ -109,14 +124,17 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
   last.end_gate_m = 0.008f;
   std::vector<Candidate> candidates;
   for (const Aligned& start : aligned) {
-    Candidate refined = evaluate(scene, model, refine_pose(scene, *model, start.pose, last));
-    if (refined.score >= options.min_score) candidates.push_back(std::move(refined));
+    candidates.push_back(evaluate(scene, model, refine_pose(scene, *model, start.pose, last)));
   }
+  const auto of_candidate = [](const Candidate& c) { return to_fast(c.pose()); };
+  finish_stage("aligned", candidates, of_candidate);
+  std::erase_if(candidates, [&](const Candidate& c) { return c.score < options.min_score; });
   remove_similar(candidates, model->symmetry,
                  [](const Candidate& c) -> const Pose& { return c.pose(); });
   if (candidates.size() > static_cast<std::size_t>(options.max_placements)) {
     candidates.resize(static_cast<std::size_t>(options.max_placements));
   }
+  finish_stage("final", candidates, of_candidate);
   return candidates;
 }
 

@@ -36,10 +36,21 @@ struct SingleObjectOptions {
   std::uint64_t seed = 0;
 };
 
+/// What became of one model's hypotheses, for experiments and pictures.
+struct ObjectTrace {
+  struct Stage {
+    const char* name;
+    std::vector<FastPose> poses;  ///< Still alive after the stage.
+    double milliseconds = 0;
+  };
+  std::vector<Stage> stages;  ///< sampled, free_space, clusters, aligned, final.
+};
+
 /// The best placements of one model in the scene (paper section V), best first. Deterministic.
 std::vector<Candidate> detect_object(const SceneFeatures& scene,
                                      const std::shared_ptr<const ObjectModel>& model,
-                                     const SingleObjectOptions& options);
+                                     const SingleObjectOptions& options,
+                                     ObjectTrace* trace = nullptr);
 
 /// The candidate as it is reported: with covariance, orientation uncertainty and named components.
 Placement to_placement(const Candidate& candidate);

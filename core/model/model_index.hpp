@@ -38,7 +38,7 @@ struct ModelIndex {
   std::vector<Fpfh> fpfh;        ///< Of `features`.
   FeatureTree feature_tree{{}};  ///< Over `fpfh`.
   PointCloud coarse;             ///< What `pairs` is made of.
-  PointPairTable pairs{{}, 1, 1};
+  PointPairTable pairs{{}, 1};
   std::vector<ModelView> views;  ///< The 66 views, over `surface`.
 };
 

@@ -110,8 +110,8 @@ Result<std::shared_ptr<const ObjectModel>> make_object_model(ModelSource source,
   index->fpfh = compute_fpfh(index->features, all, kFeatureRadius, num_threads);
   index->feature_tree = FeatureTree(index->fpfh);
   index->coarse = coarse_points(source.surface, source.diameter);
-  index->pairs = PointPairTable(
-      index->coarse, std::max(0.006f, 0.05f * static_cast<float>(source.diameter)), 0.2618f);
+  index->pairs =
+      PointPairTable(index->coarse, std::max(0.006f, 0.05f * static_cast<float>(source.diameter)));
   // A sparse surface is drawn with larger cells, so that it has no holes.
   const float spacing = std::max(0.003f, 1.3f * mean_spacing(source.surface.points));
   index->views = render_views(source.surface, spacing, num_threads);

@@ -6,6 +6,7 @@
 #include <bpa/core/base/stopwatch.hpp>
 #include <bpa/core/detect/single_object.hpp>
 #include <bpa/core/pipeline/detector.hpp>
+#include <bpa/core/pipeline/frame_trace.hpp>
 #include <bpa/core/scene/interpretations.hpp>
 
 namespace bpa {
@@ -54,8 +55,7 @@ SingleObjectOptions object_options(const DetectorOptions& options, std::uint64_t
   SingleObjectOptions out;
   out.hypotheses.matches_per_keypoint = options.matches_per_keypoint;
   out.hypotheses.draws_per_match = options.draws_per_match;
-  out.hypotheses.pair_draws = options.pair_draws;
-  out.hypotheses.max_matches_per_pair = options.max_matches_per_pair;
+  out.hypotheses.peaks_per_reference = options.peaks_per_reference;
   out.hypotheses.seed = seed;
   out.max_clusters = options.max_clusters;
   out.max_refined = options.max_refined;
@@ -88,8 +88,8 @@ void keep_best(std::vector<Interpretation>& interpretations, std::size_t count) 
 Detector::Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions options)
     : library_(std::move(library)), options_(std::move(options)) {}
 
-Result<SceneInterpretations> Detector::detect(const Frame& frame,
-                                              const DetectRequest& request) const {
+Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRequest& request,
+                                              FrameTrace* trace) const {
   if (Status status = validate(frame); !status.ok()) return status;
   if (Status status = check_request(request); !status.ok()) return status;
   const Result<Models> models = chosen_models(*library_, request);
@@ -118,19 +118,22 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame,
 
   SceneFeatureOptions feature_options;
   feature_options.max_keypoints = options_.max_keypoints;
+  feature_options.max_references = options_.max_references;
   feature_options.seed = request.seed;
   feature_options.num_threads = request.num_threads;
-  const SceneFeatures scene = scene_features(std::move(map), std::move(planes), feature_options);
+  SceneFeatures scene = scene_features(std::move(map), std::move(planes), feature_options);
   finish_stage("features");
 
   // The budget is looked at between models: whoever is not begun in time is left out, and said so.
   const SingleObjectOptions single = object_options(options_, request.seed);
   std::vector<std::vector<Candidate>> found(models->size());
   std::vector<std::uint8_t> late(models->size(), 0);
+  if (trace) trace->objects.resize(models->size());
   parallel_for(static_cast<int>(models->size()), request.num_threads, [&](int m) {
     const auto i = static_cast<std::size_t>(m);
     late[i] = request.budget_ms > 0 && total.milliseconds() > request.budget_ms;
-    if (!late[i]) found[i] = detect_object(scene, (*models)[i], single);
+    if (late[i]) return;
+    found[i] = detect_object(scene, (*models)[i], single, trace ? &trace->objects[i] : nullptr);
   });
   out.budget_exhausted = std::find(late.begin(), late.end(), 1) != late.end();
   finish_stage("objects");
@@ -146,6 +149,11 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame,
   keep_best(out.interpretations, static_cast<std::size_t>(request.top_k));
   finish_stage("interpretations");
   out.total_milliseconds = total.milliseconds();
+  if (trace) {
+    trace->scene = std::move(scene);
+    trace->models = *models;
+    trace->candidates = std::move(candidates);
+  }
   return out;
 }
 

@@ -16,6 +16,8 @@
 
 namespace bpa {
 
+struct FrameTrace;  // see frame_trace.hpp
+
 /// What to look for in one frame.
 struct DetectRequest {
   std::vector<std::string> models;  ///< Names; empty means every model of the library.
@@ -33,8 +35,10 @@ class Detector {
 
   /// Ranked interpretations of the frame. Fails with invalid_argument on a frame, request or
   /// library that breaks a rule (an empty library too), with not_found on a model name that the
-  /// library does not hold. An empty scene is a result, not an error.
-  Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request = {}) const;
+  /// library does not hold. An empty scene is a result, not an error. `trace`, if given, receives
+  /// what happened on the way.
+  Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request = {},
+                                      FrameTrace* trace = nullptr) const;
 
   const ModelLibrary& library() const { return *library_; }
   const DetectorOptions& options() const { return options_; }

@@ -15,11 +15,11 @@ struct DetectorOptions {
   double normal_radius_m = 0.010;
   bool label_planes = true;
   double plane_min_extent_m = 0.35;
-  int max_keypoints = 2000;
+  int max_keypoints = 600;
   int matches_per_keypoint = 2;
   int draws_per_match = 3;
-  int pair_draws = 24000;
-  int max_matches_per_pair = 12;
+  int max_references = 800;
+  int peaks_per_reference = 6;
   int max_clusters = 200;
   int max_refined = 40;
   bool use_orientation = true;
@@ -44,10 +44,10 @@ struct DetectorOptions {
           FieldRule{1, 20, "Nearest model features tried for each of them."});
     visit("draws_per_match", draws_per_match,
           FieldRule{1, 50, "Poses drawn by BPA for each correspondence."});
-    visit("pair_draws", pair_draws,
-          FieldRule{0, 1000000, "Oriented point pairs of the scene looked up in each model."});
-    visit("max_matches_per_pair", max_matches_per_pair,
-          FieldRule{1, 1000, "Model pairs tried for each scene pair."});
+    visit("max_references", max_references,
+          FieldRule{0, 100000, "Scene points whose pairs with others vote for poses."});
+    visit("peaks_per_reference", peaks_per_reference,
+          FieldRule{1, 100, "Voted poses of each of them that are looked at."});
     visit("max_clusters", max_clusters,
           FieldRule{1, 10000, "Pose clusters of each model that go on to round two."});
     visit("max_refined", max_refined,

@@ -78,16 +78,20 @@ TEST_F(Hypotheses, NoiseDoesNotHideThem) {
 
 TEST_F(Hypotheses, EachSourceAloneFindsTheL) {
   const SceneFeatures scene = features_of(everything());
-  HypothesisOptions features_only;
-  features_only.pair_draws = 0;
-  const auto by_features = sample_hypotheses(scene, *l_, features_only);
-  for (const Hypothesis& hypothesis : by_features) ASSERT_EQ(hypothesis.second_scene, -1);
+  SceneFeatures without_pairs = scene;
+  without_pairs.pairs = scene_pairs(scene.coarse, {}, 0.1f, 1);
+  const auto by_features = sample_hypotheses(without_pairs, *l_, {});
+  for (const Hypothesis& hypothesis : by_features) {
+    ASSERT_EQ(hypothesis.source, Hypothesis::Source::feature);
+  }
   EXPECT_LT(first_right(by_features, l_truth_, l_->symmetry), by_features.size());
   SceneFeatures without_keypoints = scene;
   without_keypoints.keypoints.clear();
   without_keypoints.fpfh.clear();
   const auto by_pairs = sample_hypotheses(without_keypoints, *l_, {});
-  for (const Hypothesis& hypothesis : by_pairs) ASSERT_GE(hypothesis.second_scene, 0);
+  for (const Hypothesis& hypothesis : by_pairs) {
+    ASSERT_EQ(hypothesis.source, Hypothesis::Source::pairs);
+  }
   EXPECT_LT(first_right(by_pairs, l_truth_, l_->symmetry), by_pairs.size());
 }
 

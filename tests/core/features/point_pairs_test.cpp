@@ -1,15 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include <gtest/gtest.h>
 
 #include <bpa/core/base/random.hpp>
-#include <bpa/core/features/point_pairs.hpp>
+#include <bpa/core/features/pair_voting.hpp>
 #include <bpa/core/geometry/pose.hpp>
 
 namespace bpa {
@@ -84,7 +82,7 @@ TEST(PointPairs, FeatureDoesNotChangeUnderRigidMotion) {
 TEST(PointPairs, CoplanarPairsSayNothing) {
   const Eigen::Vector3f up = Eigen::Vector3f::UnitZ();
   const auto informative = [&](const Eigen::Vector3f& q, const Eigen::Vector3f& nq) {
-    return PointPairTable::informative(point_pair_feature({0, 0, 0}, up, q, nq));
+    return fixes_pose(point_pair_feature({0, 0, 0}, up, q, nq));
   };
   EXPECT_FALSE(informative({0.05f, 0, 0}, up));
   EXPECT_FALSE(informative({0.05f, 0, 0.004f}, up));
@@ -94,89 +92,155 @@ TEST(PointPairs, CoplanarPairsSayNothing) {
 }
 
 constexpr float kDistanceStep = 0.006f;
-constexpr float kAngleStep = 0.2618f;
+constexpr float kAngleStep = 0.26179939f;
 
-using Cell = std::array<int, 4>;
-using Pairs = std::set<std::pair<int, int>>;
-
-Cell cell_of(const PointPairFeature& f) {
-  const auto angle = [](float value) { return std::min(11, static_cast<int>(value / kAngleStep)); };
-  return {static_cast<int>(f.distance / kDistanceStep), angle(f.angle_first), angle(f.angle_second),
-          angle(f.angle_normals)};
+// What a table should hold, found the slow way: the pairs whose feature lies in the cell, or less
+// than a quarter of a cell beside it.
+bool belongs(float value, float step, int bins, float looked_up) {
+  const auto bin = [&](float v) { return std::min(bins - 1, static_cast<int>(v / step)); };
+  const auto lower = static_cast<float>(bin(looked_up)) * step;
+  const bool last = bin(looked_up) == bins - 1;
+  return value >= lower - 0.25f * step && (last || value <= lower + 1.25f * step);
 }
 
-Pairs looked_up(const PointPairTable& table, const PointPairFeature& feature) {
-  Pairs out;
-  for (const auto& [i, j] : table.lookup(feature)) {
-    EXPECT_TRUE(out.insert({i, j}).second) << "a pair is there once";
+std::multiset<int> expected_points(const PointCloud& cloud, const PointPairFeature& f) {
+  std::multiset<int> out;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    for (std::size_t j = 0; j < cloud.size(); ++j) {
+      const auto g = feature_of(cloud, i, j);
+      if (i == j || g.distance < kDistanceStep || !fixes_pose(g)) continue;
+      if (belongs(g.distance, kDistanceStep, 1 << 20, f.distance) &&
+          belongs(g.angle_first, kAngleStep, kPairAngleBins, f.angle_first) &&
+          belongs(g.angle_second, kAngleStep, kPairAngleBins, f.angle_second) &&
+          belongs(g.angle_normals, kAngleStep, kPairAngleBins, f.angle_normals)) {
+        out.insert(static_cast<int>(i));
+      }
+    }
   }
   return out;
 }
 
-TEST(PointPairTable, HoldsEveryInformativePairInItsCell) {
-  const PointCloud cloud = random_oriented_points(90, 2);
-  const PointPairTable table(cloud, kDistanceStep, kAngleStep);
-  std::map<Cell, Pairs> expected;
-  float longest = 0;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    for (std::size_t j = 0; j < cloud.size(); ++j) {
-      if (i == j) continue;
-      const auto f = feature_of(cloud, i, j);
-      if (f.distance < kDistanceStep || !PointPairTable::informative(f)) continue;
-      expected[cell_of(f)].insert({static_cast<int>(i), static_cast<int>(j)});
-      longest = std::max(longest, f.distance);
-    }
-  }
-  EXPECT_EQ(table.max_distance(), longest);
-  for (const auto& [cell, pairs] : expected) {
-    const auto& [i, j] = *pairs.begin();
-    const auto f = feature_of(cloud, static_cast<std::size_t>(i), static_cast<std::size_t>(j));
-    EXPECT_EQ(looked_up(table, f), pairs);
-  }
-  // Cells that nothing is in.
+std::multiset<int> looked_up(const PointPairTable& table, const PointPairFeature& f) {
+  std::multiset<int> out;
+  for (const auto& entry : table.lookup(f.distance, pair_angle_key(f))) out.insert(entry.point);
+  return out;
+}
+
+TEST(PointPairTable, HoldsEveryPairInItsCellAndInTheNextOneWhenItIsNear) {
+  const PointCloud cloud = random_oriented_points(60, 2);
+  const PointPairTable table(cloud, kDistanceStep);
   RandomStream random(3);
-  for (int k = 0; k < 500; ++k) {
+  std::size_t total = 0;
+  for (int k = 0; k < 300; ++k) {
     const auto angle = [&] { return static_cast<float>(random.uniform(0, M_PI)); };
-    const PointPairFeature f{static_cast<float>(random.uniform(0, 0.4)), angle(), angle(), angle()};
-    const auto found = expected.find(cell_of(f));
-    EXPECT_EQ(looked_up(table, f), found == expected.end() ? Pairs{} : found->second);
+    PointPairFeature f{static_cast<float>(random.uniform(0, 0.3)), angle(), angle(), angle()};
+    if (k % 2 == 0) f = feature_of(cloud, static_cast<std::size_t>(random.index(60)), 7);
+    const auto expected = expected_points(cloud, f);
+    EXPECT_EQ(looked_up(table, f), expected);
+    total += expected.size();
   }
+  EXPECT_GT(total, 300u);
 }
 
 TEST(PointPairTable, FindsThePairsOfAMovedCopy) {
   const PointCloud cloud = random_oriented_points(60, 4);
-  const PointPairTable table(cloud, kDistanceStep, kAngleStep);
+  const PointPairTable table(cloud, kDistanceStep);
   const PointCloud other = moved(cloud, random_pose(5));
-  int found = 0, all = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     for (std::size_t j = 0; j < cloud.size(); ++j) {
       const auto f = feature_of(other, i, j);
-      if (i == j || f.distance < kDistanceStep || !PointPairTable::informative(f)) continue;
-      ++all;
-      found +=
-          static_cast<int>(looked_up(table, f).count({static_cast<int>(i), static_cast<int>(j)}));
+      if (i == j || f.distance < kDistanceStep || !fixes_pose(f)) continue;
+      EXPECT_EQ(looked_up(table, f).count(static_cast<int>(i)) > 0, true) << i << ' ' << j;
     }
   }
-  EXPECT_GT(found, all * 99 / 100) << "but for those on the border of two cells";
+}
+
+TEST(PointPairTable, KnowsWhereTheSecondPointLies) {
+  const PointCloud cloud = random_oriented_points(2, 8);
+  const PointPairTable table(cloud, kDistanceStep);
+  const auto f = feature_of(cloud, 0, 1);
+  for (const auto& entry : table.lookup(f.distance, pair_angle_key(f))) {
+    if (entry.point != 0) continue;
+    // The line, turned back by the turn, lies along the basis' first axis.
+    const Eigen::Matrix3f basis = basis_of(cloud.normals[0]);
+    const Eigen::Vector3f line = basis.transpose() * (cloud.points[1] - cloud.points[0]);
+    const Eigen::Vector3f back =
+        Eigen::AngleAxisf(-static_cast<float>(entry.turn * 2 * M_PI / kTurnSteps),
+                          Eigen::Vector3f::UnitZ()) *
+        line;
+    EXPECT_NEAR(std::atan2(back.y(), back.x()), 0, M_PI / kTurnSteps + 1e-3);
+    return;
+  }
+  FAIL() << "the pair is not there";
 }
 
 TEST(PointPairTable, HasNothingBeyondItsLongestPair) {
   const PointCloud cloud = random_oriented_points(30, 6);
-  const PointPairTable table(cloud, kDistanceStep, kAngleStep);
-  for (const float distance : {table.max_distance() + 0.01f, 1.0f, 1e9f, std::nanf("")}) {
-    EXPECT_TRUE(table.lookup({distance, 1, 1, 1}).empty());
+  const PointPairTable table(cloud, kDistanceStep);
+  constexpr std::uint16_t kLastKey = PointPairTable::kAngleKeys - 1;
+  for (const float distance : {table.max_distance() + 0.02f, 1.0f, 1e9f, std::nanf("")}) {
+    EXPECT_TRUE(table.lookup(distance, 5).empty());
   }
-  const auto pi = static_cast<float>(M_PI);
-  (void)table.lookup({table.max_distance(), pi, pi, pi});  // the last cell of all
-  (void)table.lookup({table.max_distance() + 0.9f * kDistanceStep, pi, pi, pi});
+  (void)table.lookup(table.max_distance(), kLastKey);  // the last cell of all
+  (void)table.lookup(table.max_distance() + 0.9f * kDistanceStep, kLastKey);
 }
 
 TEST(PointPairTable, OfNothingHoldsNothing) {
-  const PointPairTable table({}, 1, 1);
-  EXPECT_TRUE(table.lookup({0, 0, 0, 0}).empty());
-  EXPECT_TRUE(table.lookup({0.5f, 1, 1, 1}).empty());
-  const PointPairTable one(random_oriented_points(1, 7), kDistanceStep, kAngleStep);
-  EXPECT_TRUE(one.lookup({0.05f, 1, 1, 1}).empty());
+  const PointPairTable table({}, 1);
+  EXPECT_TRUE(table.lookup(0, 0).empty());
+  EXPECT_TRUE(table.lookup(0.5f, 77).empty());
+  const PointPairTable one(random_oriented_points(1, 7), kDistanceStep);
+  EXPECT_TRUE(one.lookup(0.05f, 77).empty());
+}
+
+// A copy of the model somewhere else, among other points: the pose that most pairs vote for.
+TEST(PairVoting, FindsTheModelAmongClutter) {
+  const PointCloud model = random_oriented_points(60, 9);
+  const Pose truth = random_pose(10);
+  PointCloud scene = moved(model, truth);
+  for (const Eigen::Vector3f& point : random_oriented_points(200, 11).points) {
+    scene.points.push_back(point * 2 + truth.translation.cast<float>());
+    scene.normals.push_back(point.normalized());
+  }
+  const PointPairTable table(model, kDistanceStep);
+  std::vector<int> references(30);
+  for (int r = 0; r < 30; ++r) references[static_cast<std::size_t>(r)] = 2 * r;
+  for (const int threads : {1, 4}) {
+    const ScenePairs pairs = scene_pairs(scene, references, 0.3f, threads);
+    const auto poses = vote_poses(pairs, table, 60, 1);
+    ASSERT_EQ(poses.size(), references.size());
+    for (const VotedPose& voted : poses) {
+      EXPECT_EQ(voted.model_point, voted.reference);
+      const auto i = static_cast<std::size_t>(voted.reference);
+      const Eigen::Matrix3f rotation = basis_of(scene.normals[i]) *
+                                       Eigen::AngleAxisf(voted.turn, Eigen::Vector3f::UnitZ()) *
+                                       basis_of(model.normals[i]).transpose();
+      EXPECT_LT(rotation_angle(Eigen::Quaterniond(rotation.cast<double>()), truth.rotation), 0.1);
+    }
+  }
+}
+
+TEST(PairVoting, PartnersAreThoseWithinReachThatFixAPose) {
+  const PointCloud cloud = random_oriented_points(80, 12);
+  const float reach = 0.06f;
+  const ScenePairs pairs = scene_pairs(cloud, {3, 40}, reach, 2);
+  ASSERT_EQ(pairs.first.size(), 3u);
+  for (std::size_t r = 0; r < 2; ++r) {
+    std::multiset<std::pair<float, int>> expected, found;
+    const auto i = static_cast<std::size_t>(pairs.references[r]);
+    for (std::size_t j = 0; j < cloud.size(); ++j) {
+      const auto f = feature_of(cloud, i, j);
+      if (i == j || f.distance > reach || !fixes_pose(f)) continue;
+      expected.insert({f.distance, pair_angle_key(f)});
+    }
+    for (auto k = pairs.first[r]; k < pairs.first[r + 1]; ++k) {
+      found.insert({pairs.partners[k].distance, pairs.partners[k].angle_key});
+      if (k > pairs.first[r]) {
+        EXPECT_GE(pairs.partners[k].distance, pairs.partners[k - 1].distance);
+      }
+    }
+    EXPECT_EQ(found, expected);
+  }
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ class DetectorOf : public test::LScene {
   static Result<SceneInterpretations> detect(const DetectRequest& request,
                                              const Frame& frame = frame_) {
     DetectorOptions options;  // enough for two objects, and quick
-    options.pair_draws = 5000;
+    options.max_references = 200;
     options.max_refined = 10;
     options.annealing_steps = 3000;
     return Detector(library_, options).detect(frame, request);

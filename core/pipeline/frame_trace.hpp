@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <bpa/core/detect/single_object.hpp>
+
+namespace bpa {
+
+/// What detection went through in one frame, for training, experiments and pictures.
+struct FrameTrace {
+  SceneFeatures scene;
+  std::vector<std::shared_ptr<const ObjectModel>> models;  ///< That were looked for.
+  std::vector<ObjectTrace> objects;                        ///< One for each model.
+  std::vector<Candidate> candidates;                       ///< Of all models.
+};
+
+}  // namespace bpa
