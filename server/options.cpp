@@ -156,6 +156,12 @@ Status validate(const ServerOptions& options) {
   status = check_choice("network.range", options.network.range,
                         {"environment", "subnet", "localhost", "off"});
   if (!status.ok()) return status;
+  status =
+      check_choice("input.color_transport", options.input.color_transport, {"raw", "compressed"});
+  if (!status.ok()) return status;
+  status = check_choice("input.depth_transport", options.input.depth_transport,
+                        {"raw", "compressed", "compressedDepth"});
+  if (!status.ok()) return status;
   return check_choice("log.level", options.log.level, {"debug", "info", "warning", "error"});
 }
 

@@ -54,12 +54,16 @@ struct InputOptions {
   std::string frames = "frames";
   bool frames_reliable = true;
   std::string color = "/camera/color/image_raw";
+  std::string color_transport = "raw";
   std::string depth = "/camera/aligned_depth_to_color/image_raw";
+  std::string depth_transport = "raw";
   std::string camera_info = "/camera/color/camera_info";
+  std::string cloud;
   bool reliable = false;
   bool rectified = false;
   double sync_tolerance_ms = 10;
   int sync_queue = 10;
+  double silence_s = 2;
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
@@ -67,9 +71,19 @@ struct InputOptions {
     visit("frames_reliable", frames_reliable,
           FieldRule{0, 0, "Lose none of them; best-effort publishers then do not match."});
     visit("color", color, FieldRule{0, 0, "Topic of colour images; empty: depth alone."});
+    visit("color_transport", color_transport,
+          FieldRule{0, 0, "raw, or compressed: then TOPIC/compressed is taken."});
     visit("depth", depth,
           FieldRule{0, 0, "Topic of depth images registered to colour; empty: no camera."});
+    visit("depth_transport", depth_transport,
+          FieldRule{0, 0,
+                    "raw, or compressed (PNG) or compressedDepth: then TOPIC/compressed or "
+                    "TOPIC/compressedDepth is taken."});
     visit("camera_info", camera_info, FieldRule{0, 0, "Topic of their sensor_msgs/CameraInfo."});
+    visit("cloud", cloud,
+          FieldRule{0, 0,
+                    "Topic of organised sensor_msgs/PointCloud2 in an optical frame; empty: "
+                    "none."});
     visit(
         "reliable", reliable,
         FieldRule{0, 0, "Ask for reliable camera topics; best-effort cameras then do not match."});
@@ -78,8 +92,12 @@ struct InputOptions {
                     "The camera's images have no lens distortion any more, so that the projection "
                     "matrix p holds; otherwise k and d do."});
     visit("sync_tolerance_ms", sync_tolerance_ms,
-          FieldRule{0, 1000, "Largest difference of stamps of images that belong together."});
+          FieldRule{0, 1000,
+                    "Largest difference of stamps of images that belong together; 0: equal "
+                    "stamps only."});
     visit("sync_queue", sync_queue, FieldRule{2, 100, "Images of one topic that may wait."});
+    visit("silence_s", silence_s,
+          FieldRule{0.1, 3600, "A camera that sends nothing for so long is reported as lost."});
   }
 };
 

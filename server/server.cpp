@@ -14,8 +14,6 @@ namespace bpa::server {
 namespace {
 
 namespace msgs = wire::bpa_msgs;
-using wire::diagnostic_msgs::DiagnosticArray;
-using wire::diagnostic_msgs::DiagnosticStatus;
 using wire::diagnostic_msgs::KeyValue;
 
 constexpr auto kReportPeriod = std::chrono::seconds(1);
@@ -109,7 +107,8 @@ Status Server::start() {
       *participant_, options_, [this](IncomingFrame&& frame) { worker_->push(std::move(frame)); },
       log_);
   if (!source.ok()) return source.status();
-  source_ = std::move(source).value();
+  topics_ = source->get();
+  sources_.push_back(std::move(source).value());
   if (Status status = offer_services(); !status.ok()) return status;
   reporter_ = std::thread([this] { report(); });
   return {};
@@ -163,9 +162,11 @@ msgs::GetStatus_Response Server::status() const {
   msgs::GetStatus_Response response;
   response.success = true;
   response.version = BPA_VERSION;
-  response.state = counts.frames_received + counts.requests_served > 0
-                       ? msgs::GetStatus_Response::kRunning
-                       : msgs::GetStatus_Response::kIdle;
+  const std::optional<double> silence = statistics_.seconds_since_frame();
+  const bool idle = !silence || *silence > options_.input.silence_s;
+  response.state = !options_.detection.continuous ? msgs::GetStatus_Response::kPaused
+                   : idle                         ? msgs::GetStatus_Response::kIdle
+                                                  : msgs::GetStatus_Response::kRunning;
   response.uptime_s = std::chrono::duration<double>(Clock::now() - started_).count();
   response.frames_received = counts.frames_received;
   response.frames_processed = counts.frames_processed;
@@ -189,69 +190,48 @@ msgs::GetStatus_Response Server::status() const {
   return response;
 }
 
-std::vector<KeyValue> Server::details() const {
-  std::vector<KeyValue> details;
-  const auto add = [&details](const std::string& key, std::uint64_t value) {
-    details.push_back({key, std::to_string(value)});
-  };
-  add("frames failed in the search", statistics_.counts().frames_failed);
-  for (const auto& [cause, count] : statistics_.rejections()) add("rejected: " + cause, count);
-  const SyncCounts sync = source_->sync_counts();
-  add("camera sets with equal stamps", sync.exact);
-  add("camera sets with near stamps", sync.approximate);
-  add("depth images without a colour image", sync.depth_without_color);
-  add("depth images without a camera info", sync.depth_without_info);
-  add("colour images unused", sync.color_unused);
-  add("camera clock restarts", sync.restarts);
-  const wire::ReaderStatistics readers = source_->reader_statistics();
-  add("messages malformed", readers.malformed);
-  add("messages lost by DDS", readers.lost);
-  add("publishers of frames", source_->frame_publishers());  // the SDK waits for itself in it
-  add("publishers of depth images", source_->camera_publishers());
-  return details;
+std::vector<std::pair<std::string, std::uint64_t>> Server::drops() const {
+  std::vector<std::pair<std::string, std::uint64_t>> drops;
+  drops.emplace_back("frames failed in the search", statistics_.counts().frames_failed);
+  for (const auto& [cause, count] : statistics_.rejections()) {
+    drops.emplace_back("rejected: " + cause, count);
+  }
+  return drops;
 }
 
-DiagnosticArray Server::diagnostics() const {
-  const msgs::GetStatus_Response now = status();
-  DiagnosticStatus one;
-  one.name = participant_->node().full() + ": detection";
-  one.hardware_id = "bpa-server " + now.version;
-  one.level = now.model_count > 0 ? DiagnosticStatus::kOk : DiagnosticStatus::kError;
-  one.message = now.model_count > 0 ? "serving" : "the model library is empty";
-  const auto add = [&one](const char* key, std::uint64_t value) {
-    one.values.push_back({key, std::to_string(value)});
-  };
-  add("models", now.model_count);
-  add("frames received", now.frames_received);
-  add("frames searched", now.frames_processed);
-  add("frames dropped for newer ones", now.frames_dropped);
-  add("frames rejected", now.frames_rejected);
-  add("requests served", now.requests_served);
-  add("requests refused", now.requests_refused);
-  add("queue length", now.queue_length);
-  add("memory bytes", now.memory_bytes);
-  for (const auto& timing : now.stage_timings) {
-    one.values.push_back({"median ms of " + timing.name, std::to_string(timing.duration_ms)});
+std::vector<SourceReport> Server::source_reports() const {
+  std::vector<SourceReport> reports;
+  for (const auto& source : sources_) {
+    for (SourceReport& report : source->reports()) reports.push_back(std::move(report));
   }
-  one.values.insert(one.values.end(), now.details.begin(), now.details.end());
-  DiagnosticArray array;
-  const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
-  array.header.stamp = wire::builtin_interfaces::from_ns(
-      std::chrono::duration_cast<std::chrono::nanoseconds>(since_epoch).count());
-  array.status.push_back(std::move(one));
-  return array;
+  return reports;
+}
+
+std::vector<KeyValue> Server::details() const {
+  std::vector<KeyValue> details;
+  for (const auto& [cause, count] : drops()) details.push_back({cause, std::to_string(count)});
+  for (const SourceReport& report : source_reports()) {
+    for (const auto& [key, value] : report.values) details.push_back({key, value});
+  }
+  return details;
 }
 
 void Server::report() {
   std::unique_lock<std::mutex> lock(report_mutex_);
   while (!stop_report_.wait_for(lock, kReportPeriod, [this] { return stopping_; })) {
-    if (publisher_->diagnostics_wanted()) publisher_->publish(diagnostics());
+    rates_.add(Clock::now(), statistics_.counts());
+    if (publisher_->diagnostics_wanted()) {
+      const auto now = std::chrono::system_clock::now().time_since_epoch();
+      publisher_->publish(diagnostics_message(
+          {participant_->node().full(), status(), rates_.rates(), drops(), source_reports()},
+          std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()));
+    }
     report_losses();
   }
 }
 
 void Server::report_losses() {
-  const SyncCounts sync = source_->sync_counts();
+  const SyncCounts sync = topics_->sync_counts();
   const std::uint64_t losses = sync.depth_without_color + sync.depth_without_info;
   // Says it at 10, 100, 1000 ... so that a camera that never fits is heard, and not for ever.
   if (losses < 10 || losses < 10 * losses_reported_) return;

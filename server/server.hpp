@@ -6,12 +6,16 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <bpa/core/base/log.hpp>
 #include <bpa/core/base/status.hpp>
+#include <bpa/server/capture/frame_source.hpp>
 #include <bpa/server/capture/topic_source.hpp>
+#include <bpa/server/diagnostics.hpp>
 #include <bpa/server/options.hpp>
 #include <bpa/server/recognition.hpp>
 #include <bpa/server/result_publisher.hpp>
@@ -34,7 +38,7 @@ class Server {
   ~Server();
 
   Counts counts() const { return statistics_.counts(); }
-  SyncCounts sync_counts() const { return source_->sync_counts(); }
+  SyncCounts sync_counts() const { return topics_->sync_counts(); }
 
  private:
   Server(const ServerOptions& options, Recognition recognition, LogHook log);
@@ -45,7 +49,8 @@ class Server {
   void log_failure(const Status& status);
   wire::bpa_msgs::GetStatus_Response status() const;
   std::vector<wire::diagnostic_msgs::KeyValue> details() const;
-  wire::diagnostic_msgs::DiagnosticArray diagnostics() const;
+  std::vector<std::pair<std::string, std::uint64_t>> drops() const;
+  std::vector<SourceReport> source_reports() const;
   void report();
   void report_losses();
 
@@ -64,7 +69,8 @@ class Server {
   std::optional<wire::Participant> participant_;
   std::unique_ptr<ResultPublisher> publisher_;
   std::unique_ptr<Worker> worker_;
-  std::unique_ptr<TopicSource> source_;
+  std::vector<std::unique_ptr<FrameSource>> sources_;
+  TopicSource* topics_ = nullptr;  ///< One of them.
   std::optional<DetectServer> detect_;
   std::optional<ListModelsServer> list_models_;
   std::optional<LoadModelServer> load_model_;
@@ -74,6 +80,7 @@ class Server {
   std::mutex report_mutex_;
   std::condition_variable stop_report_;
   bool stopping_ = false;
+  RateMeter rates_;  ///< The reporter's own.
   std::thread reporter_;
 };
 

@@ -33,6 +33,18 @@ void Statistics::add(std::uint64_t Counts::*counter) {
   ++(counts_.*counter);
 }
 
+void Statistics::add_frame() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++counts_.frames_received;
+  last_frame_ = std::chrono::steady_clock::now();
+}
+
+std::optional<double> Statistics::seconds_since_frame() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!last_frame_) return std::nullopt;
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - *last_frame_).count();
+}
+
 void Statistics::add_rejection(const std::string& reason) {
   // "frame depth has 12 values; ..." and "frame depth has 13 values; ..." are one cause.
   std::string cause = reason.substr(0, reason.find_first_of("0123456789;"));

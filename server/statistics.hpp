@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +32,10 @@ class Statistics {
  public:
   /// Adds to one counter: add(&Counts::frames_dropped).
   void add(std::uint64_t Counts::*counter);
+  /// Counts a frame that came in, and remembers when.
+  void add_frame();
+  /// Since the last frame came in; nothing before the first.
+  std::optional<double> seconds_since_frame() const;
   /// Counts a rejected frame under its message's first words.
   void add_rejection(const std::string& reason);
   void add_timings(const SceneInterpretations& result);
@@ -45,6 +51,7 @@ class Statistics {
  private:
   mutable std::mutex mutex_;
   Counts counts_;
+  std::optional<std::chrono::steady_clock::time_point> last_frame_;
   std::map<std::string, std::uint64_t> rejections_;
   std::vector<std::pair<std::string, std::deque<double>>> stages_;
   std::deque<double> totals_;

@@ -42,7 +42,7 @@ void Worker::stop() {
 
 void Worker::push(IncomingFrame frame) {
   std::optional<IncomingFrame> displaced;  // freed outside the lock
-  statistics_.add(&Counts::frames_received);
+  statistics_.add_frame();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     displaced = frames_.push(std::move(frame));

@@ -18,7 +18,7 @@ std::int64_t gap(std::int64_t a, std::int64_t b) { return a < b ? b - a : a - b;
 
 template <class T>
 void Synchronizer::add(Stream<T>& stream, T&& message) {
-  const std::int64_t stamp = to_ns(message.header.stamp);
+  const std::int64_t stamp = to_ns(header_of(message).stamp);
   if (stream.newest_ns != INT64_MIN && stamp < stream.newest_ns - kRestartNs) {
     ++counts_.restarts;
     clear();
@@ -29,17 +29,17 @@ void Synchronizer::add(Stream<T>& stream, T&& message) {
   stream.items.insert(place, {stamp, std::make_shared<const T>(std::move(message))});
 }
 
-void Synchronizer::add_color(wire::sensor_msgs::Image&& image) {
+void Synchronizer::add_color(AnyImage&& image) {
   add(color_, std::move(image));
-  if (color_.items.size() > options_.queue) {
+  while (color_.items.size() > options_.queue) {
     color_.items.pop_front();
     ++counts_.color_unused;
   }
 }
 
-void Synchronizer::add_depth(wire::sensor_msgs::Image&& image) {
+void Synchronizer::add_depth(AnyImage&& image) {
   add(depth_, std::move(image));
-  if (depth_.items.size() > options_.queue) {
+  while (depth_.items.size() > options_.queue) {
     const std::int64_t stamp = depth_.items.front().stamp_ns;
     give_up_depth(choose(color_, stamp), choose(info_, stamp));
   }
@@ -47,7 +47,7 @@ void Synchronizer::add_depth(wire::sensor_msgs::Image&& image) {
 
 void Synchronizer::add_info(wire::sensor_msgs::CameraInfo&& info) {
   add(info_, std::move(info));
-  if (info_.items.size() > options_.queue) info_.items.pop_front();
+  while (info_.items.size() > options_.queue) info_.items.pop_front();
 }
 
 template <class T>

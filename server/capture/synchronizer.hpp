@@ -14,7 +14,8 @@ namespace bpa::server {
 
 struct SynchronizerOptions {
   bool with_color = true;                  ///< Wait for a colour image for each depth image.
-  std::int64_t tolerance_ns = 10'000'000;  ///< Largest difference of stamps within one set.
+  std::int64_t tolerance_ns = 10'000'000;  ///< Largest difference of stamps within one set; 0:
+                                           ///< equal stamps only.
   std::size_t queue = 10;                  ///< Messages of one stream that may wait.
 };
 
@@ -40,9 +41,12 @@ class Synchronizer {
  public:
   explicit Synchronizer(const SynchronizerOptions& options) : options_(options) {}
 
+  /// For the messages from now on.
+  void set_options(const SynchronizerOptions& options) { options_ = options; }
+
   /// Call next() after each until it returns nothing.
-  void add_color(wire::sensor_msgs::Image&& image);
-  void add_depth(wire::sensor_msgs::Image&& image);
+  void add_color(AnyImage&& image);
+  void add_depth(AnyImage&& image);
   void add_info(wire::sensor_msgs::CameraInfo&& info);
 
   /// The next complete set; nothing while none is complete.
@@ -77,8 +81,8 @@ class Synchronizer {
 
   SynchronizerOptions options_;
   SyncCounts counts_;
-  Stream<wire::sensor_msgs::Image> color_;
-  Stream<wire::sensor_msgs::Image> depth_;
+  Stream<AnyImage> color_;
+  Stream<AnyImage> depth_;
   Stream<wire::sensor_msgs::CameraInfo> info_;
 };
 

@@ -12,7 +12,9 @@ using wire::SampleMeta;
 using wire::Subscriber;
 using wire::bpa_msgs::RgbdFrame;
 using wire::sensor_msgs::CameraInfo;
+using wire::sensor_msgs::CompressedImage;
 using wire::sensor_msgs::Image;
+using wire::sensor_msgs::PointCloud2;
 
 SynchronizerOptions synchronizer_options(const InputOptions& options) {
   SynchronizerOptions sync;
@@ -34,14 +36,16 @@ Status subscribe_to(const wire::Participant& participant, const std::string& top
   return {};
 }
 
-IncomingFrame incoming(RgbdFrame&& message) {
-  const auto shared = std::make_shared<const RgbdFrame>(std::move(message));
-  return {[shared] { return frame_from_message(*shared); }, to_ns(shared->header.stamp),
+/// A whole frame; `convert` runs on the worker.
+template <class Message>
+IncomingFrame incoming(Message&& message, Result<Frame> (*convert)(const Message&)) {
+  const auto shared = std::make_shared<const Message>(std::move(message));
+  return {[shared, convert] { return convert(*shared); }, to_ns(shared->header.stamp),
           shared->header.frame_id};
 }
 
 IncomingFrame incoming(CameraImages images, bool rectified) {
-  const wire::std_msgs::Header& header = images.depth->header;
+  const wire::std_msgs::Header& header = header_of(*images.depth);
   IncomingFrame frame{{}, to_ns(header.stamp), header.frame_id};
   frame.decode = [images = std::move(images), rectified] {
     return frame_from_images(images, rectified);
@@ -51,10 +55,18 @@ IncomingFrame incoming(CameraImages images, bool rectified) {
 
 }  // namespace
 
+std::size_t TopicSource::ImageTopic::publishers() const {
+  return raw ? raw->matched_count() : compressed ? compressed->matched_count() : 0;
+}
+
+wire::ReaderStatistics TopicSource::ImageTopic::statistics() const {
+  return raw ? raw->statistics() : compressed ? compressed->statistics() : wire::ReaderStatistics();
+}
+
 TopicSource::TopicSource(const InputOptions& options, OnFrame on_frame, LogHook log)
-    : options_(options),
-      on_frame_(std::move(on_frame)),
+    : on_frame_(std::move(on_frame)),
       log_(std::move(log)),
+      options_(options),
       synchronizer_(synchronizer_options(options)) {}
 
 Result<std::unique_ptr<TopicSource>> TopicSource::create(const wire::Participant& participant,
@@ -66,48 +78,93 @@ Result<std::unique_ptr<TopicSource>> TopicSource::create(const wire::Participant
   return source;
 }
 
+void TopicSource::set_options(const InputOptions& options) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  options_.rectified = options.rectified;
+  options_.sync_tolerance_ms = options.sync_tolerance_ms;
+  options_.sync_queue = options.sync_queue;
+  options_.silence_s = options.silence_s;
+  synchronizer_.set_options(synchronizer_options(options_));
+}
+
 Status TopicSource::subscribe(const wire::Participant& participant, const ServerOptions& options) {
   if (!options_.frames.empty()) {
-    wire::SubscriberOptions subscription;
-    subscription.qos = wire::qos::frames();
-    if (!options_.frames_reliable) subscription.qos.reliability = wire::Reliability::best_effort;
-    subscription.shared_bytes = static_cast<std::size_t>(options.network.shared_frame_mb) << 20U;
-    Status status = subscribe_to<RgbdFrame>(
-        participant, options_.frames, subscription,
-        [this](RgbdFrame&& message, const SampleMeta&) { on_frame_(incoming(std::move(message))); },
-        frames_);
-    if (!status.ok()) return status;
-    log(log_, LogLevel::info, "frames are taken from " + frames_->topic());
+    const auto shared_bytes = static_cast<std::size_t>(options.network.shared_frame_mb) << 20U;
+    if (Status s = subscribe_frames(participant, shared_bytes); !s.ok()) return s;
+  }
+  if (!options_.cloud.empty()) {
+    if (Status s = subscribe_cloud(participant); !s.ok()) return s;
   }
   return options_.depth.empty() ? Status() : subscribe_camera(participant);
 }
 
-Status TopicSource::subscribe_camera(const wire::Participant& participant) {
+Status TopicSource::subscribe_frames(const wire::Participant& participant,
+                                     std::size_t shared_bytes) {
+  wire::SubscriberOptions subscription;
+  subscription.qos = wire::qos::frames();
+  if (!options_.frames_reliable) subscription.qos.reliability = wire::Reliability::best_effort;
+  subscription.shared_bytes = shared_bytes;
+  Status status = subscribe_to<RgbdFrame>(
+      participant, options_.frames, subscription,
+      [this](RgbdFrame&& message, const SampleMeta&) {
+        frames_pulse_.beat();
+        on_frame_(incoming<RgbdFrame>(std::move(message), frame_from_message));
+      },
+      frames_);
+  if (status.ok()) log(log_, LogLevel::info, "frames are taken from " + frames_->topic());
+  return status;
+}
+
+Status TopicSource::subscribe_cloud(const wire::Participant& participant) {
+  Status status = subscribe_to<PointCloud2>(
+      participant, options_.cloud, camera_subscription(),
+      [this](PointCloud2&& message, const SampleMeta&) {
+        cloud_pulse_.beat();
+        on_frame_(incoming<PointCloud2>(std::move(message), frame_from_cloud));
+      },
+      cloud_);
+  if (status.ok()) log(log_, LogLevel::info, "clouds are taken from " + cloud_->topic());
+  return status;
+}
+
+wire::SubscriberOptions TopicSource::camera_subscription() const {
   wire::SubscriberOptions subscription;
   subscription.qos = options_.reliable ? wire::qos::reliable_input() : wire::qos::sensor_input();
+  return subscription;
+}
+
+Status TopicSource::subscribe_images(const wire::Participant& participant, const std::string& topic,
+                                     const std::string& transport,
+                                     void (Synchronizer::*add)(AnyImage&&), ImageTopic& place) {
+  const auto take = [this, add, &place](auto&& image, const SampleMeta&) {
+    place.pulse.beat();
+    std::unique_lock<std::mutex> lock(mutex_);
+    (synchronizer_.*add)(AnyImage(std::move(image)));
+    deliver_complete(std::move(lock));
+  };
+  if (transport == "raw") {
+    return subscribe_to<Image>(participant, topic, camera_subscription(), take, place.raw);
+  }
+  // As image_transport does it, the base topic is remapped first.
+  const Result<std::string> base = participant.resolve(topic);
+  if (!base.ok()) return base.status();
+  return subscribe_to<CompressedImage>(participant, *base + "/" + transport, camera_subscription(),
+                                       take, place.compressed);
+}
+
+Status TopicSource::subscribe_camera(const wire::Participant& participant) {
   if (!options_.color.empty()) {
-    Status status = subscribe_to<Image>(
-        participant, options_.color, subscription,
-        [this](Image&& image, const SampleMeta&) {
-          std::unique_lock<std::mutex> lock(mutex_);
-          synchronizer_.add_color(std::move(image));
-          deliver_complete(std::move(lock));
-        },
-        color_);
+    Status status = subscribe_images(participant, options_.color, options_.color_transport,
+                                     &Synchronizer::add_color, color_);
     if (!status.ok()) return status;
   }
-  Status status = subscribe_to<Image>(
-      participant, options_.depth, subscription,
-      [this](Image&& image, const SampleMeta&) {
-        std::unique_lock<std::mutex> lock(mutex_);
-        synchronizer_.add_depth(std::move(image));
-        deliver_complete(std::move(lock));
-      },
-      depth_);
+  Status status = subscribe_images(participant, options_.depth, options_.depth_transport,
+                                   &Synchronizer::add_depth, depth_);
   if (!status.ok()) return status;
   status = subscribe_to<CameraInfo>(
-      participant, options_.camera_info, subscription,
+      participant, options_.camera_info, camera_subscription(),
       [this](CameraInfo&& info, const SampleMeta&) {
+        info_pulse_.beat();
         std::unique_lock<std::mutex> lock(mutex_);
         synchronizer_.add_info(std::move(info));
         deliver_complete(std::move(lock));
@@ -115,39 +172,22 @@ Status TopicSource::subscribe_camera(const wire::Participant& participant) {
       info_);
   if (!status.ok()) return status;
   log(log_, LogLevel::info,
-      "camera images are taken from " + depth_->topic() +
-          (color_ ? ", " + color_->topic() : " (without colour)") + " and " + info_->topic());
+      "camera images are taken from " + depth_.topic() +
+          (color_.open() ? ", " + color_.topic() : " (without colour)") + " and " + info_->topic());
   return {};
 }
 
 void TopicSource::deliver_complete(std::unique_lock<std::mutex> lock) {
   std::vector<CameraImages> complete;
   while (auto images = synchronizer_.next()) complete.push_back(*std::move(images));
+  const bool rectified = options_.rectified;
   lock.unlock();
-  for (CameraImages& images : complete) {
-    on_frame_(incoming(std::move(images), options_.rectified));
-  }
+  for (CameraImages& images : complete) on_frame_(incoming(std::move(images), rectified));
 }
 
 SyncCounts TopicSource::sync_counts() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return synchronizer_.counts();
-}
-
-wire::ReaderStatistics TopicSource::reader_statistics() const {
-  wire::ReaderStatistics sum;
-  const auto add = [&sum](const auto& subscriber) {
-    if (!subscriber) return;
-    const wire::ReaderStatistics one = subscriber->statistics();
-    sum.received += one.received;
-    sum.malformed += one.malformed;
-    sum.lost += one.lost;
-  };
-  add(frames_);
-  add(color_);
-  add(depth_);
-  add(info_);
-  return sum;
 }
 
 }  // namespace bpa::server

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <utility>
 
+#include <bpa/server/convert/compressed.hpp>
 #include <bpa/server/convert/frames.hpp>
 #include <bpa/server/convert/images.hpp>
 #include <bpa/wire/msg/builtin_interfaces.hpp>
@@ -76,12 +77,32 @@ ImageView view_of(const char* field, const sensor::Image& image) {
 }
 
 Status check_same_size(const char* what, std::uint32_t width, std::uint32_t height,
-                       const sensor::Image& depth) {
-  if (width == depth.width && height == depth.height) return {};
+                       const Camera& camera) {
+  if (width == static_cast<std::uint32_t>(camera.width) &&
+      height == static_cast<std::uint32_t>(camera.height)) {
+    return {};
+  }
   std::ostringstream text;
-  text << what << " is " << width << "x" << height << " but the depth image is " << depth.width
-       << "x" << depth.height << "; they must be equal (depth registered to colour)";
+  text << what << " is " << width << "x" << height << " but the camera info is of " << camera.width
+       << "x" << camera.height << "; they must be equal (depth registered to colour)";
   return invalid_argument(text.str());
+}
+
+/// Pixels of an image that is as large as the camera's. `from_raw` and `from_compressed` make them.
+template <class Pixels, class FromRaw, class FromCompressed>
+Result<Pixels> pixels_of(const char* field, const AnyImage& any, const Camera& camera,
+                         FromRaw from_raw, FromCompressed from_compressed) {
+  const std::string what = std::string(field) + " image";
+  if (const auto* raw = std::get_if<sensor::Image>(&any)) {
+    const Status status = check_same_size(what.c_str(), raw->width, raw->height, camera);
+    if (!status.ok()) return status;
+    return from_raw(view_of(field, *raw));
+  }
+  auto decoded = from_compressed(field, std::get<sensor::CompressedImage>(any));
+  if (!decoded.ok()) return decoded.status();
+  const Status status = check_same_size(what.c_str(), decoded->width, decoded->height, camera);
+  if (!status.ok()) return status;
+  return std::move(decoded->pixels);
 }
 
 }  // namespace
@@ -126,25 +147,21 @@ Status restrict_frame(const msgs::RgbdFrame& message, Frame& frame) {
 }
 
 Result<Frame> frame_from_images(const CameraImages& images, bool rectified) {
-  const sensor::Image& depth_image = *images.depth;
   const sensor::CameraInfo& info = *images.info;
-  if (Status s = check_same_size("camera info", info.width, info.height, depth_image); !s.ok())
-    return s;
   Frame frame;
-  frame.stamp_ns = to_ns(depth_image.header.stamp);
-  frame.frame_id = depth_image.header.frame_id;
+  frame.stamp_ns = to_ns(header_of(*images.depth).stamp);
+  frame.frame_id = header_of(*images.depth).frame_id;
   const bool use_projection = rectified && info.p[0] > 0;
   frame.camera = use_projection ? camera_of(info.width, info.height, info.p.data(), 4)
                                 : camera_of(info.width, info.height, info.k.data(), 3);
   if (Status status = validate(frame.camera); !status.ok()) return status;
-  auto depth = depth_from_image(view_of("depth", depth_image));
+  auto depth = pixels_of<std::vector<float>>("depth", *images.depth, frame.camera, depth_from_image,
+                                             decode_depth);
   if (!depth.ok()) return depth.status();
   frame.depth = std::move(depth).value();
   if (images.color) {
-    const sensor::Image& image = *images.color;
-    if (Status s = check_same_size("colour image", image.width, image.height, depth_image); !s.ok())
-      return s;
-    auto color = color_from_image(view_of("color", image));
+    auto color = pixels_of<std::vector<std::uint8_t>>("color", *images.color, frame.camera,
+                                                      color_from_image, decode_color);
     if (!color.ok()) return color.status();
     frame.color = std::move(color).value();
   }

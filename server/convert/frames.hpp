@@ -3,7 +3,7 @@
 #pragma once
 
 #include <memory>
-#include <optional>
+#include <variant>
 
 #include <bpa/core/base/status.hpp>
 #include <bpa/core/cloud/frame.hpp>
@@ -23,10 +23,21 @@ Result<Frame> frame_from_message(const wire::bpa_msgs::RgbdFrame& message);
 /// message without them changes nothing.
 Status restrict_frame(const wire::bpa_msgs::RgbdFrame& message, Frame& frame);
 
+/// An image as it came: raw, or as image_transport's plugins compress it.
+using AnyImage = std::variant<wire::sensor_msgs::Image, wire::sensor_msgs::CompressedImage>;
+
+inline const wire::std_msgs::Header& header_of(const AnyImage& image) {
+  return std::visit([](const auto& one) -> const wire::std_msgs::Header& { return one.header; },
+                    image);
+}
+inline const wire::std_msgs::Header& header_of(const wire::sensor_msgs::CameraInfo& info) {
+  return info.header;
+}
+
 /// Images of one camera that belong together.
 struct CameraImages {
-  std::shared_ptr<const wire::sensor_msgs::Image> color;  ///< nullptr without colour.
-  std::shared_ptr<const wire::sensor_msgs::Image> depth;
+  std::shared_ptr<const AnyImage> color;  ///< nullptr without colour.
+  std::shared_ptr<const AnyImage> depth;
   std::shared_ptr<const wire::sensor_msgs::CameraInfo> info;
 };
 
@@ -34,5 +45,10 @@ struct CameraImages {
 /// that the images have no distortion any more, so that the projection matrix p of the camera info
 /// holds; otherwise k and d do. Stamp and frame_id are the depth image's.
 Result<Frame> frame_from_images(const CameraImages& images, bool rectified);
+
+/// A frame of an organised cloud in its camera's optical frame: float32 fields x, y, z, and rgb or
+/// rgba if there. The camera is the pinhole that fits the points best. `invalid_argument` for a
+/// cloud that no such camera sees, or that is not organised.
+Result<Frame> frame_from_cloud(const wire::sensor_msgs::PointCloud2& cloud);
 
 }  // namespace bpa::server

@@ -101,8 +101,8 @@ INSTANTIATE_TEST_SUITE_P(All, BadFrames, testing::ValuesIn(kBadFrames),
                          [](const auto& test) { return test.param.name; });
 
 CameraImages wall_images() {
-  return {std::make_shared<wire::sensor_msgs::Image>(support::wall_color_image(5)),
-          std::make_shared<wire::sensor_msgs::Image>(support::wall_depth_image(7)),
+  return {std::make_shared<AnyImage>(support::wall_color_image(5)),
+          std::make_shared<AnyImage>(support::wall_depth_image(7)),
           std::make_shared<wire::sensor_msgs::CameraInfo>(support::wall_camera_info(6))};
 }
 
@@ -127,7 +127,7 @@ TEST(FrameFromImages, RefusesUnregisteredDepth) {
   CameraImages images = wall_images();
   auto small = support::wall_color_image(5);
   small.width = 32;
-  images.color = std::make_shared<wire::sensor_msgs::Image>(small);
+  images.color = std::make_shared<AnyImage>(small);
   const auto frame = frame_from_images(images, false);
   EXPECT_EQ(frame.status().code, StatusCode::invalid_argument);
   EXPECT_NE(frame.status().message.find("32x48"), std::string::npos) << frame.status().message;

@@ -32,8 +32,8 @@ class SynchronizerTest : public testing::Test {
   }
   void drain() {
     while (auto images = sync.next()) {
-      depth_stamps.push_back(to_ns(images->depth->header.stamp));
-      color_stamps.push_back(images->color ? to_ns(images->color->header.stamp) : -1);
+      depth_stamps.push_back(to_ns(header_of(*images->depth).stamp));
+      color_stamps.push_back(images->color ? to_ns(header_of(*images->color).stamp) : -1);
     }
   }
 

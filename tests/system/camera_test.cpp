@@ -12,6 +12,7 @@
 #include <bpa/wire/publisher.hpp>
 #include <bpa/wire/subscriber.hpp>
 
+#include "support/depth_codecs.hpp"
 #include "support/stub_server.hpp"
 #include "support/wall_messages.hpp"
 
@@ -22,13 +23,14 @@ namespace {
 
 using std::chrono::milliseconds;
 using wire::sensor_msgs::CameraInfo;
+using wire::sensor_msgs::CompressedImage;
 using wire::sensor_msgs::Image;
 
 constexpr std::int64_t kMs = 1'000'000;
 
 class CameraTopics : public testing::Test {
  protected:
-  void start(const std::vector<std::string>& more = {}) {
+  void start(const std::vector<std::string>& more = {}, bool raw = true) {
     std::vector<std::string> settings = {"input.color=camera/color", "input.depth=camera/depth",
                                          "input.camera_info=camera/info", "queue.frames=50"};
     settings.insert(settings.end(), more.begin(), more.end());
@@ -52,8 +54,10 @@ class CameraTopics : public testing::Test {
     ASSERT_TRUE(subscriber.ok());
     results_in.emplace(std::move(subscriber).value());
     ASSERT_TRUE(results_in->wait_for_matched(milliseconds(10000))) << server->log();
-    ASSERT_TRUE(depth->wait_for_matched(milliseconds(10000)));
-    ASSERT_TRUE(color->wait_for_matched(milliseconds(10000)));
+    if (raw) {
+      ASSERT_TRUE(depth->wait_for_matched(milliseconds(10000)));
+      ASSERT_TRUE(color->wait_for_matched(milliseconds(10000)));
+    }
     ASSERT_TRUE(info->wait_for_matched(milliseconds(10000)));
     std::this_thread::sleep_for(milliseconds(300));  // best effort: until the server matched, too
   }
@@ -75,6 +79,25 @@ class CameraTopics : public testing::Test {
     const auto status = client->status();
     if (!status.ok()) return {};
     return {status->details.begin(), status->details.end()};
+  }
+
+  /// What the next diagnostics say of the camera.
+  wire::diagnostic_msgs::DiagnosticStatus camera_status() {
+    std::mutex status_mutex;
+    std::condition_variable came;
+    std::optional<wire::diagnostic_msgs::DiagnosticStatus> status;
+    const auto subscriber = wire::Subscriber<wire::diagnostic_msgs::DiagnosticArray>::create(
+        *participant, "diagnostics", {},
+        [&](wire::diagnostic_msgs::DiagnosticArray&& message, const wire::SampleMeta&) {
+          const std::lock_guard<std::mutex> lock(status_mutex);
+          for (auto& one : message.status) {
+            if (one.name.find(": camera") != std::string::npos) status = std::move(one);
+          }
+          came.notify_all();
+        });
+    std::unique_lock<std::mutex> lock(status_mutex);
+    came.wait_for(lock, milliseconds(10000), [&] { return status.has_value(); });
+    return status.value_or(wire::diagnostic_msgs::DiagnosticStatus());
   }
 
   std::unique_ptr<support::StubServer> server;
@@ -152,6 +175,42 @@ TEST_F(CameraTopics, OtherEncodingsGiveTheSameDepth) {
     EXPECT_EQ(result.interpretations.at(0).placements.at(0).pose.pose.position.z,
               static_cast<double>(static_cast<float>(788 * 0.001)));
   }
+}
+
+/// As a camera driver with image_transport: the plugins' topics stand below the raw ones.
+TEST_F(CameraTopics, CompressedTransportsGiveTheSameDepth) {
+  for (const bool rvl : {false, true}) {
+    results.clear();
+    start({"input.color_transport=compressed", "input.depth_transport=compressedDepth"}, false);
+    std::optional<wire::Publisher<CompressedImage>> packed_color, packed_depth;
+    open("camera/color/compressed", packed_color);
+    open("camera/depth/compressedDepth", packed_depth);
+    ASSERT_TRUE(packed_color->wait_for_matched(milliseconds(10000))) << server->log();
+    ASSERT_TRUE(packed_depth->wait_for_matched(milliseconds(10000)));
+    std::this_thread::sleep_for(milliseconds(300));
+    ASSERT_TRUE(info->publish(support::wall_camera_info(1000 * kMs)).ok());
+    ASSERT_TRUE(packed_color->publish(support::compressed_color(1000 * kMs)).ok());
+    ASSERT_TRUE(packed_depth->publish(support::compressed_depth(1000 * kMs, rvl)).ok());
+    ASSERT_TRUE(wait_for(1)) << server->log();
+    const std::lock_guard<std::mutex> lock(mutex);
+    const auto& result = results.begin()->second;
+    ASSERT_EQ(result.status.code, 0) << result.status.message;
+    EXPECT_EQ(result.interpretations.at(0).placements.at(0).pose.pose.position.z,
+              static_cast<double>(static_cast<float>(788 * 0.001)));
+  }
+}
+
+TEST_F(CameraTopics, ACameraThatFallsSilentIsReported) {
+  start({"input.silence_s=0.5"});
+  EXPECT_EQ(camera_status().level, wire::diagnostic_msgs::DiagnosticStatus::kOk);  // unused
+  ASSERT_TRUE(info->publish(support::wall_camera_info(1000 * kMs)).ok());
+  ASSERT_TRUE(color->publish(support::wall_color_image(1000 * kMs)).ok());
+  ASSERT_TRUE(depth->publish(support::wall_depth_image(1000 * kMs)).ok());
+  ASSERT_TRUE(wait_for(1)) << server->log();
+  std::this_thread::sleep_for(milliseconds(600));
+  const auto status = camera_status();
+  EXPECT_EQ(status.level, wire::diagnostic_msgs::DiagnosticStatus::kError);
+  EXPECT_NE(status.message.find("the camera is gone"), std::string::npos) << status.message;
 }
 
 TEST_F(CameraTopics, StreamsThatDoNotFitAreCountedAndSaid) {

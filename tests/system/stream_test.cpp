@@ -215,7 +215,14 @@ TEST_F(Stream, StandardTopicsCarryTheSameResult) {
   ASSERT_TRUE(infos.wait_for(1));  // latched: sent before we came
   EXPECT_EQ(infos.items()[0].database_location, "stub");
   ASSERT_TRUE(diagnostics.wait_for(1));
-  EXPECT_EQ(diagnostics.items()[0].status.at(0).message, "serving");
+  std::set<std::string> names;
+  const auto last_diagnostics = diagnostics.items().back();
+  for (const auto& status : last_diagnostics.status) {
+    EXPECT_EQ(status.level, wire::diagnostic_msgs::DiagnosticStatus::kOk) << status.message;
+    names.insert(status.name.substr(status.name.find(": ") + 2));
+  }
+  EXPECT_EQ(names,
+            (std::set<std::string>{"detection", "drops", "queue", "models", "frames", "camera"}));
 }
 
 }  // namespace

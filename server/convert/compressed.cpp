@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <string>
+#include <string_view>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include <bpa/server/convert/compressed.hpp>
+#include <bpa/server/convert/rvl.hpp>
+
+namespace bpa::server {
+namespace {
+
+using wire::sensor_msgs::CompressedImage;
+
+constexpr std::uint32_t kMaxSide = 8192;
+constexpr std::size_t kDepthHeader = 12;
+
+struct Bytes {
+  const std::uint8_t* data;
+  std::size_t size;
+};
+
+struct Size {
+  std::uint32_t width = 0, height = 0;
+};
+
+std::uint32_t big_endian(const std::uint8_t* bytes, int count) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < count; ++i) value = value << 8U | bytes[i];
+  return value;
+}
+
+bool is_png(Bytes file) {
+  return file.size >= 24 && std::memcmp(file.data, "\x89PNG\r\n\x1a\n", 8) == 0;
+}
+
+/// The size that the frame header of a JPEG file gives; zero when there is none.
+Size jpeg_size(Bytes file) {
+  std::size_t at = 2;
+  while (at + 9 <= file.size && file.data[at] == 0xff) {
+    const std::uint8_t marker = file.data[at + 1];
+    const bool frame =
+        marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+    if (frame) return {big_endian(file.data + at + 7, 2), big_endian(file.data + at + 5, 2)};
+    at += 2 + big_endian(file.data + at + 2, 2);
+  }
+  return {};
+}
+
+/// The size of a PNG or JPEG file, from its first bytes.
+Result<Size> size_of(const char* field, Bytes file) {
+  Size size;
+  if (is_png(file)) {
+    size = {big_endian(file.data + 16, 4), big_endian(file.data + 20, 4)};
+  } else if (file.size >= 4 && file.data[0] == 0xff && file.data[1] == 0xd8) {
+    size = jpeg_size(file);
+  } else {
+    return Status(StatusCode::unsupported,
+                  std::string(field) + " data is neither a PNG nor a JPEG file");
+  }
+  if (size.width == 0 || size.height == 0 || size.width > kMaxSide || size.height > kMaxSide) {
+    return invalid_argument(std::string(field) + " image is " + std::to_string(size.width) + "x" +
+                            std::to_string(size.height) + "; each side must be between 1 and " +
+                            std::to_string(kMaxSide));
+  }
+  return size;
+}
+
+Result<cv::Mat> decode_file(const char* field, Bytes file, int mode) {
+  const Result<Size> size = size_of(field, file);
+  if (!size.ok()) return size.status();
+  cv::Mat pixels;
+  try {
+    // Wrapped, not copied: imdecode only reads.
+    const cv::Mat wrapped(1, static_cast<int>(file.size), CV_8UC1,
+                          const_cast<std::uint8_t*>(file.data));
+    pixels = cv::imdecode(wrapped, mode);
+  } catch (const std::exception&) {
+    pixels.release();
+  }
+  if (pixels.empty()) {
+    return Status(StatusCode::corrupt, std::string(field) + " data is a damaged image file");
+  }
+  return pixels;
+}
+
+Result<Decoded<std::uint16_t>> decode_png16(const char* field, Bytes file) {
+  const Result<cv::Mat> pixels = decode_file(field, file, cv::IMREAD_UNCHANGED);
+  if (!pixels.ok()) return pixels.status();
+  if (pixels->type() != CV_16UC1) {
+    return Status(
+        StatusCode::unsupported,
+        std::string(field) + " data is no PNG of 16 bits and one channel, so it holds no depth");
+  }
+  Decoded<std::uint16_t> decoded{
+      static_cast<std::uint32_t>(pixels->cols), static_cast<std::uint32_t>(pixels->rows), {}};
+  decoded.pixels.reserve(pixels->total());
+  for (int v = 0; v < pixels->rows; ++v) {
+    const auto* row = pixels->ptr<std::uint16_t>(v);
+    decoded.pixels.insert(decoded.pixels.end(), row, row + pixels->cols);
+  }
+  return decoded;
+}
+
+/// An RVL stream with its size in front: width and height, uint32 each.
+Result<Decoded<std::uint16_t>> decode_rvl_image(const char* field, Bytes stream) {
+  std::uint32_t size[2] = {};
+  if (stream.size >= sizeof size) std::memcpy(size, stream.data, sizeof size);
+  if (size[0] == 0 || size[1] == 0 || size[0] > kMaxSide || size[1] > kMaxSide) {
+    return invalid_argument(std::string(field) + " image is " + std::to_string(size[0]) + "x" +
+                            std::to_string(size[1]) + "; each side must be between 1 and " +
+                            std::to_string(kMaxSide));
+  }
+  Decoded<std::uint16_t> decoded{size[0], size[1], {}};
+  const std::size_t count = std::size_t{size[0]} * size[1];
+  if (!decode_rvl(stream.data + sizeof size, stream.size - sizeof size, count, decoded.pixels)) {
+    return Status(StatusCode::corrupt, std::string(field) + " data is a damaged RVL stream");
+  }
+  return decoded;
+}
+
+bool has(std::string_view text, std::string_view word) {
+  return text.find(word) != std::string_view::npos;
+}
+
+}  // namespace
+
+Result<Decoded<std::uint8_t>> decode_color(const char* field, const CompressedImage& image) {
+  // IMREAD_COLOR gives blue, green, red; alpha and more than 8 bits go.
+  const auto decoded = decode_file(field, {image.data.data(), image.data.size()},
+                                   cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+  if (!decoded.ok()) return decoded.status();
+  const cv::Mat& bgr = *decoded;
+  const std::size_t split = image.format.find(';');
+  const std::string_view encoded =
+      split == std::string::npos ? "" : std::string_view(image.format).substr(split);
+  const bool swapped = has(encoded, "compressed rgb");
+  Decoded<std::uint8_t> result{
+      static_cast<std::uint32_t>(bgr.cols), static_cast<std::uint32_t>(bgr.rows), {}};
+  result.pixels.resize(3 * bgr.total());
+  std::uint8_t* out = result.pixels.data();
+  for (int v = 0; v < bgr.rows; ++v) {
+    const std::uint8_t* pixel = bgr.ptr<std::uint8_t>(v);
+    for (int u = 0; u < bgr.cols; ++u, pixel += 3) {
+      *out++ = pixel[swapped ? 0 : 2];
+      *out++ = pixel[1];
+      *out++ = pixel[swapped ? 2 : 0];
+    }
+  }
+  return result;
+}
+
+Result<Decoded<float>> decode_depth(const char* field, const CompressedImage& image) {
+  const bool plugin = has(image.format, "compressedDepth");
+  const bool inverse = plugin && image.format.rfind("32FC1", 0) == 0;
+  const bool millimetres =
+      image.format.rfind("16UC1", 0) == 0 || image.format.rfind("mono16", 0) == 0;
+  if (!inverse && !millimetres) {
+    return Status(StatusCode::unsupported,
+                  std::string(field) + " format is \"" + image.format +
+                      "\"; it must begin with 16UC1, or be compressedDepth of 32FC1");
+  }
+  Bytes file{image.data.data(), image.data.size()};
+  float quantum[2] = {};
+  if (plugin) {
+    if (file.size < kDepthHeader) {
+      return Status(StatusCode::corrupt,
+                    std::string(field) + " data has no compressedDepth header");
+    }
+    std::memcpy(quantum, file.data + 4, sizeof quantum);
+    file = {file.data + kDepthHeader, file.size - kDepthHeader};
+  }
+  const auto values =
+      has(image.format, "rvl") ? decode_rvl_image(field, file) : decode_png16(field, file);
+  if (!values.ok()) return values.status();
+  Decoded<float> result{values->width, values->height, {}};
+  result.pixels.reserve(values->pixels.size());
+  for (const std::uint16_t value : values->pixels) {
+    float z = inverse && value != 0 ? quantum[0] / (static_cast<float>(value) - quantum[1])
+                                    : static_cast<float>(value * 0.001);
+    if (!std::isfinite(z) || z < 0) z = 0;
+    result.pixels.push_back(z);
+  }
+  return result;
+}
+
+}  // namespace bpa::server

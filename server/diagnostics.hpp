@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <bpa/server/capture/frame_source.hpp>
+#include <bpa/server/statistics.hpp>
+#include <bpa/wire/msg/bpa_srvs.hpp>
+#include <bpa/wire/msg/diagnostic_msgs.hpp>
+
+// What /diagnostics says, from what the server counts.
+
+namespace bpa::server {
+
+/// Events a second over the last 10 s.
+struct Rates {
+  double frames_received = 0;
+  double frames_processed = 0;
+  double frames_dropped = 0;
+  double frames_bad = 0;  ///< Rejected or failed.
+  double requests_served = 0;
+  double requests_refused = 0;
+};
+
+/// Turns counters that are read now and then into rates.
+class RateMeter {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+
+  void add(TimePoint now, const Counts& counts);
+  /// Zero before the second reading.
+  Rates rates() const;
+
+ private:
+  std::deque<std::pair<TimePoint, Counts>> readings_;
+};
+
+/// All that diagnostics are made of.
+struct Health {
+  std::string node;  ///< Its full name.
+  wire::bpa_msgs::GetStatus_Response status;
+  Rates rates;
+  std::vector<std::pair<std::string, std::uint64_t>> drops;  ///< Cause and count.
+  std::vector<SourceReport> sources;
+};
+
+/// One status each for detection, drops, queue and models, and one for every source. Names read
+/// "NODE: detection", as diagnostic_updater makes them.
+wire::diagnostic_msgs::DiagnosticArray diagnostics_message(const Health& health,
+                                                           std::int64_t stamp_ns);
+
+}  // namespace bpa::server
