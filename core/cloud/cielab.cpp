@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <bpa/core/base/parallel.hpp>
+#include <bpa/core/cloud/cielab.hpp>
+
+namespace bpa {
+namespace {
+
+// IEC 61966-2-1.
+double linear_of_srgb(double value) {
+  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
+// CIE 15: a cube root with a straight foot.
+double cielab_root(double value) {
+  constexpr double kFoot = 216.0 / 24389.0;
+  return value > kFoot ? std::cbrt(value) : (24389.0 / 27.0 * value + 16) / 116;
+}
+
+template <std::size_t N>
+float interpolate(const std::array<float, N>& table, float position) {
+  const auto below = static_cast<std::size_t>(position);
+  const float part = position - static_cast<float>(below);
+  return table[below] + part * (table[below + 1] - table[below]);
+}
+
+}  // namespace
+
+CielabConverter::CielabConverter() {
+  for (std::size_t i = 0; i < linear_.size(); ++i) {
+    linear_[i] =
+        static_cast<float>(linear_of_srgb(std::min<double>(255, static_cast<double>(i)) / 255));
+  }
+  for (std::size_t i = 0; i < lightness_.size(); ++i) {
+    const double value = std::min(1.0, static_cast<double>(i) / kSteps);
+    lightness_[i] = static_cast<float>(cielab_root(value));
+  }
+}
+
+Eigen::Vector3f CielabConverter::operator()(const Eigen::Vector3f& rgb) const {
+  const auto linear = [&](int k) { return interpolate(linear_, std::clamp(rgb[k], 0.0f, 255.0f)); };
+  const float r = linear(0), g = linear(1), b = linear(2);
+  // Relative to the white point, so that each is 1 for white.
+  const float x = (0.4124564f * r + 0.3575761f * g + 0.1804375f * b) / 0.95047f;
+  const float y = 0.2126729f * r + 0.7151522f * g + 0.0721750f * b;
+  const float z = (0.0193339f * r + 0.1191920f * g + 0.9503041f * b) / 1.08883f;
+  const auto root = [&](float value) {
+    return interpolate(lightness_, std::min(value, 1.0f) * static_cast<float>(kSteps));
+  };
+  const float fx = root(x), fy = root(y), fz = root(z);
+  return {116 * fy - 16, 500 * (fx - fy), 200 * (fy - fz)};
+}
+
+Image<Eigen::Vector3f> reduced_color(const Frame& frame, const SurfaceMap& map, int num_threads) {
+  if (frame.color.empty()) return {};
+  Image<Eigen::Vector3f> out(map.width(), map.height(), Eigen::Vector3f::Zero());
+  const int reduction = map.reduction;
+  const float share = 1.0f / static_cast<float>(reduction * reduction);
+  parallel_for(
+      out.height, num_threads,
+      [&](int v) {
+        for (int u = 0; u < out.width; ++u) {
+          int sum[3] = {0, 0, 0};
+          for (int y = 0; y < reduction; ++y) {
+            const auto first = static_cast<std::size_t>((v * reduction + y) * frame.camera.width);
+            const std::uint8_t* pixel =
+                frame.color.data() + 3 * (first + static_cast<std::size_t>(u * reduction));
+            for (int x = 0; x < 3 * reduction; ++x) sum[x % 3] += pixel[x];
+          }
+          out.at(u, v) = share * Eigen::Vector3i(sum[0], sum[1], sum[2]).cast<float>();
+        }
+      },
+      16);
+  return out;
+}
+
+Image<Eigen::Vector3f> cielab(const Image<Eigen::Vector3f>& rgb, int num_threads) {
+  Image<Eigen::Vector3f> out = rgb;
+  const CielabConverter convert;
+  parallel_for(
+      out.height, num_threads,
+      [&](int v) {
+        for (int u = 0; u < out.width; ++u) out.at(u, v) = convert(rgb.at(u, v));
+      },
+      16);
+  return out;
+}
+
+}  // namespace bpa

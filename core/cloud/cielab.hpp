@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/core/cloud/image.hpp>
+#include <bpa/core/cloud/surface_map.hpp>
+
+namespace bpa {
+
+/// Turns sRGB into CIELAB (CIE 1976, white point D65): L in [0, 100], a and b about [-100, 100].
+/// Distances of 2.3 are just noticeable. Two tables, within 0.05 of the formulas; make one for many
+/// colours.
+class CielabConverter {
+ public:
+  CielabConverter();
+  /// `rgb` in [0, 255]; values outside are clamped.
+  Eigen::Vector3f operator()(const Eigen::Vector3f& rgb) const;
+
+ private:
+  static constexpr int kSteps = 4096;
+  std::array<float, 257> linear_;            // of sRGB values 0..255, the last one twice
+  std::array<float, kSteps + 2> lightness_;  // the cube root of CIELAB, over [0, 1]
+};
+
+/// The frame's colours at the resolution of its surface map: means of blocks of map.reduction
+/// pixels, rgb in [0, 255]. Empty without colour.
+Image<Eigen::Vector3f> reduced_color(const Frame& frame, const SurfaceMap& map, int num_threads);
+
+/// CIELAB of every pixel.
+Image<Eigen::Vector3f> cielab(const Image<Eigen::Vector3f>& rgb, int num_threads);
+
+}  // namespace bpa
