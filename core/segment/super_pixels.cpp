@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <bpa/core/cloud/surface_break.hpp>
+#include <bpa/core/segment/pixel_features.hpp>
+#include <bpa/core/segment/super_pixels.hpp>
+
+namespace bpa {
+namespace {
+
+constexpr float kEdgeScale = 0.4f;
+constexpr float kHollowAngle = 40 * static_cast<float>(M_PI) / 180;
+constexpr float kBulgeAngle = 2 * kHollowAngle;
+
+std::vector<Segment> describe(const SurfaceMap& map, const Image<Eigen::Vector3f>& lab,
+                              const Image<std::int32_t>& labels) {
+  const std::int32_t count =
+      labels.empty() ? 0 : 1 + *std::max_element(labels.pixels.begin(), labels.pixels.end());
+  std::vector<Segment> segments(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] < 0) continue;
+    Segment& segment = segments[static_cast<std::size_t>(labels[i])];
+    segment.pixels.push_back(static_cast<std::uint32_t>(i));
+    segment.mean_position += map.points[i];
+    segment.mean_normal += map.normals[i];
+    if (!lab.empty()) segment.mean_color += lab[i];
+    const int u = static_cast<int>(i) % labels.width, v = static_cast<int>(i) / labels.width;
+    const auto outside = [&](int x, int y) {
+      return !labels.contains(x, y) || labels.at(x, y) != labels[i];
+    };
+    if (outside(u - 1, v) || outside(u + 1, v) || outside(u, v - 1) || outside(u, v + 1)) {
+      segment.border.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  for (Segment& segment : segments) {
+    const float share = 1 / static_cast<float>(segment.pixels.size());
+    segment.mean_position *= share;
+    segment.mean_color *= share;
+    segment.mean_normal.normalize();
+  }
+  return segments;
+}
+
+class PairCounter {
+ public:
+  PairCounter(const SurfaceMap& map, const Image<std::int32_t>& labels, const Image<float>& edges,
+              std::size_t num_segments)
+      : map_(map), labels_(labels), edges_(edges), by_first_(num_segments) {}
+
+  std::vector<SegmentPair> run() {
+    const auto width = static_cast<std::size_t>(labels_.width);
+    for (std::size_t i = 0; i < labels_.size(); ++i) {
+      if (labels_[i] < 0) continue;
+      if (i % width + 1 < width) add(i, i + 1);
+      if (i + width < labels_.size()) add(i, i + width);
+    }
+    std::vector<SegmentPair> pairs;
+    for (std::vector<SegmentPair>& some : by_first_) {
+      std::sort(some.begin(), some.end(),
+                [](const SegmentPair& a, const SegmentPair& b) { return a.second < b.second; });
+      for (SegmentPair& pair : some) {
+        pair.edge /= static_cast<float>(pair.contact);
+        pairs.push_back(pair);
+      }
+    }
+    return pairs;
+  }
+
+ private:
+  void add(std::size_t i, std::size_t j) {
+    const int first = std::min(labels_[i], labels_[j]), second = std::max(labels_[i], labels_[j]);
+    if (first < 0 || first == second) return;
+    std::vector<SegmentPair>& pairs = by_first_[static_cast<std::size_t>(first)];
+    auto found = std::find_if(pairs.begin(), pairs.end(),
+                              [second](const SegmentPair& p) { return p.second == second; });
+    if (found == pairs.end()) found = pairs.insert(found, SegmentPair{first, second, 0, 0, 0, 0});
+    ++found->contact;
+    found->breaks += surface_breaks(map_, i, j);
+    found->edge += std::max(edges_[i], edges_[j]);
+  }
+
+  const SurfaceMap& map_;
+  const Image<std::int32_t>& labels_;
+  const Image<float>& edges_;
+  std::vector<std::vector<SegmentPair>> by_first_;
+};
+
+float squared(float x) { return x * x; }
+
+float angle_between(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  return std::acos(std::clamp(a.dot(b), -1.0f, 1.0f));
+}
+
+}  // namespace
+
+float segment_affinity(const Segment& first, const Segment& second, const SegmentPair& pair) {
+  if (pair.contact <= 0) return 0;
+  const Eigen::Vector3f apart = second.mean_position - first.mean_position;
+  const bool hollow = (second.mean_normal - first.mean_normal).dot(apart) < 0;
+  const float turn = angle_between(first.mean_normal, second.mean_normal);
+  // On one smooth surface the chord makes opposite angles with the two tangent planes; a step makes
+  // equal ones.
+  const float length = std::max(apart.norm(), 1e-6f);
+  const float step = std::asin(
+      std::clamp(0.5f * (first.mean_normal + second.mean_normal).dot(apart) / length, -1.0f, 1.0f));
+  const float misfit = turn + std::abs(step);
+  const float energy =
+      squared(pair.edge / kEdgeScale) + squared(misfit / (hollow ? kHollowAngle : kBulgeAngle));
+  const float unbroken = 1 - static_cast<float>(pair.breaks) / static_cast<float>(pair.contact);
+  return unbroken * std::exp(-0.5f * energy);
+}
+
+Segmentation super_pixels(const SurfaceMap& map, const Image<Eigen::Vector3f>& lab,
+                          const Image<float>& edges, const SuperPixelOptions& options) {
+  const detail::PixelFeatures features = detail::pixel_features(map, lab, options);
+  Segmentation out;
+  out.labels = detail::connect(map, features, edges, detail::cluster(map, features, edges, options),
+                               options);
+  out.segments = describe(map, lab, out.labels);
+  out.pairs = PairCounter(map, out.labels, edges, out.segments.size()).run();
+  for (SegmentPair& pair : out.pairs) {
+    pair.affinity = segment_affinity(out.segments[static_cast<std::size_t>(pair.first)],
+                                     out.segments[static_cast<std::size_t>(pair.second)], pair);
+  }
+  return out;
+}
+
+}  // namespace bpa

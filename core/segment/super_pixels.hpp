@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include <bpa/core/base/options.hpp>
+#include <bpa/core/cloud/image.hpp>
+#include <bpa/core/cloud/surface_map.hpp>
+
+namespace bpa {
+
+struct SuperPixelOptions {
+  int spacing_px = 8;        ///< Of the grid of first centres: about the size of a segment.
+  int iterations = 4;        ///< Of k-means.
+  int min_pixels = 10;       ///< Smaller segments join a neighbour where no edge is between.
+  double angle_deg = 25;     ///< Normals this far apart count as much as one spacing in position.
+  double color = 12;         ///< So do blurred CIELAB colours,
+  double edge = 0.5;         ///< and an edge of this likelihood between pixel and centre.
+  double strong_edge = 0.8;  ///< Edge likelihood that no segment crosses, (0, 1].
+  int num_threads = 0;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("spacing_px", spacing_px, FieldRule{3, 64, "Size of a super-pixel, pixels."});
+    visit("iterations", iterations, FieldRule{1, 50, "Iterations of k-means."});
+    visit("min_pixels", min_pixels, FieldRule{1, 1000, "Smallest super-pixel."});
+    visit("angle_deg", angle_deg, FieldRule{1, 360, "Angle of normals that counts as a spacing."});
+    visit("color", color, FieldRule{0.1, 1000, "CIELAB distance that counts as a spacing."});
+    visit("edge", edge, FieldRule{0.01, 100, "Edge likelihood that counts as a spacing."});
+    visit("strong_edge", strong_edge, FieldRule{0.01, 1, "Edge likelihood never crossed."});
+  }
+};
+
+/// A 3-D super-pixel: a connected piece of surface that is alike in place, orientation and colour.
+struct Segment {
+  std::vector<std::uint32_t> pixels;  ///< Of the surface map, ascending; not empty.
+  std::vector<std::uint32_t> border;  ///< Those with one of the four neighbours outside; ascending.
+  Eigen::Vector3f mean_position = Eigen::Vector3f::Zero();  ///< Camera frame, metres.
+  Eigen::Vector3f mean_normal = Eigen::Vector3f::Zero();    ///< Unit length.
+  Eigen::Vector3f mean_color = Eigen::Vector3f::Zero();     ///< CIELAB; 0 without colour.
+};
+
+/// Two segments that touch.
+struct SegmentPair {
+  int first = 0;  ///< Indices into segments, first < second.
+  int second = 0;
+  int contact = 0;     ///< Pairs of neighbouring pixels, one in each.
+  int breaks = 0;      ///< Those of them between which the surface breaks off.
+  float edge = 0;      ///< Mean edge likelihood along the contact, [0, 1].
+  float affinity = 0;  ///< How likely both are of one object, see segment_affinity(), [0, 1].
+};
+
+/// A partition of the pixels that have a normal.
+struct Segmentation {
+  Image<std::int32_t> labels;  ///< Index into segments; -1 where there is no normal.
+  std::vector<Segment> segments;
+  std::vector<SegmentPair> pairs;  ///< Each once, sorted by (first, second).
+};
+
+/// Over-segments the surface by k-means on position, normal and (blurred) CIELAB colour (paper
+/// section V): each pixel is compared with the nine centres about it on a grid, as SLIC does
+/// (Achanta et al. 2012, "SLIC superpixels compared to state-of-the-art superpixel methods",
+/// TPAMI 34). Then segments are made to keep within edges: their pixels whose edge likelihood is
+/// below strong_edge are connected among themselves without crossing a break of the surface;
+/// pixels on a strong edge join the more similar side. `lab` may be empty; `edges` is the edge
+/// image. Both of the map's size. The same for any number of threads.
+Segmentation super_pixels(const SurfaceMap& map, const Image<Eigen::Vector3f>& lab,
+                          const Image<float>& edges, const SuperPixelOptions& options = {});
+
+/// exp(-E/2) times the share of the contact without a break, where E adds up the squares of: the
+/// edge likelihood along the contact over 0.4; and an angle over 40 degrees if the two form a
+/// hollow, over 80 degrees if they bulge. The angle is the one between the mean normals plus the
+/// one by which the line between the mean positions is steeper than a smooth surface would have it.
+float segment_affinity(const Segment& first, const Segment& second, const SegmentPair& pair);
+
+}  // namespace bpa
