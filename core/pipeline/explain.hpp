@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/core/features/edge_image.hpp>
+#include <bpa/core/io/image_file.hpp>
+#include <bpa/core/segment/super_pixels.hpp>
+
+// Pictures of what the detector makes of a frame, for people; as large as the frame, ready for
+// io::write_color_png.
+
+namespace bpa {
+
+/// The three kinds of edges over the dimmed colour image: occluding range edges red, occluded ones
+/// blue, curvature edges green, image edges yellow. Where there are several, the first of these.
+io::ColorImage draw_edges(const Frame& frame, const SceneEdges& edges);
+
+/// The edge image in grey: white is 1.
+io::ColorImage draw_edge_image(const Frame& frame, const Image<float>& likelihood);
+
+/// The borders of the super-pixels over the colour image, black where the surface goes on, white
+/// where the affinity across the border is below one half.
+io::ColorImage draw_segment_borders(const Frame& frame, const Segmentation& segmentation);
+
+/// Every super-pixel in its mean colour (without colour: shaded by its mean normal); black where
+/// there is no surface.
+io::ColorImage draw_segment_means(const Frame& frame, const Segmentation& segmentation);
+
+}  // namespace bpa
