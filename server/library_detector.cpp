@@ -40,7 +40,7 @@ Result<std::shared_ptr<LibraryDetector>> LibraryDetector::create(const std::stri
             "with `bpa model from-mesh` or `bpa model from-bop`");
     return self;
   }
-  auto sources = io::load_library(folder);
+  auto sources = io::load_library(folder, num_threads);
   if (!sources.ok()) return sources.status();
   auto library = std::make_shared<ModelLibrary>();
   for (ModelSource& source : *sources) {

@@ -52,7 +52,7 @@ io::ResultPlacement to_result(const Placement& placement, const Pose& reported_f
 
 Result<std::shared_ptr<const ModelLibrary>> load_detection_library(
     const std::string& folder, const std::vector<std::string>& names, int num_threads) {
-  Result<std::vector<ModelSource>> sources = io::load_library(folder);
+  Result<std::vector<ModelSource>> sources = io::load_library(folder, num_threads);
   if (!sources.ok()) return sources.status();
   for (const std::string& name : names) {
     const bool known = std::any_of(sources->begin(), sources->end(),

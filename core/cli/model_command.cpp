@@ -39,7 +39,7 @@ void print_saved(const ModelSource& model, const std::string& library) {
 Result<int> choose_number(const std::string& library, const std::string& name) {
   int largest = 0;
   for (const std::string& other : io::list_models(library)) {
-    const Result<ModelSource> model = io::load_model(library, other);
+    const Result<ModelSource> model = io::describe_model(library, other);
     if (!model.ok()) return model.status();
     if (other == name) return model->number;
     largest = std::max(largest, model->number);
@@ -76,7 +76,7 @@ Status from_mesh(ModelArguments a) {
     return status;
   }
   source->source = std::filesystem::path(a.input).filename().string();
-  if (Status s = io::save_model(a.library, *source); !s.ok()) return s;
+  if (Status s = io::save_model(a.library, *source, a.common.threads); !s.ok()) return s;
   print_saved(*source, a.library);
   return {};
 }
@@ -99,7 +99,7 @@ Status from_bop(ModelArguments a) {
     source->source = std::filesystem::path(model.path).filename().string();
     source->symmetry = model.symmetry;
     source->diameter = model.diameter;
-    if (Status s = io::save_model(a.library, *source); !s.ok()) return s;
+    if (Status s = io::save_model(a.library, *source, a.common.threads); !s.ok()) return s;
     progress.clear();
     print_saved(*source, a.library);
   }
@@ -126,7 +126,7 @@ Status info(const ModelArguments& a) {
 }
 
 Status list(const ModelArguments& a) {
-  const Result<std::vector<ModelSource>> models = io::load_library(a.library);
+  const Result<std::vector<ModelSource>> models = io::load_library(a.library, a.common.threads);
   if (!models.ok()) return models.status();
   std::printf("%6s  %-28s %12s %8s  %s\n", "number", "name", "diameter", "points", "symmetries");
   for (const ModelSource& model : *models) {

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 
+#include <bpa/core/base/parallel.hpp>
 #include <bpa/core/io/mesh_file.hpp>
 #include <bpa/core/io/model_file.hpp>
 
 #include "json_file.hpp"
+#include "model_index_file.hpp"
 
 namespace bpa::io {
 namespace fs = std::filesystem;
@@ -15,6 +17,8 @@ namespace {
 constexpr const char* kFormat = "bpa model";
 constexpr const char* kModelFile = "model.json";
 constexpr const char* kSurfaceFile = "surface.ply";
+constexpr const char* kIndexFile = "index.bin";
+constexpr const char* kOrigins[] = {"none", "declared", "found"};  // by SymmetryOrigin
 
 bool legal_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
@@ -33,8 +37,30 @@ Eigen::Vector3d vector_from_json(const Json& json) {
   return {v[0], v[1], v[2]};
 }
 
-Json model_json(const ModelSource& model, const std::string& surface) {
-  Json symmetries = {{"discrete", Json::array()}, {"continuous", Json::array()}};
+Json curve_json(const NoiseCurve& c) {
+  return {{"floor", c.floor},
+          {"edge_height", c.edge_height},
+          {"edge_place_m", c.edge_place},
+          {"edge_width_m", c.edge_width},
+          {"angle_height", c.angle_height},
+          {"angle_place", c.angle_place},
+          {"angle_width", c.angle_width}};
+}
+
+NoiseCurve curve_from_json(const Json& json) {
+  const auto get = [&json](const char* key) { return json.at(key).get<double>(); };
+  return {get("floor"),        get("edge_height"), get("edge_place_m"), get("edge_width_m"),
+          get("angle_height"), get("angle_place"), get("angle_width")};
+}
+
+Json file_json(const std::string& bytes) {
+  return {{"bytes", bytes.size()}, {"crc32", crc32(bytes)}};
+}
+
+Json symmetry_json(const ModelSource& model) {
+  Json symmetries = {{"origin", kOrigins[static_cast<int>(model.symmetry_origin)]},
+                     {"discrete", Json::array()},
+                     {"continuous", Json::array()}};
   for (const Pose& pose : model.symmetry.discrete) {
     symmetries["discrete"].push_back(pose_to_json(pose));
   }
@@ -42,6 +68,10 @@ Json model_json(const ModelSource& model, const std::string& surface) {
     symmetries["continuous"].push_back(
         {{"axis", vector_json(symmetry.axis)}, {"point_m", vector_json(symmetry.point)}});
   }
+  return symmetries;
+}
+
+Json model_json(const ModelSource& model, const std::string& surface, const std::string& index) {
   return {{"format", kFormat},
           {"version", kModelFileVersion},
           {"name", model.name},
@@ -49,18 +79,45 @@ Json model_json(const ModelSource& model, const std::string& surface) {
           {"source", model.source},
           {"diameter_m", model.diameter},
           {"complete", model.complete},
-          {"symmetries", symmetries},
+          {"symmetries", symmetry_json(model)},
+          {"noise",
+           {{"range_m", curve_json(model.noise.range)},
+            {"normal_rad", curve_json(model.noise.normal)},
+            {"depth_m", model.noise.depth},
+            {"fitted", model.noise.fitted}}},
+          {"warnings", model.warnings},
           {"points", model.surface.size()},
-          {"surface_bytes", surface.size()},
-          {"surface_crc32", crc32(surface)}};
+          {"files", {{kSurfaceFile, file_json(surface)}, {kIndexFile, file_json(index)}}}};
+}
+
+struct FileRecord {
+  std::size_t bytes = 0;
+  std::uint32_t checksum = 0;
+};
+
+FileRecord record_from_json(const Json& json) {
+  return {json.at("bytes").get<std::size_t>(), json.at("crc32").get<std::uint32_t>()};
 }
 
 struct Description {
   ModelSource model;
   std::size_t points = 0;
-  std::size_t surface_bytes = 0;
-  std::uint32_t checksum = 0;
+  FileRecord surface, index;
 };
+
+void parse_symmetry(const Json& json, ModelSource& model) {
+  const auto origin = json.at("origin").get<std::string>();
+  for (int k = 0; k < 3; ++k) {
+    if (origin == kOrigins[k]) model.symmetry_origin = static_cast<SymmetryOrigin>(k);
+  }
+  for (const Json& pose : json.at("discrete")) {
+    model.symmetry.discrete.push_back(pose_from_json(pose));
+  }
+  for (const Json& symmetry : json.at("continuous")) {
+    model.symmetry.continuous.push_back(
+        {vector_from_json(symmetry.at("axis")), vector_from_json(symmetry.at("point_m"))});
+  }
+}
 
 Result<Description> parse_description(const std::string& path, const Json& json) {
   if (json.value("format", "") != kFormat) {
@@ -74,21 +131,22 @@ Result<Description> parse_description(const std::string& path, const Json& json)
                                            ": build the model again");
   }
   Description result;
-  result.model.name = json.at("name").get<std::string>();
-  result.model.number = json.at("number").get<int>();
-  result.model.source = json.at("source").get<std::string>();
-  result.model.diameter = json.at("diameter_m").get<double>();
-  result.model.complete = json.at("complete").get<bool>();
-  for (const Json& pose : json.at("symmetries").at("discrete")) {
-    result.model.symmetry.discrete.push_back(pose_from_json(pose));
-  }
-  for (const Json& symmetry : json.at("symmetries").at("continuous")) {
-    result.model.symmetry.continuous.push_back(
-        {vector_from_json(symmetry.at("axis")), vector_from_json(symmetry.at("point_m"))});
-  }
+  ModelSource& model = result.model;
+  model.name = json.at("name").get<std::string>();
+  model.number = json.at("number").get<int>();
+  model.source = json.at("source").get<std::string>();
+  model.diameter = json.at("diameter_m").get<double>();
+  model.complete = json.at("complete").get<bool>();
+  parse_symmetry(json.at("symmetries"), model);
+  const Json& noise = json.at("noise");
+  model.noise.range = curve_from_json(noise.at("range_m"));
+  model.noise.normal = curve_from_json(noise.at("normal_rad"));
+  model.noise.depth = noise.at("depth_m").get<double>();
+  model.noise.fitted = noise.at("fitted").get<bool>();
+  model.warnings = json.at("warnings").get<std::vector<std::string>>();
   result.points = json.at("points").get<std::size_t>();
-  result.surface_bytes = json.at("surface_bytes").get<std::size_t>();
-  result.checksum = json.at("surface_crc32").get<std::uint32_t>();
+  result.surface = record_from_json(json.at("files").at(kSurfaceFile));
+  result.index = record_from_json(json.at("files").at(kIndexFile));
   return result;
 }
 
@@ -98,28 +156,61 @@ Result<Description> read_description(const std::string& path) {
   return with_json(path, [&]() { return parse_description(path, *json); });
 }
 
-Status read_surface(const std::string& path, Description& description) {
-  const Result<std::string> bytes = read_file(path);
-  if (!bytes.ok()) return bytes.status();
-  if (bytes->size() < description.surface_bytes) {
-    return Status(StatusCode::corrupt, path + " is truncated: " + std::to_string(bytes->size()) +
-                                           " of " + std::to_string(description.surface_bytes) +
-                                           " bytes");
+/// The description of LIBRARY/NAME.
+Result<Description> find_description(const std::string& library, const std::string& name) {
+  const fs::path folder = fs::path(library) / name;
+  if (!legal_name(name) || !fs::exists(folder / kModelFile)) {
+    return Status(StatusCode::not_found, "library " + library + " has no model \"" + name + "\"");
   }
-  if (bytes->size() != description.surface_bytes || crc32(*bytes) != description.checksum) {
+  Result<Description> description = read_description((folder / kModelFile).string());
+  if (!description.ok()) return description.status();
+  if (description->model.name != name) {
+    return Status(StatusCode::corrupt, (folder / kModelFile).string() + " names the model \"" +
+                                           description->model.name + "\"; its folder must too");
+  }
+  return description;
+}
+
+/// A file's bytes if they are those that the description was written with.
+Result<std::string> read_checked(const std::string& path, const FileRecord& record) {
+  Result<std::string> bytes = read_file(path);
+  if (!bytes.ok()) return bytes.status();
+  if (bytes->size() < record.bytes) {
+    return Status(StatusCode::corrupt, path + " is truncated: " + std::to_string(bytes->size()) +
+                                           " of " + std::to_string(record.bytes) + " bytes");
+  }
+  if (bytes->size() != record.bytes || crc32(*bytes) != record.checksum) {
     return Status(StatusCode::corrupt,
                   path + " was altered: it does not match the checksum in " + kModelFile);
   }
+  return bytes;
+}
+
+Status read_surface(const std::string& path, Description& description) {
+  const Result<std::string> bytes = read_checked(path, description.surface);
+  if (!bytes.ok()) return bytes.status();
   Result<TriangleMesh> mesh = parse_ply(*bytes, path);
   if (!mesh.ok()) return mesh.status();
   PointCloud& surface = description.model.surface;
   surface.points = std::move(mesh->vertices);
   surface.normals = std::move(mesh->normals);
   surface.colors = std::move(mesh->colors);
-  if (surface.size() == description.points) return {};
+  if (surface.size() == description.points && surface.normals.size() == surface.size()) return {};
   return Status(StatusCode::corrupt, path + " has " + std::to_string(surface.size()) +
                                          " points; model.json says " +
-                                         std::to_string(description.points));
+                                         std::to_string(description.points) + " with normals");
+}
+
+Status read_index(const std::string& path, Description& description) {
+  const Result<std::string> bytes = read_checked(path, description.index);
+  if (!bytes.ok()) return bytes.status();
+  Result<IndexFile> file = parse_index(*bytes, description.points, path);
+  if (!file.ok()) return file.status();
+  description.model.normal_variance = std::move(file->normal_variance);
+  if (file->index == nullptr) return {};
+  derive_index(description.model, *file->index);
+  description.model.prepared = std::move(file->index);
+  return {};
 }
 
 /// Fails when another model of the library has the number already.
@@ -151,23 +242,27 @@ std::string clean_model_name(const std::string& name) {
   return clean.substr(0, 100);
 }
 
-Status save_model(const std::string& library, const ModelSource& model) {
-  if (!legal_name(model.name)) {
-    return invalid_argument("model name \"" + model.name +
+Status save_model(const std::string& library, const ModelSource& source, int num_threads) {
+  if (!legal_name(source.name)) {
+    return invalid_argument("model name \"" + source.name +
                             "\" must be 1 to 100 letters, digits, '_', '-' and '.', and not begin "
                             "with '.'");
   }
-  if (Status s = check_number(library, model); !s.ok()) return s;
+  if (Status s = check_number(library, source); !s.ok()) return s;
+  const auto made = make_object_model(source, num_threads);
+  if (!made.ok()) return made.status();
+  const ObjectModel& model = **made;
   const fs::path target = fs::path(library) / model.name;
   const fs::path fresh = fs::path(library) / ("." + model.name + ".new");
   const fs::path old = fs::path(library) / ("." + model.name + ".old");
   std::error_code error;
   fs::remove_all(fresh, error);
   const std::string surface = ply_bytes(model.surface);
+  const std::string index = index_bytes(*model.index, model.normal_variance);
+  const std::string json = model_json(model, surface, index).dump(1) + "\n";
   Status status = write_file((fresh / kSurfaceFile).string(), surface);
-  if (status.ok()) {
-    status = write_file((fresh / kModelFile).string(), model_json(model, surface).dump(1) + "\n");
-  }
+  if (status.ok()) status = write_file((fresh / kIndexFile).string(), index);
+  if (status.ok()) status = write_file((fresh / kModelFile).string(), json);
   if (!status.ok()) return status;
   fs::remove_all(old, error);
   if (fs::exists(target)) fs::rename(target, old, error);
@@ -181,17 +276,17 @@ Status save_model(const std::string& library, const ModelSource& model) {
 }
 
 Result<ModelSource> load_model(const std::string& library, const std::string& name) {
-  const fs::path folder = fs::path(library) / name;
-  if (!legal_name(name) || !fs::exists(folder / kModelFile)) {
-    return Status(StatusCode::not_found, "library " + library + " has no model \"" + name + "\"");
-  }
-  Result<Description> description = read_description((folder / kModelFile).string());
+  Result<Description> description = find_description(library, name);
   if (!description.ok()) return description.status();
-  if (description->model.name != name) {
-    return Status(StatusCode::corrupt, (folder / kModelFile).string() + " names the model \"" +
-                                           description->model.name + "\"; its folder must too");
-  }
+  const fs::path folder = fs::path(library) / name;
   if (Status s = read_surface((folder / kSurfaceFile).string(), *description); !s.ok()) return s;
+  if (Status s = read_index((folder / kIndexFile).string(), *description); !s.ok()) return s;
+  return std::move(description->model);
+}
+
+Result<ModelSource> describe_model(const std::string& library, const std::string& name) {
+  Result<Description> description = find_description(library, name);
+  if (!description.ok()) return description.status();
   return std::move(description->model);
 }
 
@@ -206,14 +301,19 @@ std::vector<std::string> list_models(const std::string& library) {
   return names;
 }
 
-Result<std::vector<ModelSource>> load_library(const std::string& library) {
+Result<std::vector<ModelSource>> load_library(const std::string& library, int num_threads) {
   std::error_code error;
   if (!fs::is_directory(library, error)) {
     return Status(StatusCode::not_found, "library " + library + " is not there");
   }
+  const std::vector<std::string> names = list_models(library);
+  std::vector<Result<ModelSource>> loaded(names.size(), Result<ModelSource>(ModelSource{}));
+  parallel_for(static_cast<int>(names.size()), num_threads, [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    loaded[k] = load_model(library, names[k]);
+  });
   std::vector<ModelSource> models;
-  for (const std::string& name : list_models(library)) {
-    Result<ModelSource> model = load_model(library, name);
+  for (Result<ModelSource>& model : loaded) {
     if (!model.ok()) return model.status();
     models.push_back(std::move(*model));
   }

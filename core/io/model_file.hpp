@@ -8,27 +8,33 @@
 #include <bpa/core/base/status.hpp>
 #include <bpa/core/model/object_model.hpp>
 
-// A library on disk is a folder of folders: LIBRARY/NAME/model.json says what the model is, and
-// LIBRARY/NAME/surface.ply (binary; points, normals, colours; metres) is its surface.
+// A library on disk is a folder of folders, one for each model:
+//
+//   LIBRARY/NAME/model.json   what the model is, and the size and checksum of the other files
+//   LIBRARY/NAME/surface.ply  its surface (binary; points, normals, colours; metres)
+//   LIBRARY/NAME/index.bin    what was computed from it, so that loading is quick
 
 namespace bpa::io {
 
-constexpr int kModelFileVersion = 1;
+constexpr int kModelFileVersion = 2;
 
 /// Writes a model into a library, replacing one of the same name; the old model stays whole until
-/// the new one is. Fails with invalid_argument when the name is not of letters, digits, '_', '-'
-/// and
-/// '.' (nor starting with '.'), when the number is not positive or belongs to another model of the
-/// library; unavailable when it cannot be written.
-Status save_model(const std::string& library, const ModelSource& model);
+/// the new one is. Computes the index unless model.prepared has it. Fails with invalid_argument
+/// when the name is not of letters, digits, '_', '-' and '.' (nor starting with '.'), when the
+/// number is not positive or belongs to another model of the library, when the surface is too small
+/// to make a model of; unavailable when it cannot be written.
+Status save_model(const std::string& library, const ModelSource& model, int num_threads = 0);
 
-/// Reads LIBRARY/NAME. Fails with not_found, or with corrupt saying whether the file is truncated,
-/// altered (its checksum differs), or of another version.
+/// Reads LIBRARY/NAME; `prepared` is the stored index. Fails with not_found, or with corrupt saying
+/// whether the file is truncated, altered (its checksum differs), or of another version.
 Result<ModelSource> load_model(const std::string& library, const std::string& name);
 
-/// Every model of a library by increasing number. Fails with not_found when the folder is not
-/// there, invalid_argument when it holds no model, corrupt when any of its models is.
-Result<std::vector<ModelSource>> load_library(const std::string& library);
+/// The same without surface and index, which are not read.
+Result<ModelSource> describe_model(const std::string& library, const std::string& name);
+
+/// Every model of a library by increasing number, read in parallel. Fails with not_found when the
+/// folder is not there, invalid_argument when it holds no model, corrupt when any of its models is.
+Result<std::vector<ModelSource>> load_library(const std::string& library, int num_threads = 0);
 
 /// The names of a library's models, sorted by name; empty for an empty or missing folder.
 std::vector<std::string> list_models(const std::string& library);

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <bpa/core/features/feature_tree.hpp>
 #include <bpa/core/features/fpfh.hpp>
 #include <bpa/core/features/point_pairs.hpp>
+#include <bpa/core/model/distance_transform.hpp>
 #include <bpa/core/model/object_model.hpp>
 #include <bpa/core/model/view_sphere.hpp>
 
@@ -21,6 +24,7 @@ constexpr float kCurvatureRadius = 0.015f;  ///< Of the neighbourhood of a princ
 struct CheckPoints {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
+  std::vector<std::uint32_t> surface;  ///< Which point of the surface each one is.
   /// The same again: x, y, z of the points, then of the normals; each padded to a multiple of
   /// kCheckBlock with points that face nowhere.
   std::vector<float> coordinates[6];
@@ -40,6 +44,18 @@ struct ModelIndex {
   PointCloud coarse;             ///< What `pairs` is made of.
   PointPairTable pairs{{}, 1};
   std::vector<ModelView> views;  ///< The 66 views, over `surface`.
+  DistanceTransform distances;   ///< Of `surface`.
 };
+
+/// Counts up whenever build_index() gives another index for the same surface, so that stored ones
+/// are told from current ones.
+constexpr int kIndexVersion = 1;
+
+/// The index of a model's surface, which must have normals.
+std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threads);
+
+/// The parts of an index that are quicker to compute than to read from a file: check points, the
+/// tree over `fpfh`, the pairs of `coarse`.
+void derive_index(const ModelSource& source, ModelIndex& index);
 
 }  // namespace bpa

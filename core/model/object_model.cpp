@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kMaxCheckPoints = 1024;
 constexpr float kMaxCoarsePoints = 500;
+constexpr float kFitRadius = 0.008f;  // what a fitted normal averages over
 
 CheckPoints check_points(const PointCloud& surface) {
   std::vector<std::size_t> order(surface.size());
@@ -28,6 +29,7 @@ CheckPoints check_points(const PointCloud& surface) {
   order.resize(std::min(order.size(), kMaxCheckPoints));
   CheckPoints check;
   for (std::size_t i : order) {
+    check.surface.push_back(static_cast<std::uint32_t>(i));
     check.points.push_back(surface.points[i]);
     check.normals.push_back(surface.normals[i]);
   }
@@ -72,7 +74,6 @@ float mean_spacing(const std::vector<Eigen::Vector3f>& points) {
 }
 
 std::vector<Eigen::Vector3f> soften_normals(const PointCloud& surface, int num_threads) {
-  constexpr float kFitRadius = 0.008f;
   const NeighborGrid grid(surface.points, kFitRadius);
   std::vector<Eigen::Vector3f> soft(surface.size());
   parallel_for(
@@ -92,6 +93,59 @@ std::vector<Eigen::Vector3f> soften_normals(const PointCloud& surface, int num_t
 
 }  // namespace
 
+std::vector<float> geometric_normal_variance(const PointCloud& surface, int num_threads) {
+  const NeighborGrid grid(surface.points, kFitRadius);
+  std::vector<float> variance(surface.size());
+  parallel_for(
+      static_cast<int>(surface.size()), num_threads,
+      [&](int index) {
+        const auto i = static_cast<std::size_t>(index);
+        float sum = 0;
+        int count = 0;
+        grid.for_each_neighbor(surface.points[i], [&](int j, float) {
+          const float cosine = surface.normals[static_cast<std::size_t>(j)].dot(surface.normals[i]);
+          if (cosine <= -0.2f) return;
+          const float angle = std::acos(std::min(1.0f, cosine));
+          sum += angle * angle;
+          ++count;
+        });
+        variance[i] = count > 0 ? sum / static_cast<float>(count) : 0;
+      },
+      64);
+  return variance;
+}
+
+std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threads) {
+  constexpr float kDistanceCell = 0.004f, kDistanceMargin = 0.03f;  // metres
+  auto index = std::make_shared<ModelIndex>();
+  index->soft_normals = soften_normals(source.surface, num_threads);
+  index->features = downsample(source.surface, kFeatureSpacing);
+  estimate_curvature(index->features, kCurvatureRadius, num_threads);
+  std::vector<int> all(index->features.size());
+  std::iota(all.begin(), all.end(), 0);
+  index->fpfh = compute_fpfh(index->features, all, kFeatureRadius, num_threads);
+  index->coarse = coarse_points(source.surface, source.diameter);
+  // A sparse surface is drawn with larger cells, so that it has no holes.
+  const float spacing = std::max(0.003f, 1.3f * mean_spacing(source.surface.points));
+  index->views = render_views(source.surface, spacing, num_threads);
+  if (!source.complete) {
+    for (ModelView& view : index->views) {
+      view.edges.clear(), view.outward.clear();
+      std::fill(view.edge_distance.begin(), view.edge_distance.end(), kMaxEdgeDistance);
+    }
+  }
+  index->distances = distance_transform(source.surface.points, kDistanceCell, kDistanceMargin);
+  derive_index(source, *index);
+  return index;
+}
+
+void derive_index(const ModelSource& source, ModelIndex& index) {
+  index.check = check_points(source.surface);
+  index.feature_tree = FeatureTree(index.fpfh);
+  index.pairs =
+      PointPairTable(index.coarse, std::max(0.006f, 0.05f * static_cast<float>(source.diameter)));
+}
+
 Result<std::shared_ptr<const ObjectModel>> make_object_model(ModelSource source, int num_threads) {
   if (source.surface.size() < 20 || source.surface.normals.size() != source.surface.size()) {
     return invalid_argument("model " + source.name +
@@ -100,27 +154,13 @@ Result<std::shared_ptr<const ObjectModel>> make_object_model(ModelSource source,
   if (!(source.diameter > 0)) {
     return invalid_argument("model " + source.name + " has no diameter; it must be positive");
   }
-  auto index = std::make_shared<ModelIndex>();
-  index->soft_normals = soften_normals(source.surface, num_threads);
-  index->check = check_points(source.surface);
-  index->features = downsample(source.surface, kFeatureSpacing);
-  estimate_curvature(index->features, kCurvatureRadius, num_threads);
-  std::vector<int> all(index->features.size());
-  std::iota(all.begin(), all.end(), 0);
-  index->fpfh = compute_fpfh(index->features, all, kFeatureRadius, num_threads);
-  index->feature_tree = FeatureTree(index->fpfh);
-  index->coarse = coarse_points(source.surface, source.diameter);
-  index->pairs =
-      PointPairTable(index->coarse, std::max(0.006f, 0.05f * static_cast<float>(source.diameter)));
-  // A sparse surface is drawn with larger cells, so that it has no holes.
-  const float spacing = std::max(0.003f, 1.3f * mean_spacing(source.surface.points));
-  index->views = render_views(source.surface, spacing, num_threads);
-  if (!source.complete) {
-    for (ModelView& view : index->views) view.edges.clear(), view.outward.clear();
-  }
   auto model = std::make_shared<ObjectModel>();
+  model->index = source.prepared ? source.prepared : build_index(source, num_threads);
   static_cast<ModelSource&>(*model) = std::move(source);
-  model->index = std::move(index);
+  model->prepared.reset();
+  if (model->normal_variance.size() != model->surface.size()) {
+    model->normal_variance = geometric_normal_variance(model->surface, num_threads);
+  }
   return std::shared_ptr<const ObjectModel>(std::move(model));
 }
 

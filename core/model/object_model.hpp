@@ -10,8 +10,18 @@
 #include <bpa/core/base/status.hpp>
 #include <bpa/core/cloud/point_cloud.hpp>
 #include <bpa/core/geometry/symmetry.hpp>
+#include <bpa/core/model/noise_model.hpp>
 
 namespace bpa {
+
+struct ModelIndex;  // what detection computes from the source; see model_index.hpp
+
+/// Where a model's symmetries come from.
+enum class SymmetryOrigin {
+  none,      ///< Nobody has looked.
+  declared,  ///< By the data set or the user, or found and then confirmed by the user.
+  found,     ///< In the surface; not confirmed yet.
+};
 
 /// What a model file holds; everything else of an ObjectModel follows from it.
 struct ModelSource {
@@ -22,11 +32,17 @@ struct ModelSource {
   bool complete = true;  ///< False when the surface was seen from one side only: then its rim is
                          ///< where looking ended, not where the object does.
   SymmetryGroup symmetry;
+  SymmetryOrigin symmetry_origin = SymmetryOrigin::none;
   PointCloud surface;  ///< Points, normals, colours where known; object frame, metres. Evenly
                        ///< spaced, only what a camera outside can see.
+  /// For each surface point, the mean squared angle between its normal and those that a sensor
+  /// reports there, radians squared: large beside creases and where the surface is hard to see.
+  std::vector<float> normal_variance;
+  NoiseModel noise = usual_noise();   ///< What a sensor is off by.
+  std::vector<std::string> warnings;  ///< For people: what may be wrong with the model.
+  /// The index of this very surface if it was computed before (a model file holds it); else null.
+  std::shared_ptr<const ModelIndex> prepared;
 };
-
-struct ModelIndex;  // what detection computes from the source; see model_index.hpp
 
 /// A known object, ready for detection.
 struct ObjectModel : ModelSource {
@@ -55,7 +71,12 @@ Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::
 Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std::string& name,
                                              int number, const ModelOptions& options = {});
 
-/// Computes the index. Deterministic.
+/// The normal variances that follow from the surface alone: a sensor averages normals over its
+/// window, so that they vary as those of the surface within it do.
+std::vector<float> geometric_normal_variance(const PointCloud& surface, int num_threads);
+
+/// Computes the index, or takes source.prepared, and the normal variances where they are missing.
+/// Deterministic.
 Result<std::shared_ptr<const ObjectModel>> make_object_model(ModelSource source,
                                                              int num_threads = 0);
 

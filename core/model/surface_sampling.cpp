@@ -131,11 +131,12 @@ PointCloud visible_surface(const PointCloud& cloud, float spacing, int num_threa
   return out;
 }
 
-ModelSource make_source(PointCloud surface, const std::string& name, int number) {
+ModelSource make_source(PointCloud surface, const std::string& name, int number, int num_threads) {
   ModelSource source;
   source.name = name;
   source.number = number;
   source.diameter = largest_distance(surface.points);
+  source.normal_variance = geometric_normal_variance(surface, num_threads);
   source.surface = std::move(surface);
   return source;
 }
@@ -155,7 +156,7 @@ Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::
   const PointCloud dense = sample_triangles(mesh, 6 / (spacing * spacing));
   const PointCloud even = downsample(dense, static_cast<float>(spacing));
   return make_source(visible_surface(even, static_cast<float>(1.2 * spacing), options.num_threads),
-                     name, number);
+                     name, number, options.num_threads);
 }
 
 Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std::string& name,
@@ -167,11 +168,13 @@ Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std:
   }
   if (Status s = check_size(name, largest_distance(cloud.points)); !s.ok()) return s;
   const auto spacing = static_cast<float>(options.spacing_m);
-  if (!cloud.normals.empty()) return make_source(downsample(cloud, spacing), name, number);
+  if (!cloud.normals.empty()) {
+    return make_source(downsample(cloud, spacing), name, number, options.num_threads);
+  }
   // One view of an object, in its camera's frame: normals point to the origin.
   PointCloud even = downsample(cloud, spacing);
   estimate_normals(even, 4 * spacing, Eigen::Vector3f::Zero(), options.num_threads);
-  ModelSource source = make_source(std::move(even), name, number);
+  ModelSource source = make_source(std::move(even), name, number, options.num_threads);
   source.complete = false;
   return source;
 }

@@ -6,12 +6,14 @@
 #include <limits>
 
 #include <bpa/core/base/parallel.hpp>
+#include <bpa/core/model/distance_transform.hpp>
 #include <bpa/core/model/view_sphere.hpp>
 
 namespace bpa {
 namespace {
 
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
+constexpr float kDrop = 0.012f;  // a step that a Kinect-class sensor shows as a range edge
 
 // An orthographic depth buffer: larger is nearer to the camera.
 struct DepthBuffer {
@@ -72,6 +74,55 @@ Eigen::Vector2f edge_direction(const DepthBuffer& buffer, const Eigen::Vector3f&
   return outward;
 }
 
+// How far points are from the nearest range edge of the buffer, in the view plane.
+class EdgeDistance {
+ public:
+  EdgeDistance(const DepthBuffer& buffer, const std::vector<Eigen::Vector3f>& points,
+               const std::vector<std::uint32_t>& visible)
+      : buffer_(buffer), edge_(buffer.nearest.size(), Eigen::Vector2f::Zero()) {
+    std::vector<float> count(buffer.nearest.size(), 0);
+    for (const std::uint32_t i : visible) {
+      const Eigen::Vector3f& p = points[i];
+      if (!ends_beside(p)) continue;
+      const std::size_t cell = cell_of(p);
+      edge_[cell] += p.head<2>();
+      ++count[cell];
+    }
+    std::vector<std::uint8_t> marked(count.size());
+    for (std::size_t i = 0; i < count.size(); ++i) {
+      marked[i] = count[i] > 0;
+      if (marked[i]) edge_[i] /= count[i];
+    }
+    nearest_ = nearest_marked_cells(marked, {buffer.width, buffer.height, 1});
+  }
+
+  float operator()(const Eigen::Vector3f& p) const {
+    const std::int32_t cell = nearest_[cell_of(p)];
+    if (cell < 0) return kMaxEdgeDistance;
+    return std::min(kMaxEdgeDistance, (edge_[static_cast<std::size_t>(cell)] - p.head<2>()).norm());
+  }
+
+ private:
+  std::size_t cell_of(const Eigen::Vector3f& p) const {
+    return static_cast<std::size_t>(buffer_.row(p.y()) * buffer_.width + buffer_.column(p.x()));
+  }
+  // Whether the surface on which p lies ends in p's cell: draw() covers one cell more.
+  bool ends_beside(const Eigen::Vector3f& p) const {
+    const int x = buffer_.column(p.x()), y = buffer_.row(p.y());
+    for (int dy = -2; dy <= 2; ++dy) {
+      for (int dx = -2; dx <= 2; ++dx) {
+        if (dx * dx + dy * dy > 5) continue;
+        if (buffer_.at(x + dx, y + dy) < p.z() - kDrop - 2 * buffer_.cell) return true;
+      }
+    }
+    return false;
+  }
+
+  const DepthBuffer& buffer_;
+  std::vector<Eigen::Vector2f> edge_;  // where the edge is in a cell that has one
+  std::vector<std::int32_t> nearest_;
+};
+
 ModelView render_view(const PointCloud& surface, const Eigen::Vector3f& direction, float spacing) {
   ModelView view;
   view.direction = direction;
@@ -83,18 +134,26 @@ ModelView render_view(const PointCloud& surface, const Eigen::Vector3f& directio
     seen[i] = {p.dot(x_axis), p.dot(y_axis), p.dot(direction)};
   }
   const DepthBuffer buffer = draw(seen, spacing);
-  constexpr float kDrop = 0.012f;  // a step that a Kinect-class sensor shows as a range edge
+  const auto cosine_of = [&](std::size_t i) {
+    return surface.normals.empty() ? 1.0f : surface.normals[i].dot(direction);
+  };
+  const auto slope_of = [](float cosine) {
+    return std::min(4.0f, std::sqrt(1 - cosine * cosine) / cosine);
+  };
   for (std::size_t i = 0; i < surface.size(); ++i) {
-    const float cosine = surface.normals.empty() ? 1.0f : surface.normals[i].dot(direction);
+    const float cosine = cosine_of(i);
     if (cosine <= 0.05f) continue;
-    const float slope = std::min(4.0f, std::sqrt(1 - cosine * cosine) / cosine);
     const float nearest = buffer.at(buffer.column(seen[i].x()), buffer.row(seen[i].y()));
-    if (seen[i].z() < nearest - spacing * (1 + 2 * slope)) continue;
+    if (seen[i].z() < nearest - spacing * (1 + 2 * slope_of(cosine))) continue;
     view.visible.push_back(static_cast<std::uint32_t>(i));
-    const Eigen::Vector2f outward =
-        edge_direction(buffer, seen[i], kDrop + 3 * spacing * slope * 0.5f);
+  }
+  const EdgeDistance edge_distance(buffer, seen, view.visible);
+  for (const std::uint32_t i : view.visible) {
+    view.edge_distance.push_back(edge_distance(seen[i]));
+    const float slope = slope_of(cosine_of(i));
+    const Eigen::Vector2f outward = edge_direction(buffer, seen[i], kDrop + 1.5f * spacing * slope);
     if (outward.squaredNorm() < 4) continue;
-    view.edges.push_back(static_cast<std::uint32_t>(i));
+    view.edges.push_back(i);
     const Eigen::Vector2f unit = outward.normalized();
     view.outward.push_back(unit.x() * x_axis + unit.y() * y_axis);
   }

@@ -11,12 +11,16 @@
 
 namespace bpa {
 
+constexpr float kMaxEdgeDistance = 0.1f;  ///< Edge distances are cut off here, metres.
 constexpr int kNumViews = 66;  ///< Paper section III: 66 viewing angles across the view sphere.
 
 /// What a camera far away in one direction sees of a model.
 struct ModelView {
   Eigen::Vector3f direction;             ///< From the object to the camera, unit length.
   std::vector<std::uint32_t> visible;    ///< Surface points that are seen, by index.
+  std::vector<float> edge_distance;      ///< For each visible point, how far the nearest range edge
+                                         ///< is in the view plane, metres (paper section III); at
+                                         ///< most kMaxEdgeDistance.
   std::vector<std::uint32_t> edges;      ///< Those on a range edge, where the surface ends in this
                                          ///< view (paper section III).
   std::vector<Eigen::Vector3f> outward;  ///< For each edge point, the unit direction across the

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <bpa/core/io/file_bytes.hpp>
 #include <bpa/core/io/model_file.hpp>
+#include <bpa/core/io/model_index_file.hpp>
+#include <bpa/core/model/model_index.hpp>
 
+#include "support/meshes.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace bpa::io {
@@ -24,7 +28,14 @@ ModelSource some_model(const std::string& name, int number) {
     model.surface.points.emplace_back(0.001f * static_cast<float>(i), 0.1f, -0.2f);
     model.surface.normals.push_back(Eigen::Vector3f(1, 2, static_cast<float>(i)).normalized());
     model.surface.colors.push_back({static_cast<std::uint8_t>(i), 0, 255});
+    model.normal_variance.push_back(0.01f * static_cast<float>(i));
   }
+  model.symmetry_origin = SymmetryOrigin::declared;
+  model.noise.range.edge_height = 1.0 / 3;
+  model.noise.normal.angle_width = 0.7;
+  model.noise.depth = 0.9;
+  model.noise.fitted = true;
+  model.warnings = {"its \"foot\" was never seen"};
   return model;
 }
 
@@ -48,6 +59,83 @@ TEST(ModelFile, SurvivesToTheLastBit) {
   EXPECT_EQ(back->symmetry.discrete[0].rotation.coeffs(),
             model.symmetry.discrete[0].rotation.coeffs());
   EXPECT_EQ(back->symmetry.continuous.at(0).point, model.symmetry.continuous[0].point);
+  EXPECT_EQ(back->symmetry_origin, SymmetryOrigin::declared);
+  EXPECT_EQ(back->normal_variance, model.normal_variance);
+  EXPECT_EQ(back->noise.range_sigma(0.003, 1.1, 1.3), model.noise.range_sigma(0.003, 1.1, 1.3));
+  EXPECT_EQ(back->noise.normal_sigma(0.003, 1.1), model.noise.normal_sigma(0.003, 1.1));
+  EXPECT_TRUE(back->noise.fitted);
+  EXPECT_EQ(back->warnings, model.warnings);
+}
+
+// What detection reads from the file is what it would compute from the surface.
+TEST(ModelFile, StoredIndexIsTheComputedOne) {
+  const test::TemporaryFolder folder;
+  const auto source = model_source_from_mesh(test::l_mesh(), "l", 1);
+  ASSERT_TRUE(source.ok());
+  ASSERT_TRUE(save_model(folder.path(), *source).ok());
+  const auto stored = load_model(folder.path(), "l");
+  ASSERT_TRUE(stored.ok()) << stored.status().message;
+  ASSERT_NE(stored->prepared, nullptr);
+  const auto made = make_object_model(*stored);
+  ASSERT_TRUE(made.ok());
+  EXPECT_EQ((*made)->index, stored->prepared);
+  ModelSource bare = *stored;
+  bare.prepared.reset();
+  const auto index = build_index(bare, 2);
+  const ModelIndex& read = *stored->prepared;
+  ASSERT_EQ(read.fpfh.size(), index->fpfh.size());
+  EXPECT_EQ(read.features.points, index->features.points);
+  for (std::size_t i = 0; i < read.fpfh.size(); ++i) {  // PLY normals come back rounded
+    EXPECT_LT((read.features.curvatures[i] - index->features.curvatures[i]).norm(), 1e-5f);
+    EXPECT_NEAR(read.features.principal_directions[i].norm(), 1, 1e-5);
+  }
+  EXPECT_EQ(read.coarse.points, index->coarse.points);
+  EXPECT_EQ(read.check.points, index->check.points);
+  EXPECT_EQ(read.distances.nearest, index->distances.nearest);
+  EXPECT_EQ(read.distances.low, index->distances.low);
+  ASSERT_EQ(read.views.size(), index->views.size());
+  for (std::size_t v = 0; v < read.views.size(); ++v) {
+    EXPECT_EQ(read.views[v].direction, index->views[v].direction);
+    EXPECT_EQ(read.views[v].visible, index->views[v].visible);
+    EXPECT_EQ(read.views[v].edge_distance, index->views[v].edge_distance);
+    EXPECT_EQ(read.views[v].outward, index->views[v].outward);
+  }
+}
+
+TEST(ModelFile, IndexOfAnotherVersionIsComputedAgain) {
+  const ModelSource model = some_model("a", 1);
+  const auto made = make_object_model(model);
+  ASSERT_TRUE(made.ok());
+  std::string bytes = index_bytes(*(*made)->index, model.normal_variance);
+  ASSERT_TRUE(parse_index(bytes, model.surface.size(), "x").ok());
+  bytes[8] = static_cast<char>(bytes[8] + 1);  // the version, after "bpaindex"
+  const auto other = parse_index(bytes, model.surface.size(), "x");
+  ASSERT_TRUE(other.ok()) << other.status().message;
+  EXPECT_EQ(other->index, nullptr);
+  EXPECT_EQ(other->normal_variance, model.normal_variance);
+}
+
+// A file whose checksum was made to fit must not make anything read outside an array either.
+TEST(ModelFile, NoIndexLeavesItsArrays) {
+  const ModelSource model = some_model("a", 1);
+  const auto made = make_object_model(model);
+  ASSERT_TRUE(made.ok());
+  const std::string bytes = index_bytes(*(*made)->index, model.normal_variance);
+  EXPECT_FALSE(parse_index(bytes, model.surface.size() - 1, "x").ok());
+  EXPECT_FALSE(parse_index(bytes + "x", model.surface.size(), "x").ok());
+  for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 7) {
+    EXPECT_FALSE(parse_index(bytes.substr(0, size), model.surface.size(), "x").ok()) << size;
+  }
+  for (std::size_t at = 12; at + 8 < bytes.size(); at += 1 + at / 50) {
+    std::string damaged = bytes;
+    damaged.replace(at, 8, 8, '\xff');
+    const auto file = parse_index(damaged, model.surface.size(), "x");  // must not crash
+    if (file.ok() && file->index) {
+      for (const std::uint32_t i : file->index->distances.nearest) {
+        ASSERT_LT(i, model.surface.size());
+      }
+    }
+  }
 }
 
 TEST(ModelFile, LibrariesAreOrderedByNumber) {
@@ -85,9 +173,32 @@ TEST(ModelFile, DamageIsSaid) {
   spill(folder / "a/model.json", json.substr(0, json.size() / 2));
   EXPECT_NE(message().find("truncated"), std::string::npos);
   std::string newer = json;
-  newer.replace(newer.find("\"version\": 1"), 12, "\"version\": 2");
+  newer.replace(newer.find("\"version\": 2"), 12, "\"version\": 3");
   spill(folder / "a/model.json", newer);
-  EXPECT_NE(message().find("version 2"), std::string::npos);
+  EXPECT_NE(message().find("version 3"), std::string::npos);
+  spill(folder / "a/model.json", json);
+  const std::string index = slurp(folder / "a/index.bin");
+  spill(folder / "a/index.bin", index.substr(0, 100));
+  EXPECT_NE(message().find("index.bin is truncated"), std::string::npos);
+  altered = index;
+  altered[200] = static_cast<char>(altered[200] ^ 1);
+  spill(folder / "a/index.bin", altered);
+  EXPECT_NE(message().find("index.bin was altered"), std::string::npos);
+}
+
+// The definition of the checksum, bit by bit.
+TEST(FileBytes, ChecksumIsThatOfPngAndZip) {
+  EXPECT_EQ(crc32("123456789"), 0xcbf43926u);  // the check value of the standard
+  std::string bytes;
+  for (int i = 0; i < 40; ++i) {
+    std::uint32_t crc = 0xffffffffu;
+    for (const char byte : bytes) {
+      crc ^= static_cast<std::uint8_t>(byte);
+      for (int k = 0; k < 8; ++k) crc = (crc & 1) ? 0xedb88320u ^ (crc >> 1) : crc >> 1;
+    }
+    EXPECT_EQ(crc32(bytes), ~crc) << i;
+    bytes += static_cast<char>(37 * i + 200);
+  }
 }
 
 TEST(ModelFile, EmptyAndMissingLibraries) {

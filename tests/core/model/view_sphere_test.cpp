@@ -98,6 +98,45 @@ TEST(ViewSphere, EdgesOfASphereAreItsOutline) {
   }
 }
 
+TEST(ViewSphere, EdgeDistancesOfASphereAreThoseToItsOutline) {
+  constexpr double kRadius = 0.05;
+  constexpr double kSpacing = 0.003;
+  const PointCloud surface = sphere(kRadius, 6000);
+  for (const ModelView& view : render_views(surface, kSpacing, 0)) {
+    ASSERT_EQ(view.edge_distance.size(), view.visible.size());
+    for (std::size_t k = 0; k < view.visible.size(); ++k) {
+      const Eigen::Vector3f& p = surface.points[view.visible[k]];
+      const float from_axis = (p - p.dot(view.direction) * view.direction).norm();
+      EXPECT_NEAR(view.edge_distance[k], kRadius - from_axis, 2 * kSpacing);
+    }
+  }
+}
+
+// A step up counts for what lies beside its foot: the sensor mixes both there.
+TEST(ViewSphere, EdgeDistancesCountStepsWithinTheOutline) {
+  // A plate of 16 cm, on it a block of 4 cm, 3 cm high, right below the first view.
+  const Eigen::Vector3f up = view_directions()[0];
+  const Eigen::Vector3f along = up.unitOrthogonal(), across = up.cross(along);
+  PointCloud surface;
+  std::vector<float> expected;
+  for (int k = 0; k < 80 * 80; ++k) {
+    const float x = 0.002f * (static_cast<float>(k % 80) - 39.5f);
+    const float y = 0.002f * (static_cast<float>(k / 80) - 39.5f);
+    const float from_middle = std::max(std::abs(x), std::abs(y));
+    const bool block = from_middle < 0.02f;
+    surface.points.push_back(x * along + y * across + (block ? 0.03f : 0.0f) * up);
+    surface.normals.push_back(up);
+    const Eigen::Vector2f beyond(std::abs(x) - 0.02f, std::abs(y) - 0.02f);
+    const float to_block = block ? 0.02f - from_middle : beyond.cwiseMax(0.0f).norm();
+    expected.push_back(std::min(to_block, 0.08f - from_middle));
+  }
+  const ModelView view = render_views(surface, 0.003f, 1)[0];
+  EXPECT_GT(view.visible.size(), 6200u);
+  for (std::size_t k = 0; k < view.visible.size(); ++k) {
+    EXPECT_NEAR(view.edge_distance[k], expected[view.visible[k]], 0.006f);
+  }
+}
+
 TEST(ViewSphere, WhatIsBehindIsHidden) {
   // Two plates that face +z, 5 cm apart; seen from +z the lower one is hidden but for its border.
   PointCloud surface;

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+
+// What a sensor's measurements of an object are off by (paper section III): the standard deviation
+// of range and of normals as sigmoids of two things that both follow from the viewpoint,
+//
+//  - the edge distance: how far, across the line of sight, a surface point is from the nearest
+//    range edge of the view (ModelView::edge_distance), and
+//  - the surface angle: between the surface normal and the direction to the camera.
+
+namespace bpa {
+
+/// sigma(e, a) = floor + edge_height * s((edge_place - e) / edge_width)
+///                     + angle_height * s((a - angle_place) / angle_width),  s the logistic
+/// function: rises towards edges and towards grazing angles. All seven are positive.
+struct NoiseCurve {
+  double floor = 0;         ///< Far from edges and seen straight on; unit of the error.
+  double edge_height = 0;   ///< What an edge adds; unit of the error.
+  double edge_place = 1;    ///< Edge distance at which half of that is left, metres.
+  double edge_width = 1;    ///< Metres.
+  double angle_height = 0;  ///< What a grazing view adds; unit of the error.
+  double angle_place = 1;   ///< Surface angle at which half of that is reached, radians.
+  double angle_width = 1;   ///< Radians.
+
+  /// `edge_distance` >= 0 in metres (infinite without edges), `angle` in [0, π/2] radians.
+  double operator()(double edge_distance, double angle) const;
+};
+
+/// The errors of range and normals that a model predicts.
+struct NoiseModel {
+  NoiseCurve range;     ///< Metres along the optical axis, at `depth`.
+  NoiseCurve normal;    ///< Radians.
+  double depth = 0.8;   ///< Of the views it was fitted on, metres.
+  bool fitted = false;  ///< False for the usual curves of a Kinect-class sensor, true when they
+                        ///< were fitted to views of this object.
+
+  /// Standard deviation of range at another depth, metres: grows as a Kinect's (depth_noise()).
+  double range_sigma(double edge_distance, double angle, double depth_m) const;
+  /// Standard deviation of the angle between predicted and observed normal, radians.
+  double normal_sigma(double edge_distance, double angle) const;
+};
+
+/// The curves of a Kinect-class sensor over objects of a household: what models have that were not
+/// made from views.
+NoiseModel usual_noise();
+
+/// One bin of errors that were observed at nearly the same edge distance and surface angle.
+struct NoiseBin {
+  double edge_distance = 0;
+  double angle = 0;
+  double sigma = 0;  ///< Root mean square of the errors.
+  double count = 0;
+};
+
+/// The curve under which the bins are most likely: weighted least squares on log(sigma), whose
+/// variance is 1 / (2 count), by Levenberg-Marquardt from `start`. Bins of less than 30 errors do
+/// not count. Returns `start` when fewer than 7 bins are left.
+NoiseCurve fit_noise_curve(std::span<const NoiseBin> bins, const NoiseCurve& start);
+
+}  // namespace bpa
