@@ -102,14 +102,19 @@ TEST(ViewSphere, EdgeDistancesOfASphereAreThoseToItsOutline) {
   constexpr double kRadius = 0.05;
   constexpr double kSpacing = 0.003;
   const PointCloud surface = sphere(kRadius, 6000);
+  int all = 0, close = 0;
   for (const ModelView& view : render_views(surface, kSpacing, 0)) {
     ASSERT_EQ(view.edge_distance.size(), view.visible.size());
     for (std::size_t k = 0; k < view.visible.size(); ++k) {
       const Eigen::Vector3f& p = surface.points[view.visible[k]];
       const float from_axis = (p - p.dot(view.direction) * view.direction).norm();
-      EXPECT_NEAR(view.edge_distance[k], kRadius - from_axis, 2 * kSpacing);
+      const float error = view.edge_distance[k] - (kRadius - from_axis);
+      EXPECT_LT(std::abs(error), 2.5 * kSpacing);
+      close += std::abs(error) < kSpacing;
+      ++all;
     }
   }
+  EXPECT_GT(close, 0.99 * all);
 }
 
 // A step up counts for what lies beside its foot: the sensor mixes both there.
