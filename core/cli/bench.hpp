@@ -8,6 +8,8 @@ namespace bpa::cli {
 
 /// `bpa bench alignment`: the paper's comparison of BPA with ICP from noisy starts.
 void add_bench_alignment(CLI::App& bench, Action& action);
+/// `bpa bench sensor`: the simulated depth camera against published figures and real frames.
+void add_bench_sensor(CLI::App& bench, Action& action);
 
 /// `bpa bench accuracy`: where on its way through the detector an object is lost.
 void add_bench_accuracy(CLI::App& bench, Action& action);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <numbers>
@@ -99,6 +100,27 @@ io::ColorImage truth_beside_result(const Frame& frame, const std::vector<io::Bop
   cv::Mat both;
   cv::hconcat(with_header(draw_objects(frame, left), caption + " truth"),
               with_header(draw_objects(frame, right), summary), both);
+  return to_image(both);
+}
+
+io::ColorImage color_beside_depth(const Frame& frame, const std::string& caption) {
+  constexpr float kNearest = 0.5f, kFarthest = 2.5f, kBand = 0.06f;
+  const int width = frame.camera.width, height = frame.camera.height;
+  cv::Mat hsv(height, width, CV_8UC3, cv::Scalar::all(0));
+  io::ColorImage color{width, height, frame.color};
+  color.pixels.resize(3 * frame.depth.size(), 0);
+  for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+    const float z = frame.depth[i];
+    if (!(z > 0)) continue;
+    const float far = std::clamp((z - kNearest) / (kFarthest - kNearest), 0.0f, 1.0f);
+    const float band = z / kBand - std::floor(z / kBand);
+    hsv.at<cv::Vec3b>(static_cast<int>(i) / width, static_cast<int>(i) % width) = {
+        static_cast<std::uint8_t>(140 * far), 230, static_cast<std::uint8_t>(115 + 140 * band)};
+  }
+  cv::Mat depth;
+  cv::cvtColor(hsv, depth, cv::COLOR_HSV2RGB);
+  cv::Mat both;
+  cv::hconcat(with_header(color, caption), with_header(to_image(depth), ""), both);
   return to_image(both);
 }
 

@@ -20,6 +20,10 @@ io::ColorImage truth_beside_result(const Frame& frame, const std::vector<io::Bop
                                    const Interpretation& result, const ModelLibrary& library,
                                    const std::string& caption);
 
+/// Colour (left) beside depth (right): violet is far, red near, each band of brightness is 6 cm,
+/// and black has no depth.
+io::ColorImage color_beside_depth(const Frame& frame, const std::string& caption);
+
 /// Images, all made as wide as `cell_width`, in a grid.
 io::ColorImage contact_sheet(const std::vector<io::ColorImage>& images, int columns,
                              int cell_width);

@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kWindow = 4;           // pixels on each side: 9 x 9
 constexpr float kSameDisparity = 1;  // pixels
-constexpr float kEnoughOfWindow = 0.32f;
-constexpr float kEnoughOfOther = 0.2f;  // where the surface beside answers
+constexpr float kEnoughOfWindow = 0.42f;
+constexpr float kEnoughOfOther = 0.28f;  // where the surface beside answers
 
 // What the infrared camera gets to see, row-major.
 struct Measurement {
@@ -61,7 +61,7 @@ void see_row(const RayScene& scene, const Pose& world_from_infrared, const Shadi
     const auto shine = static_cast<float>(material.shine);
     const float away = 1 - 0.6f * shine * m.angle[i] / (std::numbers::pi_v<float> / 2);
     m.signal[i] = static_cast<float>(material.infrared) * (0.6f + 0.4f * brightness) *
-                  std::max(lit, 0.0f) * away / std::pow(hit->distance, 1.5f);
+                  std::sqrt(std::max(lit, 0.0f)) * away / std::pow(hit->distance, 1.5f);
     const float facing = hit->normal.dot((to_camera + to_projector).normalized());
     m.glare[i] = smooth_step(0.25f, 1.0f, shine) * smooth_step(0.965f, 0.998f, facing);
     m.disparity[i] =
@@ -105,12 +105,12 @@ struct Noise {
       return noise_field(camera.width, camera.height, radius, RandomStream(seed, stream++)(),
                          num_threads);
     };
-    lateral_x = make(1);
-    lateral_y = make(1);
-    shared = make(4);
+    lateral_x = make(3);
+    lateral_y = make(3);
+    shared = make(6);
     own = make(0);
-    match = make(1);
-    drop = make(2);
+    match = make(3);
+    drop = make(4);
   }
 };
 
@@ -137,9 +137,8 @@ float measure(const Measurement& m, const Noise& noise, const KinectOptions& opt
     const float agreement = window_agreement(m, x, y, m.disparity[source]);
     const float enough = other_surface ? kEnoughOfOther : kEnoughOfWindow;
     if (agreement < enough + 0.06f * noise.match[i]) return 0;
-    constexpr float kWeakSignal = 0.035f;
-    const float ratio = m.signal[source] / kWeakSignal;
-    const float faint = 1 / (1 + ratio * ratio * ratio * ratio);
+    constexpr float kWeakSignal = 0.032f;
+    const float faint = 1 / (1 + std::pow(m.signal[source] / kWeakSignal, 6.0f));
     const float chance = dropouts * (0.0001f + faint + 0.9f * m.glare[source]);
     if (0.5f * std::erfc(-noise.drop[i] / std::numbers::sqrt2_v<float>) < chance) return 0;
   }
@@ -149,7 +148,7 @@ float measure(const Measurement& m, const Noise& noise, const KinectOptions& opt
   const double wanted =
       options.axial_noise * published_axial_noise(depth, m.angle[source]) * pixels_per_metre;
   const double variance = wanted * wanted - options.disparity_step * options.disparity_step / 12;
-  constexpr double kShared = 0.85;  // of the variance
+  constexpr double kShared = 0.95;  // of the variance
   const double unit = std::sqrt(kShared) * noise.shared[i] + std::sqrt(1 - kShared) * noise.own[i];
   double disparity = m.disparity[source] +
                      (options.axial_noise > 0 ? std::sqrt(std::max(variance, 4e-4)) * unit : 0.0);
@@ -161,28 +160,64 @@ float measure(const Measurement& m, const Noise& noise, const KinectOptions& opt
   return static_cast<float>(m.disparity[source] * depth / disparity);
 }
 
-// Step 6: every measured pixel covers the colour pixels under it; the nearest wins.
+// Single pixels without an answer amid one surface take the nearest of their neighbours' depths, as
+// the sensor's own clean-up does: real images have next to none of them.
+std::vector<float> without_specks(const std::vector<float>& depth, const Camera& camera,
+                                  double pixels_per_inverse) {
+  constexpr int kEnoughNeighbours = 5;  // of 8
+  std::vector<float> result = depth;
+  for (int y = 1; y + 1 < camera.height; ++y) {
+    for (int x = 1; x + 1 < camera.width; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * camera.width + x;
+      if (depth[i] > 0) continue;
+      int answers = 0;
+      float nearest = std::numeric_limits<float>::max(), farthest = 0;
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const float z = depth[i + dy * camera.width + dx];
+          if (z <= 0) continue;
+          ++answers;
+          nearest = std::min(nearest, z);
+          farthest = std::max(farthest, z);
+        }
+      }
+      if (answers < kEnoughNeighbours) continue;
+      if (pixels_per_inverse * (1 / nearest - 1 / farthest) <= kSameDisparity) result[i] = nearest;
+    }
+  }
+  return result;
+}
+
+// Step 6: every measured pixel covers the colour pixels under it; the nearest wins. On one surface
+// (disparities within a pixel) it reaches half way to its neighbours in the row, so that a slope,
+// which the other viewpoint stretches, has no cracks.
 std::vector<float> carried_over(const std::vector<float>& depth, const Camera& infrared,
-                                const Camera& color, double color_x) {
+                                const Camera& color, double color_x, double pixels_per_inverse) {
   std::vector<float> result(static_cast<std::size_t>(color.width) * color.height, 0);
-  const double half_x = 0.5 * color.fx / infrared.fx, half_y = 0.5 * color.fy / infrared.fy;
+  const double half_x = std::max(0.5 * color.fx / infrared.fx, 0.5);
+  const double half_y = std::max(0.5 * color.fy / infrared.fy, 0.5);
+  const auto column = [&](int x, float z) {
+    return color.project(infrared.unproject(x, 0, z) - Eigen::Vector3d(color_x, 0, 0)).x();
+  };
+  const auto first = [](double p) { return std::max(static_cast<int>(std::ceil(p - 1e-9)), 0); };
+  const auto last = [](double p, int size) {
+    return std::min(static_cast<int>(std::floor(p - 1e-6)), size - 1);
+  };
   for (int y = 0; y < infrared.height; ++y) {
+    const float* row = depth.data() + static_cast<std::size_t>(y) * infrared.width;
+    const auto joined = [&](int a, int b) {
+      if (b < 0 || b >= infrared.width || row[b] <= 0) return false;
+      return pixels_per_inverse * std::abs(1 / row[a] - 1 / row[b]) <= kSameDisparity;
+    };
     for (int x = 0; x < infrared.width; ++x) {
-      const float z = depth[static_cast<std::size_t>(y) * infrared.width + x];
+      const float z = row[x];
       if (z <= 0) continue;
-      Eigen::Vector3d point = infrared.unproject(x, y, z);
-      point.x() -= color_x;
-      const Eigen::Vector2d pixel = color.project(point);
-      const auto first = [](double p, double half) {
-        return static_cast<int>(std::ceil(p - std::max(half, 0.5) - 1e-9));
-      };
-      const auto last = [](double p, double half) {
-        return static_cast<int>(std::floor(p + std::max(half, 0.5) - 1e-6));
-      };
-      for (int v = std::max(first(pixel.y(), half_y), 0);
-           v <= std::min(last(pixel.y(), half_y), color.height - 1); ++v) {
-        for (int u = std::max(first(pixel.x(), half_x), 0);
-             u <= std::min(last(pixel.x(), half_x), color.width - 1); ++u) {
+      const double u0 = column(x, z), v0 = color.project(infrared.unproject(x, y, z)).y();
+      double left = u0 - half_x, right = u0 + half_x;
+      if (joined(x, x - 1)) left = std::min(left, 0.5 * (u0 + column(x - 1, row[x - 1])));
+      if (joined(x, x + 1)) right = std::max(right, 0.5 * (u0 + column(x + 1, row[x + 1])));
+      for (int v = first(v0 - half_y); v <= last(v0 + half_y, color.height); ++v) {
+        for (int u = first(left); u <= last(right, color.width); ++u) {
           float& target = result[static_cast<std::size_t>(v) * color.width + u];
           if (target == 0 || z < target) target = z;
         }
@@ -269,10 +304,12 @@ KinectImage simulate_kinect(const RayScene& scene, const Camera& camera,
         }
       },
       8);
+  const double pixels_per_inverse = infrared.fx * std::max(options.baseline, 1e-3);
+  depth = without_specks(depth, infrared, pixels_per_inverse);
   image.frame.camera = camera;
-  image.frame.depth = options.registered
-                          ? carried_over(depth, infrared, camera, options.color_baseline)
-                          : std::move(depth);
+  image.frame.depth = options.registered ? carried_over(depth, infrared, camera,
+                                                        options.color_baseline, pixels_per_inverse)
+                                         : std::move(depth);
   image.ideal = render(scene, camera, world_from_camera, shading, num_threads);
   const std::vector<std::uint8_t>* color = &image.ideal.color;
   RenderedImage shifted;

@@ -16,18 +16,21 @@
 //  2. Matching. A 9 x 9 window is looked up in the stored pattern (Khoshelham and Elberink 2012,
 //     "Accuracy and resolution of Kinect depth data", Sensors 12): it needs enough lit pixels of
 //     one disparity, so depth ends before an edge does, and edges are ragged by about 0.8 pixels
-//     (lateral noise of Nguyen, Izadi and Lovell 2012, "Modeling Kinect sensor noise", 3DIMPVT).
-//  3. Signal (its strength falls with z^1.5, between the law of light and a gain control). Matching
-//  fails where little light returns (dark, far or grazing surfaces) and where a
-//     mirror-like surface throws the projector's light straight back (Mallick, Das and Majumdar
-//     2014, "Characterizations of noise in Kinect depth images", IEEE Sensors J. 14).
+//     (lateral noise of Nguyen, Izadi and Lovell 2012, "Modeling Kinect sensor noise", 3DIMPVT), in
+//     waves of a few pixels as windows overlap. Single pixels without an answer are filled.
+//  3. Signal. Its strength falls with z^1.5 and the square root of the cosine of incidence, between
+//     the law of light and a gain control. Matching fails where little light returns (dark, far or
+//     grazing surfaces) and where a mirror-like surface throws the projector's light straight back
+//     (Mallick, Das and Majumdar 2014, "Characterizations of noise in Kinect depth images", IEEE
+//     Sensors J. 14).
 //  4. Noise. Disparity has noise such that depth gets the axial noise of Nguyen et al.,
 //     0.0012 + 0.0019 (z - 0.4)^2 m, plus 0.0001 / sqrt(z) * angle^2 / (pi/2 - angle)^2 m beyond
 //     60 degrees of incidence. Since windows overlap, neighbours share most of it.
 //  5. Quantisation. Disparity comes in steps of 1/8 pixel (Khoshelham and Elberink), 2.9 mm of
-//  depth
-//     at 1 m and growing with z^2, and depth in millimetres.
+//     depth at 1 m and growing with z^2, and depth in millimetres.
 //  6. Registration. Depth is carried over to the colour camera, 2.5 cm beside the infrared one.
+//
+// How wide the waves, gaps and holes are was set beside real frames: bpa bench sensor.
 //
 // The colour image has exposure, white balance, blur and noise of its own.
 
