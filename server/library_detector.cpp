@@ -20,8 +20,8 @@ Status add_model(ModelSource source, int num_threads, ModelLibrary& library) {
 
 LibraryDetector::LibraryDetector(std::string folder, const DetectorOptions& options,
                                  int num_threads)
-    : folder_(std::move(folder)), options_(options), num_threads_(num_threads) {
-  replace(std::make_shared<const ModelLibrary>());
+    : folder_(std::move(folder)), num_threads_(num_threads) {
+  replace(std::make_shared<const ModelLibrary>(), options);
 }
 
 Result<std::shared_ptr<LibraryDetector>> LibraryDetector::create(const std::string& folder,
@@ -51,7 +51,7 @@ Result<std::shared_ptr<LibraryDetector>> LibraryDetector::create(const std::stri
   }
   log(hook, LogLevel::info,
       "library " + folder + ": " + std::to_string(library->size()) + " models");
-  self->replace(std::move(library));
+  self->replace(std::move(library), options);
   return self;
 }
 
@@ -65,11 +65,24 @@ int LibraryDetector::version() const {
   return version_;
 }
 
-void LibraryDetector::replace(std::shared_ptr<const ModelLibrary> library) {
-  auto detector = std::make_shared<const Detector>(std::move(library), options_);
+std::shared_ptr<const ModelLibrary> LibraryDetector::library() const {
   const std::lock_guard<std::mutex> lock(mutex_);
+  return library_;
+}
+
+void LibraryDetector::replace(std::shared_ptr<const ModelLibrary> library,
+                              const DetectorOptions& options) {
+  auto detector = std::make_shared<const Detector>(library, options);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (library_ != library) ++version_;
+  library_.swap(library);
   detector_.swap(detector);
-  ++version_;
+}
+
+Status LibraryDetector::set_options(const DetectorOptions& options) {
+  const std::lock_guard<std::mutex> lock(change_mutex_);
+  replace(library(), options);
+  return {};
 }
 
 Result<std::shared_ptr<const ObjectModel>> LibraryDetector::load(const std::string& source,
@@ -97,7 +110,7 @@ Result<std::shared_ptr<const ObjectModel>> LibraryDetector::load(const std::stri
   }
   if (Status s = add_model(std::move(read).value(), num_threads_, library); !s.ok()) return s;
   auto model = library.find(wanted);
-  replace(std::make_shared<const ModelLibrary>(std::move(library)));
+  replace(std::make_shared<const ModelLibrary>(std::move(library)), current()->options());
   return model;
 }
 
@@ -105,7 +118,7 @@ Status LibraryDetector::unload(const std::string& name) {
   const std::lock_guard<std::mutex> lock(change_mutex_);
   ModelLibrary library = current()->library();
   if (Status s = library.remove(name); !s.ok()) return s;
-  replace(std::make_shared<const ModelLibrary>(std::move(library)));
+  replace(std::make_shared<const ModelLibrary>(std::move(library)), current()->options());
   return {};
 }
 
@@ -124,6 +137,9 @@ Recognition LibraryDetector::recognition(std::shared_ptr<LibraryDetector> self) 
     return self->load(source, name);
   };
   recognition.unload = [self](const std::string& name) { return self->unload(name); };
+  recognition.set_options = [self](const DetectorOptions& options) {
+    return self->set_options(options);
+  };
   recognition.version = [self] { return self->version(); };
   recognition.library = self->folder_;
   return recognition;

@@ -32,15 +32,17 @@ class LibraryDetector {
   Result<std::shared_ptr<const ObjectModel>> load(const std::string& source,
                                                   const std::string& name);
   Status unload(const std::string& name);
-  void replace(std::shared_ptr<const ModelLibrary> library);
+  Status set_options(const DetectorOptions& options);
+  void replace(std::shared_ptr<const ModelLibrary> library, const DetectorOptions& options);
+  std::shared_ptr<const ModelLibrary> library() const;
   int version() const;
 
   const std::string folder_;
-  const DetectorOptions options_;
   const int num_threads_;
   std::mutex change_mutex_;   ///< Held while a change is being made.
   mutable std::mutex mutex_;  ///< Guards what follows, never held for long.
-  std::shared_ptr<const Detector> detector_;
+  std::shared_ptr<const ModelLibrary> library_;
+  std::shared_ptr<const Detector> detector_;  ///< Of that library.
   int version_ = 0;
 };
 

@@ -10,6 +10,7 @@
 #include <bpa/core/pipeline/detector_options.hpp>
 #include <bpa/server/library_detector.hpp>
 #include <bpa/server/options.hpp>
+#include <bpa/server/ros_arguments.hpp>
 #include <bpa/server/server.hpp>
 
 // The daemon: command line, log and signals. Exits 0 after SIGINT or SIGTERM, 1 when it cannot
@@ -19,6 +20,7 @@ namespace {
 
 using bpa::LogLevel;
 using bpa::Status;
+using bpa::server::RosArguments;
 using bpa::server::ServerOptions;
 
 struct CommandLine {
@@ -56,22 +58,37 @@ void add_options(CLI::App& program, CommandLine& line) {
   }
 }
 
-bpa::Result<ServerOptions> settle(const CommandLine& line) {
+/// From the weakest to the strongest: defaults, the detector's file, the server's file, single
+/// settings, the arguments of ROS.
+bpa::Result<ServerOptions> settle(const CommandLine& line, const RosArguments& ros) {
+  const auto read = [&](ServerOptions& options) -> Status {
+    if (!line.config.empty()) {
+      if (Status s = bpa::server::load_options(line.config, options); !s.ok()) return s;
+    }
+    for (const std::string& setting : line.settings) {
+      if (Status s = bpa::server::set_option(setting, options); !s.ok()) return s;
+    }
+    if (line.localhost) options.network.range = "localhost";
+    if (Status s = bpa::server::apply(ros, options); !s.ok()) return s;
+    return bpa::server::validate(options);
+  };
   ServerOptions options;
-  if (!line.config.empty()) {
-    if (Status s = bpa::server::load_options(line.config, options); !s.ok()) return s;
-  }
-  for (const std::string& setting : line.settings) {
-    if (Status s = bpa::server::set_option(setting, options); !s.ok()) return s;
-  }
-  if (line.localhost) options.network.range = "localhost";
+  if (Status s = read(options); !s.ok()) return s;
+  if (options.detection.detector.empty()) return options;
+  // Once more, now that it is known which file stands below all the others.
+  auto detector = bpa::load_detector_options(options.detection.detector);
+  if (!detector.ok()) return detector.status();
+  options = {};
+  options.detector = *detector;
+  if (Status s = read(options); !s.ok()) return s;
   return options;
 }
 
-bpa::LogHook make_log(const std::string& level) {
+/// What is below log.level does not come here.
+bpa::LogHook make_log() {
   auto logger = spdlog::stderr_color_mt("bpa-server");
   logger->set_pattern("%Y-%m-%d %H:%M:%S.%e %^%-7l%$ %v");
-  logger->set_level(spdlog::level::from_str(level));
+  logger->set_level(spdlog::level::debug);
   logger->flush_on(spdlog::level::info);
   return [logger](LogLevel severity, std::string_view text) {
     const auto spd = severity == LogLevel::debug     ? spdlog::level::debug
@@ -86,13 +103,7 @@ Status serve(const ServerOptions& options, const bpa::LogHook& hook, const sigse
   if (options.detection.library.empty()) {
     return bpa::invalid_argument("no model library: give --library DIR (or detection.library)");
   }
-  bpa::DetectorOptions detector;
-  if (!options.detection.detector.empty()) {
-    auto loaded = bpa::load_detector_options(options.detection.detector);
-    if (!loaded.ok()) return loaded.status();
-    detector = *loaded;
-  }
-  auto library = bpa::server::LibraryDetector::create(options.detection.library, detector,
+  auto library = bpa::server::LibraryDetector::create(options.detection.library, options.detector,
                                                       options.detection.threads, hook);
   if (!library.ok()) return library.status();
   auto server = bpa::server::Server::create(
@@ -119,24 +130,33 @@ int main(int argc, char** argv) {
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
+  const auto ros = bpa::server::take_ros_arguments({argv, argv + argc});
+  if (!ros.ok()) {
+    std::cerr << "bpa-server: " << ros.status().message << '\n';
+    return 2;
+  }
   CLI::App program("Finds known objects in the RGB-D frames of a DDS domain.", "bpa-server");
+  program.footer(
+      "ROS 2's own arguments come after --ros-args: -r FROM:=TO, -r __node:=NAME, "
+      "-r __ns:=NAMESPACE,\n-p NAME:=VALUE, --params-file FILE, --log-level LEVEL.");
   CommandLine line;
   add_options(program, line);
+  std::vector<std::string> words(ros->own.rbegin(), ros->own.rend() - 1);  // as CLI11 wants them
   try {
-    program.parse(argc, argv);
+    program.parse(words);
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : 2;
   }
-  const bpa::Result<ServerOptions> options = settle(line);
+  const bpa::Result<ServerOptions> options = settle(line, *ros);
   if (!options.ok()) {
     std::cerr << "bpa-server: " << options.status().message << '\n';
     return 2;
   }
   if (line.print_config) {
-    std::cout << bpa::server::to_yaml(*options);
+    std::cout << bpa::server::to_yaml(*options, true);
     return 0;
   }
-  const bpa::LogHook hook = make_log(options->log.level);
+  const bpa::LogHook hook = make_log();
   const Status status = serve(*options, hook, signals);
   if (status.ok()) return 0;
   bpa::log(hook, LogLevel::error, status.message);

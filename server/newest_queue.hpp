@@ -17,6 +17,9 @@ class NewestQueue {
   /// `capacity` is at least 1.
   explicit NewestQueue(std::size_t capacity) : capacity_(capacity > 0 ? capacity : 1) {}
 
+  /// Smaller than before: the next push makes room for one item, so that it shrinks in time.
+  void set_capacity(std::size_t capacity) { capacity_ = capacity > 0 ? capacity : 1; }
+
   /// Adds an item; gives back the oldest one if it had to go.
   std::optional<T> push(T item) {
     std::optional<T> displaced;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iomanip>
 #include <sstream>
+#include <string_view>
 #include <type_traits>
 
 #include <yaml-cpp/yaml.h>
@@ -154,7 +155,10 @@ Status validate(const ServerOptions& options) {
   });
   if (!status.ok()) return status;
   status = check_choice("network.range", options.network.range,
-                        {"environment", "subnet", "localhost", "off"});
+                        {"environment", "subnet", "localhost", "humble_localhost", "off"});
+  if (!status.ok()) return status;
+  status = check_choice("network.graph_layout", options.network.graph_layout,
+                        {"automatic", "humble", "iron"});
   if (!status.ok()) return status;
   status =
       check_choice("input.color_transport", options.input.color_transport, {"raw", "compressed"});
@@ -194,11 +198,12 @@ Status set_option(const std::string& assignment, ServerOptions& options) {
   return validate(options);
 }
 
-std::string to_yaml(const ServerOptions& options) {
+std::string to_yaml(const ServerOptions& options, bool with_detector) {
   std::ostringstream out;
   ServerOptions copy = options;
   out << std::setprecision(12);
   copy.visit_groups([&](const char* name, auto& group, const char* about) {
+    if (!with_detector && std::string_view(name) == "detector") return;
     out << "\n# " << about << "\n" << name << ":\n";
     group.visit_fields([&](const char* field, auto& value, const FieldRule& rule) {
       out << "  # " << rule.description;
@@ -206,6 +211,7 @@ std::string to_yaml(const ServerOptions& options) {
       if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>) {
         out << " " << rule.min << " to " << rule.max << ".";
       }
+      if (rule.runtime) out << " Also at run time.";
       out << "\n  " << field << ": ";
       write_value(out, value);
       out << "\n";

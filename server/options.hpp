@@ -9,9 +9,11 @@
 
 #include <bpa/core/base/options.hpp>
 #include <bpa/core/base/status.hpp>
+#include <bpa/core/pipeline/detector_options.hpp>
 
 // Every setting of the server, in groups. Each field describes itself once; reading server.yaml,
-// --set, --print-config and the checks all use that. config/server.yaml shows them all.
+// --set, --print-config, the ROS 2 parameters and the checks all use that. config/server.yaml shows
+// them all.
 
 namespace bpa::server {
 
@@ -34,6 +36,7 @@ struct NetworkOptions {
   std::string range = "environment";
   std::vector<std::string> peers;
   int shared_frame_mb = 24;
+  std::string graph_layout = "automatic";
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
@@ -41,12 +44,17 @@ struct NetworkOptions {
     visit("range", range,
           FieldRule{0, 0,
                     "How far to look for others: environment (as ROS_AUTOMATIC_DISCOVERY_RANGE and "
-                    "ROS_LOCALHOST_ONLY say), subnet, localhost, off."});
+                    "ROS_LOCALHOST_ONLY say), subnet, localhost, humble_localhost (as Humble's "
+                    "ROS_LOCALHOST_ONLY does it), off."});
     visit("peers", peers, FieldRule{0, 0, "Host names or addresses to look at besides."});
     visit("shared_frame_mb", shared_frame_mb,
           FieldRule{0, 256,
                     "Frames of up to so many MB come through shared memory from clients on this "
                     "machine; larger ones are refused. 0: always over UDP."});
+    visit("graph_layout", graph_layout,
+          FieldRule{0, 0,
+                    "Size of ids in the ROS 2 graph: humble (24 bytes), iron (16: Iron and later), "
+                    "automatic (iron unless all ROS 2 peers in sight are Humble's)."});
   }
 };
 
@@ -88,16 +96,20 @@ struct InputOptions {
         "reliable", reliable,
         FieldRule{0, 0, "Ask for reliable camera topics; best-effort cameras then do not match."});
     visit("rectified", rectified,
-          FieldRule{0, 0,
-                    "The camera's images have no lens distortion any more, so that the projection "
-                    "matrix p holds; otherwise k and d do."});
+          at_run_time(FieldRule{
+              0, 0,
+              "The camera's images have no lens distortion any more, so that the projection "
+              "matrix p holds; otherwise k and d do."}));
     visit("sync_tolerance_ms", sync_tolerance_ms,
-          FieldRule{0, 1000,
-                    "Largest difference of stamps of images that belong together; 0: equal "
-                    "stamps only."});
-    visit("sync_queue", sync_queue, FieldRule{2, 100, "Images of one topic that may wait."});
+          at_run_time(
+              FieldRule{0, 1000,
+                        "Largest difference of stamps of images that belong together; 0: equal "
+                        "stamps only."}));
+    visit("sync_queue", sync_queue,
+          at_run_time(FieldRule{2, 100, "Images of one topic that may wait."}));
     visit("silence_s", silence_s,
-          FieldRule{0.1, 3600, "A camera that sends nothing for so long is reported as lost."});
+          at_run_time(FieldRule{0.1, 3600,
+                                "A camera that sends nothing for so long is reported as lost."}));
   }
 };
 
@@ -107,10 +119,12 @@ struct QueueOptions {
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit("frames", frames,
-          FieldRule{1, 100, "Frames that may wait; a newer one displaces the oldest."});
+    visit(
+        "frames", frames,
+        at_run_time(FieldRule{1, 100, "Frames that may wait; a newer one displaces the oldest."}));
     visit("requests", requests,
-          FieldRule{1, 1000, "Detect requests that may wait; more are refused as busy."});
+          at_run_time(
+              FieldRule{1, 1000, "Detect requests that may wait; more are refused as busy."}));
   }
 };
 
@@ -122,6 +136,8 @@ struct OutputOptions {
   std::string vision_info = "vision_info";
   std::string tf = "/tf";
   std::string diagnostics = "/diagnostics";
+  std::string rosout = "/rosout";
+  double marker_lifetime_s = 0;
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
@@ -136,6 +152,12 @@ struct OutputOptions {
     visit("tf", tf, FieldRule{0, 0, "tf2_msgs/TFMessage: a transform per object; empty: none."});
     visit("diagnostics", diagnostics,
           FieldRule{0, 0, "diagnostic_msgs/DiagnosticArray, once a second; empty: none."});
+    visit("rosout", rosout,
+          FieldRule{0, 0, "rcl_interfaces/Log: what is said on the terminal; empty: none."});
+    visit("marker_lifetime_s", marker_lifetime_s,
+          at_run_time(FieldRule{0, 3600,
+                                "RViz takes markers away after so long; 0: when the next frame's "
+                                "come."}));
   }
 };
 
@@ -155,14 +177,17 @@ struct DetectionOptions {
     visit("detector", detector,
           FieldRule{0, 0, "File with settings of the detector (detector.yaml); empty: defaults."});
     visit("continuous", continuous,
-          FieldRule{0, 0, "Search every frame; false: only when a request asks for one."});
-    visit("top_k", top_k, FieldRule{1, 100, "Interpretations to report."});
+          at_run_time(
+              FieldRule{0, 0, "Search every frame; false: only when a request asks for one."}));
+    visit("top_k", top_k, at_run_time(FieldRule{1, 100, "Interpretations to report."}));
     visit("budget_ms", budget_ms,
-          FieldRule{0, 1e6, "Report the best so far after this long; 0: no limit."});
-    visit("seed", seed, FieldRule{0, 9.0e15, "Same frame, library and seed: same answer."});
-    visit("threads", threads, FieldRule{0, 256, "0: one per core. Does not change the answer."});
+          at_run_time(FieldRule{0, 1e6, "Report the best so far after this long; 0: no limit."}));
+    visit("seed", seed,
+          at_run_time(FieldRule{0, 9.0e15, "Same frame, library and seed: same answer."}));
+    visit("threads", threads,
+          at_run_time(FieldRule{0, 256, "0: one per core. Does not change the answer."}));
     visit("request_timeout_ms", request_timeout_ms,
-          FieldRule{1, 1e7, "Longest wait of a detect request that names none."});
+          at_run_time(FieldRule{1, 1e7, "Longest wait of a detect request that names none."}));
   }
 };
 
@@ -171,7 +196,7 @@ struct LogOptions {
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit("level", level, FieldRule{0, 0, "debug, info, warning or error."});
+    visit("level", level, at_run_time(FieldRule{0, 0, "debug, info, warning or error."}));
   }
 };
 
@@ -183,6 +208,8 @@ struct ServerOptions {
   OutputOptions output;
   DetectionOptions detection;
   LogOptions log;
+  /// How objects are found; config/detector.yaml shows them all.
+  DetectorOptions detector;
 
   /// visit(name of the group, the group, what it is about).
   template <class Visitor>
@@ -194,6 +221,7 @@ struct ServerOptions {
     visit("output", output, "Topics of the results; an empty name switches one off.");
     visit("detection", detection, "The search.");
     visit("log", log, "What is said on the terminal.");
+    visit("detector", detector, "How objects are found.");
   }
 };
 
@@ -207,7 +235,8 @@ Status load_options(const std::string& path, ServerOptions& options);
 /// Sets one field from text such as "queue.requests=4".
 Status set_option(const std::string& assignment, ServerOptions& options);
 
-/// All fields as a YAML file with a comment each, such as config/server.yaml.
-std::string to_yaml(const ServerOptions& options);
+/// All fields as a YAML file with a comment each, such as config/server.yaml; the detector's, which
+/// have a file of their own, only if asked for.
+std::string to_yaml(const ServerOptions& options, bool with_detector = false);
 
 }  // namespace bpa::server

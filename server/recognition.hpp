@@ -29,6 +29,8 @@ struct Recognition {
                                                            const std::string& name)>
       load;
   std::function<Status(const std::string& name)> unload;  ///< Empty: not supported.
+  /// Searches that begin from now on have these settings; empty: not supported.
+  std::function<Status(const DetectorOptions&)> set_options;
   std::function<int()> version;  ///< Grows with every load and unload; empty: always 1.
   std::string library;           ///< Where it lies, for people.
 };

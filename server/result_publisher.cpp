@@ -35,10 +35,11 @@ void send(std::optional<wire::Publisher<T>>& output, const Message& message, con
 }  // namespace
 
 Result<std::unique_ptr<ResultPublisher>> ResultPublisher::create(
-    const wire::Participant& participant, const OutputOptions& options,
+    const wire::Participant& participant, const Settings& settings,
     std::shared_ptr<const Recognition> recognition, LogHook log) {
+  const OutputOptions options = settings.get()->output;
   std::unique_ptr<ResultPublisher> self(
-      new ResultPublisher(std::move(recognition), std::move(log)));
+      new ResultPublisher(settings, std::move(recognition), std::move(log)));
   self->tf_prefix_ = participant.node().node_namespace.substr(1);
   if (self->tf_prefix_.empty()) self->tf_prefix_ = participant.node().name;
   const wire::Qos results = wire::qos::results();
@@ -62,7 +63,10 @@ void ResultPublisher::publish(const Frame* frame, const Result<SceneInterpretati
   Models models;
   if (recognition_->models) models = recognition_->models();
   if (wanted(detections_)) send(detections_, detections_message(*result, models), log_);
-  if (wanted(markers_)) send(markers_, markers_message(*result, models), log_);
+  if (wanted(markers_)) {
+    const double lifetime_s = settings_.get()->output.marker_lifetime_s;
+    send(markers_, markers_message(*result, models, lifetime_s), log_);
+  }
   if (wanted(tf_)) send(tf_, transforms_message(*result, tf_prefix_), log_);
   if (wanted(annotated_) && recognition_->annotate) publish_annotated(*frame, *result);
 }

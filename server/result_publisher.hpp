@@ -10,8 +10,8 @@
 #include <bpa/core/base/log.hpp>
 #include <bpa/core/base/status.hpp>
 #include <bpa/core/cloud/frame.hpp>
-#include <bpa/server/options.hpp>
 #include <bpa/server/recognition.hpp>
+#include <bpa/server/settings.hpp>
 #include <bpa/wire/messages.hpp>
 #include <bpa/wire/participant.hpp>
 #include <bpa/wire/publisher.hpp>
@@ -22,8 +22,9 @@ namespace bpa::server {
 /// subscribes to it.
 class ResultPublisher {
  public:
+  /// `settings` outlives it.
   static Result<std::unique_ptr<ResultPublisher>> create(
-      const wire::Participant& participant, const OutputOptions& options,
+      const wire::Participant& participant, const Settings& settings,
       std::shared_ptr<const Recognition> recognition, LogHook log);
 
   /// `frame` is null when the frame broke a rule; then only the failed interpretations go out.
@@ -35,13 +36,15 @@ class ResultPublisher {
   bool diagnostics_wanted() const;
 
  private:
-  ResultPublisher(std::shared_ptr<const Recognition> recognition, LogHook log)
-      : recognition_(std::move(recognition)), log_(std::move(log)) {}
+  ResultPublisher(const Settings& settings, std::shared_ptr<const Recognition> recognition,
+                  LogHook log)
+      : settings_(settings), recognition_(std::move(recognition)), log_(std::move(log)) {}
   void publish_annotated(const Frame& frame, const SceneInterpretations& result);
 
   template <class T>
   using Output = std::optional<wire::Publisher<T>>;
 
+  const Settings& settings_;
   const std::shared_ptr<const Recognition> recognition_;
   const LogHook log_;
   std::string tf_prefix_;

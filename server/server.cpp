@@ -4,6 +4,7 @@
 #include <sstream>
 #include <utility>
 
+#include <bpa/server/parameters.hpp>
 #include <bpa/server/server.hpp>
 
 #ifndef BPA_VERSION
@@ -26,6 +27,9 @@ Result<std::optional<wire::Discovery>> discovery_of(const NetworkOptions& option
   if (options.domain >= 0) discovery.domain_id = options.domain;
   if (options.range == "subnet") discovery.range = wire::DiscoveryRange::subnet;
   if (options.range == "localhost") discovery.range = wire::DiscoveryRange::localhost;
+  if (options.range == "humble_localhost") {
+    discovery.range = wire::DiscoveryRange::humble_localhost;
+  }
   if (options.range == "off") discovery.range = wire::DiscoveryRange::off;
   discovery.static_peers.insert(discovery.static_peers.end(), options.peers.begin(),
                                 options.peers.end());
@@ -44,6 +48,11 @@ WorkerOptions worker_options(const ServerOptions& options) {
   return worker;
 }
 
+wire::GraphLayout graph_layout_of(const std::string& word) {
+  if (word == "humble") return wire::GraphLayout::humble24;
+  return word == "iron" ? wire::GraphLayout::iron16 : wire::GraphLayout::automatic;
+}
+
 template <class Service>
 Status keep(Result<Service> service, std::optional<Service>& place) {
   if (!service.ok()) return service.status();
@@ -54,9 +63,10 @@ Status keep(Result<Service> service, std::optional<Service>& place) {
 }  // namespace
 
 Server::Server(const ServerOptions& options, Recognition recognition, LogHook log)
-    : options_(options),
+    : settings_(options),
       recognition_(std::make_shared<const Recognition>(std::move(recognition))),
-      log_(std::move(log)) {}
+      relay_(std::move(log), log_level(options.log.level)),
+      log_(relay_.hook()) {}
 
 Result<std::unique_ptr<Server>> Server::create(const ServerOptions& options,
                                                Recognition recognition, LogHook log) {
@@ -76,15 +86,17 @@ Server::~Server() {
   if (worker_) worker_->stop();  // answers what waits, while the services can still send it
 }
 
-Status Server::start() {
-  auto discovery = discovery_of(options_.network);
+Status Server::join() {
+  const ServerOptions options = *settings_.get();
+  auto discovery = discovery_of(options.network);
   if (!discovery.ok()) return discovery.status();
   wire::ParticipantOptions seat;
-  seat.node.node_namespace = options_.node.ros_namespace;
-  seat.node.name = options_.node.name;
+  seat.node.node_namespace = options.node.ros_namespace;
+  seat.node.name = options.node.name;
   seat.discovery = *discovery;
+  seat.graph_layout = graph_layout_of(options.network.graph_layout);
   seat.log = log_;
-  for (const std::string& text : options_.node.remaps) {
+  for (const std::string& text : options.node.remaps) {
     auto remap = wire::parse_remap(text);
     if (!remap.ok()) return remap.status();
     seat.remaps.push_back(*remap);
@@ -92,36 +104,69 @@ Status Server::start() {
   auto participant = wire::Participant::create(std::move(seat));
   if (!participant.ok()) return participant.status();
   participant_.emplace(std::move(participant).value());
+  if (options.output.rosout.empty()) return {};
+  return relay_.connect(*participant_, options.output.rosout);
+}
 
-  auto publisher = ResultPublisher::create(*participant_, options_.output, recognition_, log_);
+Status Server::start() {
+  if (Status status = join(); !status.ok()) return status;
+  const ServerOptions options = *settings_.get();
+  auto publisher = ResultPublisher::create(*participant_, settings_, recognition_, log_);
   if (!publisher.ok()) return publisher.status();
   publisher_ = std::move(publisher).value();
   publisher_->publish_vision_info();
 
   worker_ = std::make_unique<Worker>(
-      recognition_, worker_options(options_), statistics_,
+      recognition_, worker_options(options), statistics_,
       [this](const IncomingFrame& incoming, const Frame* frame,
              const Result<SceneInterpretations>& result) { on_result(incoming, frame, result); },
       log_);
   auto source = TopicSource::create(
-      *participant_, options_, [this](IncomingFrame&& frame) { worker_->push(std::move(frame)); },
+      *participant_, options, [this](IncomingFrame&& frame) { worker_->push(std::move(frame)); },
       log_);
   if (!source.ok()) return source.status();
   topics_ = source->get();
   sources_.push_back(std::move(source).value());
   if (Status status = offer_services(); !status.ok()) return status;
+  settings_.on_change([this](const ServerOptions& before, const ServerOptions& after) {
+    return apply(before, after);
+  });
+  auto parameters = ParameterServices::create(*participant_, settings_, log_);
+  if (!parameters.ok()) return parameters.status();
+  parameters_ = std::move(parameters).value();
   reporter_ = std::thread([this] { report(); });
+  return {};
+}
+
+Status Server::apply(const ServerOptions& before, const ServerOptions& after) {
+  std::vector<std::string> detector;
+  for (const auto& changed : changed_parameters(before, after)) {
+    if (changed.name.rfind("detector.", 0) == 0) detector.push_back(changed.name);
+  }
+  if (!detector.empty()) {
+    if (!recognition_->set_options) {
+      return Status(StatusCode::unsupported, detector.front() + " cannot change in this server");
+    }
+    if (Status status = recognition_->set_options(after.detector); !status.ok()) return status;
+    statistics_.forget_timings();
+  }
+  worker_->set_options(worker_options(after));
+  topics_->set_options(after.input);
+  relay_.set_level(log_level(after.log.level));
   return {};
 }
 
 Status Server::offer_services() {
   const ServiceContext context{*participant_,
-                               options_,
+                               settings_,
                                recognition_,
                                *worker_,
                                statistics_,
                                [this] { return status(); },
-                               [this] { publisher_->publish_vision_info(); },
+                               [this] {
+                                 statistics_.forget_timings();
+                                 publisher_->publish_vision_info();
+                               },
                                log_};
   if (Status s = keep(offer_detect(context), detect_); !s.ok()) return s;
   if (Status s = keep(offer_list_models(context), list_models_); !s.ok()) return s;
@@ -133,8 +178,9 @@ Status Server::offer_services() {
 void Server::on_result(const IncomingFrame& incoming, const Frame* frame,
                        const Result<SceneInterpretations>& result) {
   const int models = recognition_->models ? static_cast<int>(recognition_->models().size()) : 0;
-  publisher_->publish(frame, result,
-                      {incoming.stamp_ns, incoming.frame_id, models, options_.detection.seed});
+  publisher_->publish(
+      frame, result,
+      {incoming.stamp_ns, incoming.frame_id, models, settings_.get()->detection.seed});
   if (!result.ok()) {
     log_failure(result.status());
     return;
@@ -159,12 +205,13 @@ void Server::log_failure(const Status& status) {
 
 msgs::GetStatus_Response Server::status() const {
   const Counts counts = statistics_.counts();
+  const Settings::Snapshot options = settings_.get();
   msgs::GetStatus_Response response;
   response.success = true;
   response.version = BPA_VERSION;
   const std::optional<double> silence = statistics_.seconds_since_frame();
-  const bool idle = !silence || *silence > options_.input.silence_s;
-  response.state = !options_.detection.continuous ? msgs::GetStatus_Response::kPaused
+  const bool idle = !silence || *silence > options->input.silence_s;
+  response.state = !options->detection.continuous ? msgs::GetStatus_Response::kPaused
                    : idle                         ? msgs::GetStatus_Response::kIdle
                                                   : msgs::GetStatus_Response::kRunning;
   response.uptime_s = std::chrono::duration<double>(Clock::now() - started_).count();
@@ -176,7 +223,7 @@ msgs::GetStatus_Response Server::status() const {
   response.requests_refused = counts.requests_refused;
   response.queue_length = static_cast<std::uint32_t>(worker_->queue_length());
   response.queue_capacity =
-      static_cast<std::uint32_t>(options_.queue.frames + options_.queue.requests);
+      static_cast<std::uint32_t>(options->queue.frames + options->queue.requests);
   if (recognition_->models) {
     response.model_count = static_cast<std::uint32_t>(recognition_->models().size());
   }
@@ -237,13 +284,14 @@ void Server::report_losses() {
   if (losses < 10 || losses < 10 * losses_reported_) return;
   losses_reported_ = losses;
   std::ostringstream text;
+  const Settings::Snapshot options = settings_.get();
   text << losses << " depth images had no partner: " << sync.depth_without_color
        << " without a colour image, " << sync.depth_without_info << " without a camera info";
   if (sync.nearest_miss_ns > 0) {
     text << "; the nearest one was " << static_cast<double>(sync.nearest_miss_ns) * 1e-6
-         << " ms away (input.sync_tolerance_ms is " << options_.input.sync_tolerance_ms << ")";
+         << " ms away (input.sync_tolerance_ms is " << options->input.sync_tolerance_ms << ")";
   } else {
-    text << "; are " << options_.input.color << " and " << options_.input.camera_info
+    text << "; are " << options->input.color << " and " << options->input.camera_info
          << " published?";
   }
   log(log_, LogLevel::warning, text.str());

@@ -16,10 +16,13 @@
 #include <bpa/server/capture/frame_source.hpp>
 #include <bpa/server/capture/topic_source.hpp>
 #include <bpa/server/diagnostics.hpp>
+#include <bpa/server/log_relay.hpp>
 #include <bpa/server/options.hpp>
 #include <bpa/server/recognition.hpp>
 #include <bpa/server/result_publisher.hpp>
+#include <bpa/server/services/parameter_services.hpp>
 #include <bpa/server/services/services.hpp>
+#include <bpa/server/settings.hpp>
 #include <bpa/server/statistics.hpp>
 #include <bpa/server/worker.hpp>
 #include <bpa/wire/participant.hpp>
@@ -43,7 +46,9 @@ class Server {
  private:
   Server(const ServerOptions& options, Recognition recognition, LogHook log);
   Status start();
+  Status join();
   Status offer_services();
+  Status apply(const ServerOptions& before, const ServerOptions& after);
   void on_result(const IncomingFrame& incoming, const Frame* frame,
                  const Result<SceneInterpretations>& result);
   void log_failure(const Status& status);
@@ -54,8 +59,9 @@ class Server {
   void report();
   void report_losses();
 
-  const ServerOptions options_;
+  Settings settings_;
   const std::shared_ptr<const Recognition> recognition_;
+  LogRelay relay_;
   const LogHook log_;
   const Clock::time_point started_ = Clock::now();
   Statistics statistics_;
@@ -76,6 +82,7 @@ class Server {
   std::optional<LoadModelServer> load_model_;
   std::optional<UnloadModelServer> unload_model_;
   std::optional<GetStatusServer> get_status_;
+  std::unique_ptr<ParameterServices> parameters_;
 
   std::mutex report_mutex_;
   std::condition_variable stop_report_;

@@ -89,6 +89,17 @@ double Statistics::median_total_ms() const {
   return median(totals_);
 }
 
+double Statistics::shortest_total_ms() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return totals_.empty() ? 0 : *std::min_element(totals_.begin(), totals_.end());
+}
+
+void Statistics::forget_timings() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  stages_.clear();
+  totals_.clear();
+}
+
 std::uint64_t resident_bytes() {
   std::ifstream file("/proc/self/statm");
   std::uint64_t total = 0, resident = 0;

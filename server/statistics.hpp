@@ -47,6 +47,10 @@ class Statistics {
   std::vector<StageTiming> median_timings() const;
   /// Median of the whole search; 0 before the first.
   double median_total_ms() const;
+  /// The shortest of the last searches; 0 before the first.
+  double shortest_total_ms() const;
+  /// After a change that makes searches longer or shorter.
+  void forget_timings();
 
  private:
   mutable std::mutex mutex_;

@@ -19,10 +19,10 @@ bool same_search(const DetectRequest& a, const DetectRequest& b) {
 Worker::Worker(std::shared_ptr<const Recognition> recognition, const WorkerOptions& options,
                Statistics& statistics, OnResult on_result, LogHook log)
     : recognition_(std::move(recognition)),
-      options_(options),
       statistics_(statistics),
       on_result_(std::move(on_result)),
       log_(std::move(log)),
+      options_(options),
       frames_(options.frame_capacity),
       thread_([this] { run(); }) {}
 
@@ -36,8 +36,8 @@ void Worker::stop() {
   wake_.notify_all();
   if (thread_.joinable()) thread_.join();
   const Status status(StatusCode::unavailable, "the server is stopping");
-  for (const DetectJob& job : std::exchange(requests_, {})) job.done(nullptr, status);
-  for (const DetectJob& job : std::exchange(awaiting_frame_, {})) job.done(nullptr, status);
+  while (const auto job = requests_.pop()) job->done(*job, nullptr, status);
+  for (const DetectJob& job : std::exchange(awaiting_frame_, {})) job.done(job, nullptr, status);
 }
 
 void Worker::push(IncomingFrame frame) {
@@ -51,34 +51,64 @@ void Worker::push(IncomingFrame frame) {
   wake_.notify_one();
 }
 
-Result<std::size_t> Worker::push(DetectJob job) {
-  const double search_ms = statistics_.median_total_ms();
-  std::size_t before = 0;
+void Worker::set_options(const WorkerOptions& options) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    before = requests_.size() + awaiting_frame_.size();
+    options_ = options;
+    frames_.set_capacity(options.frame_capacity);
+  }
+  wake_.notify_one();
+}
+
+/// Until the job's answer could be there: what is left of the search that runs, those ahead of it,
+/// frames of the stream in between, and its own. How long a search for some of the models takes is
+/// not known beforehand, so that such a job is given the benefit of the doubt.
+double Worker::wait_ms(const DetectJob& job) const {
+  const double search_ms = statistics_.median_total_ms();
+  double wait = 0;
+  if (busy_since_) {
+    const std::chrono::duration<double, std::milli> so_far = Clock::now() - *busy_since_;
+    wait += std::max(0.0, search_ms - so_far.count());
+  }
+  if (job.decode) wait += search_ms * static_cast<double>(job.position);
+  if (!job.request.models.empty()) return wait;
+  const double own_ms = statistics_.shortest_total_ms();
+  return wait + (job.request.budget_ms > 0 ? std::min(own_ms, job.request.budget_ms) : own_ms);
+}
+
+Status Worker::push(DetectJob job) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
     if (stopping_) return Status(StatusCode::unavailable, "the server is stopping");
-    if (before >= options_.request_capacity) {
-      return Status(StatusCode::busy, std::to_string(before) +
+    const std::size_t waiting = requests_.size() + awaiting_frame_.size();
+    if (waiting >= options_.request_capacity) {
+      return Status(StatusCode::busy, std::to_string(waiting) +
                                           " requests are waiting, as many as may "
                                           "(queue.requests); try again later");
     }
-    const auto wait = std::chrono::duration<double, std::milli>(
-        search_ms * static_cast<double>(requests_.size()));
-    if (Clock::now() + wait > job.deadline) {
+    if (job.decode) {
+      job.position = requests_.ahead_of_next(job.client);
+      // Frames of the stream have every other turn.
+      const bool streaming = options_.continuous && !frames_.empty();
+      if (streaming) job.position += job.position + (frame_was_last_ ? 0 : 1);
+    } else {
+      job.position = awaiting_frame_.size();
+    }
+    const double wait = wait_ms(job);
+    if (Clock::now() + std::chrono::duration<double, std::milli>(wait) > job.deadline) {
       return Status(StatusCode::timeout,
-                    "its turn would come in about " +
-                        std::to_string(static_cast<long>(wait.count())) +
+                    "its answer would come in about " + std::to_string(static_cast<long>(wait)) +
                         " ms, after its time-out; allow more time or try again later");
     }
     if (job.decode) {
-      requests_.push_back(std::move(job));
+      const wire::Guid client = job.client;
+      requests_.push(client, std::move(job));
     } else {
       awaiting_frame_.push_back(std::move(job));
     }
   }
   wake_.notify_one();
-  return before;
+  return {};
 }
 
 Status Worker::run_later(std::function<void()> task) {
@@ -145,43 +175,50 @@ void Worker::run() {
       }
       continue;
     }
-    if (!tasks_.empty()) {
-      const std::function<void()> task = std::move(tasks_.front());
-      tasks_.pop_front();
-      lock.unlock();
-      task();
-      lock.lock();
-      continue;
-    }
-    const bool frame_wanted = options_.continuous || !awaiting_frame_.empty();
-    const bool take_frame =
-        !frames_.empty() && frame_wanted && (requests_.empty() || !frame_was_last_);
-    frame_was_last_ = take_frame;
-    if (take_frame) {
-      IncomingFrame incoming = *frames_.pop();
-      std::vector<DetectJob> waiting = std::exchange(awaiting_frame_, {});
-      lock.unlock();
-      work_on_frame(std::move(incoming), std::move(waiting));
-    } else {
-      DetectJob job = std::move(requests_.front());
-      requests_.pop_front();
-      lock.unlock();
-      work_on_request(std::move(job));
-    }
-    lock.lock();
+    run_one(lock);
   }
+}
+
+/// Takes one thing out and does it with no lock held.
+void Worker::run_one(std::unique_lock<std::mutex>& lock) {
+  const WorkerOptions options = options_;
+  const bool frame_wanted = options.continuous || !awaiting_frame_.empty();
+  const bool take_frame =
+      !frames_.empty() && frame_wanted && (requests_.empty() || !frame_was_last_);
+  busy_since_ = Clock::now();
+  if (!tasks_.empty()) {
+    const std::function<void()> task = std::move(tasks_.front());
+    tasks_.pop_front();
+    lock.unlock();
+    task();
+  } else if (take_frame) {
+    frame_was_last_ = true;
+    IncomingFrame incoming = *frames_.pop();
+    std::vector<DetectJob> waiting = std::exchange(awaiting_frame_, {});
+    lock.unlock();
+    work_on_frame(options, std::move(incoming), std::move(waiting));
+  } else {
+    frame_was_last_ = false;
+    const DetectJob job = *requests_.pop();
+    lock.unlock();
+    work_on_request(job);
+  }
+  lock.lock();
+  busy_since_.reset();
 }
 
 void Worker::expire(std::vector<DetectJob> jobs) {
   for (const DetectJob& job : jobs) {
     statistics_.add(&Counts::requests_refused);
-    job.done(nullptr, Status(StatusCode::timeout,
-                             "no usable frame came in time; is a camera publishing, or does the "
-                             "request want to carry a frame of its own?"));
+    job.done(job, nullptr,
+             Status(StatusCode::timeout,
+                    "no usable frame came in time; is a camera publishing, or does the "
+                    "request want to carry a frame of its own?"));
   }
 }
 
-void Worker::work_on_frame(IncomingFrame incoming, std::vector<DetectJob> waiting) {
+void Worker::work_on_frame(const WorkerOptions& options, IncomingFrame incoming,
+                           std::vector<DetectJob> waiting) {
   Result<Frame> frame = incoming.decode();
   if (!frame.ok()) {
     statistics_.add_rejection(frame.status().message);
@@ -194,51 +231,51 @@ void Worker::work_on_frame(IncomingFrame incoming, std::vector<DetectJob> waitin
     return;
   }
   std::optional<Result<SceneInterpretations>> result;
-  if (options_.continuous) {
-    result.emplace(detect(*frame, options_.request));
+  if (options.continuous) {
+    result.emplace(detect(*frame, options.request));
     statistics_.add(result->ok() ? &Counts::frames_processed : &Counts::frames_failed);
     on_result_(incoming, &*frame, *result);
   }
   for (const DetectJob& job : waiting) {
-    answer_next_frame(*frame, job, result ? &*result : nullptr);
+    answer_next_frame(options, *frame, job, result ? &*result : nullptr);
   }
 }
 
-void Worker::answer_next_frame(const Frame& frame, const DetectJob& job,
-                               const Result<SceneInterpretations>* shared) {
-  if (shared != nullptr && !job.restrict_frame && same_search(job.request, options_.request)) {
+void Worker::answer_next_frame(const WorkerOptions& options, const Frame& frame,
+                               const DetectJob& job, const Result<SceneInterpretations>* shared) {
+  if (shared != nullptr && !job.restrict_frame && same_search(job.request, options.request)) {
     statistics_.add(&Counts::requests_served);
-    job.done(&frame, *shared);
+    job.done(job, &frame, *shared);
     return;
   }
   Frame narrowed = frame;
   if (job.restrict_frame) {
     if (Status status = job.restrict_frame(narrowed); !status.ok()) {
       statistics_.add(&Counts::requests_refused);
-      job.done(nullptr, status);
+      job.done(job, nullptr, status);
       return;
     }
   }
   const Result<SceneInterpretations> result = detect(narrowed, job.request);
   statistics_.add(result.ok() ? &Counts::requests_served : &Counts::requests_refused);
-  job.done(&narrowed, result);
+  job.done(job, &narrowed, result);
 }
 
-void Worker::work_on_request(DetectJob job) {
+void Worker::work_on_request(const DetectJob& job) {
   if (Clock::now() >= job.deadline) {
     statistics_.add(&Counts::requests_refused);
-    job.done(nullptr, Status(StatusCode::timeout, "its turn came after its time-out"));
+    job.done(job, nullptr, Status(StatusCode::timeout, "its turn came after its time-out"));
     return;
   }
   const Result<Frame> frame = job.decode();
   if (!frame.ok()) {
     statistics_.add(&Counts::requests_refused);
-    job.done(nullptr, frame.status());
+    job.done(job, nullptr, frame.status());
     return;
   }
   const Result<SceneInterpretations> result = detect(*frame, job.request);
   statistics_.add(result.ok() ? &Counts::requests_served : &Counts::requests_refused);
-  job.done(&*frame, result);
+  job.done(job, &*frame, result);
 }
 
 Result<SceneInterpretations> Worker::detect(const Frame& frame, const DetectRequest& request) {

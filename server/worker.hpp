@@ -15,9 +15,11 @@
 #include <bpa/core/base/log.hpp>
 #include <bpa/core/base/status.hpp>
 #include <bpa/core/cloud/frame.hpp>
+#include <bpa/server/fair_queue.hpp>
 #include <bpa/server/newest_queue.hpp>
 #include <bpa/server/recognition.hpp>
 #include <bpa/server/statistics.hpp>
+#include <bpa/wire/endpoint.hpp>
 
 // Between DDS and the detector: DDS threads put frames and requests into bounded queues and go; one
 // worker takes them out, computes with no lock held and hands the results on.
@@ -41,8 +43,12 @@ struct DetectJob {
   std::function<Status(Frame&)> restrict_frame;
   DetectRequest request;
   Clock::time_point deadline;  ///< No answer is wanted after this.
+  wire::Guid client{};         ///< Who asks; clients take turns.
+  std::size_t position = 0;    ///< Searches ahead of it when it was accepted; set by the worker.
   /// Called once: with the answer, or with why there is none. `frame` is null when there is none.
-  std::function<void(const Frame* frame, const Result<SceneInterpretations>& result)> done;
+  std::function<void(const DetectJob& job, const Frame* frame,
+                     const Result<SceneInterpretations>& result)>
+      done;
 };
 
 struct WorkerOptions {
@@ -71,9 +77,12 @@ class Worker {
 
   /// Never waits; the oldest frame goes when there are too many.
   void push(IncomingFrame frame);
-  /// Accepts the job and returns how many stand before it, or refuses it: `busy` when the queue is
-  /// full, `timeout` when its turn would come after its deadline. `done` is not called then.
-  Result<std::size_t> push(DetectJob job);
+  /// Accepts the job or refuses it: `busy` when the queue is full, `timeout` when, as searches go
+  /// at present, its answer would come after its deadline. `done` is not called then.
+  Status push(DetectJob job);
+
+  /// For what comes from now on.
+  void set_options(const WorkerOptions& options);
 
   /// Runs a task (such as loading a model) between two searches; `busy` when too many wait.
   Status run_later(std::function<void()> task);
@@ -84,28 +93,32 @@ class Worker {
  private:
   void run();
   bool has_work() const;
+  double wait_ms(const DetectJob& job) const;
   std::optional<Clock::time_point> first_deadline() const;
   std::vector<DetectJob> take_expired();
   void expire(std::vector<DetectJob> jobs);
-  void work_on_frame(IncomingFrame incoming, std::vector<DetectJob> waiting);
-  void work_on_request(DetectJob job);
-  void answer_next_frame(const Frame& frame, const DetectJob& job,
+  void run_one(std::unique_lock<std::mutex>& lock);
+  void work_on_frame(const WorkerOptions& options, IncomingFrame incoming,
+                     std::vector<DetectJob> waiting);
+  void work_on_request(const DetectJob& job);
+  void answer_next_frame(const WorkerOptions& options, const Frame& frame, const DetectJob& job,
                          const Result<SceneInterpretations>* shared);
   Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request);
 
   const std::shared_ptr<const Recognition> recognition_;
-  const WorkerOptions options_;
   Statistics& statistics_;
   const OnResult on_result_;
   const LogHook log_;
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;
+  WorkerOptions options_;
   NewestQueue<IncomingFrame> frames_;
-  std::deque<DetectJob> requests_;         ///< With frames of their own.
-  std::vector<DetectJob> awaiting_frame_;  ///< For the next frame.
+  FairQueue<wire::Guid, DetectJob> requests_;  ///< With frames of their own.
+  std::vector<DetectJob> awaiting_frame_;      ///< For the next frame.
   std::deque<std::function<void()>> tasks_;
   bool frame_was_last_ = false;  ///< Whose turn it is when both wait.
+  std::optional<Clock::time_point> busy_since_;
   bool stopping_ = false;
   std::thread thread_;  ///< Last: starts when all else is there.
 };

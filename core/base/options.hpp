@@ -25,7 +25,14 @@ struct FieldRule {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   const char* description = "";
+  bool runtime = false;  ///< May change while the program runs.
 };
+
+/// The same rule for a field that may change while the program runs.
+constexpr FieldRule at_run_time(FieldRule rule) {
+  rule.runtime = true;
+  return rule;
+}
 
 /// Checks every field of an options struct against its rule. The message names the first field that
 /// breaks it, its value and the rule.

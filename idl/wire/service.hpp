@@ -31,6 +31,7 @@ class PendingReply {
  public:
   virtual ~PendingReply() = default;
   virtual Status reply(const MessageRef& response) = 0;
+  virtual Guid client() const = 0;
 };
 
 /// Decodes a request; gives back what hands it to the handler.
@@ -64,6 +65,8 @@ class ReplyToken {
   Status reply(const typename Service::Response& response) const {
     return pending_->reply(detail::message_ref(response));
   }
+  /// The participant that asked: its entity id is zero.
+  Guid client() const { return pending_->client(); }
 
  private:
   std::shared_ptr<detail::PendingReply> pending_;

@@ -27,6 +27,7 @@ Status read_request_frame(const std::vector<std::uint8_t>& bytes, const SampleMe
   if (!read_cdr_header(bytes.data(), bytes.size(), swap)) {
     return Status(StatusCode::corrupt, "not plain CDR");
   }
+  address->client = any_entity_of(meta.id.writer);
   if (meta.related.writer != Guid{}) {
     const Guid& client = meta.related.writer;
     address->framing = Framing::fastdds;

@@ -26,6 +26,7 @@ struct ReplyAddress {
   Framing framing = Framing::fastdds;
   SampleId related;                       ///< fastdds: what the reply is related to.
   std::array<std::uint8_t, 16> header{};  ///< cyclone: what stands before the struct.
+  Guid client{};                          ///< The participant that asked; entity 0.
   Guid reader{};                          ///< The client's reply reader; entity 0: any of its own.
 };
 

@@ -176,6 +176,7 @@ class Pending : public PendingReply {
     if (!server) return Status(StatusCode::unavailable, "the service has ended");
     return server->send(address_, response);
   }
+  Guid client() const override { return address_.client; }
 
  private:
   const std::weak_ptr<ServiceServerImpl> server_;

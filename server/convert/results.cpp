@@ -187,7 +187,8 @@ vision::Detection3DArray detections_message(const SceneInterpretations& result,
   return message;
 }
 
-markers::MarkerArray markers_message(const SceneInterpretations& result, const Models& models) {
+markers::MarkerArray markers_message(const SceneInterpretations& result, const Models& models,
+                                     double lifetime_s) {
   markers::MarkerArray message;
   markers::Marker clear;
   clear.header = header(result.stamp_ns, result.frame_id);
@@ -202,6 +203,9 @@ markers::MarkerArray markers_message(const SceneInterpretations& result, const M
     marker.id = id;
     marker.type = markers::Marker::kCube;
     marker.action = markers::Marker::kAdd;
+    const auto lifetime =
+        wire::builtin_interfaces::from_ns(static_cast<std::int64_t>(lifetime_s * 1e9));
+    marker.lifetime = {lifetime.sec, lifetime.nanosec};
     marker.pose = box.center;
     marker.scale = box.size;
     marker.color = color_of(placement.model_number, 0.5f);

@@ -43,9 +43,9 @@ wire::vision_msgs::Detection3DArray detections_message(const SceneInterpretation
                                                        const Models& models);
 
 /// One box and one name per placement of the best interpretation, after a marker that deletes those
-/// of the last frame. The colour follows the model's number.
+/// of the last frame. The colour follows the model's number; `lifetime_s` 0 is for ever.
 wire::visualization_msgs::MarkerArray markers_message(const SceneInterpretations& result,
-                                                      const Models& models);
+                                                      const Models& models, double lifetime_s);
 
 /// A transform per placement of the best interpretation, child frame "PREFIX/NAME_INSTANCE".
 wire::tf2_msgs::TFMessage transforms_message(const SceneInterpretations& result,

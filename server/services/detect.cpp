@@ -77,34 +77,34 @@ DetectJob job_of(std::shared_ptr<msgs::Detect_Request> request, const DetectRequ
 
 Result<DetectServer> offer_detect(const ServiceContext& context) {
   const auto handle = [recognition = context.recognition, &worker = context.worker,
-                       &statistics = context.statistics, options = context.options.detection,
+                       &statistics = context.statistics, &settings = context.settings,
                        hook = context.log](msgs::Detect_Request&& message, Token token) {
     const auto refuse = [&](const Status& status) {
       statistics.add(&Counts::requests_refused);
       log(hook, LogLevel::info, "detect refused: " + status.message);
       reply(token, refusal(status), hook);
     };
+    const Settings::Snapshot options = settings.get();
     auto request = std::make_shared<msgs::Detect_Request>(std::move(message));
-    const Result<DetectRequest> search = search_of(*request, options);
+    const Result<DetectRequest> search = search_of(*request, options->detection);
     if (!search.ok()) return refuse(search.status());
-    DetectJob job = job_of(request, *search, options);
-    // Before the push, which may finish the job at once.
-    const auto position = static_cast<std::uint32_t>(worker.queue_length());
-    job.done = [recognition, search = *search, position, token, hook](
-                   const Frame* frame, const Result<SceneInterpretations>& result) {
+    DetectJob job = job_of(request, *search, options->detection);
+    job.client = token.client();
+    job.done = [recognition, token, hook](const DetectJob& done, const Frame* frame,
+                                          const Result<SceneInterpretations>& result) {
       msgs::Detect_Response response = refusal(result.status());
       response.success = result.ok();
-      response.queue_position = position;
+      response.queue_position = static_cast<std::uint32_t>(done.position);
       if (frame != nullptr) {
         response.result = interpretations_message(
-            result,
-            {frame->stamp_ns, frame->frame_id, models_searched(*recognition, search), search.seed});
+            result, {frame->stamp_ns, frame->frame_id, models_searched(*recognition, done.request),
+                     done.request.seed});
       }
       if (!result.ok()) log(hook, LogLevel::info, "detect failed: " + result.status().message);
       reply(token, response, hook);
     };
-    const Result<std::size_t> accepted = worker.push(std::move(job));
-    if (!accepted.ok()) refuse(accepted.status());
+    const Status accepted = worker.push(std::move(job));
+    if (!accepted.ok()) refuse(accepted);
   };
   return DetectServer::create(context.participant, "detect", handle);
 }

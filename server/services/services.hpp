@@ -8,8 +8,8 @@
 
 #include <bpa/core/base/log.hpp>
 #include <bpa/core/base/status.hpp>
-#include <bpa/server/options.hpp>
 #include <bpa/server/recognition.hpp>
+#include <bpa/server/settings.hpp>
 #include <bpa/server/statistics.hpp>
 #include <bpa/server/worker.hpp>
 #include <bpa/wire/messages.hpp>
@@ -24,7 +24,7 @@ namespace bpa::server {
 /// What the services need of the server; all of it outlives them.
 struct ServiceContext {
   const wire::Participant& participant;
-  const ServerOptions& options;
+  const Settings& settings;
   std::shared_ptr<const Recognition> recognition;
   Worker& worker;
   Statistics& statistics;

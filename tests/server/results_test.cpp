@@ -106,15 +106,17 @@ TEST(Results, NothingFoundIsEmptyNotMissing) {
   nothing.frame_id = "cam";
   EXPECT_TRUE(detections_message(nothing, {}).detections.empty());
   EXPECT_TRUE(transforms_message(nothing, "bpa").transforms.empty());
-  const auto markers = markers_message(nothing, {});
+  const auto markers = markers_message(nothing, {}, 0);
   ASSERT_EQ(markers.markers.size(), 1U);  // clears those of the last frame
   EXPECT_EQ(markers.markers[0].action, wire::visualization_msgs::Marker::kDeleteAll);
 }
 
 TEST(Results, MarkersAndTransformsNameEveryInstance) {
-  const auto markers = markers_message(scene(), models());
+  const auto markers = markers_message(scene(), models(), 1.5);
   EXPECT_EQ(markers.markers.size(), 1U + 2 * 3U);
   EXPECT_EQ(markers.markers[4].text, "mug_1 80 %");
+  EXPECT_EQ(markers.markers[4].lifetime.sec, 1);
+  EXPECT_EQ(markers.markers[4].lifetime.nanosec, 500'000'000U);
   const auto transforms = transforms_message(scene(), "bpa");
   ASSERT_EQ(transforms.transforms.size(), 3U);
   EXPECT_EQ(transforms.transforms[1].child_frame_id, "bpa/mug_1");

@@ -56,12 +56,18 @@ class Gate {
 /// Collects answers and lets the test wait for them.
 class Answers {
  public:
-  std::function<void(const Frame*, const Result<SceneInterpretations>&)> collector() {
-    return [this](const Frame*, const Result<SceneInterpretations>& result) {
+  std::function<void(const DetectJob&, const Frame*, const Result<SceneInterpretations>&)>
+  collector() {
+    return [this](const DetectJob& job, const Frame*, const Result<SceneInterpretations>& result) {
       const std::lock_guard<std::mutex> lock(mutex_);
       statuses_.push_back(result.status());
+      positions_.push_back(job.position);
       changed_.notify_all();
     };
+  }
+  std::vector<std::size_t> positions() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return positions_;
   }
   bool wait_for(std::size_t count) {
     std::unique_lock<std::mutex> lock(mutex_);
@@ -80,6 +86,7 @@ class Answers {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<Status> statuses_;
+  std::vector<std::size_t> positions_;
 };
 
 class WorkerTest : public testing::Test {
@@ -93,7 +100,7 @@ class WorkerTest : public testing::Test {
         recognition, options, statistics,
         [collect = streamed.collector()](const IncomingFrame&, const Frame* frame,
                                          const Result<SceneInterpretations>& result) {
-          collect(frame, result);
+          collect({}, frame, result);
         },
         LogHook());
   }
@@ -103,9 +110,13 @@ class WorkerTest : public testing::Test {
   static IncomingFrame bad_frame() {
     return {[]() -> Result<Frame> { return invalid_argument("frame depth has 3 values"); }, 0, "c"};
   }
-  DetectJob job(bool with_frame, milliseconds time = milliseconds(5000)) {
+  DetectJob job(bool with_frame, milliseconds time = milliseconds(5000), std::uint8_t client = 0,
+                std::int64_t stamp = 77) {
     DetectJob job;
-    if (with_frame) job.decode = [] { return frame_from_message(support::wall_frame(77)); };
+    if (with_frame) {
+      job.decode = [stamp] { return frame_from_message(support::wall_frame(stamp)); };
+    }
+    job.client[0] = client;
     job.deadline = Clock::now() + time;
     job.done = answers.collector();
     return job;
@@ -140,10 +151,8 @@ TEST_F(WorkerTest, FullQueueOfRequestsIsBusyAndFramesDoNotCount) {
   ASSERT_TRUE(gate.wait_for_started(1));
   worker->push(frame(1));
   EXPECT_TRUE(worker->push(job(true)).ok());
-  const auto second = worker->push(job(false));
-  ASSERT_TRUE(second.ok());
-  EXPECT_EQ(*second, 1U);  // one stands before it
-  EXPECT_EQ(worker->push(job(true)).status().code, StatusCode::busy);
+  EXPECT_TRUE(worker->push(job(false)).ok());
+  EXPECT_EQ(worker->push(job(true)).code, StatusCode::busy);
   gate.open();
   ASSERT_TRUE(answers.wait_for(2));
   EXPECT_EQ(answers.code(0), StatusCode::ok);
@@ -163,6 +172,61 @@ TEST_F(WorkerTest, FramesAndRequestsTakeTurns) {
   ASSERT_TRUE(answers.wait_for(3));
   ASSERT_TRUE(streamed.wait_for(4));
   EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 77, 1, 77, 2, 77, 3}));
+}
+
+TEST_F(WorkerTest, ClientsTakeTurnsAndLearnTheirPlace) {
+  auto worker = make();
+  worker->push(frame(0));
+  ASSERT_TRUE(gate.wait_for_started(1));
+  for (int i = 0; i < 3; ++i) {  // client 1 asks three times before anybody else
+    ASSERT_TRUE(worker->push(job(true, milliseconds(5000), 1, 10 + i)).ok());
+  }
+  ASSERT_TRUE(worker->push(job(true, milliseconds(5000), 2, 20)).ok());
+  ASSERT_TRUE(worker->push(job(true, milliseconds(5000), 3, 30)).ok());
+  gate.open();
+  ASSERT_TRUE(answers.wait_for(5));
+  EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 10, 20, 30, 11, 12}));
+  EXPECT_EQ(answers.positions(), (std::vector<std::size_t>{0, 1, 2, 1, 2}));
+}
+
+TEST_F(WorkerTest, ARequestThatCannotBeServedInTimeIsRefusedAtOnce) {
+  WorkerOptions options;
+  options.continuous = false;
+  auto worker = make(options);
+  SceneInterpretations second_long;
+  second_long.total_milliseconds = 1000;
+  statistics.add_timings(second_long);
+  EXPECT_EQ(worker->push(job(true, milliseconds(300))).code, StatusCode::timeout);
+  EXPECT_EQ(worker->push(job(false, milliseconds(300))).code, StatusCode::timeout);
+  DetectJob quick = job(true, milliseconds(300));  // the best that 100 ms can give
+  quick.request.budget_ms = 100;
+  EXPECT_TRUE(worker->push(std::move(quick)).ok());
+  ASSERT_TRUE(gate.wait_for_started(1));
+  // Behind a search that has just begun and one that waits there is no time for 1.5 s.
+  ASSERT_TRUE(worker->push(job(true, milliseconds(5000))).ok());
+  quick = job(true, milliseconds(1500));
+  quick.request.budget_ms = 100;
+  EXPECT_EQ(worker->push(std::move(quick)).code, StatusCode::timeout);
+  EXPECT_TRUE(worker->push(job(true, milliseconds(5000))).ok());
+  gate.open();
+  ASSERT_TRUE(answers.wait_for(3));
+}
+
+TEST_F(WorkerTest, OptionsChangeWhileItRuns) {
+  auto worker = make();
+  gate.open();
+  worker->push(frame(1));
+  ASSERT_TRUE(streamed.wait_for(1));
+  WorkerOptions paused;
+  paused.continuous = false;
+  worker->set_options(paused);
+  worker->push(frame(2));
+  ASSERT_TRUE(worker->push(job(true)).ok());
+  ASSERT_TRUE(answers.wait_for(1));
+  EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{1, 77}));
+  worker->set_options({});  // the frame that waits is searched now
+  ASSERT_TRUE(streamed.wait_for(2));
+  EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{1, 77, 2}));
 }
 
 TEST_F(WorkerTest, NextFrameRequestsShareTheStreamsSearch) {
@@ -224,7 +288,7 @@ TEST_F(WorkerTest, StoppingAnswersWhatWaits) {
   gate.open();
   stopper.join();
   ASSERT_EQ(answers.size(), 2U);
-  EXPECT_EQ(worker->push(job(true)).status().code, StatusCode::unavailable);
+  EXPECT_EQ(worker->push(job(true)).code, StatusCode::unavailable);
 }
 
 }  // namespace

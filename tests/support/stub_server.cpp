@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <bpa/server/ros_arguments.hpp>
 #include <bpa/server/server.hpp>
 
 namespace {
@@ -66,12 +67,22 @@ int main(int argc, char** argv) {
   int delay_ms = 0;
   program.add_option("--set", settings, "group.key=value");
   program.add_option("--delay-ms", delay_ms, "how long a search takes");
-  CLI11_PARSE(program, argc, argv);
+  const auto ros = bpa::server::take_ros_arguments({argv, argv + argc});
+  if (!ros.ok()) return std::cerr << ros.status().message << '\n', 2;
+  std::vector<std::string> words(ros->own.rbegin(), ros->own.rend() - 1);
+  try {
+    program.parse(words);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error);
+  }
   bpa::server::ServerOptions options;
   options.network.range = "localhost";
   for (const std::string& setting : settings) {
     const Status status = bpa::server::set_option(setting, options);
     if (!status.ok()) return std::cerr << status.message << '\n', 2;
+  }
+  if (Status s = bpa::server::apply(*ros, options); !s.ok()) {
+    return std::cerr << s.message << '\n', 2;
   }
   bpa::server::Recognition recognition;
   recognition.detect = [delay_ms](const bpa::Frame& frame, const bpa::DetectRequest& request) {
@@ -79,6 +90,10 @@ int main(int argc, char** argv) {
   };
   recognition.annotate = annotate;
   recognition.models = stub_models;
+  recognition.set_options = [](const bpa::DetectorOptions& detector) {
+    std::cerr << "max_keypoints is " << detector.max_keypoints << std::endl;
+    return Status();
+  };
   recognition.library = "stub";
   const auto server = bpa::server::Server::create(
       options, recognition,

@@ -17,7 +17,8 @@ namespace bpa::support {
 /// The stub server as another process, in this test's domain and namespace.
 class StubServer {
  public:
-  explicit StubServer(const std::vector<std::string>& settings = {}, int delay_ms = 0)
+  explicit StubServer(const std::vector<std::string>& settings = {}, int delay_ms = 0,
+                      const std::vector<std::string>& more_words = {})
       : log_path_(scratch_folder() + "/server.log") {
     command_ = {BPA_BINARY_DIR "/tests/bpa-stub-server",
                 "--delay-ms",
@@ -29,11 +30,16 @@ class StubServer {
                 "--set",
                 "output.tf=tf",
                 "--set",
-                "output.diagnostics=diagnostics"};
+                "output.diagnostics=diagnostics",
+                "--set",
+                "output.rosout=rosout",
+                "--set",
+                "node.remaps=['/parameter_events:=parameter_events']"};
     for (const std::string& setting : settings) {
       command_.push_back("--set");
       command_.push_back(setting);
     }
+    command_.insert(command_.end(), more_words.begin(), more_words.end());
     start();
   }
   void start() { process_ = std::make_unique<Process>(command_, log_path_); }

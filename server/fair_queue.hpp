@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <utility>
+
+namespace bpa::server {
+
+/// A queue in which clients take turns: first in, first out for each client, one item of each
+/// client in a round. A client that asks a lot delays itself, not the others. Not bounded and not
+/// locked; its owner does both.
+template <class Client, class T>
+class FairQueue {
+ public:
+  /// How many items would come out before one that this client adds now.
+  std::size_t ahead_of_next(const Client& client) const {
+    std::size_t own = 0;
+    for (const Line& line : lines_) {
+      if (line.client == client) own = line.items.size();
+    }
+    std::size_t ahead = own;
+    bool before = true;  // whose turn comes before the client's; a new client's comes last
+    for (const Line& line : lines_) {
+      if (line.client == client) {
+        before = false;
+      } else {
+        ahead += std::min(line.items.size(), before ? own + 1 : own);
+      }
+    }
+    return ahead;
+  }
+
+  void push(const Client& client, T item) {
+    auto line = std::find_if(lines_.begin(), lines_.end(),
+                             [&](const Line& one) { return one.client == client; });
+    if (line == lines_.end()) line = lines_.insert(lines_.end(), Line{client, {}});
+    line->items.push_back(std::move(item));
+    ++size_;
+  }
+
+  /// The item whose turn it is; its client goes to the end of the round. Nothing when empty.
+  std::optional<T> pop() {
+    if (lines_.empty()) return std::nullopt;
+    Line line = std::move(lines_.front());
+    lines_.pop_front();
+    std::optional<T> item(std::move(line.items.front()));
+    line.items.pop_front();
+    if (!line.items.empty()) lines_.push_back(std::move(line));
+    --size_;
+    return item;
+  }
+
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+
+ private:
+  struct Line {
+    Client client;
+    std::deque<T> items;  ///< Never empty.
+  };
+
+  std::deque<Line> lines_;  ///< In the order of their turns.
+  std::size_t size_ = 0;
+};
+
+}  // namespace bpa::server

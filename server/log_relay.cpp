@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <utility>
+
+#include <bpa/server/log_relay.hpp>
+#include <bpa/wire/msg/builtin_interfaces.hpp>
+
+namespace bpa::server {
+namespace {
+
+using wire::rcl_interfaces::Log;
+
+constexpr std::size_t kMaxWaiting = 256;
+
+std::uint8_t ros_level(LogLevel level) {
+  switch (level) {
+    case LogLevel::debug:
+      return Log::kDebug;
+    case LogLevel::info:
+      return Log::kInfo;
+    case LogLevel::warning:
+      return Log::kWarn;
+    case LogLevel::error:
+      break;
+  }
+  return Log::kError;
+}
+
+std::int64_t now_ns() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+}
+
+/// "/bpa/server" -> "bpa.server".
+std::string logger_name(std::string node) {
+  node.erase(0, 1);
+  for (char& c : node) c = c == '/' ? '.' : c;
+  return node;
+}
+
+}  // namespace
+
+struct LogRelay::State {
+  LogHook sink;
+  std::atomic<LogLevel> least;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::deque<Log> waiting;
+  std::uint64_t lost = 0;
+  bool stop = false;
+
+  void take(LogLevel level, std::string_view text) {
+    if (level < least) return;
+    log(sink, level, text);
+    Log message;
+    message.stamp = wire::builtin_interfaces::from_ns(now_ns());
+    message.level = ros_level(level);
+    message.msg = text;
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (stop) return;
+      if (waiting.size() >= kMaxWaiting) {
+        waiting.pop_front();
+        ++lost;
+      }
+      waiting.push_back(std::move(message));
+    }
+    changed.notify_one();
+  }
+};
+
+LogRelay::LogRelay(LogHook sink, LogLevel least) : state_(std::make_shared<State>()) {
+  state_->sink = std::move(sink);
+  state_->least = least;
+}
+
+LogRelay::~LogRelay() {
+  {
+    const std::lock_guard<std::mutex> lock(state_->mutex);
+    state_->stop = true;
+  }
+  state_->changed.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+LogHook LogRelay::hook() const {
+  return [state = state_](LogLevel level, std::string_view text) { state->take(level, text); };
+}
+
+void LogRelay::set_level(LogLevel least) { state_->least = least; }
+
+Status LogRelay::connect(const wire::Participant& participant, const std::string& topic) {
+  wire::PublisherOptions options;
+  options.qos = wire::qos::rosout();
+  auto publisher = wire::Publisher<Log>::create(participant, topic, options);
+  if (!publisher.ok()) return publisher.status();
+  publisher_.emplace(std::move(publisher).value());
+  logger_ = logger_name(participant.node().full());
+  thread_ = std::thread([this] { run(); });
+  return {};
+}
+
+void LogRelay::run() {
+  std::unique_lock<std::mutex> lock(state_->mutex);
+  while (true) {
+    state_->changed.wait(lock, [this] { return state_->stop || !state_->waiting.empty(); });
+    if (state_->waiting.empty()) return;
+    Log message = std::move(state_->waiting.front());
+    state_->waiting.pop_front();
+    if (const auto lost = std::exchange(state_->lost, 0); lost > 0) {
+      message.msg += " (" + std::to_string(lost) + " earlier messages are not in /rosout)";
+    }
+    lock.unlock();
+    message.name = logger_;
+    // A failure is not logged: it would come here.
+    if (!publisher_->publish(message).ok()) {
+      const std::lock_guard<std::mutex> again(state_->mutex);
+      ++state_->lost;
+    }
+    lock.lock();
+  }
+}
+
+LogLevel log_level(const std::string& word) {
+  if (word == "debug") return LogLevel::debug;
+  if (word == "warning" || word == "warn") return LogLevel::warning;
+  if (word == "error" || word == "fatal") return LogLevel::error;
+  return LogLevel::info;
+}
+
+}  // namespace bpa::server

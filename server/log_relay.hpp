@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include <bpa/core/base/log.hpp>
+#include <bpa/core/base/status.hpp>
+#include <bpa/wire/msg/rcl_interfaces.hpp>
+#include <bpa/wire/participant.hpp>
+#include <bpa/wire/publisher.hpp>
+
+namespace bpa::server {
+
+/// Where the server's log goes: messages of a level or above to the terminal's hook and, once there
+/// is a participant, to /rosout. Much is said on DDS threads that hold locks of DDS, so /rosout is
+/// fed by a thread of its own, through a bounded queue; what does not fit is counted and said.
+class LogRelay {
+ public:
+  /// `sink` may be empty.
+  LogRelay(LogHook sink, LogLevel least);
+  ~LogRelay();
+  LogRelay(const LogRelay&) = delete;
+  LogRelay& operator=(const LogRelay&) = delete;
+
+  /// May be called as long as anybody likes, also after the relay has gone.
+  LogHook hook() const;
+  void set_level(LogLevel least);
+
+  /// Starts to publish, what has been said so far first.
+  Status connect(const wire::Participant& participant, const std::string& topic);
+
+ private:
+  struct State;
+  void run();
+
+  const std::shared_ptr<State> state_;
+  std::string logger_;  ///< The node's name, as loggers are called in ROS 2.
+  std::optional<wire::Publisher<wire::rcl_interfaces::Log>> publisher_;
+  std::thread thread_;
+};
+
+/// "debug", "info", "warning" (also "warn") or "error" (also "fatal"); info for any other word.
+LogLevel log_level(const std::string& word);
+
+}  // namespace bpa::server

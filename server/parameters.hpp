@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <bpa/core/base/status.hpp>
+#include <bpa/server/options.hpp>
+#include <bpa/wire/msg/rcl_interfaces.hpp>
+
+// The settings as ROS 2 parameters: "group.key", such as detection.top_k. The types are those of
+// the fields; the ranges are their rules; what may not change at run time is read-only.
+
+namespace bpa::server {
+
+/// Every parameter, in the order of the settings.
+std::vector<wire::rcl_interfaces::Parameter> all_parameters(const ServerOptions& options);
+
+/// The value; of type kNotSet when there is no such parameter.
+wire::rcl_interfaces::ParameterValue parameter(const ServerOptions& options,
+                                               const std::string& name);
+
+/// What is known of a parameter; of type kNotSet when there is none of that name.
+wire::rcl_interfaces::ParameterDescriptor describe_parameter(const std::string& name);
+
+/// Sets one field. `not_found` without such a parameter; `unsupported` when it is read-only;
+/// `invalid_argument` for another type (an integer will do for a double). Ranges are left to
+/// validate().
+Status set_parameter(const wire::rcl_interfaces::Parameter& parameter, ServerOptions& options);
+
+/// The names below any of the prefixes (none: all), at most `depth` levels deep (0: no limit), and
+/// the groups they are in, as rclcpp lists them.
+wire::rcl_interfaces::ListParametersResult list_parameters(const std::vector<std::string>& prefixes,
+                                                           std::uint64_t depth);
+
+/// Those of `after` that differ from `before`.
+std::vector<wire::rcl_interfaces::Parameter> changed_parameters(const ServerOptions& before,
+                                                                const ServerOptions& after);
+
+}  // namespace bpa::server

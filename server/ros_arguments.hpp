@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <bpa/core/base/status.hpp>
+#include <bpa/server/options.hpp>
+
+// The part of a command line that every ROS 2 node understands, as `ros2 run` and launch files use
+// it: --ros-args -r FROM:=TO -r __node:=NAME -r __ns:=NAMESPACE -p NAME:=VALUE --params-file FILE
+// --log-level LEVEL, until `--` or the end.
+
+namespace bpa::server {
+
+struct RosArguments {
+  std::vector<std::string> own;         ///< What is not for ROS; the program's name comes first.
+  std::vector<std::string> remaps;      ///< from:=to, __node:=x and __ns:=/y included.
+  std::vector<std::string> parameters;  ///< name:=value
+  std::vector<std::string> files;       ///< Parameter files.
+  std::string log_level;                ///< Empty: none given.
+};
+
+/// Takes a command line apart. `invalid_argument` for what ROS would not understand, `unsupported`
+/// for what this server does not have (an enclave).
+Result<RosArguments> take_ros_arguments(const std::vector<std::string>& command_line);
+
+/// Sets what they say, files first, as ROS does. Parameters are the settings, "group.key"; in a
+/// file they stand under the node's name (or /**) and ros__parameters. A parameter that does not
+/// exist is an error, but for use_sim_time, which launch files give to every node: results carry
+/// the stamps of the frames, so that it changes nothing here.
+Status apply(const RosArguments& arguments, ServerOptions& options);
+
+}  // namespace bpa::server
