@@ -5,11 +5,12 @@
 #include <cmath>
 #include <sstream>
 
+#include <bpa/core/base/parallel.hpp>
 #include <bpa/core/base/random.hpp>
 #include <bpa/core/cloud/curvature.hpp>
 #include <bpa/core/cloud/neighbor_grid.hpp>
+#include <bpa/core/model/mesh_visibility.hpp>
 #include <bpa/core/model/object_model.hpp>
-#include <bpa/core/model/view_sphere.hpp>
 
 namespace bpa {
 namespace {
@@ -17,27 +18,18 @@ namespace {
 constexpr double kMinDiameter = 0.005;
 constexpr double kMaxDiameter = 3.0;
 
-// Six times the volume that the triangles enclose, negative when they face inwards.
-double signed_volume(const TriangleMesh& mesh) {
-  const Eigen::Vector3f origin = mesh.vertices.front();
-  double volume = 0;
-  for (const auto& triangle : mesh.triangles) {
-    const Eigen::Vector3f a = mesh.vertices[triangle[0]] - origin;
-    const Eigen::Vector3f b = mesh.vertices[triangle[1]] - origin;
-    const Eigen::Vector3f c = mesh.vertices[triangle[2]] - origin;
-    volume += static_cast<double>(a.dot(b.cross(c)));
-  }
-  return volume;
-}
-
-// Points on the triangles, `per_square_metre` on average, with the triangles' normals,
-// those of a mesh that is inside out turned.
-PointCloud sample_triangles(const TriangleMesh& mesh, double per_square_metre) {
-  const float side = signed_volume(mesh) < 0 ? -1.0f : 1.0f;
+struct Samples {
   PointCloud cloud;
+  std::vector<MeshPoint> places;
+};
+
+// Points on the triangles, `per_square_metre` on average, with the triangles' normals.
+Samples sample_triangles(const TriangleMesh& mesh, double per_square_metre) {
+  Samples samples;
   RandomStream random(1);
   double carry = 0;
-  for (const auto& triangle : mesh.triangles) {
+  for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
+    const auto& triangle = mesh.triangles[k];
     const Eigen::Vector3f a = mesh.vertices[triangle[0]];
     const Eigen::Vector3f ab = mesh.vertices[triangle[1]] - a;
     const Eigen::Vector3f ac = mesh.vertices[triangle[2]] - a;
@@ -49,20 +41,21 @@ PointCloud sample_triangles(const TriangleMesh& mesh, double per_square_metre) {
       auto s = static_cast<float>(random.uniform());
       auto t = static_cast<float>(random.uniform());
       if (s + t > 1) s = 1 - s, t = 1 - t;
-      cloud.points.push_back(a + s * ab + t * ac);
-      cloud.normals.push_back(side * cross.normalized());
+      samples.cloud.points.push_back(a + s * ab + t * ac);
+      samples.cloud.normals.push_back(cross.normalized());
+      samples.places.push_back({samples.cloud.points.back(), static_cast<std::uint32_t>(k)});
       if (mesh.colors.empty()) continue;
       std::array<std::uint8_t, 3> color{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const float c0 = mesh.colors[triangle[0]][k];
-        const float c1 = mesh.colors[triangle[1]][k];
-        const float c2 = mesh.colors[triangle[2]][k];
-        color[k] = static_cast<std::uint8_t>(c0 + s * (c1 - c0) + t * (c2 - c0));
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float c0 = mesh.colors[triangle[0]][c];
+        const float c1 = mesh.colors[triangle[1]][c];
+        const float c2 = mesh.colors[triangle[2]][c];
+        color[c] = static_cast<std::uint8_t>(c0 + s * (c1 - c0) + t * (c2 - c0));
       }
-      cloud.colors.push_back(color);
+      samples.cloud.colors.push_back(color);
     }
   }
-  return cloud;
+  return samples;
 }
 
 double surface_area(const TriangleMesh& mesh) {
@@ -107,28 +100,92 @@ Status check_size(const std::string& name, double diameter) {
   return invalid_argument(text.str());
 }
 
-// Keeps what some view sees; turns normals that are only ever seen from behind (flipped faces). The
-// inside of a thin wall lies so close to its outside that it seems to be seen from behind as well:
-// being seen from the front at all decides.
-PointCloud visible_surface(const PointCloud& cloud, float spacing, int num_threads) {
-  PointCloud flipped = cloud;
-  for (Eigen::Vector3f& normal : flipped.normals) normal = -normal;
-  std::vector<int> front(cloud.size(), 0);
-  std::vector<int> back(cloud.size(), 0);
-  for (const ModelView& view : render_views(cloud, spacing, num_threads)) {
-    for (std::uint32_t i : view.visible) ++front[i];
+// What a camera outside can see of the samples, each side of a sheet for itself; how many normals
+// were turned, and how many samples lie inside.
+struct VisibleSurface {
+  PointCloud cloud;
+  std::size_t flipped = 0, hidden = 0, two_sided = 0;
+};
+
+struct Sides {
+  bool front = false, back = false;
+};
+
+Sides decide(const SidesSeen& seen) {
+  // A few glances through a crack do not make a surface, nor do they turn one over.
+  constexpr int kGlance = kNumSeenFrom / 40;
+  const auto counts = [](int here, int other) {
+    return here > 0 && 4 * here > other && (here > kGlance || other <= kGlance);
+  };
+  const bool front = counts(seen.front, seen.back);
+  return {front, counts(seen.back, seen.front) && (seen.back > kGlance || !front)};
+}
+
+// Right at the edge of a solid both sides of a face seem to be seen. A surface is wider than that:
+// a side is kept where a good part of the same surface round it is seen from that side too.
+std::vector<Sides> confirmed(const PointCloud& cloud, float radius, const std::vector<Sides>& sides,
+                             int num_threads) {
+  constexpr float kSameSurface = 0.0004f;  // metres off the tangent plane
+  const NeighborGrid grid(cloud.points, radius);
+  std::vector<Sides> out(sides.size());
+  parallel_for(
+      static_cast<int>(sides.size()), num_threads,
+      [&](int index) {
+        const auto i = static_cast<std::size_t>(index);
+        const Eigen::Vector3f& normal = cloud.normals[i];
+        int front = 0, back = 0, all = 0;
+        grid.for_each_neighbor(cloud.points[i], [&](int neighbour, float) {
+          const auto j = static_cast<std::size_t>(neighbour);
+          const float cosine = normal.dot(cloud.normals[j]);
+          const float off = normal.dot(cloud.points[j] - cloud.points[i]);
+          if (std::abs(cosine) < 0.9f || std::abs(off) > kSameSurface) return;
+          front += cosine > 0 ? sides[j].front : sides[j].back;
+          back += cosine > 0 ? sides[j].back : sides[j].front;
+          ++all;
+        });
+        out[i] = {sides[i].front && 2 * front > all, sides[i].back && 2 * back > all};
+      },
+      256);
+  return out;
+}
+
+VisibleSurface visible_surface(const TriangleMesh& mesh, const Samples& samples, float spacing,
+                               int num_threads) {
+  std::vector<Sides> sides;
+  for (const SidesSeen& seen : sides_seen(mesh, samples.places, num_threads)) {
+    sides.push_back(decide(seen));
   }
-  for (const ModelView& view : render_views(flipped, spacing, num_threads)) {
-    for (std::uint32_t i : view.visible) ++back[i];
-  }
-  PointCloud out;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (front[i] + back[i] == 0) continue;
-    out.points.push_back(cloud.points[i]);
-    out.normals.push_back(front[i] > 0 ? cloud.normals[i] : flipped.normals[i]);
-    if (!cloud.colors.empty()) out.colors.push_back(cloud.colors[i]);
+  sides = confirmed(samples.cloud, spacing, sides, num_threads);
+  VisibleSurface out;
+  const auto add = [&](std::size_t i, float side) {
+    out.cloud.points.push_back(samples.cloud.points[i]);
+    out.cloud.normals.push_back(side * samples.cloud.normals[i]);
+    if (!samples.cloud.colors.empty()) out.cloud.colors.push_back(samples.cloud.colors[i]);
+  };
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (sides[i].front) add(i, 1);
+    if (sides[i].back) add(i, -1);
+    out.hidden += !sides[i].front && !sides[i].back;
+    out.flipped += sides[i].back && !sides[i].front;
+    out.two_sided += sides[i].front && sides[i].back;
   }
   return out;
+}
+
+// What people should know about the mesh.
+std::vector<std::string> mesh_warnings(const VisibleSurface& visible, std::size_t samples) {
+  constexpr double kMany = 0.02;
+  std::vector<std::string> warnings;
+  const auto warn = [&](std::size_t count, const char* text) {
+    const double share = static_cast<double>(count) / static_cast<double>(samples);
+    if (share < kMany) return;
+    warnings.push_back(std::to_string(std::lround(100 * share)) + " % of the mesh " + text);
+  };
+  warn(visible.flipped, "faced inwards and was turned over");
+  warn(visible.two_sided,
+       "is seen from both sides (an open mesh): both are part of the model, without thickness");
+  warn(visible.hidden, "lies inside, where nothing sees it, and was left out");
+  return warnings;
 }
 
 ModelSource make_source(PointCloud surface, const std::string& name, int number, int num_threads) {
@@ -153,10 +210,16 @@ Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::
   if (Status s = check_size(name, largest_distance(mesh.vertices)); !s.ok()) return s;
   // Small objects are sampled more finely, so that they too have about 2000 points.
   const double spacing = std::min(options.spacing_m, std::sqrt(area / 2000));
-  const PointCloud dense = sample_triangles(mesh, 6 / (spacing * spacing));
-  const PointCloud even = downsample(dense, static_cast<float>(spacing));
-  return make_source(visible_surface(even, static_cast<float>(1.2 * spacing), options.num_threads),
-                     name, number, options.num_threads);
+  const Samples samples = sample_triangles(mesh, 6 / (spacing * spacing));
+  VisibleSurface visible =
+      visible_surface(mesh, samples, static_cast<float>(spacing), options.num_threads);
+  if (visible.cloud.size() < 100) {
+    return invalid_argument("model " + name + " has no surface that can be seen from outside");
+  }
+  ModelSource source = make_source(downsample(visible.cloud, static_cast<float>(spacing)), name,
+                                   number, options.num_threads);
+  source.warnings = mesh_warnings(visible, samples.places.size());
+  return source;
 }
 
 Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std::string& name,
