@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 #include <opencv2/imgproc.hpp>
 
@@ -61,7 +62,7 @@ cv::Mat with_header(const io::ColorImage& image, const std::string& text) {
 
 }  // namespace
 
-io::ColorImage truth_beside_result(const Frame& frame, const std::vector<io::BopInstance>& truth,
+AnnotatedFrame truth_beside_result(const Frame& frame, const std::vector<io::BopInstance>& truth,
                                    const Interpretation& result, const ModelLibrary& library,
                                    const std::string& caption) {
   Models models;
@@ -100,7 +101,16 @@ io::ColorImage truth_beside_result(const Frame& frame, const std::vector<io::Bop
   cv::Mat both;
   cv::hconcat(with_header(draw_objects(frame, left), caption + " truth"),
               with_header(draw_objects(frame, right), summary), both);
-  return to_image(both);
+  return {to_image(both), found_count, counted - found_count, false_count};
+}
+
+std::vector<std::size_t> worst_first(const std::vector<AnnotatedFrame>& frames) {
+  std::vector<std::size_t> order(frames.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&frames](std::size_t a, std::size_t b) {
+    return frames[a].missed + frames[a].wrong > frames[b].missed + frames[b].wrong;
+  });
+  return order;
 }
 
 io::ColorImage color_beside_depth(const Frame& frame, const std::string& caption) {

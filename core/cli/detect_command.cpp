@@ -21,10 +21,13 @@
 namespace bpa::cli {
 namespace {
 
+constexpr std::size_t kWorstFrames = 6;
+
 struct DetectArguments {
   CommonOptions common;
   std::string library, config;
-  std::string pcd, depth, color, camera, bop;
+  std::vector<std::string> pcd;
+  std::string depth, color, camera, bop;
   std::string split = "test";
   std::string scenes, models;
   int top = 20;
@@ -43,12 +46,14 @@ struct Input {
 };
 
 std::string input_name(const DetectArguments& a, int scene_id, int im_id) {
-  if (a.bop.empty()) return a.pcd.empty() ? a.depth : a.pcd;
+  if (!a.pcd.empty()) return a.pcd[static_cast<std::size_t>(im_id)];
+  if (a.bop.empty()) return a.depth;
   return "scene " + std::to_string(scene_id) + " image " + std::to_string(im_id);
 }
 
-Result<Input> read_pcd_input(const DetectArguments& a) {
-  const Result<io::PcdCloud> cloud = io::read_pcd(a.pcd);
+Result<Input> read_pcd_input(const DetectArguments& a, int index) {
+  const std::string& path = a.pcd[static_cast<std::size_t>(index)];
+  const Result<io::PcdCloud> cloud = io::read_pcd(path);
   if (!cloud.ok()) return cloud.status();
   Result<io::OrganisedFrame> organised = Status(StatusCode::internal, "not read");
   if (a.camera.empty()) {
@@ -63,11 +68,13 @@ Result<Input> read_pcd_input(const DetectArguments& a) {
     organised = io::frame_from_organised_cloud(*cloud, &camera->camera);
   }
   if (!organised.ok()) {
-    return Status(organised.status().code, a.pcd + ": " + organised.status().message);
+    return Status(organised.status().code, path + ": " + organised.status().message);
   }
-  for (const std::string& note : organised->notes)
-    std::printf("%s: %s\n", a.pcd.c_str(), note.c_str());
+  for (const std::string& note : organised->notes) {
+    std::printf("%s: %s\n", path.c_str(), note.c_str());
+  }
   Input input;
+  input.im_id = index;
   input.frame = std::move(organised->frame);
   input.reported_from_camera = organised->cloud_from_camera;
   return input;
@@ -148,11 +155,23 @@ class DetectRun {
     if (!a_.json.empty()) {
       if (Status s = io::write_results_json(a_.json, results_); !s.ok()) return s;
     }
-    if (sheet_.empty()) return {};
-    return io::write_color_png(a_.annotate + "/contact_sheet.png", contact_sheet(sheet_, 2, 960));
+    return a_.annotate.empty() ? Status() : write_sheets();
   }
 
  private:
+  Status write_sheets() const {
+    std::vector<io::ColorImage> all, worst;
+    for (const AnnotatedFrame& frame : sheet_) all.push_back(frame.image);
+    if (all.empty()) return {};
+    for (const std::size_t i : worst_first(sheet_)) {
+      if (worst.size() < kWorstFrames) worst.push_back(sheet_[i].image);
+    }
+    const Status status =
+        io::write_color_png(a_.annotate + "/contact_sheet.png", contact_sheet(all, 2, 960));
+    if (!status.ok()) return status;
+    return io::write_color_png(a_.annotate + "/worst_frames.png", contact_sheet(worst, 2, 960));
+  }
+
   Status annotate_frame(const Input& input, const SceneInterpretations& scene,
                         const std::string& name) {
     if (scene.interpretations.empty()) return {};
@@ -165,14 +184,14 @@ class DetectRun {
     }
     sheet_.push_back(
         truth_beside_result(input.frame, input.truth, best, detector_.library(), name));
-    return io::write_color_png(a_.annotate + file, sheet_.back());
+    return io::write_color_png(a_.annotate + file, sheet_.back().image);
   }
 
   const DetectArguments& a_;
   const Detector& detector_;
   DetectRequest request_;
   std::vector<io::FrameResult> results_;
-  std::vector<io::ColorImage> sheet_;
+  std::vector<AnnotatedFrame> sheet_;
 };
 
 Result<std::vector<int>> parse_scenes(const std::string& list) {
@@ -211,16 +230,21 @@ Status detect(const DetectArguments& a) {
     options = *loaded;
   }
   // A bad frame is said before the library is loaded, which takes longer.
-  Result<Input> single = Input{};
-  if (!a.pcd.empty()) single = read_pcd_input(a);
-  if (!a.depth.empty()) single = read_png_input(a);
-  if (!single.ok()) return single.status();
+  Result<Input> first = Input{};
+  if (!a.pcd.empty()) first = read_pcd_input(a, 0);
+  if (!a.depth.empty()) first = read_png_input(a);
+  if (!first.ok()) return first.status();
   const auto library = load_detection_library(a.library, split_commas(a.models), a.common.threads);
   if (!library.ok()) return library.status();
   const Detector detector(*library, options);
   if (!a.bop.empty()) return run_bop(a, detector);
   DetectRun run(a, detector);
-  if (Status s = run.one(std::move(*single)); !s.ok()) return s;
+  if (Status s = run.one(std::move(*first)); !s.ok()) return s;
+  for (int i = 1; i < static_cast<int>(a.pcd.size()); ++i) {
+    Result<Input> next = read_pcd_input(a, i);
+    if (!next.ok()) return next.status();
+    if (Status s = run.one(std::move(*next)); !s.ok()) return s;
+  }
   return run.finish();
 }
 
@@ -246,8 +270,8 @@ void add_inputs(CLI::App& command, DetectArguments& a) {
   command.add_option("--library", a.library, "Folder of the model library")
       ->required()
       ->type_name("DIR");
-  command.add_option("--pcd", a.pcd, "Organised PCD cloud; the camera is estimated from it")
-      ->type_name("FILE");
+  command.add_option("--pcd", a.pcd, "Organised PCD clouds; the camera is estimated from them")
+      ->type_name("FILE...");
   command.add_option("--depth", a.depth, "16-bit depth PNG, registered to colour")
       ->type_name("FILE");
   command.add_option("--color", a.color, "8-bit colour PNG of the same size")->type_name("FILE");
@@ -281,7 +305,11 @@ void add_detect_command(CLI::App& program, Action& action) {
   command.add_option("--csv", a->csv, "Write the best interpretation as BOP CSV")
       ->type_name("FILE");
   command.add_option("--json", a->json, "Write all interpretations as JSON")->type_name("FILE");
-  command.add_option("--annotate", a->annotate, "Write a picture of each frame")->type_name("DIR");
+  command
+      .add_option("--annotate", a->annotate,
+                  "Write a picture of each frame and, where the truth is known, contact_sheet.png "
+                  "and worst_frames.png")
+      ->type_name("DIR");
   add_common_options(command, a->common);
   command.callback([&action, a] {
     check_usage(*a);

@@ -21,22 +21,28 @@ struct EvaluateArguments {
   std::string split = "test";
   std::vector<int> scenes;
   std::string csv, json, json_out, plots;
+  bool nothing_there = false;
   eval::EvaluationOptions options;
 };
 
-Status evaluate(const EvaluateArguments& a) {
-  const auto frames = io::read_bop_frames(a.bop, a.split, a.scenes);
-  if (!frames.ok()) return frames.status();
+Result<eval::EvaluationReport> report_on(const EvaluateArguments& a) {
   const auto results = a.csv.empty() ? io::read_results_json(a.json) : io::read_results_csv(a.csv);
   if (!results.ok()) return results.status();
-  const auto objects = eval::load_eval_objects(a.bop);
-  if (!objects.ok()) return objects.status();
   eval::EvaluationOptions options = a.options;
   options.num_threads = a.common.threads;
-  Progress progress("evaluate", 1);
+  if (a.nothing_there) return eval::evaluate_nothing_there(*results, options);
+  const auto frames = io::read_bop_frames(a.bop, a.split, a.scenes);
+  if (!frames.ok()) return frames.status();
+  const auto objects = eval::load_eval_objects(a.bop);
+  if (!objects.ok()) return objects.status();
+  Progress progress("evaluate", static_cast<int>(frames->size()));
   progress.show(0);
-  const auto report = eval::evaluate(*frames, *objects, *results, options);
-  progress.clear();
+  return eval::evaluate(*frames, *objects, *results, options,
+                        [&progress](int done) { progress.show(done); });
+}
+
+Status evaluate(const EvaluateArguments& a) {
+  const Result<eval::EvaluationReport> report = report_on(a);
   if (!report.ok()) return report.status();
   std::fputs(eval::report_text(*report).c_str(), stdout);
   if (!a.json_out.empty()) {
@@ -50,9 +56,9 @@ Status evaluate(const EvaluateArguments& a) {
 void add_evaluate_command(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand("evaluate", "Compare results with the truth");
   const auto a = std::make_shared<EvaluateArguments>();
-  command.add_option("--bop", a->bop, "Folder of a BOP data set with truth")
-      ->required()
-      ->type_name("DIR");
+  command.add_option("--bop", a->bop, "Folder of a BOP data set with truth")->type_name("DIR");
+  command.add_flag("--nothing-there", a->nothing_there,
+                   "Instead of --bop: the frames hold none of the models, all reports are false");
   command.add_option("--split", a->split, "Split of the data set")
       ->type_name("NAME")
       ->capture_default_str();
@@ -73,6 +79,9 @@ void add_evaluate_command(CLI::App& program, Action& action) {
   command.callback([&action, a] {
     if (a->csv.empty() == a->json.empty()) {
       throw CLI::ValidationError("results", "give one of --csv and --json");
+    }
+    if (a->bop.empty() != a->nothing_there) {
+      throw CLI::ValidationError("truth", "give one of --bop and --nothing-there");
     }
     action = [a] { return evaluate(*a); };
   });

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdio>
+#include <mutex>
 #include <numeric>
 #include <optional>
 
@@ -16,9 +17,13 @@ namespace {
 constexpr double kMetresPerMillimetre = 0.001;
 constexpr int kRanks[] = {1, 2, 3, 5, 10, 20};
 constexpr int kBins = 10;
-// 50, 90 and 95 % quantiles of chi-squared with 6 degrees of freedom.
-constexpr std::pair<double, double> kChiSquared6[] = {
-    {0.5, 5.3481}, {0.9, 10.6446}, {0.95, 12.5916}};
+// Quantiles of chi-squared with 3 to 6 degrees of freedom.
+constexpr struct {
+  double level;
+  double quantile[4];
+} kChiSquared[] = {{0.50, {2.3660, 3.3567, 4.3515, 5.3481}},
+                   {0.90, {6.2514, 7.7794, 9.2364, 10.6446}},
+                   {0.95, {7.8147, 9.4877, 11.0705, 12.5916}}};
 
 std::string frame_name(int scene_id, int im_id) {
   return "scene " + std::to_string(scene_id) + " image " + std::to_string(im_id);
@@ -124,7 +129,7 @@ void add_calibration(EvaluationReport& report) {
     bin.low = i / static_cast<double>(kBins);
     bin.high = (i + 1) / static_cast<double>(kBins);
   }
-  for (const auto& [level, quantile] : kChiSquared6) report.coverage.push_back({level, {}});
+  for (const auto& row : kChiSquared) report.coverage.push_back({row.level, {}});
   double squared = 0;
   int reported = 0;
   for (const FrameOutcome& frame : report.outcomes) {
@@ -139,8 +144,10 @@ void add_calibration(EvaluationReport& report) {
       bin.mean_probability += p;
       count(bin.correct, correct);
       if (!correct || !estimate.has_covariance) continue;
-      for (std::size_t i = 0; i < std::size(kChiSquared6); ++i) {
-        count(report.coverage[i].covered, estimate.mahalanobis_squared <= kChiSquared6[i].second);
+      for (std::size_t i = 0; i < std::size(kChiSquared); ++i) {
+        count(report.coverage[i].covered,
+              estimate.mahalanobis_squared <=
+                  kChiSquared[i].quantile[estimate.degrees_of_freedom - 3]);
       }
     }
   }
@@ -162,6 +169,30 @@ void add_time(EvaluationReport& report) {
   report.time.mean = std::accumulate(seconds.begin(), seconds.end(), 0.0) / static_cast<double>(n);
   report.time.median = 0.5 * (seconds[(n - 1) / 2] + seconds[n / 2]);
   report.time.max = seconds.back();
+}
+
+void add_scenes(EvaluationReport& report) {
+  std::vector<double> fractions;
+  for (const FrameOutcome& frame : report.outcomes) {
+    bool free = true;
+    for (const TruthOutcome& truth : frame.truth) {
+      free = free && !truth.counts;
+      fractions.push_back(truth.visible_fraction);
+      const int tenth = std::clamp(static_cast<int>(10 * truth.visible_fraction + 1e-9), 0, 9);
+      ++report.visible_tenths[static_cast<std::size_t>(tenth)];
+    }
+    if (!free) continue;
+    const auto reports = static_cast<int>(
+        std::count_if(frame.estimates.begin(), frame.estimates.end(),
+                      [](const EstimateOutcome& estimate) { return !estimate.ignored; }));
+    ++report.false_reports.free_frames;
+    report.false_reports.frames_with_report += reports > 0;
+    report.false_reports.reports += reports;
+  }
+  if (fractions.empty()) return;
+  std::sort(fractions.begin(), fractions.end());
+  const std::size_t n = fractions.size();
+  report.median_visible_fraction = 0.5 * (fractions[(n - 1) / 2] + fractions[n / 2]);
 }
 
 void add_paper(EvaluationReport& report) {
@@ -224,14 +255,20 @@ Result<EvalObjects> load_eval_objects(const std::string& dataset) {
 Result<EvaluationReport> evaluate(const std::vector<io::BopFrame>& frames,
                                   const EvalObjects& objects,
                                   const std::vector<io::FrameResult>& results,
-                                  const EvaluationOptions& options) {
+                                  const EvaluationOptions& options,
+                                  const EvaluationProgress& progress) {
   if (Status status = validate(options); !status.ok()) return status;
   const auto assigned = assign(frames, objects, results);
   if (!assigned.ok()) return assigned.status();
   std::vector<std::optional<Result<FrameOutcome>>> outcomes(frames.size());
+  std::mutex mutex;
+  int done = 0;
   parallel_for(static_cast<int>(frames.size()), options.num_threads, [&](int index) {
     const auto i = static_cast<std::size_t>(index);
     outcomes[i] = evaluate_frame(frames[i], objects, (*assigned)[i], options);
+    const std::lock_guard lock(mutex);
+    ++done;
+    if (progress) progress(done);
   });
   EvaluationReport report;
   report.frames = static_cast<int>(frames.size());
@@ -243,8 +280,30 @@ Result<EvaluationReport> evaluate(const std::vector<io::BopFrame>& frames,
   if (options.bop_errors) add_bop(report);
   add_groups(objects, report);
   add_calibration(report);
+  add_scenes(report);
   add_time(report);
   return report;
+}
+
+Result<EvaluationReport> evaluate_nothing_there(const std::vector<io::FrameResult>& results,
+                                                const EvaluationOptions& options) {
+  std::vector<io::BopFrame> frames;
+  EvalObjects objects;
+  for (const io::FrameResult& result : results) {
+    frames.emplace_back();
+    frames.back().scene_id = result.scene_id;
+    frames.back().im_id = result.im_id;
+    frames.back().has_truth = true;
+    for (const io::ResultInterpretation& interpretation : result.interpretations) {
+      for (const io::ResultPlacement& placement : interpretation.placements) {
+        objects[placement.obj_id].name =
+            placement.model.empty() ? io::bop_object_name(placement.obj_id) : placement.model;
+      }
+    }
+  }
+  EvaluationOptions without_bop = options;
+  without_bop.bop_errors = false;  // there is nothing to recall
+  return evaluate(frames, objects, results, without_bop);
 }
 
 }  // namespace bpa::eval

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -68,6 +69,7 @@ struct EstimateOutcome {
   bool ignored = false;  ///< Right about an instance that does not count.
   bool has_covariance = false;
   double mahalanobis_squared = 0;  ///< Of the error of a right one, under its covariance.
+  int degrees_of_freedom = 6;      ///< Of that; a turn that changes nothing does not count.
 };
 
 /// Everything known about one true instance.
@@ -118,6 +120,13 @@ struct Coverage {
   Ratio covered;
 };
 
+/// What was reported in frames where nothing that counts is to be found.
+struct FalseReports {
+  int free_frames = 0;         ///< Such frames.
+  int frames_with_report = 0;  ///< Of them, those with a report.
+  int reports = 0;
+};
+
 struct TimeStatistics {
   int frames = 0;
   double mean = 0, median = 0, max = 0;  ///< Seconds.
@@ -135,10 +144,16 @@ struct EvaluationReport {
   std::vector<Group> by_object, by_visible_fraction, by_distance;
   double brier = 0;
   std::vector<ReliabilityBin> reliability;
-  std::vector<Coverage> coverage;
+  std::vector<Coverage> coverage;  ///< Of right placements with a covariance.
+  FalseReports false_reports;
+  std::array<int, 10> visible_tenths{};  ///< All instances by visible fraction.
+  double median_visible_fraction = 0;
   TimeStatistics time;
   std::vector<FrameOutcome> outcomes;
 };
+
+/// Called after each frame with the number of frames done, from one thread at a time.
+using EvaluationProgress = std::function<void(int)>;
 
 /// Compares results with the truth of `frames`. Frames without a result count as if nothing was
 /// found in them. Fails with invalid_argument when a result names a frame or an object that the
@@ -146,6 +161,11 @@ struct EvaluationReport {
 Result<EvaluationReport> evaluate(const std::vector<io::BopFrame>& frames,
                                   const EvalObjects& objects,
                                   const std::vector<io::FrameResult>& results,
-                                  const EvaluationOptions& options = {});
+                                  const EvaluationOptions& options = {},
+                                  const EvaluationProgress& progress = {});
+
+/// Judges results of frames that hold no known object: whatever was reported is false.
+Result<EvaluationReport> evaluate_nothing_there(const std::vector<io::FrameResult>& results,
+                                                const EvaluationOptions& options = {});
 
 }  // namespace bpa::eval

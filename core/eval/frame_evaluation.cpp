@@ -3,6 +3,7 @@
 #include "frame_evaluation.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <functional>
 
@@ -56,19 +57,61 @@ double paper_cost(const EvalObjects& objects, const EvaluationOptions& options,
   return cost <= 1 ? cost : kNoMatch;
 }
 
-/// Squared length of the error in units of the reported covariance; negative when that is not
-/// positive definite.
-double mahalanobis_squared(const io::ResultPlacement& estimate, const io::BopInstance& truth,
-                           const SymmetryGroup& symmetry) {
+using Twist = Eigen::Matrix<double, 6, 1>;  // position, then turn; camera frame
+
+/// The small motions of an object at a pose that change nothing: a turn about each continuous axis.
+std::vector<Twist> free_motions(const Pose& pose, const SymmetryGroup& symmetry) {
+  std::vector<Eigen::Vector3d> axes;
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  for (const ContinuousSymmetry& continuous : symmetry.continuous) {
+    const Eigen::Vector3d axis = (pose.rotation * continuous.axis).normalized();
+    point = pose.rotation * continuous.point;
+    const bool known = std::any_of(axes.begin(), axes.end(), [&axis](const Eigen::Vector3d& a) {
+      return std::abs(a.dot(axis)) > 1 - 1e-9;
+    });
+    if (!known) axes.push_back(axis);
+  }
+  // Two axes make a ball, which may turn in any way.
+  if (axes.size() > 1) axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::vector<Twist> motions;
+  for (const Eigen::Vector3d& axis : axes) {
+    Twist motion;
+    motion << point.cross(axis), axis;
+    motions.push_back(motion);
+  }
+  return motions;
+}
+
+struct CovarianceError {
+  double mahalanobis_squared = -1;  // negative: the covariance is not positive definite
+  int degrees_of_freedom = 6;
+};
+
+/// Squared length of the error in units of the reported covariance, both seen modulo the motions
+/// that the symmetry leaves free.
+CovarianceError covariance_error(const io::ResultPlacement& estimate, const io::BopInstance& truth,
+                                 const SymmetryGroup& symmetry) {
   const Pose nearest =
       nearest_symmetric_pose(truth.camera_from_object, estimate.camera_from_object, symmetry);
-  Eigen::Matrix<double, 6, 1> error;
+  Twist error;
   error.head<3>() = nearest.translation - estimate.camera_from_object.translation;
   error.tail<3>() = vector_from_rotation(
       (nearest.rotation * estimate.camera_from_object.rotation.conjugate()).normalized());
-  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(estimate.covariance);
-  if (factor.info() != Eigen::Success || estimate.covariance.diagonal().minCoeff() <= 0) return -1;
-  return error.dot(factor.solve(error));
+  const std::vector<Twist> motions = free_motions(estimate.camera_from_object, symmetry);
+  const int free = static_cast<int>(motions.size());
+  // Any linear map whose kernel is spanned by the free motions gives the same length.
+  Eigen::MatrixXd kernel(6, std::max(free, 1));
+  kernel.setZero();
+  for (int i = 0; i < free; ++i) kernel.col(i) = motions[static_cast<std::size_t>(i)];
+  const Eigen::Matrix<double, 6, 6> basis =
+      Eigen::HouseholderQR<Eigen::MatrixXd>(kernel).householderQ() *
+      Eigen::Matrix<double, 6, 6>::Identity();
+  const Eigen::MatrixXd seen = basis.rightCols(6 - free).transpose();
+  const Eigen::MatrixXd covariance = seen * estimate.covariance * seen.transpose();
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  if (factor.info() != Eigen::Success || !(covariance.diagonal().minCoeff() > 0)) return {};
+  const Eigen::VectorXd seen_error = seen * error;
+  return {seen_error.dot(factor.solve(seen_error)), 6 - free};
 }
 
 /// Only what counts takes part in BOP's errors, and for each object at most as many estimates, the
@@ -209,8 +252,10 @@ void add_estimates(const io::BopFrame& frame, const EvalObjects& objects,
           average_distance(object.mesh.vertices, estimate.camera_from_object, nearest);
       outcome.truth[t].adds =
           average_nearest_distance(object.mesh.vertices, estimate.camera_from_object, truth);
-      result.mahalanobis_squared = mahalanobis_squared(estimate, frame.truth[t], object.symmetry);
-      result.has_covariance = result.mahalanobis_squared >= 0;
+      const CovarianceError error = covariance_error(estimate, frame.truth[t], object.symmetry);
+      result.mahalanobis_squared = error.mahalanobis_squared;
+      result.degrees_of_freedom = error.degrees_of_freedom;
+      result.has_covariance = error.mahalanobis_squared >= 0;
     }
     outcome.estimates.push_back(result);
   }

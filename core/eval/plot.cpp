@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include <opencv2/imgproc.hpp>
@@ -28,7 +29,7 @@ void write_centred(cv::Mat& image, const std::string& text, cv::Point at, double
 
 std::string number(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
+  std::snprintf(text, sizeof text, "%.3g", value);
   return text;
 }
 
@@ -91,6 +92,39 @@ io::ColorImage line_plot(const PlotAxes& axes, const std::vector<Series>& series
   return to_image(image);
 }
 
+io::ColorImage histogram_plot(const PlotAxes& axes, const std::vector<std::string>& names,
+                              const std::vector<std::vector<int>>& counts) {
+  cv::Mat image(480, 640, CV_8UC3, cv::Scalar::all(255));
+  std::size_t bins = 0;
+  for (const auto& series : counts) bins = std::max(bins, series.size());
+  std::vector<int> totals(bins, 0);
+  for (const auto& series : counts) {
+    for (std::size_t i = 0; i < series.size(); ++i) totals[i] += series[i];
+  }
+  Mapping map{axes};
+  map.axes.y_min = 0;
+  const int highest = totals.empty() ? 0 : *std::max_element(totals.begin(), totals.end());
+  map.axes.y_max = std::max(5, (highest + 4) / 5 * 5);  // whole numbers at the five lines
+  draw_axes(image, map);
+  const double width = (axes.x_max - axes.x_min) / std::max<double>(static_cast<double>(bins), 1);
+  std::vector<int> base(bins, 0);
+  for (std::size_t s = 0; s < counts.size(); ++s) {
+    const cv::Scalar& color = kColors[s % std::size(kColors)];
+    for (std::size_t i = 0; i < counts[s].size(); ++i) {
+      if (counts[s][i] <= 0) continue;
+      const double left = axes.x_min + width * static_cast<double>(i);
+      const cv::Point low = map(left, base[i]);
+      const cv::Point high = map(left + width, base[i] + counts[s][i]);
+      cv::rectangle(image, low + cv::Point(2, 0), high - cv::Point(2, 0), color, cv::FILLED);
+      base[i] += counts[s][i];
+    }
+    const cv::Point legend(map.area.x + 12, map.area.y + 20 + 20 * static_cast<int>(s));
+    cv::rectangle(image, legend + cv::Point(0, -10), legend + cv::Point(20, 0), color, cv::FILLED);
+    write(image, names[s], legend + cv::Point(28, 0));
+  }
+  return to_image(image);
+}
+
 io::ColorImage bar_plot(const std::string& title, const std::vector<std::string>& names,
                         const std::vector<double>& values, const std::vector<std::string>& notes) {
   constexpr int kRow = 24, kLeft = 230, kWidth = 320;
@@ -111,6 +145,16 @@ io::ColorImage bar_plot(const std::string& title, const std::vector<std::string>
 }
 
 namespace {
+
+/// The next of 1, 2, 5, 10, 20 ... that is not smaller.
+double round_up(double value) {
+  if (!(value > 0)) return 1;
+  const double power = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (step * power >= value) return step * power;
+  }
+  return 10 * power;
+}
 
 io::ColorImage groups_plot(const std::string& title, const std::vector<Group>& groups) {
   std::vector<std::string> names, notes;
@@ -146,12 +190,66 @@ io::ColorImage reliability_plot(const EvaluationReport& report) {
   return line_plot(axes, {series});
 }
 
+io::ColorImage coverage_plot(const EvaluationReport& report) {
+  Series series{"right placements", {}, {}};
+  for (const Coverage& coverage : report.coverage) {
+    if (coverage.covered.total == 0) continue;
+    series.x.push_back(coverage.level);
+    series.y.push_back(coverage.covered.value());
+  }
+  PlotAxes axes{"do credible regions of poses hold the truth?",
+                "probability of the region",
+                "fraction that hold it",
+                0,
+                1,
+                0,
+                1,
+                true};
+  return line_plot(axes, {series});
+}
+
+io::ColorImage reports_plot(const EvaluationReport& report) {
+  std::vector<int> right, wrong;
+  for (const ReliabilityBin& bin : report.reliability) {
+    right.push_back(bin.correct.hits);
+    wrong.push_back(bin.correct.total - bin.correct.hits);
+  }
+  PlotAxes axes{"what was reported, by probability", "probability said", "reports"};
+  return histogram_plot(axes, {"right", "false"}, {right, wrong});
+}
+
+io::ColorImage visible_histogram(const EvaluationReport& report) {
+  PlotAxes axes{"instances of the set, by visible fraction", "visible fraction", "instances"};
+  return histogram_plot(axes, {"median " + number(report.median_visible_fraction)},
+                        {{report.visible_tenths.begin(), report.visible_tenths.end()}});
+}
+
+io::ColorImage time_plot(const EvaluationReport& report) {
+  std::vector<double> seconds;
+  for (const FrameOutcome& frame : report.outcomes) {
+    if (frame.reported && frame.seconds >= 0) seconds.push_back(frame.seconds);
+  }
+  std::sort(seconds.begin(), seconds.end());
+  Series series{"frames", {}, {}};
+  for (std::size_t i = 0; i < seconds.size(); ++i) {
+    series.x.push_back(seconds[i]);
+    series.y.push_back(static_cast<double>(i + 1) / static_cast<double>(seconds.size()));
+  }
+  PlotAxes axes{"time of a frame", "seconds", "fraction of frames done"};
+  axes.x_max = seconds.empty() ? 1 : round_up(seconds.back());
+  return line_plot(axes, {series});
+}
+
 }  // namespace
 
 Status write_plots(const std::string& folder, const EvaluationReport& report) {
   const std::pair<const char*, io::ColorImage> plots[] = {
       {"recall.png", recall_plot(report)},
       {"reliability.png", reliability_plot(report)},
+      {"coverage.png", coverage_plot(report)},
+      {"reports.png", reports_plot(report)},
+      {"visible_histogram.png", visible_histogram(report)},
+      {"time.png", time_plot(report)},
       {"visible_fraction.png",
        groups_plot("recall by visible fraction", report.by_visible_fraction)},
       {"distance.png", groups_plot("recall by distance", report.by_distance)},

@@ -87,6 +87,18 @@ Json calibration_json(const EvaluationReport& report) {
 std::string report_text(const EvaluationReport& report) {
   std::string text = format("%d frames, %d instances that count, %d reported\n", report.frames,
                             report.recall.total, report.precision.total);
+  if (report.recall.total > 0) {
+    text += format("visible fraction           median %.2f; instances by tenths:",
+                   report.median_visible_fraction);
+    for (const int count : report.visible_tenths) text += format(" %d", count);
+    text += "\n";
+  }
+  if (report.false_reports.free_frames > 0) {
+    text +=
+        format("nothing to find            in %d frames; something reported in %d, %d reports\n",
+               report.false_reports.free_frames, report.false_reports.frames_with_report,
+               report.false_reports.reports);
+  }
   text += "\nbest interpretation        2.5 cm, pi/16      RMSE 1 cm\n";
   text += format("  %-24s %-18s %s\n", "precision", percent(report.precision).c_str(),
                  percent(report.rmse_precision).c_str());
@@ -147,6 +159,12 @@ std::string report_json(const EvaluationReport& report) {
                {"by_distance", groups_json(report.by_distance, true)},
                {"calibration", calibration_json(report)},
                {"coverage", coverage},
+               {"false_reports",
+                {{"free_frames", report.false_reports.free_frames},
+                 {"frames_with_report", report.false_reports.frames_with_report},
+                 {"reports", report.false_reports.reports}}},
+               {"visible_fraction",
+                {{"median", report.median_visible_fraction}, {"tenths", report.visible_tenths}}},
                {"seconds",
                 {{"frames", report.time.frames},
                  {"mean", report.time.mean},
