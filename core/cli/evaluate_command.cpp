@@ -25,14 +25,22 @@ struct EvaluateArguments {
   eval::EvaluationOptions options;
 };
 
+Result<std::vector<io::FrameResult>> read_results(const EvaluateArguments& a) {
+  return a.csv.empty() ? io::read_results_json(a.json) : io::read_results_csv(a.csv);
+}
+
 Result<eval::EvaluationReport> report_on(const EvaluateArguments& a) {
-  const auto results = a.csv.empty() ? io::read_results_json(a.json) : io::read_results_csv(a.csv);
-  if (!results.ok()) return results.status();
   eval::EvaluationOptions options = a.options;
   options.num_threads = a.common.threads;
-  if (a.nothing_there) return eval::evaluate_nothing_there(*results, options);
+  if (a.nothing_there) {
+    const auto results = read_results(a);
+    if (!results.ok()) return results.status();
+    return eval::evaluate_nothing_there(*results, options);
+  }
   const auto frames = io::read_bop_frames(a.bop, a.split, a.scenes);
   if (!frames.ok()) return frames.status();
+  const auto results = read_results(a);
+  if (!results.ok()) return results.status();
   const auto objects = eval::load_eval_objects(a.bop);
   if (!objects.ok()) return objects.status();
   Progress progress("evaluate", static_cast<int>(frames->size()));
