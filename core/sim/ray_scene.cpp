@@ -4,7 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#if __has_include(<embree4/rtcore.h>)  // Debian 13
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <bpa/core/sim/render.hpp>
 
@@ -24,6 +28,27 @@ RTCRay ray_of(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, f
   ray.tfar = far;
   ray.mask = ~0u;
   return ray;
+}
+
+void intersect(RTCScene scene, RTCRayHit& query) {
+#if RTC_VERSION_MAJOR >= 4
+  rtcIntersect1(scene, &query);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &query);
+#endif
+}
+
+/// Afterwards tfar is negative if something is in the way.
+void find_any_hit(RTCScene scene, RTCRay& ray) {
+#if RTC_VERSION_MAJOR >= 4
+  rtcOccluded1(scene, &ray);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+#endif
 }
 
 RTCScene scene_of(RTCDevice device, const TriangleMesh& mesh) {
@@ -78,10 +103,8 @@ const TriangleMesh& RayMeshes::mesh(int index) const { return *impl_->meshes[ind
 
 bool RayMeshes::hits(int mesh, const Eigen::Vector3f& origin,
                      const Eigen::Vector3f& direction) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   RTCRay ray = ray_of(origin, direction, 0, std::numeric_limits<float>::infinity());
-  rtcOccluded1(impl_->scenes[mesh], &context, &ray);
+  find_any_hit(impl_->scenes[mesh], ray);
   return ray.tfar < 0;
 }
 
@@ -120,13 +143,11 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 std::optional<RayHit> RayScene::cast(const Eigen::Vector3f& origin,
                                      const Eigen::Vector3f& direction) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   RTCRayHit query{};
   query.ray = ray_of(origin, direction, 0, std::numeric_limits<float>::infinity());
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(impl_->scene, &context, &query);
+  intersect(impl_->scene, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   RayHit hit;
@@ -160,12 +181,10 @@ std::optional<RayHit> RayScene::cast(const Eigen::Vector3f& origin,
 }
 
 bool RayScene::blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   const Eigen::Vector3f direction = to - from;
   const float margin = 2e-4f / direction.norm();
   RTCRay ray = ray_of(from, direction, margin, 1 - margin);
-  rtcOccluded1(impl_->scene, &context, &ray);
+  find_any_hit(impl_->scene, ray);
   return ray.tfar < 0;
 }
 

@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <fstream>
 
-#include <fastrtps/fastrtps_dll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <bpa/wire/fastdds/endpoint_qos.hpp>
 
 namespace bpa::wire::detail {
-
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
-using eprosima::fastrtps::Duration_t;
 
 namespace {
 
@@ -24,7 +19,7 @@ std::uint64_t sharing_domain() {
   std::ifstream("/proc/sys/kernel/random/boot_id") >> boot_id;
   struct stat shm = {};
   const bool has_shm = stat("/dev/shm", &shm) == 0;
-  const std::string key = "bpa " FASTRTPS_VERSION_STR " " + boot_id + " " +
+  const std::string key = "bpa " BPA_FASTDDS_VERSION " " + boot_id + " " +
                           std::to_string(has_shm ? shm.st_dev : 0) + " " +
                           std::to_string(geteuid());
   std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a
@@ -32,9 +27,9 @@ std::uint64_t sharing_domain() {
   return hash;
 }
 
-Duration_t milliseconds(std::int64_t ms) {
-  return Duration_t(static_cast<std::int32_t>(ms / 1000),
-                    static_cast<std::uint32_t>(ms % 1000) * 1'000'000U);
+Duration milliseconds(std::int64_t ms) {
+  return Duration(static_cast<std::int32_t>(ms / 1000),
+                  static_cast<std::uint32_t>(ms % 1000) * 1'000'000U);
 }
 
 /// What writers and readers have in common. The defaults are read first, then changed.
@@ -75,15 +70,21 @@ dds::DataWriterQos writer_qos(const EndpointSpec& spec) {
   qos.reliability().max_blocking_time = milliseconds(100);
   qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
   // With the default of 3 s, what is written while a peer is being matched comes seconds late.
-  qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(100);
-  qos.reliable_writer_qos().times.nackResponseDelay = milliseconds(1);
+  heartbeat_period(qos) = milliseconds(100);
+  nack_response_delay(qos) = milliseconds(1);
+#if BPA_FASTDDS_MAJOR >= 3
+  qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION};
+#endif
   return qos;
 }
 
 dds::DataReaderQos reader_qos(const EndpointSpec& spec) {
   dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
   set_common(spec, qos);
-  qos.reliable_reader_qos().times.heartbeatResponseDelay = milliseconds(1);
+  heartbeat_response_delay(qos) = milliseconds(1);
+#if BPA_FASTDDS_MAJOR >= 3
+  qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION};
+#endif
   return qos;
 }
 

@@ -3,18 +3,25 @@
 #include <cstring>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
-#include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 
 #include <bpa/wire/fastdds/log_bridge.hpp>
 #include <bpa/wire/fastdds/participant_impl.hpp>
 #include <bpa/wire/fastdds/participant_qos.hpp>
 #include <bpa/wire/msg/rmw_dds_common.hpp>
 
+#if BPA_FASTDDS_MAJOR < 3
+#include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
+#include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
+#endif
+
 namespace bpa::wire::detail {
 
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
+namespace {
+
+/// So many endpoints of peers are remembered, for topics that we open later.
+constexpr std::size_t kMaxPeers = 4096;
+
+}  // namespace
 
 Guid to_guid(const rtps::GUID_t& guid) {
   Guid result;
@@ -100,8 +107,15 @@ dds::Topic* ParticipantImpl::acquire_topic(const EndpointSpec& spec, std::string
     return nullptr;
   }
   ++entry.users;
-  const std::lock_guard<std::mutex> lock(discovery_mutex_);
-  our_types_[spec.dds_topic] = spec.dds_type;
+  std::vector<Peer> there;
+  {
+    const std::lock_guard<std::mutex> lock(discovery_mutex_);
+    if (!our_types_.emplace(spec.dds_topic, spec.dds_type).second) return entry.topic;
+    for (const auto& [guid, peer] : peers_) {
+      if (peer.topic == spec.dds_topic) there.push_back(peer);
+    }
+  }
+  for (const Peer& peer : there) check_type(peer, spec.dds_type);
   return entry.topic;
 }
 
@@ -147,54 +161,99 @@ void ParticipantImpl::publish_graph() {
   if (!status.ok()) log(LogLevel::warning, "ros_discovery_info: " + status.message);
 }
 
-void ParticipantImpl::watch_graph(const std::string& topic, const Guid& endpoint,
-                                  const std::string& user_data, bool removed) {
-  if (topic != kGraphTopic || options_.graph_layout != GraphLayout::automatic) return;
+void ParticipantImpl::watch_graph(const Peer& peer) {
+  if (peer.topic != kGraphTopic || options_.graph_layout != GraphLayout::automatic) return;
   const GraphLayout before = graph_layout();
   {
     const std::lock_guard<std::mutex> lock(discovery_mutex_);
-    if (removed) guess_.removed(endpoint);
-    if (!removed) guess_.discovered(endpoint, user_data);
+    if (peer.change == Peer::Change::went) {
+      guess_.removed(peer.guid);
+    } else {
+      guess_.discovered(peer.guid, peer.user_data);
+    }
   }
   if (graph_layout() == before) return;
   // Not from here: the caller holds the locks of the discovery protocol.
   worker_.run_at(Worker::Clock::now(), [this] { publish_graph(); });
 }
 
-void ParticipantImpl::check_type(const char* whose, const std::string& topic,
-                                 const std::string& type) {
-  std::string ours;
-  {
-    const std::lock_guard<std::mutex> lock(discovery_mutex_);
-    const auto entry = our_types_.find(topic);
-    if (entry != our_types_.end()) ours = entry->second;
-  }
-  if (ours.empty() || ours == type) return;
-  log(LogLevel::warning, "topic " + topic + ": a peer's " + whose + " has type " + type +
-                             ", ours is " + ours +
+void ParticipantImpl::check_type(const Peer& peer, const std::string& ours) const {
+  if (ours.empty() || ours == peer.type) return;
+  log(LogLevel::warning, "topic " + peer.topic + ": a peer's " +
+                             (peer.is_reader ? "subscriber" : "publisher") + " has type " +
+                             peer.type + ", ours is " + ours +
                              "; they will not talk: remap one of them or correct its type");
 }
 
+void ParticipantImpl::on_peer(const Peer& peer) {
+  watch_graph(peer);
+  if (peer.change == Peer::Change::changed) return;
+  std::string ours;
+  {
+    const std::lock_guard<std::mutex> lock(discovery_mutex_);
+    if (peer.change == Peer::Change::went) {
+      peers_.erase(peer.guid);
+      return;
+    }
+    if (peers_.size() < kMaxPeers) peers_.emplace(peer.guid, peer);
+    const auto entry = our_types_.find(peer.topic);
+    if (entry != our_types_.end()) ours = entry->second;
+  }
+  check_type(peer, ours);
+}
+
+#if BPA_FASTDDS_MAJOR >= 3
+
+void ParticipantImpl::on_data_writer_discovery(dds::DomainParticipant*,
+                                               rtps::WriterDiscoveryStatus status,
+                                               const dds::PublicationBuiltinTopicData& data,
+                                               bool&) {
+  using Status = rtps::WriterDiscoveryStatus;
+  const auto& user_data = data.user_data.data_vec();
+  on_peer({status == Status::DISCOVERED_WRITER    ? Peer::Change::came
+           : status == Status::CHANGED_QOS_WRITER ? Peer::Change::changed
+                                                  : Peer::Change::went,
+           false, to_guid(data.guid), data.topic_name.to_string(), data.type_name.to_string(),
+           std::string(user_data.begin(), user_data.end())});
+}
+
+void ParticipantImpl::on_data_reader_discovery(dds::DomainParticipant*,
+                                               rtps::ReaderDiscoveryStatus status,
+                                               const dds::SubscriptionBuiltinTopicData& data,
+                                               bool&) {
+  using Status = rtps::ReaderDiscoveryStatus;
+  const auto& user_data = data.user_data.data_vec();
+  on_peer({status == Status::DISCOVERED_READER    ? Peer::Change::came
+           : status == Status::CHANGED_QOS_READER ? Peer::Change::changed
+                                                  : Peer::Change::went,
+           true, to_guid(data.guid), data.topic_name.to_string(), data.type_name.to_string(),
+           std::string(user_data.begin(), user_data.end())});
+}
+
+#else
+
 void ParticipantImpl::on_publisher_discovery(dds::DomainParticipant*,
                                              rtps::WriterDiscoveryInfo&& info) {
-  const auto& data = info.info.m_qos.m_userData.data_vec();
-  const bool removed = info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER;
-  const std::string topic = info.info.topicName().to_string();
-  watch_graph(topic, to_guid(info.info.guid()), std::string(data.begin(), data.end()), removed);
-  if (info.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) {
-    check_type("publisher", topic, info.info.typeName().to_string());
-  }
+  using Info = rtps::WriterDiscoveryInfo;
+  const auto& user_data = info.info.m_qos.m_userData.data_vec();
+  on_peer({info.status == Info::DISCOVERED_WRITER    ? Peer::Change::came
+           : info.status == Info::CHANGED_QOS_WRITER ? Peer::Change::changed
+                                                     : Peer::Change::went,
+           false, to_guid(info.info.guid()), info.info.topicName().to_string(),
+           info.info.typeName().to_string(), std::string(user_data.begin(), user_data.end())});
 }
 
 void ParticipantImpl::on_subscriber_discovery(dds::DomainParticipant*,
                                               rtps::ReaderDiscoveryInfo&& info) {
-  const auto& data = info.info.m_qos.m_userData.data_vec();
-  const bool removed = info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER;
-  const std::string topic = info.info.topicName().to_string();
-  watch_graph(topic, to_guid(info.info.guid()), std::string(data.begin(), data.end()), removed);
-  if (info.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER) {
-    check_type("subscriber", topic, info.info.typeName().to_string());
-  }
+  using Info = rtps::ReaderDiscoveryInfo;
+  const auto& user_data = info.info.m_qos.m_userData.data_vec();
+  on_peer({info.status == Info::DISCOVERED_READER    ? Peer::Change::came
+           : info.status == Info::CHANGED_QOS_READER ? Peer::Change::changed
+                                                     : Peer::Change::went,
+           true, to_guid(info.info.guid()), info.info.topicName().to_string(),
+           info.info.typeName().to_string(), std::string(user_data.begin(), user_data.end())});
 }
+
+#endif
 
 }  // namespace bpa::wire::detail

@@ -16,6 +16,7 @@
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
 #include <bpa/wire/fastdds/raw_type.hpp>
+#include <bpa/wire/fastdds/version.hpp>
 #include <bpa/wire/graph.hpp>
 #include <bpa/wire/participant.hpp>
 #include <bpa/wire/worker.hpp>
@@ -24,13 +25,13 @@
 
 namespace bpa::wire::detail {
 
-Guid to_guid(const eprosima::fastrtps::rtps::GUID_t& guid);
-Guid to_guid(const eprosima::fastrtps::rtps::InstanceHandle_t& handle);
-eprosima::fastrtps::rtps::GUID_t from_guid(const Guid& guid);
+Guid to_guid(const rtps::GUID_t& guid);
+Guid to_guid(const rtps::InstanceHandle_t& handle);
+rtps::GUID_t from_guid(const Guid& guid);
 
 /// Owns the DDS participant, its topics and types, and what the ROS 2 graph says of it.
 class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
-                        private eprosima::fastdds::dds::DomainParticipantListener {
+                        private dds::DomainParticipantListener {
  public:
   ParticipantImpl(ParticipantOptions options, Discovery discovery);
   ~ParticipantImpl() override;
@@ -41,15 +42,15 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
   GraphLayout graph_layout() const;
   void log(LogLevel level, const std::string& text) const { bpa::log(options_.log, level, text); }
 
-  eprosima::fastdds::dds::Publisher* publisher() { return publisher_; }
-  eprosima::fastdds::dds::Subscriber* subscriber() { return subscriber_; }
+  dds::Publisher* publisher() { return publisher_; }
+  dds::Subscriber* subscriber() { return subscriber_; }
   Worker& worker() { return worker_; }
 
   /// Held while an endpoint is made or ended.
   std::mutex& endpoint_mutex() { return endpoint_mutex_; }
   /// The topic, made when it is the first of its name; null when another type has the name. The
   /// caller of both holds endpoint_mutex.
-  eprosima::fastdds::dds::Topic* acquire_topic(const EndpointSpec& spec, std::string* error);
+  dds::Topic* acquire_topic(const EndpointSpec& spec, std::string* error);
   void release_topic(const std::string& dds_topic);
 
   /// Lists an endpoint in the graph, or takes it off.
@@ -58,30 +59,44 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
 
  private:
   struct TopicEntry {
-    eprosima::fastdds::dds::Topic* topic = nullptr;
+    dds::Topic* topic = nullptr;
     std::string dds_type;
     int users = 0;
   };
 
-  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
-                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
-  void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant*,
-                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+#if BPA_FASTDDS_MAJOR >= 3
+  void on_data_writer_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryStatus status,
+                                const dds::PublicationBuiltinTopicData& data,
+                                bool& should_be_ignored) override;
+  void on_data_reader_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryStatus status,
+                                const dds::SubscriptionBuiltinTopicData& data,
+                                bool& should_be_ignored) override;
+#else
+  void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override;
+  void on_subscriber_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) override;
+#endif
+  /// An endpoint of a peer came, changed or went.
+  struct Peer {
+    enum class Change { came, changed, went } change;
+    bool is_reader;
+    Guid guid;
+    std::string topic, type, user_data;
+  };
+  void on_peer(const Peer& peer);
   /// Says so when a peer uses one of our topics with another type: DDS itself is silent.
-  void check_type(const char* whose, const std::string& topic, const std::string& type);
-  void watch_graph(const std::string& topic, const Guid& endpoint, const std::string& user_data,
-                   bool removed);
+  void check_type(const Peer& peer, const std::string& ours) const;
+  void watch_graph(const Peer& peer);
   void publish_graph();
 
   const ParticipantOptions options_;
   const Discovery discovery_;
-  eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
-  eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
-  eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
+  dds::DomainParticipant* participant_ = nullptr;
+  dds::Publisher* publisher_ = nullptr;
+  dds::Subscriber* subscriber_ = nullptr;
 
   std::mutex endpoint_mutex_;
-  std::map<std::string, TopicEntry> topics_;                          // by DDS name
-  std::map<std::string, eprosima::fastdds::dds::TypeSupport> types_;  // by DDS name
+  std::map<std::string, TopicEntry> topics_;       // by DDS name
+  std::map<std::string, dds::TypeSupport> types_;  // by DDS name
 
   std::mutex graph_mutex_;
   std::set<Guid> readers_, writers_;
@@ -92,6 +107,7 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
   mutable std::mutex discovery_mutex_;
   GraphLayoutGuess guess_;
   std::map<std::string, std::string> our_types_;  // by DDS name of the topic
+  std::map<Guid, Peer> peers_;                    // those of ROS 2, as many as kMaxPeers
 
   Worker worker_;
 };

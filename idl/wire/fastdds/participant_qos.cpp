@@ -2,17 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstring>
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-
 #include <bpa/wire/fastdds/participant_qos.hpp>
+#include <bpa/wire/fastdds/version.hpp>
+
+#if BPA_FASTDDS_MAJOR >= 3
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
+#else
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#endif
 
 namespace bpa::wire::detail {
 
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
-using eprosima::fastrtps::rtps::IPLocator;
 
 namespace {
 
@@ -66,6 +67,11 @@ Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
   qos.user_data().data_vec(
       std::vector<rtps::octet>(kRosUserData, kRosUserData + std::strlen(kRosUserData)));
 
+#if BPA_FASTDDS_MAJOR >= 3
+  // Announcing nothing of a type never refuses a peer; 2.x is told so by the type itself.
+  qos.properties().properties().emplace_back("fastdds.type_propagation", "disabled");
+#endif
+
   // Not the built-in ones: the shared-memory transport of Fast DDS 2.9.1 does not agree with that
   // of any other release, and the process that comes second aborts.
   auto udp = std::make_shared<UDPv4TransportDescriptor>();
@@ -80,8 +86,8 @@ Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
 
   // A peer that died without a word is noticed after 5 s.
   auto& config = qos.wire_protocol().builtin.discovery_config;
-  config.leaseDuration = eprosima::fastrtps::Duration_t(5, 0);
-  config.leaseDuration_announcementperiod = eprosima::fastrtps::Duration_t(1, 500'000'000);
+  config.leaseDuration = Duration(5, 0);
+  config.leaseDuration_announcementperiod = Duration(1, 500'000'000);
 
   if (discovery.range == DiscoveryRange::localhost || discovery.range == DiscoveryRange::off) {
     leave_multicast(qos);

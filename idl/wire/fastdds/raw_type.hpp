@@ -10,6 +10,7 @@
 #include <fastdds/dds/topic/TopicDataType.hpp>
 
 #include <bpa/wire/endpoint.hpp>
+#include <bpa/wire/fastdds/version.hpp>
 
 // Private to idl/wire/fastdds, the only folder that includes Fast DDS.
 
@@ -24,19 +25,33 @@ struct IncomingSample {
 
 /// A type that Fast DDS knows by its name only: samples are MessageRef when written and
 /// IncomingSample when taken, so that our own CDR code writes into and reads from the payload.
-class RawType : public eprosima::fastdds::dds::TopicDataType {
+class RawType : public dds::TopicDataType {
  public:
   explicit RawType(const std::string& dds_type);
 
   /// Before each endpoint of the type is made: > 0 makes it a bounded type of that size.
   void set_bound(std::size_t bytes);
 
-  bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override;
-  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override;
+#if BPA_FASTDDS_MAJOR >= 3
+  bool serialize(const void* data, rtps::SerializedPayload_t& payload,
+                 dds::DataRepresentationId_t representation) override;
+  bool deserialize(rtps::SerializedPayload_t& payload, void* data) override;
+  std::uint32_t calculate_serialized_size(const void* data,
+                                          dds::DataRepresentationId_t representation) override;
+  void* create_data() override { return nullptr; }
+  void delete_data(void*) override {}
+  bool compute_key(rtps::SerializedPayload_t&, rtps::InstanceHandle_t&, bool) override {
+    return false;
+  }
+  bool compute_key(const void*, rtps::InstanceHandle_t&, bool) override { return false; }
+#else
+  bool serialize(void* data, rtps::SerializedPayload_t* payload) override;
+  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override;
   std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override;
   void* createData() override { return nullptr; }
   void deleteData(void*) override {}
-  bool getKey(void*, eprosima::fastrtps::rtps::InstanceHandle_t*, bool) override { return false; }
+  bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
+#endif
   bool is_bounded() const override { return bounded_; }
 
  private:

@@ -13,10 +13,6 @@
 
 namespace bpa::wire::detail {
 
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
-using ReturnCode = eprosima::fastrtps::types::ReturnCode_t;
-
 namespace {
 
 SampleId to_id(const rtps::SampleIdentity& identity) {
@@ -89,7 +85,7 @@ class Reader : public RawReader, private dds::DataReaderListener {
       IncomingSample sample;
       sample.decode = &decode_;
       dds::SampleInfo info;
-      if (reader->take_next_sample(&sample, &info) != ReturnCode::RETCODE_OK) return;
+      if (!succeeded(reader->take_next_sample(&sample, &info))) return;
       if (!info.valid_data) continue;
       if (sample.deliver) {
         ++received_;
@@ -124,8 +120,7 @@ class Reader : public RawReader, private dds::DataReaderListener {
     lost_ += static_cast<std::uint64_t>(std::max(status.total_count_change, 0));
   }
 
-  void on_sample_rejected(dds::DataReader*,
-                          const eprosima::fastrtps::SampleRejectedStatus& status) override {
+  void on_sample_rejected(dds::DataReader*, const SampleRejectedStatus& status) override {
     lost_ += status.total_count_change;
   }
 

@@ -9,9 +9,6 @@
 
 namespace bpa::wire::detail {
 
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
-
 namespace {
 
 rtps::SampleIdentity to_identity(const SampleId& id) {
@@ -63,9 +60,7 @@ class Writer : public RawWriter, private dds::DataWriterListener {
     rtps::WriteParams params;
     if (related != nullptr) params.related_sample_identity(to_identity(*related));
     MessageRef data = message;
-    // Of the return value only the truth is kept; 2.x says true, 3.x will say RETCODE_OK.
-    const bool done = writer_->write(&data, params);
-    if (!done) {
+    if (!succeeded(writer_->write(&data, params))) {
       return Status(StatusCode::timeout,
                     "could not write to " + spec_.dds_topic +
                         ": the history is full, or the message breaks a bound");

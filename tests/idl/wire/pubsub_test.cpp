@@ -192,6 +192,28 @@ TEST(PubSub, MismatchesAreLoggedWithTheRemedy) {
   EXPECT_EQ(image->matched_count(), 0U);
 }
 
+/// The peer was there first: what is known of it is looked at when our endpoint comes.
+TEST(PubSub, AnotherTypeIsLoggedWhoeverComesFirst) {
+  Inbox<std::string> log;
+  const LogHook hook = [&log](LogLevel level, std::string_view text) {
+    if (level == LogLevel::warning) log.put(std::string(text));
+  };
+  auto one = test_participant("one", hook);
+  auto two = test_participant("two");
+  ASSERT_TRUE(one.ok() && two.ok());
+  auto marker = Publisher<std_msgs::String>::create(*one, "marker");
+  auto other_type = Subscriber<std_msgs::Header>::create(
+      *two, "late", {}, [](std_msgs::Header&&, const SampleMeta&) {});
+  auto marked = Subscriber<std_msgs::String>::create(*two, "marker", {},
+                                                     [](std_msgs::String&&, const SampleMeta&) {});
+  ASSERT_TRUE(marker->wait_for_matched(seconds(10)));  // so that one knows of two's other endpoint
+  auto text = Publisher<std_msgs::String>::create(*one, "late");
+  ASSERT_TRUE(text.ok());
+  ASSERT_TRUE(log.wait_for(1));
+  EXPECT_TRUE(contains(log.values()[0], "rt/late")) << log.values()[0];
+  EXPECT_TRUE(contains(log.values()[0], "std_msgs::msg::dds_::Header_")) << log.values()[0];
+}
+
 /// Whether two participants with this range find each other.
 bool find_each_other(DiscoveryRange range, std::vector<std::string> peers, milliseconds patience) {
   ParticipantOptions options;
