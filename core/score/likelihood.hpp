@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+// The pieces that score components are made of.
+
+namespace bpa {
+
+/// The log-likelihood of an error under a normal distribution, relative to that of no error, cut
+/// off at three standard deviations and scaled to [-1, 0] (paper section V: truncated, so as not to
+/// over-penalise outliers).
+inline double truncated_log_normal(double error, double sigma) {
+  const double z = error / (3 * sigma);
+  return -std::min(z * z, 1.0);
+}
+
+/// log(probability), cut off at log(floor) and scaled to [-1, 0].
+inline double truncated_log(double probability, double floor) {
+  return -std::min(std::log(std::max(probability, floor)) / std::log(floor), 1.0);
+}
+
+/// The probability that a model point is visible: 1 where it is predicted in front of what was
+/// observed (or nothing was), else falling with sigma_vis = 1 cm (paper section V).
+inline double visibility_probability(double observed_depth, double predicted_depth) {
+  constexpr double kSigma = 0.01;
+  if (!(observed_depth > 0) || predicted_depth <= observed_depth) return 1;
+  const double z = (predicted_depth - observed_depth) / kSigma;
+  return std::exp(-0.5 * z * z);
+}
+
+}  // namespace bpa

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <bpa/core/score/predicted_surface.hpp>
+
+namespace bpa {
+namespace {
+
+constexpr float kNearest = 0.1f;         // metres; what is nearer is out of sight
+constexpr float kMinCosine = 0.05f;      // between normal and line of sight
+constexpr float kPointRadius = 0.0019f;  // metres; 0.75 of the usual spacing of surface points
+constexpr float kPlaneReach = 0.01f;     // metres in depth
+
+struct DrawnPoint {
+  float u, v, z, radius;  // pixels, metres
+  std::uint32_t index;
+  Eigen::Vector3f normal;
+  float offset;  // of the tangent plane: normal . x = offset
+
+  // Of the tangent plane at a pixel, as long as it is near the point.
+  float depth_at(const CheckImage& image, int pixel_u, int pixel_v) const {
+    const Eigen::Vector3f ray((static_cast<float>(pixel_u) - image.cx) / image.fx,
+                              (static_cast<float>(pixel_v) - image.cy) / image.fy, 1);
+    const float depth = offset / normal.dot(ray);
+    return std::abs(depth - z) < kPlaneReach ? depth : z;
+  }
+};
+
+std::vector<DrawnPoint> facing_points(const CheckImage& image, const ObjectModel& model,
+                                      const ModelView& view, const FastPose& pose) {
+  std::vector<DrawnPoint> drawn;
+  drawn.reserve(view.visible.size());
+  for (const std::uint32_t i : view.visible) {
+    const Eigen::Vector3f p = pose.rotation * model.surface.points[i] + pose.translation;
+    if (!(p.z() > kNearest)) continue;
+    const Eigen::Vector3f normal = pose.rotation * model.surface.normals[i];
+    const float offset = normal.dot(p);
+    if (offset > -kMinCosine * p.norm()) continue;
+    const float scale = 1 / p.z();
+    const float u = image.fx * p.x() * scale + image.cx, v = image.fy * p.y() * scale + image.cy;
+    const float radius = std::min(4.0f, kPointRadius * image.fx * scale);
+    if (!(u > -1 && v > -1 && u < static_cast<float>(image.width) &&
+          v < static_cast<float>(image.height))) {
+      continue;
+    }
+    drawn.push_back({u, v, p.z(), radius, i, normal, offset});
+  }
+  return drawn;
+}
+
+struct Span {
+  int first, last;  // both included
+};
+
+// The pixels whose centres are within the radius, the nearest one at least.
+Span covered(float centre, float radius, int size) {
+  const int nearest = static_cast<int>(std::lround(centre));
+  const int first = std::min(nearest, static_cast<int>(std::ceil(centre - radius)));
+  const int last = std::max(nearest, static_cast<int>(std::floor(centre + radius)));
+  return {std::max(0, first), std::min(size - 1, last)};
+}
+
+}  // namespace
+
+const ModelView& closest_view(const ObjectModel& model, const Pose& camera_from_object) {
+  const FastPose pose = to_fast(camera_from_object);
+  const Eigen::Vector3f to_camera = -(pose.rotation.transpose() * pose.translation).normalized();
+  const auto& views = model.index->views;
+  return views[static_cast<std::size_t>(nearest_view(views, to_camera))];
+}
+
+std::optional<PixelPlace> pixel_of(const CheckImage& image, const Eigen::Vector3f& point) {
+  if (!(point.z() > kNearest)) return std::nullopt;
+  const float u = std::floor(image.fx * point.x() / point.z() + image.cx + 0.5f);
+  const float v = std::floor(image.fy * point.y() / point.z() + image.cy + 0.5f);
+  if (!(u >= 0 && v >= 0 && u < static_cast<float>(image.width) &&
+        v < static_cast<float>(image.height))) {
+    return std::nullopt;
+  }
+  return PixelPlace{static_cast<int>(u), static_cast<int>(v)};
+}
+
+PredictedSurface predict_surface(const CheckImage& image, const ObjectModel& model,
+                                 const Pose& camera_from_object) {
+  const std::vector<DrawnPoint> drawn = facing_points(
+      image, model, closest_view(model, camera_from_object), to_fast(camera_from_object));
+  if (drawn.empty()) return {};
+  Span columns{image.width, -1}, rows{image.height, -1};
+  for (const DrawnPoint& p : drawn) {
+    const Span u = covered(p.u, p.radius, image.width), v = covered(p.v, p.radius, image.height);
+    columns = {std::min(columns.first, u.first), std::max(columns.last, u.last)};
+    rows = {std::min(rows.first, v.first), std::max(rows.last, v.last)};
+  }
+  if (columns.last < columns.first || rows.last < rows.first) return {};
+  const int width = columns.last - columns.first + 1, height = rows.last - rows.first + 1;
+  PredictedSurface out{columns.first, rows.first, {width, height, 0.0f}, {width, height, 0u}};
+  for (const DrawnPoint& p : drawn) {
+    const Span us = covered(p.u, p.radius, image.width), vs = covered(p.v, p.radius, image.height);
+    for (int v = vs.first; v <= vs.last; ++v) {
+      for (int u = us.first; u <= us.last; ++u) {
+        const std::size_t i = out.depth.index(u - out.u0, v - out.v0);
+        const float depth = p.depth_at(image, u, v);
+        if (out.depth[i] > 0 && out.depth[i] <= depth) continue;
+        out.depth[i] = depth;
+        out.point[i] = p.index;
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace bpa

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include <bpa/core/cloud/image.hpp>
+#include <bpa/core/geometry/pose.hpp>
+#include <bpa/core/model/object_model.hpp>
+#include <bpa/core/score/pose_check.hpp>
+
+namespace bpa {
+
+/// What a placement predicts for the pixels of the reduced image: the model's surface as the camera
+/// would see it were nothing else there. Only the rectangle that it covers is stored.
+struct PredictedSurface {
+  int u0 = 0;  ///< Image pixel of the rectangle's first pixel.
+  int v0 = 0;
+  Image<float> depth;          ///< Metres; 0 where the model is not.
+  Image<std::uint32_t> point;  ///< Index into model.surface, where there is a depth.
+
+  /// The predicted depth at a pixel of the image; 0 where the model is not.
+  float depth_at(int u, int v) const {
+    return depth.contains(u - u0, v - v0) ? depth.at(u - u0, v - v0) : 0;
+  }
+  /// Calls visit(u, v, depth, point) for every pixel of the image that the model covers, row by
+  /// row.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (int y = 0; y < depth.height; ++y) {
+      for (int x = 0; x < depth.width; ++x) {
+        if (depth.at(x, y) > 0) visit(u0 + x, v0 + y, depth.at(x, y), point.at(x, y));
+      }
+    }
+  }
+};
+
+/// Draws the points that the closest of the 66 views sees into a depth buffer, each as large as
+/// points are apart. Empty when the model is out of sight.
+PredictedSurface predict_surface(const CheckImage& image, const ObjectModel& model,
+                                 const Pose& camera_from_object);
+
+/// The view that a placement shows.
+const ModelView& closest_view(const ObjectModel& model, const Pose& camera_from_object);
+
+/// The pixel that a point of the camera's frame is seen at.
+struct PixelPlace {
+  int u = 0;
+  int v = 0;
+};
+std::optional<PixelPlace> pixel_of(const CheckImage& image, const Eigen::Vector3f& point);
+
+/// The observed point at a pixel, in the camera's frame.
+inline Eigen::Vector3f observed_point(const CheckImage& image, int u, int v) {
+  const float z = image.pixels[static_cast<std::size_t>(v * image.width + u)].depth;
+  return {(static_cast<float>(u) - image.cx) / image.fx * z,
+          (static_cast<float>(v) - image.cy) / image.fy * z, z};
+}
+
+}  // namespace bpa

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include <bpa/core/cloud/image.hpp>
+#include <bpa/core/geometry/pose.hpp>
+#include <bpa/core/model/object_model.hpp>
+#include <bpa/core/score/pose_check.hpp>
+#include <bpa/core/score/predicted_surface.hpp>
+
+namespace bpa {
+
+struct RandomWalkOptions {
+  int walks = 60;
+  int steps = 40;  ///< Of one pixel each, some of which an edge stops.
+  std::uint64_t seed = 0;
+};
+
+/// Random walk score (paper section V). Walks start at observed points that the placement explains
+/// (within 1 cm of the prediction, spread evenly over them) and go from pixel to neighbouring pixel
+/// of the observed surface; a step onto a pixel of edge likelihood e happens with probability
+/// (1 - e)^2, so that walks stay within predicted boundaries of objects. Where they end there
+/// should be model surface: the average truncated log-likelihood of the distance to the closest
+/// model point, standard deviation 1 cm, in [-1, 0]; -1 where nothing is explained.
+double random_walk_score(const CheckImage& image, const Image<float>& edges,
+                         const ObjectModel& model, const Pose& camera_from_object,
+                         const PredictedSurface& predicted, const RandomWalkOptions& options = {});
+
+}  // namespace bpa

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <bpa/core/model/model_index.hpp>
+#include <bpa/core/score/likelihood.hpp>
+#include <bpa/core/score/segment_scores.hpp>
+
+namespace bpa {
+namespace {
+
+constexpr float kTouching = 0.03f;       // metres between prediction and observation
+constexpr float kOnModel = 0.01f;        // metres (paper section V: 1 cm)
+constexpr double kDistanceSigma = 0.01;  // metres
+constexpr double kAffinityFloor = 0.02;
+
+// What the points of one segment say.
+void judge(const Segment& segment, const SurfaceMap& map, const ObjectModel& model,
+           const FastPose& object_from_camera, const SegmentMatchOptions& options,
+           SegmentMatch& match) {
+  const auto wanted = static_cast<std::size_t>(std::max(1, options.points));
+  const std::size_t count = std::min(wanted, segment.pixels.size());
+  const auto min_cosine = static_cast<float>(std::cos(options.max_angle));
+  double distances = 0;
+  int on_model = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t pixel = segment.pixels[(2 * k + 1) * segment.pixels.size() / (2 * count)];
+    const Eigen::Vector3f point =
+        object_from_camera.rotation * map.points[pixel] + object_from_camera.translation;
+    const int nearest = model.index->distances.nearest_to(point);
+    if (nearest < 0) {
+      distances -= 1;
+      continue;
+    }
+    const auto i = static_cast<std::size_t>(nearest);
+    const float distance = (point - model.surface.points[i]).norm();
+    const Eigen::Vector3f normal = object_from_camera.rotation * map.normals[pixel];
+    const float cosine =
+        std::max(normal.dot(model.surface.normals[i]), normal.dot(model.index->soft_normals[i]));
+    distances += truncated_log_normal(static_cast<double>(distance), kDistanceSigma);
+    on_model += distance < kOnModel && cosine > min_cosine;
+  }
+  match.distance = distances / static_cast<double>(count);
+  match.probability = static_cast<double>(on_model) / static_cast<double>(count);
+}
+
+// The segments' numbers at the pixels that are about where they are predicted.
+std::vector<std::int32_t> touched_labels(const Segmentation& segmentation, const SurfaceMap& map,
+                                         const PredictedSurface& predicted) {
+  std::vector<std::int32_t> labels;
+  predicted.for_each([&](int u, int v, float z, std::uint32_t) {
+    const std::size_t i = segmentation.labels.index(u, v);
+    if (segmentation.labels[i] < 0 || std::abs(map.depth[i] - z) > kTouching) return;
+    labels.push_back(segmentation.labels[i]);
+  });
+  std::sort(labels.begin(), labels.end());
+  return labels;
+}
+
+}  // namespace
+
+std::vector<SegmentMatch> match_segments(const Segmentation& segmentation, const SurfaceMap& map,
+                                         const ObjectModel& model, const Pose& camera_from_object,
+                                         const PredictedSurface& predicted,
+                                         const SegmentMatchOptions& options) {
+  const FastPose object_from_camera = to_fast(camera_from_object.inverse());
+  std::vector<SegmentMatch> matches;
+  for (const std::int32_t label : touched_labels(segmentation, map, predicted)) {
+    if (matches.empty() || matches.back().segment != label) matches.push_back({label, 0, 0, -1});
+    ++matches.back().explained;
+  }
+  for (SegmentMatch& match : matches) {
+    judge(segmentation.segments[static_cast<std::size_t>(match.segment)], map, model,
+          object_from_camera, options, match);
+  }
+  return matches;
+}
+
+double segment_score(const std::vector<SegmentMatch>& matches) {
+  double sum = 0, weights = 0;
+  for (const SegmentMatch& match : matches) {
+    sum += match.explained * match.distance;
+    weights += match.explained;
+  }
+  return weights > 0 ? sum / weights : -1;
+}
+
+double segment_affinity_score(const Segmentation& segmentation,
+                              const std::vector<SegmentMatch>& matches) {
+  std::vector<double> probability(segmentation.segments.size(), 0);
+  for (const SegmentMatch& match : matches) {
+    probability[static_cast<std::size_t>(match.segment)] = match.probability;
+  }
+  double sum = 0, weights = 0;
+  for (const SegmentPair& pair : segmentation.pairs) {
+    const double first = probability[static_cast<std::size_t>(pair.first)];
+    const double second = probability[static_cast<std::size_t>(pair.second)];
+    if (first + second == 0) continue;
+    const double both = first * second, one = first + second - 2 * both;
+    const auto affinity = static_cast<double>(pair.affinity);
+    sum += pair.contact * (both * truncated_log(affinity, kAffinityFloor) +
+                           one * truncated_log(1 - affinity, kAffinityFloor));
+    weights += pair.contact * (both + one);
+  }
+  return weights > 0 ? sum / weights : -1;
+}
+
+}  // namespace bpa

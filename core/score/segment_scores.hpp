@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <bpa/core/cloud/surface_map.hpp>
+#include <bpa/core/geometry/pose.hpp>
+#include <bpa/core/model/object_model.hpp>
+#include <bpa/core/score/predicted_surface.hpp>
+#include <bpa/core/segment/super_pixels.hpp>
+
+// How a placement fits the super-pixels (paper section V).
+
+namespace bpa {
+
+/// A super-pixel that a placement touches.
+struct SegmentMatch {
+  int segment = 0;         ///< Index into segmentation.segments.
+  int explained = 0;       ///< Its pixels within 3 cm of the predicted depth.
+  double probability = 0;  ///< That it belongs to the model: the share of its points within 1 cm
+                           ///< and the angle below of the closest model point.
+  double distance = -1;    ///< Average truncated log-likelihood of its points' distances to the
+                           ///< closest model points, standard deviation 1 cm, in [-1, 0].
+};
+
+struct SegmentMatchOptions {
+  int points = 30;                     ///< Of a segment that are looked at, evenly spread.
+  double max_angle = 3.14159265 / 16;  ///< Radians, between normals (paper section V).
+};
+
+/// The super-pixels with a pixel that the placement explains, by index. This is step 1 of the
+/// paper's segment alignment too.
+std::vector<SegmentMatch> match_segments(const Segmentation& segmentation, const SurfaceMap& map,
+                                         const ObjectModel& model, const Pose& camera_from_object,
+                                         const PredictedSurface& predicted,
+                                         const SegmentMatchOptions& options = {});
+
+/// Segment score: how close the points of the touched segments, also those beyond the predicted
+/// outline, are to the model. The average of SegmentMatch::distance weighted by `explained`, in
+/// [-1, 0]; -1 without any match.
+double segment_score(const std::vector<SegmentMatch>& matches);
+
+/// Segment affinity score: how consistent the assigned segments are with the boundaries of objects.
+/// Two touching segments that both belong to the model should have a high affinity, two of which
+/// one does, a low one: the average log-likelihood of that over the contacts, each weighted by how
+/// probable it is that at least one side belongs to the model, in [-1, 0]; -1 where nothing belongs
+/// to the model.
+double segment_affinity_score(const Segmentation& segmentation,
+                              const std::vector<SegmentMatch>& matches);
+
+}  // namespace bpa
