@@ -32,6 +32,14 @@ void for_each_pixel(const io::ColorImage& picture, const Image<T>& map, const Vi
   }
 }
 
+io::ColorImage dimmed(const Frame& frame) {
+  io::ColorImage picture = draw_objects(frame, {});
+  for (std::uint8_t& value : picture.pixels) {
+    value = static_cast<std::uint8_t>(kDim * static_cast<float>(value));
+  }
+  return picture;
+}
+
 io::ColorImage black(const Frame& frame) {
   const auto size = static_cast<std::size_t>(3 * frame.camera.width * frame.camera.height);
   return {frame.camera.width, frame.camera.height, std::vector<std::uint8_t>(size, 0)};
@@ -74,10 +82,7 @@ bool is_boundary(const Segmentation& segmentation, std::int32_t a, std::int32_t 
 }  // namespace
 
 io::ColorImage draw_edges(const Frame& frame, const SceneEdges& edges) {
-  io::ColorImage picture = draw_objects(frame, {});
-  for (std::uint8_t& value : picture.pixels) {
-    value = static_cast<std::uint8_t>(kDim * static_cast<float>(value));
-  }
+  io::ColorImage picture = dimmed(frame);
   for_each_pixel(picture, edges.range, [&](int u, int v, std::size_t i) {
     if (edges.range[i] == RangeEdge::occluding) {
       set(picture, u, v, kOccluding);
@@ -117,6 +122,26 @@ io::ColorImage draw_segment_borders(const Frame& frame, const Segmentation& segm
     const bool last_row = (v + 1) % reduction == 0 && y + 1 < labels.height;
     if (last_column) mark(u, v, labels[i], labels.at(x + 1, y));
     if (last_row) mark(u, v, labels[i], labels.at(x, y + 1));
+  });
+  return picture;
+}
+
+io::ColorImage draw_segment_matches(const Frame& frame, const Segmentation& segmentation,
+                                    const std::vector<SegmentMatch>& matches) {
+  io::ColorImage picture = dimmed(frame);
+  std::vector<double> probability(segmentation.segments.size(), -1);
+  for (const SegmentMatch& match : matches) {
+    probability[static_cast<std::size_t>(match.segment)] = match.probability;
+  }
+  for_each_pixel(picture, segmentation.labels, [&](int u, int v, std::size_t i) {
+    const std::int32_t label = segmentation.labels[i];
+    const double p = label < 0 ? -1 : probability[static_cast<std::size_t>(label)];
+    if (p < 0) return;
+    const double tint[3] = {1 - p, p, 0};
+    std::uint8_t* pixel = picture.pixels.data() + 3 * (v * picture.width + u);
+    for (int k = 0; k < 3; ++k) {
+      pixel[k] = static_cast<std::uint8_t>(0.5 * pixel[k] + 140 * tint[k]);
+    }
   });
   return picture;
 }

@@ -5,6 +5,7 @@
 #include <bpa/core/cloud/frame.hpp>
 #include <bpa/core/features/edge_image.hpp>
 #include <bpa/core/io/image_file.hpp>
+#include <bpa/core/score/segment_scores.hpp>
 #include <bpa/core/segment/super_pixels.hpp>
 
 // Pictures of what the detector makes of a frame, for people; as large as the frame, ready for
@@ -22,6 +23,11 @@ io::ColorImage draw_edge_image(const Frame& frame, const Image<float>& likelihoo
 /// The borders of the super-pixels over the colour image, black where the surface goes on, white
 /// where the affinity across the border is below one half.
 io::ColorImage draw_segment_borders(const Frame& frame, const Segmentation& segmentation);
+
+/// The super-pixels that a placement touches over the dimmed colour image, from red (does not
+/// belong to the model) to green (does).
+io::ColorImage draw_segment_matches(const Frame& frame, const Segmentation& segmentation,
+                                    const std::vector<SegmentMatch>& matches);
 
 /// Every super-pixel in its mean colour (without colour: shaded by its mean normal); black where
 /// there is no surface.

@@ -100,10 +100,22 @@ TEST(DrawSegments, MeansAreColours) {
   EXPECT_EQ(color_at(picture, 14, 3), (std::array{0, 0, 0}));
 }
 
+TEST(DrawSegments, MatchesFromRedToGreen) {
+  const io::ColorImage picture =
+      draw_segment_matches(white_frame(), halves(1), {{0, 5, 0.0, -1}, {1, 5, 1.0, 0}});
+  expect_frame_size(picture);
+  const auto red = color_at(picture, 1, 1), green = color_at(picture, 8, 3);
+  EXPECT_GT(red[0], red[1] + 100);
+  EXPECT_GT(green[1], green[0] + 100);
+  const auto untouched = color_at(draw_segment_matches(white_frame(), halves(1), {}), 1, 1);
+  EXPECT_EQ(untouched[0], untouched[1]);
+}
+
 TEST(Draw, NothingKnown) {
   expect_frame_size(draw_edges(white_frame(), {}));
   expect_frame_size(draw_edge_image(white_frame(), {}));
   expect_frame_size(draw_segment_borders(white_frame(), {}));
+  expect_frame_size(draw_segment_matches(white_frame(), {}, {}));
   expect_frame_size(draw_segment_means(white_frame(), {}));
 }
 
