@@ -188,6 +188,38 @@ struct GetStatus_Response {
   }
 };
 
+struct Record_Request {
+  static constexpr const char* kType = "bpa_msgs/srv/Record_Request";
+  std::string path;
+  double seconds = 0;
+  bool stop = false;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor&& visit) {
+    visit("path", self.path);
+    visit("seconds", self.seconds);
+    visit("stop", self.stop);
+  }
+};
+
+struct Record_Response {
+  static constexpr const char* kType = "bpa_msgs/srv/Record_Response";
+  bool success = false;
+  Status status;
+  std::string path;
+  std::uint32_t frames = 0;
+  std::uint64_t bytes = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor&& visit) {
+    visit("success", self.success);
+    visit("status", self.status);
+    visit("path", self.path);
+    visit("frames", self.frames);
+    visit("bytes", self.bytes);
+  }
+};
+
 struct Detect {
   using Request = Detect_Request;
   using Response = Detect_Response;
@@ -206,6 +238,11 @@ struct LoadModel {
 struct UnloadModel {
   using Request = UnloadModel_Request;
   using Response = UnloadModel_Response;
+};
+
+struct Record {
+  using Request = Record_Request;
+  using Response = Record_Response;
 };
 
 struct GetStatus {
