@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include <bpa/core/pipeline/detector_options.hpp>
+#include <bpa/server/capture/openni2_list.hpp>
 #include <bpa/server/library_detector.hpp>
 #include <bpa/server/options.hpp>
 #include <bpa/server/ros_arguments.hpp>
@@ -28,12 +29,15 @@ struct CommandLine {
   std::vector<std::string> settings;
   bool localhost = false;
   bool print_config = false;
+  bool list_devices = false;
 };
 
 void add_options(CLI::App& program, CommandLine& line) {
   program.add_option("--config", line.config, "file with settings, such as config/server.yaml");
   program.add_flag("--localhost", line.localhost, "talk to this machine only");
   program.add_flag("--print-config", line.print_config, "print all settings and stop");
+  program.add_flag("--list-devices", line.list_devices,
+                   "print the OpenNI2 sensors, their modes and what is wrong with each, and stop");
   program.add_option("--set", line.settings, "group.key=value, any setting (repeatable)");
   const struct {
     const char* option;
@@ -42,6 +46,7 @@ void add_options(CLI::App& program, CommandLine& line) {
   } shortcuts[] = {
       {"--library", "detection.library", "folder of the model library"},
       {"--detector", "detection.detector", "file with settings of the detector"},
+      {"--capture", "capture.source", "openni2, openni2:URI, FILE.oni or bop:FOLDER"},
       {"--threads", "detection.threads", "0: one per core"},
       {"--seed", "detection.seed", "same frame, library and seed: same answer"},
       {"--namespace", "node.namespace", "ROS namespace, default /bpa"},
@@ -155,6 +160,12 @@ int main(int argc, char** argv) {
   if (line.print_config) {
     std::cout << bpa::server::to_yaml(*options, true);
     return 0;
+  }
+  if (line.list_devices) {
+    const auto devices = bpa::server::list_devices();
+    if (devices.ok()) std::cout << *devices;
+    if (!devices.ok()) std::cerr << "bpa-server: " << devices.status().message << '\n';
+    return devices.ok() ? 0 : 1;
   }
   const bpa::LogHook hook = make_log();
   const Status status = serve(*options, hook, signals);

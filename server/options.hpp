@@ -10,6 +10,7 @@
 #include <bpa/core/base/options.hpp>
 #include <bpa/core/base/status.hpp>
 #include <bpa/core/pipeline/detector_options.hpp>
+#include <bpa/server/capture/capture_options.hpp>
 
 // Every setting of the server, in groups. Each field describes itself once; reading server.yaml,
 // --set, --print-config, the ROS 2 parameters and the checks all use that. config/server.yaml shows
@@ -204,6 +205,7 @@ struct ServerOptions {
   NodeOptions node;
   NetworkOptions network;
   InputOptions input;
+  CaptureOptions capture;
   QueueOptions queue;
   OutputOptions output;
   DetectionOptions detection;
@@ -217,6 +219,7 @@ struct ServerOptions {
     visit("node", node, "Names.");
     visit("network", network, "Discovery and transport.");
     visit("input", input, "Where frames come from.");
+    visit("capture", capture, "A camera of the server's own.");
     visit("queue", queue, "What may wait while a frame is searched.");
     visit("output", output, "Topics of the results; an empty name switches one off.");
     visit("detection", detection, "The search.");

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <utility>
 
+#include <bpa/server/capture/camera_source.hpp>
 #include <bpa/server/parameters.hpp>
 #include <bpa/server/server.hpp>
 
@@ -121,12 +122,7 @@ Status Server::start() {
       [this](const IncomingFrame& incoming, const Frame* frame,
              const Result<SceneInterpretations>& result) { on_result(incoming, frame, result); },
       log_);
-  auto source = TopicSource::create(
-      *participant_, options, [this](IncomingFrame&& frame) { worker_->push(std::move(frame)); },
-      log_);
-  if (!source.ok()) return source.status();
-  topics_ = source->get();
-  sources_.push_back(std::move(source).value());
+  if (Status status = start_sources(options); !status.ok()) return status;
   if (Status status = offer_services(); !status.ok()) return status;
   settings_.on_change([this](const ServerOptions& before, const ServerOptions& after) {
     return apply(before, after);
@@ -135,6 +131,23 @@ Status Server::start() {
   if (!parameters.ok()) return parameters.status();
   parameters_ = std::move(parameters).value();
   reporter_ = std::thread([this] { report(); });
+  return {};
+}
+
+Status Server::start_sources(const ServerOptions& options) {
+  const auto on_frame = [this](IncomingFrame&& frame) { worker_->push(std::move(frame)); };
+  ServerOptions topics = options;
+  if (!options.capture.source.empty()) topics.input.depth.clear();  // they may be our own
+  auto source = TopicSource::create(*participant_, topics, on_frame, log_);
+  if (!source.ok()) return source.status();
+  topics_ = source->get();
+  sources_.push_back(std::move(source).value());
+  if (options.capture.source.empty()) return {};
+  auto camera = CameraSource::create(
+      *participant_, options.capture, on_frame, [this] { return worker_->queue_length() == 0; },
+      log_);
+  if (!camera.ok()) return camera.status();
+  sources_.push_back(std::move(camera).value());
   return {};
 }
 

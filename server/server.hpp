@@ -47,6 +47,7 @@ class Server {
   Server(const ServerOptions& options, Recognition recognition, LogHook log);
   Status start();
   Status join();
+  Status start_sources(const ServerOptions& options);
   Status offer_services();
   Status apply(const ServerOptions& before, const ServerOptions& after);
   void on_result(const IncomingFrame& incoming, const Frame* frame,

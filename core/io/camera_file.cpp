@@ -60,7 +60,8 @@ CameraFile from_yaml(const YAML::Node& yaml) {
   camera.fy = k[4];
   camera.cy = k[5];
   if (const YAML::Node distortion = yaml["distortion_coefficients"]) {
-    for (const double d : distortion["data"].as<std::vector<double>>()) {
+    file.distortion = distortion["data"].as<std::vector<double>>();
+    for (const double d : file.distortion) {
       if (d != 0) file.note = "its distortion is ignored: images must be rectified";
     }
   }

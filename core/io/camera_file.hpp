@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <bpa/core/base/status.hpp>
 #include <bpa/core/geometry/camera.hpp>
@@ -13,7 +14,9 @@ namespace bpa::io {
 struct CameraFile {
   Camera camera;              ///< width and height are 0 where the file does not say.
   double depth_scale_mm = 1;  ///< Millimetres of one unit of a depth image.
-  std::string note;           ///< Something people should know (distortion ignored); else empty.
+  /// Lens distortion of a ROS camera_info file: k1 k2 p1 p2 k3 ...; empty without.
+  std::vector<double> distortion;
+  std::string note;  ///< Something people should know (distortion ignored); else empty.
 };
 
 /// Reads a BOP camera.json (fx fy cx cy width height depth_scale; also cam_K instead of fx...) or a

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <thread>
+
+#include <bpa/core/io/bop_dataset.hpp>
+#include <bpa/server/capture/bop_source.hpp>
+#include <bpa/server/capture/image_messages.hpp>
+
+namespace bpa::server {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class BopSource : public CameraDevice {
+ public:
+  BopSource(const std::string& folder, std::vector<io::BopFrame> frames,
+            const CaptureOptions& options)
+      : name_("the data set " + folder),
+        frames_(std::move(frames)),
+        options_(options),
+        next_(static_cast<std::size_t>(std::max(1, options.start_frame)) - 1),
+        due_(Clock::now()) {}
+
+  const std::string& name() const override { return name_; }
+
+  Result<DeviceOutput> next(std::chrono::milliseconds wait) override {
+    DeviceOutput output;
+    if (next_ >= frames_.size()) {
+      output.ended = !options_.loop;
+      next_ = 0;
+      if (output.ended) return output;
+    }
+    if (!options_.every_frame) {
+      const auto until = std::min(due_, Clock::now() + wait);
+      std::this_thread::sleep_until(until);
+      if (until < due_) return output;
+      const std::chrono::duration<double> period(1 / (30 * options_.speed));
+      due_ = std::max(due_ + std::chrono::duration_cast<Clock::duration>(period),
+                      Clock::now() - std::chrono::seconds(1));
+    }
+    const auto frame = io::load_bop_frame(frames_[next_]);
+    if (!frame.ok()) return Status(frame.status().code, "is damaged: " + frame.status().message);
+    ++next_;
+    output.images = images_of(*frame);
+    return output;
+  }
+
+ private:
+  CameraImages images_of(const Frame& frame) const {
+    const wire::std_msgs::Header header = header_now(options_.frame_id);
+    CameraImages images;
+    // Metres keep the data set's depth to the last bit, whatever its unit is.
+    wire::sensor_msgs::Image depth =
+        empty_image(header, frame.camera.width, frame.camera.height, "32FC1", 4);
+    std::memcpy(depth.data.data(), frame.depth.data(), depth.data.size());
+    images.depth = std::make_shared<AnyImage>(std::move(depth));
+    if (options_.color && !frame.color.empty()) {
+      wire::sensor_msgs::Image color =
+          empty_image(header, frame.camera.width, frame.camera.height, "rgb8", 3);
+      color.data = frame.color;
+      images.color = std::make_shared<AnyImage>(std::move(color));
+    }
+    images.info =
+        std::make_shared<wire::sensor_msgs::CameraInfo>(camera_info(header, frame.camera, {}));
+    return images;
+  }
+
+  const std::string name_;
+  const std::vector<io::BopFrame> frames_;
+  const CaptureOptions options_;
+  std::size_t next_;
+  Clock::time_point due_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<CameraDevice>> open_bop_source(const std::string& folder,
+                                                      const CaptureOptions& options) {
+  std::string path = folder, split = "test";
+  const std::size_t colon = folder.rfind(':');
+  if (colon != std::string::npos && !std::filesystem::is_directory(folder)) {
+    path = folder.substr(0, colon);
+    split = folder.substr(colon + 1);
+  }
+  auto frames = io::read_bop_frames(path, split);
+  if (!frames.ok()) return frames.status();
+  const auto count = static_cast<int>(frames->size());
+  if (count == 0) return Status(StatusCode::not_found, path + " holds no frames of " + split);
+  if (options.start_frame > count) {
+    return invalid_argument("capture.start_frame is " + std::to_string(options.start_frame) + "; " +
+                            path + " has " + std::to_string(count) + " frames");
+  }
+  return std::unique_ptr<CameraDevice>(
+      std::make_unique<BopSource>(path, std::move(frames).value(), options));
+}
+
+}  // namespace bpa::server

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <bpa/core/base/log.hpp>
+#include <bpa/core/base/status.hpp>
+#include <bpa/server/capture/camera_publisher.hpp>
+#include <bpa/server/capture/capture.hpp>
+#include <bpa/server/capture/capture_options.hpp>
+#include <bpa/server/capture/frame_source.hpp>
+#include <bpa/server/worker.hpp>
+#include <bpa/wire/messages.hpp>
+#include <bpa/wire/participant.hpp>
+#include <bpa/wire/service.hpp>
+
+namespace bpa::server {
+
+/// What opens the camera that `options.source` names; `invalid_argument` when it names none.
+Result<OpenCamera> camera_of(const CaptureOptions& options, const LogHook& log);
+
+/// The server's own camera: its frames go to the search and to camera topics, it can be recorded by
+/// a service, and diagnostics say how it is.
+class CameraSource : public FrameSource {
+ public:
+  /// `on_frame` and `idle` (whether no frame waits for the search) are called on the capture
+  /// thread.
+  static Result<std::unique_ptr<CameraSource>> create(const wire::Participant& participant,
+                                                      const CaptureOptions& options,
+                                                      std::function<void(IncomingFrame&&)> on_frame,
+                                                      std::function<bool()> idle, LogHook log);
+
+  std::vector<SourceReport> reports() const override;
+
+ private:
+  CameraSource() = default;
+  Status offer_record(const wire::Participant& participant, LogHook log);
+
+  // Destroyed from the last to the first: nothing calls into what is gone.
+  std::unique_ptr<CameraPublisher> publisher_;
+  std::unique_ptr<Capture> capture_;
+  std::optional<wire::ServiceServer<wire::bpa_msgs::Record>> record_;
+};
+
+}  // namespace bpa::server
