@@ -93,6 +93,7 @@ struct Client::Impl {
   Caller<msgs::LoadModel> load_model;
   Caller<msgs::UnloadModel> unload_model;
   Caller<msgs::GetStatus> get_status;
+  Caller<msgs::Record> record;
 
   struct Made {  ///< On first use.
     std::mutex mutex;
@@ -106,6 +107,7 @@ struct Client::Impl {
   std::unique_ptr<Made> made = std::make_unique<Made>();
 
   static Result<std::unique_ptr<Impl>> create(const ClientOptions& options);
+  Result<Recording> call_record(const msgs::Record_Request& request) const;
 
   Result<DetectionSet> search(msgs::Detect_Request request, const DetectQuery& query,
                               Milliseconds asked) const;
@@ -126,10 +128,12 @@ Result<std::unique_ptr<Client::Impl>> Client::Impl::create(const ClientOptions& 
   if (!unload_model.ok()) return unload_model.status();
   auto get_status = Caller<msgs::GetStatus>::create(*participant, "get_status");
   if (!get_status.ok()) return get_status.status();
-  return std::unique_ptr<Impl>(
-      new Impl{options, std::move(participant).value(), std::move(detect).value(),
-               std::move(list_models).value(), std::move(load_model).value(),
-               std::move(unload_model).value(), std::move(get_status).value()});
+  auto record = Caller<msgs::Record>::create(*participant, "record");
+  if (!record.ok()) return record.status();
+  return std::unique_ptr<Impl>(new Impl{
+      options, std::move(participant).value(), std::move(detect).value(),
+      std::move(list_models).value(), std::move(load_model).value(),
+      std::move(unload_model).value(), std::move(get_status).value(), std::move(record).value()});
 }
 
 Result<DetectionSet> Client::Impl::search(msgs::Detect_Request request, const DetectQuery& query,
@@ -312,6 +316,33 @@ Status Client::unload_model(const std::string& name) {
     msgs::UnloadModel_Request request;
     request.name = name;
     return outcome(impl_->unload_model.call(request, impl_->options.detect_timeout));
+  });
+}
+
+Result<Recording> Client::Impl::call_record(const msgs::Record_Request& request) const {
+  const auto reply = record.call(request, options.timeout);
+  if (reply.status().code == StatusCode::unavailable) {
+    return Status(StatusCode::unavailable,
+                  "the server records nothing: it has no camera of its own (capture.source)");
+  }
+  if (Status status = outcome(reply); !status.ok()) return status;
+  return Recording{reply->path, static_cast<int>(reply->frames), reply->bytes};
+}
+
+Result<Recording> Client::start_recording(const std::string& path, double seconds) {
+  return guarded([&]() -> Result<Recording> {
+    msgs::Record_Request request;
+    request.path = path;
+    request.seconds = seconds;
+    return impl_->call_record(request);
+  });
+}
+
+Result<Recording> Client::stop_recording() {
+  return guarded([&]() -> Result<Recording> {
+    msgs::Record_Request request;
+    request.stop = true;
+    return impl_->call_record(request);
   });
 }
 

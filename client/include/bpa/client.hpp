@@ -87,6 +87,15 @@ class Client {
   /// Stops looking for a model.
   Status unload_model(const std::string& name);
 
+  /// Has the server record its own camera (not that of a ROS 2 driver) to `path`, a new .oni file
+  /// on the server's machine that begins with '/'. It ends after `seconds` (at most 3600) or with
+  /// stop_recording(). Fails with `unavailable` when the server has no camera, `busy` while it
+  /// records, `invalid_argument` on a path that will not do.
+  Result<Recording> start_recording(const std::string& path, double seconds = 60);
+  /// Completes the file; also tells about a recording that ended by itself. `not_found` without
+  /// one.
+  Result<Recording> stop_recording();
+
   Client(Client&&) noexcept;
   Client& operator=(Client&&) noexcept;
   Client(const Client&) = delete;

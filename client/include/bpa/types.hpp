@@ -151,6 +151,13 @@ struct ServerStatus {
   std::vector<std::pair<std::string, std::string>> details;  ///< Such as drops by cause.
 };
 
+/// A recording of the server's camera.
+struct Recording {
+  std::string path;         ///< On the server's machine.
+  int frames = 0;           ///< Once it has ended.
+  std::uint64_t bytes = 0;  ///< Likewise.
+};
+
 /// The server's drawing of what it found.
 struct AnnotatedImage {
   std::int64_t stamp_ns = 0;
