@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 #include <atomic>
+#include <map>
 #include <mutex>
-#include <set>
 
 #include <bpa/wire/service.hpp>
 #include <bpa/wire/service_framing.hpp>
@@ -18,8 +18,10 @@ using std::chrono::milliseconds;
 constexpr milliseconds kClientPatience{2000};
 constexpr milliseconds kRetryPeriod{5};
 constexpr milliseconds kRepeatAfter[] = {milliseconds{200}, milliseconds{600}};
-constexpr int kMaxWaitingReplies = 256;
+constexpr int kMaxWaitingReplies = 256;  ///< Of which a client that does not listen has
+constexpr int kMaxWaitingOfClient = 32;  ///< no more than these.
 constexpr std::size_t kMaxGreeted = 1024;
+constexpr int kMaxRepeated = 16;  ///< Replies to one new client that go out again.
 
 struct Reply {
   ReplyAddress address;
@@ -76,7 +78,7 @@ class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl>
     if (reply->bytes.empty()) {
       return invalid_argument("the reply of " + name_ + " breaks one of its bounds");
     }
-    if (waiting_ >= kMaxWaitingReplies) {
+    if (!start_waiting(*reply)) {
       return Status(StatusCode::busy, "too many replies of " + name_ + " wait for their clients");
     }
     return send_when_matched(std::move(reply));
@@ -92,9 +94,13 @@ class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl>
 
   Status send_when_matched(ReplyPtr reply) {
     const auto to = writer();
-    if (!to) return Status(StatusCode::unavailable, "the service " + name_ + " has ended");
+    if (!to) {
+      stop_waiting(*reply);
+      return Status(StatusCode::unavailable, "the service " + name_ + " has ended");
+    }
     if (!to->is_matched_with(reply->address.reader)) {
       if (Clock::now() > reply->deadline) {
+        stop_waiting(*reply);
         log(participant_log(participant_), LogLevel::info,
             name_ + ": dropped a reply, its client does not listen any more");
       } else {
@@ -104,24 +110,46 @@ class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl>
       }
       return {};
     }
+    stop_waiting(*reply);
     Status status = write(*to, *reply);
-    if (reply->address.framing == Framing::cyclone && !is_greeted(reply->address.reader)) {
-      repeat(reply);
-    }
+    if (reply->address.framing == Framing::cyclone) repeat_if_new(reply);
     return status;
   }
 
+  /// Whether there is room for one more reply whose client may not be matched yet.
+  bool start_waiting(const Reply& reply) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (waiting_ >= kMaxWaitingReplies) return false;
+    int& of_client = waiting_of_[reply.address.client];
+    if (of_client >= kMaxWaitingOfClient) return false;
+    ++of_client;
+    ++waiting_;
+    return true;
+  }
+  void stop_waiting(const Reply& reply) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    --waiting_;
+    const auto of_client = waiting_of_.find(reply.address.client);
+    if (--of_client->second == 0) waiting_of_.erase(of_client);
+  }
+
   /// A reader of Eclipse Cyclone starts after what the first heartbeat that it sees covers, so the
-  /// first reply may have been lost on it; two heartbeats later it goes out again, and once more. A
-  /// client ignores what it has got already.
-  void repeat(const ReplyPtr& reply) {
+  /// first replies may have been lost on it; two heartbeats later they go out again, and once more.
+  /// A client ignores what it has got already.
+  void repeat_if_new(const ReplyPtr& reply) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (greeted_.size() >= kMaxGreeted) greeted_.clear();
+      Greeting& greeting = greeted_[reply->address.reader];
+      if (greeting.repeated == 0) greeting.since = Clock::now();
+      const bool is_new = Clock::now() - greeting.since < kRepeatAfter[0];
+      if (!is_new || greeting.repeated >= kMaxRepeated) return;
+      ++greeting.repeated;
+    }
     for (const milliseconds after : kRepeatAfter) {
       run_after(after, [reply](ServiceServerImpl& self) {
         const auto to = self.writer();
         if (to) self.warn(write(*to, *reply));
-        const std::lock_guard<std::mutex> lock(self.mutex_);
-        if (self.greeted_.size() >= kMaxGreeted) self.greeted_.clear();
-        self.greeted_.insert(reply->address.reader);
       });
     }
   }
@@ -131,20 +159,11 @@ class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl>
     return writer.write(bytes_ref(reply.bytes), beside ? &reply.address.related : nullptr, nullptr);
   }
 
-  bool is_greeted(const Guid& reader) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return greeted_.count(reader) != 0;
-  }
-
   /// Runs it later on the worker, if the server still exists.
   void run_after(milliseconds time, std::function<void(ServiceServerImpl&)> task) {
-    ++waiting_;
     participant_worker(participant_)
         .run_at(Clock::now() + time, [weak = weak_from_this(), task = std::move(task)] {
-          const auto self = weak.lock();
-          if (!self) return;
-          --self->waiting_;
-          task(*self);
+          if (const auto self = weak.lock()) task(*self);
         });
   }
 
@@ -158,8 +177,13 @@ class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl>
   std::unique_ptr<RawReader> requests_;
   std::mutex mutex_;
   std::shared_ptr<RawWriter> replies_;
-  std::set<Guid> greeted_;  ///< Clients on Cyclone that are past their first reply.
-  std::atomic<int> waiting_{0};
+  struct Greeting {
+    Clock::time_point since;  ///< Of the first reply.
+    int repeated = 0;
+  };
+  std::map<Guid, Greeting> greeted_;  ///< Clients on Cyclone that have been answered.
+  std::map<Guid, int> waiting_of_;    ///< By client: replies that are not sent yet.
+  int waiting_ = 0;                   ///< All of them.
   std::atomic<std::uint64_t> received_{0}, malformed_{0};
 };
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// A client on Eclipse Cyclone DDS that calls /interop/unload_model as rmw_cyclonedds does.
-// Usage: cyclone_caller DOMAIN CALLS; exits 0 when every call was answered within 5 s.
+// A client on Eclipse Cyclone DDS that calls unload_model as rmw_cyclonedds does. Usage:
+// cyclone_caller DOMAIN CALLS [SERVICE]; exits 0 when every call was answered within 5 s. Without a
+// SERVICE it is /interop/unload_model, and the answers must tell the name and number of the model.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,6 +37,7 @@ static int wait_for_service(dds_entity_t writer, dds_entity_t reader) {
   return 0;
 }
 
+/* A null text: any answer to this request will do. */
 static int answered(dds_entity_t reader, int64_t sequence, const char* text) {
   void* sample[1] = {NULL};
   dds_sample_info_t info[1];
@@ -43,8 +45,8 @@ static int answered(dds_entity_t reader, int64_t sequence, const char* text) {
   while (!found && dds_take(reader, sample, info, 1, 1) > 0) {
     const Response* response = sample[0];
     found = info[0].valid_data && response->client_id == kClient && response->request_number == sequence &&
-            response->success && strcmp(response->status.message, text) == 0 &&
-            response->database_version == (int32_t)sequence;
+            (text == NULL || (response->success && strcmp(response->status.message, text) == 0 &&
+                              response->database_version == (int32_t)sequence));
     dds_return_loan(reader, sample, 1);
     sample[0] = NULL;
   }
@@ -52,7 +54,11 @@ static int answered(dds_entity_t reader, int64_t sequence, const char* text) {
 }
 
 int main(int argc, char** argv) {
-  if (argc != 3) return 2;
+  if (argc != 3 && argc != 4) return 2;
+  const char* service = argc == 4 ? argv[3] : "/interop/unload_model";
+  char request_name[256], reply_name[256];
+  snprintf(request_name, sizeof(request_name), "rq%sRequest", service);
+  snprintf(reply_name, sizeof(reply_name), "rr%sReply", service);
   dds_entity_t participant =
       check(dds_create_participant((dds_domainid_t)atoi(argv[1]), NULL, NULL), "participant");
   dds_qos_t* qos = dds_create_qos();
@@ -61,11 +67,11 @@ int main(int argc, char** argv) {
   dds_qset_userdata(qos, "clientid=1.2.3;", 15);
   dds_entity_t request_topic =
       check(dds_create_topic(participant, &bpa_msgs_srv_dds__UnloadModel_Request__desc,
-                             "rq/interop/unload_modelRequest", NULL, NULL),
+                             request_name, NULL, NULL),
             "request topic");
   dds_entity_t reply_topic =
       check(dds_create_topic(participant, &bpa_msgs_srv_dds__UnloadModel_Response__desc,
-                             "rr/interop/unload_modelReply", NULL, NULL),
+                             reply_name, NULL, NULL),
             "reply topic");
   dds_entity_t reader = check(dds_create_reader(participant, reply_topic, qos, NULL), "reader");
   dds_entity_t writer = check(dds_create_writer(participant, request_topic, qos, NULL), "writer");
@@ -77,7 +83,7 @@ int main(int argc, char** argv) {
     check(dds_write(writer, &request), "write");
     int found = 0;
     for (int j = 0; j < 2500 && !found; ++j) {
-      found = answered(reader, i, name);
+      found = answered(reader, i, argc == 4 ? NULL : name);
       if (!found) usleep(2000);
     }
     if (!found) ++missing;
