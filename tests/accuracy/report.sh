@@ -2,52 +2,101 @@
 # SPDX-FileCopyrightText: 2026 The bpa authors
 # SPDX-License-Identifier: Apache-2.0
 # usage: report.sh PROGRAMS OUTPUT
-# Detects and evaluates on real frames (ycbv/ in the folder BPA_DATA, or in ../shared/data) and on
-# simulated ones, and writes OUTPUT/report.md with the commands that anybody can repeat.
+# The accuracy of today's detector: simulates scenes by fixed seeds, builds the library, detects with
+# BPA and with ICP in its place, evaluates, does the same on real frames (ycbv/ and osd_clutter/ in
+# the folder BPA_DATA, or in ../shared/data) and writes OUTPUT/report.md. BPA_SCENES and
+# BPA_FREE_SCENES say how many scenes are simulated with objects and without.
 set -euo pipefail
 readonly programs=$1 output=$2 data=${BPA_DATA:-../shared/data}
-readonly report=$output/report.md
-mkdir -p "$output"
+readonly scenes=${BPA_SCENES:-30} free_scenes=${BPA_FREE_SCENES:-10}
+mkdir -p "$output/logs"
+: >"$output/commands.log"
 
-# step TITLE COMMAND...: runs it, and puts command and output into the report.
+# step LOG COMMAND...: runs it; the command goes into the report, what it prints into a log.
 step() {
-  local title=$1
+  local log=$output/logs/$1.log
   shift
-  printf '\n%s: %s\n' "$title" "$*"
-  "$@" 2>&1 | tee "$output/step.log"
-  {
-    printf '\n%s:\n\n```\n$ %s\n' "$title" "$*"
-    cat "$output/step.log"
-    printf '```\n'
-  } >>"$report"
-  rm "$output/step.log"
+  printf '%s\n' "$*" | tee -a "$output/commands.log"
+  "$@" >"$log" 2>&1 || {
+    tail -n 5 "$log" >&2
+    exit 1
+  }
 }
 
-# evaluate NAME DATASET: library, detection and figures for one data set in the BOP layout.
-evaluate() {
-  local name=$1 set=$2 folder=$output/$1
+bpa() {
+  local log=$1
+  shift
+  step "$log" "$programs/bpa" "$@"
+}
+
+# judge NAME DATASET LIBRARY CONFIG...: detection and figures of a data set in $output/NAME.
+judge() {
+  local name=$1 set=$2 library=$3 folder=$output/$1
+  shift 3
+  rm -rf "${folder:?}"
   mkdir -p "$folder"
-  rm -rf "$folder/library" "$folder/annotated"
-  printf '\n## %s\n' "$name" >>"$report"
-  step "Models" "$programs/bpa" model from-bop "$set" --library "$folder/library"
-  step "Detection" "$programs/bpa" detect --library "$folder/library" --bop "$set" \
-    --csv "$folder/result.csv" --json "$folder/result.json" --annotate "$folder/annotated"
-  step "Figures" "$programs/bpa" evaluate --bop "$set" --csv "$folder/result.csv"
-  step "Figures of all interpretations" "$programs/bpa" evaluate --bop "$set" \
-    --json "$folder/result.json"
+  bpa "$name-detect" detect --library "$library" --bop "$set" --csv "$folder/result.csv" \
+    --json "$folder/result.json" --annotate "$folder/annotated" "$@"
+  bpa "$name-evaluate" evaluate --bop "$set" --json "$folder/result.json" \
+    --json-out "$folder/evaluation.json" --plots "$folder/plots"
 }
 
-{
-  printf '# Accuracy\n\nMachine: %s, %s cores. ' \
-    "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)" "$(nproc)"
-  printf 'Every model of the library is a candidate in every frame.\n'
-} >"$report"
+printf 'use_orientation: false\n' >"$output/icp.yaml"
+# So low that the distribution of what is just not reported is seen as well.
+printf 'min_probability: 0.05\n' >"$output/everything.yaml"
 
+# Simulated clutter, BPA and ICP.
+readonly clutter=$output/sets/clutter models=$output/library
+rm -rf "$output/sets" "$models"
+bpa clutter-simulate simulate scenes --out "$clutter" --scenes "$scenes" --seed 1
+bpa library model from-bop "$clutter" --library "$models"
+judge clutter-bpa "$clutter" "$models"
+judge clutter-icp "$clutter" "$models" --config "$output/icp.yaml"
+
+# Nothing to find.
+for kind in empty distractors; do
+  bpa "$kind-simulate" simulate scenes --out "$output/sets/$kind" --scenes "$free_scenes" --seed 2 \
+    --"$kind" 1
+  judge "$kind-bpa" "$output/sets/$kind" "$models"
+  judge "$kind-everything" "$output/sets/$kind" "$models" --config "$output/everything.yaml"
+done
+
+# The paper's second comparison of BPA with ICP, and the sensor.
+bpa alignment bench alignment --bop "$clutter" --library "$models" --starts 10 \
+  --scenes "$(seq -s , 1 $((scenes < 6 ? scenes : 6)))" --plots "$output/alignment"
+sensor=()
+
+# Real frames.
 if [[ -d $data/ycbv ]]; then
-  evaluate real "$data/ycbv"
+  rm -rf "$output/real-library"
+  bpa real-library model from-bop "$data/ycbv" --library "$output/real-library"
+  judge real-bpa "$data/ycbv" "$output/real-library"
+  judge real-icp "$data/ycbv" "$output/real-library" --config "$output/icp.yaml"
+  sensor+=(--bop "$data/ycbv")
 else
-  printf '\n## real\n\nSkipped: there is no folder %s/ycbv.\n' "$data" >>"$report"
+  rm -rf "$output/real-bpa" "$output/real-icp"
 fi
-"$programs/bpa" simulate scenes --out "$output/simulated/frames" --scenes 6 --seed 1
-evaluate simulated "$output/simulated/frames"
-echo "report: $report"
+clouds=()
+for cloud in "$data"/osd_clutter/*.pcd; do
+  # Clouds that are not organised are no images.
+  if [[ -f $cloud ]] && ! grep -a -q -m 1 '^HEIGHT 1$' "$cloud"; then clouds+=("$cloud"); fi
+done
+rm -rf "$output/osd-bpa" "$output/osd-everything"
+if ((${#clouds[@]})); then
+  sensor+=(--pcd "${clouds[@]}")
+  for config in bpa everything; do
+    folder=$output/osd-$config
+    mkdir -p "$folder"
+    options=()
+    [[ $config == everything ]] && options=(--config "$output/everything.yaml")
+    bpa "osd-$config-detect" detect --library "$models" --pcd "${clouds[@]}" \
+      --json "$folder/result.json" --annotate "$folder/annotated" "${options[@]}"
+    bpa "osd-$config-evaluate" evaluate --nothing-there --json "$folder/result.json" \
+      --json-out "$folder/evaluation.json" --plots "$folder/plots"
+  done
+fi
+rm -f "$output/sheet.png"
+((${#sensor[@]})) && sensor+=(--sheet "$output/sheet.png")
+bpa sensor bench sensor --json "$output/sensor.json" "${sensor[@]}"
+
+/usr/bin/python3 "$(dirname "${BASH_SOURCE[0]}")/report.py" "$output"

@@ -201,7 +201,9 @@ TEST(Usage, IsExitCodeTwo) {
        {"", "teapot", "detect", "detect --library L", "detect --library L --pcd a --bop b",
         "detect --library L --depth a", "detect --library L --pcd a --top 0",
         "detect --library L --pcd a --threads x", "model", "model from-mesh a", "evaluate --bop b",
-        "evaluate --bop b --csv a --json c", "model list --library L --colour red"}) {
+        "evaluate --bop b --csv a --json c", "evaluate --csv a",
+        "evaluate --bop b --nothing-there --csv a", "bench sensor --sheet s.png",
+        "model list --library L --colour red"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.out;
     EXPECT_FALSE(outcome.out.empty());
@@ -211,7 +213,7 @@ TEST(Usage, IsExitCodeTwo) {
 TEST(Usage, HelpIsExitCodeZeroEverywhere) {
   for (const char* command :
        {"", "model", "model from-mesh", "model from-bop", "model info", "model list",
-        "model remove", "detect", "evaluate", "bench alignment"}) {
+        "model remove", "detect", "evaluate", "bench alignment", "bench sensor"}) {
     const Outcome outcome = run(std::string(command) + " --help");
     EXPECT_EQ(outcome.code, 0) << command;
     if (std::string(command).empty() || std::string(command) == "model") continue;
@@ -253,7 +255,8 @@ TEST(Commands, FromADataSetToFigures) {
   ASSERT_TRUE(results.ok()) << results.status().message;
   ASSERT_EQ(results->size(), 1u);
   EXPECT_EQ(results->at(0).im_id, 9);
-  for (const char* picture : {"pictures/000003_000009.png", "pictures/contact_sheet.png"}) {
+  for (const char* picture :
+       {"pictures/000003_000009.png", "pictures/contact_sheet.png", "pictures/worst_frames.png"}) {
     EXPECT_TRUE(io::read_color_image(folder / picture).ok()) << picture;
   }
   for (const std::string& file : {"--csv " + (folder / "r.csv"), "--json " + (folder / "r.json")}) {
@@ -263,6 +266,14 @@ TEST(Commands, FromADataSetToFigures) {
     EXPECT_NE(outcome.out.find("1 instances that count"), std::string::npos) << outcome.out;
   }
   EXPECT_FALSE(slurp(folder / "e.json").empty());
+  outcome = run("evaluate --nothing-there --json " + (folder / "r.json"));
+  EXPECT_EQ(outcome.code, 0) << outcome.out;
+  EXPECT_NE(outcome.out.find("in 1 frames; something reported"), std::string::npos) << outcome.out;
+  outcome = run("bench sensor --bop " + (folder / "set") + " --sheet " + (folder / "sheet.png") +
+                " --json " + (folder / "sensor.json"));
+  EXPECT_EQ(outcome.code, 0) << outcome.out;
+  EXPECT_TRUE(io::read_color_image(folder / "sheet.png").ok());
+  EXPECT_NE(slurp(folder / "sensor.json").find("published_axial_m"), std::string::npos);
   outcome = run("bench alignment --bop " + (folder / "set") + " --library " + (folder / "L") +
                 " --starts 3 --iterations 5 --plots " + (folder / "alignment"));
   EXPECT_EQ(outcome.code, 0) << outcome.out;
