@@ -209,7 +209,7 @@ def report(folder):
         "are wall-clock times). Every model of the library is a candidate in every frame. A find is "
         "within 2.5 cm and π/16 modulo the symmetry; instances of which less than a tenth is "
         "visible neither count nor are false.\n",
-        f"Skipped, for want of data: {', '.join(skipped)}.\n" if skipped else "",
+        f"Skipped, for want of data: {'; '.join(skipped)}.\n" if skipped else "",
         "## In short\n", headline(runs),
         "The paper's recalls on its Clutter set are multiples of 1/120: some four instances a scene. "
         f"Ours has {simulated[0][1]['recall']['total'] / simulated[0][1]['frames']:.1f} a scene that "
