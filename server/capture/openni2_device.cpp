@@ -72,6 +72,7 @@ class Openni2Device : public CameraDevice,
   Status settle_registration();
   Result<Alignment> ask_device_to_register();
   Status settle_playback();
+  Status put_in_step();
   std::vector<std::uint16_t> depth_after(int frames);
 
   Status read_one(milliseconds wait);
@@ -81,6 +82,10 @@ class Openni2Device : public CameraDevice,
                                          const wire::std_msgs::Header& header) const;
   void record(const openni::VideoFrameRef& depth, const openni::VideoFrameRef* color);
   bool with_color() const { return color_.isValid(); }
+  /// Before the device counts as one that delivers nothing.
+  bool color_is_missing() const {
+    return Clock::now() - last_color_ > milliseconds(static_cast<int>(options_.timeout_ms / 2));
+  }
 
   const std::shared_ptr<Openni2Library> library_;
   const Openni2Target target_;
@@ -96,7 +101,8 @@ class Openni2Device : public CameraDevice,
   bool color_mirrored_ = false;
   int max_depth_ = 0;
   DeviceGeometry geometry_;
-  Intrinsics output_;  ///< Of the images that go out.
+  Intrinsics output_;     ///< Of the images that go out.
+  bool in_step_ = false;  ///< The device delivers depth and colour in pairs.
   bool device_registers_ = false;
   bool server_registers_ = false;
   /// Depth frames with a smaller number are skipped one by one: OpenNI2's own seek crashes in the
@@ -117,6 +123,7 @@ class Openni2Device : public CameraDevice,
 Openni2Device::~Openni2Device() {
   openni::OpenNI::removeDeviceDisconnectedListener(this);
   openni::OpenNI::removeDeviceStateChangedListener(this);
+  if (in_step_) device_.setDepthColorSyncEnabled(false);  // while its streams are still there
   if (depth_.isValid()) depth_.stop();
   if (color_.isValid()) color_.stop();
   // Some drivers (Debian's DummyDevice) go on with the frame that they are making after stop().
@@ -130,7 +137,8 @@ Status Openni2Device::open() {
   for (Status (Openni2Device::*step)() :
        {&Openni2Device::open_device, &Openni2Device::open_depth, &Openni2Device::open_color,
         &Openni2Device::settle_geometry, &Openni2Device::start_streams,
-        &Openni2Device::settle_registration, &Openni2Device::settle_playback}) {
+        &Openni2Device::settle_registration, &Openni2Device::settle_playback,
+        &Openni2Device::put_in_step}) {
     if (Status status = (this->*step)(); !status.ok()) return status;
   }
   last_color_ = Clock::now();
@@ -232,9 +240,6 @@ Status Openni2Device::start_streams() {
   if (with_color()) {
     const double period_us = 1e6 / std::max(1, depth_.getVideoMode().getFps());
     pairs_ = FramePairs<openni::VideoFrameRef>(static_cast<std::int64_t>(period_us / 2));
-    if (!target_.file && device_.setDepthColorSyncEnabled(true) != openni::STATUS_OK) {
-      log(log_, LogLevel::debug, "capture: the device cannot take depth and colour in step");
-    }
   }
   if (target_.file) {
     openni::PlaybackControl* playback = device_.getPlaybackControl();
@@ -336,6 +341,17 @@ Status Openni2Device::settle_playback() {
   return {};
 }
 
+/// Has the device deliver depth and colour in pairs. Last, because from then on OpenNI2 waits for
+/// ever unless both streams are read. Devices that cannot are paired by time stamps, as all are.
+Status Openni2Device::put_in_step() {
+  if (!with_color() || target_.file) return {};
+  in_step_ = device_.setDepthColorSyncEnabled(true) == openni::STATUS_OK;
+  log(log_, LogLevel::debug,
+      std::string("capture: depth and colour are put in step by ") +
+          (in_step_ ? "the device" : "the server"));
+  return {};
+}
+
 /// Waits for a frame of either stream and keeps it; `timeout` when none comes.
 Status Openni2Device::read_one(milliseconds wait) {
   openni::VideoStream* streams[] = {&depth_, &color_};
@@ -375,6 +391,11 @@ Result<DeviceOutput> Openni2Device::next(milliseconds wait) {
     const bool ended = ended_;
     const Status read = read_one(std::min(wait, milliseconds(ended ? 20 : 100)));
     if (read.code == StatusCode::timeout) {
+      if (in_step_ && color_is_missing()) {
+        // A device that keeps them in step gives no depth without colour.
+        device_.setDepthColorSyncEnabled(false);
+        in_step_ = false;
+      }
       output.ended = ended;
       if (ended) return output;
       continue;
@@ -390,7 +411,7 @@ Result<DeviceOutput> Openni2Device::next(milliseconds wait) {
       complaint_.clear();
       output.images = images_of(pair->depth, &pair->color, pair->depth_us);
       return output;
-    } else if (Clock::now() - last_color_ > milliseconds(static_cast<int>(options_.timeout_ms))) {
+    } else if (color_is_missing()) {
       if (const auto depth = pairs_.take_depth()) {
         complaint_ = "depth comes without colour";
         output.images = images_of(depth->first, nullptr, depth->second);

@@ -53,6 +53,13 @@ class SimDriver : public oni::driver::DriverBase {
     delete device;
   }
 
+  /// Depth and colour of one tick have one number anyway, by which OpenNI2 puts them together.
+  void* enableFrameSync(oni::driver::StreamBase**, int) override {
+    config_.pass();
+    return this;
+  }
+  void disableFrameSync(void*) override { config_.pass(); }
+
   void shutdown() override {
     stopping_ = true;
     if (thread_.joinable()) thread_.join();

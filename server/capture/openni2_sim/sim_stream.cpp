@@ -236,6 +236,7 @@ void SimStream::show(std::uint64_t tick, std::uint64_t timestamp_us) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto every = static_cast<std::uint64_t>(30 / mode_.fps);
   if (!running_ || tick % every != 0) return;
+  if (sensor_ == ONI_SENSOR_COLOR && !config_.deliver_color) return;
   OniFrame* frame = getServices().acquireFrame();
   if (frame == nullptr) return;
   fill(frames_.frames[tick / kTicksPerScene % frames_.frames.size()], *frame);
