@@ -80,7 +80,10 @@ Status choose_mode(openni::VideoStream& stream, const openni::SensorInfo& sensor
       if (modes[i].getPixelFormat() != format) continue;
       known.push_back(plain(modes[i]));
       if (!(known.back() == *mode)) continue;
-      if (stream.setVideoMode(modes[i]) == openni::STATUS_OK) return {};
+      const openni::VideoMode now = stream.getVideoMode();
+      const bool is_set = plain(now) == *mode && now.getPixelFormat() == format;
+      // Drivers of one mode (Debian's DummyDevice) refuse to set even that.
+      if (is_set || stream.setVideoMode(modes[i]) == openni::STATUS_OK) return {};
       return Status(StatusCode::unavailable,
                     "the device refuses its mode " + wanted + ": " + openni2_error());
     }

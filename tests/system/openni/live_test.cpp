@@ -3,7 +3,8 @@
 // A live sensor at 30 Hz while its frames are searched, its topics in another process (this one), a
 // recording of it, and the recording played back: the same images give the same detections.
 #include <algorithm>
-#include <functional>
+#include <cmath>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -13,6 +14,7 @@
 #include <bpa/wire/msg/builtin_interfaces.hpp>
 
 #include "sim_sensor.hpp"
+#include "support/posed_models.hpp"
 
 namespace bpa {
 namespace {
@@ -20,35 +22,18 @@ namespace {
 using wire::bpa_msgs::SceneInterpretations;
 using wire::sensor_msgs::Image;
 
-/// A box of 2 x half side lengths and its middle.
-void add_box(TriangleMesh& mesh, const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (int i = 0; i < 8; ++i) {
-    mesh.vertices.emplace_back((i & 1) != 0 ? high.x() : low.x(), (i & 2) != 0 ? high.y() : low.y(),
-                               (i & 4) != 0 ? high.z() : low.z());
-  }
-  const std::uint32_t faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                     {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-  for (const auto& f : faces) {
-    mesh.triangles.push_back({first + f[0], first + f[1], first + f[2]});
-    mesh.triangles.push_back({first + f[0], first + f[2], first + f[3]});
-  }
-}
-
-/// The box with a smaller one on it, seen straight on at (x, y) before a wall.
-Frame step_frame(double x, double y) {
-  Frame frame = support::plate_frame({}, support::kSimCamera, 0);
-  for (int v = 0; v < frame.camera.height; ++v) {
-    for (int u = 0; u < frame.camera.width; ++u) {
-      const auto inside = [&](double z, double x0, double x1, double y0, double y1) {
-        const Eigen::Vector3d p = frame.camera.unproject(u, v, z);
-        return p.x() - x >= x0 && p.x() - x <= x1 && p.y() - y >= y0 && p.y() - y <= y1;
-      };
-      float& z = frame.depth[static_cast<std::size_t>(v * frame.camera.width + u)];
-      z = 0.7f;
-      if (inside(0.66, -0.03, 0.03, -0.045, 0.045)) z = 0.66f;
-      if (inside(0.63, -0.03, 0.0, 0.0, 0.045)) z = 0.63f;
-    }
+/// An L and a brick on a table, with the noise of a Kinect, seen from another side each time.
+Frame table_frame(int index) {
+  const double turn = 0.4 * index;
+  const Pose camera_from_world =
+      test::look_at({0.6 * std::sin(turn), -0.6 * std::cos(turn), 0.5}, {0, 0, 0});
+  const auto solids = test::together(
+      test::together({test::table(camera_from_world)},
+                     test::l_solids(camera_from_world * test::standing_at(-0.08, 0, 0.02, 0.7))),
+      {test::brick_solid(camera_from_world * test::standing_at(0.12, 0.02, 0.025, -0.4))});
+  Frame frame = test::render(solids, test::kinect_camera(320), 1, 8).frame;
+  for (std::size_t i = 0; i < 3 * frame.depth.size(); ++i) {
+    frame.color.push_back(static_cast<std::uint8_t>(i * static_cast<std::size_t>(index + 3) % 251));
   }
   return frame;
 }
@@ -94,21 +79,16 @@ class LiveSensor : public ::testing::Test {
  protected:
   void SetUp() override {
     std::vector<Frame> scenes;
-    for (int i = 0; i < 4; ++i) {
-      scenes.push_back(step_frame(0.03 * i - 0.05, 0.02 * i - 0.03));
-      for (std::size_t p = 0; p < scenes.back().color.size(); ++p) {
-        scenes.back().color[p] =
-            static_cast<std::uint8_t>(p * static_cast<std::size_t>(i + 3) % 251);
-      }
-    }
+    for (int i = 0; i < 4; ++i) scenes.push_back(table_frame(i));
     support::write_scenes(folder.path(), scenes);
     support::set_sensor(folder.path());
-    TriangleMesh mesh;
-    add_box(mesh, {-0.03f, -0.045f, -0.02f}, {0.03f, 0.045f, 0.02f});
-    add_box(mesh, {-0.03f, -0.045f, 0.02f}, {0.0f, 0.0f, 0.05f});
-    const auto model = model_source_from_mesh(mesh, "step", 4);
-    ASSERT_TRUE(model.ok()) << model.status().message;
-    ASSERT_TRUE(io::save_model(library(), *model).ok());
+    for (const auto& [mesh, name, number] :
+         {std::tuple(test::l_mesh(), "l", 1),
+          std::tuple(test::box_mesh(test::kBrickHalf), "brick", 2)}) {
+      const auto model = model_source_from_mesh(mesh, name, number);
+      ASSERT_TRUE(model.ok()) << model.status().message;
+      ASSERT_TRUE(io::save_model(library(), *model).ok());
+    }
     auto seat = support::test_participant("listener");
     ASSERT_TRUE(seat.ok()) << seat.status().message;
     participant.emplace(std::move(seat).value());
@@ -120,7 +100,9 @@ class LiveSensor : public ::testing::Test {
 };
 
 TEST_F(LiveSensor, StreamsAt30HzIsRecordedAndPlaysBackToTheSameDetections) {
-  const std::vector<std::string> settings = {"detection.seed=7", "detection.threads=1"};
+  const std::vector<std::string> settings = {
+      "detection.seed=7", "detection.threads=1", "detector.max_references=200",
+      "detector.max_refined=10", "detector.annealing_steps=3000"};
   const std::string file = folder / "live.oni";
   std::optional<Session> live;
   {
@@ -150,36 +132,43 @@ TEST_F(LiveSensor, StreamsAt30HzIsRecordedAndPlaysBackToTheSameDetections) {
     EXPECT_GT(regular, 0.9 * static_cast<double>(stamps.size()));
     const wire::sensor_msgs::CameraInfo info = camera.info.messages().back();
     EXPECT_EQ(info.width, 320U);
-    EXPECT_NEAR(info.k[0], 285, 1e-3);
+    EXPECT_NEAR(info.k[0], 262.5, 1e-3);
     EXPECT_NEAR(info.k[2], 159.5, 1e-9);
     EXPECT_EQ(server.stop(), 0) << server.log();
   }
-  support::SensorServer server("", file, settings, library());
-  ASSERT_TRUE(server.wait_for("images come from the recording")) << server.log();
+  std::vector<std::string> repeated = settings;
+  repeated.push_back("capture.loop=true");
+  support::SensorServer server("", file, repeated, library());
   support::CameraListener camera(*participant);
   support::Listener<SceneInterpretations> results(*participant, "interpretations",
                                                   wire::qos::results());
-  ASSERT_TRUE(server.wait_for("has come to its end")) << server.log();
-  ASSERT_TRUE(results.wait_for(3, 20000)) << server.log();
-  const Session played(camera, results);
+  // Until two views that were searched live have been searched again.
+  const std::map<std::string, std::string> before = live->by_image();
+  std::optional<Session> played;
+  int compared = 0;
+  for (std::size_t count = 2; count < 40 && compared < 2; ++count) {
+    ASSERT_TRUE(results.wait_for(count, 20000)) << server.log();
+    played.emplace(camera, results);
+    compared = 0;
+    for (const auto& [pixels, found] : played->by_image()) {
+      compared += static_cast<int>(before.count(pixels));
+    }
+  }
+  ASSERT_GE(compared, 2) << before.size();
   // The images are those of the live run, to the last bit ...
   const auto one_of = [](const std::string& pixels,
                          const std::map<std::int64_t, std::string>& set) {
     return std::any_of(set.begin(), set.end(), [&](const auto& e) { return e.second == pixels; });
   };
-  ASSERT_GT(played.depth.size(), 30U);
-  for (const auto& [stamp, pixels] : played.depth) ASSERT_TRUE(one_of(pixels, live->depth));
-  for (const auto& [stamp, pixels] : played.color) ASSERT_TRUE(one_of(pixels, live->color));
+  ASSERT_GT(played->depth.size(), 5U);
+  for (const auto& [stamp, pixels] : played->depth) ASSERT_TRUE(one_of(pixels, live->depth));
+  for (const auto& [stamp, pixels] : played->color) ASSERT_TRUE(one_of(pixels, live->color));
   // ... and so is what is found in them.
-  const auto before = live->by_image(), after = played.by_image();
-  int compared = 0;
-  for (const auto& [pixels, found] : after) {
+  for (const auto& [pixels, found] : played->by_image()) {
     const auto same = before.find(pixels);
     if (same == before.end()) continue;
     EXPECT_TRUE(same->second == found);
-    ++compared;
   }
-  EXPECT_GE(compared, 2) << before.size() << " and " << after.size();
   int objects = 0;
   for (const SceneInterpretations& m : results.messages()) {
     ASSERT_EQ(m.status.code, 0) << m.status.message;
