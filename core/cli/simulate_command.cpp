@@ -244,11 +244,14 @@ void add_simulate_command(CLI::App& program, Action& action) {
   scenes.add_option("--scenes", a->scenes, "Number of scenes")
       ->check(CLI::Range(1, 999999))
       ->capture_default_str();
-  scenes.add_option("--objects", a->objects, "Fewest and most objects of a scene")
+  scenes
+      .add_option("--objects", a->objects, "Fewest and most objects of a scene; 10,14 if not given")
       ->delimiter(',')
       ->expected(2)
       ->type_name("MIN,MAX");
-  scenes.add_option("--clutter", a->clutter, "Range of clutter; 0 = apart on the table, 1 = heap")
+  scenes
+      .add_option("--clutter", a->clutter,
+                  "Range of clutter, 0.6,1 if not given; 0 = apart on the table, 1 = heap")
       ->delimiter(',')
       ->expected(2)
       ->type_name("MIN,MAX");
@@ -263,6 +266,10 @@ void add_simulate_command(CLI::App& program, Action& action) {
   scenes
       .add_option("--distractors", a->scene.distractor_share,
                   "Share of scenes with nothing but other things")
+      ->capture_default_str();
+  scenes
+      .add_option("--border", a->scene.border_share,
+                  "Share of scenes with an object cut by the image's border")
       ->capture_default_str();
   scenes.add_option("--misregistration", a->scene.kinect.misregistration,
                     "Shift of colour against depth, pixels");

@@ -154,6 +154,27 @@ TEST(Scenes, HeapsHideMoreThanTidyTables) {
   EXPECT_LT(heap, tidy - 0.1);
 }
 
+// Visible fractions do not depend on the resolution, nor on what the sensor does.
+TEST(Scenes, TheDefaultSetIsHard) {
+  const Stage all(household_objects());
+  SceneOptions options;
+  options.camera = {160, 120, 131.25, 131.25, 79.5, 59.5};
+  options.kinect.registered = false;
+  std::vector<double> fractions;
+  for (int i = 0; i < 2; ++i) {
+    const SimulatedScene scene = simulate_scene(all, options, scene_seed(1, i), 2);
+    EXPECT_LE(scene.frames[0].instances.size(), 14u);
+    for (const SimulatedInstance& instance : scene.frames[0].instances) {
+      fractions.push_back(instance.visibility.fraction());
+    }
+  }
+  std::sort(fractions.begin(), fractions.end());
+  ASSERT_GE(fractions.size(), 18u);
+  EXPECT_LT(fractions[fractions.size() / 2], 0.7);
+  EXPECT_LT(fractions.front(), 0.1);
+  EXPECT_GT(fractions.back(), 0.9);
+}
+
 TEST(Scenes, FreeAndBadFrames) {
   SceneOptions options = small_options();
   options.empty_share = 1;
