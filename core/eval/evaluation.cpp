@@ -131,7 +131,7 @@ void add_calibration(EvaluationReport& report) {
   }
   for (const auto& row : kChiSquared) report.coverage.push_back({row.level, {}});
   double squared = 0;
-  int reported = 0;
+  int reported = 0, with_covariance = 0;
   for (const FrameOutcome& frame : report.outcomes) {
     for (const EstimateOutcome& estimate : frame.estimates) {
       if (estimate.ignored) continue;
@@ -144,6 +144,8 @@ void add_calibration(EvaluationReport& report) {
       bin.mean_probability += p;
       count(bin.correct, correct);
       if (!correct || !estimate.has_covariance) continue;
+      ++with_covariance;
+      report.normalised_square += estimate.mahalanobis_squared / estimate.degrees_of_freedom;
       for (std::size_t i = 0; i < std::size(kChiSquared); ++i) {
         count(report.coverage[i].covered,
               estimate.mahalanobis_squared <=
@@ -151,6 +153,7 @@ void add_calibration(EvaluationReport& report) {
       }
     }
   }
+  if (with_covariance > 0) report.normalised_square /= with_covariance;
   report.brier = reported > 0 ? squared / reported : 0;
   for (ReliabilityBin& bin : report.reliability) {
     if (bin.correct.total > 0) bin.mean_probability /= bin.correct.total;

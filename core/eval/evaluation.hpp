@@ -145,6 +145,9 @@ struct EvaluationReport {
   double brier = 0;
   std::vector<ReliabilityBin> reliability;
   std::vector<Coverage> coverage;  ///< Of right placements with a covariance.
+  double normalised_square = 0;  ///< Their mean squared error in units of the covariance, for each
+                                 ///< degree of freedom: 1 if the covariances are right, less if
+                                 ///< they are too large.
   FalseReports false_reports;
   std::array<int, 10> visible_tenths{};  ///< All instances by visible fraction.
   double median_visible_fraction = 0;

@@ -129,6 +129,10 @@ std::string report_text(const EvaluationReport& report) {
   for (const Coverage& coverage : report.coverage) {
     text += format("  %-24.0f %s\n", 100 * coverage.level, percent(coverage.covered).c_str());
   }
+  if (!report.coverage.empty() && report.coverage.front().covered.total > 0) {
+    text += format("  mean square of the error in standard deviations %.3f (1 would be right)\n",
+                   report.normalised_square);
+  }
   text += format("\nseconds a frame            median %.2f, mean %.2f, largest %.2f\n",
                  report.time.median, report.time.mean, report.time.max);
   return text;
@@ -159,6 +163,7 @@ std::string report_json(const EvaluationReport& report) {
                {"by_distance", groups_json(report.by_distance, true)},
                {"calibration", calibration_json(report)},
                {"coverage", coverage},
+               {"normalised_square", report.normalised_square},
                {"false_reports",
                 {{"free_frames", report.false_reports.free_frames},
                  {"frames_with_report", report.false_reports.frames_with_report},

@@ -107,9 +107,11 @@ def certainty(runs):
     rows = []
     for name, run in runs:
         levels = [percent(c["covered"]) for c in run["coverage"]]
-        rows.append([name, f"{run['calibration']['brier']:.3f}"] + levels)
+        rows.append([name, f"{run['calibration']['brier']:.3f}"] + levels
+                    + [f"{run['normalised_square']:.3f}"])
     levels = [f"{100 * c['level']:.0f} % region holds" for c in runs[0][1]["coverage"]]
-    return table(["set", "Brier score"] + levels, rows)
+    return table(["set", "Brier score"] + levels + ["mean squared error in standard deviations"],
+                 rows)
 
 
 def times(runs):

@@ -198,6 +198,7 @@ TEST(Evaluation, CoverageByHand) {
   ASSERT_EQ(report->coverage.size(), 3u);
   EXPECT_EQ(report->coverage[0].covered.hits, 2);
   EXPECT_EQ(report->coverage[0].covered.total, 2);
+  EXPECT_NEAR(report->normalised_square, (4.0 + 0.0) / 2 / 6, 1e-9);
   c.results[0].interpretations[0].placements[0].covariance *= 0.49;
   report = evaluate(c.frames, objects(), c.results, without_bop());
   EXPECT_EQ(report->coverage[0].covered.hits, 1);
