@@ -9,6 +9,7 @@
 
 #include <bpa/core/cli/command.hpp>
 #include <bpa/core/cli/progress.hpp>
+#include <bpa/core/cli/simulated_views.hpp>
 #include <bpa/core/io/bop_dataset.hpp>
 #include <bpa/core/io/file_bytes.hpp>
 #include <bpa/core/io/mesh_file.hpp>
@@ -26,13 +27,30 @@ struct ModelArguments {
   std::string name;
   double scale = 1;
   int number = 0;
+  int views = 40;
   ModelOptions options;
 };
+
+/// A mesh's model, with what a simulated sensor is off by.
+Result<ModelSource> source_from_mesh(const TriangleMesh& mesh, const ModelArguments& a,
+                                     const std::string& name, int number) {
+  Result<ModelSource> source = model_source_from_mesh(mesh, name, number, a.options);
+  if (!source.ok() || a.views == 0) return source;
+  Progress progress(name, a.views);
+  const std::vector<PosedView> views =
+      simulate_views(mesh, a.views, a.common.seed, a.common.threads,
+                     [&progress](int done) { progress.show(done, "simulated views"); });
+  learn_noise(*source, views, a.common.threads);
+  return source;
+}
 
 void print_saved(const ModelSource& model, const std::string& library) {
   std::printf("%s: number %d, diameter %.1f mm, %zu points -> %s\n", model.name.c_str(),
               model.number, 1000 * model.diameter, model.surface.size(),
               (std::filesystem::path(library) / model.name).c_str());
+  for (const std::string& warning : model.warnings) {
+    std::fprintf(stderr, "warning: %s: %s\n", model.name.c_str(), warning.c_str());
+  }
 }
 
 /// The number of a model of that name, else the first that is free.
@@ -52,7 +70,7 @@ Result<ModelSource> source_from_file(const ModelArguments& a) {
     const Result<TriangleMesh> mesh = io::read_mesh(a.input, a.scale);
     if (!mesh.ok()) return mesh.status();
     if (!mesh->triangles.empty()) {
-      return model_source_from_mesh(*mesh, a.name, a.number, a.options);
+      return source_from_mesh(*mesh, a, a.name, a.number);
     }
   }
   const Result<PointCloud> cloud = io::read_point_cloud(a.input, a.scale);
@@ -92,7 +110,7 @@ Status from_bop(ModelArguments a) {
     const Result<TriangleMesh> mesh = io::read_mesh(model.path, kMetresPerMillimetre);
     if (!mesh.ok()) return mesh.status();
     Result<ModelSource> source =
-        model_source_from_mesh(*mesh, io::clean_model_name(model.name), model.obj_id, a.options);
+        source_from_mesh(*mesh, a, io::clean_model_name(model.name), model.obj_id);
     if (!source.ok()) {
       return Status(source.status().code, model.path + ": " + source.status().message);
     }
@@ -156,6 +174,14 @@ CLI::App& add(CLI::App& model, const char* name, const char* description,
   return command;
 }
 
+void add_views_option(CLI::App& command, ModelArguments& a) {
+  command
+      .add_option("--views", a.views,
+                  "Simulated views that noise is learned from; 0 = take the usual noise")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_model_command(CLI::App& program, Action& action) {
@@ -175,11 +201,15 @@ void add_model_command(CLI::App& program, Action& action) {
   mesh.add_option("--spacing", a->options.spacing_m, "Distance of surface points, metres")
       ->check(CLI::PositiveNumber);
 
+  add_views_option(mesh, *a);
+
   CLI::App& bop = add(model, "from-bop", "Every model of a BOP data set", a, action,
                       [](ModelArguments m) { return from_bop(std::move(m)); });
   bop.add_option("dataset", a->input, "Folder of the data set")->required();
   bop.add_option("--spacing", a->options.spacing_m, "Distance of surface points, metres")
       ->check(CLI::PositiveNumber);
+
+  add_views_option(bop, *a);
 
   add(model, "info", "What a model is", a, action, [](ModelArguments m) { return info(m); })
       .add_option("name", a->name, "Name of the model")

@@ -123,25 +123,23 @@ class EdgeDistance {
   std::vector<std::int32_t> nearest_;
 };
 
-ModelView render_view(const PointCloud& surface, const Eigen::Vector3f& direction, float spacing) {
+// Points in the view plane of a camera, z toward it, with the cosine between normal and line of
+// sight.
+struct SeenPoints {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<float> cosine;
+};
+
+ModelView render_view(const SeenPoints& all, const Eigen::Matrix3f& axes, float spacing) {
+  const std::vector<Eigen::Vector3f>& seen = all.points;
   ModelView view;
-  view.direction = direction;
-  const Eigen::Vector3f x_axis = direction.unitOrthogonal();
-  const Eigen::Vector3f y_axis = direction.cross(x_axis);
-  std::vector<Eigen::Vector3f> seen(surface.size());
-  for (std::size_t i = 0; i < surface.size(); ++i) {
-    const Eigen::Vector3f& p = surface.points[i];
-    seen[i] = {p.dot(x_axis), p.dot(y_axis), p.dot(direction)};
-  }
+  view.direction = axes.row(2);
   const DepthBuffer buffer = draw(seen, spacing);
-  const auto cosine_of = [&](std::size_t i) {
-    return surface.normals.empty() ? 1.0f : surface.normals[i].dot(direction);
-  };
   const auto slope_of = [](float cosine) {
     return std::min(4.0f, std::sqrt(1 - cosine * cosine) / cosine);
   };
-  for (std::size_t i = 0; i < surface.size(); ++i) {
-    const float cosine = cosine_of(i);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const float cosine = all.cosine[i];
     if (cosine <= 0.05f) continue;
     const float nearest = buffer.at(buffer.column(seen[i].x()), buffer.row(seen[i].y()));
     if (seen[i].z() < nearest - spacing * (1 + 2 * slope_of(cosine))) continue;
@@ -150,17 +148,58 @@ ModelView render_view(const PointCloud& surface, const Eigen::Vector3f& directio
   const EdgeDistance edge_distance(buffer, seen, view.visible);
   for (const std::uint32_t i : view.visible) {
     view.edge_distance.push_back(edge_distance(seen[i]));
-    const float slope = slope_of(cosine_of(i));
+    const float slope = slope_of(all.cosine[i]);
     const Eigen::Vector2f outward = edge_direction(buffer, seen[i], kDrop + 1.5f * spacing * slope);
     if (outward.squaredNorm() < 4) continue;
     view.edges.push_back(i);
     const Eigen::Vector2f unit = outward.normalized();
-    view.outward.push_back(unit.x() * x_axis + unit.y() * y_axis);
+    view.outward.push_back(axes.transpose() * Eigen::Vector3f(unit.x(), unit.y(), 0));
   }
   return view;
 }
 
+// Rows: x and y of the view plane, and the direction to the camera.
+Eigen::Matrix3f view_axes(const Eigen::Vector3f& direction) {
+  Eigen::Matrix3f axes;
+  axes.row(0) = direction.unitOrthogonal();
+  axes.row(1) = direction.cross(Eigen::Vector3f(axes.row(0)));
+  axes.row(2) = direction;
+  return axes;
+}
+
+float cosine_of(const PointCloud& surface, std::size_t i, const Eigen::Vector3f& to_camera) {
+  return surface.normals.empty() ? 1.0f : surface.normals[i].dot(to_camera);
+}
+
+ModelView render_from_afar(const PointCloud& surface, const Eigen::Vector3f& direction,
+                           float spacing) {
+  const Eigen::Matrix3f axes = view_axes(direction);
+  SeenPoints seen;
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    seen.points.push_back(axes * surface.points[i]);
+    seen.cosine.push_back(cosine_of(surface, i, direction));
+  }
+  return render_view(seen, axes, spacing);
+}
+
 }  // namespace
+
+ModelView render_from(const PointCloud& surface, const Eigen::Vector3f& camera, float spacing) {
+  if (surface.empty()) return {};
+  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+  for (const Eigen::Vector3f& p : surface.points) middle += p;
+  middle /= static_cast<float>(surface.size());
+  const Eigen::Matrix3f axes = view_axes((camera - middle).normalized());
+  const float depth = (camera - middle).norm();
+  SeenPoints seen;
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    const Eigen::Vector3f q = axes * (surface.points[i] - camera);  // z negative
+    const float scale = depth / std::max(1e-3f, -q.z());
+    seen.points.push_back({scale * q.x(), scale * q.y(), q.z()});
+    seen.cosine.push_back(cosine_of(surface, i, (camera - surface.points[i]).normalized()));
+  }
+  return render_view(seen, axes, spacing);
+}
 
 std::array<Eigen::Vector3f, kNumViews> view_directions() {
   std::array<Eigen::Vector3f, kNumViews> directions;
@@ -188,7 +227,7 @@ std::vector<ModelView> render_views(const PointCloud& surface, float spacing, in
   if (surface.empty()) return views;
   parallel_for(kNumViews, num_threads, [&](int i) {
     const auto k = static_cast<std::size_t>(i);
-    views[k] = render_view(surface, directions[k], spacing);
+    views[k] = render_from_afar(surface, directions[k], spacing);
   });
   return views;
 }

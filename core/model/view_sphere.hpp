@@ -36,4 +36,8 @@ int nearest_view(const std::vector<ModelView>& views, const Eigen::Vector3f& dir
 /// Renders the points into a depth buffer of cells as large as `spacing` along each direction.
 std::vector<ModelView> render_views(const PointCloud& surface, float spacing, int num_threads);
 
+/// The same for one camera at `camera` (in the surface's frame, outside of it): its `direction` is
+/// that from the middle of the points; distances are measured at the depth of the middle.
+ModelView render_from(const PointCloud& surface, const Eigen::Vector3f& camera, float spacing);
+
 }  // namespace bpa

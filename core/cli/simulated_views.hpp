@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include <bpa/core/model/posed_view.hpp>
+
+namespace bpa::cli {
+
+/// What a Kinect-class camera measures of a mesh from `count` directions spread over the sphere, in
+/// the middle of an empty room. The distance suits the object: 0.8 m, more for large ones.
+/// `progress(k)` is called when k views are done, from any thread. The same input and seed give the
+/// same views for any number of threads.
+std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::uint64_t seed,
+                                      int num_threads, const std::function<void(int)>& progress);
+
+}  // namespace bpa::cli

@@ -1,0 +1,310 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include <bpa/core/base/parallel.hpp>
+#include <bpa/core/cloud/neighbor_grid.hpp>
+#include <bpa/core/model/occupancy_grid.hpp>
+#include <bpa/core/model/view_sphere.hpp>
+
+namespace bpa {
+namespace {
+
+constexpr float kMinCosine = 0.2f;  // of views that count
+constexpr int kMinRays = 3;         // that a surface takes
+
+struct FastPose {
+  Eigen::Matrix3f rotation;
+  Eigen::Vector3f translation;
+};
+
+FastPose object_from_camera(const PosedView& view) {
+  const Pose pose = view.camera_from_object.inverse();
+  return {pose.matrix().cast<float>(), pose.translation.cast<float>()};
+}
+
+// Calls visit(point, normal, weight), in the object's frame, for every pixel of the object that is
+// seen well enough.
+template <class Visit>
+void for_each_measurement(const PosedView& view, const Visit& visit) {
+  const FastPose pose = object_from_camera(view);
+  for (std::size_t i = 0; i < view.map.size(); ++i) {
+    if (!view.object[i] || !(view.map.depth[i] > 0)) continue;
+    const Eigen::Vector3f& normal = view.map.normals[i];
+    const float cosine = -normal.dot(view.map.points[i].normalized());
+    if (!(cosine > kMinCosine)) continue;
+    visit(Eigen::Vector3f(pose.rotation * view.map.points[i] + pose.translation),
+          Eigen::Vector3f(pose.rotation * normal), cosine * cosine);
+  }
+}
+
+// Grid cells by number, and which of them are held.
+struct Lookup {
+  const OccupancyGrid& grid;
+  std::vector<std::int32_t> slot;  // -1 where no ray ends
+
+  std::int64_t number(const Eigen::Vector3f& p) const {
+    const Eigen::Vector3f scaled = (p - grid.low) / grid.cell;
+    if (!(scaled.minCoeff() >= 0)) return -1;
+    const Eigen::Vector3i c = scaled.cast<int>();
+    if ((c.array() >= grid.size.array()).any()) return -1;
+    return (static_cast<std::int64_t>(c.z()) * grid.size.y() + c.y()) * grid.size.x() + c.x();
+  }
+  Eigen::Vector3i place(std::int64_t n) const {
+    const std::int64_t row = n / grid.size.x();
+    return {static_cast<int>(n % grid.size.x()), static_cast<int>(row % grid.size.y()),
+            static_cast<int>(row / grid.size.y())};
+  }
+};
+
+// Sums over the rays that end in a cell.
+struct CellSums {
+  Eigen::Matrix3f scatter = Eigen::Matrix3f::Zero();  // of the normals
+  Eigen::Vector3f axis = Eigen::Vector3f::Zero();     // tells the buckets apart
+  std::array<Eigen::Vector3f, 2> position{Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
+  std::array<Eigen::Vector3f, 2> normal{Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
+  std::array<float, 2> weight{0, 0}, squared_angles{0, 0};
+  std::array<int, 2> rays{0, 0};
+
+  std::size_t bucket(const Eigen::Vector3f& n) const { return n.dot(axis) >= 0 ? 0 : 1; }
+};
+
+// The cells where rays end, with the means of their buckets.
+std::vector<CellSums> sum_endings(const std::vector<PosedView>& views, Lookup& lookup,
+                                  OccupancyGrid& grid) {
+  std::vector<CellSums> sums;
+  const auto for_each = [&](const auto& visit) {
+    for (const PosedView& view : views) {
+      for_each_measurement(view, [&](const Eigen::Vector3f& p, const Eigen::Vector3f& n, float w) {
+        const std::int64_t number = lookup.number(p);
+        if (number >= 0) visit(number, p, n, w);
+      });
+    }
+  };
+  for_each([&](std::int64_t number, const Eigen::Vector3f&, const Eigen::Vector3f& n, float) {
+    std::int32_t& slot = lookup.slot[static_cast<std::size_t>(number)];
+    if (slot < 0) {
+      slot = static_cast<std::int32_t>(sums.size());
+      sums.emplace_back();
+      grid.cells.push_back({lookup.place(number), {}});
+    }
+    sums[static_cast<std::size_t>(slot)].scatter += n * n.transpose();
+  });
+  const auto of = [&](std::int64_t number) -> CellSums& {
+    return sums[static_cast<std::size_t>(lookup.slot[static_cast<std::size_t>(number)])];
+  };
+  for (CellSums& s : sums) {
+    s.axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>(s.scatter).eigenvectors().col(2);
+  }
+  for_each([&](std::int64_t number, const Eigen::Vector3f& p, const Eigen::Vector3f& n, float w) {
+    CellSums& s = of(number);
+    const std::size_t b = s.bucket(n);
+    s.position[b] += w * p;
+    s.normal[b] += w * n;
+    s.weight[b] += w;
+    ++s.rays[b];
+  });
+  for (CellSums& s : sums) {
+    for (std::size_t b = 0; b < 2; ++b) s.normal[b].normalize();
+  }
+  for_each([&](std::int64_t number, const Eigen::Vector3f&, const Eigen::Vector3f& n, float) {
+    CellSums& s = of(number);
+    const std::size_t b = s.bucket(n);
+    const float angle = std::acos(std::clamp(n.dot(s.normal[b]), -1.0f, 1.0f));
+    s.squared_angles[b] += angle * angle;
+  });
+  return sums;
+}
+
+// Calls visit(cell number) for every cell of the grid on the way from `from` to `from` + `length` *
+// `direction` (Amanatides and Woo, "A fast voxel traversal algorithm for ray tracing", 1987).
+template <class Visit>
+void march(const OccupancyGrid& grid, const Eigen::Vector3f& from, const Eigen::Vector3f& direction,
+           float length, const Visit& visit) {
+  const Eigen::Vector3f high = grid.low + grid.cell * grid.size.cast<float>();
+  float t = 0, end = length;
+  for (int a = 0; a < 3; ++a) {
+    if (std::abs(direction[a]) < 1e-9f) {
+      if (from[a] < grid.low[a] || from[a] >= high[a]) return;
+      continue;
+    }
+    const float t0 = (grid.low[a] - from[a]) / direction[a],
+                t1 = (high[a] - from[a]) / direction[a];
+    t = std::max(t, std::min(t0, t1));
+    end = std::min(end, std::max(t0, t1));
+  }
+  if (t >= end) return;
+  const Eigen::Vector3f start = (from + t * direction - grid.low) / grid.cell;
+  Eigen::Vector3i c, step;
+  Eigen::Vector3f next, delta;
+  for (int a = 0; a < 3; ++a) {
+    c[a] = std::clamp(static_cast<int>(std::floor(start[a])), 0, grid.size[a] - 1);
+    step[a] = direction[a] > 0 ? 1 : -1;
+    const bool moves = std::abs(direction[a]) >= 1e-9f;
+    const float border = grid.low[a] + grid.cell * static_cast<float>(c[a] + (step[a] > 0 ? 1 : 0));
+    next[a] = moves ? (border - from[a]) / direction[a] : std::numeric_limits<float>::infinity();
+    delta[a] = moves ? grid.cell / std::abs(direction[a]) : next[a];
+  }
+  while (true) {
+    visit((static_cast<std::int64_t>(c.z()) * grid.size.y() + c.y()) * grid.size.x() + c.x());
+    int a = next.x() < next.y() ? 0 : 1;
+    if (next.z() < next[a]) a = 2;
+    if (next[a] >= end) return;
+    c[a] += step[a];
+    if (c[a] < 0 || c[a] >= grid.size[a]) return;
+    next[a] += delta[a];
+  }
+}
+
+// Counts, for both buckets of every cell, the rays of one view that pass through.
+void count_passing(const PosedView& view, const Lookup& lookup, const std::vector<CellSums>& sums,
+                   std::vector<std::int32_t>& passing) {
+  const FastPose pose = object_from_camera(view);
+  const SurfaceMap& map = view.map;
+  for (int v = 0; v < map.height(); ++v) {
+    for (int u = 0; u < map.width(); ++u) {
+      const auto i = static_cast<std::size_t>(v * map.width() + u);
+      if (!(map.depth[i] > 0)) continue;
+      const Eigen::Vector3f ray = map.camera.unproject(u, v, 1).cast<float>();
+      const Eigen::Vector3f direction = pose.rotation * ray;
+      const float cosine = std::max(0.2f, -map.normals[i].dot(ray) / ray.norm());
+      const float margin =
+          std::max(3 * depth_noise(map.depth[i]), 1.8f * lookup.grid.cell) / std::sqrt(cosine);
+      march(lookup.grid, pose.translation, direction, map.depth[i] - margin,
+            [&](std::int64_t number) {
+              const std::int32_t slot = lookup.slot[static_cast<std::size_t>(number)];
+              if (slot < 0) return;
+              const auto s = static_cast<std::size_t>(slot);
+              for (std::size_t b = 0; b < 2; ++b) {
+                if (sums[s].rays[b] == 0) continue;
+                if (sums[s].normal[b].dot(direction) < -kMinCosine * direction.norm()) {
+                  ++passing[2 * s + b];
+                }
+              }
+            });
+    }
+  }
+}
+
+// Draws points along their normals to the sheet that they and their neighbours scatter about, and
+// averages normals likewise.
+void draw_together(GridSurface& surface, const std::vector<float>& weight, float radius,
+                   int num_threads) {
+  constexpr float kSameSheet = 0.8f;  // cosine between normals
+  constexpr int kRounds = 3;
+  PointCloud& cloud = surface.points;
+  for (int round = 0; round < kRounds; ++round) {
+    const NeighborGrid neighbors(cloud.points, radius);
+    std::vector<Eigen::Vector3f> moved = cloud.points;
+    parallel_for(
+        static_cast<int>(cloud.size()), num_threads,
+        [&](int index) {
+          const auto i = static_cast<std::size_t>(index);
+          const Eigen::Vector3f& n = cloud.normals[i];
+          float sum = 0, total = 0;
+          neighbors.for_each_neighbor(cloud.points[i], [&](int neighbor, float squared) {
+            const auto j = static_cast<std::size_t>(neighbor);
+            const float cosine = n.dot(cloud.normals[j]);
+            if (cosine < kSameSheet) return;
+            const float near = 1 - squared / (radius * radius);
+            const float w = weight[j] * near * near;
+            sum += w * n.dot(cloud.points[j] - cloud.points[i]);
+            total += w;
+          });
+          if (total > 0) moved[i] += sum / total * n;
+        },
+        64);
+    cloud.points = std::move(moved);
+  }
+}
+
+}  // namespace
+
+OccupancyGrid trace_occupancy(const std::vector<PosedView>& views, float cell, int num_threads) {
+  constexpr double kMaxCells = 3e7;
+  OccupancyGrid grid;
+  Eigen::AlignedBox3f box;
+  for (const PosedView& view : views) {
+    for_each_measurement(
+        view, [&box](const Eigen::Vector3f& p, const Eigen::Vector3f&, float) { box.extend(p); });
+  }
+  grid.cell = cell;
+  if (box.isEmpty()) return grid;
+  for (;; grid.cell *= 1.2f) {
+    grid.low = box.min().array() - grid.cell;
+    grid.size = (box.sizes() / grid.cell).array().floor().cast<int>() + 3;
+    if (grid.size.cast<double>().prod() <= kMaxCells) break;
+  }
+  Lookup lookup{grid, std::vector<std::int32_t>(static_cast<std::size_t>(grid.size.prod()), -1)};
+  const std::vector<CellSums> sums = sum_endings(views, lookup, grid);
+  std::vector<std::int32_t> passing(2 * sums.size(), 0);
+  std::mutex mutex;  // counts are added up; the order does not matter
+  parallel_for(static_cast<int>(views.size()), num_threads, [&](int k) {
+    std::vector<std::int32_t> own(passing.size(), 0);
+    count_passing(views[static_cast<std::size_t>(k)], lookup, sums, own);
+    const std::lock_guard lock(mutex);
+    for (std::size_t i = 0; i < own.size(); ++i) passing[i] += own[i];
+  });
+  for (std::size_t s = 0; s < sums.size(); ++s) {
+    for (std::size_t b = 0; b < 2; ++b) {
+      const int rays = sums[s].rays[b];
+      if (rays == 0) continue;
+      const auto count = static_cast<float>(rays);
+      grid.cells[s].buckets[b] = {count / (count + static_cast<float>(passing[2 * s + b])), rays,
+                                  sums[s].position[b] / sums[s].weight[b], sums[s].normal[b],
+                                  sums[s].squared_angles[b] / count};
+    }
+  }
+  return grid;
+}
+
+GridSurface surface_of(const OccupancyGrid& grid, float spacing, int num_threads) {
+  constexpr float kOccupied = 0.5f;
+  GridSurface all;
+  std::vector<float> weight;
+  for (const OccupancyCell& cell : grid.cells) {
+    for (const ViewBucket& bucket : cell.buckets) {
+      if (bucket.rays < kMinRays || bucket.occupancy < kOccupied) continue;
+      all.points.points.push_back(bucket.position);
+      all.points.normals.push_back(bucket.normal);
+      all.normal_variance.push_back(bucket.normal_variance);
+      weight.push_back(static_cast<float>(bucket.rays));
+    }
+  }
+  if (all.points.empty()) return all;
+  draw_together(all, weight, std::max(0.006f, 2.2f * grid.cell), num_threads);
+  // Cells that no view angle sees are inside.
+  std::vector<std::uint8_t> outside(all.points.size(), 0);
+  for (const ModelView& view :
+       render_views(all.points, std::max(0.003f, 1.2f * grid.cell), num_threads)) {
+    for (const std::uint32_t i : view.visible) outside[i] = 1;
+  }
+  PointCloud seen;
+  for (std::size_t i = 0; i < outside.size(); ++i) {
+    if (!outside[i]) continue;
+    seen.points.push_back(all.points.points[i]);
+    seen.normals.push_back(all.points.normals[i]);
+  }
+  GridSurface out;
+  out.points = downsample(seen, spacing);
+  // The variance of a point is the mean of those it was made of.
+  const NeighborGrid neighbors(all.points.points, spacing);
+  for (std::size_t i = 0; i < out.points.size(); ++i) {
+    float sum = 0, total = 0;
+    neighbors.for_each_neighbor(out.points.points[i], [&](int neighbor, float) {
+      const auto j = static_cast<std::size_t>(neighbor);
+      if (all.points.normals[j].dot(out.points.normals[i]) < 0.5f) return;
+      sum += weight[j] * all.normal_variance[j];
+      total += weight[j];
+    });
+    out.normal_variance.push_back(total > 0 ? sum / total : 0);
+  }
+  return out;
+}
+
+}  // namespace bpa

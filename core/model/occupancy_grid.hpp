@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <bpa/core/model/posed_view.hpp>
+
+namespace bpa {
+
+/// What the views from one side say of a grid cell.
+struct ViewBucket {
+  float occupancy = 0;  ///< Share of the rays from this side that end in the cell, of those that
+                        ///< reach it: the probability that something is there.
+  int rays = 0;         ///< That ended in the cell.
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< Mean of where they did, metres.
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();    ///< Mean of what they measured, unit length.
+  float normal_variance = 0;  ///< Mean squared angle from that mean, radians squared.
+};
+
+/// A cell with two view-buckets, since a wall thinner than a cell has two surfaces in it (paper
+/// section III, footnote).
+struct OccupancyCell {
+  Eigen::Vector3i place;  ///< In the grid.
+  std::array<ViewBucket, 2> buckets;
+};
+
+/// The cells in which some ray ended.
+struct OccupancyGrid {
+  Eigen::Vector3f low =
+      Eigen::Vector3f::Zero();  ///< Corner of cell (0, 0, 0), object frame, metres.
+  float cell = 1;               ///< Side of a cell, metres.
+  Eigen::Vector3i size = Eigen::Vector3i::Zero();
+  std::vector<OccupancyCell> cells;
+};
+
+/// Traces the ray of every pixel of the views through the grid: the measured point lies in one
+/// cell, and whatever the ray passes on its way there is empty on the side that faces the camera.
+/// The last bit of the way, within the sensor's noise of the point, says nothing. Pixels that are
+/// not the object's end nowhere, but what they pass is empty too. The same for any number of
+/// threads.
+OccupancyGrid trace_occupancy(const std::vector<PosedView>& views, float cell, int num_threads);
+
+/// The surface of what is occupied (probability 0.5 or more) and seen from outside: bucket means,
+/// drawn together along their normals to one sheet for each side of a wall, `spacing` apart. With
+/// the normal variance of each point.
+struct GridSurface {
+  PointCloud points;
+  std::vector<float> normal_variance;
+};
+GridSurface surface_of(const OccupancyGrid& grid, float spacing, int num_threads);
+
+}  // namespace bpa

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/core/cloud/surface_map.hpp>
+#include <bpa/core/geometry/pose.hpp>
+#include <bpa/core/model/noise_model.hpp>
+#include <bpa/core/model/object_model.hpp>
+
+namespace bpa {
+
+/// One view of an object from a known place: real or simulated.
+struct PosedView {
+  SurfaceMap map;                                   ///< As the detector would see it.
+  std::vector<std::array<std::uint8_t, 3>> colors;  ///< For each pixel of the map; may be empty.
+  std::vector<std::uint8_t> object;                 ///< 1 where the pixel may belong to the object.
+  Pose camera_from_object;
+};
+
+/// Halves the frame as the detector does and takes its normals. `object` is a mask over the frame's
+/// pixels (1 = object), or empty: then every pixel may belong to it.
+PosedView make_posed_view(const Frame& frame, const std::vector<std::uint8_t>& object,
+                          const Pose& camera_from_object);
+
+/// What views say about each point of a surface.
+struct SurfaceObservations {
+  std::vector<int> seen;               ///< Views in which the point was measured.
+  std::vector<float> normal_variance;  ///< Mean squared angle between its normal and those
+                                       ///< measured, radians squared; 0 where it was never seen.
+  /// Mean colours; empty when the views have none. Black where the point was never seen well.
+  std::vector<std::array<std::uint8_t, 3>> colors;
+  std::vector<NoiseBin> range_bins;   ///< Errors of range, metres, by edge distance and angle.
+  std::vector<NoiseBin> normal_bins;  ///< Errors of normals, radians.
+  double depth = 0;                   ///< Mean depth of what was measured, metres.
+};
+
+/// Compares a surface with what the views measured of it (paper section III). Points are compared
+/// where they should be visible; what is further off than 2 cm is another surface. The same for any
+/// number of threads.
+SurfaceObservations observe_surface(const PointCloud& surface, const std::vector<PosedView>& views,
+                                    int num_threads);
+
+/// Fills a model's noise curves, normal variances and, where it has none, colours from views of it;
+/// warns when part of it was never measured.
+void learn_noise(ModelSource& source, const std::vector<PosedView>& views, int num_threads);
+
+}  // namespace bpa
