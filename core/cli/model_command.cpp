@@ -9,6 +9,7 @@
 
 #include <bpa/core/cli/command.hpp>
 #include <bpa/core/cli/progress.hpp>
+#include <bpa/core/cli/scan_files.hpp>
 #include <bpa/core/cli/simulated_views.hpp>
 #include <bpa/core/io/bop_dataset.hpp>
 #include <bpa/core/io/file_bytes.hpp>
@@ -28,6 +29,9 @@ struct ModelArguments {
   double scale = 1;
   int number = 0;
   int views = 40;
+  std::string split = "test";  // of scans
+  double step_deg = 10;
+  int known_object = 0;  // obj_id when the poses are known
   ModelOptions options;
 };
 
@@ -124,6 +128,58 @@ Status from_bop(ModelArguments a) {
   return {};
 }
 
+Result<std::vector<PosedView>> posed_views(const ModelArguments& a,
+                                           std::vector<std::string>& warnings) {
+  if (a.known_object > 0) {
+    return read_posed_views(a.input, a.split, a.known_object, a.common.threads);
+  }
+  auto scan = read_scan(a.input, a.split, a.common.threads);
+  if (!scan.ok()) return scan.status();
+  TurntableOptions options;
+  options.step_deg = a.step_deg;
+  options.seed = a.common.seed;
+  options.num_threads = a.common.threads;
+  Progress progress(a.name, 2);
+  progress.show(0, "centres of rotation");
+  Result<AlignedScan> aligned = align_scan(std::move(*scan), options);
+  if (!aligned.ok()) return aligned.status();
+  progress.clear();
+  for (const RestingPosition& p : aligned->positions) {
+    std::printf(
+        "resting position: turntable %.0f mm away, axis at (%.1f, %.1f, %.1f) mm, step %.2f "
+        "degrees\n",
+        1000 * p.centre.norm(), 1000 * p.centre.x(), 1000 * p.centre.y(), 1000 * p.centre.z(),
+        p.step_deg);
+  }
+  warnings = std::move(aligned->warnings);
+  center_object(aligned->views);
+  return std::move(aligned->views);
+}
+
+Status from_scans(ModelArguments a) {
+  if (a.number == 0) {
+    const Result<int> number = choose_number(a.library, a.name);
+    if (!number.ok()) return number.status();
+    a.number = *number;
+  }
+  a.options.num_threads = a.common.threads;
+  std::vector<std::string> warnings;
+  Result<std::vector<PosedView>> views = posed_views(a, warnings);
+  if (!views.ok()) {
+    const Status& s = views.status();
+    const bool named = s.message.find(a.input) != std::string::npos;
+    return Status(s.code, named ? s.message : a.input + ": " + s.message);
+  }
+  Result<ModelSource> source =
+      model_source_from_views(std::move(*views), a.name, a.number, a.options);
+  if (!source.ok()) return source.status();
+  source->source = std::filesystem::path(a.input).filename().string();
+  source->warnings.insert(source->warnings.begin(), warnings.begin(), warnings.end());
+  if (Status s = io::save_model(a.library, *source, a.common.threads); !s.ok()) return s;
+  print_saved(*source, a.library);
+  return {};
+}
+
 Status info(const ModelArguments& a) {
   const Result<ModelSource> model = io::load_model(a.library, a.name);
   if (!model.ok()) return model.status();
@@ -210,6 +266,31 @@ void add_model_command(CLI::App& program, Action& action) {
       ->check(CLI::PositiveNumber);
 
   add_views_option(bop, *a);
+
+  CLI::App& scans = add(model, "from-scans", "RGB-D views of an object on a turntable to a model",
+                        a, action, [](ModelArguments m) { return from_scans(std::move(m)); });
+  scans
+      .add_option("scans", a->input,
+                  "Folder in the BOP layout: each scene is a resting position, image k was taken "
+                  "after k steps")
+      ->required();
+  scans.add_option("--name", a->name, "Name of the model")->required();
+  scans.add_option("--split", a->split, "Split to read")->type_name("NAME")->capture_default_str();
+  scans.add_option("--step-deg", a->step_deg, "Turn of the table between images, degrees")
+      ->check(CLI::Range(0.5, 120.0))
+      ->capture_default_str();
+  scans
+      .add_option("--known-poses", a->known_object,
+                  "Take the poses of this object (obj_id) from scene_gt.json instead: any views, "
+                  "no turntable")
+      ->check(CLI::PositiveNumber)
+      ->type_name("OBJ_ID");
+  scans
+      .add_option("--number", a->number,
+                  "Number of the model (obj_id); the next free one if not given")
+      ->check(CLI::PositiveNumber);
+  scans.add_option("--spacing", a->options.spacing_m, "Distance of surface points, metres")
+      ->check(CLI::PositiveNumber);
 
   add(model, "info", "What a model is", a, action, [](ModelArguments m) { return info(m); })
       .add_option("name", a->name, "Name of the model")

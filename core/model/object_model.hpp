@@ -71,6 +71,12 @@ Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::
 Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std::string& name,
                                              int number, const ModelOptions& options = {});
 
+/// The largest distance of two of the points, metres.
+double largest_distance(const std::vector<Eigen::Vector3f>& points);
+
+/// Fails with invalid_argument, with a hint about units, for a diameter under 5 mm or over 3 m.
+Status check_size(const std::string& name, double diameter);
+
 /// The normal variances that follow from the surface alone: a sensor averages normals over its
 /// window, so that they vary as those of the surface within it do.
 std::vector<float> geometric_normal_variance(const PointCloud& surface, int num_threads);

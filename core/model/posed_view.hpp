@@ -49,4 +49,13 @@ SurfaceObservations observe_surface(const PointCloud& surface, const std::vector
 /// warns when part of it was never measured.
 void learn_noise(ModelSource& source, const std::vector<PosedView>& views, int num_threads);
 
+/// A model of what the views show: traced, thresholded and thinned (occupancy_grid.hpp), in the
+/// frame of their poses. Fails with invalid_argument when less than 100 surface points come out, or
+/// when the size cannot be right.
+Result<ModelSource> model_source_from_views(std::vector<PosedView> views, const std::string& name,
+                                            int number, const ModelOptions& options = {});
+
+/// Moves the origin of the object's frame to the middle of the box about what the views measured.
+void center_object(std::vector<PosedView>& views);
+
 }  // namespace bpa

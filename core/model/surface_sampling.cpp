@@ -69,37 +69,6 @@ double surface_area(const TriangleMesh& mesh) {
   return area;
 }
 
-// The largest distance of two points; exact over the extreme points of 200 directions.
-double largest_distance(const std::vector<Eigen::Vector3f>& points) {
-  std::vector<Eigen::Vector3f> extremes;
-  const double golden_angle = M_PI * (3 - std::sqrt(5.0));
-  for (int i = 0; i < 200; ++i) {
-    const double z = 1 - (2 * i + 1.0) / 200;
-    const double r = std::sqrt(1 - z * z);
-    const Eigen::Vector3f direction(static_cast<float>(r * std::cos(golden_angle * i)),
-                                    static_cast<float>(r * std::sin(golden_angle * i)),
-                                    static_cast<float>(z));
-    extremes.push_back(*std::max_element(points.begin(), points.end(), [&](auto& a, auto& b) {
-      return a.dot(direction) < b.dot(direction);
-    }));
-  }
-  double best = 0;
-  for (const auto& a : extremes) {
-    for (const auto& b : extremes) best = std::max(best, static_cast<double>((a - b).norm()));
-  }
-  return best;
-}
-
-Status check_size(const std::string& name, double diameter) {
-  if (diameter >= kMinDiameter && diameter <= kMaxDiameter) return {};
-  std::ostringstream text;
-  text << "model " << name << " has a diameter of " << diameter
-       << " m; it must be between 0.005 and 3 m";
-  if (diameter > kMaxDiameter) text << " (a mesh in millimetres? try --scale 0.001)";
-  if (diameter < kMinDiameter && diameter > 0) text << " (try --scale 1000)";
-  return invalid_argument(text.str());
-}
-
 // What a camera outside can see of the samples, each side of a sheet for itself; how many normals
 // were turned, and how many samples lie inside.
 struct VisibleSurface {
@@ -199,6 +168,37 @@ ModelSource make_source(PointCloud surface, const std::string& name, int number,
 }
 
 }  // namespace
+
+// Exact over the extreme points of 200 directions.
+double largest_distance(const std::vector<Eigen::Vector3f>& points) {
+  std::vector<Eigen::Vector3f> extremes;
+  const double golden_angle = M_PI * (3 - std::sqrt(5.0));
+  for (int i = 0; i < 200; ++i) {
+    const double z = 1 - (2 * i + 1.0) / 200;
+    const double r = std::sqrt(1 - z * z);
+    const Eigen::Vector3f direction(static_cast<float>(r * std::cos(golden_angle * i)),
+                                    static_cast<float>(r * std::sin(golden_angle * i)),
+                                    static_cast<float>(z));
+    extremes.push_back(*std::max_element(points.begin(), points.end(), [&](auto& a, auto& b) {
+      return a.dot(direction) < b.dot(direction);
+    }));
+  }
+  double best = 0;
+  for (const auto& a : extremes) {
+    for (const auto& b : extremes) best = std::max(best, static_cast<double>((a - b).norm()));
+  }
+  return best;
+}
+
+Status check_size(const std::string& name, double diameter) {
+  if (diameter >= kMinDiameter && diameter <= kMaxDiameter) return {};
+  std::ostringstream text;
+  text << "model " << name << " has a diameter of " << diameter
+       << " m; it must be between 0.005 and 3 m";
+  if (diameter > kMaxDiameter) text << " (a mesh in millimetres? try --scale 0.001)";
+  if (diameter < kMinDiameter && diameter > 0) text << " (try --scale 1000)";
+  return invalid_argument(text.str());
+}
 
 Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::string& name,
                                            int number, const ModelOptions& options) {

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include <bpa/core/model/occupancy_grid.hpp>
+#include <bpa/core/model/posed_view.hpp>
+#include <bpa/core/model/view_sphere.hpp>
+
+namespace bpa {
+namespace {
+
+// The share of the object's outline, over all view angles, where one looks at the back of the
+// surface: through a part that was never seen. `direction` is where most of it is.
+struct Unseen {
+  double share = 0;
+  Eigen::Vector3f direction = Eigen::Vector3f::UnitZ();
+};
+
+Unseen unseen_part(const PointCloud& surface, int num_threads) {
+  PointCloud turned = surface;
+  for (Eigen::Vector3f& n : turned.normals) n = -n;
+  // Both sides compete for being seen.
+  PointCloud both = surface;
+  both.points.insert(both.points.end(), turned.points.begin(), turned.points.end());
+  both.normals.insert(both.normals.end(), turned.normals.begin(), turned.normals.end());
+  both.colors.clear();
+  const auto views = render_views(both, 0.004f, num_threads);
+  Unseen out;
+  double front = 0, back = 0, worst = 0;
+  for (const ModelView& view : views) {
+    double own_front = 0, own_back = 0;
+    for (const std::uint32_t i : view.visible) {
+      const double area = static_cast<double>(both.normals[i].dot(view.direction));
+      if (area < 0.3) continue;  // backs of thin walls show at the rim
+      (i < surface.size() ? own_front : own_back) += area;
+    }
+    front += own_front;
+    back += own_back;
+    const double share = own_back / std::max(1e-9, own_front + own_back);
+    if (share <= worst) continue;
+    worst = share;
+    out.direction = view.direction;
+  }
+  out.share = back / std::max(1e-9, front + back);
+  return out;
+}
+
+std::string name_of(const Eigen::Vector3f& d) {
+  Eigen::Index axis = 0;
+  d.cwiseAbs().maxCoeff(&axis);
+  static constexpr const char* kNames[3][2] = {{"-x", "+x"}, {"-y", "+y"}, {"-z", "+z"}};
+  return kNames[axis][d[axis] > 0 ? 1 : 0];
+}
+
+}  // namespace
+
+Result<ModelSource> model_source_from_views(std::vector<PosedView> views, const std::string& name,
+                                            int number, const ModelOptions& options) {
+  if (Status status = validate(options); !status.ok()) return status;
+  const auto spacing = static_cast<float>(options.spacing_m);
+  const OccupancyGrid grid = trace_occupancy(views, spacing, options.num_threads);
+  GridSurface fused = surface_of(grid, spacing, options.num_threads);
+  if (fused.points.size() < 100) {
+    return invalid_argument("model " + name + " has " + std::to_string(fused.points.size()) +
+                            " surface points in " + std::to_string(views.size()) +
+                            " views; it must have at least 100");
+  }
+  ModelSource source;
+  source.name = name;
+  source.number = number;
+  source.surface = std::move(fused.points);
+  source.diameter = largest_distance(source.surface.points);
+  if (Status s = check_size(name, source.diameter); !s.ok()) return s;
+  learn_noise(source, views, options.num_threads);
+  if (const Unseen unseen = unseen_part(source.surface, options.num_threads); unseen.share > 0.04) {
+    source.warnings.push_back("about " + std::to_string(std::lround(100 * unseen.share)) +
+                              " % of the object was never seen, most of it from " +
+                              name_of(unseen.direction) + ": scan it in one more resting position");
+  }
+  return source;
+}
+
+void center_object(std::vector<PosedView>& views) {
+  Eigen::AlignedBox3d box;
+  for (const PosedView& view : views) {
+    const Pose object_from_camera = view.camera_from_object.inverse();
+    for (std::size_t i = 0; i < view.map.size(); i += 3) {
+      if (!view.object[i] || !(view.map.depth[i] > 0)) continue;
+      box.extend(object_from_camera * view.map.points[i].cast<double>());
+    }
+  }
+  if (box.isEmpty()) return;
+  const Pose old_from_new{Eigen::Quaterniond::Identity(), box.center()};
+  for (PosedView& view : views) view.camera_from_object = view.camera_from_object * old_from_new;
+}
+
+}  // namespace bpa

@@ -1,0 +1,306 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// The centre of rotation. Turned back about the right place, all scans of a resting position fall
+// onto each other: the cost of a place is the mean squared distance of each scan's points to every
+// other scan (paper section III). It is tried all over the table, then refined by Gauss-Newton with
+// distances to tangent planes; then also the step of the table (within a few per cent) and the tilt
+// of its axis (within a fraction of a degree) follow from the scans.
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <bpa/core/base/parallel.hpp>
+#include <bpa/core/cloud/neighbor_grid.hpp>
+#include <bpa/core/model/turntable.hpp>
+
+namespace bpa {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+
+// The object's points of one view, on the table: z is the height.
+struct Scan {
+  int step = 0;
+  std::size_t view = 0;
+  std::vector<Eigen::Vector3f> points, normals;
+};
+
+// Where the axis is and how far the table turns with each step.
+struct Turn {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  double step = 0;    // radians, signed
+  double tilt_x = 0;  // of the axis, radians
+  double tilt_y = 0;
+
+  Eigen::Vector3d axis() const { return Eigen::Vector3d(tilt_x, tilt_y, 1).normalized(); }
+  // Turns a view's points back to where they were in the first view.
+  Pose first_from_view(int k) const {
+    const Eigen::Quaterniond back(Eigen::AngleAxisd(-step * k, axis()));
+    const Eigen::Vector3d c(centre.x(), centre.y(), 0);
+    return {back, c - back * c};
+  }
+};
+
+using Parameters = Eigen::Matrix<double, 5, 1>;  // centre, log of the step's size, tilt
+
+Turn moved(const Turn& turn, const Parameters& p) {
+  Turn out = turn;
+  out.centre += p.head<2>();
+  out.step *= std::exp(p[2]);
+  out.tilt_x += p[3];
+  out.tilt_y += p[4];
+  return out;
+}
+
+Pose camera_from_table(const Plane& plane) {
+  const Eigen::Vector3d z = plane.normal.cast<double>().normalized();
+  Eigen::Matrix3d axes;
+  axes.col(0) = z.unitOrthogonal();
+  axes.col(1) = z.cross(axes.col(0));
+  axes.col(2) = z;
+  return Pose::from_matrix(axes, static_cast<double>(plane.offset) * z);
+}
+
+// At most `count` points of each scan, evenly taken.
+std::vector<Scan> thinned(const std::vector<Scan>& scans, std::size_t count, std::size_t stride) {
+  std::vector<Scan> out;
+  for (std::size_t s = 0; s < scans.size(); s += stride) {
+    Scan scan{scans[s].step, scans[s].view, {}, {}};
+    const std::size_t n = scans[s].points.size();
+    const std::size_t kept = std::min(count, n);
+    for (std::size_t i = 0; i < kept; ++i) {
+      scan.points.push_back(scans[s].points[i * n / kept]);
+      scan.normals.push_back(scans[s].normals[i * n / kept]);
+    }
+    out.push_back(std::move(scan));
+  }
+  return out;
+}
+
+// All scans turned back, in one list.
+struct Merged {
+  std::vector<Eigen::Vector3f> points, normals;
+  std::vector<std::uint16_t> scan;
+
+  Merged(const std::vector<Scan>& scans, const Turn& turn) {
+    for (std::size_t s = 0; s < scans.size(); ++s) {
+      const Pose pose = turn.first_from_view(scans[s].step);
+      const Eigen::Matrix3f r = pose.matrix().cast<float>();
+      const Eigen::Vector3f t = pose.translation.cast<float>();
+      for (std::size_t i = 0; i < scans[s].points.size(); ++i) {
+        points.emplace_back(r * scans[s].points[i] + t);
+        normals.emplace_back(r * scans[s].normals[i]);
+        scan.push_back(static_cast<std::uint16_t>(s));
+      }
+    }
+  }
+};
+
+// For one point, the nearest point of every other scan within the grid's radius.
+struct Nearest {
+  std::vector<float> squared;
+  std::vector<int> index;
+
+  explicit Nearest(std::size_t scans) : squared(scans), index(scans) {}
+
+  void search(const Merged& all, const NeighborGrid& grid, std::size_t i, float radius) {
+    std::fill(squared.begin(), squared.end(), radius * radius);
+    std::fill(index.begin(), index.end(), -1);
+    grid.for_each_neighbor(all.points[i], [&](int j, float d) {
+      const auto k = static_cast<std::size_t>(j);
+      const std::uint16_t s = all.scan[k];
+      if (s == all.scan[i] || d >= squared[s] || all.normals[i].dot(all.normals[k]) < 0.5f) return;
+      squared[s] = d;
+      index[s] = j;
+    });
+  }
+};
+
+double cost_of(const std::vector<Scan>& scans, const Turn& turn, float radius) {
+  const Merged all(scans, turn);
+  const NeighborGrid grid(all.points, radius);
+  Nearest nearest(scans.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    nearest.search(all, grid, i, radius);
+    for (const float d : nearest.squared) sum += static_cast<double>(d);
+  }
+  return sum / (static_cast<double>(all.points.size()) * static_cast<double>(scans.size()));
+}
+
+// The best of a lattice of centres, for either sense of rotation.
+Turn search(const std::vector<Scan>& scans, double step, const Eigen::Vector2d& middle,
+            double reach, double spacing, float radius, bool both_senses, int num_threads) {
+  std::vector<Turn> candidates;
+  const int n = static_cast<int>(std::ceil(reach / spacing));
+  for (const double sense : {1.0, -1.0}) {
+    if (sense < 0 && !both_senses) continue;
+    for (int y = -n; y <= n; ++y) {
+      for (int x = -n; x <= n; ++x) {
+        Turn turn;
+        turn.centre = middle + spacing * Eigen::Vector2d(x, y);
+        turn.step = sense * step;
+        candidates.push_back(turn);
+      }
+    }
+  }
+  std::vector<double> cost(candidates.size());
+  parallel_for(static_cast<int>(candidates.size()), num_threads, [&](int k) {
+    const auto i = static_cast<std::size_t>(k);
+    cost[i] = cost_of(scans, candidates[i], radius);
+  });
+  return candidates[static_cast<std::size_t>(std::min_element(cost.begin(), cost.end()) -
+                                             cost.begin())];
+}
+
+// How the pose of each view changes with each parameter: p -> rotation * p + translation.
+struct Slope {
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d translation;
+};
+
+std::vector<std::array<Slope, 5>> slopes_of(const std::vector<Scan>& scans, const Turn& turn) {
+  constexpr double kStep = 1e-6;
+  std::vector<std::array<Slope, 5>> slopes(scans.size());
+  for (std::size_t s = 0; s < scans.size(); ++s) {
+    for (int k = 0; k < 5; ++k) {
+      const Pose a = moved(turn, kStep * Parameters::Unit(k)).first_from_view(scans[s].step);
+      const Pose b = moved(turn, -kStep * Parameters::Unit(k)).first_from_view(scans[s].step);
+      slopes[s][static_cast<std::size_t>(k)] = {(a.matrix() - b.matrix()) / (2 * kStep),
+                                                (a.translation - b.translation) / (2 * kStep)};
+    }
+  }
+  return slopes;
+}
+
+// One Gauss-Newton step of all parameters; returns its length in metres of centre.
+double refine(const std::vector<Scan>& scans, float radius, const Turn& start, Turn& turn) {
+  constexpr double kHuber = 0.002, kSigma = 0.002;  // metres
+  const Merged all(scans, turn);
+  const NeighborGrid grid(all.points, radius);
+  const auto slopes = slopes_of(scans, turn);
+  std::vector<Eigen::Vector3f> measured;  // as all.points, before turning
+  for (const Scan& scan : scans) {
+    measured.insert(measured.end(), scan.points.begin(), scan.points.end());
+  }
+  Eigen::Matrix<double, 5, 5> hessian = Eigen::Matrix<double, 5, 5>::Zero();
+  Parameters gradient = Parameters::Zero();
+  Nearest nearest(scans.size());
+  const auto slope_at = [&](std::size_t i, int k) -> Eigen::Vector3d {
+    const Slope& s = slopes[all.scan[i]][static_cast<std::size_t>(k)];
+    return s.rotation * measured[i].cast<double>() + s.translation;
+  };
+  double pairs = 0;
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    nearest.search(all, grid, i, radius);
+    for (const int found : nearest.index) {
+      if (found < 0) continue;
+      const auto j = static_cast<std::size_t>(found);
+      const Eigen::Vector3d n = all.normals[j].cast<double>();
+      const double r = n.dot((all.points[i] - all.points[j]).cast<double>());
+      const double weight = std::abs(r) < kHuber ? 1 : kHuber / std::abs(r);
+      Parameters slope;
+      for (int k = 0; k < 5; ++k) slope[k] = n.dot(slope_at(i, k) - slope_at(j, k));
+      hessian += weight * slope * slope.transpose();
+      gradient += weight * r * slope;
+      ++pairs;
+    }
+  }
+  if (pairs < 50) return 0;
+  // Neighbouring pixels share their errors: a scan is worth some 30 independent pairs with each
+  // other one, not thousands. What is known beforehand: the step within 3 %, the axis within 0.15
+  // degrees of the plane's normal.
+  const double worth =
+      30 * static_cast<double>(scans.size() * scans.size()) / pairs / (kSigma * kSigma);
+  hessian *= worth;
+  gradient *= worth;
+  const double step_prior = 1 / (0.03 * 0.03), tilt_prior = 1 / std::pow(0.15 * kDegree, 2);
+  hessian(2, 2) += step_prior;
+  gradient[2] += step_prior * std::log(turn.step / start.step);
+  hessian(3, 3) += tilt_prior, hessian(4, 4) += tilt_prior;
+  gradient[3] += tilt_prior * turn.tilt_x, gradient[4] += tilt_prior * turn.tilt_y;
+  hessian.diagonal().head<2>().array() += 1;  // an object right on its axis says nothing
+  const Parameters step = -hessian.ldlt().solve(gradient);
+  turn = moved(turn, step);
+  return step.head<2>().norm();
+}
+
+Turn find_turn(const std::vector<Scan>& scans, const TurntableOptions& options) {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  float reach = 0;
+  for (const Scan& scan : scans) {
+    Eigen::Vector2f mean = Eigen::Vector2f::Zero();
+    for (const Eigen::Vector3f& p : scan.points) mean += p.head<2>();
+    mean /= static_cast<float>(scan.points.size());
+    for (const Eigen::Vector3f& p : scan.points)
+      reach = std::max(reach, (p.head<2>() - mean).norm());
+    middle += mean.cast<double>() / static_cast<double>(scans.size());
+  }
+  // The side that is seen is nearer to the camera than the middle; the object is off the centre.
+  const double window = 0.06 + 0.5 * static_cast<double>(reach);
+  const std::size_t stride = std::max<std::size_t>(1, scans.size() / 12);
+  const std::vector<Scan> few = thinned(scans, 70, stride), more = thinned(scans, 150, stride);
+  const double step = options.step_deg * kDegree;
+  Turn turn = search(few, step, middle, window, 0.012, 0.03f, true, options.num_threads);
+  const double sense = turn.step > 0 ? 1 : -1;
+  turn = search(more, sense * step, turn.centre, 0.010, 0.004, 0.015f, false, options.num_threads);
+  const Turn start = turn;
+  const std::vector<Scan> many = thinned(scans, 250, 1);
+  for (const float radius : {0.015f, 0.010f, 0.007f, 0.006f}) {
+    for (int round = 0; round < 6; ++round) {
+      if (refine(many, radius, start, turn) < 1e-5) break;
+    }
+  }
+  return turn;
+}
+
+}  // namespace
+
+Result<RestingPosition> align_resting_position(std::vector<ScanView> views,
+                                               const TurntableOptions& options) {
+  constexpr std::size_t kLeastPixels = 60, kLeastViews = 3;
+  if (views.empty()) return Status(StatusCode::not_found, "there are no views");
+  RestingPosition out;
+  const Result<Plane> plane = segment_object(views, options);
+  if (!plane.ok()) return plane.status();
+  out.plane = *plane;
+  const Pose camera_from = camera_from_table(*plane);
+  const Pose table_from_camera = camera_from.inverse();
+  const Eigen::Matrix3f r = table_from_camera.matrix().cast<float>();
+  const Eigen::Vector3f t = table_from_camera.translation.cast<float>();
+  std::vector<Scan> scans;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const PosedView& view = views[v].view;
+    Scan scan{views[v].step, v, {}, {}};
+    for (std::size_t i = 0; i < view.map.size(); ++i) {
+      if (!view.object[i] || view.map.normals[i].squaredNorm() < 0.5f) continue;
+      if (view.map.normals[i].dot(view.map.points[i].normalized()) > -0.25f) continue;
+      scan.points.emplace_back(r * view.map.points[i] + t);
+      scan.normals.emplace_back(r * view.map.normals[i]);
+    }
+    if (scan.points.size() >= kLeastPixels) scans.push_back(std::move(scan));
+  }
+  out.missed = static_cast<int>(views.size() - scans.size());
+  if (scans.size() < kLeastViews) {
+    return Status(StatusCode::not_found, "the object is seen in " + std::to_string(scans.size()) +
+                                             " of " + std::to_string(views.size()) +
+                                             " views; it must be seen in at least 3");
+  }
+  const Turn turn = find_turn(scans, options);
+  out.centre = camera_from * Eigen::Vector3d(turn.centre.x(), turn.centre.y(), 0);
+  out.axis = camera_from.rotation * turn.axis();
+  out.step_deg = turn.step / kDegree;
+  const Pose first_from_object{Eigen::Quaterniond::Identity(),
+                               {turn.centre.x(), turn.centre.y(), 0}};
+  for (const Scan& scan : scans) {
+    PosedView& view = views[scan.view].view;
+    const Pose view_from_first = turn.first_from_view(scan.step).inverse();
+    view.camera_from_object = camera_from * view_from_first * first_from_object;
+    out.views.push_back(std::move(view));
+  }
+  return out;
+}
+
+}  // namespace bpa
