@@ -13,5 +13,7 @@ void add_bench_sensor(CLI::App& bench, Action& action);
 
 /// `bpa bench accuracy`: where on its way through the detector an object is lost.
 void add_bench_accuracy(CLI::App& bench, Action& action);
+/// `bpa bench models`: models from simulated scans against the true meshes.
+void add_bench_models(CLI::App& bench, Action& action);
 
 }  // namespace bpa::cli

@@ -13,6 +13,7 @@ void add_bench_command(CLI::App& program, Action& action) {
   command.require_subcommand(1);
   add_bench_alignment(command, action);
   add_bench_accuracy(command, action);
+  add_bench_models(command, action);
   add_bench_sensor(command, action);
 }
 

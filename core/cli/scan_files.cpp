@@ -54,6 +54,7 @@ Result<std::vector<std::vector<ScanView>>> read_scan(const std::string& dataset,
         if (!frame.ok()) return frame.status();
         views[i].view = make_posed_view(*frame, {}, Pose{});
         views[i].step = (*frames)[i].im_id;
+        views[i].view.id = static_cast<int>(i);
         return {};
       });
   if (!status.ok()) return status;
@@ -101,6 +102,7 @@ Result<std::vector<PosedView>> read_posed_views(const std::string& dataset,
           for (const auto value : image->pixels) mask.push_back(value != 0);
         }
         views[i] = make_posed_view(*frame, mask, w.frame->truth[w.instance].camera_from_object);
+        views[i].id = static_cast<int>(i);
         return {};
       });
   if (!status.ok()) return status;

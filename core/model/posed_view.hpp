@@ -20,6 +20,7 @@ struct PosedView {
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< For each pixel of the map; may be empty.
   std::vector<std::uint8_t> object;                 ///< 1 where the pixel may belong to the object.
   Pose camera_from_object;
+  int id = 0;  ///< Whatever its owner tells it by.
 };
 
 /// Halves the frame as the detector does and takes its normals. `object` is a mask over the frame's

@@ -181,7 +181,7 @@ std::vector<Registration> register_surfaces(const PointCloud& source, const Poin
   // The best of each kind.
   std::vector<Candidate> kept;
   for (const Candidate& c : candidates) {
-    if (static_cast<int>(kept.size()) >= 3 * options.kept) break;
+    if (static_cast<int>(kept.size()) >= 4 * options.kept) break;
     const bool known = std::any_of(kept.begin(), kept.end(), [&](const Candidate& k) {
       return alike(to_pose(k.motion), to_pose(c.motion), size);
     });
@@ -195,9 +195,16 @@ std::vector<Registration> register_surfaces(const PointCloud& source, const Poin
   std::stable_sort(
       refined.begin(), refined.end(),
       [](const Registration& a, const Registration& b) { return a.overlap > b.overlap; });
-  if (static_cast<int>(refined.size()) > options.kept) {
-    refined.resize(static_cast<std::size_t>(options.kept));
+  // Many came to the same end.
+  std::vector<Registration> ends;
+  for (const Registration& r : refined) {
+    if (static_cast<int>(ends.size()) >= options.kept) break;
+    const bool known = std::any_of(ends.begin(), ends.end(), [&](const Registration& e) {
+      return alike(e.target_from_source, r.target_from_source, 0.5 * size);
+    });
+    if (!known) ends.push_back(r);
   }
+  refined = std::move(ends);
   parallel_for(static_cast<int>(refined.size()), options.num_threads, [&](int k) {
     Registration& r = refined[static_cast<std::size_t>(k)];
     r = refine(source, surface, to_motion(r.target_from_source),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <bpa/core/cloud/neighbor_grid.hpp>
 #include <bpa/core/model/occupancy_grid.hpp>
 #include <bpa/core/model/posed_view.hpp>
 #include <bpa/core/model/view_sphere.hpp>
@@ -26,6 +27,15 @@ Unseen unseen_part(const PointCloud& surface, int num_threads) {
   both.points.insert(both.points.end(), turned.points.begin(), turned.points.end());
   both.normals.insert(both.normals.end(), turned.normals.begin(), turned.normals.end());
   both.colors.clear();
+  // The back of a wall is not to be seen where its other side is there too.
+  constexpr float kThickest = 0.010f;  // metres
+  const NeighborGrid grid(surface.points, kThickest);
+  std::vector<std::uint8_t> backed(surface.size(), 0);
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    grid.for_each_neighbor(surface.points[i], [&](int j, float) {
+      backed[i] |= surface.normals[static_cast<std::size_t>(j)].dot(surface.normals[i]) < -0.3f;
+    });
+  }
   const auto views = render_views(both, 0.004f, num_threads);
   Unseen out;
   double front = 0, back = 0, worst = 0;
@@ -33,7 +43,8 @@ Unseen unseen_part(const PointCloud& surface, int num_threads) {
     double own_front = 0, own_back = 0;
     for (const std::uint32_t i : view.visible) {
       const double area = static_cast<double>(both.normals[i].dot(view.direction));
-      if (area < 0.3) continue;  // backs of thin walls show at the rim
+      if (area < 0.3) continue;
+      if (i >= surface.size() && backed[i - surface.size()]) continue;
       (i < surface.size() ? own_front : own_back) += area;
     }
     front += own_front;

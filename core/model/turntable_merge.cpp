@@ -6,7 +6,7 @@
 // colours agree.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 #include <bpa/core/base/parallel.hpp>
 #include <bpa/core/cloud/neighbor_grid.hpp>
@@ -25,6 +25,18 @@ PointCloud surface_of_position(const RestingPosition& position, int num_threads)
   PointCloud surface = surface_of(grid, 0.004f, num_threads).points;
   surface.colors = observe_surface(surface, position.views, num_threads).colors;
   return surface;
+}
+
+// The least depth at a pixel and its neighbours: edges are ragged by a pixel.
+float nearest_about(const SurfaceMap& map, int x, int y) {
+  float nearest = std::numeric_limits<float>::infinity();
+  for (int v = std::max(0, y - 1); v <= std::min(map.height() - 1, y + 1); ++v) {
+    for (int u = std::max(0, x - 1); u <= std::min(map.width() - 1, x + 1); ++u) {
+      const float depth = map.depth[static_cast<std::size_t>(v * map.width() + u)];
+      if (depth > 0) nearest = std::min(nearest, depth);
+    }
+  }
+  return nearest;
 }
 
 // How much a set of views has against points that are said to be on the object's surface, in
@@ -61,7 +73,8 @@ Objection objection(const PointCloud& points, const Pose& object_from_points,
       if (!(depth > 0)) continue;
       ++compared;
       const float gap = depth - static_cast<float>(q.z());
-      free += gap > std::max(kFree, 5 * depth_noise(depth));
+      free += nearest_about(view.map, x, y) - static_cast<float>(q.z()) >
+              std::max(kFree, 5 * depth_noise(depth));
       const bool faces = (view.camera_from_object.rotation * n).dot(q) < -0.5 * q.norm();
       if (!faces || std::abs(gap) > kFree || points.colors.empty() || view.colors.empty()) continue;
       for (std::size_t c = 0; c < 3; ++c) {
