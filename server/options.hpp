@@ -38,6 +38,7 @@ struct NetworkOptions {
   std::vector<std::string> peers;
   int shared_frame_mb = 24;
   std::string graph_layout = "automatic";
+  std::string profiles;
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
@@ -56,6 +57,10 @@ struct NetworkOptions {
           FieldRule{0, 0,
                     "Size of ids in the ROS 2 graph: humble (24 bytes), iron (16: Iron and later), "
                     "automatic (iron unless all ROS 2 peers in sight are Humble's)."});
+    visit("profiles", profiles,
+          FieldRule{0, 0,
+                    "File of Fast DDS XML profiles that override transports and timing, such as "
+                    "dds_profiles.xml; empty: none."});
   }
 };
 

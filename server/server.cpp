@@ -96,6 +96,7 @@ Status Server::join() {
   seat.node.name = options.node.name;
   seat.discovery = *discovery;
   seat.graph_layout = graph_layout_of(options.network.graph_layout);
+  seat.profiles = options.network.profiles;
   seat.log = log_;
   for (const std::string& text : options.node.remaps) {
     auto remap = wire::parse_remap(text);

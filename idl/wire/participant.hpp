@@ -32,6 +32,10 @@ struct ParticipantOptions {
   std::vector<Remap> remaps;           ///< Applied to every topic and service name.
   std::optional<Discovery> discovery;  ///< None: from the environment.
   GraphLayout graph_layout = GraphLayout::automatic;
+  /// A file of Fast DDS XML profiles; empty: none but those that Fast DDS loads by itself. The
+  /// participant profile "bpa" replaces our transports and time-outs, the profiles "bpa_writer" and
+  /// "bpa_reader", or those named like a DDS topic, what is not said by Qos.
+  std::string profiles;
   int socket_buffer_bytes = 8'388'608;  ///< Asked of the kernel, which may give less (rmem_max).
   LogHook log;                          ///< Called from DDS threads.
 };

@@ -64,24 +64,32 @@ void set_common(const EndpointSpec& spec, EndpointQos& qos) {
 
 }  // namespace
 
-dds::DataWriterQos writer_qos(const EndpointSpec& spec) {
+dds::DataWriterQos writer_qos(const EndpointSpec& spec, const dds::Publisher& publisher) {
   dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
+  const bool has_profile =
+      succeeded(publisher.get_datawriter_qos_from_profile(spec.dds_topic, qos)) ||
+      succeeded(publisher.get_datawriter_qos_from_profile("bpa_writer", qos));
   set_common(spec, qos);
-  qos.reliability().max_blocking_time = milliseconds(100);
-  qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
-  // With the default of 3 s, what is written while a peer is being matched comes seconds late.
-  heartbeat_period(qos) = milliseconds(100);
-  nack_response_delay(qos) = milliseconds(1);
+  if (!has_profile) {
+    qos.reliability().max_blocking_time = milliseconds(100);
+    qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
+    // With the default of 3 s, what is written while a peer is being matched comes seconds late.
+    heartbeat_period(qos) = milliseconds(100);
+    nack_response_delay(qos) = milliseconds(1);
+  }
 #if BPA_FASTDDS_MAJOR >= 3
   qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION};
 #endif
   return qos;
 }
 
-dds::DataReaderQos reader_qos(const EndpointSpec& spec) {
+dds::DataReaderQos reader_qos(const EndpointSpec& spec, const dds::Subscriber& subscriber) {
   dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
+  const bool has_profile =
+      succeeded(subscriber.get_datareader_qos_from_profile(spec.dds_topic, qos)) ||
+      succeeded(subscriber.get_datareader_qos_from_profile("bpa_reader", qos));
   set_common(spec, qos);
-  heartbeat_response_delay(qos) = milliseconds(1);
+  if (!has_profile) heartbeat_response_delay(qos) = milliseconds(1);
 #if BPA_FASTDDS_MAJOR >= 3
   qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION};
 #endif

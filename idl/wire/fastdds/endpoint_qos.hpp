@@ -5,6 +5,8 @@
 #include <string>
 
 #include <fastdds/dds/core/policy/QosPolicies.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
 
 #include <bpa/wire/endpoint.hpp>
 #include <bpa/wire/fastdds/version.hpp>
@@ -13,8 +15,10 @@
 
 namespace bpa::wire::detail {
 
-dds::DataWriterQos writer_qos(const EndpointSpec& spec);
-dds::DataReaderQos reader_qos(const EndpointSpec& spec);
+/// The QoS of an endpoint; what spec.qos does not say may come from the user's XML profiles, those
+/// of the topic's DDS name or "bpa_writer" and "bpa_reader".
+dds::DataWriterQos writer_qos(const EndpointSpec& spec, const dds::Publisher& publisher);
+dds::DataReaderQos reader_qos(const EndpointSpec& spec, const dds::Subscriber& subscriber);
 
 /// What to tell the user about a peer that asks for more than is offered.
 std::string incompatible_qos_text(const std::string& dds_topic, bool we_write,

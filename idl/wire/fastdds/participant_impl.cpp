@@ -20,6 +20,7 @@ namespace {
 
 /// So many endpoints of peers are remembered, for topics that we open later.
 constexpr std::size_t kMaxPeers = 4096;
+constexpr const char* kParticipantProfile = "bpa";
 
 }  // namespace
 
@@ -45,8 +46,22 @@ ParticipantImpl::ParticipantImpl(ParticipantOptions options, Discovery discovery
 Status ParticipantImpl::start() {
   bridge_log(options_.log);
   auto* factory = dds::DomainParticipantFactory::get_instance();
-  Result<dds::DomainParticipantQos> qos = participant_qos(discovery_, options_.socket_buffer_bytes);
+  if (!options_.profiles.empty() &&
+      !succeeded(factory->load_XML_profiles_file(options_.profiles))) {
+    return invalid_argument(options_.profiles + ": not a file of Fast DDS XML profiles");
+  }
+  dds::DomainParticipantQos profile;
+  const bool has_profile =
+      succeeded(factory->get_participant_qos_from_profile(kParticipantProfile, profile));
+  Result<dds::DomainParticipantQos> qos =
+      participant_qos(discovery_, options_.socket_buffer_bytes, has_profile ? &profile : nullptr);
   if (!qos.ok()) return qos.status();
+  if (has_profile && qos->transport().use_builtin_transports) {
+    log(LogLevel::warning,
+        "the XML profile \"bpa\" uses Fast DDS's built-in transports: the shared memory of Fast "
+        "DDS "
+        "2.9.1 (Debian 12) fits no other release, and makes ROS 2 nodes on this machine abort");
+  }
   participant_ = factory->create_participant(static_cast<dds::DomainId_t>(discovery_.domain_id),
                                              *qos, this, dds::StatusMask::none());
   if (participant_ == nullptr) {

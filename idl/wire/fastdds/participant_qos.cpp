@@ -58,20 +58,9 @@ Status set_peers(const Discovery& discovery, dds::DomainParticipantQos& qos) {
   return status;
 }
 
-}  // namespace
-
-Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
-                                                  int socket_buffer_bytes) {
-  dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
-  qos.name(kRosParticipantName);
-  qos.user_data().data_vec(
-      std::vector<rtps::octet>(kRosUserData, kRosUserData + std::strlen(kRosUserData)));
-
-#if BPA_FASTDDS_MAJOR >= 3
-  // Announcing nothing of a type never refuses a peer; 2.x is told so by the type itself.
-  qos.properties().properties().emplace_back("fastdds.type_propagation", "disabled");
-#endif
-
+/// UDP, and a short lease.
+void use_our_transport(const Discovery& discovery, int socket_buffer_bytes,
+                       dds::DomainParticipantQos& qos) {
   // Not the built-in ones: the shared-memory transport of Fast DDS 2.9.1 does not agree with that
   // of any other release, and the process that comes second aborts.
   auto udp = std::make_shared<UDPv4TransportDescriptor>();
@@ -88,7 +77,24 @@ Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
   auto& config = qos.wire_protocol().builtin.discovery_config;
   config.leaseDuration = Duration(5, 0);
   config.leaseDuration_announcementperiod = Duration(1, 500'000'000);
+}
 
+}  // namespace
+
+Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
+                                                  int socket_buffer_bytes,
+                                                  const dds::DomainParticipantQos* base) {
+  dds::DomainParticipantQos qos = base != nullptr ? *base : dds::PARTICIPANT_QOS_DEFAULT;
+  qos.name(kRosParticipantName);
+  qos.user_data().data_vec(
+      std::vector<rtps::octet>(kRosUserData, kRosUserData + std::strlen(kRosUserData)));
+
+#if BPA_FASTDDS_MAJOR >= 3
+  // Announcing nothing of a type never refuses a peer; 2.x is told so by the type itself.
+  qos.properties().properties().emplace_back("fastdds.type_propagation", "disabled");
+#endif
+
+  if (base == nullptr) use_our_transport(discovery, socket_buffer_bytes, qos);
   if (discovery.range == DiscoveryRange::localhost || discovery.range == DiscoveryRange::off) {
     leave_multicast(qos);
   }

@@ -43,7 +43,8 @@ class Reader : public RawReader, private dds::DataReaderListener {
     std::string error = "Fast DDS refused the reader";
     dds::Topic* topic = participant_->acquire_topic(spec_, &error);
     if (topic == nullptr) return fail(error);
-    reader_ = participant_->subscriber()->create_datareader(topic, reader_qos(spec_), this);
+    reader_ = participant_->subscriber()->create_datareader(
+        topic, reader_qos(spec_, *participant_->subscriber()), this);
     if (reader_ == nullptr) {
       participant_->release_topic(spec_.dds_topic);
       return fail(error);

@@ -30,7 +30,8 @@ class Writer : public RawWriter, private dds::DataWriterListener {
     std::string error = "Fast DDS refused the writer";
     dds::Topic* topic = participant_.acquire_topic(spec_, &error);
     if (topic == nullptr) return fail(error);
-    writer_ = participant_.publisher()->create_datawriter(topic, writer_qos(spec_), this);
+    writer_ = participant_.publisher()->create_datawriter(
+        topic, writer_qos(spec_, *participant_.publisher()), this);
     if (writer_ == nullptr) {
       participant_.release_topic(spec_.dds_topic);
       return fail(error);
