@@ -9,13 +9,25 @@ include(CMakePackageConfigHelpers)
 
 set(BPA_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/bpa)
 
+# The package (BpaPackages.cmake) that a library for users belongs to: all but the core is the SDK's.
+function(bpa_package_of component package)
+  if(component STREQUAL core)
+    set(${package} core PARENT_SCOPE)
+  else()
+    set(${package} sdk PARENT_SCOPE)
+  endif()
+endfunction()
+
 # bpa_install_libraries(COMPONENT TARGETS target...): libraries with their export set.
 function(bpa_install_libraries component)
   cmake_parse_arguments(INSTALL "" "" "TARGETS" ${ARGN})
   if(INSTALL_TARGETS)
+    bpa_package_of(${component} package)
     install(TARGETS ${INSTALL_TARGETS} EXPORT bpa-${component}
-            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-    install(EXPORT bpa-${component} NAMESPACE bpa:: DESTINATION ${BPA_CMAKE_DIR})
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${package}
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${package})
+    install(EXPORT bpa-${component} NAMESPACE bpa:: DESTINATION ${BPA_CMAKE_DIR}
+            COMPONENT ${package})
   endif()
 endfunction()
 
@@ -38,18 +50,26 @@ foreach(component wire client)
 endforeach()
 
 set(bpa_header_folder ${CMAKE_INSTALL_INCLUDEDIR}/bpa)
-install(DIRECTORY core idl/wire DESTINATION ${bpa_header_folder}
-        FILES_MATCHING PATTERN "*.hpp" PATTERN "cli" EXCLUDE PATTERN "fastdds" EXCLUDE)
-install(DIRECTORY client/include/bpa DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+install(DIRECTORY core DESTINATION ${bpa_header_folder} COMPONENT core
+        FILES_MATCHING PATTERN "*.hpp" PATTERN "cli" EXCLUDE PATTERN "base" EXCLUDE)
+install(DIRECTORY core/base DESTINATION ${bpa_header_folder}/core COMPONENT sdk
+        FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY idl/wire DESTINATION ${bpa_header_folder} COMPONENT sdk
+        FILES_MATCHING PATTERN "*.hpp" PATTERN "fastdds" EXCLUDE)
+install(DIRECTORY client/include/bpa DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT sdk
         FILES_MATCHING PATTERN "*.hpp")
 # The messages, for a ROS 2 workspace, and the settings: nothing reads these by itself.
-install(DIRECTORY idl/bpa_msgs DESTINATION ${CMAKE_INSTALL_DATADIR}/bpa)
-install(DIRECTORY config DESTINATION ${CMAKE_INSTALL_DATADIR}/bpa
+install(DIRECTORY idl/bpa_msgs DESTINATION ${CMAKE_INSTALL_DATADIR}/bpa COMPONENT server)
+install(DIRECTORY config DESTINATION ${CMAKE_INSTALL_DATADIR}/bpa COMPONENT server
         PATTERN "apt-packages.txt" EXCLUDE PATTERN "readme" EXCLUDE)
 
 foreach(program bpa bpa-server bpa-client)
   if(TARGET ${program})
-    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+    set(package tools)
+    if(program STREQUAL bpa-server)
+      set(package server)
+    endif()
+    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${package})
   endif()
 endforeach()
 
@@ -58,4 +78,6 @@ configure_package_config_file(cmake/bpa-config.cmake.in ${CMAKE_BINARY_DIR}/bpa-
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/bpa-config-version.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/bpa-config.cmake ${CMAKE_BINARY_DIR}/bpa-config-version.cmake
-        DESTINATION ${BPA_CMAKE_DIR})
+        DESTINATION ${BPA_CMAKE_DIR} COMPONENT sdk)
+
+include(BpaPackages)

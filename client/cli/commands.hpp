@@ -31,6 +31,7 @@ void add_watch(CLI::App& program, Common& common);
 void add_detect(CLI::App& program, Common& common);
 void add_models(CLI::App& program, Common& common);  ///< models, load, unload
 void add_status(CLI::App& program, Common& common);
+void add_play(CLI::App& program, Common& common);
 void add_record(CLI::App& program, Common& common);
 
 /// True after SIGINT or SIGTERM.

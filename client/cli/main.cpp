@@ -60,6 +60,7 @@ int main(int argc, char** argv) {
   bpa::cli::add_models(program, common);
   bpa::cli::add_status(program, common);
   bpa::cli::add_record(program, common);
+  bpa::cli::add_play(program, common);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -98,6 +98,29 @@ Json detection_json(const Detection& d) {
 
 }  // namespace
 
+void print_table(std::ostream& out, const DetectionSet& set, double frames_per_second) {
+  char line[200];
+  std::snprintf(line, sizeof line, "frame %lld.%03lld  %s  %.1f a second  search %.0f ms",
+                static_cast<long long>(set.stamp_ns / 1'000'000'000),
+                static_cast<long long>(set.stamp_ns / 1'000'000 % 1000), set.frame_id.c_str(),
+                frames_per_second, set.total_ms);
+  out << line << '\n';
+  if (!set.status.ok()) {
+    out << "not searched: " << set.status.message << '\n';
+    return;
+  }
+  std::snprintf(line, sizeof line, "%-24s %6s  %7s %7s %7s  %5s", "object", "sure", "x m", "y m",
+                "z m", "seen");
+  out << line << '\n';
+  for (const Detection& d : set.best()) {
+    const auto& p = d.camera_from_object.position;
+    std::snprintf(line, sizeof line, "%-24s %5.1f %%  %+7.3f %+7.3f %+7.3f  %3.0f %%",
+                  (d.model + "_" + std::to_string(d.instance)).c_str(), 100 * d.probability, p[0],
+                  p[1], p[2], 100 * d.visible_fraction);
+    out << line << "  " << spread(d) << '\n';
+  }
+}
+
 void print_detections(std::ostream& out, const DetectionSet& set, int max_interpretations) {
   out << "frame " << set.frame_id << ": ";
   if (!set.status.ok()) {

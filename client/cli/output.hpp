@@ -17,6 +17,10 @@ namespace bpa::cli {
 /// The ranked interpretations for people: the best one in full, of the next ones what differs.
 void print_detections(std::ostream& out, const DetectionSet& set, int max_interpretations);
 
+/// The best interpretation as a table, a line for each object, under a line about the frame and how
+/// many come each second.
+void print_table(std::ostream& out, const DetectionSet& set, double frames_per_second);
+
 /// One frame of the project's result files (`bpa detect --json`).
 nlohmann::json to_json(const DetectionSet& set);
 

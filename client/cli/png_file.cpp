@@ -98,8 +98,20 @@ Result<DepthImage> read_depth_png(const std::string& path) {
   return image;
 }
 
+Status write_depth_png(const std::string& path, int width, int height,
+                       const std::vector<std::uint16_t>& pixels) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(width);
+  image.height = static_cast<png_uint_32>(height);
+  image.format = PNG_FORMAT_LINEAR_Y;  // 16 bits as they are: the file says "linear"
+  image.flags = PNG_IMAGE_FLAG_FAST;
+  if (png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), 0, nullptr) != 0) return {};
+  return {StatusCode::unavailable, path + ": cannot be written: " + image.message};
+}
+
 Status write_png(const std::string& path, int width, int height,
-                 const std::vector<std::uint8_t>& rgb) {
+                 const std::vector<std::uint8_t>& rgb, bool fast) {
   if (rgb.size() !=
       std::size_t{3} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
     return invalid_argument(path + ": the image has " + std::to_string(rgb.size()) +
@@ -110,6 +122,7 @@ Status write_png(const std::string& path, int width, int height,
   image.width = static_cast<png_uint_32>(width);
   image.height = static_cast<png_uint_32>(height);
   image.format = PNG_FORMAT_RGB;
+  image.flags = fast ? PNG_IMAGE_FLAG_FAST : 0;
   if (png_image_write_to_file(&image, path.c_str(), 0, rgb.data(), 0, nullptr) != 0) return {};
   return {StatusCode::unavailable, path + ": cannot be written: " + image.message};
 }

@@ -26,8 +26,11 @@ struct DepthImage {
 Result<RgbImage> read_color_png(const std::string& path);
 /// A 16-bit grey PNG. Fails with not_found, corrupt, or invalid_argument for another kind.
 Result<DepthImage> read_depth_png(const std::string& path);
+/// A 16-bit grey PNG of width x height pixels; fast rather than small.
+Status write_depth_png(const std::string& path, int width, int height,
+                       const std::vector<std::uint16_t>& pixels);
 /// `rgb` holds 3 x width x height bytes.
 Status write_png(const std::string& path, int width, int height,
-                 const std::vector<std::uint8_t>& rgb);
+                 const std::vector<std::uint8_t>& rgb, bool fast = false);
 
 }  // namespace bpa::cli

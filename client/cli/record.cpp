@@ -7,9 +7,11 @@
 #include <thread>
 
 #include "commands.hpp"
+#include "recorder.hpp"
 
-// The server owns the sensor, so the server records: every frame as it left the driver, with
-// nothing lost on the network. This program asks it to.
+// Two things can be recorded. The server's own sensor: the server records every frame as it left
+// the driver, with nothing lost on the network; this program asks it to (--oni). And what clients
+// publish to the server, with what it finds: that is taken down here (--to).
 
 namespace bpa::cli {
 namespace {
@@ -18,6 +20,7 @@ constexpr double kLongest = 3600;  // seconds, the server's limit
 
 struct RecordOptions {
   std::string oni;
+  std::string folder;
   double seconds = 0;  ///< 0: until interrupted.
 };
 
@@ -36,21 +39,47 @@ Result<Recording> record(Client& client, const RecordOptions& options) {
   return client.stop_recording();
 }
 
+Status record_here(Client& client, const RecordOptions& options) {
+  Recorder recorder(options.folder);
+  if (Status status = recorder.start(client); !status.ok()) return status;
+  std::printf("recording to %s\n", options.folder.c_str());
+  std::fflush(stdout);
+  const auto begun = std::chrono::steady_clock::now();
+  const auto over = [&] {
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begun;
+    return options.seconds > 0 && time.count() >= options.seconds;
+  };
+  while (!interrupted() && !over()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  return recorder.finish();
+}
+
 }  // namespace
 
 void add_record(CLI::App& program, Common& common) {
-  CLI::App* command =
-      program.add_subcommand("record", "have the server record its own camera to a file");
+  CLI::App* command = program.add_subcommand(
+      "record", "take down frames and results, or have the server record its camera");
   auto options = std::make_shared<RecordOptions>();
+  auto* oni =
+      command->add_option("--oni", options->oni,
+                          "new OpenNI2 recording, on the server's machine (about 46 MB a second)");
   command
-      ->add_option("--oni", options->oni,
-                   "new OpenNI2 recording, on the server's machine (about 46 MB a second)")
-      ->required();
+      ->add_option("--to", options->folder,
+                   "new folder for the frames that clients publish, as a BOP data set with their "
+                   "times, and for the results; 32FC1 depth is rounded to 0.1 mm, at most 6.5 m")
+      ->excludes(oni);
   command->add_option("--seconds", options->seconds, "how long; default until interrupted")
       ->check(CLI::Range(0.1, kLongest));
   command->callback([options, &common] {
+    if (options->oni.empty() == options->folder.empty()) {
+      throw CLI::ValidationError("record", "give either --oni FILE or --to FOLDER");
+    }
     auto client = common.connect();
     if (!client.ok()) return common.fail(client.status());
+    if (!options->folder.empty()) {
+      const Status status = record_here(*client, *options);
+      if (!status.ok()) common.fail(status);
+      return;
+    }
     const auto recording = record(*client, *options);
     if (!recording.ok()) return common.fail(recording.status());
     std::printf("%d frames, %.1f MB in %s\n", recording->frames,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <atomic>
 #include <chrono>
+#include <deque>
 #include <iostream>
 #include <memory>
 #include <mutex>
@@ -18,17 +19,38 @@ namespace {
 
 struct WatchOptions {
   bool json = false;
+  bool table = false;
   std::string annotated;
   int top = 5;
   int count = 0;  ///< Stop after so many results; 0: never.
 };
 
+/// How many results came in each of the last seconds.
+class Rate {
+ public:
+  double add() {
+    const auto now = std::chrono::steady_clock::now();
+    times_.push_back(now);
+    while (now - times_.front() > std::chrono::seconds(3)) times_.pop_front();
+    const std::chrono::duration<double> span = now - times_.front();
+    return times_.size() < 2 ? 0 : static_cast<double>(times_.size() - 1) / span.count();
+  }
+
+ private:
+  std::deque<std::chrono::steady_clock::time_point> times_;
+};
+
 Status watch(Client& client, const WatchOptions& options) {
   std::atomic<int> seen{0};
+  Rate rate;
   Status status = client.subscribe([&](const DetectionSet& set) {
     if (options.count > 0 && seen >= options.count) return;
     if (options.json) {
       std::cout << to_json(set).dump() << std::endl;
+    } else if (options.table) {
+      std::cout << "\x1b[H\x1b[J";  // home, and clear what follows
+      print_table(std::cout, set, rate.add());
+      std::cout.flush();
     } else {
       print_detections(std::cout, set, options.top);
       std::cout.flush();
@@ -54,7 +76,9 @@ void add_watch(CLI::App& program, Common& common) {
   CLI::App* command =
       program.add_subcommand("watch", "print what the server finds until interrupted");
   auto options = std::make_shared<WatchOptions>();
-  command->add_flag("--json", options->json, "one line of JSON for each frame");
+  auto* json = command->add_flag("--json", options->json, "one line of JSON for each frame");
+  command->add_flag("--table", options->table, "the last frame's objects as a table that stays")
+      ->excludes(json);
   command->add_option("--annotated", options->annotated, "write annotated images to this folder");
   command->add_option("--top", options->top, "interpretations to print for each frame")
       ->capture_default_str();

@@ -103,6 +103,7 @@ struct Client::Impl {
     // Last: they post to the thread above until they are destroyed.
     std::optional<wire::Subscriber<msgs::SceneInterpretations>> results;
     std::optional<wire::Subscriber<wire::sensor_msgs::Image>> images;
+    std::optional<wire::Subscriber<msgs::RgbdFrame>> others_frames;
   };
   std::unique_ptr<Made> made = std::make_unique<Made>();
 
@@ -269,6 +270,30 @@ Status Client::subscribe(std::function<void(const DetectionSet&)> on_result) {
     if (!subscriber.ok()) return subscriber.status();
     made.results.emplace(std::move(subscriber).value());
     made.results->wait_for_matched(impl_->options.timeout);
+    return {};
+  });
+}
+
+Status Client::subscribe_frames(std::function<void(const FrameView&)> on_frame) {
+  return guarded([&]() -> Status {
+    const std::lock_guard<std::mutex> lock(impl_->made->mutex);
+    Impl::Made& made = *impl_->made;
+    made.others_frames.reset();
+    wire::SubscriberOptions subscription;
+    subscription.qos = wire::qos::frames();  // over UDP: a second reader of shared memory gets
+                                             // nothing from Fast DDS 2.9.1
+    auto subscriber = wire::Subscriber<msgs::RgbdFrame>::create(
+        impl_->participant, "frames", subscription,
+        [&made, on_frame = std::move(on_frame)](msgs::RgbdFrame&& message,
+                                                const wire::SampleMeta&) {
+          auto frame = std::make_shared<const msgs::RgbdFrame>(std::move(message));
+          made.callbacks.post([on_frame, frame] {
+            const auto view = sdk::to_view(*frame);
+            if (view.ok()) on_frame(*view);
+          });
+        });
+    if (!subscriber.ok()) return subscriber.status();
+    made.others_frames.emplace(std::move(subscriber).value());
     return {};
   });
 }

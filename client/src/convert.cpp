@@ -187,6 +187,34 @@ Status check(const FrameView& frame) {
   return {};
 }
 
+Result<FrameView> to_view(const msgs::RgbdFrame& message) {
+  FrameView view;
+  view.width = static_cast<int>(std::min(message.width, 1U << 20U));
+  view.height = static_cast<int>(std::min(message.height, 1U << 20U));
+  const std::size_t pixels = std::size_t{message.width} * message.height;
+  const bool millimetres = message.depth_encoding == "16UC1";
+  const bool has_color = !message.color.empty();
+  if ((!millimetres && message.depth_encoding != "32FC1") ||
+      message.depth.size() != (millimetres ? 2 : 4) * pixels ||
+      (has_color && (message.color_encoding != "rgb8" || message.color.size() != 3 * pixels)) ||
+      (!message.mask.empty() && message.mask.size() != pixels)) {
+    return invalid_argument("a frame whose pixels are not as the SDK sends them");
+  }
+  view.rgb = has_color ? message.color.data() : nullptr;
+  // The bytes of a vector are aligned for any type.
+  const void* depth = message.depth.data();
+  view.depth_mm = millimetres ? static_cast<const std::uint16_t*>(depth) : nullptr;
+  view.depth_m = millimetres ? nullptr : static_cast<const float*>(depth);
+  view.mask = message.mask.empty() ? nullptr : message.mask.data();
+  view.fx = message.k[0];
+  view.cx = message.k[2];
+  view.fy = message.k[4];
+  view.cy = message.k[5];
+  view.stamp_ns = to_ns(message.header.stamp);
+  view.frame_id = message.header.frame_id;
+  return view;
+}
+
 wire::bpa_msgs::RgbdFrameView to_message(const FrameView& frame) {
   return make_message<wire::ByteView>(frame);
 }

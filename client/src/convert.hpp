@@ -19,6 +19,9 @@ AnnotatedImage to_image(wire::sensor_msgs::Image&& message);
 
 /// Checks what would otherwise be read beyond its end; the rest is the server's to judge.
 Status check(const FrameView& frame);
+/// A frame of another client, pointing to the message's pixels. Fails on other encodings than the
+/// SDK writes (rgb8, 16UC1, 32FC1) and on pixels that are not all there.
+Result<FrameView> to_view(const wire::bpa_msgs::RgbdFrame& message);
 /// The frame as a message that points to the caller's pixels.
 wire::bpa_msgs::RgbdFrameView to_message(const FrameView& frame);
 /// The same with copies of the pixels.

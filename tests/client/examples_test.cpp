@@ -51,6 +51,15 @@ TEST_F(Examples, DetectSearchesTheNextFrameOfTheStream) {
   EXPECT_EQ(support::read_text(log), "stub: 87.5 % at 0 0 0.8 m\n");
 }
 
+TEST_F(Examples, TheCameraNodesFramesAreSearched) {
+  const support::Process server({BPA_BINARY_DIR "/tests/bpa-stub-server"},
+                                support::scratch_folder() + "/server.log");
+  const std::string log = support::scratch_folder() + "/camera";
+  const support::Process camera({BPA_BINARY_DIR "/examples/example_05_camera"}, log);
+  EXPECT_EQ(run("01_detect"), "stub: 87.5 % at 0 0 0.8 m\n");
+  EXPECT_EQ(support::read_text(log), "publishing on /camera/color/image_raw\n");
+}
+
 TEST_F(Examples, WithoutAServerSayWhatToDo) {
   EXPECT_NE(run("01_detect", 1).find("is it running"), std::string::npos);
 }

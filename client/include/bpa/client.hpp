@@ -77,6 +77,9 @@ class Client {
   /// client is destroyed (not by that function); DetectionSet::status tells why a frame could not
   /// be searched. A second call replaces the first one's function.
   Status subscribe(std::function<void(const DetectionSet&)> on_result);
+  /// The same for the frames that clients publish to the server's stream, as they were sent; the
+  /// pixels are there while the function runs. A ROS 2 camera's images are not among them.
+  Status subscribe_frames(std::function<void(const FrameView&)> on_frame);
   /// The same for the annotated images, which the server draws only while somebody subscribes.
   Status subscribe_annotated(std::function<void(const AnnotatedImage&)> on_image);
 
