@@ -50,7 +50,7 @@ mkdir -p "$folder/bpa" "$folder/bpa.new"
 git archive HEAD | tar -x -C "$folder/bpa.new"
 # Only what has changed gets a new time, so that a second run builds only that.
 inside bash -c 'cd /bpa.new && find . -type f | while read -r file; do
-  cmp -s "$file" "/bpa/$file" || install -D -p "$file" "/bpa/$file"; done'
+  cmp -s "$file" "/bpa/$file" || install -D -m "$(stat -c %a "$file")" "$file" "/bpa/$file"; done'
 rm -rf "$folder/bpa.new"
 
 say "build"
