@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // bpa model: what a library holds, and how models get into it.
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include <bpa/core/cli/command.hpp>
+#include <bpa/core/cli/model_render.hpp>
 #include <bpa/core/cli/progress.hpp>
 #include <bpa/core/cli/scan_files.hpp>
 #include <bpa/core/cli/simulated_views.hpp>
@@ -15,6 +17,9 @@
 #include <bpa/core/io/file_bytes.hpp>
 #include <bpa/core/io/mesh_file.hpp>
 #include <bpa/core/io/model_file.hpp>
+#include <bpa/core/model/registration.hpp>
+#include <bpa/core/model/symmetry_search.hpp>
+#include <bpa/core/model/view_sphere.hpp>
 
 namespace bpa::cli {
 namespace {
@@ -29,6 +34,8 @@ struct ModelArguments {
   double scale = 1;
   int number = 0;
   int views = 40;
+  std::string symmetry = "find";
+  std::string render;          // a PNG
   std::string split = "test";  // of scans
   double step_deg = 10;
   int known_object = 0;  // obj_id when the poses are known
@@ -46,6 +53,61 @@ Result<ModelSource> source_from_mesh(const TriangleMesh& mesh, const ModelArgume
                      [&progress](int done) { progress.show(done, "simulated views"); });
   learn_noise(*source, views, a.common.threads);
   return source;
+}
+
+/// Looks for symmetries, and tells the user, unless that is not wanted.
+void add_symmetries(ModelSource& source, const ModelArguments& a) {
+  if (a.symmetry == "none") {
+    source.symmetry_origin = SymmetryOrigin::declared;
+    return;
+  }
+  source.symmetry = find_symmetries(source.surface, source.diameter, a.common.threads);
+  source.symmetry_origin =
+      a.symmetry == "confirm" ? SymmetryOrigin::declared : SymmetryOrigin::found;
+  if (source.symmetry.trivial()) return;
+  std::printf("%s: found symmetries: %s\n", source.name.c_str(), describe(source.symmetry).c_str());
+  if (a.symmetry == "confirm") return;
+  std::printf(
+      "Is that right, colours aside? `bpa model symmetry %s --library %s --confirm` keeps them, "
+      "--none drops them.\n",
+      source.name.c_str(), a.library.c_str());
+}
+
+/// Warns when the library holds a model that looks the same: both would be found in one place.
+void warn_of_twins(ModelSource& source, const ModelArguments& a) {
+  constexpr double kSameSize = 0.04, kSameShape = 0.97;
+  for (const std::string& name : io::list_models(a.library)) {
+    const Result<ModelSource> described = io::describe_model(a.library, name);
+    if (name == source.name || !described.ok()) continue;
+    if (std::abs(described->diameter / source.diameter - 1) > kSameSize) continue;
+    const Result<ModelSource> other = io::load_model(a.library, name);
+    if (!other.ok()) continue;
+    RegistrationOptions options;
+    options.tolerance_m = std::max(0.002, 0.015 * source.diameter);
+    options.draws = 600;
+    options.kept = 4;
+    options.num_threads = a.common.threads;
+    const auto there = register_surfaces(source.surface, other->surface, options);
+    if (there.empty() || there.front().overlap < kSameShape) continue;
+    const auto back = register_surfaces(other->surface, source.surface, options);
+    if (back.empty() || back.front().overlap < kSameShape) continue;
+    source.warnings.push_back("has nearly the same shape as " + name +
+                              ": one may be taken for the other");
+  }
+}
+
+/// `bpa model symmetry`: the user's answer.
+Status set_symmetry(const ModelArguments& a) {
+  Result<ModelSource> model = io::load_model(a.library, a.name);
+  if (!model.ok()) return model.status();
+  if (a.symmetry == "none") model->symmetry = {};
+  if (a.symmetry != "find") {
+    model->symmetry_origin = SymmetryOrigin::declared;
+    if (Status s = io::save_model(a.library, *model, a.common.threads); !s.ok()) return s;
+  }
+  std::printf("%s: symmetries: %s%s\n", a.name.c_str(), describe(model->symmetry).c_str(),
+              model->symmetry_origin == SymmetryOrigin::found ? " (found, not confirmed)" : "");
+  return {};
 }
 
 void print_saved(const ModelSource& model, const std::string& library) {
@@ -98,6 +160,8 @@ Status from_mesh(ModelArguments a) {
     return status;
   }
   source->source = std::filesystem::path(a.input).filename().string();
+  if (source->complete) add_symmetries(*source, a);
+  warn_of_twins(*source, a);
   if (Status s = io::save_model(a.library, *source, a.common.threads); !s.ok()) return s;
   print_saved(*source, a.library);
   return {};
@@ -120,6 +184,7 @@ Status from_bop(ModelArguments a) {
     }
     source->source = std::filesystem::path(model.path).filename().string();
     source->symmetry = model.symmetry;
+    source->symmetry_origin = SymmetryOrigin::declared;
     source->diameter = model.diameter;
     if (Status s = io::save_model(a.library, *source, a.common.threads); !s.ok()) return s;
     progress.clear();
@@ -175,6 +240,8 @@ Status from_scans(ModelArguments a) {
   if (!source.ok()) return source.status();
   source->source = std::filesystem::path(a.input).filename().string();
   source->warnings.insert(source->warnings.begin(), warnings.begin(), warnings.end());
+  add_symmetries(*source, a);
+  warn_of_twins(*source, a);
   if (Status s = io::save_model(a.library, *source, a.common.threads); !s.ok()) return s;
   print_saved(*source, a.library);
   return {};
@@ -194,9 +261,19 @@ Status info(const ModelArguments& a) {
   std::printf("points      %zu%s%s\n", model->surface.size(),
               model->surface.normals.empty() ? "" : ", normals",
               model->surface.colors.empty() ? "" : ", colours");
-  std::printf("symmetries  %zu discrete, %zu continuous\n", model->symmetry.discrete.size(),
-              model->symmetry.continuous.size());
-  return {};
+  std::printf("symmetries  %s%s\n", describe(model->symmetry).c_str(),
+              model->symmetry_origin == SymmetryOrigin::found ? " (found, not confirmed)" : "");
+  const NoiseModel& noise = model->noise;
+  std::printf("noise       %s; at %.2f m, seen straight on: range %.1f mm, normals %.0f degrees\n",
+              noise.fitted ? "fitted" : "the usual", noise.depth,
+              1000 * noise.range(kMaxEdgeDistance, 0),
+              noise.normal(kMaxEdgeDistance, 0) * 180 / M_PI);
+  for (const std::string& warning : model->warnings)
+    std::printf("warning     %s\n", warning.c_str());
+  if (a.render.empty()) return {};
+  const auto made = make_object_model(*model, a.common.threads);
+  if (!made.ok()) return made.status();
+  return io::write_color_png(a.render, render_model(**made));
 }
 
 Status list(const ModelArguments& a) {
@@ -235,6 +312,15 @@ void add_views_option(CLI::App& command, ModelArguments& a) {
       .add_option("--views", a.views,
                   "Simulated views that noise is learned from; 0 = take the usual noise")
       ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+}
+
+void add_symmetry_option(CLI::App& command, ModelArguments& a) {
+  command
+      .add_option("--symmetry", a.symmetry,
+                  "find: look for symmetries and use them; confirm: and take them as confirmed; "
+                  "none: the object has none")
+      ->check(CLI::IsMember({"find", "confirm", "none"}))
       ->capture_default_str();
 }
 
@@ -292,9 +378,23 @@ void add_model_command(CLI::App& program, Action& action) {
   scans.add_option("--spacing", a->options.spacing_m, "Distance of surface points, metres")
       ->check(CLI::PositiveNumber);
 
-  add(model, "info", "What a model is", a, action, [](ModelArguments m) { return info(m); })
-      .add_option("name", a->name, "Name of the model")
-      ->required();
+  add_symmetry_option(mesh, *a);
+  add_symmetry_option(scans, *a);
+
+  CLI::App& about =
+      add(model, "info", "What a model is", a, action, [](ModelArguments m) { return info(m); });
+  about.add_option("name", a->name, "Name of the model")->required();
+  about.add_option("--render", a->render, "Write a picture of the model: sides, edges, noise")
+      ->type_name("F.png");
+  CLI::App& symmetry = add(model, "symmetry", "Show, confirm or drop the symmetries of a model", a,
+                           action, [](ModelArguments m) { return set_symmetry(m); });
+  symmetry.add_option("name", a->name, "Name of the model")->required();
+  auto* confirm = symmetry.add_flag_callback(
+      "--confirm", [a] { a->symmetry = "confirm"; }, "The symmetries found are right");
+  symmetry
+      .add_flag_callback(
+          "--none", [a] { a->symmetry = "none"; }, "The object has none")
+      ->excludes(confirm);
   add(model, "list", "The models of a library", a, action,
       [](ModelArguments m) { return list(m); });
   add(model, "remove", "Take a model out of a library", a, action,

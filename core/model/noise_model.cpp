@@ -90,8 +90,9 @@ double NoiseModel::normal_sigma(double edge_distance, double angle) const {
 
 NoiseModel usual_noise() {
   NoiseModel noise;
-  noise.range = {0.0017, 0.004, 0.004, 0.0015, 0.006, 1.25, 0.08};
-  noise.normal = {0.09, 0.25, 0.008, 0.003, 0.3, 1.2, 0.1};
+  noise.depth = 0.78;
+  noise.range = {0.0013, 0.0005, 0.004, 0.003, 0.010, 1.33, 0.10};
+  noise.normal = {0.13, 0.8, 0.0015, 0.004, 0.8, 1.39, 0.05};
   return noise;
 }
 

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <bpa/core/cloud/point_cloud.hpp>
+#include <bpa/core/geometry/symmetry.hpp>
+
+namespace bpa {
+
+/// The rotations that map a surface onto itself, within max(1.5 mm, 1.2 % of `diameter`) for at
+/// least 98 % of its points, normals considered and colours not: turns of a half to a sixth and
+/// continuous ones, about axes through the mean of the evenly spaced points. Deterministic.
+SymmetryGroup find_symmetries(const PointCloud& surface, double diameter, int num_threads);
+
+/// One line for people: "any turn about (0, 0, 1) through (0, 0, 12) mm; 3 single turns".
+std::string describe(const SymmetryGroup& group);
+
+}  // namespace bpa
