@@ -494,7 +494,9 @@ Result<RecordingSummary> Openni2Device::stop_recording() {
 
 OpenCamera openni2_camera(const Openni2Target& target, const CaptureOptions& options,
                           LogHook hook) {
-  // Shared by the attempts: drivers are loaded once, so that they notice a device that comes back.
+  // Drivers stay loaded between attempts, so that they notice a device that comes back. Loading
+  // them again is no way: OpenNI2 holds a lock while it ends a driver, which deadlocks with one
+  // that announces a device just then.
   auto library = std::make_shared<std::shared_ptr<Openni2Library>>();
   return [target, options, hook = std::move(hook),
           library]() -> Result<std::unique_ptr<CameraDevice>> {

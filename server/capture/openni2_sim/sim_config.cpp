@@ -41,6 +41,7 @@ SimConfig::SimConfig() {
                  .lexically_normal()
                  .string();
     split = root["split"].as<std::string>(split);
+    fine_depth = root["fine_depth"].as<bool>(fine_depth);
   } catch (const YAML::Exception&) {
     return;  // no such file, or no settings: no device
   }

@@ -17,6 +17,7 @@
 //     deliver_color: true         false: depth comes without colour
 //     wedged: false               true: calls into the driver do not return
 //     color_sensor: true          false: a device without a colour camera
+//     fine_depth: false           true: depth in 0.1 mm only
 //     registration: device        pretended: says that it registers and does not; none: cannot
 //
 // Without BPA_SIM there is no device.
@@ -43,6 +44,7 @@ class SimConfig {
   std::atomic<bool> deliver_color{true};
   std::atomic<bool> wedged{false};
   std::atomic<bool> color_sensor{true};
+  bool fine_depth = false;
   std::atomic<Registration> registration{Registration::device};
 
  private:

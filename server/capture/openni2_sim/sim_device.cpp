@@ -11,7 +11,8 @@ namespace bpa::sim_driver {
 SimDevice::SimDevice(SimFrames frames, const SimConfig& config)
     : frames_(std::move(frames)),
       config_(config),
-      modes_{modes_of(ONI_SENSOR_DEPTH, frames_.depth), modes_of(ONI_SENSOR_COLOR, frames_.color)} {
+      modes_{modes_of(ONI_SENSOR_DEPTH, frames_.depth, config.fine_depth),
+             modes_of(ONI_SENSOR_COLOR, frames_.color, config.fine_depth)} {
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
     sensors_[i].sensorType = i == 0 ? ONI_SENSOR_DEPTH : ONI_SENSOR_COLOR;
     sensors_[i].numSupportedVideoModes = static_cast<int>(modes_[i].size());

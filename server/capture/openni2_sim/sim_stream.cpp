@@ -42,7 +42,7 @@ int pixel_bytes(const OniVideoMode& mode) {
 
 }  // namespace
 
-std::vector<OniVideoMode> modes_of(OniSensorType sensor, const Camera& camera) {
+std::vector<OniVideoMode> modes_of(OniSensorType sensor, const Camera& camera, bool fine_depth) {
   std::vector<OniVideoMode> modes;
   for (const int divisor : {1, 2}) {
     for (const int fps : {30, 15}) {
@@ -52,7 +52,7 @@ std::vector<OniVideoMode> modes_of(OniSensorType sensor, const Camera& camera) {
       mode.fps = fps;
       mode.pixelFormat =
           sensor == ONI_SENSOR_DEPTH ? ONI_PIXEL_FORMAT_DEPTH_1_MM : ONI_PIXEL_FORMAT_RGB888;
-      modes.push_back(mode);
+      if (sensor != ONI_SENSOR_DEPTH || !fine_depth) modes.push_back(mode);
       if (sensor != ONI_SENSOR_DEPTH) continue;
       mode.pixelFormat = ONI_PIXEL_FORMAT_DEPTH_100_UM;
       modes.push_back(mode);
@@ -67,7 +67,9 @@ SimStream::SimStream(OniSensorType sensor, const SimFrames& frames, const SimCon
       frames_(frames),
       config_(config),
       registering_(registering),
-      mode_(modes_of(sensor, sensor == ONI_SENSOR_DEPTH ? frames.depth : frames.color).front()) {}
+      mode_(modes_of(sensor, sensor == ONI_SENSOR_DEPTH ? frames.depth : frames.color,
+                     config.fine_depth)
+                .front()) {}
 
 SimStream::~SimStream() { stop(); }
 
@@ -86,7 +88,7 @@ void SimStream::stop() {
 
 OniStatus SimStream::set_mode(const OniVideoMode& mode) {
   const Camera& camera = sensor_ == ONI_SENSOR_DEPTH ? frames_.depth : frames_.color;
-  for (const OniVideoMode& known : modes_of(sensor_, camera)) {
+  for (const OniVideoMode& known : modes_of(sensor_, camera, config_.fine_depth)) {
     if (!equal(known, mode)) continue;
     mode_ = mode;
     return ONI_STATUS_OK;

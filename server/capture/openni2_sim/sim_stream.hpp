@@ -13,8 +13,9 @@
 
 namespace bpa::sim_driver {
 
-/// The modes of one sensor: the size of the frames and half of it, at 30 and 15 Hz.
-std::vector<OniVideoMode> modes_of(OniSensorType sensor, const Camera& camera);
+/// The modes of one sensor: the size of the frames and half of it, at 30 and 15 Hz; `fine_depth`
+/// leaves out those with depth in millimetres.
+std::vector<OniVideoMode> modes_of(OniSensorType sensor, const Camera& camera, bool fine_depth);
 
 /// The depth or the colour stream. OpenNI2's threads set properties and start and stop it while the
 /// device's thread shows frames.

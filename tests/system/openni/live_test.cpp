@@ -130,6 +130,11 @@ TEST_F(LiveSensor, StreamsAt30HzIsRecordedAndPlaysBackToTheSameDetections) {
       if (gap_ms > 31 && gap_ms < 36) ++regular;
     }
     EXPECT_GT(regular, 0.9 * static_cast<double>(stamps.size()));
+    // And they are the host's time, though the device counts from its own start.
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    const auto now_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+    EXPECT_LT(stamps.back(), now_ns);
+    EXPECT_GT(stamps.back(), now_ns - 10'000'000'000);
     const wire::sensor_msgs::CameraInfo info = camera.info.messages().back();
     EXPECT_EQ(info.width, 320U);
     EXPECT_NEAR(info.k[0], 262.5, 1e-3);
@@ -176,82 +181,6 @@ TEST_F(LiveSensor, StreamsAt30HzIsRecordedAndPlaysBackToTheSameDetections) {
         m.interpretations.empty() ? 0 : static_cast<int>(m.interpretations[0].placements.size());
   }
   EXPECT_GT(objects, 0);  // so that there was something to be equal
-}
-
-TEST_F(LiveSensor, PlaybackRepeatsStartsWhereItIsToldAndShowsEveryFrame) {
-  const std::string file = folder / "short.oni";
-  int frames = 0;
-  {
-    support::SensorServer server(folder.path(), "openni2", {});
-    ASSERT_TRUE(server.wait_for("images come from")) << server.log();
-    auto client = Client::connect(support::client_options());
-    ASSERT_TRUE(client.ok()) << client.status().message;
-    ASSERT_TRUE(client->start_recording(file, 0.6).ok());
-    std::this_thread::sleep_for(std::chrono::milliseconds(800));
-    const auto recording = client->stop_recording();  // it ended by itself
-    ASSERT_TRUE(recording.ok()) << recording.status().message;
-    frames = recording->frames;
-    ASSERT_GT(frames, 10);
-  }
-  const auto shown = [&](const std::vector<std::string>& settings, std::size_t enough) {
-    support::SensorServer server("", file, settings);
-    const bool plays = server.wait_for("images come from the recording");
-    EXPECT_TRUE(plays) << server.log();
-    auto client = Client::connect(support::client_options());
-    if (!plays || !client.ok()) return std::size_t{0};
-    std::size_t sets = 0;
-    for (int i = 0; i < 400 && sets < enough && server.said("come to its end") == 0; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      const auto status = client->status();
-      if (!status.ok()) break;
-      for (const auto& [key, value] : status->details) {
-        if (key == "capture: sets of images") sets = std::stoul(value);
-      }
-    }
-    const auto status = client->status();  // once more after the end
-    for (const auto& [key, value] : status->details) {
-      if (key == "capture: sets of images") sets = std::stoul(value);
-    }
-    return sets;
-  };
-  const auto count = static_cast<std::size_t>(frames);
-  constexpr std::size_t kAll = 1000;
-  EXPECT_EQ(shown({"capture.every_frame=true"}, kAll), count);
-  EXPECT_EQ(shown({"capture.every_frame=true", "capture.start_frame=8"}, kAll), count - 7);
-  EXPECT_GT(shown({"capture.loop=true", "capture.speed=4"}, 3 * count), 2 * count);
-  support::SensorServer beyond("", file, {"capture.start_frame=9000"});
-  EXPECT_TRUE(beyond.wait_for("capture.start_frame is 9000; ")) << beyond.log();
-}
-
-TEST_F(LiveSensor, ADataSetIsACameraToo) {
-  support::SensorServer server("", "bop:" + folder.path(), {"capture.loop=true"});
-  support::CameraListener camera(*participant);
-  support::Listener<wire::sensor_msgs::PointCloud2> points(*participant, "points",
-                                                           wire::qos::reliable_input());
-  ASSERT_TRUE(camera.depth.wait_for(6) && camera.color.wait_for(6) && points.wait_for(1))
-      << server.log();
-  EXPECT_EQ(camera.depth.messages().front().encoding, "32FC1");
-  const auto cloud = points.messages().front();
-  EXPECT_EQ(cloud.width, 320U);
-  EXPECT_EQ(cloud.height, 240U);
-  EXPECT_EQ(cloud.header.frame_id, "camera_color_optical_frame");
-  EXPECT_EQ(server.stop(), 0) << server.log();
-}
-
-TEST_F(LiveSensor, ExposureIsASetting) {
-  const auto brightness = [&](const std::vector<std::string>& settings) {
-    support::SensorServer server(folder.path(), "openni2", settings);
-    support::CameraListener camera(*participant);
-    if (!camera.color.wait_for(2)) return -1.0;
-    const Image image = camera.color.messages().back();
-    double sum = 0;
-    for (const std::uint8_t value : image.data) sum += value;
-    return sum / static_cast<double>(image.data.size());
-  };
-  const double usual = brightness({});
-  const double dark = brightness({"capture.auto_exposure=false", "capture.exposure=50"});
-  EXPECT_GT(usual, 100);
-  EXPECT_NEAR(dark, usual / 2, 2);
 }
 
 }  // namespace

@@ -77,6 +77,11 @@ class Registration : public ::testing::Test {
     for (const Plate& plate : kPlates) {
       const Box c = in_color(color, plate), d = in_depth(depth, plate);
       ASSERT_GT(c.pixels, 500);
+      // Where it truly is, so not mirrored, as the sensor delivers it at first.
+      const Eigen::Vector2d corner =
+          support::kSimCamera.project({plate.x - plate.half, plate.y - plate.half, plate.z});
+      EXPECT_NEAR(c.left, corner.x(), 1);
+      EXPECT_NEAR(c.top, corner.y(), 1);
       ASSERT_GT(d.pixels, 500) << server.log();
       EXPECT_NEAR(c.left, d.left, tolerance) << plate.z;
       EXPECT_NEAR(c.right, d.right, tolerance) << plate.z;
@@ -144,6 +149,40 @@ TEST_F(Registration, OfARecordingThatWasMadeWithoutIt) {
     EXPECT_EQ(server.stop(), 0);
   }
   expect_corners_to_meet(file, {"capture.loop=true"});
+}
+
+TEST_F(Registration, ACalibrationFileGoesOutWithTheImages) {
+  support::set_sensor(folder.path());
+  test::spill(
+      folder / "rgb.yaml",
+      "image_width: 640\nimage_height: 480\ncamera_matrix: {rows: 3, cols: 3, data: [580, 0, "
+      "315.5, 0, 582, 241.5, 0, 0, 1]}\ndistortion_model: plumb_bob\n"
+      "distortion_coefficients: {rows: 1, cols: 5, data: [0.1, -0.2, 0.001, 0.002, 0.05]}\n");
+  const support::SensorServer server(folder.path(), "openni2",
+                                     {"capture.calibration=" + (folder / "rgb.yaml")});
+  support::CameraListener camera(*participant);
+  ASSERT_TRUE(camera.info.wait_for(1)) << server.log();
+  const auto info = camera.info.messages().back();
+  EXPECT_EQ(info.d, (std::vector<double>{0.1, -0.2, 0.001, 0.002, 0.05}));
+  // For images of half the size; pixel (0, 0) is the middle of its pixel.
+  EXPECT_DOUBLE_EQ(info.k[0], 290);
+  EXPECT_DOUBLE_EQ(info.k[4], 291);
+  EXPECT_DOUBLE_EQ(info.k[2], 157.5);
+  EXPECT_DOUBLE_EQ(info.k[5], 120.5);
+}
+
+TEST_F(Registration, OfDepthInTenthsOfMillimetres) {
+  support::set_sensor(folder.path(), "registration: none\nfine_depth: true\n");
+  support::SensorServer server(folder.path(), "openni2", {});
+  support::CameraListener camera(*participant);
+  ASSERT_TRUE(camera.color.wait_for(3) && camera.depth.wait_for(3)) << server.log();
+  const Image depth = camera.depth.messages().back();
+  const Box c = in_color(camera.color.messages().back(), kPlates[0]);
+  ASSERT_EQ(depth.encoding, "32FC1");
+  float metres = 0;
+  const int pixel = (c.top + c.bottom) / 2 * 320 + (c.left + c.right) / 2;
+  std::memcpy(&metres, depth.data.data() + 4 * pixel, sizeof metres);
+  EXPECT_FLOAT_EQ(metres, 0.7f);
 }
 
 }  // namespace
