@@ -28,7 +28,7 @@ namespace bpa::server {
 
 using Clock = std::chrono::steady_clock;
 
-/// A frame as it came in. Turning it into a Frame is work, so the worker does it.
+/// A frame as it came in. Turning it into a Frame is work, so the worker does it, once.
 struct IncomingFrame {
   std::function<Result<Frame>()> decode;
   std::int64_t stamp_ns = 0;

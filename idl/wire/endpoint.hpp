@@ -49,7 +49,8 @@ struct ReaderStatistics {
 struct PublisherOptions {
   Qos qos = qos::results();
   /// > 0: samples of up to so many bytes go through memory shared with subscribers of this project
-  /// on the same machine (others get them over UDP); larger ones are refused. 0: UDP only.
+  /// on the same machine (others get them over UDP); larger ones are refused. 0: UDP only, as it is
+  /// when /dev/shm has less room than qos.depth + 1 such samples, which is logged.
   std::size_t shared_bytes = 0;
 };
 

@@ -37,11 +37,12 @@ Status subscribe_to(const wire::Participant& participant, const std::string& top
 }
 
 /// A whole frame; `convert` runs on the worker.
-template <class Message>
-IncomingFrame incoming(Message&& message, Result<Frame> (*convert)(const Message&)) {
-  const auto shared = std::make_shared<const Message>(std::move(message));
-  return {[shared, convert] { return convert(*shared); }, to_ns(shared->header.stamp),
-          shared->header.frame_id};
+template <class Message, class Convert>
+IncomingFrame incoming(Message message, Convert convert) {
+  IncomingFrame frame{{}, to_ns(message.header.stamp), message.header.frame_id};
+  const auto shared = std::make_shared<Message>(std::move(message));
+  frame.decode = [shared, convert] { return convert(std::move(*shared)); };
+  return frame;
 }
 
 IncomingFrame incoming(CameraImages images, bool rectified) {
@@ -108,7 +109,7 @@ Status TopicSource::subscribe_frames(const wire::Participant& participant,
       participant, options_.frames, subscription,
       [this](RgbdFrame&& message, const SampleMeta&) {
         frames_pulse_.beat();
-        on_frame_(incoming<RgbdFrame>(std::move(message), frame_from_message));
+        on_frame_(incoming(std::move(message), frame_from_message));
       },
       frames_);
   if (status.ok()) log(log_, LogLevel::info, "frames are taken from " + frames_->topic());
@@ -120,7 +121,7 @@ Status TopicSource::subscribe_cloud(const wire::Participant& participant) {
       participant, options_.cloud, camera_subscription(),
       [this](PointCloud2&& message, const SampleMeta&) {
         cloud_pulse_.beat();
-        on_frame_(incoming<PointCloud2>(std::move(message), frame_from_cloud));
+        on_frame_(incoming(std::move(message), frame_from_cloud));
       },
       cloud_);
   if (status.ok()) log(log_, LogLevel::info, "clouds are taken from " + cloud_->topic());

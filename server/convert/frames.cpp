@@ -105,9 +105,19 @@ Result<Pixels> pixels_of(const char* field, const AnyImage& any, const Camera& c
   return std::move(decoded->pixels);
 }
 
+/// The pixels of a message; taken out of it where they need no change.
+Result<std::vector<std::uint8_t>> take_color(msgs::RgbdFrame& message) {
+  const std::size_t bytes = std::size_t{3} * message.width * message.height;
+  if (message.color_encoding == "rgb8" && message.color.size() == bytes) {
+    return std::move(message.color);
+  }
+  return color_from_image({"color", message.color_encoding, message.width, message.height, 0, false,
+                           message.color.data(), message.color.size()});
+}
+
 }  // namespace
 
-Result<Frame> frame_from_message(const msgs::RgbdFrame& message) {
+Result<Frame> frame_from_message(msgs::RgbdFrame message) {
   Frame frame;
   frame.stamp_ns = to_ns(message.header.stamp);
   frame.frame_id = message.header.frame_id;
@@ -124,14 +134,13 @@ Result<Frame> frame_from_message(const msgs::RgbdFrame& message) {
   if (!depth.ok()) return depth.status();
   frame.depth = std::move(depth).value();
   if (!message.color_encoding.empty() || !message.color.empty()) {
-    auto color = color_from_image({"color", message.color_encoding, message.width, message.height,
-                                   0, false, message.color.data(), message.color.size()});
+    auto color = take_color(message);
     if (!color.ok()) return color.status();
     frame.color = std::move(color).value();
   }
   undistort({message.d}, frame);
   frame.roi = roi_of(message.roi);
-  frame.mask = message.mask;
+  frame.mask = std::move(message.mask);
   return checked(std::move(frame));
 }
 

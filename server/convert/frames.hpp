@@ -16,8 +16,8 @@
 namespace bpa::server {
 
 /// A frame of bpa_msgs/RgbdFrame. Lens distortion is taken out (nearest pixel). `unsupported` when
-/// it carries priors.
-Result<Frame> frame_from_message(const wire::bpa_msgs::RgbdFrame& message);
+/// it carries priors. Move the message in: pixels that are as a Frame has them are not copied then.
+Result<Frame> frame_from_message(wire::bpa_msgs::RgbdFrame message);
 
 /// Puts the region of interest and the mask of a message on a frame that has been checked; a
 /// message without them changes nothing.

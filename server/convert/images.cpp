@@ -81,6 +81,8 @@ struct ColorLayout {
   const char* encoding;
   std::size_t bytes;
   std::size_t red, green, blue;  ///< Offsets in a pixel.
+
+  bool is_rgb() const { return bytes == 3 && red == 0 && blue == 2; }
 };
 
 constexpr ColorLayout kColorLayouts[] = {{"rgb8", 3, 0, 1, 2},
@@ -108,7 +110,11 @@ Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image) {
   for (const ColorLayout& layout : kColorLayouts) {
     if (image.encoding != layout.encoding) continue;
     if (Status status = check_layout(image, layout.bytes); !status.ok()) return status;
-    std::vector<std::uint8_t> rgb(std::size_t{3} * image.width * image.height);
+    const std::size_t row_bytes = std::size_t{3} * image.width;
+    if (layout.is_rgb() && (image.step == 0 || image.step == row_bytes)) {
+      return std::vector<std::uint8_t>(image.data, image.data + image.size);
+    }
+    std::vector<std::uint8_t> rgb(row_bytes * image.height);
     std::uint8_t* out = rgb.data();
     for (std::size_t v = 0; v < image.height; ++v) {
       const std::uint8_t* pixel = row_of(image, v, layout.bytes);

@@ -65,7 +65,7 @@ DetectJob job_of(std::shared_ptr<msgs::Detect_Request> request, const DetectRequ
   job.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                     std::chrono::duration<double, std::milli>(timeout_ms));
   if (request->has_frame) {
-    job.decode = [request] { return frame_from_message(request->frame); };
+    job.decode = [request] { return frame_from_message(std::move(request->frame)); };
   } else if (request->frame.roi.width > 0 || !request->frame.mask.empty() ||
              !request->frame.priors.empty()) {
     job.restrict_frame = [request](Frame& frame) { return restrict_frame(request->frame, frame); };

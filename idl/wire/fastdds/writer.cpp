@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
+#include <sys/statvfs.h>
 
 #include <bpa/wire/fastdds/endpoint_qos.hpp>
 #include <bpa/wire/fastdds/matches.hpp>
@@ -18,6 +21,24 @@ rtps::SampleIdentity to_identity(const SampleId& id) {
     identity.sequence_number(rtps::SequenceNumber_t(static_cast<std::uint64_t>(id.sequence)));
   }
   return identity;
+}
+
+/// The kernel makes a file in memory whole only as it is filled, and kills the process that fills
+/// it when no room is left (a container's /dev/shm has 64 MB unless told otherwise). So a writer
+/// shares memory only if there is room for the most that it may come to fill.
+void share_what_there_is_room_for(const ParticipantImpl& participant, EndpointSpec& spec) {
+  if (spec.shared_bytes == 0) return;
+  struct statvfs shm = {};
+  const std::uint64_t room =
+      statvfs("/dev/shm", &shm) == 0 ? std::uint64_t{shm.f_bavail} * shm.f_frsize : 0;
+  const auto samples = static_cast<std::uint64_t>(std::max(spec.qos.depth, 1)) + 1;
+  const std::uint64_t needed = samples * spec.shared_bytes;
+  if (needed <= room) return;
+  participant.log(LogLevel::warning,
+                  "topic " + spec.dds_topic + " goes over UDP: to share memory needs " +
+                      std::to_string(needed >> 20U) + " MB in /dev/shm, which has " +
+                      std::to_string(room >> 20U) + " MB free; enlarge it or allow less a frame");
+  spec.shared_bytes = 0;
 }
 
 class Writer : public RawWriter, private dds::DataWriterListener {
@@ -111,6 +132,7 @@ class Writer : public RawWriter, private dds::DataWriterListener {
 Result<std::unique_ptr<RawWriter>> make_raw_writer(ParticipantImpl& participant,
                                                    std::shared_ptr<ParticipantImpl> keep,
                                                    EndpointSpec spec) {
+  share_what_there_is_room_for(participant, spec);
   auto writer = std::make_unique<Writer>(participant, std::move(keep), std::move(spec));
   Status status = writer->open();
   if (!status.ok()) return status;

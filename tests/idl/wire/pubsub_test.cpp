@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/statvfs.h>
 
 #include <bpa/wire/messages.hpp>
 #include <bpa/wire/publisher.hpp>
@@ -64,8 +65,9 @@ bpa_msgs::RgbdFrame frame_of(std::uint32_t width, std::uint32_t height) {
   return frame;
 }
 
-void exchange_frames(std::size_t publisher_shares, std::size_t subscriber_shares) {
-  auto one = test_participant("one");
+void exchange_frames(std::size_t publisher_shares, std::size_t subscriber_shares,
+                     const LogHook& log = {}) {
+  auto one = test_participant("one", log);
   auto two = test_participant("two");
   ASSERT_TRUE(one.ok() && two.ok());
   PublisherOptions publisher_options;
@@ -121,6 +123,18 @@ TEST(PubSub, OverUdp) { exchange_frames(0, 0); }
 TEST(PubSub, ThroughSharedMemory) { exchange_frames(kFrameBytes, kFrameBytes); }
 TEST(PubSub, SharingPublisherToPlainSubscriber) { exchange_frames(kFrameBytes, 0); }
 TEST(PubSub, PlainPublisherToSharingSubscriber) { exchange_frames(0, kFrameBytes); }
+
+TEST(PubSub, WithoutRoomForSharedMemoryFramesGoOverUdp) {
+  struct statvfs shm = {};
+  ASSERT_EQ(statvfs("/dev/shm", &shm), 0);
+  Inbox<std::string> log;
+  exchange_frames(shm.f_bavail * shm.f_frsize / 10, kFrameBytes,
+                  [&log](LogLevel, std::string_view text) { log.put(std::string(text)); });
+  const std::vector<std::string> said = log.values();
+  EXPECT_TRUE(std::any_of(said.begin(), said.end(), [](const std::string& line) {
+    return line.find("rt/frames goes over UDP") != std::string::npos;
+  }));
+}
 
 TEST(PubSub, TooLargeForSharingIsRefused) {
   auto one = test_participant("one");
