@@ -13,6 +13,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "support/leftovers.hpp"
+
 namespace bpa {
 
 /// A program that runs while this object lives. Its standard input is a pipe, whose end it may take
@@ -47,7 +49,9 @@ class ChildProcess {
 
   /// Kills it without a word, as a crash would.
   void crash() {
-    if (pid_ > 0) kill(pid_, SIGKILL);
+    if (pid_ <= 0) return;
+    support::Leftovers::all().add_shared_memory_of(pid_);
+    kill(pid_, SIGKILL);
   }
 
   /// Closes its input and waits for its end; kills it when the time is over. The exit code, or -1.
@@ -59,7 +63,7 @@ class ChildProcess {
     pid_t ended = 0;
     while ((ended = waitpid(pid_, &status, WNOHANG)) == 0) {
       if (std::chrono::steady_clock::now() > deadline) {
-        kill(pid_, SIGKILL);
+        crash();
         ended = waitpid(pid_, &status, 0);
         break;
       }

@@ -13,6 +13,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "support/leftovers.hpp"
+
 extern char** environ;
 
 namespace bpa::support {
@@ -34,12 +36,16 @@ Process::Process(const std::vector<std::string>& command, const std::string& log
 
 Process::~Process() {
   if (pid_ <= 0) return;
-  kill(pid_, SIGKILL);
+  signal(SIGTERM);
+  if (wait(std::chrono::milliseconds(3000)) != -1) return;
+  signal(SIGKILL);
   waitpid(pid_, nullptr, 0);
 }
 
 void Process::signal(int number) const {
-  if (pid_ > 0) kill(pid_, number);
+  if (pid_ <= 0) return;
+  if (number == SIGKILL) Leftovers::all().add_shared_memory_of(pid_);
+  kill(pid_, number);
 }
 
 int Process::wait(std::chrono::milliseconds timeout) {
@@ -69,6 +75,7 @@ std::string scratch_folder() {
   const auto folder =
       std::filesystem::temp_directory_path() / ("bpa_test_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
+  Leftovers::all().add(folder.string());
   return folder.string();
 }
 

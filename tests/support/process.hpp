@@ -10,7 +10,7 @@
 
 namespace bpa::support {
 
-/// A child process. Killed and waited for when destroyed.
+/// A child process. Told to end when destroyed, killed if it does not.
 class Process {
  public:
   /// Starts a program with its arguments; its output goes to `log_path` (empty: nowhere).
@@ -36,7 +36,7 @@ int run(const std::vector<std::string>& command, const std::string& log_path,
 int test_domain();
 /// A ROS namespace likewise.
 std::string test_namespace();
-/// A folder of this process for files, made on first use.
+/// A folder of this process for files, made on first use, gone when this process ends.
 std::string scratch_folder();
 /// The whole text of a file; empty when there is none.
 std::string read_text(const std::string& path);
