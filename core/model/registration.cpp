@@ -114,9 +114,31 @@ Registration refine(const PointCloud& source, const Target& target, const Motion
   return out;
 }
 
-bool alike(const Pose& a, const Pose& b, double size) {
-  return rotation_angle(a.rotation, b.rotation) < 0.09 &&
-         (a.translation - b.translation).norm() < 0.03 * size;
+bool alike(const Pose& a, const Pose& b, double angle, double distance) {
+  return rotation_angle(a.rotation, b.rotation) < angle &&
+         (a.translation - b.translation).norm() < distance;
+}
+
+// From candidates by falling score, the best few of each way to turn: of a box laid onto itself the
+// checks accept so many poses that worse ways, which may show its other faces, would find no room.
+std::vector<Candidate> best_of_each_kind(const std::vector<Candidate>& candidates, double size) {
+  constexpr std::size_t kMost = 1000;
+  constexpr int kEachTurn = 6;
+  std::vector<Candidate> kept;
+  std::vector<Pose> poses;
+  for (const Candidate& c : candidates) {
+    if (kept.size() >= kMost) break;
+    const Pose pose = to_pose(c.motion);
+    int turned_alike = 0;
+    const bool known = std::any_of(poses.begin(), poses.end(), [&](const Pose& k) {
+      turned_alike += rotation_angle(k.rotation, pose.rotation) < 0.6;
+      return turned_alike >= kEachTurn || alike(k, pose, 0.2, 0.06 * size);
+    });
+    if (known) continue;
+    kept.push_back(c);
+    poses.push_back(pose);
+  }
+  return kept;
 }
 
 // The poses that one random pair of the source's points suggests.
@@ -178,15 +200,7 @@ std::vector<Registration> register_surfaces(const PointCloud& source, const Poin
   for (const auto& f : found) candidates.insert(candidates.end(), f.begin(), f.end());
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-  // The best of each kind.
-  std::vector<Candidate> kept;
-  for (const Candidate& c : candidates) {
-    if (static_cast<int>(kept.size()) >= 4 * options.kept) break;
-    const bool known = std::any_of(kept.begin(), kept.end(), [&](const Candidate& k) {
-      return alike(to_pose(k.motion), to_pose(c.motion), size);
-    });
-    if (!known) kept.push_back(c);
-  }
+  const std::vector<Candidate> kept = best_of_each_kind(candidates, size);
   std::vector<Registration> refined(kept.size());
   parallel_for(static_cast<int>(kept.size()), options.num_threads, [&](int k) {
     const auto i = static_cast<std::size_t>(k);
@@ -200,7 +214,7 @@ std::vector<Registration> register_surfaces(const PointCloud& source, const Poin
   for (const Registration& r : refined) {
     if (static_cast<int>(ends.size()) >= options.kept) break;
     const bool known = std::any_of(ends.begin(), ends.end(), [&](const Registration& e) {
-      return alike(e.target_from_source, r.target_from_source, 0.5 * size);
+      return alike(e.target_from_source, r.target_from_source, 0.09, 0.015 * size);
     });
     if (!known) ends.push_back(r);
   }

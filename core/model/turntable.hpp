@@ -37,7 +37,10 @@ struct RestingPosition {
   /// Views that show the object, with camera_from_object set: the object's frame has its origin
   /// where the axis meets the table, z up.
   std::vector<PosedView> views;
-  int missed = 0;  ///< Views that do not show the object and were left out.
+  std::vector<int> steps;     ///< ScanView::step of each of the views.
+  double sense_evidence = 0;  ///< How much better counter-clockwise fits the scans than clockwise:
+                              ///< difference of mean squared distances, metres squared.
+  int missed = 0;             ///< Views that do not show the object and were left out.
 };
 
 /// Marks the object's pixels in the views: what stands on the turntable. Returns the table's plane.
@@ -49,14 +52,21 @@ Result<Plane> segment_object(std::vector<ScanView>& views, const TurntableOption
 Result<RestingPosition> align_resting_position(std::vector<ScanView> views,
                                                const TurntableOptions& options);
 
+/// Finds step, centre and axis, and with them the poses of the views, from the plane and the views.
+/// `sense` is 1 when the table turns counter-clockwise, -1 clockwise, 0 when that is to be found
+/// out as well, which cannot be done where an object looks alike from all sides and stands in the
+/// middle.
+void find_axis(RestingPosition& position, int sense, const TurntableOptions& options);
+
 /// Finds, for every resting position but the first, the rigid motion that brings its object onto
-/// that of the first, and applies it to the poses of its views. Returns one line for each position
+/// that of the first, and applies it to the poses of its views. Where several motions fit, one that
+/// puts another side down is likelier. Returns one line for each position
 /// whose fit is poor (its views are left out).
 std::vector<std::string> merge_resting_positions(std::vector<RestingPosition>& positions,
                                                  const TurntableOptions& options);
 
-/// All of it: the views of all resting positions in one object frame (that of the first). Warnings
-/// say what was left out.
+/// All of it: the views of all resting positions in one object frame (that of the first). The table
+/// turns the same way in all of them. Warnings say what was left out.
 struct AlignedScan {
   std::vector<PosedView> views;
   std::vector<RestingPosition> positions;  ///< Without their views.

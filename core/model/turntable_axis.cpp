@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -23,7 +24,6 @@ constexpr double kDegree = M_PI / 180;
 // The object's points of one view, on the table: z is the height.
 struct Scan {
   int step = 0;
-  std::size_t view = 0;
   std::vector<Eigen::Vector3f> points, normals;
 };
 
@@ -67,7 +67,7 @@ Pose camera_from_table(const Plane& plane) {
 std::vector<Scan> thinned(const std::vector<Scan>& scans, std::size_t count, std::size_t stride) {
   std::vector<Scan> out;
   for (std::size_t s = 0; s < scans.size(); s += stride) {
-    Scan scan{scans[s].step, scans[s].view, {}, {}};
+    Scan scan{scans[s].step, {}, {}};
     const std::size_t n = scans[s].points.size();
     const std::size_t kept = std::min(count, n);
     for (std::size_t i = 0; i < kept; ++i) {
@@ -130,29 +130,30 @@ double cost_of(const std::vector<Scan>& scans, const Turn& turn, float radius) {
   return sum / (static_cast<double>(all.points.size()) * static_cast<double>(scans.size()));
 }
 
-// The best of a lattice of centres, for either sense of rotation.
-Turn search(const std::vector<Scan>& scans, double step, const Eigen::Vector2d& middle,
-            double reach, double spacing, float radius, bool both_senses, int num_threads) {
-  std::vector<Turn> candidates;
+struct Trial {
+  Turn turn;
+  double cost = 0;
+};
+
+// The best of a lattice of centres.
+Trial search(const std::vector<Scan>& scans, double step, const Eigen::Vector2d& middle,
+             double reach, double spacing, float radius, int num_threads) {
+  std::vector<Trial> trials;
   const int n = static_cast<int>(std::ceil(reach / spacing));
-  for (const double sense : {1.0, -1.0}) {
-    if (sense < 0 && !both_senses) continue;
-    for (int y = -n; y <= n; ++y) {
-      for (int x = -n; x <= n; ++x) {
-        Turn turn;
-        turn.centre = middle + spacing * Eigen::Vector2d(x, y);
-        turn.step = sense * step;
-        candidates.push_back(turn);
-      }
+  for (int y = -n; y <= n; ++y) {
+    for (int x = -n; x <= n; ++x) {
+      Trial trial;
+      trial.turn.centre = middle + spacing * Eigen::Vector2d(x, y);
+      trial.turn.step = step;
+      trials.push_back(trial);
     }
   }
-  std::vector<double> cost(candidates.size());
-  parallel_for(static_cast<int>(candidates.size()), num_threads, [&](int k) {
-    const auto i = static_cast<std::size_t>(k);
-    cost[i] = cost_of(scans, candidates[i], radius);
+  parallel_for(static_cast<int>(trials.size()), num_threads, [&](int k) {
+    Trial& trial = trials[static_cast<std::size_t>(k)];
+    trial.cost = cost_of(scans, trial.turn, radius);
   });
-  return candidates[static_cast<std::size_t>(std::min_element(cost.begin(), cost.end()) -
-                                             cost.begin())];
+  return *std::min_element(trials.begin(), trials.end(),
+                           [](const Trial& l, const Trial& r) { return l.cost < r.cost; });
 }
 
 // How the pose of each view changes with each parameter: p -> rotation * p + translation.
@@ -176,7 +177,8 @@ std::vector<std::array<Slope, 5>> slopes_of(const std::vector<Scan>& scans, cons
 }
 
 // One Gauss-Newton step of all parameters; returns its length in metres of centre.
-double refine(const std::vector<Scan>& scans, float radius, const Turn& start, Turn& turn) {
+double refine(const std::vector<Scan>& scans, float radius, const Turn& start, bool step_known,
+              Turn& turn) {
   constexpr double kHuber = 0.002, kSigma = 0.002;  // metres
   const Merged all(scans, turn);
   const NeighborGrid grid(all.points, radius);
@@ -216,7 +218,8 @@ double refine(const std::vector<Scan>& scans, float radius, const Turn& start, T
       30 * static_cast<double>(scans.size() * scans.size()) / pairs / (kSigma * kSigma);
   hessian *= worth;
   gradient *= worth;
-  const double step_prior = 1 / (0.03 * 0.03), tilt_prior = 1 / std::pow(0.15 * kDegree, 2);
+  const double step_prior = step_known ? 1e12 : 1 / (0.03 * 0.03);
+  const double tilt_prior = 1 / std::pow(0.15 * kDegree, 2);
   hessian(2, 2) += step_prior;
   gradient[2] += step_prior * std::log(turn.step / start.step);
   hessian(3, 3) += tilt_prior, hessian(4, 4) += tilt_prior;
@@ -227,7 +230,8 @@ double refine(const std::vector<Scan>& scans, float radius, const Turn& start, T
   return step.head<2>().norm();
 }
 
-Turn find_turn(const std::vector<Scan>& scans, const TurntableOptions& options) {
+// Either way round: the best turn and what it costs.
+std::array<Trial, 2> find_turns(const std::vector<Scan>& scans, const TurntableOptions& options) {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   float reach = 0;
   for (const Scan& scan : scans) {
@@ -242,21 +246,73 @@ Turn find_turn(const std::vector<Scan>& scans, const TurntableOptions& options) 
   const double window = 0.06 + 0.5 * static_cast<double>(reach);
   const std::size_t stride = std::max<std::size_t>(1, scans.size() / 12);
   const std::vector<Scan> few = thinned(scans, 70, stride), more = thinned(scans, 150, stride);
-  const double step = options.step_deg * kDegree;
-  Turn turn = search(few, step, middle, window, 0.012, 0.03f, true, options.num_threads);
-  const double sense = turn.step > 0 ? 1 : -1;
-  turn = search(more, sense * step, turn.centre, 0.010, 0.004, 0.015f, false, options.num_threads);
-  const Turn start = turn;
+  std::array<Trial, 2> best;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double step = (k == 0 ? 1 : -1) * options.step_deg * kDegree;
+    best[k] = search(few, step, middle, window, 0.012, 0.03f, options.num_threads);
+    best[k] = search(more, step, best[k].turn.centre, 0.010, 0.004, 0.015f, options.num_threads);
+  }
+  return best;
+}
+
+Turn refined(const std::vector<Scan>& scans, const Turn& start, bool step_known) {
+  constexpr double kMostWrong = 0.08;
+  Turn turn = start;
   const std::vector<Scan> many = thinned(scans, 250, 1);
   for (const float radius : {0.015f, 0.010f, 0.007f, 0.006f}) {
     for (int round = 0; round < 6; ++round) {
-      if (refine(many, radius, start, turn) < 1e-5) break;
+      if (refine(many, radius, start, step_known, turn) < 1e-5) break;
     }
   }
-  return turn;
+  // The scans of an object that looks alike from all sides say nothing about the step.
+  const bool lost = std::abs(std::log(turn.step / start.step)) > kMostWrong;
+  return lost && !step_known ? refined(scans, start, true) : turn;
+}
+
+// Whether a pixel shows the object, and not at too flat an angle.
+bool well_seen(const PosedView& view, std::size_t i) {
+  return view.object[i] && view.map.normals[i].squaredNorm() > 0.5f &&
+         view.map.normals[i].dot(view.map.points[i].normalized()) <= -0.25f;
+}
+
+// What the views show of the object, on the table.
+std::vector<Scan> scans_of(const std::vector<PosedView>& views, const std::vector<int>& steps,
+                           const Pose& table_from_camera) {
+  const Eigen::Matrix3f r = table_from_camera.matrix().cast<float>();
+  const Eigen::Vector3f t = table_from_camera.translation.cast<float>();
+  std::vector<Scan> scans;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const PosedView& view = views[v];
+    Scan scan{steps[v], {}, {}};
+    for (std::size_t i = 0; i < view.map.size(); ++i) {
+      if (!well_seen(view, i)) continue;
+      scan.points.emplace_back(r * view.map.points[i] + t);
+      scan.normals.emplace_back(r * view.map.normals[i]);
+    }
+    scans.push_back(std::move(scan));
+  }
+  return scans;
 }
 
 }  // namespace
+
+void find_axis(RestingPosition& position, int sense, const TurntableOptions& options) {
+  const Pose camera_from = camera_from_table(position.plane);
+  const std::vector<Scan> scans = scans_of(position.views, position.steps, camera_from.inverse());
+  const std::array<Trial, 2> trials = find_turns(scans, options);
+  position.sense_evidence = trials[1].cost - trials[0].cost;
+  if (sense == 0) sense = position.sense_evidence >= 0 ? 1 : -1;
+  const Turn turn = refined(scans, trials[sense > 0 ? 0 : 1].turn, false);
+  position.centre = camera_from * Eigen::Vector3d(turn.centre.x(), turn.centre.y(), 0);
+  position.axis = camera_from.rotation * turn.axis();
+  position.step_deg = turn.step / kDegree;
+  const Pose first_from_object{Eigen::Quaterniond::Identity(),
+                               {turn.centre.x(), turn.centre.y(), 0}};
+  for (std::size_t v = 0; v < position.views.size(); ++v) {
+    const Pose view_from_first = turn.first_from_view(position.steps[v]).inverse();
+    position.views[v].camera_from_object = camera_from * view_from_first * first_from_object;
+  }
+}
 
 Result<RestingPosition> align_resting_position(std::vector<ScanView> views,
                                                const TurntableOptions& options) {
@@ -266,40 +322,21 @@ Result<RestingPosition> align_resting_position(std::vector<ScanView> views,
   const Result<Plane> plane = segment_object(views, options);
   if (!plane.ok()) return plane.status();
   out.plane = *plane;
-  const Pose camera_from = camera_from_table(*plane);
-  const Pose table_from_camera = camera_from.inverse();
-  const Eigen::Matrix3f r = table_from_camera.matrix().cast<float>();
-  const Eigen::Vector3f t = table_from_camera.translation.cast<float>();
-  std::vector<Scan> scans;
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    const PosedView& view = views[v].view;
-    Scan scan{views[v].step, v, {}, {}};
-    for (std::size_t i = 0; i < view.map.size(); ++i) {
-      if (!view.object[i] || view.map.normals[i].squaredNorm() < 0.5f) continue;
-      if (view.map.normals[i].dot(view.map.points[i].normalized()) > -0.25f) continue;
-      scan.points.emplace_back(r * view.map.points[i] + t);
-      scan.normals.emplace_back(r * view.map.normals[i]);
-    }
-    if (scan.points.size() >= kLeastPixels) scans.push_back(std::move(scan));
+  for (ScanView& scan : views) {
+    const PosedView& view = scan.view;
+    std::size_t pixels = 0;
+    for (std::size_t i = 0; i < view.map.size(); ++i) pixels += well_seen(view, i);
+    if (pixels < kLeastPixels) continue;
+    out.views.push_back(std::move(scan.view));
+    out.steps.push_back(scan.step);
   }
-  out.missed = static_cast<int>(views.size() - scans.size());
-  if (scans.size() < kLeastViews) {
-    return Status(StatusCode::not_found, "the object is seen in " + std::to_string(scans.size()) +
-                                             " of " + std::to_string(views.size()) +
-                                             " views; it must be seen in at least 3");
+  out.missed = static_cast<int>(views.size() - out.views.size());
+  if (out.views.size() < kLeastViews) {
+    return Status(StatusCode::not_found,
+                  "the object is seen in " + std::to_string(out.views.size()) + " of " +
+                      std::to_string(views.size()) + " views; it must be seen in at least 3");
   }
-  const Turn turn = find_turn(scans, options);
-  out.centre = camera_from * Eigen::Vector3d(turn.centre.x(), turn.centre.y(), 0);
-  out.axis = camera_from.rotation * turn.axis();
-  out.step_deg = turn.step / kDegree;
-  const Pose first_from_object{Eigen::Quaterniond::Identity(),
-                               {turn.centre.x(), turn.centre.y(), 0}};
-  for (const Scan& scan : scans) {
-    PosedView& view = views[scan.view].view;
-    const Pose view_from_first = turn.first_from_view(scan.step).inverse();
-    view.camera_from_object = camera_from * view_from_first * first_from_object;
-    out.views.push_back(std::move(view));
-  }
+  find_axis(out, 0, options);
   return out;
 }
 

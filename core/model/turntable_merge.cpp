@@ -95,6 +95,9 @@ struct Choice {
 Choice best_way(const PointCloud& source, const RestingPosition& source_position,
                 const PointCloud& target, const RestingPosition& target_position,
                 const std::vector<Registration>& ways, int num_threads) {
+  // One puts an object down another way to show what it hid before: of a box whose ends look the
+  // same, both scans might as well be of the same end.
+  constexpr double kSameSideDown = 0.4, kSameUp = 0.9;
   std::vector<Choice> choices(ways.size());
   parallel_for(static_cast<int>(ways.size()), num_threads, [&](int k) {
     const auto i = static_cast<std::size_t>(k);
@@ -102,8 +105,10 @@ Choice best_way(const PointCloud& source, const RestingPosition& source_position
     const Objection there = objection(source, pose, target_position.views);
     const Objection back = objection(target, pose.inverse(), source_position.views);
     const double free = there.free_space + back.free_space;
-    choices[i] = {pose, ways[i].overlap - 6 * free - 4 * (there.color + back.color),
-                  ways[i].overlap, free};
+    const double up = (pose.rotation * Eigen::Vector3d::UnitZ()).z();
+    const double score = ways[i].overlap - 6 * free - 4 * (there.color + back.color) -
+                         (up > kSameUp ? kSameSideDown : 0);
+    choices[i] = {pose, score, ways[i].overlap, free};
   });
   Choice best;
   for (const Choice& c : choices) {
@@ -124,6 +129,7 @@ std::vector<std::string> merge_resting_positions(std::vector<RestingPosition>& p
     surfaces.push_back(surface_of_position(p, options.num_threads));
   }
   RegistrationOptions registration;
+  registration.kept = 160;  // a can has dozens of ways to stand, and as many upside down
   registration.seed = options.seed;
   registration.num_threads = options.num_threads;
   for (std::size_t k = 1; k < positions.size(); ++k) {
@@ -166,6 +172,12 @@ Result<AlignedScan> align_scan(std::vector<std::vector<ScanView>> positions,
     aligned.push_back(std::move(*position));
   }
   if (aligned.empty()) return last;
+  double evidence = 0;
+  for (const RestingPosition& position : aligned) evidence += position.sense_evidence;
+  const int sense = evidence >= 0 ? 1 : -1;
+  for (RestingPosition& position : aligned) {
+    if (position.step_deg * sense < 0) find_axis(position, sense, options);
+  }
   for (std::string& problem : merge_resting_positions(aligned, options)) {
     out.warnings.push_back(std::move(problem));
   }

@@ -4,6 +4,7 @@
 // turns: pixels whose depth changes show it. The table is the plane that carries what changes.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <queue>
@@ -154,6 +155,59 @@ const Plane* carrier(const std::vector<Plane>& planes, const std::vector<Eigen::
   return best;
 }
 
+// Whether what the camera sees of a plane lies all round a place on it, beyond a radius.
+bool surrounds(const Plane& plane, const Background& background, const Eigen::Vector3f& middle,
+               float radius) {
+  constexpr int kSectors = 8, kLeast = 10;  // the object may hide what is behind it
+  const Eigen::Vector3f x = plane.normal.unitOrthogonal(), y = plane.normal.cross(x);
+  std::array<int, kSectors> count{};
+  for (std::size_t i = 0; i < background.points.size(); ++i) {
+    const Eigen::Vector3f d = background.points[i] - middle;
+    const float u = d.dot(x), v = d.dot(y);
+    if (u * u + v * v < radius * radius) continue;
+    if (!on_plane(plane, background.points[i], background.normals[i])) continue;
+    const double turn = std::atan2(v, u) / (2 * M_PI) + 0.5;
+    ++count[static_cast<std::size_t>(turn * kSectors) % kSectors];
+  }
+  return std::count_if(count.begin(), count.end(), [](int c) { return c >= kLeast; }) >=
+         kSectors - 1;
+}
+
+// The same where little but ragged edges changes: the object looks alike from all sides, and so
+// does a turning plate on a table, whose rim is below its top. Of the planes with most of the
+// points in their midst, the highest.
+const Plane* highest_carrier(const std::vector<Plane>& planes, const Background& background,
+                             const std::vector<Eigen::Vector3f>& points) {
+  constexpr float kMostGap = 0.05f, kLeastHeight = 0.006f, kMostHeight = 0.6f;
+  const Plane* best = nullptr;
+  for (const Plane& plane : planes) {
+    Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+    std::vector<Eigen::Vector3f> feet;
+    bool stands = false;
+    for (const Eigen::Vector3f& p : points) {
+      const float h = height(plane, p);
+      if (h < kLeastHeight || h > kMostHeight) continue;
+      feet.emplace_back(p - h * plane.normal);
+      middle += feet.back();
+      stands |= h < kMostGap;
+    }
+    if (2 * feet.size() < points.size() || !stands) continue;
+    middle /= static_cast<float>(feet.size());
+    std::vector<float> squared;
+    for (const Eigen::Vector3f& p : feet) squared.push_back((p - middle).squaredNorm());
+    const auto half = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
+    std::nth_element(squared.begin(), half, squared.end());
+    if (!surrounds(plane, background, middle, std::sqrt(*half))) continue;
+    if (best == nullptr || height(*best, middle) > 0) best = &plane;
+  }
+  return best;
+}
+
+// Where the ray through a point meets the first plane, is it above the second?
+bool is_above(const Plane& plane, const Plane& other, const Eigen::Vector3f& p) {
+  return height(other, p * (plane.offset / plane.normal.dot(p))) > 0;
+}
+
 // What an object that looks the same from all sides shows: whatever rises above a plane near the
 // middle of the image and belongs to no plane.
 std::vector<Eigen::Vector3f> standing_in_the_middle(const Background& background,
@@ -240,15 +294,20 @@ Result<Plane> segment_object(std::vector<ScanView>& views, const TurntableOption
   for (const Eigen::Vector3f& p : background.moving) {
     if (!near_plane(planes, p)) standing.push_back(p);
   }
-  if (standing.size() < kEnough) standing = standing_in_the_middle(background, planes);
+  const bool turns = standing.size() >= kEnough;
+  if (!turns) standing = standing_in_the_middle(background, planes);
   const Status empty(StatusCode::not_found, "nothing stands on the turntable, in none of the " +
                                                 std::to_string(views.size()) + " views");
   if (standing.size() < kEnough) return empty;
-  const Plane* table = carrier(planes, standing);
-  if (table == nullptr) return empty;
-
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
   for (const Eigen::Vector3f& p : standing) middle += p / static_cast<float>(standing.size());
+  const Plane* table = highest_carrier(planes, background, standing);
+  if (const Plane* lowest = turns ? carrier(planes, standing) : nullptr;
+      lowest != nullptr && (table == nullptr || !is_above(*table, *lowest, middle))) {
+    table = lowest;
+  }
+  if (table == nullptr) return empty;
+
   Footprint footprint(*table, middle);
   const auto rises = [&](const SurfaceMap& map, std::size_t i) {
     const float h = map.depth[i] > 0 ? height(*table, map.points[i]) : 0;

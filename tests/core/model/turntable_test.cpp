@@ -31,8 +31,22 @@ double enter(const Box& box, const Eigen::Vector3d& from, const Eigen::Vector3d&
   return near < far ? near : 1e9;
 }
 
+// The same for an upright cylinder about (0, 0).
+double enter_cylinder(double radius, double low, double high, const Eigen::Vector3d& from,
+                      const Eigen::Vector3d& d) {
+  double best = 1e9;
+  const double cap = (high - from.z()) / d.z();
+  if (cap > 0 && (from + cap * d).head<2>().norm() < radius) best = cap;
+  const double a = d.head<2>().squaredNorm(), b = from.head<2>().dot(d.head<2>());
+  const double root = b * b - a * (from.head<2>().squaredNorm() - radius * radius);
+  if (root < 0) return best;
+  const double side = (-b - std::sqrt(root)) / a, z = from.z() + side * d.z();
+  return side > 0 && z > low && z < high ? std::min(best, side) : best;
+}
+
 struct Stage {
   bool object = true;
+  bool can = false;  // the object is a can on the axis instead
   double true_step = 10 * kDegree;
   Pose plate_from_object;  // before any turn
   Eigen::Vector2d axis{0.012, -0.018};
@@ -66,13 +80,14 @@ Frame image(const Stage& stage, int k, std::uint64_t seed) {
     for (int u = 0; u < 320; ++u) {
       const Eigen::Vector3d d = world.rotation * frame.camera.unproject(u, v, 1);
       const Eigen::Vector3d& eye = world.translation;
-      double t = 1e9;
-      const double plate = -eye.z() / d.z();
-      if (plate > 0 && (eye + plate * d).head<2>().norm() < 0.15) t = plate;
-      const double table = (-0.02 - eye.z()) / d.z();  // 2 cm below
+      double t = enter_cylinder(0.15, -0.02, 0, eye, d);  // the plate
+      const double table = (-0.02 - eye.z()) / d.z();     // 2 cm below
       if (table > 0) t = std::min(t, table);
       t = std::min(t, (0.9 - eye.y()) / d.y() > 0 ? (0.9 - eye.y()) / d.y() : 1e9);  // a wall
-      if (stage.object) {
+      if (stage.can) {
+        const Eigen::Vector3d axis(stage.axis.x(), stage.axis.y(), 0);
+        t = std::min(t, enter_cylinder(0.035, 0, 0.1, eye - axis, d));
+      } else if (stage.object) {
         const Eigen::Vector3d from = object_from_world * eye,
                               along = object_from_world.rotation * d;
         t = std::min({t, enter(kFoot, from, along), enter(kTower, from, along)});
@@ -137,6 +152,22 @@ TEST(Turntable, WrongStepAndSenseAreFound) {
     EXPECT_NEAR(found->step_deg, step, 0.15);
     EXPECT_LT(centre_error(*found, stage), 0.001);
   }
+}
+
+// Nothing changes while it turns; what carries it is the plate, not the table under it.
+TEST(Turntable, ObjectThatLooksAlikeFromAllSidesStandsOnThePlate) {
+  Stage stage;
+  stage.can = true;
+  auto found = align_resting_position(scan(stage, 12, 12), {});
+  ASSERT_TRUE(found.ok()) << found.status().message;
+  const Eigen::Vector3d up = world_from_camera().rotation * found->plane.normal.cast<double>();
+  EXPECT_GT(up.z(), std::cos(0.5 * kDegree));
+  EXPECT_NEAR((world_from_camera() * found->centre).z(), 0, 0.003);
+  EXPECT_LT(centre_error(*found, stage), 0.002);
+  const int other = found->step_deg > 0 ? -1 : 1;  // fits as well; others know which is right
+  find_axis(*found, other, {});
+  EXPECT_NEAR(found->step_deg, 10 * other, 0.5);
+  EXPECT_LT(centre_error(*found, stage), 0.002);
 }
 
 TEST(Turntable, FramesWithoutTheObjectAreLeftOut) {
