@@ -229,7 +229,7 @@ struct ServerOptions {
     visit("output", output, "Topics of the results; an empty name switches one off.");
     visit("detection", detection, "The search.");
     visit("log", log, "What is said on the terminal.");
-    visit("detector", detector, "How objects are found.");
+    visit("detector", detector, "How objects are found. All of it also at run time.");
   }
 };
 

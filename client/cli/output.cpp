@@ -172,6 +172,7 @@ Json to_json(const DetectionSet& set) {
           {"status", to_string(set.status.code)},
           {"message", set.status.message},
           {"seconds", 0.001 * set.total_ms},
+          {"queue_position", set.queue_position},
           {"budget_exhausted", set.budget_exhausted},
           {"timings", timings},
           {"interpretations", interpretations}};

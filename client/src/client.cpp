@@ -153,7 +153,9 @@ Result<DetectionSet> Client::Impl::search(msgs::Detect_Request request, const De
   request.timeout_ms = std::max(1.0, total_ms - std::clamp(0.25 * total_ms, 50.0, 1000.0));
   const auto response = detect.call(request, timeout);
   if (Status status = outcome(response); !status.ok()) return status;
-  return sdk::to_detections(response->result);
+  DetectionSet found = sdk::to_detections(response->result);
+  found.queue_position = static_cast<int>(response->queue_position);
+  return found;
 }
 
 Result<wire::Publisher<msgs::RgbdFrame>*> Client::Impl::frame_publisher() {

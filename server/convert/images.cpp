@@ -56,8 +56,10 @@ Raw read(const std::uint8_t* bytes) {
 
 template <class Raw, bool kSwap, class ToMetres>
 void read_rows(const ImageView& image, ToMetres to_metres, std::vector<float>& depth) {
+  depth.reserve(std::size_t{image.width} * image.height);
   for (std::size_t v = 0; v < image.height; ++v) {
     const std::uint8_t* row = row_of(image, v, sizeof(Raw));
+    depth.resize((v + 1) * image.width);  // row by row: what resize writes is still in the cache
     float* out = depth.data() + v * image.width;
     for (std::size_t u = 0; u < image.width; ++u) {
       out[u] = to_metres(read<Raw, kSwap>(row + u * sizeof(Raw)));
@@ -68,7 +70,7 @@ void read_rows(const ImageView& image, ToMetres to_metres, std::vector<float>& d
 template <class Raw, class ToMetres>
 Result<std::vector<float>> read_depth(const ImageView& image, ToMetres to_metres) {
   if (Status status = check_layout(image, sizeof(Raw)); !status.ok()) return status;
-  std::vector<float> depth(std::size_t{image.width} * image.height);
+  std::vector<float> depth;
   if (image.big_endian) {
     read_rows<Raw, true>(image, to_metres, depth);
   } else {

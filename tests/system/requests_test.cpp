@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <future>
@@ -151,20 +152,22 @@ TEST(Requests, AFullQueueIsBusyAndNobodyWaitsForEver) {
   auto client = Client::connect(support::client_options());
   ASSERT_TRUE(client.ok()) << client.status().message;
   const WallView wall;
-  std::vector<std::future<StatusCode>> answers;
+  std::vector<std::future<Result<DetectionSet>>> answers;
   for (int i = 0; i < 6; ++i) {
-    answers.push_back(std::async(std::launch::async,
-                                 [&] { return client->detect_in(wall.view()).status().code; }));
+    answers.push_back(
+        std::async(std::launch::async, [&] { return client->detect_in(wall.view()); }));
   }
-  int served = 0, busy = 0;
+  int served = 0, busy = 0, last_place = 0;
   for (auto& answer : answers) {
-    const StatusCode code = answer.get();
-    served += code == StatusCode::ok ? 1 : 0;
-    busy += code == StatusCode::busy ? 1 : 0;
+    const Result<DetectionSet> found = answer.get();
+    served += found.ok() ? 1 : 0;
+    busy += found.status().code == StatusCode::busy ? 1 : 0;
+    if (found.ok()) last_place = std::max(last_place, found->queue_position);
   }
   EXPECT_EQ(served + busy, 6);
   EXPECT_GE(served, 2);
   EXPECT_GE(busy, 3);  // one is searched and two wait
+  EXPECT_EQ(last_place, 1);
 }
 
 TEST(Requests, WithoutAFrameTheNextOneIsAwaitedInVainAndSaidSo) {

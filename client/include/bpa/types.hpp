@@ -84,6 +84,9 @@ struct DetectionSet {
   bool budget_exhausted = false;  ///< The time budget ended the search: the best found so far.
   int models_searched = 0;
   std::uint64_t seed = 0;  ///< Gives the same answer again for the same frame and options.
+  /// How many frames and requests waited before this one when the server accepted it; 0 for frames
+  /// of the stream.
+  int queue_position = 0;
 
   /// The detections of the best interpretation; none when there is no interpretation.
   const std::vector<Detection>& best() const {
