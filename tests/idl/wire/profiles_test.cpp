@@ -41,7 +41,7 @@ TEST(Profiles, TheInstalledFileIsWhatThereIsWithoutOne) {
   auto publisher = Publisher<std_msgs::String>::create(*plain, "text");
   std::string said;
   const auto profiled =
-      with_profiles(BPA_SOURCE_DIR "/config/dds_profiles.xml", [&](LogLevel level, auto text) {
+      with_profiles(BPA_BINARY_DIR "/config/dds_profiles.xml", [&](LogLevel level, auto text) {
         if (level >= LogLevel::warning) said += std::string(text) + "\n";
       });
   ASSERT_TRUE(profiled.ok()) << profiled.status().message;
