@@ -12,6 +12,8 @@ namespace bpa::sim_driver {
 namespace {
 
 constexpr int kMaxDepthMm = 6500;
+/// Per cent of blue under a warm lamp, as seen without white balance.
+constexpr int kLampBlue = 70;
 /// Each scene is shown for half a second.
 constexpr std::uint64_t kTicksPerScene = 15;
 
@@ -206,13 +208,15 @@ void SimStream::fill_color(const SimFrame& scene, OniFrame& frame) const {
   auto* out = static_cast<std::uint8_t*>(frame.data);
   const int step = camera.width / mode_.resolutionX;
   const int brightness = auto_exposure_ != FALSE ? 10000 : exposure_ * gain_;
+  const int blue = auto_white_balance_ != FALSE ? brightness : brightness * kLampBlue / 100;
+  const int gains[3] = {brightness, brightness, blue};
   for (int v = 0; v < frame.height; ++v) {
     for (int u = 0; u < frame.width; ++u) {
       const int column = mirrored_ != FALSE ? frame.width - 1 - u : u;
       const auto* pixel =
           scene.rgb.data() + 3 * static_cast<std::size_t>(v * step * camera.width + column * step);
       for (int c = 0; c < 3; ++c) {
-        *out++ = static_cast<std::uint8_t>(std::min(255, pixel[c] * brightness / 10000));
+        *out++ = static_cast<std::uint8_t>(std::min(255, pixel[c] * gains[c] / 10000));
       }
     }
   }
