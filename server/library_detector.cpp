@@ -5,6 +5,7 @@
 
 #include <bpa/core/io/model_file.hpp>
 #include <bpa/core/pipeline/annotate.hpp>
+#include <bpa/core/pipeline/score_layer_file.hpp>
 #include <bpa/server/library_detector.hpp>
 
 namespace bpa::server {
@@ -19,8 +20,8 @@ Status add_model(ModelSource source, int num_threads, ModelLibrary& library) {
 }  // namespace
 
 LibraryDetector::LibraryDetector(std::string folder, const DetectorOptions& options,
-                                 int num_threads)
-    : folder_(std::move(folder)), num_threads_(num_threads) {
+                                 int num_threads, ScoreLayer layer)
+    : folder_(std::move(folder)), num_threads_(num_threads), layer_(std::move(layer)) {
   replace(std::make_shared<const ModelLibrary>(), options);
 }
 
@@ -32,7 +33,10 @@ Result<std::shared_ptr<LibraryDetector>> LibraryDetector::create(const std::stri
   if (!std::filesystem::is_directory(folder, error)) {
     return Status(StatusCode::not_found, "library " + folder + ": there is no such folder");
   }
-  std::shared_ptr<LibraryDetector> self(new LibraryDetector(folder, options, num_threads));
+  Result<ScoreLayer> layer = library_score_layer(folder);
+  if (!layer.ok()) return layer.status();
+  std::shared_ptr<LibraryDetector> self(
+      new LibraryDetector(folder, options, num_threads, std::move(*layer)));
   if (io::list_models(folder).empty()) {
     log(hook, LogLevel::warning,
         "library " + folder +
@@ -72,7 +76,7 @@ std::shared_ptr<const ModelLibrary> LibraryDetector::library() const {
 
 void LibraryDetector::replace(std::shared_ptr<const ModelLibrary> library,
                               const DetectorOptions& options) {
-  auto detector = std::make_shared<const Detector>(library, options);
+  auto detector = std::make_shared<const Detector>(library, options, layer_);
   const std::lock_guard<std::mutex> lock(mutex_);
   if (library_ != library) ++version_;
   library_.swap(library);

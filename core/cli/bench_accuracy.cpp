@@ -17,6 +17,7 @@
 #include <bpa/core/io/file_bytes.hpp>
 #include <bpa/core/pipeline/detector.hpp>
 #include <bpa/core/pipeline/frame_trace.hpp>
+#include <bpa/core/pipeline/score_layer_file.hpp>
 
 namespace bpa::cli {
 namespace {
@@ -177,7 +178,9 @@ Status bench_accuracy(const AccuracyArguments& a) {
   if (!library.ok()) return library.status();
   const auto frames = io::read_bop_frames(a.bop, a.split, a.scenes);
   if (!frames.ok()) return frames.status();
-  const Detector detector(*library, options);
+  Result<ScoreLayer> layer = library_score_layer(a.library);
+  if (!layer.ok()) return layer.status();
+  const Detector detector(*library, options, std::move(*layer));
   DetectRequest request;
   request.seed = a.common.seed;
   request.num_threads = a.common.threads;

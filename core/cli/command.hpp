@@ -33,6 +33,7 @@ void add_common_options(CLI::App& command, CommonOptions& options);
 void add_model_command(CLI::App& program, Action& action);
 void add_detect_command(CLI::App& program, Action& action);
 void add_evaluate_command(CLI::App& program, Action& action);
+void add_train_command(CLI::App& program, Action& action);
 void add_simulate_command(CLI::App& program, Action& action);
 void add_bench_command(CLI::App& program, Action& action);
 

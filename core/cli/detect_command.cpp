@@ -17,6 +17,7 @@
 #include <bpa/core/io/pcd_file.hpp>
 #include <bpa/core/pipeline/annotate.hpp>
 #include <bpa/core/pipeline/detector.hpp>
+#include <bpa/core/pipeline/score_layer_file.hpp>
 
 namespace bpa::cli {
 namespace {
@@ -236,7 +237,9 @@ Status detect(const DetectArguments& a) {
   if (!first.ok()) return first.status();
   const auto library = load_detection_library(a.library, split_commas(a.models), a.common.threads);
   if (!library.ok()) return library.status();
-  const Detector detector(*library, options);
+  Result<ScoreLayer> layer = library_score_layer(a.library);
+  if (!layer.ok()) return layer.status();
+  const Detector detector(*library, options, std::move(*layer));
   if (!a.bop.empty()) return run_bop(a, detector);
   DetectRun run(a, detector);
   if (Status s = run.one(std::move(*first)); !s.ok()) return s;

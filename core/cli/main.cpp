@@ -16,8 +16,8 @@ constexpr int kUsage = 2;
 
 /// Every subcommand, in the order of the help text.
 constexpr void (*kCommands[])(CLI::App&, Action&) = {
-    add_model_command,    add_detect_command, add_evaluate_command,
-    add_simulate_command, add_bench_command,
+    add_model_command, add_detect_command,   add_evaluate_command,
+    add_train_command, add_simulate_command, add_bench_command,
 };
 
 int run(int argc, char** argv) {

@@ -8,6 +8,7 @@
 #include <bpa/core/base/random.hpp>
 #include <bpa/core/cloud/neighbor_grid.hpp>
 #include <bpa/core/detect/hypotheses.hpp>
+#include <bpa/core/detect/refinement.hpp>
 #include <bpa/core/model/model_index.hpp>
 
 namespace bpa {
@@ -100,25 +101,18 @@ class Sampler {
     }
   }
 
-  // Looks again at everything that was kept, with more points.
+  // Looks again at everything that was kept, with more points, after a first small correction.
   std::vector<Hypothesis> take() {
     std::vector<std::pair<std::uint64_t, const PoseCell*>> cells;
     for (const auto& [key, cell] : cells_) cells.push_back({key, &cell});
     std::sort(cells.begin(), cells.end());
     std::vector<Hypothesis> kept;
     for (const auto& [key, cell] : cells) {
-      for (int k = 0; k < cell->count; ++k) {
-        Hypothesis hypothesis = cell->members[k];
-        hypothesis.score = check_pose(scene_.image, model_.index->check,
-                                      hypothesis.camera_from_object, 256, tolerance_)
-                               .score();
-        kept.push_back(hypothesis);
-      }
+      kept.insert(kept.end(), cell->members, cell->members + cell->count);
     }
-    std::stable_sort(kept.begin(), kept.end(),
-                     [](const auto& a, const auto& b) { return a.score > b.score; });
-    const auto keep = static_cast<std::size_t>(options_.max_kept);
-    if (kept.size() > keep) kept.resize(keep);
+    keep_best(kept, 2 * options_.max_kept);
+    for (Hypothesis& hypothesis : kept) correct(hypothesis);
+    keep_best(kept, options_.max_kept);
     return kept;
   }
 
@@ -133,6 +127,33 @@ class Sampler {
     hypothesis.score = check.score();
     if (hypothesis.score < static_cast<float>(options_.min_check_score)) return;
     keep(hypothesis);
+  }
+
+  static void keep_best(std::vector<Hypothesis>& all, int count) {
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto& a, const auto& b) { return a.score > b.score; });
+    if (all.size() > static_cast<std::size_t>(count)) all.resize(static_cast<std::size_t>(count));
+  }
+
+  // A sampled pose is off by as much as the sampling of both surfaces is coarse.
+  void correct(Hypothesis& hypothesis) const {
+    RefinementOptions small;
+    small.iterations = 2;
+    small.max_points = 64;
+    small.start_gate_m = 0.020f;
+    small.end_gate_m = 0.012f;
+    const FastPose corrected =
+        to_fast(refine_pose(scene_, model_, to_pose(hypothesis.camera_from_object), small)
+                    .camera_from_object);
+    const auto check = [&](const FastPose& pose) {
+      return check_pose(scene_.image, model_.index->check, pose, 256, tolerance_).score();
+    };
+    hypothesis.score = check(hypothesis.camera_from_object);
+    const float score = check(corrected);
+    if (score > hypothesis.score) {
+      hypothesis.camera_from_object = corrected;
+      hypothesis.score = score;
+    }
   }
 
   // The best few of each pose cell, so that an easy object does not crowd out a hard one.

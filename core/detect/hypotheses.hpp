@@ -25,10 +25,10 @@ struct Hypothesis {
 struct HypothesisOptions {
   int matches_per_keypoint = 2;  ///< Nearest model features of each scene keypoint.
   int draws_per_match = 3;       ///< BPA draws for each correspondence.
-  int peaks_per_reference = 6;   ///< Voted model points of each scene reference point.
+  int peaks_per_reference = 12;  ///< Voted model points of each scene reference point.
   int check_points = 64;         ///< Model points that a pose is checked with.
   int max_kept = 1500;           ///< Best hypotheses that go on.
-  double min_check_score = 0.25;
+  double min_check_score = 0.15;
   std::uint64_t seed = 0;
 };
 

@@ -3,6 +3,8 @@
 #include <numeric>
 
 #include <bpa/core/base/random.hpp>
+#include <bpa/core/cloud/blur.hpp>
+#include <bpa/core/cloud/cielab.hpp>
 #include <bpa/core/cloud/curvature.hpp>
 #include <bpa/core/cloud/neighbor_grid.hpp>
 #include <bpa/core/detect/scene_features.hpp>
@@ -35,8 +37,18 @@ std::vector<int> choose(std::size_t available, int wanted, std::uint64_t seed) {
 }  // namespace
 
 SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
-                             const SceneFeatureOptions& options) {
+                             const SceneFeatureOptions& options,
+                             const Image<Eigen::Vector3f>& rgb) {
   SceneFeatures scene;
+  EdgeImageOptions edge_options;
+  edge_options.num_threads = options.num_threads;
+  scene.edges = scene_edges(map, rgb, edge_options);
+  SuperPixelOptions segment_options;
+  segment_options.num_threads = options.num_threads;
+  constexpr double kColorBlur = 1.5;  // pixels
+  const auto lab =
+      rgb.empty() ? rgb : cielab(blur(rgb, kColorBlur, options.num_threads), options.num_threads);
+  scene.segmentation = super_pixels(map, lab, scene.edges.likelihood, segment_options);
   scene.image = make_check_image(map);
   scene.planes = std::move(planes);
   const PointCloud searched = searched_points(map);

@@ -7,9 +7,11 @@
 #include <bpa/core/cloud/planes.hpp>
 #include <bpa/core/cloud/point_cloud.hpp>
 #include <bpa/core/cloud/surface_map.hpp>
+#include <bpa/core/features/edge_image.hpp>
 #include <bpa/core/features/fpfh.hpp>
 #include <bpa/core/features/pair_voting.hpp>
 #include <bpa/core/score/pose_check.hpp>
+#include <bpa/core/segment/super_pixels.hpp>
 
 namespace bpa {
 
@@ -23,6 +25,8 @@ struct SceneFeatures {
   std::vector<Fpfh> fpfh;      ///< Of the keypoints.
   PointCloud coarse;           ///< Searched surface, for point pairs.
   ScenePairs pairs;            ///< Of points of `coarse`.
+  SceneEdges edges;
+  Segmentation segmentation;  ///< Super-pixels of the whole map.
 };
 
 struct SceneFeatureOptions {
@@ -34,8 +38,9 @@ struct SceneFeatureOptions {
   int num_threads = 0;
 };
 
-/// `map` with its background labelled.
+/// `map` with its background labelled; `rgb` is the frame's reduced_color, empty without colour.
 SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
-                             const SceneFeatureOptions& options);
+                             const SceneFeatureOptions& options,
+                             const Image<Eigen::Vector3f>& rgb = {});
 
 }  // namespace bpa

@@ -8,6 +8,9 @@
 #include <bpa/core/base/stopwatch.hpp>
 #include <bpa/core/detect/single_object.hpp>
 #include <bpa/core/model/model_index.hpp>
+#include <bpa/core/score/boundary_scores.hpp>
+#include <bpa/core/score/random_walk_score.hpp>
+#include <bpa/core/score/segment_scores.hpp>
 
 namespace bpa {
 namespace {
@@ -49,7 +52,8 @@ Aligned round_two(const SceneFeatures& scene, const ObjectModel& model, const Po
   refinement.end_gate_m = 0.012f;
   const Pose refined = refine_pose(scene, model, best.pose, refinement).camera_from_object;
   if (check_score(scene, model, refined) > best.score) best.pose = refined;
-  best.score = placement_score(score_placement(scene.image, model, best.pose));
+  best.score = placement_score(score_placement(scene.image, model, best.pose, options.quick_points),
+                               options.layer);
   return best;
 }
 
@@ -75,15 +79,30 @@ void remove_similar(std::vector<Item>& items, const SymmetryGroup& symmetry,
   items = std::move(kept);
 }
 
+// Round three (paper section V).
+void add_round_three(const SceneFeatures& scene, const ObjectModel& model, const Pose& pose,
+                     ScoreComponents& out) {
+  const CheckImage& image = scene.image;
+  const Image<float>& edges = scene.edges.likelihood;
+  const PredictedSurface predicted = predict_surface(image, model, pose);
+  out.edge_likelihood = edge_likelihood_score(image, edges, model, pose);
+  out.occlusion_edge = occlusion_edge_score(image, edges, predicted);
+  out.random_walk = random_walk_score(image, edges, model, pose, predicted);
+  const auto matches = match_segments(scene.segmentation, scene.map, model, pose, predicted);
+  out.segment = segment_score(matches);
+  out.segment_affinity = segment_affinity_score(scene.segmentation, matches);
+}
+
 Candidate evaluate(const SceneFeatures& scene, const std::shared_ptr<const ObjectModel>& model,
-                   Refinement refinement) {
+                   Refinement refinement, const ScoreLayer& layer) {
   Candidate candidate;
   candidate.model = model;
-  candidate.components =
-      score_placement(scene.image, *model, refinement.camera_from_object, &candidate.explained);
+  candidate.components = score_placement(scene.image, *model, refinement.camera_from_object);
+  add_round_three(scene, *model, refinement.camera_from_object, candidate.components);
+  candidate.explained = explained_pixels(scene.image, *model, refinement.camera_from_object);
   candidate.refinement = std::move(refinement);
-  candidate.score = placement_score(candidate.components);
-  candidate.probability = placement_probability(candidate.components);
+  candidate.score = placement_score(candidate.components, layer);
+  candidate.probability = placement_probability(candidate.components, layer);
   return candidate;
 }
 
@@ -124,7 +143,8 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
   last.end_gate_m = 0.008f;
   std::vector<Candidate> candidates;
   for (const Aligned& start : aligned) {
-    candidates.push_back(evaluate(scene, model, refine_pose(scene, *model, start.pose, last)));
+    candidates.push_back(
+        evaluate(scene, model, refine_pose(scene, *model, start.pose, last), options.layer));
   }
   const auto of_candidate = [](const Candidate& c) { return to_fast(c.pose()); };
   finish_stage("aligned", candidates, of_candidate);
@@ -193,7 +213,16 @@ Placement to_placement(const Candidate& candidate) {
                     {"free_space", c.free_space},
                     {"agreeing", c.agreeing},
                     {"explained_pixels", c.explained_pixels},
-                    {"expected_pixels", c.expected_pixels}};
+                    {"expected_pixels", c.expected_pixels},
+                    {"explained_area", c.explained_area},
+                    {"relative_area", c.relative_area},
+                    {"unknown", c.unknown},
+                    {"background", c.background},
+                    {"edge_likelihood", c.edge_likelihood},
+                    {"occlusion_edge", c.occlusion_edge},
+                    {"random_walk", c.random_walk},
+                    {"segment", c.segment},
+                    {"segment_affinity", c.segment_affinity}};
   return out;
 }
 

@@ -9,7 +9,7 @@
 #include <bpa/core/detect/hypotheses.hpp>
 #include <bpa/core/detect/placement.hpp>
 #include <bpa/core/detect/refinement.hpp>
-#include <bpa/core/score/placement_score.hpp>
+#include <bpa/core/score/score_layer.hpp>
 
 namespace bpa {
 
@@ -29,10 +29,12 @@ struct SingleObjectOptions {
   HypothesisOptions hypotheses;
   int max_clusters = 200;       ///< Pose clusters that round two looks at.
   int max_refined = 40;         ///< Of those, how many are aligned to the end.
+  int quick_points = 200;       ///< Surface points that round two scores a placement with.
   int bpa_steps = 3;            ///< Round-two alignments by BPA.
   bool use_orientation = true;  ///< False: align by positions only (ICP, the paper's ablation).
-  double min_score = -3;        ///< Log odds below which a placement is dropped.
+  double min_score = -12;       ///< Log odds below which a placement is dropped.
   int max_placements = 50;      ///< Paper section VI.
+  ScoreLayer layer = default_score_layer();
   std::uint64_t seed = 0;
 };
 

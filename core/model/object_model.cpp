@@ -91,6 +91,24 @@ std::vector<Eigen::Vector3f> soften_normals(const PointCloud& surface, int num_t
   return soft;
 }
 
+// The area of a disc over the points of the same side within it, at some 200 points.
+double mean_point_area(const PointCloud& surface) {
+  constexpr float kRadius = 0.008f;
+  const NeighborGrid grid(surface.points, kRadius);
+  const std::size_t step = std::max<std::size_t>(1, surface.size() / 200);
+  double sum = 0;
+  int discs = 0;
+  for (std::size_t i = 0; i < surface.size(); i += step) {
+    int count = 0;
+    grid.for_each_neighbor(surface.points[i], [&](int j, float) {
+      count += surface.normals[static_cast<std::size_t>(j)].dot(surface.normals[i]) > 0;
+    });
+    sum += M_PI * kRadius * kRadius / std::max(1, count);
+    ++discs;
+  }
+  return sum / discs;
+}
+
 }  // namespace
 
 std::vector<float> geometric_normal_variance(const PointCloud& surface, int num_threads) {
@@ -141,6 +159,7 @@ std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threa
 
 void derive_index(const ModelSource& source, ModelIndex& index) {
   index.check = check_points(source.surface);
+  index.point_area = mean_point_area(source.surface);
   index.feature_tree = FeatureTree(index.fpfh);
   index.pairs =
       PointPairTable(index.coarse, std::max(0.006f, 0.05f * static_cast<float>(source.diameter)));

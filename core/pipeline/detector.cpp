@@ -4,6 +4,7 @@
 
 #include <bpa/core/base/parallel.hpp>
 #include <bpa/core/base/stopwatch.hpp>
+#include <bpa/core/cloud/cielab.hpp>
 #include <bpa/core/detect/single_object.hpp>
 #include <bpa/core/pipeline/detector.hpp>
 #include <bpa/core/pipeline/frame_trace.hpp>
@@ -85,8 +86,9 @@ void keep_best(std::vector<Interpretation>& interpretations, std::size_t count) 
 
 }  // namespace
 
-Detector::Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions options)
-    : library_(std::move(library)), options_(std::move(options)) {}
+Detector::Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions options,
+                   ScoreLayer layer)
+    : library_(std::move(library)), options_(std::move(options)), layer_(std::move(layer)) {}
 
 Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRequest& request,
                                               FrameTrace* trace) const {
@@ -121,11 +123,13 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   feature_options.max_references = options_.max_references;
   feature_options.seed = request.seed;
   feature_options.num_threads = request.num_threads;
-  SceneFeatures scene = scene_features(std::move(map), std::move(planes), feature_options);
+  const Image<Eigen::Vector3f> rgb = reduced_color(frame, map, request.num_threads);
+  SceneFeatures scene = scene_features(std::move(map), std::move(planes), feature_options, rgb);
   finish_stage("features");
 
   // The budget is looked at between models: whoever is not begun in time is left out, and said so.
-  const SingleObjectOptions single = object_options(options_, request.seed);
+  SingleObjectOptions single = object_options(options_, request.seed);
+  single.layer = layer_;
   std::vector<std::vector<Candidate>> found(models->size());
   std::vector<std::uint8_t> late(models->size(), 0);
   if (trace) trace->objects.resize(models->size());
@@ -142,6 +146,7 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   for (auto& of_model : found) {
     std::move(of_model.begin(), of_model.end(), std::back_inserter(candidates));
   }
+  let_compete(candidates, kMaxShared);
   const auto searched = static_cast<int>(
       std::count(scene.map.searched.begin(), scene.map.searched.end(), std::uint8_t{1}));
   out.interpretations =

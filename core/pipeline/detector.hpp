@@ -13,6 +13,7 @@
 #include <bpa/core/model/library.hpp>
 #include <bpa/core/pipeline/detector_options.hpp>
 #include <bpa/core/scene/interpretation.hpp>
+#include <bpa/core/score/score_layer.hpp>
 
 namespace bpa {
 
@@ -31,7 +32,8 @@ struct DetectRequest {
 /// called from several threads at once.
 class Detector {
  public:
-  Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions options);
+  Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions options,
+           ScoreLayer layer = default_score_layer());
 
   /// Ranked interpretations of the frame. Fails with invalid_argument on a frame, request or
   /// library that breaks a rule (an empty library too), with not_found on a model name that the
@@ -46,6 +48,7 @@ class Detector {
  private:
   std::shared_ptr<const ModelLibrary> library_;
   DetectorOptions options_;
+  ScoreLayer layer_;
 };
 
 }  // namespace bpa

@@ -19,7 +19,7 @@ struct DetectorOptions {
   int matches_per_keypoint = 2;
   int draws_per_match = 3;
   int max_references = 800;
-  int peaks_per_reference = 6;
+  int peaks_per_reference = 12;
   int max_clusters = 200;
   int max_refined = 40;
   bool use_orientation = true;

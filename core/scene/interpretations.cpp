@@ -6,78 +6,21 @@
 
 #include <bpa/core/base/random.hpp>
 #include <bpa/core/scene/interpretations.hpp>
+#include <bpa/core/scene/overlaps.hpp>
 
 namespace bpa {
 namespace {
 
-// What two placements have in common.
-struct Overlap {
-  std::size_t other;
-  int common;        // pixels that both explain
-  double lost;       // score that the pair loses by sharing them
-  bool conflicting;  // too many to stand together
-};
+double log_odds(double probability) {
+  const double p = std::clamp(probability, 1e-6, 1 - 1e-6);
+  return std::log(p / (1 - p));
+}
 
-// Single scores weighted by the observed points explained (paper section VI, component 1), less the
-// penalty (component 3). A placement that is less probable than is asked for costs by how much it
-// is, however small, so that the alternatives that come first are the likely ones.
+// What a placement adds to the score by itself: its log odds beyond those asked for, less the
+// penalty (paper section VI, components 1 and 3).
 double single_worth(const Candidate& c, const InterpretationOptions& options) {
-  const double least = std::clamp(options.min_probability, 1e-3, 1 - 1e-3);
-  if (c.probability < least) {
-    return c.score - std::log(least / (1 - least)) - options.object_penalty;
-  }
-  const double quality = (c.probability - least) / (1 - least);
-  return quality * static_cast<double>(c.explained.size()) / options.pixels_per_unit -
-         options.object_penalty;
-}
-
-// Two solid things cannot have nearly the same place.
-bool same_place(const Candidate& a, const Candidate& b) {
-  const double distance = (a.pose().translation - b.pose().translation).norm();
-  const double smaller = std::min(a.model->diameter, b.model->diameter);
-  return distance < (a.model == b.model ? 0.4 : 0.2) * smaller;
-}
-
-// Finds the overlaps through an index from pixels to the candidates that explain them.
-std::vector<std::vector<Overlap>> find_overlaps(const std::vector<Candidate>& candidates,
-                                                const InterpretationOptions& options) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> by_pixel;
-  for (std::uint32_t i = 0; i < candidates.size(); ++i) {
-    for (std::uint32_t pixel : candidates[i].explained) by_pixel.push_back({pixel, i});
-  }
-  std::sort(by_pixel.begin(), by_pixel.end());
-  const std::size_t count = candidates.size();
-  std::vector<int> common(count * count, 0);
-  for (std::size_t first = 0; first < by_pixel.size();) {
-    std::size_t last = first;
-    while (last < by_pixel.size() && by_pixel[last].first == by_pixel[first].first) ++last;
-    for (std::size_t a = first; a < last; ++a) {
-      for (std::size_t b = first; b < last; ++b) {
-        ++common[by_pixel[a].second * count + by_pixel[b].second];
-      }
-    }
-    first = last;
-  }
-  std::vector<std::vector<Overlap>> overlaps(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = 0; j < count; ++j) {
-      const int shared = common[i * count + j];
-      if (i == j) continue;
-      const bool colliding = same_place(candidates[i], candidates[j]);
-      if (shared == 0 && !colliding) continue;
-      const auto part_of = [shared](const Candidate& c) {
-        return shared / std::max(1.0, static_cast<double>(c.explained.size()));
-      };
-      const double part_of_i = part_of(candidates[i]);
-      const double part_of_j = part_of(candidates[j]);
-      // A shared pixel counts half for each of the two.
-      const double lost = 0.5 * (part_of_i * std::max(0.0, single_worth(candidates[i], options)) +
-                                 part_of_j * std::max(0.0, single_worth(candidates[j], options)));
-      overlaps[i].push_back(
-          {j, shared, lost, colliding || std::max(part_of_i, part_of_j) > options.max_shared});
-    }
-  }
-  return overlaps;
+  if (c.explained.empty()) return -options.object_penalty;
+  return log_odds(c.probability) - log_odds(options.min_probability) - options.object_penalty;
 }
 
 // The score of a subset, kept up to date as placements come and go: a move costs as much as the
@@ -89,7 +32,7 @@ class SubsetScore {
       : candidates_(candidates),
         options_(options),
         per_pixel_(options.explained_weight / std::max(1, observed_pixels)),
-        overlaps_(find_overlaps(candidates, options)),
+        overlaps_(find_overlaps(candidates, options.max_shared)),
         chosen_(candidates.size(), false) {}
 
   bool chosen(std::size_t i) const { return chosen_[i]; }
@@ -108,9 +51,17 @@ class SubsetScore {
     const Candidate& c = candidates_[i];
     double sum = single_worth(c, options_) + per_pixel_ * static_cast<double>(c.explained.size());
     for (const Overlap& overlap : overlaps_[i]) {
-      if (chosen_[overlap.other]) sum -= overlap.lost + per_pixel_ * overlap.common;
+      if (chosen_[overlap.other]) sum -= lost(i, overlap) + per_pixel_ * overlap.common;
     }
     return sum;
+  }
+  // A shared pixel counts half for each of the two.
+  double lost(std::size_t i, const Overlap& overlap) const {
+    const auto part = [&](const Candidate& c) {
+      return overlap.common / std::max(1.0, static_cast<double>(c.explained.size())) *
+             std::max(0.0, single_worth(c, options_));
+    };
+    return 0.5 * (part(candidates_[i]) + part(candidates_[overlap.other]));
   }
   void add(std::size_t i) {
     total_ += worth(i);
@@ -216,6 +167,16 @@ void anneal(SubsetScore& state, std::size_t count, const InterpretationOptions& 
 }
 
 }  // namespace
+
+void let_compete(std::vector<Candidate>& candidates, double max_shared) {
+  std::vector<double> scores;
+  for (const Candidate& candidate : candidates) scores.push_back(candidate.score);
+  const std::vector<double> probabilities = competing_probabilities(
+      scores, competition_of(candidates, find_overlaps(candidates, max_shared)));
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    candidates[i].probability = probabilities[i];
+  }
+}
 
 std::vector<Interpretation> interpret(const std::vector<Candidate>& candidates, int observed_pixels,
                                       const InterpretationOptions& options) {

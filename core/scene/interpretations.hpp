@@ -10,16 +10,22 @@
 
 namespace bpa {
 
+/// Two placements may share this part of what the smaller one explains.
+constexpr double kMaxShared = 0.3;
+
 struct InterpretationOptions {
-  double pixels_per_unit = 300;  ///< Explained pixels of a certain placement worth one unit.
-  double object_penalty = 0.2;   ///< Units that each further object costs.
-  double explained_weight = 2;   ///< Of the ratio of explained to observed pixels.
-  double max_shared = 0.3;       ///< Two placements may share this part of the smaller one.
-  double min_probability = 0.5;  ///< A placement less probable than this lowers the score.
+  double object_penalty = 0.2;     ///< Log odds that each further object costs.
+  double explained_weight = 2;     ///< Of the ratio of explained to observed pixels.
+  double max_shared = kMaxShared;  ///< Two placements may share this part of the smaller one.
+  double min_probability = 0.5;    ///< A placement less probable than this lowers the score.
   int annealing_steps = 20000;
   int max_interpretations = 100;  ///< Paper section VI: the 100 best are kept.
   std::uint64_t seed = 0;
 };
+
+/// Replaces the candidates' probabilities, which know nothing of one another, by those of right
+/// placements among rivals (competing_probabilities).
+void let_compete(std::vector<Candidate>& candidates, double max_shared);
 
 /// Explains the scene by subsets of the candidates (paper section VI): simulated annealing on the
 /// multi-object-placement score - single scores weighted by the part of its pixels that each

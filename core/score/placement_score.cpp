@@ -17,7 +17,8 @@ constexpr float kOnSurface = 0.006f;       // metres, plus noise
 
 struct Sums {
   double weight = 0, range = 0, normal = 0, free = 0, agreeing = 0;
-  int facing = 0, visible = 0;
+  double background = 0;
+  int facing = 0, visible = 0, unknown = 0;
   Eigen::Matrix3f normals = Eigen::Matrix3f::Zero();  // of agreeing points, squared
 };
 
@@ -26,11 +27,6 @@ float visibility_probability(float difference) {
   const float z = difference / kVisibilitySigma;
   return std::exp(-0.5f * z * z);
 }
-
-struct Projection {
-  Eigen::Vector3f point, normal;
-  int u = -1, v = -1;
-};
 
 bool project(const CheckImage& image, const Eigen::Vector3f& point, int& u, int& v) {
   if (point.z() < 0.1f) return false;
@@ -75,17 +71,14 @@ void add_point(const CheckPixel& pixel, const Eigen::Vector3f& point, const Eige
 
 // Beyond a range edge of the model the observed surface must not simply go on: it may be further
 // away, nearer (something in front), or turn (the object stands on it).
-void score_edges(const CheckImage& image, const ObjectModel& model, const FastPose& pose,
-                 ScoreComponents& out) {
-  const Eigen::Vector3f to_camera = -(pose.rotation.transpose() * pose.translation).normalized();
-  const auto& views = model.index->views;
-  const ModelView& view = views[static_cast<std::size_t>(nearest_view(views, to_camera))];
+void score_edges(const CheckImage& image, const ObjectModel& model, const ModelView& view,
+                 const FastPose& pose, std::size_t max_points, ScoreComponents& out) {
   if (!model.complete) {  // has no edges to speak for or against it
     out.edge = 0;
     out.edge_support = 0.5;
     return;
   }
-  const std::size_t step = std::max<std::size_t>(1, view.edges.size() / 200);
+  const std::size_t step = std::max<std::size_t>(1, view.edges.size() / max_points);
   int visible = 0, total = 0, ends = 0, goes_on = 0;
   for (std::size_t k = 0; k < view.edges.size(); k += step) {
     const std::uint32_t i = view.edges[k];
@@ -114,39 +107,71 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const FastPo
 
 }  // namespace
 
-ScoreComponents score_placement(const CheckImage& image, const ObjectModel& model, const Pose& pose,
-                                std::vector<std::uint32_t>* explained) {
-  const FastPose fast = to_fast(pose);
-  const Eigen::Vector3f to_camera = -(fast.rotation.transpose() * fast.translation).normalized();
+namespace {
+
+const ModelView& view_of(const ObjectModel& model, const FastPose& pose) {
+  const Eigen::Vector3f to_camera = -(pose.rotation.transpose() * pose.translation).normalized();
   const auto& views = model.index->views;
-  const ModelView& view = views[static_cast<std::size_t>(nearest_view(views, to_camera))];
+  return views[static_cast<std::size_t>(nearest_view(views, to_camera))];
+}
+
+// A surface point as the camera sees it; false where it faces away or falls outside the image.
+struct SeenPoint {
+  Eigen::Vector3f point, normal;
+  std::size_t pixel = 0;
+  float slant = 0;  // cosine of the angle between the normal and the line of sight
+};
+
+bool see_point(const CheckImage& image, const ObjectModel& model, const FastPose& pose,
+               std::uint32_t i, SeenPoint& out) {
+  out.point = pose.rotation * model.surface.points[i] + pose.translation;
+  out.normal = pose.rotation * model.surface.normals[i];
+  out.slant = -out.normal.dot(out.point) / out.point.norm();
+  int u = 0, v = 0;
+  if (out.slant < 0.3f || !project(image, out.point, u, v)) return false;
+  out.pixel = static_cast<std::size_t>(v * image.width + u);
+  return true;
+}
+
+}  // namespace
+
+ScoreComponents score_placement(const CheckImage& image, const ObjectModel& model, const Pose& pose,
+                                int max_points) {
+  const FastPose fast = to_fast(pose);
+  const ModelView& view = view_of(model, fast);
+  const std::size_t step =
+      max_points > 0
+          ? std::max<std::size_t>(1, view.visible.size() / static_cast<std::size_t>(max_points))
+          : 1;
+  // Pixels that a point's surface covers, seen from the front at one metre.
+  const double pixels_per_point = model.index->point_area * static_cast<double>(step) *
+                                  static_cast<double>(image.fx) * image.fy;
   ScoreComponents out;
   Sums sums;
-  std::vector<std::uint32_t> on_model;
-  std::vector<std::uint32_t> covered;
-  for (std::uint32_t i : view.visible) {
-    const Eigen::Vector3f point = fast.rotation * model.surface.points[i] + fast.translation;
-    const Eigen::Vector3f normal = fast.rotation * model.surface.normals[i];
-    if (normal.dot(point) > -0.3f * point.norm()) continue;
-    int u = 0, v = 0;
-    if (!project(image, point, u, v)) continue;
+  SeenPoint seen;
+  for (std::size_t k = 0; k < view.visible.size(); k += step) {
+    const std::uint32_t i = view.visible[k];
+    if (!see_point(image, model, fast, i, seen)) continue;
     ++sums.facing;
-    const auto index = static_cast<std::uint32_t>(v * image.width + u);
-    covered.push_back(index);
-    const CheckPixel& pixel = image.pixels[index];
-    if (pixel.depth <= 0) continue;
+    const double z = seen.point.z();
+    const double covered = pixels_per_point * seen.slant / (z * z);
+    out.expected_pixels += covered;
+    const CheckPixel& pixel = image.pixels[seen.pixel];
+    if (pixel.depth <= 0) {
+      ++sums.unknown;
+      continue;
+    }
     const double before = sums.agreeing;
-    add_point(pixel, point, normal, fast.rotation * model.index->soft_normals[i], sums);
-    if (sums.agreeing > before + 0.5) on_model.push_back(index);
+    add_point(pixel, seen.point, seen.normal, fast.rotation * model.index->soft_normals[i], sums);
+    if (sums.agreeing > before + 0.5) {
+      out.explained_pixels += covered;
+      out.explained_area += model.index->point_area * static_cast<double>(step);
+      sums.background += pixel.searched ? 0 : 1;
+    }
   }
-  const auto unique = [](std::vector<std::uint32_t>& values) {
-    std::sort(values.begin(), values.end());
-    values.erase(std::unique(values.begin(), values.end()), values.end());
-  };
-  unique(on_model);
-  unique(covered);
-  out.explained_pixels = static_cast<double>(on_model.size());
-  out.expected_pixels = static_cast<double>(covered.size());
+  out.relative_area = out.explained_area / (model.diameter * model.diameter);
+  out.unknown = sums.facing > 0 ? static_cast<double>(sums.unknown) / sums.facing : 0;
+  if (sums.agreeing > 0) out.background = std::min(1.0, sums.background / sums.agreeing);
   if (sums.weight > 1) {
     out.range = sums.range / (kTruncation * sums.weight);
     out.normal = sums.normal / (kTruncation * sums.weight);
@@ -157,21 +182,26 @@ ScoreComponents score_placement(const CheckImage& image, const ObjectModel& mode
     out.shape = trace > 0 ? static_cast<double>(solver.eigenvalues()[1] / trace) : 0;
   }
   out.visibility = sums.facing > 0 ? static_cast<double>(sums.visible) / sums.facing : 0;
-  score_edges(image, model, fast, out);
-  if (explained) *explained = std::move(on_model);
+  score_edges(image, model, view, fast, max_points > 0 ? 60 : 200, out);
   return out;
 }
 
-double placement_score(const ScoreComponents& c) {
-  // Little visible surface carries little evidence, and one flat face less.
-  const double evidence = std::clamp(std::log(std::max(1.0, c.explained_pixels) / 300), -2.0, 1.5);
-  return -13.2 + 7 * c.agreeing + 10 * c.range + 6 * c.normal - 6 * c.free_space + 20 * c.edge +
-         3 * std::min(1.0, c.edge_support / 0.5) + 2 * std::min(1.0, c.visibility / 0.6) +
-         1.5 * evidence + 1.5 * std::min(1.0, c.shape / 0.05);
-}
-
-double placement_probability(const ScoreComponents& components) {
-  return 1 / (1 + std::exp(-placement_score(components)));
+std::vector<std::uint32_t> explained_pixels(const CheckImage& image, const ObjectModel& model,
+                                            const Pose& pose) {
+  const FastPose fast = to_fast(pose);
+  std::vector<std::uint32_t> out;
+  SeenPoint seen;
+  for (std::uint32_t i : view_of(model, fast).visible) {
+    if (!see_point(image, model, fast, i, seen)) continue;
+    const CheckPixel& pixel = image.pixels[seen.pixel];
+    if (pixel.depth <= 0) continue;
+    Sums sums;
+    add_point(pixel, seen.point, seen.normal, fast.rotation * model.index->soft_normals[i], sums);
+    if (sums.agreeing > 0.5) out.push_back(static_cast<std::uint32_t>(seen.pixel));
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
 }
 
 }  // namespace bpa

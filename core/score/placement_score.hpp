@@ -26,18 +26,25 @@ struct ScoreComponents {
   double agreeing = 0;          ///< Share of the visible points on the observed surface.
   double explained_pixels = 0;  ///< Observed pixels (of the reduced image) on the model surface.
   double expected_pixels = 0;   ///< Pixels the model would cover were nothing in front of it.
+  double explained_area = 0;    ///< Surface on which the model explains what is seen, m².
+  double relative_area = 0;     ///< The same, in squares of the model's diameter.
+  double unknown = 0;           ///< Share of the facing model points where no depth is known.
+  double background = 0;        ///< Share of the agreeing points on labelled background.
+  // Round three; each in [-1, 0], 0 is best. See the functions of the same names.
+  double edge_likelihood = -1;
+  double occlusion_edge = -1;
+  double random_walk = -1;
+  double segment = -1;
+  double segment_affinity = -1;
 };
 
-/// Scores `model` at `pose`. `explained`, if given, receives the sorted indices of the observed
-/// pixels that lie on the model.
+/// Scores `model` at `pose` from about `max_points` of the surface points that its nearest view
+/// shows (0: all of them).
 ScoreComponents score_placement(const CheckImage& image, const ObjectModel& model, const Pose& pose,
-                                std::vector<std::uint32_t>* explained = nullptr);
+                                int max_points = 0);
 
-/// The probability that a placement with these components is right (within 2.5 cm and π/16): one
-/// logistic layer over the components.
-double placement_probability(const ScoreComponents& components);
-
-/// The weighted sum under the logistic.
-double placement_score(const ScoreComponents& components);
+/// The sorted indices of the observed pixels that lie on the model.
+std::vector<std::uint32_t> explained_pixels(const CheckImage& image, const ObjectModel& model,
+                                            const Pose& pose);
 
 }  // namespace bpa

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <bpa/core/detect/single_object.hpp>
+#include <bpa/core/score/competition.hpp>
+
+namespace bpa {
+
+/// What two placements have in common.
+struct Overlap {
+  std::uint32_t other = 0;
+  int common = 0;            ///< Observed pixels that both explain.
+  bool conflicting = false;  ///< They cannot both be there.
+};
+
+/// For each candidate, those that share observed pixels or their place with it. Two conflict when
+/// they share more than `max_shared` of what the smaller one explains, or when their origins are so
+/// near that two solid things could not both be there.
+std::vector<std::vector<Overlap>> find_overlaps(const std::vector<Candidate>& candidates,
+                                                double max_shared);
+
+/// Who competes with whom: what conflicts.
+Competition competition_of(const std::vector<Candidate>& candidates,
+                           const std::vector<std::vector<Overlap>>& overlaps);
+
+}  // namespace bpa

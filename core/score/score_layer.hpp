@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <bpa/core/base/status.hpp>
+#include <bpa/core/score/competition.hpp>
+#include <bpa/core/score/placement_score.hpp>
+
+namespace bpa {
+
+/// What the score layer reads of a placement, one number for each name of score_feature_names().
+constexpr std::size_t kNumScoreFeatures = 22;
+using ScoreFeatures = std::array<double, kNumScoreFeatures>;
+
+std::span<const char* const, kNumScoreFeatures> score_feature_names();
+ScoreFeatures score_features(const ScoreComponents& components);
+
+/// The learned score (paper section V): for each score component the log odds that it contributes,
+/// a quadratic, and their sum, the log odds of the placement against nothing being there. What
+/// becomes of rivals for the same place follows from competing_probabilities().
+struct ScoreLayer {
+  struct Component {
+    double low = 0, high = 1;  ///< Values met in training; others count as the nearest of them.
+    double linear = 0, quadratic = 0;
+  };
+  std::array<Component, kNumScoreFeatures> components;
+  double bias = 0;
+  std::string provenance;  ///< The command, data and seed that made it, for people.
+
+  double log_odds(const ScoreFeatures& features) const;
+};
+
+/// The layer that `bpa train` made of simulated scenes; see ScoreLayer::provenance.
+const ScoreLayer& default_score_layer();
+
+/// The learned score of a placement: its log odds.
+inline double placement_score(const ScoreComponents& components,
+                              const ScoreLayer& layer = default_score_layer()) {
+  return layer.log_odds(score_features(components));
+}
+/// The probability of a placement without rivals.
+inline double placement_probability(const ScoreComponents& components,
+                                    const ScoreLayer& layer = default_score_layer()) {
+  return 1 / (1 + std::exp(-placement_score(components, layer)));
+}
+
+/// The placements of a frame that training looks at.
+struct ScoreFrame {
+  struct Sample {
+    ScoreFeatures features{};
+    bool right = false;
+  };
+  std::vector<Sample> samples;
+  Competition competition;
+};
+
+/// Fits the layer by penalised maximum likelihood of the samples' labels under
+/// competing_probabilities() (gradient descent with adaptive steps; deterministic). Needs samples
+/// of both kinds; otherwise fails with invalid_argument.
+Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames);
+
+/// How well probabilities agree with what happens.
+struct Reliability {
+  struct Bin {
+    int count = 0;
+    double predicted = 0, right = 0;  ///< Means over the bin.
+  };
+  std::array<Bin, 10> bins;  ///< By probability.
+  int samples = 0, right = 0;
+  double expected_calibration_error = 0;  ///< Mean of |predicted - right|, weighted by count.
+  double brier_score = 0;
+};
+Reliability reliability(const ScoreLayer& layer, std::span<const ScoreFrame> frames);
+
+}  // namespace bpa

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <bpa/core/pipeline/score_layer_file.hpp>
+
+#include "support/temporary_folder.hpp"
+
+namespace bpa {
+namespace {
+
+class ScoreLayerFile : public ::testing::Test {
+ protected:
+  std::string refusal() const {
+    const auto read = library_score_layer(folder_.path());
+    EXPECT_FALSE(read.ok());
+    EXPECT_EQ(read.status().code, StatusCode::corrupt);
+    return read.ok() ? "" : read.status().message;
+  }
+
+  test::TemporaryFolder folder_;
+  std::string path_ = score_layer_path(folder_.path());
+};
+
+TEST_F(ScoreLayerFile, IsReadAsItWasWritten) {
+  ScoreLayer layer = default_score_layer();
+  layer.bias = -1.0 / 3;
+  layer.components[4] = {0.1, 0.2, 1.0 / 7, -1e-17};
+  layer.provenance = "a \"test\"";
+  ASSERT_TRUE(write_score_layer(path_, layer).ok());
+  const auto read = library_score_layer(folder_.path());
+  ASSERT_TRUE(read.ok()) << read.status().message;
+  EXPECT_EQ(read->bias, layer.bias);
+  EXPECT_EQ(read->provenance, layer.provenance);
+  for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
+    EXPECT_EQ(read->components[i].low, layer.components[i].low);
+    EXPECT_EQ(read->components[i].high, layer.components[i].high);
+    EXPECT_EQ(read->components[i].linear, layer.components[i].linear);
+    EXPECT_EQ(read->components[i].quadratic, layer.components[i].quadratic);
+  }
+}
+
+TEST_F(ScoreLayerFile, ALibraryWithoutOneHasTheBuiltInOne) {
+  const auto read = library_score_layer(folder_.path());
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(read->provenance, default_score_layer().provenance);
+}
+
+TEST_F(ScoreLayerFile, DamageIsRefusedWithAReason) {
+  ASSERT_TRUE(write_score_layer(path_, default_score_layer()).ok());
+  const std::string good = test::slurp(path_);
+  test::spill(path_, good.substr(0, good.size() / 2));
+  EXPECT_NE(refusal().find("truncated or not JSON"), std::string::npos);
+  std::string other = good;
+  other.replace(other.find("_version\": 1"), 12, "_version\": 9");
+  test::spill(path_, other);
+  EXPECT_NE(refusal().find("version 9"), std::string::npos);
+  other = good;
+  other.replace(other.find("\"range\""), 7, "\"rannge\"");
+  test::spill(path_, other);
+  EXPECT_NE(refusal().find("range"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace bpa

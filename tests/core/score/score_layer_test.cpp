@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <bpa/core/base/random.hpp>
+#include <bpa/core/score/score_layer.hpp>
+
+namespace bpa {
+namespace {
+
+double sigmoid(double x) { return 1 / (1 + std::exp(-x)); }
+
+TEST(Competition, WithoutRivalsIsALogistic) {
+  const std::vector<double> scores{-3, 0, 2.5, 40, -800};
+  const auto p = competing_probabilities(scores, {std::vector<std::vector<Competition::Rival>>(5)});
+  for (std::size_t i = 0; i < scores.size(); ++i) EXPECT_NEAR(p[i], sigmoid(scores[i]), 1e-12);
+}
+
+TEST(Competition, RivalsShareWhatNothingLeaves) {
+  Competition competition;
+  competition.rivals = {{{1, false}, {2, true}}, {{0, false}, {2, false}}, {{0, true}, {1, false}}};
+  const std::vector<double> scores{1, 2, 0.5};
+  const double all = 1 + std::exp(1) + std::exp(2) + std::exp(0.5);
+  const auto p = competing_probabilities(scores, competition);
+  EXPECT_NEAR(p[0], (std::exp(1) + std::exp(0.5)) / all, 1e-12) << "two of one pose";
+  EXPECT_NEAR(p[1], std::exp(2) / all, 1e-12);
+  EXPECT_NEAR(p[2], p[0], 1e-12);
+  EXPECT_LT(p[0] + p[1], 1);
+}
+
+TEST(Competition, LargeScoresDoNotOverflow) {
+  Competition competition;
+  competition.rivals = {{{1, false}}, {{0, false}}};
+  const auto p = competing_probabilities(std::vector<double>{1000, 1001}, competition);
+  EXPECT_NEAR(p[0], sigmoid(-1), 1e-9);
+  EXPECT_NEAR(p[1], sigmoid(1), 1e-9);
+}
+
+// Frames whose labels are drawn from a known law: log odds 4 range + 6 agreeing - 4, of which one
+// of a pair of rivals at most is right.
+std::vector<ScoreFrame> drawn_frames(int count, std::uint64_t seed) {
+  RandomStream random(seed);
+  std::vector<ScoreFrame> frames;
+  for (int k = 0; k < count; ++k) {
+    ScoreFrame frame;
+    frame.samples.resize(20);
+    frame.competition.rivals.resize(20);
+    for (std::uint32_t i = 0; i < 20; i += 2) {
+      double odds[2];
+      for (std::uint32_t j = 0; j < 2; ++j) {
+        ScoreFeatures& x = frame.samples[i + j].features;
+        x.fill(0.5);
+        x[0] = random.uniform(-1, 0);
+        x[2] = random.uniform(0, 1);
+        odds[j] = std::exp(4 * x[0] + 6 * x[2] - 4);
+        frame.competition.rivals[i + j] = {{i + 1 - j, false}};
+      }
+      const double draw = random.uniform() * (1 + odds[0] + odds[1]);
+      frame.samples[i].right = draw < odds[0];
+      frame.samples[i + 1].right = draw >= odds[0] && draw < odds[0] + odds[1];
+    }
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+TEST(ScoreLayer, TrainingFindsTheLawThatDrewTheLabels) {
+  const auto layer = train_score_layer(drawn_frames(600, 1));
+  ASSERT_TRUE(layer.ok()) << layer.status().message;
+  RandomStream random(2);
+  for (int k = 0; k < 50; ++k) {
+    ScoreFeatures x;
+    x.fill(0.5);
+    x[0] = random.uniform(-0.95, -0.05);
+    x[2] = random.uniform(0.05, 0.95);
+    EXPECT_NEAR(layer->log_odds(x), 4 * x[0] + 6 * x[2] - 4, 0.5);
+  }
+  const Reliability held_out = reliability(*layer, drawn_frames(600, 3));
+  EXPECT_LT(held_out.expected_calibration_error, 0.02);
+  EXPECT_EQ(held_out.samples, 12000);
+}
+
+TEST(ScoreLayer, ReliabilityOfKnownProbabilities) {
+  ScoreLayer layer;  // says 1/2 of everything, 1/3 of each of two rivals
+  ScoreFrame frame;
+  frame.samples.resize(4);
+  frame.samples[0].right = frame.samples[2].right = true;
+  frame.competition.rivals = {{}, {}, {{3, false}}, {{2, false}}};
+  const Reliability r = reliability(layer, std::vector<ScoreFrame>{frame});
+  EXPECT_EQ(r.bins[5].count, 2);
+  EXPECT_NEAR(r.bins[5].right, 0.5, 1e-12);
+  EXPECT_EQ(r.bins[3].count, 2);
+  EXPECT_NEAR(r.bins[3].predicted, 1.0 / 3, 1e-12);
+  // |1/2 - 1/2| of two samples and |1/3 - 1/2| of two.
+  EXPECT_NEAR(r.expected_calibration_error, 0.5 / 6, 1e-12);
+  EXPECT_NEAR(r.brier_score, (0.25 + 0.25 + 4.0 / 9 + 1.0 / 9) / 4, 1e-12);
+}
+
+TEST(ScoreLayer, ValuesOutsideTrainingCountAsTheNearestOnes) {
+  ScoreLayer layer;
+  layer.components[0] = {-0.5, 0.5, 2, 1};
+  ScoreFeatures x{};
+  x[0] = 0.5;
+  const double edge = layer.log_odds(x);
+  x[0] = 7;
+  EXPECT_EQ(layer.log_odds(x), edge);
+  EXPECT_NEAR(edge, 3, 1e-12);
+}
+
+TEST(ScoreLayer, NeedsBothKindsOfSamples) {
+  auto frames = drawn_frames(3, 4);
+  for (ScoreFrame& frame : frames) {
+    for (auto& sample : frame.samples) sample.right = false;
+  }
+  const auto layer = train_score_layer(frames);
+  ASSERT_FALSE(layer.ok());
+  EXPECT_EQ(layer.status().code, StatusCode::invalid_argument);
+  EXPECT_NE(layer.status().message.find("0 right placements of 60"), std::string::npos);
+}
+
+TEST(ScoreLayer, TheBuiltInOneSaysWhereItComesFrom) {
+  EXPECT_NE(default_score_layer().provenance.find("bpa train"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace bpa
