@@ -45,6 +45,7 @@ struct ModelIndex {
   PointPairTable pairs{{}, 1};
   std::vector<ModelView> views;  ///< The 66 views, over `surface`.
   DistanceTransform distances;   ///< Of `surface`.
+  NoiseTable noise;              ///< Of the model's noise.
   double point_area = 0;         ///< Surface that each surface point stands for, square metres.
 };
 
@@ -56,7 +57,7 @@ constexpr int kIndexVersion = 1;
 std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threads);
 
 /// The parts of an index that are quicker to compute than to read from a file: check points, the
-/// tree over `fpfh`, the pairs of `coarse`, the area of a point.
+/// tree over `fpfh`, the pairs of `coarse`, the noise table, the area of a point.
 void derive_index(const ModelSource& source, ModelIndex& index);
 
 }  // namespace bpa

@@ -88,6 +88,18 @@ double NoiseModel::normal_sigma(double edge_distance, double angle) const {
   return normal(edge_distance, angle);
 }
 
+NoiseTable::NoiseTable(const NoiseModel& noise) {
+  for (int e = 0; e < kEdgeCells; ++e) {
+    for (int a = 0; a < kAngleCells; ++a) {
+      const double edge_distance = (e + 0.5) * static_cast<double>(kEdgeCell);
+      const double angle = std::acos((a + 0.5) / kAngleCells);
+      const auto i = static_cast<std::size_t>(e * kAngleCells + a);
+      range_[i] = static_cast<float>(noise.range(edge_distance, angle));
+      normal_[i] = static_cast<float>(noise.normal(edge_distance, angle));
+    }
+  }
+}
+
 NoiseModel usual_noise() {
   NoiseModel noise;
   noise.depth = 0.78;

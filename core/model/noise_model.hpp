@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <span>
 
 // What a sensor's measurements of an object are off by (paper section III): the standard deviation
@@ -42,6 +44,30 @@ struct NoiseModel {
   double range_sigma(double edge_distance, double angle, double depth_m) const;
   /// Standard deviation of the angle between predicted and observed normal, radians.
   double normal_sigma(double edge_distance, double angle) const;
+};
+
+/// The curves of a NoiseModel at a few hundred places, for inner loops.
+class NoiseTable {
+ public:
+  NoiseTable() : NoiseTable(NoiseModel{}) {}
+  explicit NoiseTable(const NoiseModel& noise);
+
+  /// Range at NoiseModel::depth, metres; `cosine` of the surface angle, [0, 1].
+  float range(float edge_distance, float cosine) const { return range_[cell(edge_distance, cosine)]; }
+  /// Radians.
+  float normal(float edge_distance, float cosine) const {
+    return normal_[cell(edge_distance, cosine)];
+  }
+
+ private:
+  static constexpr int kEdgeCells = 16, kAngleCells = 32;
+  static constexpr float kEdgeCell = 0.002f;  // metres
+  static std::size_t cell(float edge_distance, float cosine) {
+    const int e = std::clamp(static_cast<int>(edge_distance / kEdgeCell), 0, kEdgeCells - 1);
+    const int a = std::clamp(static_cast<int>(cosine * kAngleCells), 0, kAngleCells - 1);
+    return static_cast<std::size_t>(e * kAngleCells + a);
+  }
+  std::array<float, kEdgeCells * kAngleCells> range_, normal_;
 };
 
 /// The curves of a Kinect-class sensor over objects of a household: what models have that were not

@@ -159,6 +159,7 @@ std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threa
 
 void derive_index(const ModelSource& source, ModelIndex& index) {
   index.check = check_points(source.surface);
+  index.noise = NoiseTable(source.noise);
   index.point_area = mean_point_area(source.surface);
   index.feature_tree = FeatureTree(index.fpfh);
   index.pairs =

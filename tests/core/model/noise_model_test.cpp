@@ -71,5 +71,20 @@ TEST(NoiseModel, FitOfTooLittleStaysWhereItStarts) {
   EXPECT_EQ(fit_noise_curve({}, start).edge_place, start.edge_place);
 }
 
+TEST(NoiseTable, IsTheCurvesInTheMiddleOfItsCells) {
+  const NoiseModel noise = usual_noise();
+  const NoiseTable table(noise);
+  for (const double cosine : {0.015625, 0.328125, 0.984375}) {
+    for (const double edge_distance : {0.001, 0.005, 0.029}) {
+      const auto e = static_cast<float>(edge_distance), c = static_cast<float>(cosine);
+      const double angle = std::acos(cosine);
+      EXPECT_NEAR(table.range(e, c), noise.range(edge_distance, angle), 1e-6);
+      EXPECT_NEAR(table.normal(e, c), noise.normal(edge_distance, angle), 1e-5);
+    }
+  }
+  EXPECT_EQ(table.range(5, 0.5f), table.range(0.031f, 0.5f)) << "far from edges";
+  EXPECT_EQ(table.normal(0, 1), table.normal(0, 0.99f)) << "seen straight on";
+}
+
 }  // namespace
 }  // namespace bpa
