@@ -10,7 +10,8 @@ namespace bpa {
 namespace {
 
 constexpr float kVisibilitySigma = 0.01f;  // paper section V, footnote: 1 cm
-constexpr float kNormalSigma = 0.35f;      // radians
+constexpr float kNormalSigma = 0.15f;      // radians: what poses and models are off by
+constexpr float kLateralSigma = 0.003f;    // metres, beside a pixel: the same across the view
 constexpr float kTruncation = 4.5f;        // three standard deviations, squared and halved
 constexpr float kModelSigma = 0.0025f;     // metres: what models and their poses are off by
 constexpr float kOnSurface = 0.006f;       // metres, plus noise
@@ -44,29 +45,53 @@ Eigen::Vector3f normal_of(const CheckPixel& pixel) {
   return Eigen::Vector3f(pixel.normal[0], pixel.normal[1], pixel.normal[2]) / 127.0f;
 }
 
-// The pixel's part of the range and normal likelihoods.
-void add_point(const CheckPixel& pixel, const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
-               const Eigen::Vector3f& soft_normal, Sums& sums) {
+// The probability that the pixel of a point so far from a range edge of the view shows the model
+// and not what is behind it: the pixel is as large as it is, and the pose is a little off.
+float inside_probability(float edge_distance, float pixel_size) {
+  const float z = edge_distance / (kLateralSigma + pixel_size);
+  return 1 - std::exp(-z * z);
+}
+
+// What the noise model says of a point's differences, standard deviations.
+struct PointNoise {
+  float inside = 1;   // the probability that its pixel shows the model
+  float range = 0;    // metres along the ray
+  float normal = 0;   // radians
+};
+
+// A surface point as the camera sees it.
+struct SeenPoint {
+  Eigen::Vector3f point, normal, soft_normal;
+  std::size_t pixel = 0;
+  float slant = 0;  // cosine of the angle between the normal and the line of sight
+  PointNoise noise;
+};
+
+// Adds the pixel's part of the likelihoods; true when it shows the model's surface.
+bool add_point(const CheckPixel& pixel, const SeenPoint& seen, Sums& sums) {
+  const Eigen::Vector3f& point = seen.point;
+  const Eigen::Vector3f& normal = seen.normal;
   const float difference = pixel.depth - point.z();
-  const float weight = visibility_probability(difference);
-  sums.visible += weight > 0.5f;
+  const float visible = visibility_probability(difference);
+  const float weight = visible * seen.noise.inside;
+  sums.visible += visible > 0.5f;
   // Depth errors along the ray grow with the slant of the surface.
-  const float slant = std::max(0.25f, -normal.dot(point) / point.norm());
+  const float slant = std::max(0.25f, seen.slant);
   const float noise = depth_noise(point.z());
-  const float sigma = std::sqrt(noise * noise + kModelSigma * kModelSigma) / slant;
-  const float z = difference / sigma;
+  const float z = difference / seen.noise.range;
   sums.weight += weight;
   sums.range += weight * -std::min(0.5f * z * z, kTruncation);
   // Beside a crease either the face's own normal is seen or the mean across the crease.
   const Eigen::Vector3f observed = normal_of(pixel);
-  const float cosine = std::max(normal.dot(observed), soft_normal.dot(observed));
-  const float angle = std::acos(std::clamp(cosine, -1.0f, 1.0f)) / kNormalSigma;
+  const float cosine = std::max(normal.dot(observed), seen.soft_normal.dot(observed));
+  const float angle = std::acos(std::clamp(cosine, -1.0f, 1.0f)) / seen.noise.normal;
   const bool known = pixel.normal[0] != 0 || pixel.normal[1] != 0 || pixel.normal[2] != 0;
   sums.normal += weight * (known ? -std::min(0.5f * angle * angle, kTruncation) : -1.0f);
   sums.free += weight * (difference > 0.02f);
   const bool on_surface = std::abs(difference) < (kOnSurface + 2 * noise) / slant && cosine > 0.6f;
   sums.agreeing += weight * on_surface;
   if (on_surface) sums.normals += normal * normal.transpose();
+  return on_surface && visible > 0.5f;
 }
 
 // Beyond a range edge of the model the observed surface must not simply go on: it may be further
@@ -115,21 +140,27 @@ const ModelView& view_of(const ObjectModel& model, const FastPose& pose) {
   return views[static_cast<std::size_t>(nearest_view(views, to_camera))];
 }
 
-// A surface point as the camera sees it; false where it faces away or falls outside the image.
-struct SeenPoint {
-  Eigen::Vector3f point, normal;
-  std::size_t pixel = 0;
-  float slant = 0;  // cosine of the angle between the normal and the line of sight
-};
-
-bool see_point(const CheckImage& image, const ObjectModel& model, const FastPose& pose,
-               std::uint32_t i, SeenPoint& out) {
+// The k-th visible point of the view; false where it faces away or falls outside the image.
+bool see_point(const CheckImage& image, const ObjectModel& model, const ModelView& view,
+               const FastPose& pose, std::size_t k, SeenPoint& out) {
+  const std::uint32_t i = view.visible[k];
   out.point = pose.rotation * model.surface.points[i] + pose.translation;
   out.normal = pose.rotation * model.surface.normals[i];
   out.slant = -out.normal.dot(out.point) / out.point.norm();
   int u = 0, v = 0;
   if (out.slant < 0.3f || !project(image, out.point, u, v)) return false;
   out.pixel = static_cast<std::size_t>(v * image.width + u);
+  out.soft_normal = pose.rotation * model.index->soft_normals[i];
+  const float edge_distance = view.edge_distance[k];
+  const NoiseTable& noise = model.index->noise;
+  const float sensor = noise.range(edge_distance, out.slant) * depth_noise(out.point.z()) /
+                       depth_noise(static_cast<float>(model.noise.depth));
+  const float off = kModelSigma / out.slant;
+  out.noise.range = std::sqrt(sensor * sensor + off * off);
+  const float normal = noise.normal(edge_distance, out.slant);
+  out.noise.normal = std::sqrt(std::max(normal * normal, model.normal_variance[i]) +
+                               kNormalSigma * kNormalSigma);
+  out.noise.inside = inside_probability(edge_distance, out.point.z() / image.fx);
   return true;
 }
 
@@ -150,8 +181,7 @@ ScoreComponents score_placement(const CheckImage& image, const ObjectModel& mode
   Sums sums;
   SeenPoint seen;
   for (std::size_t k = 0; k < view.visible.size(); k += step) {
-    const std::uint32_t i = view.visible[k];
-    if (!see_point(image, model, fast, i, seen)) continue;
+    if (!see_point(image, model, view, fast, k, seen)) continue;
     ++sums.facing;
     const double z = seen.point.z();
     const double covered = pixels_per_point * seen.slant / (z * z);
@@ -161,9 +191,7 @@ ScoreComponents score_placement(const CheckImage& image, const ObjectModel& mode
       ++sums.unknown;
       continue;
     }
-    const double before = sums.agreeing;
-    add_point(pixel, seen.point, seen.normal, fast.rotation * model.index->soft_normals[i], sums);
-    if (sums.agreeing > before + 0.5) {
+    if (add_point(pixel, seen, sums)) {
       out.explained_pixels += covered;
       out.explained_area += model.index->point_area * static_cast<double>(step);
       sums.background += pixel.searched ? 0 : 1;
@@ -190,14 +218,14 @@ std::vector<std::uint32_t> explained_pixels(const CheckImage& image, const Objec
                                             const Pose& pose) {
   const FastPose fast = to_fast(pose);
   std::vector<std::uint32_t> out;
+  const ModelView& view = view_of(model, fast);
   SeenPoint seen;
-  for (std::uint32_t i : view_of(model, fast).visible) {
-    if (!see_point(image, model, fast, i, seen)) continue;
+  Sums sums;
+  for (std::size_t k = 0; k < view.visible.size(); ++k) {
+    if (!see_point(image, model, view, fast, k, seen)) continue;
     const CheckPixel& pixel = image.pixels[seen.pixel];
     if (pixel.depth <= 0) continue;
-    Sums sums;
-    add_point(pixel, seen.point, seen.normal, fast.rotation * model.index->soft_normals[i], sums);
-    if (sums.agreeing > 0.5) out.push_back(static_cast<std::uint32_t>(seen.pixel));
+    if (add_point(pixel, seen, sums)) out.push_back(static_cast<std::uint32_t>(seen.pixel));
   }
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());

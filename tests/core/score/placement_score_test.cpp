@@ -86,6 +86,21 @@ TEST_F(PlacementScore, WhatHidesItDoesNotCountAgainstIt) {
   EXPECT_NEAR(hidden.expected_pixels, open.expected_pixels, 1);
 }
 
+// A pose that is off by less than a pixel's width is no evidence of free space.
+TEST_F(PlacementScore, WhatIsSeenBesideTheSilhouetteCountsForLittle) {
+  const CheckImage image = image_of(l_on_table());
+  for (const double x : {-0.003, 0.003}) {
+    Pose beside = truth_;
+    beside.translation.x() += x;
+    const ScoreComponents c = score_placement(image, *l_, beside);
+    EXPECT_LT(c.free_space, 0.02);
+    EXPECT_GT(c.range, -0.2);
+  }
+  Pose far = truth_;
+  far.translation.x() += 0.03;
+  EXPECT_GT(score_placement(image, *l_, far).free_space, 0.08);
+}
+
 TEST_F(PlacementScore, FreeSpaceCountsAgainstIt) {
   const CheckImage image = image_of({test::table(kCameraFromWorld)});
   const Pose above = kCameraFromWorld * test::standing_at(0, 0, 0.15, 0.7);
