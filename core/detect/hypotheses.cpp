@@ -129,10 +129,25 @@ class Sampler {
     keep(hypothesis);
   }
 
+  // The best, and those of each place in the scene: an object that is easily mistaken for this one
+  // must not crowd out a place where the fit is worse but true. Leaves them sorted by score.
   static void keep_best(std::vector<Hypothesis>& all, int count) {
-    std::stable_sort(all.begin(), all.end(),
-                     [](const auto& a, const auto& b) { return a.score > b.score; });
-    if (all.size() > static_cast<std::size_t>(count)) all.resize(static_cast<std::size_t>(count));
+    constexpr float kRankPenalty = 0.004f;  // of the score, for each better one at the same place
+    const auto by_score = [](const auto& a, const auto& b) { return a.score > b.score; };
+    std::stable_sort(all.begin(), all.end(), by_score);
+    if (all.size() <= static_cast<std::size_t>(count)) return;
+    std::unordered_map<std::uint64_t, int> met;
+    std::vector<std::pair<float, std::size_t>> order;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const int rank = met[place_cell(all[i].camera_from_object.translation, 20)]++;
+      order.push_back({-all[i].score + kRankPenalty * static_cast<float>(rank), i});
+    }
+    std::stable_sort(order.begin(), order.end());
+    order.resize(static_cast<std::size_t>(count));
+    std::vector<Hypothesis> kept;
+    for (const auto& [penalised, i] : order) kept.push_back(all[i]);
+    std::stable_sort(kept.begin(), kept.end(), by_score);
+    all = std::move(kept);
   }
 
   // A sampled pose is off by as much as the sampling of both surfaces is coarse.
@@ -169,13 +184,18 @@ class Sampler {
     if (hypothesis.score > worst->score) *worst = hypothesis;
   }
 
+  // The cube, of which `per_metre` make a metre, that a place lies in.
+  static std::uint64_t place_cell(const Eigen::Vector3f& place, float per_metre) {
+    const Eigen::Vector3i cell = (place * per_metre).array().floor().cast<int>() + 512;
+    return static_cast<std::uint64_t>(cell.x() & 1023) << 20 |
+           static_cast<std::uint64_t>(cell.y() & 1023) << 10 |
+           static_cast<std::uint64_t>(cell.z() & 1023);
+  }
+
   // Cells of 25 mm and about 25 degrees; of an object that may be turned about an axis, the turn
   // does not count.
   std::uint64_t pose_cell(const FastPose& pose) const {
-    const Eigen::Vector3i place = (pose.translation * 40).array().floor().cast<int>() + 512;
-    std::uint64_t key = static_cast<std::uint64_t>(place.x() & 1023) << 20 |
-                        static_cast<std::uint64_t>(place.y() & 1023) << 10 |
-                        static_cast<std::uint64_t>(place.z() & 1023);
+    std::uint64_t key = place_cell(pose.translation, 40);
     const auto add_direction = [&key](const Eigen::Vector3f& direction) {
       const Eigen::Vector3i cell = ((direction.array() + 1) * 2.5f).floor().cast<int>();
       key = key * 216 + static_cast<std::uint64_t>(cell.x() + 6 * cell.y() + 36 * cell.z());
