@@ -93,8 +93,11 @@ void add_round_three(const SceneFeatures& scene, const ObjectModel& model, const
   out.segment_affinity = segment_affinity_score(scene.segmentation, matches);
 }
 
-Candidate evaluate(const SceneFeatures& scene, const std::shared_ptr<const ObjectModel>& model,
-                   Refinement refinement, const ScoreLayer& layer) {
+}  // namespace
+
+Candidate evaluate_candidate(const SceneFeatures& scene,
+                             const std::shared_ptr<const ObjectModel>& model, Refinement refinement,
+                             const ScoreLayer& layer) {
   Candidate candidate;
   candidate.model = model;
   candidate.components = score_placement(scene.image, *model, refinement.camera_from_object);
@@ -105,8 +108,6 @@ Candidate evaluate(const SceneFeatures& scene, const std::shared_ptr<const Objec
   candidate.probability = placement_probability(candidate.components, layer);
   return candidate;
 }
-
-}  // namespace
 
 std::vector<Candidate> detect_object(const SceneFeatures& scene,
                                      const std::shared_ptr<const ObjectModel>& model,
@@ -144,7 +145,7 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
   std::vector<Candidate> candidates;
   for (const Aligned& start : aligned) {
     candidates.push_back(
-        evaluate(scene, model, refine_pose(scene, *model, start.pose, last), options.layer));
+        evaluate_candidate(scene, model, refine_pose(scene, *model, start.pose, last), options.layer));
   }
   const auto of_candidate = [](const Candidate& c) { return to_fast(c.pose()); };
   finish_stage("aligned", candidates, of_candidate);

@@ -54,6 +54,11 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
                                      const SingleObjectOptions& options,
                                      ObjectTrace* trace = nullptr);
 
+/// Scores a pose with every component of rounds two and three.
+Candidate evaluate_candidate(const SceneFeatures& scene,
+                             const std::shared_ptr<const ObjectModel>& model, Refinement refinement,
+                             const ScoreLayer& layer);
+
 /// The candidate as it is reported: with covariance, orientation uncertainty and named components.
 Placement to_placement(const Candidate& candidate);
 
