@@ -96,6 +96,16 @@ void print_reliability(const char* name, const ScoreLayer& layer,
   }
 }
 
+std::string list(std::span<const double> values) {
+  std::string out;
+  char number[32];
+  for (double value : values) {
+    std::snprintf(number, sizeof number, "%s%.6g", out.empty() ? "{" : ", ", value);
+    out += number;
+  }
+  return out + "}";
+}
+
 // A C++ source that defines default_score_layer().
 std::string as_source(const ScoreLayer& layer) {
   std::string out =
@@ -108,9 +118,8 @@ std::string as_source(const ScoreLayer& layer) {
   char line[256];
   for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
     const ScoreLayer::Component& c = layer.components[i];
-    std::snprintf(line, sizeof line, "      {%.9g, %.9g, %.9g, %.9g},  // %s\n", c.low, c.high,
-                  c.linear, c.quadratic, score_feature_names()[i]);
-    out += line;
+    out += std::string("      // ") + score_feature_names()[i] + "\n      {" + list(c.place) + ",\n       " +
+           list(c.value) + "},\n";
   }
   std::snprintf(line, sizeof line, "  }}, %.9g,\n", layer.bias);
   out += line;

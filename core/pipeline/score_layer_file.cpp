@@ -8,7 +8,7 @@
 namespace bpa {
 namespace {
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 Status corrupt(const std::string& path, const std::string& what) {
   return Status(StatusCode::corrupt, path + ": " + what);
@@ -24,8 +24,7 @@ Status write_score_layer(const std::string& path, const ScoreLayer& layer) {
   nlohmann::ordered_json components;
   for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
     const ScoreLayer::Component& c = layer.components[i];
-    components[score_feature_names()[i]] = {
-        {"low", c.low}, {"high", c.high}, {"linear", c.linear}, {"quadratic", c.quadratic}};
+    components[score_feature_names()[i]] = {{"place", c.place}, {"log_odds", c.value}};
   }
   const nlohmann::ordered_json json = {{"score_layer_version", kVersion},
                                        {"provenance", layer.provenance},
@@ -51,8 +50,8 @@ Result<ScoreLayer> read_score_layer(const std::string& path) {
     layer.provenance = json.at("provenance").get<std::string>();
     for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
       const auto& entry = json.at("components").at(score_feature_names()[i]);
-      layer.components[i] = {entry.at("low").get<double>(), entry.at("high").get<double>(),
-                             entry.at("linear").get<double>(), entry.at("quadratic").get<double>()};
+      entry.at("place").get_to(layer.components[i].place);
+      entry.at("log_odds").get_to(layer.components[i].value);
     }
     return layer;
   } catch (const nlohmann::json::exception& error) {

@@ -3,7 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <utility>
+#include <vector>
 
 #include <bpa/core/score/score_layer.hpp>
 
@@ -17,80 +18,129 @@ constexpr std::array<const char*, kNumScoreFeatures> kNames = {
     "background", "support",         "edge_likelihood", "occlusion_edge", "random_walk",
     "segment",    "segment_affinity"};
 
-// The 0.5 % and 99.5 % values.
-std::pair<double, double> usual_range(std::vector<double> values) {
+constexpr std::size_t kKnots = ScoreLayer::kKnots;
+using Places = std::array<double, kKnots>;
+
+// Evenly spread over the values of right and wrong samples, of which each kind counts for a half.
+Places choose_places(std::vector<std::pair<double, bool>> values) {
   std::sort(values.begin(), values.end());
-  const auto at = [&](double part) {
-    return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
-  };
-  return {at(0.005), at(0.995)};
+  double count[2] = {0, 0};
+  for (const auto& value : values) ++count[value.second];
+  Places places{};
+  double passed = 0;
+  std::size_t next = 0;
+  for (const auto& [value, right] : values) {
+    passed += 0.5 / count[right];
+    const double wanted = 0.005 + 0.99 * static_cast<double>(next) / (kKnots - 1);
+    if (next < kKnots && passed >= wanted) places[next++] = value;
+  }
+  while (next < kKnots) places[next++] = values.back().first;
+  // A value that many samples share gets a knot, and the next one lies just beyond.
+  const double least = 1e-6 * std::max(1e-6, places.back() - places.front());
+  for (std::size_t k = 1; k < kKnots; ++k) places[k] = std::max(places[k], places[k - 1] + least);
+  return places;
 }
 
-// A feature's place between low and high, as -1..1.
-double scaled(const ScoreLayer::Component& c, double x) {
-  const double middle = 0.5 * (c.low + c.high);
-  return (std::clamp(x, c.low, c.high) - middle) / std::max(1e-9, 0.5 * (c.high - c.low));
+// Between which knots a value lies, and how far along.
+std::pair<std::size_t, double> position(const Places& places, double x) {
+  if (!(x > places.front())) return {0, 0.0};
+  if (x >= places.back()) return {kKnots - 2, 1.0};
+  std::size_t k = 0;
+  while (x >= places[k + 1]) ++k;
+  return {k, (x - places[k]) / (places[k + 1] - places[k])};
 }
 
-constexpr Eigen::Index kNumWeights = 2 * static_cast<Eigen::Index>(kNumScoreFeatures) + 1;
+constexpr Eigen::Index kNumWeights =
+    static_cast<Eigen::Index>(kKnots) * static_cast<Eigen::Index>(kNumScoreFeatures) + 1;
 using Weights = Eigen::Matrix<double, kNumWeights, 1>;
+
+Eigen::Index weight_of(std::size_t feature, std::size_t knot) {
+  return static_cast<Eigen::Index>(1 + feature * kKnots + knot);
+}
 
 // The likelihood of the labels of one frame's samples, and its gradient.
 class FrameLikelihood {
  public:
-  FrameLikelihood(const ScoreFrame& frame, const ScoreLayer& ranges) : frame_(frame) {
-    rows_.resize(static_cast<Eigen::Index>(frame.samples.size()), kNumWeights);
-    for (Eigen::Index i = 0; i < rows_.rows(); ++i) {
-      rows_(i, 0) = 1;
+  FrameLikelihood(const ScoreFrame& frame, std::span<const Places> places) : frame_(frame) {
+    for (const ScoreFrame::Sample& sample : frame.samples) {
+      Row& row = rows_.emplace_back();
       for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
-        const double x =
-            scaled(ranges.components[f], frame.samples[static_cast<std::size_t>(i)].features[f]);
-        rows_(i, 1 + 2 * static_cast<Eigen::Index>(f)) = x;
-        rows_(i, 2 + 2 * static_cast<Eigen::Index>(f)) = x * x;
+        row[f] = position(places[f], sample.features[f]);
       }
     }
   }
 
   // Adds the gradient of the negative log likelihood.
   void add_gradient(const Weights& weights, Weights& gradient) const {
-    const Eigen::VectorXd scores = rows_ * weights;
-    const Eigen::VectorXd odds = scores.array().min(30).exp();
-    Eigen::VectorXd by_score = Eigen::VectorXd::Zero(scores.size());
-    for (Eigen::Index i = 0; i < scores.size(); ++i) {
-      const auto& rivals = frame_.competition.rivals[static_cast<std::size_t>(i)];
+    std::vector<double> odds, by_score(rows_.size(), 0);
+    for (const Row& row : rows_) odds.push_back(std::exp(std::min(30.0, score_of(row, weights))));
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const auto& rivals = frame_.competition.rivals[i];
       double right = odds[i], all = 1 + odds[i];
       for (const auto& rival : rivals) {
         all += odds[rival.other];
         if (rival.same_pose) right += odds[rival.other];
       }
       const double p = std::min(right / all, 1 - 1e-9);
-      const bool label = frame_.samples[static_cast<std::size_t>(i)].right;
+      const bool label = frame_.samples[i].right;
       // d(-log likelihood) / d(score j) = (p - label) / (1 - p) * (part of j in `right` / p - part
       // of j in `all`), all over p or 1 - p.
       const double outer = label ? -1 / p : 1 / (1 - p);
-      const auto add = [&](Eigen::Index j, bool same) {
+      const auto add = [&](std::size_t j, bool same) {
         by_score[j] += outer * odds[j] * ((same ? 1.0 : 0.0) - p) / all;
       };
       add(i, true);
       for (const auto& rival : rivals) add(rival.other, rival.same_pose);
     }
-    gradient.noalias() += rows_.transpose() * by_score;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      gradient[0] += by_score[i];
+      for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
+        const auto [knot, along] = rows_[i][f];
+        gradient[weight_of(f, knot)] += (1 - along) * by_score[i];
+        gradient[weight_of(f, knot + 1)] += along * by_score[i];
+      }
+    }
   }
 
  private:
+  using Row = std::array<std::pair<std::size_t, double>, kNumScoreFeatures>;
+
+  static double score_of(const Row& row, const Weights& weights) {
+    double sum = weights[0];
+    for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
+      const auto [knot, along] = row[f];
+      sum += (1 - along) * weights[weight_of(f, knot)] + along * weights[weight_of(f, knot + 1)];
+    }
+    return sum;
+  }
+
   const ScoreFrame& frame_;
-  Eigen::MatrixXd rows_;
+  std::vector<Row> rows_;
 };
+
+// Small values, and as smooth as the samples allow.
+void add_penalty(const Weights& weights, Weights& gradient) {
+  constexpr double kSize = 0.3, kRoughness = 2;
+  gradient.tail(kNumWeights - 1) += kSize * weights.tail(kNumWeights - 1);
+  for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
+    for (std::size_t k = 1; k + 1 < kKnots; ++k) {
+      const Eigen::Index i = weight_of(f, k);
+      const double bend = kRoughness * (weights[i - 1] - 2 * weights[i] + weights[i + 1]);
+      gradient[i - 1] += bend;
+      gradient[i] -= 2 * bend;
+      gradient[i + 1] += bend;
+    }
+  }
+}
 
 // Adam (Kingma and Ba, 2015) on all frames at once, with falling steps.
 Weights minimise(const std::vector<FrameLikelihood>& frames, double samples) {
   constexpr int kIterations = 600;
-  constexpr double kPenalty = 1;  // of the squares of the weights
   Weights weights = Weights::Zero(), mean = Weights::Zero(), square = Weights::Zero();
   weights[0] = -3;
   for (int k = 1; k <= kIterations; ++k) {
-    Weights gradient = kPenalty * weights;
-    gradient[0] = 0;
+    Weights gradient = Weights::Zero();
+    add_penalty(weights, gradient);
     for (const FrameLikelihood& frame : frames) frame.add_gradient(weights, gradient);
     gradient /= samples;
     mean = 0.9 * mean + 0.1 * gradient;
@@ -136,23 +186,27 @@ ScoreFeatures score_features(const ScoreComponents& c) {
           c.segment_affinity};
 }
 
+double ScoreLayer::Component::at(double x) const {
+  const auto [knot, along] = position(place, x);
+  return (1 - along) * value[knot] + along * value[knot + 1];
+}
+
 double ScoreLayer::log_odds(const ScoreFeatures& features) const {
   double sum = bias;
-  for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
-    const double x = scaled(components[i], features[i]);
-    sum += x * (components[i].linear + x * components[i].quadratic);
-  }
+  for (std::size_t i = 0; i < kNumScoreFeatures; ++i) sum += components[i].at(features[i]);
   return sum;
 }
 
 Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames) {
-  std::array<std::vector<double>, kNumScoreFeatures> values;
+  std::array<std::vector<std::pair<double, bool>>, kNumScoreFeatures> values;
   std::size_t right = 0, total = 0;
   for (const ScoreFrame& frame : frames) {
     for (const ScoreFrame::Sample& sample : frame.samples) {
       right += sample.right;
       ++total;
-      for (std::size_t f = 0; f < kNumScoreFeatures; ++f) values[f].push_back(sample.features[f]);
+      for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
+        values[f].push_back({sample.features[f], sample.right});
+      }
     }
   }
   if (right < 10 || right + 10 > total) {
@@ -160,17 +214,18 @@ Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames) {
                             std::to_string(total) +
                             "; it needs at least 10 right and 10 wrong ones");
   }
-  ScoreLayer layer;
-  for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
-    std::tie(layer.components[f].low, layer.components[f].high) = usual_range(values[f]);
-  }
+  std::array<Places, kNumScoreFeatures> places;
+  for (std::size_t f = 0; f < kNumScoreFeatures; ++f) places[f] = choose_places(values[f]);
   std::vector<FrameLikelihood> likelihoods;
-  for (const ScoreFrame& frame : frames) likelihoods.emplace_back(frame, layer);
+  for (const ScoreFrame& frame : frames) likelihoods.emplace_back(frame, places);
   const Weights weights = minimise(likelihoods, static_cast<double>(total));
+  ScoreLayer layer;
   layer.bias = weights[0];
   for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
-    layer.components[f].linear = weights[1 + 2 * static_cast<Eigen::Index>(f)];
-    layer.components[f].quadratic = weights[2 + 2 * static_cast<Eigen::Index>(f)];
+    layer.components[f].place = places[f];
+    for (std::size_t k = 0; k < kKnots; ++k) {
+      layer.components[f].value[k] = weights[weight_of(f, k)];
+    }
   }
   return layer;
 }

@@ -22,12 +22,15 @@ std::span<const char* const, kNumScoreFeatures> score_feature_names();
 ScoreFeatures score_features(const ScoreComponents& components);
 
 /// The learned score (paper section V): for each score component the log odds that it contributes,
-/// a quadratic, and their sum, the log odds of the placement against nothing being there. What
-/// becomes of rivals for the same place follows from competing_probabilities().
+/// a piecewise linear function, and their sum, the log odds of the placement against nothing being
+/// there. What becomes of rivals for the same place follows from competing_probabilities().
 struct ScoreLayer {
+  static constexpr std::size_t kKnots = 8;
   struct Component {
-    double low = 0, high = 1;  ///< Values met in training; others count as the nearest of them.
-    double linear = 0, quadratic = 0;
+    std::array<double, kKnots> place{};  ///< Rising values of the component.
+    std::array<double, kKnots> value{};  ///< What each contributes; others are interpolated, and
+                                         ///< count as the nearest beyond the ends.
+    double at(double x) const;
   };
   std::array<Component, kNumScoreFeatures> components;
   double bias = 0;

@@ -25,7 +25,7 @@ class ScoreLayerFile : public ::testing::Test {
 TEST_F(ScoreLayerFile, IsReadAsItWasWritten) {
   ScoreLayer layer = default_score_layer();
   layer.bias = -1.0 / 3;
-  layer.components[4] = {0.1, 0.2, 1.0 / 7, -1e-17};
+  layer.components[4] = {{0.1, 0.2, 1.0 / 3, 1, 2, 3, 4, 5}, {1.0 / 7, -1e-17, 0, 3, 2, 1, -1, 1e9}};
   layer.provenance = "a \"test\"";
   ASSERT_TRUE(write_score_layer(path_, layer).ok());
   const auto read = library_score_layer(folder_.path());
@@ -33,10 +33,8 @@ TEST_F(ScoreLayerFile, IsReadAsItWasWritten) {
   EXPECT_EQ(read->bias, layer.bias);
   EXPECT_EQ(read->provenance, layer.provenance);
   for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
-    EXPECT_EQ(read->components[i].low, layer.components[i].low);
-    EXPECT_EQ(read->components[i].high, layer.components[i].high);
-    EXPECT_EQ(read->components[i].linear, layer.components[i].linear);
-    EXPECT_EQ(read->components[i].quadratic, layer.components[i].quadratic);
+    EXPECT_EQ(read->components[i].place, layer.components[i].place);
+    EXPECT_EQ(read->components[i].value, layer.components[i].value);
   }
 }
 
@@ -52,7 +50,7 @@ TEST_F(ScoreLayerFile, DamageIsRefusedWithAReason) {
   test::spill(path_, good.substr(0, good.size() / 2));
   EXPECT_NE(refusal().find("truncated or not JSON"), std::string::npos);
   std::string other = good;
-  other.replace(other.find("_version\": 1"), 12, "_version\": 9");
+  other.replace(other.find("_version\": 2"), 12, "_version\": 9");
   test::spill(path_, other);
   EXPECT_NE(refusal().find("version 9"), std::string::npos);
   other = good;

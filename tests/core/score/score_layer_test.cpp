@@ -67,7 +67,7 @@ std::vector<ScoreFrame> drawn_frames(int count, std::uint64_t seed) {
 }
 
 TEST(ScoreLayer, TrainingFindsTheLawThatDrewTheLabels) {
-  const auto layer = train_score_layer(drawn_frames(600, 1));
+  const auto layer = train_score_layer(drawn_frames(1000, 1));
   ASSERT_TRUE(layer.ok()) << layer.status().message;
   RandomStream random(2);
   for (int k = 0; k < 50; ++k) {
@@ -100,13 +100,46 @@ TEST(ScoreLayer, ReliabilityOfKnownProbabilities) {
 
 TEST(ScoreLayer, ValuesOutsideTrainingCountAsTheNearestOnes) {
   ScoreLayer layer;
-  layer.components[0] = {-0.5, 0.5, 2, 1};
+  layer.components[0] = {{1, 2, 3, 4, 5, 6, 7, 8}, {-3, 0, 1, 0, 0, 0, 0, 5}};
+  layer.bias = 0.5;
+  const auto at = [&layer](double value) {
+    ScoreFeatures x{};
+    x[0] = value;
+    return layer.log_odds(x);
+  };
+  EXPECT_EQ(at(8), 5.5);
+  EXPECT_EQ(at(70), 5.5);
+  EXPECT_EQ(at(1), -2.5);
+  EXPECT_EQ(at(-1), -2.5);
+  EXPECT_EQ(at(std::nan("")), -2.5) << "counts as the lowest";
+}
+
+TEST(ScoreLayer, BetweenKnotsIsInterpolated) {
+  ScoreLayer layer;
+  layer.components[0] = {{1, 2, 3, 4, 5, 6, 7, 8}, {-3, 0, 1, 0, 0, 0, 0, 5}};
+  EXPECT_NEAR(layer.components[0].at(1.25), -2.25, 1e-12);
+  EXPECT_NEAR(layer.components[0].at(3), 1, 1e-12);
+  EXPECT_NEAR(layer.components[0].at(7.5), 2.5, 1e-12);
+}
+
+// Where a value is common to many samples, and what it says is not in line with the others.
+TEST(ScoreLayer, TrainingFindsAStep) {
+  RandomStream random(7);
+  ScoreFrame frame;
+  frame.samples.resize(8000);
+  frame.competition.rivals.resize(8000);
+  for (auto& sample : frame.samples) {
+    sample.features.fill(0);
+    const bool known = random.uniform() < 0.5;
+    sample.features[0] = known ? -random.uniform(0.5, 1) : 0;
+    sample.right = random.uniform() < (known ? 0.2 : 0.8);
+  }
+  const auto layer = train_score_layer(std::vector<ScoreFrame>{frame});
+  ASSERT_TRUE(layer.ok()) << layer.status().message;
   ScoreFeatures x{};
-  x[0] = 0.5;
-  const double edge = layer.log_odds(x);
-  x[0] = 7;
-  EXPECT_EQ(layer.log_odds(x), edge);
-  EXPECT_NEAR(edge, 3, 1e-12);
+  EXPECT_NEAR(sigmoid(layer->log_odds(x)), 0.8, 0.03);
+  x[0] = -0.7;
+  EXPECT_NEAR(sigmoid(layer->log_odds(x)), 0.2, 0.03);
 }
 
 TEST(ScoreLayer, NeedsBothKindsOfSamples) {
