@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include <bpa/core/base/parallel.hpp>
+#include <bpa/core/base/random.hpp>
 #include <bpa/core/cli/command.hpp>
 #include <bpa/core/cli/progress.hpp>
 #include <bpa/core/io/bop_writer.hpp>
@@ -30,6 +31,7 @@ struct SimulateArguments {
   std::string models;
   int scenes = 30;
   double scale = 1;
+  double model_error = 0;
   std::vector<int> objects;
   std::vector<double> clutter;
   sim::SceneOptions scene;
@@ -154,6 +156,10 @@ Status simulate_scenes(SimulateArguments a) {
   Result<std::vector<sim::SimulatedObject>> objects = chosen_objects(a);
   if (!objects.ok()) return objects.status();
   if (Status s = write_models(a.out, *objects); !s.ok()) return s;
+  for (std::size_t i = 0; a.model_error > 0 && i < objects->size(); ++i) {
+    (*objects)[i] = sim::made_inexactly(std::move((*objects)[i]), a.model_error,
+                                        RandomStream(a.common.seed, 1000 + i)());
+  }
   const sim::Stage stage(std::move(objects).value(), a.common.threads);
 
   Progress progress("simulate", a.scenes);
@@ -273,6 +279,16 @@ void add_simulate_command(CLI::App& program, Action& action) {
       ->capture_default_str();
   scenes.add_option("--misregistration", a->scene.kinect.misregistration,
                     "Shift of colour against depth, pixels");
+  scenes
+      .add_option(
+          "--model-error", a->model_error,
+          "What objects are longer or shorter than their models along each axis, as a share")
+      ->check(CLI::Range(0.0, 0.2))
+      ->capture_default_str();
+  scenes
+      .add_option("--calibration-error", a->scene.kinect.calibration_error,
+                  "Smooth error of the sensor's disparity, pixels; 0.4 is 1 cm at 1 m")
+      ->capture_default_str();
   add_common_options(scenes, a->common);
   scenes.callback([&action, a] { action = [a] { return simulate_scenes(*a); }; });
 

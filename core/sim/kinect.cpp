@@ -97,9 +97,9 @@ float window_agreement(const Measurement& m, int x, int y, float disparity) {
 
 // The random images that the measurement draws on.
 struct Noise {
-  std::vector<float> lateral_x, lateral_y, shared, own, match, drop;
+  std::vector<float> lateral_x, lateral_y, shared, own, match, drop, smooth;
 
-  Noise(const Camera& camera, std::uint64_t seed, int num_threads) {
+  Noise(const Camera& camera, bool with_smooth, std::uint64_t seed, int num_threads) {
     std::uint64_t stream = 0;
     const auto make = [&](int radius) {
       return noise_field(camera.width, camera.height, radius, RandomStream(seed, stream++)(),
@@ -111,6 +111,7 @@ struct Noise {
     own = make(0);
     match = make(3);
     drop = make(4);
+    if (with_smooth) smooth = make(std::max(1, camera.width / 8));
   }
 };
 
@@ -152,6 +153,7 @@ float measure(const Measurement& m, const Noise& noise, const KinectOptions& opt
   const double unit = std::sqrt(kShared) * noise.shared[i] + std::sqrt(1 - kShared) * noise.own[i];
   double disparity = m.disparity[source] +
                      (options.axial_noise > 0 ? std::sqrt(std::max(variance, 4e-4)) * unit : 0.0);
+  if (options.calibration_error > 0) disparity += options.calibration_error * noise.smooth[i];
   if (options.disparity_step > 0) {
     disparity = options.disparity_step * std::round(disparity / options.disparity_step);
     if (disparity <= 0) return 0;
@@ -293,7 +295,7 @@ KinectImage simulate_kinect(const RayScene& scene, const Camera& camera,
   }
   const Measurement m =
       see(scene, infrared, world_from_camera * camera_from_infrared, shading, options, num_threads);
-  const Noise noise(infrared, seed, num_threads);
+  const Noise noise(infrared, options.calibration_error > 0, seed, num_threads);
   std::vector<float> depth(m.depth.size(), 0);
   parallel_for(
       infrared.height, num_threads,

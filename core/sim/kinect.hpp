@@ -26,6 +26,9 @@
 //  4. Noise. Disparity has noise such that depth gets the axial noise of Nguyen et al.,
 //     0.0012 + 0.0019 (z - 0.4)^2 m, plus 0.0001 / sqrt(z) * angle^2 / (pi/2 - angle)^2 m beyond
 //     60 degrees of incidence. Since windows overlap, neighbours share most of it.
+//     A sensor that is not well calibrated adds an error that changes slowly over the image
+//     (Herrera, Kannala and Heikkilä 2012, "Joint depth and color camera calibration with
+//     distortion correction", IEEE T-PAMI 34).
 //  5. Quantisation. Disparity comes in steps of 1/8 pixel (Khoshelham and Elberink), 2.9 mm of
 //     depth at 1 m and growing with z^2, and depth in millimetres.
 //  6. Registration. Depth is carried over to the colour camera, 2.5 cm beside the infrared one.
@@ -42,6 +45,7 @@ struct KinectOptions {
   double disparity_step = 0.125;
   double infrared_focal = 570.3;
   double axial_noise = 1;
+  double calibration_error = 0;
   double lateral_noise = 1;
   double dropouts = 1;
   bool shadows = true;
@@ -60,6 +64,8 @@ struct KinectOptions {
     visit("infrared_focal", infrared_focal,
           {200, 4000, "Focal length of the 640x480 infrared image, pixels."});
     visit("axial_noise", axial_noise, {0, 10, "Times the published noise along the axis."});
+    visit("calibration_error", calibration_error,
+          {0, 2, "Standard deviation of the smooth error of disparity, pixels."});
     visit("lateral_noise", lateral_noise, {0, 10, "Times the published noise of edges."});
     visit("dropouts", dropouts, {0, 10, "Times the usual chance that a pixel has no depth."});
     visit("shadows", shadows, {0, 1, "No depth where the projector does not reach."});

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <bpa/core/base/parallel.hpp>
+#include <bpa/core/base/random.hpp>
 #include <bpa/core/sim/objects.hpp>
 #include <bpa/core/sim/shapes.hpp>
 
@@ -97,6 +98,18 @@ SimulatedObject object_from_mesh(std::string name, TriangleMesh mesh,
         [&](const auto& a, const auto& b) { return a.dot(direction) < b.dot(direction); }));
   }
   object.parts = {hull};
+  return object;
+}
+
+SimulatedObject made_inexactly(SimulatedObject object, double error, std::uint64_t seed) {
+  RandomStream random(seed);
+  Eigen::Array3f scale;
+  for (int axis = 0; axis < 3; ++axis)
+    scale[axis] = static_cast<float>(1 + error * random.normal());
+  for (Eigen::Vector3f& vertex : object.mesh.vertices) vertex.array() *= scale;
+  for (ConvexPart& part : object.parts) {
+    for (Eigen::Vector3f& corner : part) corner.array() *= scale;
+  }
   return object;
 }
 

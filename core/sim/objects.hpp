@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,10 @@ std::vector<SimulatedObject> household_objects(const std::vector<std::string>& n
 /// vertices. `mesh` must not be empty.
 SimulatedObject object_from_mesh(std::string name, TriangleMesh mesh,
                                  const SymmetryGroup& symmetry = {});
+
+/// The object as it is made, not as its model says: longer or shorter along each of its axes by a
+/// normally distributed share of standard deviation `error`.
+SimulatedObject made_inexactly(SimulatedObject object, double error, std::uint64_t seed);
 
 /// The largest distance between two vertices, metres.
 double diameter(const TriangleMesh& mesh);

@@ -150,6 +150,33 @@ TEST(Kinect, WithoutErrorsItIsIdeal) {
   }
 }
 
+// Without any other error, depth is off by what the disparity is, and alike beside each other.
+TEST(Kinect, CalibrationErrorIsSmoothAndAsLargeAsAsked) {
+  KinectOptions options = at_depth_camera();
+  options.axial_noise = options.lateral_noise = options.dropouts = 0;
+  options.disparity_step = 0;
+  options.shadows = false;
+  options.calibration_error = 0.2;
+  const double focal_baseline = options.infrared_focal * options.baseline;
+  double squares = 0, steps = 0;
+  int count = 0;
+  for (const double depth : {0.7, 0.9, 1.1, 1.3}) {
+    const KinectImage image = see_plane(depth, 0, {}, options);
+    double last = 0;
+    for (std::size_t i = 0; i < image.frame.depth.size(); ++i) {
+      const double z = image.frame.depth[i];
+      ASSERT_GT(z, 0);
+      const double error = focal_baseline / z - focal_baseline / depth;
+      if (i % 320 > 0) steps += (error - last) * (error - last);
+      squares += error * error;
+      last = error;
+      ++count;
+    }
+  }
+  EXPECT_NEAR(std::sqrt(squares / count), 0.2, 0.1) << "of some tens of independent places";
+  EXPECT_LT(std::sqrt(steps / count), 0.02);
+}
+
 TEST(Kinect, RegistrationKeepsDepthWhereItIs) {
   KinectOptions options;
   options.axial_noise = 0.1;

@@ -194,6 +194,29 @@ TEST(Objects, ConvexPartsFillTheMesh) {
   }
 }
 
+TEST(Objects, MadeInexactlyAreStretchedAlongTheirAxes) {
+  const SimulatedObject& exact = objects().front();
+  double sum = 0, squares = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const SimulatedObject made = made_inexactly(exact, 0.02, seed);
+    ASSERT_EQ(made.mesh.triangles, exact.mesh.triangles);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto ratio = [&](std::size_t i) {
+        return made.mesh.vertices[i][axis] / exact.mesh.vertices[i][axis] - 1;
+      };
+      std::size_t i = 0;
+      while (std::abs(exact.mesh.vertices[i][axis]) < 0.01f) ++i;
+      EXPECT_NEAR(made.parts[0][0][axis], (1 + ratio(i)) * exact.parts[0][0][axis], 1e-5);
+      sum += static_cast<double>(ratio(i));
+      squares += std::pow(static_cast<double>(ratio(i)), 2);
+    }
+  }
+  EXPECT_NEAR(sum / 300, 0, 4 * 0.02 / std::sqrt(300.0));
+  EXPECT_NEAR(std::sqrt(squares / 300), 0.02, 0.004);
+  EXPECT_EQ(made_inexactly(exact, 0.02, 3).mesh.vertices,
+            made_inexactly(exact, 0.02, 3).mesh.vertices);
+}
+
 TEST(Objects, AreTheSameForAnyNumberOfThreads) {
   const std::vector<std::string> names{"mug", "gear"};
   const auto one = household_objects(names, 1), two = household_objects(names, 2);
