@@ -6,6 +6,7 @@
 
 #include <bpa/core/align/align.hpp>
 #include <bpa/core/base/random.hpp>
+#include <bpa/core/detect/edge_matches.hpp>
 #include <bpa/core/detect/refinement.hpp>
 #include <bpa/core/model/model_index.hpp>
 
@@ -69,6 +70,31 @@ NormalEquations build(const SceneFeatures& scene, const CheckPoints& model, cons
   return equations;
 }
 
+// Edge points of the model against where the observed surface ends: what is seen of an object from
+// one side says by its edges alone where across the view it is.
+void add_edges(const SceneFeatures& scene, const ObjectModel& model, const ModelView& view,
+               const FastPose& pose, const Eigen::Vector3f& centre, float gate, int max_edges,
+               NormalEquations& equations) {
+  if (max_edges == 0 || view.edges.empty()) return;
+  const std::size_t step =
+      std::max<std::size_t>(1, view.edges.size() / static_cast<std::size_t>(max_edges));
+  for (std::size_t k = 0; k < view.edges.size(); k += step) {
+    const EdgePoint edge = edge_point(model, view, pose, k);
+    const std::optional<float> offset = match_edge(scene.image, edge, gate);
+    if (!offset) continue;
+    // A pixel's width, and what the edges of the nearest of the 66 views are off by.
+    const float sigma = 0.004f + 0.5f * edge.point.z() / scene.image.fx;
+    const float ratio = *offset / gate;
+    const float robust = std::max(0.0f, 1 - ratio * ratio);
+    const float weight = robust * robust / (sigma * sigma);
+    Vector6f row;
+    row.head<3>() = edge.outward;
+    row.tail<3>() = (edge.point - centre).cross(edge.outward);
+    equations.information.noalias() += weight * row * row.transpose();
+    equations.gradient -= weight * *offset * row;
+  }
+}
+
 // Keeps directions that no correspondence sees where they were.
 Matrix6f damping(double diameter) {
   Matrix6f out = Matrix6f::Zero();
@@ -85,12 +111,15 @@ Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, con
   Refinement out;
   Pose pose = start;
   const Matrix6f prior = damping(model.diameter);
+  const ModelView& view = nearest_view(model.index->views, to_fast(start));
   for (int k = 0; k <= options.iterations; ++k) {
     const float part = static_cast<float>(k) / static_cast<float>(std::max(1, options.iterations));
     const float gate = options.start_gate_m + part * (options.end_gate_m - options.start_gate_m);
     const Eigen::Vector3f centre = pose.translation.cast<float>();
-    const NormalEquations equations =
-        build(scene, model.index->check, to_fast(pose), centre, gate, options.max_points);
+    const FastPose fast = to_fast(pose);
+    NormalEquations equations =
+        build(scene, model.index->check, fast, centre, gate, options.max_points);
+    add_edges(scene, model, view, fast, centre, gate, options.max_edges, equations);
     out.num_correspondences = equations.count;
     out.information = equations.information.cast<double>();
     if (k == options.iterations || equations.count < 6) break;

@@ -12,6 +12,7 @@ namespace bpa {
 struct RefinementOptions {
   int iterations = 6;
   int max_points = 200;         ///< Model points used.
+  int max_edges = 60;           ///< Model edge points used; 0 = surface only.
   float start_gate_m = 0.030f;  ///< Correspondences further apart do not count, at first
   float end_gate_m = 0.010f;    ///< and in the end.
 };
@@ -25,7 +26,8 @@ struct Refinement {
 };
 
 /// Gradient-based alignment (paper section V): Gauss-Newton on the distances from model points to
-/// the observed surface's tangent planes, each model point matched with the pixel it falls on.
+/// the observed surface's tangent planes, each model point matched with the pixel it falls on, and
+/// from the edges of the model's nearest view to those of the observed surface.
 Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
                        const RefinementOptions& options);
 

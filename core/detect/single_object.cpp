@@ -93,6 +93,52 @@ void add_round_three(const SceneFeatures& scene, const ObjectModel& model, const
   out.segment_affinity = segment_affinity_score(scene.segmentation, matches);
 }
 
+constexpr double kBeside = 0.17;  // radians
+
+// Local hill climbing of the score (paper section V): the best of alignments from beside the start,
+// then small steps along and about each axis of the
+// camera through the object's origin, kept when the score rises; then smaller ones.
+Pose climb(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
+           const SingleObjectOptions& options) {
+  const auto score = [&](const Pose& pose) {
+    return placement_score(score_placement(scene.image, model, pose, options.quick_points),
+                           options.layer);
+  };
+  Aligned best{start, score(start)};
+  // From beside the start, gradients may lead elsewhere.
+  RefinementOptions refinement;
+  refinement.iterations = 6;
+  refinement.max_points = 200;
+  refinement.start_gate_m = 0.020f;
+  refinement.end_gate_m = 0.008f;
+  for (int turn = 0; turn < 6; ++turn) {
+    const Eigen::Vector3d about = (turn % 2 ? -1 : 1) * Eigen::Vector3d::Unit(turn / 2);
+    Pose beside = start;
+    beside.rotation = (rotation_from_vector(kBeside * about) * beside.rotation).normalized();
+    const Pose refined = refine_pose(scene, model, beside, refinement).camera_from_object;
+    const double reached = score(refined);
+    if (reached > best.score) best = {refined, reached};
+  }
+  double step = 0.006;  // metres, at the object's rim
+  for (int round = 0; round < options.climb_rounds; ++round) {
+    const double angle = step / (0.5 * model.diameter);
+    bool improved = false;
+    for (int move = 0; move < 12; ++move) {
+      const Eigen::Vector3d along = (move % 2 ? -1 : 1) * Eigen::Vector3d::Unit(move / 2 % 3);
+      Pose pose = best.pose;
+      if (move < 6) {
+        pose.translation += step * along;
+      } else {
+        pose.rotation = (rotation_from_vector(angle * along) * pose.rotation).normalized();
+      }
+      const double climbed = score(pose);
+      if (climbed > best.score) best = {pose, climbed}, improved = true;
+    }
+    if (!improved) step *= 0.5;
+  }
+  return best.pose;
+}
+
 }  // namespace
 
 Candidate evaluate_candidate(const SceneFeatures& scene,
@@ -142,13 +188,26 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
   last.max_points = 500;
   last.start_gate_m = 0.015f;
   last.end_gate_m = 0.008f;
+  const auto by_score = [](const Candidate& a, const Candidate& b) { return a.score > b.score; };
+  const auto max_climbed = static_cast<std::size_t>(options.max_climbed);
+  RefinementOptions there = last;  // no step: what is known of the pose
+  there.iterations = 0;
+  there.start_gate_m = there.end_gate_m;
   std::vector<Candidate> candidates;
   for (const Aligned& start : aligned) {
-    candidates.push_back(
-        evaluate_candidate(scene, model, refine_pose(scene, *model, start.pose, last), options.layer));
+    candidates.push_back(evaluate_candidate(
+        scene, model, refine_pose(scene, *model, start.pose, last), options.layer));
   }
   const auto of_candidate = [](const Candidate& c) { return to_fast(c.pose()); };
   finish_stage("aligned", candidates, of_candidate);
+  std::stable_sort(candidates.begin(), candidates.end(), by_score);
+  for (std::size_t i = 0; i < std::min(candidates.size(), max_climbed); ++i) {
+    const Pose climbed = climb(scene, *model, candidates[i].pose(), options);
+    Candidate moved =
+        evaluate_candidate(scene, model, refine_pose(scene, *model, climbed, there), options.layer);
+    if (moved.score > candidates[i].score) candidates[i] = std::move(moved);
+  }
+  finish_stage("climbed", candidates, of_candidate);
   std::erase_if(candidates, [&](const Candidate& c) { return c.score < options.min_score; });
   remove_similar(candidates, model->symmetry,
                  [](const Candidate& c) -> const Pose& { return c.pose(); });

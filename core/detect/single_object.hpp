@@ -29,6 +29,8 @@ struct SingleObjectOptions {
   HypothesisOptions hypotheses;
   int max_clusters = 200;       ///< Pose clusters that round two looks at.
   int max_refined = 40;         ///< Of those, how many are aligned to the end.
+  int max_climbed = 8;          ///< The best of these climb the score at last.
+  int climb_rounds = 4;         ///< Rounds of twelve small steps each.
   int quick_points = 200;       ///< Surface points that round two scores a placement with.
   int bpa_steps = 3;            ///< Round-two alignments by BPA.
   bool use_orientation = true;  ///< False: align by positions only (ICP, the paper's ablation).
@@ -45,7 +47,8 @@ struct ObjectTrace {
     std::vector<FastPose> poses;  ///< Still alive after the stage.
     double milliseconds = 0;
   };
-  std::vector<Stage> stages;  ///< sampled, free_space, clusters, aligned, final.
+  std::vector<Stage>
+      stages;  ///< sampled, free_space, clusters, round_two, aligned, climbed, final.
 };
 
 /// The best placements of one model in the scene (paper section V), best first. Deterministic.

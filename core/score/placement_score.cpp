@@ -54,9 +54,9 @@ float inside_probability(float edge_distance, float pixel_size) {
 
 // What the noise model says of a point's differences, standard deviations.
 struct PointNoise {
-  float inside = 1;   // the probability that its pixel shows the model
-  float range = 0;    // metres along the ray
-  float normal = 0;   // radians
+  float inside = 1;  // the probability that its pixel shows the model
+  float range = 0;   // metres along the ray
+  float normal = 0;  // radians
 };
 
 // A surface point as the camera sees it.
@@ -134,12 +134,6 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const ModelV
 
 namespace {
 
-const ModelView& view_of(const ObjectModel& model, const FastPose& pose) {
-  const Eigen::Vector3f to_camera = -(pose.rotation.transpose() * pose.translation).normalized();
-  const auto& views = model.index->views;
-  return views[static_cast<std::size_t>(nearest_view(views, to_camera))];
-}
-
 // The k-th visible point of the view; false where it faces away or falls outside the image.
 bool see_point(const CheckImage& image, const ObjectModel& model, const ModelView& view,
                const FastPose& pose, std::size_t k, SeenPoint& out) {
@@ -158,8 +152,8 @@ bool see_point(const CheckImage& image, const ObjectModel& model, const ModelVie
   const float off = kModelSigma / out.slant;
   out.noise.range = std::sqrt(sensor * sensor + off * off);
   const float normal = noise.normal(edge_distance, out.slant);
-  out.noise.normal = std::sqrt(std::max(normal * normal, model.normal_variance[i]) +
-                               kNormalSigma * kNormalSigma);
+  out.noise.normal =
+      std::sqrt(std::max(normal * normal, model.normal_variance[i]) + kNormalSigma * kNormalSigma);
   out.noise.inside = inside_probability(edge_distance, out.point.z() / image.fx);
   return true;
 }
@@ -169,7 +163,7 @@ bool see_point(const CheckImage& image, const ObjectModel& model, const ModelVie
 ScoreComponents score_placement(const CheckImage& image, const ObjectModel& model, const Pose& pose,
                                 int max_points) {
   const FastPose fast = to_fast(pose);
-  const ModelView& view = view_of(model, fast);
+  const ModelView& view = nearest_view(model.index->views, fast);
   const std::size_t step =
       max_points > 0
           ? std::max<std::size_t>(1, view.visible.size() / static_cast<std::size_t>(max_points))
@@ -218,7 +212,7 @@ std::vector<std::uint32_t> explained_pixels(const CheckImage& image, const Objec
                                             const Pose& pose) {
   const FastPose fast = to_fast(pose);
   std::vector<std::uint32_t> out;
-  const ModelView& view = view_of(model, fast);
+  const ModelView& view = nearest_view(model.index->views, fast);
   SeenPoint seen;
   Sums sums;
   for (std::size_t k = 0; k < view.visible.size(); ++k) {

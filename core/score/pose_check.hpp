@@ -25,6 +25,12 @@ inline Pose to_pose(const FastPose& pose) {
   return Pose::from_matrix(pose.rotation.cast<double>(), pose.translation.cast<double>());
 }
 
+/// The view that is nearest to how the camera sees a model at a pose.
+inline const ModelView& nearest_view(const std::vector<ModelView>& views, const FastPose& pose) {
+  const Eigen::Vector3f to_camera = -(pose.rotation.transpose() * pose.translation).normalized();
+  return views[static_cast<std::size_t>(nearest_view(views, to_camera))];
+}
+
 /// What a pose check reads of one pixel, packed so that a whole image stays in the cache.
 struct CheckPixel {
   float depth = 0;                    ///< 0 where there is none.

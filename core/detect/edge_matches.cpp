@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <bpa/core/detect/edge_matches.hpp>
+
+namespace bpa {
+namespace {
+
+constexpr float kJump = 0.012f;     // metres between neighbouring pixels of one surface, at most
+constexpr float kOnModel = 0.025f;  // metres between the model and the surface that is followed
+constexpr int kShadow = 8;          // pixels without depth beside an edge, at most
+
+// A walk over the image, one pixel a step.
+class Walk {
+ public:
+  Walk(const CheckImage& image, float u, float v, float du, float dv)
+      : image_(image), u_(u), v_(v), du_(du), dv_(dv) {}
+
+  // The pixel `step` steps outward; null outside of the image.
+  const CheckPixel* at(int step) const {
+    const float u = u_ + static_cast<float>(step) * du_, v = v_ + static_cast<float>(step) * dv_;
+    if (!(u >= 0 && v >= 0)) return nullptr;
+    const int x = static_cast<int>(u), y = static_cast<int>(v);
+    if (x >= image_.width || y >= image_.height) return nullptr;
+    return &image_.pixels[static_cast<std::size_t>(y * image_.width + x)];
+  }
+
+  // True when what follows the last pixel of a surface of depth `depth` lies behind it.
+  bool ends_after(int step, float depth, float jump) const {
+    for (int k = 1; k <= kShadow; ++k) {
+      const CheckPixel* next = at(step + k);
+      if (!next) return false;  // the image's border
+      if (next->depth > 0) return next->depth > depth + (k == 1 ? jump : 0.0f) || !next->searched;
+    }
+    return true;
+  }
+
+ private:
+  const CheckImage& image_;
+  float u_, v_, du_, dv_;
+};
+
+}  // namespace
+
+EdgePoint edge_point(const ObjectModel& model, const ModelView& view, const FastPose& pose,
+                     std::size_t k) {
+  return {pose.rotation * model.surface.points[view.edges[k]] + pose.translation,
+          pose.rotation * view.outward[k]};
+}
+
+std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, float reach) {
+  const Eigen::Vector3f& p = edge.point;
+  if (p.z() < 0.1f) return std::nullopt;
+  // The image direction of `outward`, and how far along it a pixel goes.
+  const float inverse_z = 1 / p.z();
+  const float x = p.x() * inverse_z, y = p.y() * inverse_z;
+  const float du = image.fx * inverse_z * (edge.outward.x() - x * edge.outward.z());
+  const float dv = image.fy * inverse_z * (edge.outward.y() - y * edge.outward.z());
+  const float pixels_per_metre = std::hypot(du, dv);
+  if (!(pixels_per_metre > 1)) return std::nullopt;
+  const float step = 1 / pixels_per_metre;
+  const Walk walk(image, image.fx * x + image.cx + 0.5f, image.fy * y + image.cy + 0.5f, du * step,
+                  dv * step);
+  const int steps = std::max(1, static_cast<int>(reach * pixels_per_metre));
+  const float jump = kJump + 2 * depth_noise(p.z());
+  int k = -steps;
+  const CheckPixel* here = walk.at(k);
+  const auto on_model = [&](const CheckPixel* pixel) {
+    return pixel && pixel->searched && std::abs(pixel->depth - p.z()) < kOnModel;
+  };
+  while (k < steps && !on_model(here)) here = walk.at(++k);
+  for (; k < steps; ++k) {
+    const CheckPixel* next = walk.at(k + 1);
+    if (!next) return std::nullopt;
+    const bool goes_on =
+        next->depth > 0 && next->searched && std::abs(next->depth - here->depth) < jump;
+    if (goes_on) {
+      here = next;
+      continue;
+    }
+    if (!walk.ends_after(k, here->depth, jump)) return std::nullopt;
+    return (static_cast<float>(k) + 0.5f) * step;
+  }
+  return std::nullopt;
+}
+
+}  // namespace bpa
