@@ -146,11 +146,12 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   for (auto& of_model : found) {
     std::move(of_model.begin(), of_model.end(), std::back_inserter(candidates));
   }
-  let_compete(candidates, kMaxShared);
+  const std::vector<std::vector<Overlap>> overlaps = find_overlaps(candidates, kMaxShared);
+  let_compete(candidates, overlaps);
   const auto searched = static_cast<int>(
       std::count(scene.map.searched.begin(), scene.map.searched.end(), std::uint8_t{1}));
   out.interpretations =
-      interpret(candidates, searched, interpretation_options(options_, request.seed));
+      interpret(candidates, overlaps, searched, interpretation_options(options_, request.seed));
   keep_best(out.interpretations, static_cast<std::size_t>(request.top_k));
   finish_stage("interpretations");
   out.total_milliseconds = total.milliseconds();

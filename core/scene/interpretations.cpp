@@ -5,8 +5,8 @@
 #include <set>
 
 #include <bpa/core/base/random.hpp>
+#include <bpa/core/scene/alternatives.hpp>
 #include <bpa/core/scene/interpretations.hpp>
-#include <bpa/core/scene/overlaps.hpp>
 
 namespace bpa {
 namespace {
@@ -20,19 +20,23 @@ double log_odds(double probability) {
 // penalty (paper section VI, components 1 and 3).
 double single_worth(const Candidate& c, const InterpretationOptions& options) {
   if (c.explained.empty()) return -options.object_penalty;
-  return log_odds(c.probability) - log_odds(options.min_probability) - options.object_penalty;
+  // Of poses so near to one another that each is right when the others are, the best fit counts.
+  constexpr double kFit = 0.1;
+  return log_odds(c.probability) - log_odds(options.min_probability) - options.object_penalty +
+         kFit * std::clamp(c.score, -10.0, 10.0);
 }
 
 // The score of a subset, kept up to date as placements come and go: a move costs as much as the
 // placement has overlaps.
 class SubsetScore {
  public:
-  SubsetScore(const std::vector<Candidate>& candidates, int observed_pixels,
+  SubsetScore(const std::vector<Candidate>& candidates,
+              const std::vector<std::vector<Overlap>>& overlaps, int observed_pixels,
               const InterpretationOptions& options)
       : candidates_(candidates),
         options_(options),
         per_pixel_(options.explained_weight / std::max(1, observed_pixels)),
-        overlaps_(find_overlaps(candidates, options.max_shared)),
+        overlaps_(overlaps),
         chosen_(candidates.size(), false) {}
 
   bool chosen(std::size_t i) const { return chosen_[i]; }
@@ -67,6 +71,10 @@ class SubsetScore {
     total_ += worth(i);
     chosen_[i] = true;
   }
+  void clear() {
+    std::fill(chosen_.begin(), chosen_.end(), false);
+    total_ = 0;
+  }
   void remove(std::size_t i) {
     chosen_[i] = false;
     total_ -= worth(i);
@@ -76,7 +84,7 @@ class SubsetScore {
   const std::vector<Candidate>& candidates_;
   const InterpretationOptions& options_;
   double per_pixel_;
-  std::vector<std::vector<Overlap>> overlaps_;
+  const std::vector<std::vector<Overlap>>& overlaps_;
   std::vector<bool> chosen_;
   double total_ = 0;
 };
@@ -114,31 +122,32 @@ class BestSubsets {
 };
 
 // Adds what improves most, again and again.
-void greedy(SubsetScore& state, const std::vector<Candidate>& candidates, BestSubsets& best) {
+void greedy(SubsetScore& state, const std::vector<std::size_t>& among, BestSubsets& best) {
   best.offer(state.subset(), state.total());
   for (;;) {
     double gain = 0;
-    std::size_t pick = candidates.size();
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const std::size_t* pick = nullptr;
+    for (const std::size_t& i : among) {
       if (state.chosen(i) || state.blocked(i)) continue;
       const double improved = state.worth(i);
-      if (improved > gain) gain = improved, pick = i;
+      if (improved > gain) gain = improved, pick = &i;
     }
-    if (pick == candidates.size()) return;
-    state.add(pick);
+    if (!pick) return;
+    state.add(*pick);
     best.offer(state.subset(), state.total());
   }
 }
 
 // One random move: toggles a placement; what it conflicts with gives way. Undone if not accepted.
-void anneal(SubsetScore& state, std::size_t count, const InterpretationOptions& options,
-            BestSubsets& best) {
+void anneal(SubsetScore& state, const std::vector<std::size_t>& among,
+            const InterpretationOptions& options, BestSubsets& best) {
   RandomStream random(options.seed, 23);
   double current = state.total();
   for (int step = 0; step < options.annealing_steps; ++step) {
     const double temperature =
         2.0 * (1 - static_cast<double>(step) / options.annealing_steps) + 0.05;
-    const auto i = static_cast<std::size_t>(random.index(static_cast<int>(count)));
+    const std::size_t i =
+        among[static_cast<std::size_t>(random.index(static_cast<int>(among.size())))];
     std::vector<std::size_t> removed;
     const bool was_chosen = state.chosen(i);
     if (was_chosen) {
@@ -166,35 +175,98 @@ void anneal(SubsetScore& state, std::size_t count, const InterpretationOptions& 
   }
 }
 
+using Entry = BestSubsets::Entry;
+
+// What no interpretation has shown yet, by falling probability.
+class Unshown {
+ public:
+  Unshown(const std::vector<Candidate>& candidates, const Competition& competition,
+          const std::vector<std::size_t>& among)
+      : competition_(competition), by_probability_(among) {
+    std::stable_sort(by_probability_.begin(), by_probability_.end(),
+                     [&](std::size_t a, std::size_t b) {
+                       return candidates[a].probability > candidates[b].probability;
+                     });
+  }
+  const std::vector<std::size_t>& left() const { return by_probability_; }
+  // Nearly the same pose of the same model counts as shown as well.
+  void show(const std::vector<bool>& subset) {
+    std::erase_if(by_probability_, [&](std::size_t i) {
+      return subset[i] || std::any_of(competition_.rivals[i].begin(), competition_.rivals[i].end(),
+                                      [&](const Competition::Rival& rival) {
+                                        return rival.same_pose > 0.5 && subset[rival.other];
+                                      });
+    });
+  }
+
+ private:
+  const Competition& competition_;
+  std::vector<std::size_t> by_probability_;
+};
+
+// See interpret(): first what differs, then what is left of the best.
+std::vector<Entry> rank(SubsetScore& state, const std::vector<std::size_t>& among, Unshown& unshown,
+                        BestSubsets& best, const InterpretationOptions& options) {
+  std::vector<Entry> ranked{*best.entries().begin()};
+  unshown.show(ranked.front().subset);
+  while (ranked.size() < static_cast<std::size_t>(options.max_different) &&
+         !unshown.left().empty()) {
+    state.clear();
+    for (std::size_t i : unshown.left()) {
+      if (!state.blocked(i)) state.add(i);
+    }
+    greedy(state, among, best);
+    ranked.push_back({-state.total(), state.subset()});
+    unshown.show(state.subset());
+  }
+  std::set<std::vector<bool>> known;
+  for (const Entry& entry : ranked) known.insert(entry.subset);
+  for (const Entry& entry : best.entries()) {
+    if (ranked.size() >= static_cast<std::size_t>(options.max_interpretations)) break;
+    if (known.insert(entry.subset).second) ranked.push_back(entry);
+  }
+  return ranked;
+}
+
 }  // namespace
 
-void let_compete(std::vector<Candidate>& candidates, double max_shared) {
+void let_compete(std::vector<Candidate>& candidates,
+                 const std::vector<std::vector<Overlap>>& overlaps) {
   std::vector<double> scores;
   for (const Candidate& candidate : candidates) scores.push_back(candidate.score);
-  const std::vector<double> probabilities = competing_probabilities(
-      scores, competition_of(candidates, find_overlaps(candidates, max_shared)));
+  const std::vector<double> probabilities =
+      competing_probabilities(scores, competition_of(candidates, overlaps));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     candidates[i].probability = probabilities[i];
   }
 }
 
-std::vector<Interpretation> interpret(const std::vector<Candidate>& candidates, int observed_pixels,
-                                      const InterpretationOptions& options) {
-  SubsetScore state(candidates, observed_pixels, options);
+std::vector<Interpretation> interpret(const std::vector<Candidate>& candidates,
+                                      const std::vector<std::vector<Overlap>>& overlaps,
+                                      int observed_pixels, const InterpretationOptions& options) {
+  std::vector<std::size_t> among;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (candidates[i].probability >= options.min_shown) among.push_back(i);
+  }
+  SubsetScore state(candidates, overlaps, observed_pixels, options);
   BestSubsets best(options.max_interpretations);
-  greedy(state, candidates, best);
-  if (!candidates.empty()) anneal(state, candidates.size(), options, best);
+  greedy(state, among, best);
+  if (!among.empty()) anneal(state, among, options, best);
+  const Competition competition = competition_of(candidates, overlaps);
+  Unshown unshown(candidates, competition, among);
   std::vector<Interpretation> out;
-  double total = 0;
-  const double top = -best.entries().begin()->negated_score;
-  for (const auto& entry : best.entries()) {
+  double total = 0, top = 0;
+  for (const Entry& entry : rank(state, among, unshown, best, options)) {
     Interpretation interpretation;
     interpretation.rank = static_cast<int>(out.size()) + 1;
     interpretation.score = -entry.negated_score;
+    if (out.empty()) top = interpretation.score;
     interpretation.probability = std::exp(interpretation.score - top);
     total += interpretation.probability;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      if (entry.subset[i]) interpretation.placements.push_back(to_placement(candidates[i]));
+      if (!entry.subset[i]) continue;
+      interpretation.placements.push_back(to_placement(candidates[i]));
+      interpretation.placements.back().alternatives = alternatives_of(candidates, competition, i);
     }
     std::stable_sort(interpretation.placements.begin(), interpretation.placements.end(),
                      [](const auto& a, const auto& b) { return a.probability > b.probability; });

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <bpa/core/scene/overlaps.hpp>
 
@@ -15,31 +16,37 @@ bool same_place(const Candidate& a, const Candidate& b) {
   return distance < (a.model == b.model ? 0.4 : 0.2) * smaller;
 }
 
-bool same_pose(const Candidate& a, const Candidate& b) {
-  if (a.model != b.model || (a.pose().translation - b.pose().translation).norm() > 0.1)
-    return false;
+double same_pose(const Candidate& a, const Candidate& b) {
+  if (a.model != b.model || (a.pose().translation - b.pose().translation).norm() > 0.1) return 0;
   const PoseError error = pose_error(a.pose(), b.pose(), a.model->symmetry);
-  return error.position < 0.025 && error.angle < M_PI / 16;
+  return std::clamp(1.5 - std::max(error.position / 0.025, error.angle / (M_PI / 16)), 0.0, 1.0);
 }
 
-// Counts through an index from pixels to the candidates that explain them.
-std::vector<int> common_pixels(const std::vector<Candidate>& candidates) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> by_pixel;
-  for (std::uint32_t i = 0; i < candidates.size(); ++i) {
-    for (std::uint32_t pixel : candidates[i].explained) by_pixel.push_back({pixel, i});
+// How many pixels each two candidates share, row by row; counted through an index from pixels to
+// the candidates that explain them.
+std::vector<int> common_pixels(const std::vector<Candidate>& candidates,
+                               const std::vector<std::uint32_t>& running) {
+  std::uint32_t num_pixels = 0;
+  for (std::uint32_t i : running) {
+    const auto& explained = candidates[i].explained;
+    if (!explained.empty()) num_pixels = std::max(num_pixels, explained.back() + 1);
   }
-  std::sort(by_pixel.begin(), by_pixel.end());
-  const std::size_t count = candidates.size();
+  std::vector<std::uint32_t> begin(num_pixels + 1, 0);
+  for (std::uint32_t i : running) {
+    for (std::uint32_t pixel : candidates[i].explained) ++begin[pixel + 1];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<std::uint32_t> next = begin, by_pixel(begin.back());
+  for (std::uint32_t r = 0; r < running.size(); ++r) {
+    for (std::uint32_t pixel : candidates[running[r]].explained) by_pixel[next[pixel]++] = r;
+  }
+  const std::size_t count = running.size();
   std::vector<int> common(count * count, 0);
-  for (std::size_t first = 0; first < by_pixel.size();) {
-    std::size_t last = first;
-    while (last < by_pixel.size() && by_pixel[last].first == by_pixel[first].first) ++last;
-    for (std::size_t a = first; a < last; ++a) {
-      for (std::size_t b = first; b < last; ++b) {
-        ++common[by_pixel[a].second * count + by_pixel[b].second];
-      }
+  for (std::uint32_t pixel = 0; pixel < num_pixels; ++pixel) {
+    for (std::uint32_t a = begin[pixel]; a < begin[pixel + 1]; ++a) {
+      int* row = common.data() + by_pixel[a] * count;
+      for (std::uint32_t b = begin[pixel]; b < a; ++b) ++row[by_pixel[b]];
     }
-    first = last;
   }
   return common;
 }
@@ -48,20 +55,29 @@ std::vector<int> common_pixels(const std::vector<Candidate>& candidates) {
 
 std::vector<std::vector<Overlap>> find_overlaps(const std::vector<Candidate>& candidates,
                                                 double max_shared) {
-  const std::vector<int> common = common_pixels(candidates);
-  const std::size_t count = candidates.size();
-  std::vector<std::vector<Overlap>> overlaps(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = 0; j < count; ++j) {
-      if (i == j) continue;
-      const int shared = common[i * count + j];
-      const bool colliding = same_place(candidates[i], candidates[j]);
+  std::vector<std::uint32_t> running;
+  for (std::uint32_t i = 0; i < candidates.size(); ++i) {
+    if (candidates[i].score >= kHopelessScore) running.push_back(i);
+  }
+  const std::vector<int> common = common_pixels(candidates, running);
+  std::vector<std::vector<Overlap>> overlaps(candidates.size());
+  for (std::size_t a = 0; a < running.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      const Candidate& first = candidates[running[a]];
+      const Candidate& second = candidates[running[b]];
+      const int shared = common[a * running.size() + b];
+      const bool colliding = same_place(first, second);
       if (shared == 0 && !colliding) continue;
-      const auto smaller = static_cast<double>(
-          std::min(candidates[i].explained.size(), candidates[j].explained.size()));
-      overlaps[i].push_back(
-          {static_cast<std::uint32_t>(j), shared, colliding || shared > max_shared * smaller});
+      const auto smaller =
+          static_cast<double>(std::min(first.explained.size(), second.explained.size()));
+      const bool conflicting = colliding || shared > max_shared * smaller;
+      overlaps[running[a]].push_back({running[b], shared, conflicting});
+      overlaps[running[b]].push_back({running[a], shared, conflicting});
     }
+  }
+  for (auto& of_one : overlaps) {
+    std::sort(of_one.begin(), of_one.end(),
+              [](const Overlap& a, const Overlap& b) { return a.other < b.other; });
   }
   return overlaps;
 }

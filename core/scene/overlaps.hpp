@@ -17,9 +17,13 @@ struct Overlap {
   bool conflicting = false;  ///< They cannot both be there.
 };
 
-/// For each candidate, those that share observed pixels or their place with it. Two conflict when
-/// they share more than `max_shared` of what the smaller one explains, or when their origins are so
-/// near that two solid things could not both be there.
+/// Candidates of lower log odds are out of the running: they take no place from others.
+constexpr double kHopelessScore = -8;
+
+/// For each candidate that is not hopeless, the others that share observed pixels or their place
+/// with it. Two conflict when they share more than `max_shared` of what the smaller one explains,
+/// or when their origins are so near that two solid things could not both be there. By rising
+/// `other`.
 std::vector<std::vector<Overlap>> find_overlaps(const std::vector<Candidate>& candidates,
                                                 double max_shared);
 

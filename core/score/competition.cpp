@@ -20,7 +20,7 @@ std::vector<double> competing_probabilities(std::span<const double> scores,
     for (const auto& rival : competition.rivals[i]) {
       const double term = std::exp(scores[rival.other] - largest);
       all += term;
-      if (rival.same_pose) right += term;
+      right += rival.same_pose * term;
     }
     out[i] = right / all;
   }

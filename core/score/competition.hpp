@@ -13,14 +13,16 @@ namespace bpa {
 struct Competition {
   struct Rival {
     std::uint32_t other = 0;
-    bool same_pose = false;  ///< The same model within 2.5 cm and π/16: right if this one is.
+    /// The chance that this one is right if the other's pose is nearly the true one: 1 when both
+    /// are the same pose of the same model, a half at 2.5 cm or π/16, 0 for others.
+    double same_pose = 0;
   };
   std::vector<std::vector<Rival>> rivals;  ///< Of each placement; not itself.
 };
 
 /// The probability that each placement is right, given that its rivals compete with it and that
-/// none of them may be right: the sum of exp(score) over itself and the rivals of the same pose,
-/// divided by 1 plus that sum over itself and all rivals. `scores` are log odds against nothing.
+/// none of them may be right: the sum of exp(score) over itself and its rivals, each times
+/// same_pose, divided by 1 plus the same sum of all in full. `scores` are log odds against nothing.
 std::vector<double> competing_probabilities(std::span<const double> scores,
                                             const Competition& competition);
 

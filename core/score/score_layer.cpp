@@ -79,17 +79,17 @@ class FrameLikelihood {
       double right = odds[i], all = 1 + odds[i];
       for (const auto& rival : rivals) {
         all += odds[rival.other];
-        if (rival.same_pose) right += odds[rival.other];
+        right += rival.same_pose * odds[rival.other];
       }
       const double p = std::min(right / all, 1 - 1e-9);
       const bool label = frame_.samples[i].right;
       // d(-log likelihood) / d(score j) = (p - label) / (1 - p) * (part of j in `right` / p - part
       // of j in `all`), all over p or 1 - p.
       const double outer = label ? -1 / p : 1 / (1 - p);
-      const auto add = [&](std::size_t j, bool same) {
-        by_score[j] += outer * odds[j] * ((same ? 1.0 : 0.0) - p) / all;
+      const auto add = [&](std::size_t j, double same) {
+        by_score[j] += outer * odds[j] * (same - p) / all;
       };
-      add(i, true);
+      add(i, 1);
       for (const auto& rival : rivals) add(rival.other, rival.same_pose);
     }
     for (std::size_t i = 0; i < rows_.size(); ++i) {

@@ -47,11 +47,23 @@ Subset subset_of(const Interpretation& interpretation) {
   return out;
 }
 
+std::vector<Interpretation> interpret_all(const std::vector<Candidate>& candidates, int observed,
+                                          const InterpretationOptions& options) {
+  return interpret(candidates, find_overlaps(candidates, kMaxShared), observed, options);
+}
+
+// Ranked by score alone.
+InterpretationOptions by_score() {
+  InterpretationOptions options;
+  options.max_different = 1;
+  return options;
+}
+
 std::optional<double> score_of(const std::vector<Candidate>& candidates, int observed,
                                const Subset& wanted) {
   InterpretationOptions options;
   options.annealing_steps = 3000;
-  for (const Interpretation& found : interpret(candidates, observed, options)) {
+  for (const Interpretation& found : interpret_all(candidates, observed, options)) {
     if (subset_of(found) == wanted) return found.score;
   }
   return std::nullopt;
@@ -123,7 +135,7 @@ TEST_P(InterpretationsOf, AreTheBestOfAllSubsets) {
   const int count = 4 + GetParam() % 9;
   const auto candidates = row_of_candidates(count, static_cast<std::uint64_t>(GetParam()));
   const Exhaustive all(candidates, kObserved);
-  const auto found = interpret(candidates, kObserved, {});
+  const auto found = interpret_all(candidates, kObserved, by_score());
   const auto best = all.best_scores(5);
   ASSERT_GE(found.size(), best.size());
   for (std::size_t k = 0; k < best.size(); ++k) EXPECT_NEAR(found[k].score, best[k], 1e-6) << k;
@@ -137,7 +149,7 @@ TEST_P(InterpretationsOf, AreTheBestOfAllSubsets) {
 INSTANTIATE_TEST_SUITE_P(Scenes, InterpretationsOf, ::testing::Range(0, 18));
 
 TEST(Interpretations, AreRankedDistinctAndSumToOne) {
-  const auto found = interpret(row_of_candidates(12, 3), kObserved, {});
+  const auto found = interpret_all(row_of_candidates(12, 3), kObserved, by_score());
   ASSERT_GT(found.size(), 20u);
   EXPECT_LE(found.size(), 100u);
   std::set<Subset> seen;
@@ -158,9 +170,38 @@ TEST(Interpretations, AreRankedDistinctAndSumToOne) {
   EXPECT_NEAR(sum, 1, 1e-9);
 }
 
+TEST(Interpretations, WhatDiffersComesBeforeNearCopies) {
+  // Three places; at each, rivals of falling probability.
+  std::vector<Candidate> candidates;
+  const double probabilities[3][3] = {{0.6, 0.25, 0.1}, {0.9, 0.06, 0.0}, {0.3, 0.2, 0.1}};
+  int number = 0;
+  for (int place = 0; place < 3; ++place) {
+    for (double p : probabilities[place]) {
+      if (p > 0) candidates.push_back(candidate(number, p, pixels(3000 * place, 1000)));
+      ++number;
+    }
+  }
+  const auto found = interpret_all(candidates, kObserved, {});
+  ASSERT_GT(found.size(), 3u);
+  EXPECT_EQ(subset_of(found[0]), (Subset{0, 3}));
+  EXPECT_EQ(subset_of(found[1]), (Subset{1, 4, 6})) << "what the first has not shown";
+  EXPECT_EQ(subset_of(found[2]), (Subset{2, 3, 7})) << "with the best where all has been shown";
+  EXPECT_EQ(subset_of(found[3]), (Subset{0, 3, 8}));
+  double sum = 0;
+  std::set<Subset> seen;
+  for (const Interpretation& interpretation : found) {
+    EXPECT_TRUE(seen.insert(subset_of(interpretation)).second);
+    EXPECT_LE(interpretation.probability, found[0].probability);
+    EXPECT_NEAR(std::log(interpretation.probability / found[0].probability),
+                interpretation.score - found[0].score, 1e-9);
+    sum += interpretation.probability;
+  }
+  EXPECT_NEAR(sum, 1, 1e-9);
+}
+
 TEST(Interpretations, OfNoCandidatesAreOneWithoutObjects) {
   for (const int observed : {0, 1000}) {
-    const auto found = interpret({}, observed, {});
+    const auto found = interpret_all({}, observed, {});
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].rank, 1);
     EXPECT_EQ(found[0].probability, 1);
@@ -169,11 +210,11 @@ TEST(Interpretations, OfNoCandidatesAreOneWithoutObjects) {
 }
 
 TEST(Interpretations, KeepNoMoreThanAsked) {
-  InterpretationOptions options;
+  InterpretationOptions options = by_score();
   options.max_interpretations = 7;
-  const auto few = interpret(row_of_candidates(10, 4), kObserved, options);
+  const auto few = interpret_all(row_of_candidates(10, 4), kObserved, options);
   options.max_interpretations = 100;
-  const auto many = interpret(row_of_candidates(10, 4), kObserved, options);
+  const auto many = interpret_all(row_of_candidates(10, 4), kObserved, options);
   ASSERT_EQ(few.size(), 7u);
   ASSERT_GT(many.size(), 7u);
   for (std::size_t k = 0; k < few.size(); ++k) {
@@ -185,7 +226,7 @@ TEST(Interpretations, KeepNoMoreThanAsked) {
 TEST(Interpretations, OnlyOneOfTwoOnTheSamePixels) {
   const std::vector<Candidate> rivals{candidate(0, 0.9, pixels(0, 1000)),
                                       candidate(1, 0.8, pixels(100, 1000))};
-  const auto found = interpret(rivals, 3000, {});
+  const auto found = interpret_all(rivals, 3000, {});
   EXPECT_EQ(subset_of(found[0]), Subset{0});
   for (const Interpretation& interpretation : found) {
     EXPECT_LE(interpretation.placements.size(), 1u);
@@ -196,24 +237,24 @@ TEST(Interpretations, ProbableOnesAreInAndImprobableOnesOut) {
   const std::vector<Candidate> three{candidate(0, 0.95, pixels(0, 900)),
                                      candidate(1, 0.05, pixels(2000, 900)),
                                      candidate(2, 0.9, pixels(4000, 900))};
-  EXPECT_EQ(subset_of(interpret(three, kObserved, {})[0]), (Subset{0, 2}));
+  EXPECT_EQ(subset_of(interpret_all(three, kObserved, {})[0]), (Subset{0, 2}));
 }
 
 TEST(Interpretations, APenaltyLargeEnoughLeavesNothing) {
   InterpretationOptions options;
   options.object_penalty = 100;
-  EXPECT_TRUE(interpret(row_of_candidates(8, 5), kObserved, options)[0].placements.empty());
+  EXPECT_TRUE(interpret_all(row_of_candidates(8, 5), kObserved, options)[0].placements.empty());
 }
 
 TEST(Interpretations, ExplainingNothingIsWorthNothing) {
   const std::vector<Candidate> two{candidate(0, 0.99, {}), candidate(1, 0.9, pixels(0, 800))};
-  EXPECT_EQ(subset_of(interpret(two, kObserved, {})[0]), Subset{1});
+  EXPECT_EQ(subset_of(interpret_all(two, kObserved, {})[0]), Subset{1});
 }
 
 TEST(Interpretations, SameSeedSameInterpretations) {
   const auto candidates = row_of_candidates(40, 6);
-  const auto a = interpret(candidates, 40000, {});
-  const auto b = interpret(candidates, 40000, {});
+  const auto a = interpret_all(candidates, 40000, {});
+  const auto b = interpret_all(candidates, 40000, {});
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k) {
     EXPECT_EQ(a[k].score, b[k].score);
@@ -224,16 +265,16 @@ TEST(Interpretations, SameSeedSameInterpretations) {
 TEST(Interpretations, SeedsAgreeOnTheBest) {
   const auto candidates = row_of_candidates(40, 7);
   InterpretationOptions options;
-  const auto first = interpret(candidates, 40000, options);
+  const auto first = interpret_all(candidates, 40000, options);
   for (options.seed = 1; options.seed < 5; ++options.seed) {
-    EXPECT_NEAR(interpret(candidates, 40000, options)[0].score, first[0].score, 1e-6);
+    EXPECT_NEAR(interpret_all(candidates, 40000, options)[0].score, first[0].score, 1e-6);
   }
 }
 
 TEST(Interpretations, WithoutAnnealingTheGreedyAnswerRemains) {
   InterpretationOptions options;
   options.annealing_steps = 0;
-  const auto found = interpret(row_of_candidates(10, 8), kObserved, options);
+  const auto found = interpret_all(row_of_candidates(10, 8), kObserved, options);
   EXPECT_GT(found[0].placements.size(), 1u);
   EXPECT_GT(found.size(), 1u) << "with what it passed on its way";
 }

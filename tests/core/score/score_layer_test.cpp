@@ -20,19 +20,19 @@ TEST(Competition, WithoutRivalsIsALogistic) {
 
 TEST(Competition, RivalsShareWhatNothingLeaves) {
   Competition competition;
-  competition.rivals = {{{1, false}, {2, true}}, {{0, false}, {2, false}}, {{0, true}, {1, false}}};
+  competition.rivals = {{{1, 0}, {2, 1}}, {{0, 0}, {2, 0}}, {{0, 0.25}, {1, 0}}};
   const std::vector<double> scores{1, 2, 0.5};
   const double all = 1 + std::exp(1) + std::exp(2) + std::exp(0.5);
   const auto p = competing_probabilities(scores, competition);
   EXPECT_NEAR(p[0], (std::exp(1) + std::exp(0.5)) / all, 1e-12) << "two of one pose";
   EXPECT_NEAR(p[1], std::exp(2) / all, 1e-12);
-  EXPECT_NEAR(p[2], p[0], 1e-12);
+  EXPECT_NEAR(p[2], (std::exp(0.5) + 0.25 * std::exp(1)) / all, 1e-12) << "half beside it";
   EXPECT_LT(p[0] + p[1], 1);
 }
 
 TEST(Competition, LargeScoresDoNotOverflow) {
   Competition competition;
-  competition.rivals = {{{1, false}}, {{0, false}}};
+  competition.rivals = {{{1, 0}}, {{0, 0}}};
   const auto p = competing_probabilities(std::vector<double>{1000, 1001}, competition);
   EXPECT_NEAR(p[0], sigmoid(-1), 1e-9);
   EXPECT_NEAR(p[1], sigmoid(1), 1e-9);
@@ -55,7 +55,7 @@ std::vector<ScoreFrame> drawn_frames(int count, std::uint64_t seed) {
         x[0] = random.uniform(-1, 0);
         x[2] = random.uniform(0, 1);
         odds[j] = std::exp(4 * x[0] + 6 * x[2] - 4);
-        frame.competition.rivals[i + j] = {{i + 1 - j, false}};
+        frame.competition.rivals[i + j] = {{i + 1 - j, 0}};
       }
       const double draw = random.uniform() * (1 + odds[0] + odds[1]);
       frame.samples[i].right = draw < odds[0];
@@ -87,7 +87,7 @@ TEST(ScoreLayer, ReliabilityOfKnownProbabilities) {
   ScoreFrame frame;
   frame.samples.resize(4);
   frame.samples[0].right = frame.samples[2].right = true;
-  frame.competition.rivals = {{}, {}, {{3, false}}, {{2, false}}};
+  frame.competition.rivals = {{}, {}, {{3, 0}}, {{2, 0}}};
   const Reliability r = reliability(layer, std::vector<ScoreFrame>{frame});
   EXPECT_EQ(r.bins[5].count, 2);
   EXPECT_NEAR(r.bins[5].right, 0.5, 1e-12);
