@@ -118,8 +118,8 @@ std::string as_source(const ScoreLayer& layer) {
   char line[256];
   for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
     const ScoreLayer::Component& c = layer.components[i];
-    out += std::string("      // ") + score_feature_names()[i] + "\n      {" + list(c.place) + ",\n       " +
-           list(c.value) + "},\n";
+    out += std::string("      // ") + score_feature_names()[i] + "\n      {" + list(c.place) +
+           ",\n       " + list(c.value) + "},\n";
   }
   std::snprintf(line, sizeof line, "  }}, %.9g,\n", layer.bias);
   out += line;

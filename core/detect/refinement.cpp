@@ -19,6 +19,7 @@ using Matrix6f = Eigen::Matrix<float, 6, 6>;
 struct Match {
   Eigen::Vector3f model_point, model_normal;  // in the camera frame
   Eigen::Vector3f scene_point, scene_normal;
+  std::size_t pixel = 0;
 };
 
 // The observed surface at the pixel that a model point falls on, if it is near and faces the same
@@ -35,6 +36,7 @@ bool match_point(const SceneFeatures& scene, const CheckPoints& model, std::size
   if (u < 0 || v < 0 || u >= image.width || v >= image.height) return false;
   const auto index = static_cast<std::size_t>(v * image.width + u);
   if (!scene.map.searched[index]) return false;
+  match.pixel = index;
   match.scene_point = scene.map.points[index];
   match.scene_normal = scene.map.normals[index];
   return (match.scene_point - p).squaredNorm() < gate * gate &&
@@ -133,29 +135,60 @@ Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, con
   return out;
 }
 
+namespace {
+
+// A random part of the super-pixels: surface that is not the object's is left out now and then.
+bool segment_sampled(std::int32_t segment, std::uint64_t seed) {
+  constexpr double kShare = 0.7;
+  return segment >= 0 && RandomStream(seed, static_cast<std::uint64_t>(segment)).uniform() < kShare;
+}
+
+// Where a model edge point is matched with the frame, a pair of positions.
+void add_edge_pairs(const SceneFeatures& scene, const ObjectModel& model, const FastPose& pose,
+                    float gate, int count, RandomStream& random,
+                    std::vector<align::PositionPair>& pairs) {
+  const ModelView& view = nearest_view(model.index->views, pose);
+  if (view.edges.empty()) return;
+  const auto wanted = static_cast<std::size_t>(count);
+  for (int tries = 0; tries < 3 * count && pairs.size() < wanted; ++tries) {
+    const auto k = static_cast<std::size_t>(random.index(static_cast<int>(view.edges.size())));
+    const EdgePoint edge = edge_point(model, view, pose, k);
+    const std::optional<float> offset = match_edge(scene.image, edge, gate);
+    if (!offset) continue;
+    const Eigen::Vector3f observed = edge.point + *offset * edge.outward;
+    pairs.push_back({model.surface.points[view.edges[k]].cast<double>(), observed.cast<double>(),
+                     0.5 * static_cast<double>(gate)});
+  }
+}
+
+}  // namespace
+
 Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
                       float gate, int count, std::uint64_t seed, bool use_orientation) {
-  constexpr int kMax = 32;
-  align::OrientedPair pairs[kMax];
   RandomStream random(seed, 17);
+  const std::uint64_t segment_seed = random();
   const CheckPoints& check = model.index->check;
   const FastPose fast = to_fast(start);
   const int total = static_cast<int>(check.points.size());
-  int found = 0;
+  std::vector<align::OrientedPair> pairs;
   Match match;
-  for (int tries = 0; tries < 8 * count && found < std::min(count, kMax); ++tries) {
+  for (int tries = 0; tries < 8 * count && static_cast<int>(pairs.size()) < count; ++tries) {
     const auto i = static_cast<std::size_t>(random.index(total));
     if (!match_point(scene, check, i, fast, gate, match)) continue;
-    align::OrientedPair& pair = pairs[found++];
+    if (!segment_sampled(scene.segmentation.labels[match.pixel], segment_seed)) continue;
+    align::OrientedPair& pair = pairs.emplace_back();
     pair.model.point = check.points[i].cast<double>();
     pair.model.orientation = align::feature_orientation(check.normals[i].cast<double>());
     pair.scene.point = match.scene_point.cast<double>();
     pair.scene.orientation = align::feature_orientation(match.scene_normal.cast<double>());
     pair.sigma = 0.5 * static_cast<double>(gate);
   }
-  if (found < 4) return start;
+  if (pairs.size() < 4) return start;
+  std::vector<align::PositionPair> edges;
+  add_edge_pairs(scene, model, fast, gate, count / 2, random, edges);
   align::Correspondences data;
-  data.oriented = std::span<const align::OrientedPair>(pairs, static_cast<std::size_t>(found));
+  data.oriented = pairs;
+  data.positions = edges;
   return (use_orientation ? align::bpa_mode(data) : align::icp_mode(data)).camera_from_object;
 }
 

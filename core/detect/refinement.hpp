@@ -31,8 +31,9 @@ struct Refinement {
 Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
                        const RefinementOptions& options);
 
-/// One round-two alignment step by BPA (paper section V): up to `count` model points that fall near
-/// the observed surface are matched with it as oriented pairs; without `use_orientation` by their
+/// One round-two alignment step by BPA (paper section V) to sampled segments, the super-pixels: up
+/// to `count` model points that fall near the surface of these are matched with it as oriented
+/// pairs, and half as many edge points with the frame's edges; without `use_orientation` by their
 /// positions only, which is what ICP does (the paper's ablation). The start where fewer than four
 /// points match.
 Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,

@@ -46,9 +46,10 @@ SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
   SuperPixelOptions segment_options;
   segment_options.num_threads = options.num_threads;
   constexpr double kColorBlur = 1.5;  // pixels
-  const auto lab =
-      rgb.empty() ? rgb : cielab(blur(rgb, kColorBlur, options.num_threads), options.num_threads);
-  scene.segmentation = super_pixels(map, lab, scene.edges.likelihood, segment_options);
+  if (!rgb.empty()) {
+    scene.cielab = cielab(blur(rgb, kColorBlur, options.num_threads), options.num_threads);
+  }
+  scene.segmentation = super_pixels(map, scene.cielab, scene.edges.likelihood, segment_options);
   scene.image = make_check_image(map);
   scene.planes = std::move(planes);
   const PointCloud searched = searched_points(map);

@@ -26,7 +26,8 @@ struct SceneFeatures {
   PointCloud coarse;           ///< Searched surface, for point pairs.
   ScenePairs pairs;            ///< Of points of `coarse`.
   SceneEdges edges;
-  Segmentation segmentation;  ///< Super-pixels of the whole map.
+  Image<Eigen::Vector3f> cielab;  ///< Blurred, of the map's size; empty without colour.
+  Segmentation segmentation;      ///< Super-pixels of the whole map.
 };
 
 struct SceneFeatureOptions {

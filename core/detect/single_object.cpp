@@ -9,6 +9,8 @@
 #include <bpa/core/detect/single_object.hpp>
 #include <bpa/core/model/model_index.hpp>
 #include <bpa/core/score/boundary_scores.hpp>
+#include <bpa/core/score/color_score.hpp>
+#include <bpa/core/score/feature_score.hpp>
 #include <bpa/core/score/random_walk_score.hpp>
 #include <bpa/core/score/segment_scores.hpp>
 
@@ -80,8 +82,8 @@ void remove_similar(std::vector<Item>& items, const SymmetryGroup& symmetry,
 }
 
 // Round three (paper section V).
-void add_round_three(const SceneFeatures& scene, const ObjectModel& model, const Pose& pose,
-                     ScoreComponents& out) {
+void add_round_three(const SceneFeatures& scene, const ObjectModel& model,
+                     const FeaturePlaces& places, const Pose& pose, ScoreComponents& out) {
   const CheckImage& image = scene.image;
   const Image<float>& edges = scene.edges.likelihood;
   const PredictedSurface predicted = predict_surface(image, model, pose);
@@ -91,6 +93,10 @@ void add_round_three(const SceneFeatures& scene, const ObjectModel& model, const
   const auto matches = match_segments(scene.segmentation, scene.map, model, pose, predicted);
   out.segment = segment_score(matches);
   out.segment_affinity = segment_affinity_score(scene.segmentation, matches);
+  out.fpfh = fpfh_score(scene.surface, scene.keypoints, scene.fpfh, places, pose);
+  if (!scene.cielab.empty() && !model.index->cielab.empty()) {
+    out.color = color_score(image, scene.cielab, model.index->cielab, predicted);
+  }
 }
 
 constexpr double kBeside = 0.17;  // radians
@@ -141,17 +147,20 @@ Pose climb(const SceneFeatures& scene, const ObjectModel& model, const Pose& sta
 
 }  // namespace
 
-Candidate evaluate_candidate(const SceneFeatures& scene,
-                             const std::shared_ptr<const ObjectModel>& model, Refinement refinement,
-                             const ScoreLayer& layer) {
+PlacementEvaluator::PlacementEvaluator(const SceneFeatures& scene,
+                                       std::shared_ptr<const ObjectModel> model,
+                                       const ScoreLayer& layer)
+    : scene_(scene), model_(std::move(model)), layer_(layer), places_(*model_) {}
+
+Candidate PlacementEvaluator::evaluate(Refinement refinement) const {
   Candidate candidate;
-  candidate.model = model;
-  candidate.components = score_placement(scene.image, *model, refinement.camera_from_object);
-  add_round_three(scene, *model, refinement.camera_from_object, candidate.components);
-  candidate.explained = explained_pixels(scene.image, *model, refinement.camera_from_object);
+  candidate.model = model_;
+  candidate.components = score_placement(scene_.image, *model_, refinement.camera_from_object);
+  add_round_three(scene_, *model_, places_, refinement.camera_from_object, candidate.components);
+  candidate.explained = explained_pixels(scene_.image, *model_, refinement.camera_from_object);
   candidate.refinement = std::move(refinement);
-  candidate.score = placement_score(candidate.components, layer);
-  candidate.probability = placement_probability(candidate.components, layer);
+  candidate.score = placement_score(candidate.components, layer_);
+  candidate.probability = placement_probability(candidate.components, layer_);
   return candidate;
 }
 
@@ -193,18 +202,17 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
   RefinementOptions there = last;  // no step: what is known of the pose
   there.iterations = 0;
   there.start_gate_m = there.end_gate_m;
+  const PlacementEvaluator evaluator(scene, model, options.layer);
   std::vector<Candidate> candidates;
   for (const Aligned& start : aligned) {
-    candidates.push_back(evaluate_candidate(
-        scene, model, refine_pose(scene, *model, start.pose, last), options.layer));
+    candidates.push_back(evaluator.evaluate(refine_pose(scene, *model, start.pose, last)));
   }
   const auto of_candidate = [](const Candidate& c) { return to_fast(c.pose()); };
   finish_stage("aligned", candidates, of_candidate);
   std::stable_sort(candidates.begin(), candidates.end(), by_score);
   for (std::size_t i = 0; i < std::min(candidates.size(), max_climbed); ++i) {
     const Pose climbed = climb(scene, *model, candidates[i].pose(), options);
-    Candidate moved =
-        evaluate_candidate(scene, model, refine_pose(scene, *model, climbed, there), options.layer);
+    Candidate moved = evaluator.evaluate(refine_pose(scene, *model, climbed, there));
     if (moved.score > candidates[i].score) candidates[i] = std::move(moved);
   }
   finish_stage("climbed", candidates, of_candidate);
@@ -282,7 +290,9 @@ Placement to_placement(const Candidate& candidate) {
                     {"occlusion_edge", c.occlusion_edge},
                     {"random_walk", c.random_walk},
                     {"segment", c.segment},
-                    {"segment_affinity", c.segment_affinity}};
+                    {"segment_affinity", c.segment_affinity},
+                    {"fpfh", c.fpfh}};
+  if (!std::isnan(c.color)) out.components.push_back({"color", c.color});
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include <bpa/core/detect/hypotheses.hpp>
 #include <bpa/core/detect/placement.hpp>
 #include <bpa/core/detect/refinement.hpp>
+#include <bpa/core/score/feature_score.hpp>
 #include <bpa/core/score/score_layer.hpp>
 
 namespace bpa {
@@ -57,10 +58,20 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
                                      const SingleObjectOptions& options,
                                      ObjectTrace* trace = nullptr);
 
-/// Scores a pose with every component of rounds two and three.
-Candidate evaluate_candidate(const SceneFeatures& scene,
-                             const std::shared_ptr<const ObjectModel>& model, Refinement refinement,
-                             const ScoreLayer& layer);
+/// Scores poses of one model with every component of rounds two and three. Keeps references.
+class PlacementEvaluator {
+ public:
+  PlacementEvaluator(const SceneFeatures& scene, std::shared_ptr<const ObjectModel> model,
+                     const ScoreLayer& layer);
+
+  Candidate evaluate(Refinement refinement) const;
+
+ private:
+  const SceneFeatures& scene_;
+  std::shared_ptr<const ObjectModel> model_;
+  const ScoreLayer& layer_;
+  FeaturePlaces places_;
+};
 
 /// The candidate as it is reported: with covariance, orientation uncertainty and named components.
 Placement to_placement(const Candidate& candidate);

@@ -43,10 +43,11 @@ struct ModelIndex {
   FeatureTree feature_tree{{}};  ///< Over `fpfh`.
   PointCloud coarse;             ///< What `pairs` is made of.
   PointPairTable pairs{{}, 1};
-  std::vector<ModelView> views;  ///< The 66 views, over `surface`.
-  DistanceTransform distances;   ///< Of `surface`.
-  NoiseTable noise;              ///< Of the model's noise.
-  double point_area = 0;         ///< Surface that each surface point stands for, square metres.
+  std::vector<ModelView> views;         ///< The 66 views, over `surface`.
+  DistanceTransform distances;          ///< Of `surface`.
+  NoiseTable noise;                     ///< Of the model's noise.
+  std::vector<Eigen::Vector3f> cielab;  ///< Of the surface points; empty without colours.
+  double point_area = 0;  ///< Surface that each surface point stands for, square metres.
 };
 
 /// Counts up whenever build_index() gives another index for the same surface, so that stored ones
@@ -57,7 +58,7 @@ constexpr int kIndexVersion = 1;
 std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threads);
 
 /// The parts of an index that are quicker to compute than to read from a file: check points, the
-/// tree over `fpfh`, the pairs of `coarse`, the noise table, the area of a point.
+/// tree over `fpfh`, the pairs of `coarse`, the noise table, CIELAB colours, the area of a point.
 void derive_index(const ModelSource& source, ModelIndex& index);
 
 }  // namespace bpa

@@ -53,7 +53,9 @@ class NoiseTable {
   explicit NoiseTable(const NoiseModel& noise);
 
   /// Range at NoiseModel::depth, metres; `cosine` of the surface angle, [0, 1].
-  float range(float edge_distance, float cosine) const { return range_[cell(edge_distance, cosine)]; }
+  float range(float edge_distance, float cosine) const {
+    return range_[cell(edge_distance, cosine)];
+  }
   /// Radians.
   float normal(float edge_distance, float cosine) const {
     return normal_[cell(edge_distance, cosine)];

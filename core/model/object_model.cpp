@@ -7,6 +7,7 @@
 
 #include <bpa/core/base/parallel.hpp>
 #include <bpa/core/base/random.hpp>
+#include <bpa/core/cloud/cielab.hpp>
 #include <bpa/core/cloud/curvature.hpp>
 #include <bpa/core/cloud/neighbor_grid.hpp>
 #include <bpa/core/model/model_index.hpp>
@@ -160,6 +161,11 @@ std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threa
 void derive_index(const ModelSource& source, ModelIndex& index) {
   index.check = check_points(source.surface);
   index.noise = NoiseTable(source.noise);
+  const CielabConverter convert;
+  index.cielab.clear();
+  for (const auto& [r, g, b] : source.surface.colors) {
+    index.cielab.push_back(convert(Eigen::Vector3f(r, g, b)));
+  }
   index.point_area = mean_point_area(source.surface);
   index.feature_tree = FeatureTree(index.fpfh);
   index.pairs =

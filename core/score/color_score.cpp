@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include <bpa/core/cloud/cielab.hpp>
 #include <bpa/core/score/color_score.hpp>
 #include <bpa/core/score/likelihood.hpp>
 
@@ -40,15 +39,6 @@ Window compare_at(const CheckImage& image, const Image<Eigen::Vector3f>& observe
 }
 
 }  // namespace
-
-std::vector<Eigen::Vector3f> surface_cielab(const ObjectModel& model) {
-  std::vector<Eigen::Vector3f> lab;
-  const CielabConverter convert;
-  for (const auto& [r, g, b] : model.surface.colors) {
-    lab.push_back(convert(Eigen::Vector3f(r, g, b)));
-  }
-  return lab;
-}
 
 double color_score(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
                    std::span<const Eigen::Vector3f> surface, const PredictedSurface& predicted) {

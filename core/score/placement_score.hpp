@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <bpa/core/geometry/pose.hpp>
@@ -36,6 +37,9 @@ struct ScoreComponents {
   double random_walk = -1;
   double segment = -1;
   double segment_affinity = -1;
+  double fpfh = -1;
+  /// Agreement of colours; not a number where model or frame has none.
+  double color = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Scores `model` at `pose` from about `max_points` of the surface points that its nearest view

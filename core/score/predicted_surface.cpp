@@ -65,10 +65,7 @@ Span covered(float centre, float radius, int size) {
 }  // namespace
 
 const ModelView& closest_view(const ObjectModel& model, const Pose& camera_from_object) {
-  const FastPose pose = to_fast(camera_from_object);
-  const Eigen::Vector3f to_camera = -(pose.rotation.transpose() * pose.translation).normalized();
-  const auto& views = model.index->views;
-  return views[static_cast<std::size_t>(nearest_view(views, to_camera))];
+  return nearest_view(model.index->views, to_fast(camera_from_object));
 }
 
 std::optional<PixelPlace> pixel_of(const CheckImage& image, const Eigen::Vector3f& point) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -11,20 +12,28 @@
 namespace bpa {
 namespace {
 
-constexpr std::array<const char*, kNumScoreFeatures> kNames = {
-    "range",      "normal",          "agreeing",        "free_space",     "visibility",
-    "edge",       "edge_support",    "edge_visibility", "shape",          "relative_area",
-    "unknown",    "explained",       "evidence",        "range_evidence", "edge_evidence",
-    "background", "support",         "edge_likelihood", "occlusion_edge", "random_walk",
-    "segment",    "segment_affinity"};
+constexpr std::array<const char*, kNumScoreFeatures> kNames = {"range",          "normal",
+                                                               "agreeing",       "free_space",
+                                                               "visibility",     "edge",
+                                                               "edge_support",   "edge_visibility",
+                                                               "shape",          "relative_area",
+                                                               "unknown",        "explained",
+                                                               "evidence",       "range_evidence",
+                                                               "edge_evidence",  "background",
+                                                               "support",        "edge_likelihood",
+                                                               "occlusion_edge", "random_walk",
+                                                               "segment",        "segment_affinity",
+                                                               "fpfh",           "color"};
 
 constexpr std::size_t kKnots = ScoreLayer::kKnots;
 using Places = std::array<double, kKnots>;
 
 // Evenly spread over the values of right and wrong samples, of which each kind counts for a half.
 Places choose_places(std::vector<std::pair<double, bool>> values) {
+  std::erase_if(values, [](const auto& value) { return std::isnan(value.first); });
+  if (values.empty()) values.push_back({0, false});
   std::sort(values.begin(), values.end());
-  double count[2] = {0, 0};
+  double count[2] = {1e-9, 1e-9};
   for (const auto& value : values) ++count[value.second];
   Places places{};
   double passed = 0;
@@ -65,7 +74,9 @@ class FrameLikelihood {
     for (const ScoreFrame::Sample& sample : frame.samples) {
       Row& row = rows_.emplace_back();
       for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
-        row[f] = position(places[f], sample.features[f]);
+        if (std::isnan(sample.features[f])) continue;
+        row.entries[f] = position(places[f], sample.features[f]);
+        row.known[f] = true;
       }
     }
   }
@@ -95,7 +106,8 @@ class FrameLikelihood {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       gradient[0] += by_score[i];
       for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
-        const auto [knot, along] = rows_[i][f];
+        if (!rows_[i].known[f]) continue;
+        const auto [knot, along] = rows_[i].entries[f];
         gradient[weight_of(f, knot)] += (1 - along) * by_score[i];
         gradient[weight_of(f, knot + 1)] += along * by_score[i];
       }
@@ -103,12 +115,16 @@ class FrameLikelihood {
   }
 
  private:
-  using Row = std::array<std::pair<std::size_t, double>, kNumScoreFeatures>;
+  struct Row {
+    std::array<std::pair<std::size_t, double>, kNumScoreFeatures> entries{};
+    std::array<bool, kNumScoreFeatures> known{};
+  };
 
   static double score_of(const Row& row, const Weights& weights) {
     double sum = weights[0];
     for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
-      const auto [knot, along] = row[f];
+      if (!row.known[f]) continue;
+      const auto [knot, along] = row.entries[f];
       sum += (1 - along) * weights[weight_of(f, knot)] + along * weights[weight_of(f, knot + 1)];
     }
     return sum;
@@ -183,10 +199,13 @@ ScoreFeatures score_features(const ScoreComponents& c) {
           c.occlusion_edge,
           c.random_walk,
           c.segment,
-          c.segment_affinity};
+          c.segment_affinity,
+          c.fpfh,
+          c.color};
 }
 
 double ScoreLayer::Component::at(double x) const {
+  if (std::isnan(x)) return 0;
   const auto [knot, along] = position(place, x);
   return (1 - along) * value[knot] + along * value[knot + 1];
 }
@@ -226,6 +245,11 @@ Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames) {
     for (std::size_t k = 0; k < kKnots; ++k) {
       layer.components[f].value[k] = weights[weight_of(f, k)];
     }
+    // A component that is not known says as much as the middle of right and wrong ones.
+    auto& value = layer.components[f].value;
+    const double middle = std::accumulate(value.begin(), value.end(), 0.0) / kKnots;
+    for (double& v : value) v -= middle;
+    layer.bias += middle;
   }
   return layer;
 }

@@ -14,8 +14,9 @@
 
 namespace bpa {
 
-/// What the score layer reads of a placement, one number for each name of score_feature_names().
-constexpr std::size_t kNumScoreFeatures = 22;
+/// What the score layer reads of a placement, one number for each name of score_feature_names();
+/// not a number where it is not known.
+constexpr std::size_t kNumScoreFeatures = 24;
 using ScoreFeatures = std::array<double, kNumScoreFeatures>;
 
 std::span<const char* const, kNumScoreFeatures> score_feature_names();
@@ -29,7 +30,8 @@ struct ScoreLayer {
   struct Component {
     std::array<double, kKnots> place{};  ///< Rising values of the component.
     std::array<double, kKnots> value{};  ///< What each contributes; others are interpolated, and
-                                         ///< count as the nearest beyond the ends.
+                                         ///< count as the nearest beyond the ends. What is not
+                                         ///< known contributes nothing.
     double at(double x) const;
   };
   std::array<Component, kNumScoreFeatures> components;

@@ -52,7 +52,7 @@ void round_three(benchmark::State& state) {
   const auto lab = cielab(rgb, 0);
   const Image<float> edges = scene_edges(map, rgb).likelihood;
   const Segmentation segments = super_pixels(map, lab, edges);
-  const auto model_lab = surface_cielab(*model);
+  const auto& model_lab = model->index->cielab;
   const Pose pose{Eigen::Quaterniond::Identity(), {0, 0, 0.9 + static_cast<double>(kHalf.z())}};
   for (auto _ : state) {
     const PredictedSurface predicted = predict_surface(image, *model, pose);

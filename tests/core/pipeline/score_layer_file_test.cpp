@@ -25,7 +25,8 @@ class ScoreLayerFile : public ::testing::Test {
 TEST_F(ScoreLayerFile, IsReadAsItWasWritten) {
   ScoreLayer layer = default_score_layer();
   layer.bias = -1.0 / 3;
-  layer.components[4] = {{0.1, 0.2, 1.0 / 3, 1, 2, 3, 4, 5}, {1.0 / 7, -1e-17, 0, 3, 2, 1, -1, 1e9}};
+  layer.components[4] = {{0.1, 0.2, 1.0 / 3, 1, 2, 3, 4, 5},
+                         {1.0 / 7, -1e-17, 0, 3, 2, 1, -1, 1e9}};
   layer.provenance = "a \"test\"";
   ASSERT_TRUE(write_score_layer(path_, layer).ok());
   const auto read = library_score_layer(folder_.path());

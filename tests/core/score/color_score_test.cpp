@@ -44,7 +44,7 @@ class ColorScore : public ::testing::Test {
     return {40, 90, 180};
   }
   static double score(const Image<Eigen::Vector3f>& observed, const Pose& pose = kTruth) {
-    return color_score(image_, observed, surface_cielab(*model_),
+    return color_score(image_, observed, model_->index->cielab,
                        predict_surface(image_, *model_, pose));
   }
   static Image<Eigen::Vector3f> shifted(const Eigen::Vector3f& by) {
@@ -86,10 +86,10 @@ TEST_F(ColorScore, LampsDoNotMatter) {
 
 TEST_F(ColorScore, WithoutColourNeitherForNorAgainst) {
   const PredictedSurface predicted = predict_surface(image_, *model_, kTruth);
-  EXPECT_EQ(color_score(image_, {}, surface_cielab(*model_), predicted), 0);
+  EXPECT_EQ(color_score(image_, {}, model_->index->cielab, predicted), 0);
   EXPECT_EQ(color_score(image_, observed_, {}, predicted), 0);
   EXPECT_EQ(score(observed_, {kTruth.rotation, {0, 0, -1}}), 0);
-  EXPECT_TRUE(surface_cielab(*test::brick_model()).empty());
+  EXPECT_TRUE(test::brick_model()->index->cielab.empty());
 }
 
 }  // namespace
