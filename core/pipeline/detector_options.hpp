@@ -23,7 +23,7 @@ struct DetectorOptions {
   int max_clusters = 200;
   int max_refined = 40;
   bool use_orientation = true;
-  double min_probability = 0.25;
+  double min_probability = 0.3;
   double object_penalty = 0.2;
   double explained_weight = 2;
   int annealing_steps = 20000;

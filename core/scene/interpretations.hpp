@@ -15,9 +15,9 @@ namespace bpa {
 constexpr double kMaxShared = 0.3;
 
 struct InterpretationOptions {
-  double object_penalty = 0.2;    ///< Log odds that each further object costs.
-  double explained_weight = 2;    ///< Of the ratio of explained to observed pixels.
-  double min_probability = 0.25;  ///< A placement less probable than this lowers the score.
+  double object_penalty = 0.2;   ///< Log odds that each further object costs.
+  double explained_weight = 2;   ///< Of the ratio of explained to observed pixels.
+  double min_probability = 0.3;  ///< A placement less probable than this lowers the score.
   int annealing_steps = 20000;
   double min_shown = 0.02;        ///< Less probable placements are in no interpretation.
   int max_different = 20;         ///< Interpretations that show something new, the best included.

@@ -181,7 +181,9 @@ TEST(Interpretations, WhatDiffersComesBeforeNearCopies) {
       ++number;
     }
   }
-  const auto found = interpret_all(candidates, kObserved, {});
+  InterpretationOptions options;
+  options.min_probability = 0.5;
+  const auto found = interpret_all(candidates, kObserved, options);
   ASSERT_GT(found.size(), 3u);
   EXPECT_EQ(subset_of(found[0]), (Subset{0, 3}));
   EXPECT_EQ(subset_of(found[1]), (Subset{1, 4, 6})) << "what the first has not shown";

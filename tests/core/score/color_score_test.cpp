@@ -19,11 +19,11 @@ const Pose kTruth = kCameraFromWorld * test::standing_at(0, 0, test::kBrickHalf.
 class ColorScore : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    auto painted = std::make_shared<ObjectModel>(*test::brick_model());
-    for (const Eigen::Vector3f& p : painted->surface.points) {
-      painted->surface.colors.push_back(color_at(p.x()));
+    ModelSource painted = *test::brick_model();
+    for (const Eigen::Vector3f& p : painted.surface.points) {
+      painted.surface.colors.push_back(color_at(p.x()));
     }
-    model_ = painted;
+    model_ = make_object_model(std::move(painted)).value();
     const auto rendered = test::render({test::table(kCameraFromWorld), test::brick_solid(kTruth)},
                                        test::kinect_camera());
     const SurfaceMap map = surface_map(rendered.frame, {});

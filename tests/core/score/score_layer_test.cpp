@@ -111,7 +111,7 @@ TEST(ScoreLayer, ValuesOutsideTrainingCountAsTheNearestOnes) {
   EXPECT_EQ(at(70), 5.5);
   EXPECT_EQ(at(1), -2.5);
   EXPECT_EQ(at(-1), -2.5);
-  EXPECT_EQ(at(std::nan("")), -2.5) << "counts as the lowest";
+  EXPECT_EQ(at(std::nan("")), 0.5) << "what is not known says nothing";
 }
 
 TEST(ScoreLayer, BetweenKnotsIsInterpolated) {
