@@ -32,6 +32,7 @@ struct SimulateArguments {
   int scenes = 30;
   double scale = 1;
   double model_error = 0;
+  int look_alikes = 0;
   std::vector<int> objects;
   std::vector<double> clutter;
   sim::SceneOptions scene;
@@ -140,6 +141,17 @@ void print_visible_fractions(std::vector<double> fractions) {
   std::printf("\n");
 }
 
+// Two of each object, so much longer or shorter that they are other things.
+std::vector<sim::SimulatedObject> make_look_alikes(const std::vector<sim::SimulatedObject>& objects,
+                                                   std::uint64_t seed) {
+  constexpr double kDifference = 0.12;
+  std::vector<sim::SimulatedObject> out;
+  for (std::size_t i = 0; i < 2 * objects.size(); ++i) {
+    out.push_back(sim::made_inexactly(objects[i / 2], kDifference, RandomStream(seed, 2000 + i)()));
+  }
+  return out;
+}
+
 Status simulate_scenes(SimulateArguments a) {
   const auto range = [](const auto& given, auto& low, auto& high) {
     if (given.size() == 2) {
@@ -156,11 +168,16 @@ Status simulate_scenes(SimulateArguments a) {
   Result<std::vector<sim::SimulatedObject>> objects = chosen_objects(a);
   if (!objects.ok()) return objects.status();
   if (Status s = write_models(a.out, *objects); !s.ok()) return s;
+  std::vector<sim::SimulatedObject> look_alikes;
+  if (a.look_alikes > 0) {
+    look_alikes = make_look_alikes(*objects, a.common.seed);
+    a.scene.max_distractors = a.look_alikes;
+  }
   for (std::size_t i = 0; a.model_error > 0 && i < objects->size(); ++i) {
     (*objects)[i] = sim::made_inexactly(std::move((*objects)[i]), a.model_error,
                                         RandomStream(a.common.seed, 1000 + i)());
   }
-  const sim::Stage stage(std::move(objects).value(), a.common.threads);
+  const sim::Stage stage(std::move(objects).value(), a.common.threads, std::move(look_alikes));
 
   Progress progress("simulate", a.scenes);
   progress.show(0);
@@ -284,6 +301,13 @@ void add_simulate_command(CLI::App& program, Action& action) {
           "--model-error", a->model_error,
           "What objects are longer or shorter than their models along each axis, as a share")
       ->check(CLI::Range(0.0, 0.2))
+      ->capture_default_str();
+  scenes
+      .add_option(
+          "--look-alikes", a->look_alikes,
+          "Most things of a scene that look like the objects but have other measures, and are "
+          "not in the truth")
+      ->check(CLI::Range(0, 20))
       ->capture_default_str();
   scenes
       .add_option("--calibration-error", a->scene.kinect.calibration_error,

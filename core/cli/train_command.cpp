@@ -111,7 +111,7 @@ std::string as_source(const ScoreLayer& layer) {
   std::string out =
       "// SPDX-FileCopyrightText: 2026 The bpa authors\n"
       "// SPDX-License-Identifier: Apache-2.0\n"
-      "// Written by 'bpa train --source'; see the provenance below.\n"
+      "// Written by 'bpa train --source' (tests/accuracy/train.sh); see the provenance below.\n"
       "#include <bpa/core/score/score_layer.hpp>\n\nnamespace bpa {\n\n"
       "// clang-format off\nconst ScoreLayer& default_score_layer() {\n"
       "  static const ScoreLayer layer = {{{\n";

@@ -16,6 +16,35 @@ bool same_place(const Candidate& a, const Candidate& b) {
   return distance < (a.model == b.model ? 0.4 : 0.2) * smaller;
 }
 
+// The share of a's surface that lies clearly inside of b. Only a model that was seen from all sides
+// has an inside; a hollow is not one.
+double share_inside(const Candidate& a, const Candidate& b) {
+  constexpr std::size_t kPoints = 48;
+  constexpr float kDepth = 0.010f;  // metres: what both poses together may be off by
+  const std::vector<Eigen::Vector3f>& points = a.model->index->check.points;
+  const FastPose a_in_b = to_fast(b.pose().inverse() * a.pose());
+  const PointCloud& surface = b.model->surface;
+  const std::size_t count = std::min(points.size(), kPoints);
+  int inside = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Eigen::Vector3f point = a_in_b.rotation * points[k] + a_in_b.translation;
+    const int nearest = b.model->index->distances.nearest_to(point);
+    if (nearest < 0) continue;
+    const auto i = static_cast<std::size_t>(nearest);
+    inside += (point - surface.points[i]).dot(surface.normals[i]) < -kDepth;
+  }
+  return count > 0 ? inside / static_cast<double>(count) : 0;
+}
+
+bool interpenetrate(const Candidate& a, const Candidate& b) {
+  constexpr double kMaxInside = 0.1;
+  const auto solid = [](const Candidate& c) { return c.model->complete && c.model->index; };
+  if (!solid(a) || !solid(b)) return false;
+  const double reach = 0.5 * (a.model->diameter + b.model->diameter);
+  if ((a.pose().translation - b.pose().translation).norm() > reach) return false;
+  return share_inside(a, b) > kMaxInside || share_inside(b, a) > kMaxInside;
+}
+
 double same_pose(const Candidate& a, const Candidate& b) {
   if (a.model != b.model || (a.pose().translation - b.pose().translation).norm() > 0.1) return 0;
   const PoseError error = pose_error(a.pose(), b.pose(), a.model->symmetry);
@@ -66,11 +95,11 @@ std::vector<std::vector<Overlap>> find_overlaps(const std::vector<Candidate>& ca
       const Candidate& first = candidates[running[a]];
       const Candidate& second = candidates[running[b]];
       const int shared = common[a * running.size() + b];
-      const bool colliding = same_place(first, second);
-      if (shared == 0 && !colliding) continue;
       const auto smaller =
           static_cast<double>(std::min(first.explained.size(), second.explained.size()));
-      const bool conflicting = colliding || shared > max_shared * smaller;
+      const bool conflicting = shared > max_shared * smaller || same_place(first, second) ||
+                               interpenetrate(first, second);
+      if (shared == 0 && !conflicting) continue;
       overlaps[running[a]].push_back({running[b], shared, conflicting});
       overlaps[running[b]].push_back({running[a], shared, conflicting});
     }

@@ -21,9 +21,9 @@ struct Overlap {
 constexpr double kHopelessScore = -8;
 
 /// For each candidate that is not hopeless, the others that share observed pixels or their place
-/// with it. Two conflict when they share more than `max_shared` of what the smaller one explains,
-/// or when their origins are so near that two solid things could not both be there. By rising
-/// `other`.
+/// with it, by rising `other`. Two conflict when they share more than `max_shared` of what the
+/// smaller one explains, when their origins are so near that two solid things could not both be
+/// there, or when more than a tenth of the one's surface lies over 1 cm deep inside of the other.
 std::vector<std::vector<Overlap>> find_overlaps(const std::vector<Candidate>& candidates,
                                                 double max_shared);
 

@@ -87,7 +87,9 @@ struct SimulatedScene {
 /// Immutable.
 class Stage {
  public:
-  explicit Stage(std::vector<SimulatedObject> objects, int num_threads = 0);
+  /// `look_alikes` lie about as further distractors.
+  explicit Stage(std::vector<SimulatedObject> objects, int num_threads = 0,
+                 std::vector<SimulatedObject> look_alikes = {});
   ~Stage();
   Stage(Stage&&) noexcept;
   Stage& operator=(Stage&&) noexcept;

@@ -1,13 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <iterator>
+
 #include <bpa/core/sim/stage.hpp>
 
 namespace bpa::sim {
 
-Stage::Stage(std::vector<SimulatedObject> objects, int num_threads)
+Stage::Stage(std::vector<SimulatedObject> objects, int num_threads,
+             std::vector<SimulatedObject> look_alikes)
     : impl_(std::make_unique<Impl>()) {
   impl_->objects = std::move(objects);
   impl_->distractors = make_distractors(num_threads);
+  std::move(look_alikes.begin(), look_alikes.end(), std::back_inserter(impl_->distractors));
   impl_->tables = make_tables();
   impl_->room = make_room();
   impl_->bin = make_bin();

@@ -82,6 +82,9 @@ for cloud in "$data"/osd_clutter/*.pcd; do
   if [[ -f $cloud ]] && ! grep -a -q -m 1 '^HEIGHT 1$' "$cloud"; then clouds+=("$cloud"); fi
 done
 rm -rf "$output/osd-bpa" "$output/osd-everything"
+# Scenes that hold none of the real objects; without these, none of the simulated ones.
+osd_models=$models
+[[ -d $data/ycbv ]] && osd_models=$output/real-library
 if ((${#clouds[@]})); then
   sensor+=(--pcd "${clouds[@]}")
   for config in bpa everything; do
@@ -89,7 +92,7 @@ if ((${#clouds[@]})); then
     mkdir -p "$folder"
     options=()
     [[ $config == everything ]] && options=(--config "$output/everything.yaml")
-    bpa "osd-$config-detect" detect --library "$models" --pcd "${clouds[@]}" \
+    bpa "osd-$config-detect" detect --library "$osd_models" --pcd "${clouds[@]}" \
       --json "$folder/result.json" --annotate "$folder/annotated" "${options[@]}"
     bpa "osd-$config-evaluate" evaluate --nothing-there --json "$folder/result.json" \
       --json-out "$folder/evaluation.json" --plots "$folder/plots"

@@ -203,6 +203,31 @@ TEST(Scenes, FreeAndBadFrames) {
   EXPECT_TRUE(any);
 }
 
+TEST(Scenes, LookAlikesAreSeenAndNotInTheTruth) {
+  const std::vector<SimulatedObject> cubes = household_objects(std::vector<std::string>{"cube"});
+  const std::vector<SimulatedObject> others(20, made_inexactly(cubes.front(), 0.12, 1));
+  const Stage with(cubes, 0, others);
+  SceneOptions options = small_options();
+  options.min_objects = options.max_objects = 0;
+  options.max_distractors = 8;
+  options.max_clutter = options.min_clutter = 0;
+  int higher = 0;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const SimulatedScene scene = simulate_scene(with, options, seed);
+    EXPECT_TRUE(scene.frames[0].instances.empty());
+    // Most of what stands on the table is a look-alike, and all of those are equally high.
+    const SimulatedFrame& frame = scene.frames[0];
+    for (std::size_t i = 0; i < frame.ideal_depth.size(); ++i) {
+      const Eigen::Vector3d point =
+          frame.camera_from_world.inverse() *
+          options.camera.unproject(static_cast<int>(i) % 320, static_cast<int>(i) / 320,
+                                   static_cast<double>(frame.ideal_depth[i]));
+      higher += point.z() > 0.03 && point.head<2>().norm() < 0.4;
+    }
+  }
+  EXPECT_GT(higher, 1000);
+}
+
 TEST(Scenes, CamerasLookAtTheirTarget) {
   const Pose pose = camera_looking_at({0.1, 0.2, 0.3}, 1.2, 0.7, 1.9, 0.05);
   const Eigen::Vector3d target = pose.inverse() * Eigen::Vector3d(0.1, 0.2, 0.3);

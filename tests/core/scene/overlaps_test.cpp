@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <bpa/core/scene/overlaps.hpp>
+
+#include "support/posed_models.hpp"
+
+namespace bpa {
+namespace {
+
+class OverlapsOf : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { brick_ = test::brick_model(); }
+  static void TearDownTestSuite() { brick_.reset(); }
+
+  // A brick whose centre is at (x, y, 1) metres, explaining pixels of its own.
+  static Candidate brick_at(double x, double y, std::uint32_t first_pixel) {
+    Candidate out;
+    out.model = brick_;
+    out.refinement.camera_from_object.translation = {x, y, 1};
+    for (std::uint32_t k = 0; k < 100; ++k) out.explained.push_back(first_pixel + k);
+    return out;
+  }
+  static bool conflict(const Candidate& a, const Candidate& b) {
+    const auto overlaps = find_overlaps({a, b}, 0.3);
+    EXPECT_EQ(overlaps[0].empty(), overlaps[1].empty());
+    return !overlaps[0].empty() && overlaps[0][0].conflicting;
+  }
+
+  static inline std::shared_ptr<const ObjectModel> brick_;
+};
+
+TEST_F(OverlapsOf, SolidThingsDoNotStandInOneAnother) {
+  const double length = 2 * static_cast<double>(test::kBrickHalf.x());
+  const Candidate first = brick_at(0, 0, 0);
+  EXPECT_FALSE(conflict(first, brick_at(length, 0, 500))) << "end to end";
+  EXPECT_FALSE(conflict(first, brick_at(length - 0.008, 0, 500))) << "as exact as poses are";
+  EXPECT_TRUE(conflict(first, brick_at(0.6 * length, 0, 500)));
+  EXPECT_TRUE(conflict(first, brick_at(0.6 * length, 0.02, 500)));
+  EXPECT_FALSE(conflict(first, brick_at(0.3, 0, 500)));
+}
+
+TEST_F(OverlapsOf, AModelSeenFromOneSideHasNoInside) {
+  ModelSource open = *brick_;
+  open.complete = false;
+  Candidate first = brick_at(0, 0, 0), second = brick_at(0.072, 0, 500);
+  EXPECT_TRUE(conflict(first, second));
+  first.model = make_object_model(std::move(open)).value();
+  EXPECT_FALSE(conflict(first, second));
+}
+
+TEST_F(OverlapsOf, PixelsAreOwnedOnce) {
+  const Candidate first = brick_at(0, 0, 0);
+  EXPECT_TRUE(conflict(first, brick_at(0.5, 0, 60))) << "40 of 100 pixels shared";
+  const auto overlaps = find_overlaps({first, brick_at(0.5, 0, 80)}, 0.3);
+  ASSERT_EQ(overlaps[0].size(), 1u);
+  EXPECT_EQ(overlaps[0][0].common, 20);
+  EXPECT_FALSE(overlaps[0][0].conflicting);
+}
+
+TEST_F(OverlapsOf, TheHopelessTakeNothingFromOthers) {
+  Candidate hopeless = brick_at(0, 0, 0);
+  hopeless.score = kHopelessScore - 1;
+  EXPECT_FALSE(conflict(brick_at(0, 0, 0), hopeless));
+}
+
+}  // namespace
+}  // namespace bpa
