@@ -81,7 +81,7 @@ const ScoreLayer& default_score_layer() {
       {{-1, -0.956315, -0.78245, -0.607964, -0.426895, -0.260351, -0.143149, -0.0242836},
        {-3.52545, -2.10739, -0.862692, -0.0876887, 0.842857, 1.78446, 2.17749, 1.77841}},
   }}, -2.88986727,
-  "bpa train, split test of train2, 80 frames, seed 0"};
+  "bpa train, split test of training, 80 frames, seed 0"};
   return layer;
 }
 // clang-format on
