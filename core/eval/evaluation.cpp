@@ -122,13 +122,48 @@ void add_groups(const EvalObjects& objects, EvaluationReport& report) {
   std::erase_if(report.by_distance, empty);
 }
 
-void add_calibration(EvaluationReport& report) {
-  report.reliability.resize(kBins);
+std::vector<ReliabilityBin> empty_bins() {
+  std::vector<ReliabilityBin> bins(kBins);
   for (int i = 0; i < kBins; ++i) {
-    ReliabilityBin& bin = report.reliability[static_cast<std::size_t>(i)];
-    bin.low = i / static_cast<double>(kBins);
-    bin.high = (i + 1) / static_cast<double>(kBins);
+    bins[static_cast<std::size_t>(i)].low = i / static_cast<double>(kBins);
+    bins[static_cast<std::size_t>(i)].high = (i + 1) / static_cast<double>(kBins);
   }
+  return bins;
+}
+
+void add_to_bins(std::vector<ReliabilityBin>& bins, double probability, bool right) {
+  ReliabilityBin& bin = bins[static_cast<std::size_t>(
+      std::clamp(static_cast<int>(probability * kBins), 0, kBins - 1))];
+  bin.mean_probability += probability;
+  count(bin.correct, right);
+}
+
+void finish_bins(std::vector<ReliabilityBin>& bins) {
+  for (ReliabilityBin& bin : bins) {
+    if (bin.correct.total > 0) bin.mean_probability /= bin.correct.total;
+  }
+}
+
+void add_open_poses(EvaluationReport& report) {
+  OpenPoses& open = report.open_poses;
+  open.weights = empty_bins();
+  for (const FrameOutcome& frame : report.outcomes) {
+    for (const EstimateOutcome& estimate : frame.estimates) {
+      if (estimate.poses.empty()) continue;
+      bool any = false;
+      for (const PoseOutcome& pose : estimate.poses) {
+        any = any || pose.right;
+        add_to_bins(open.weights, pose.weight, pose.right);
+      }
+      count(open.held, any);
+      count(open.own, estimate.poses.front().right);
+    }
+  }
+  finish_bins(open.weights);
+}
+
+void add_calibration(EvaluationReport& report) {
+  report.reliability = empty_bins();
   for (const auto& row : kChiSquared) report.coverage.push_back({row.level, {}});
   double squared = 0;
   int reported = 0, with_covariance = 0;
@@ -139,10 +174,7 @@ void add_calibration(EvaluationReport& report) {
       const double p = std::clamp(estimate.probability, 0.0, 1.0);
       squared += (p - correct) * (p - correct);
       ++reported;
-      ReliabilityBin& bin = report.reliability[static_cast<std::size_t>(
-          std::min(static_cast<int>(p * kBins), kBins - 1))];
-      bin.mean_probability += p;
-      count(bin.correct, correct);
+      add_to_bins(report.reliability, p, correct);
       if (!correct || !estimate.has_covariance) continue;
       ++with_covariance;
       report.normalised_square += estimate.mahalanobis_squared / estimate.degrees_of_freedom;
@@ -155,9 +187,7 @@ void add_calibration(EvaluationReport& report) {
   }
   if (with_covariance > 0) report.normalised_square /= with_covariance;
   report.brier = reported > 0 ? squared / reported : 0;
-  for (ReliabilityBin& bin : report.reliability) {
-    if (bin.correct.total > 0) bin.mean_probability /= bin.correct.total;
-  }
+  finish_bins(report.reliability);
 }
 
 void add_time(EvaluationReport& report) {
@@ -283,6 +313,7 @@ Result<EvaluationReport> evaluate(const std::vector<io::BopFrame>& frames,
   if (options.bop_errors) add_bop(report);
   add_groups(objects, report);
   add_calibration(report);
+  add_open_poses(report);
   add_scenes(report);
   add_time(report);
   return report;

@@ -60,6 +60,12 @@ struct Ratio {
   double value() const { return total > 0 ? static_cast<double>(hits) / total : 0.0; }
 };
 
+/// One of the poses that a placement leaves open.
+struct PoseOutcome {
+  double weight = 0;
+  bool right = false;
+};
+
 /// Everything known about one placement of the best interpretation.
 struct EstimateOutcome {
   int obj_id = 0;
@@ -70,6 +76,9 @@ struct EstimateOutcome {
   bool has_covariance = false;
   double mahalanobis_squared = 0;  ///< Of the error of a right one, under its covariance.
   int degrees_of_freedom = 6;      ///< Of that; a turn that changes nothing does not count.
+  /// Its own pose and its alternatives, against the instance of the same object that is nearest,
+  /// at most 5 cm away; empty without alternatives or without such an instance.
+  std::vector<PoseOutcome> poses;
 };
 
 /// Everything known about one true instance.
@@ -120,6 +129,13 @@ struct Coverage {
   Ratio covered;
 };
 
+/// Placements that leave several poses open, of objects that are there.
+struct OpenPoses {
+  Ratio own;   ///< The placement's own pose is right.
+  Ratio held;  ///< It or one of its alternatives is.
+  std::vector<ReliabilityBin> weights;
+};
+
 /// What was reported in frames where nothing that counts is to be found.
 struct FalseReports {
   int free_frames = 0;         ///< Such frames.
@@ -148,6 +164,7 @@ struct EvaluationReport {
   double normalised_square = 0;  ///< Their mean squared error in units of the covariance, for each
                                  ///< degree of freedom: 1 if the covariances are right, less if
                                  ///< they are too large.
+  OpenPoses open_poses;
   FalseReports false_reports;
   std::array<int, 10> visible_tenths{};  ///< All instances by visible fraction.
   double median_visible_fraction = 0;

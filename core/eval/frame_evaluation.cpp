@@ -230,9 +230,38 @@ void add_rmse(const io::BopFrame& frame, const EvalObjects& objects, const Estim
   }
 }
 
+std::vector<PoseOutcome> open_poses(const io::BopFrame& frame, const EvalObjects& objects,
+                                    const EvaluationOptions& options,
+                                    const io::ResultPlacement& estimate) {
+  constexpr double kSamePlace = 0.05;  // metres
+  if (estimate.alternatives.empty()) return {};
+  const io::BopInstance* nearest = nullptr;
+  double least = kSamePlace;
+  for (const io::BopInstance& truth : frame.truth) {
+    const double distance =
+        (truth.camera_from_object.translation - estimate.camera_from_object.translation).norm();
+    if (truth.obj_id != estimate.obj_id || distance > least) continue;
+    least = distance;
+    nearest = &truth;
+  }
+  if (nearest == nullptr) return {};
+  std::vector<PoseOutcome> out{{1, false}};
+  const auto is_right = [&](const Pose& pose) {
+    io::ResultPlacement at_pose = estimate;
+    at_pose.camera_from_object = pose;
+    return paper_cost(objects, options, at_pose, *nearest) < kNoMatch;
+  };
+  for (const io::ResultAlternative& other : estimate.alternatives) {
+    out.front().weight -= other.weight;
+    out.push_back({other.weight, is_right(other.camera_from_object)});
+  }
+  out.front().right = is_right(estimate.camera_from_object);
+  return out;
+}
+
 void add_estimates(const io::BopFrame& frame, const EvalObjects& objects,
                    const Estimates& estimates, const std::vector<int>& truth_of,
-                   FrameOutcome& outcome) {
+                   const EvaluationOptions& options, FrameOutcome& outcome) {
   for (std::size_t e = 0; e < estimates.size(); ++e) {
     const io::ResultPlacement& estimate = estimates[e];
     EstimateOutcome result;
@@ -240,6 +269,7 @@ void add_estimates(const io::BopFrame& frame, const EvalObjects& objects,
     result.probability = estimate.probability;
     result.distance = estimate.camera_from_object.translation.norm();
     result.truth = truth_of[e];
+    result.poses = open_poses(frame, objects, options, estimate);
     if (result.truth >= 0) {
       const auto t = static_cast<std::size_t>(result.truth);
       const EvalObject& object = objects.at(estimate.obj_id);
@@ -293,7 +323,7 @@ Result<FrameOutcome> evaluate_frame(const io::BopFrame& frame, const EvalObjects
       if (first == 0) first = static_cast<int>(rank) + 1;
     }
     if (rank > 0) continue;
-    add_estimates(frame, objects, estimates, truth_of, outcome);
+    add_estimates(frame, objects, estimates, truth_of, options, outcome);
     add_rmse(frame, objects, estimates, options, outcome);
     if (!options.bop_errors) continue;
     if (Status s = add_bop_errors(frame, objects, estimates, options, outcome); !s.ok()) return s;

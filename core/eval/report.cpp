@@ -133,6 +133,16 @@ std::string report_text(const EvaluationReport& report) {
     text += format("  mean square of the error in standard deviations %.3f (1 would be right)\n",
                    report.normalised_square);
   }
+  if (report.open_poses.held.total > 0) {
+    text += format("\nplacements with alternatives, the object being there\n");
+    text += format("  own pose right           %s\n", percent(report.open_poses.own).c_str());
+    text += format("  or one of the others     %s\n", percent(report.open_poses.held).c_str());
+    for (const ReliabilityBin& bin : report.open_poses.weights) {
+      if (bin.correct.total == 0) continue;
+      text += format("  weight %.2f              right %s\n", bin.mean_probability,
+                     percent(bin.correct).c_str());
+    }
+  }
   text += format("\nseconds a frame            median %.2f, mean %.2f, largest %.2f\n",
                  report.time.median, report.time.mean, report.time.max);
   return text;
@@ -147,35 +157,38 @@ std::string report_json(const EvaluationReport& report) {
   for (const Coverage& c : report.coverage) {
     coverage.push_back({{"level", c.level}, {"covered", ratio_json(c.covered)}});
   }
-  Json json = {{"format", "bpa evaluation"},
-               {"version", 1},
-               {"frames", report.frames},
-               {"precision", ratio_json(report.precision)},
-               {"recall", ratio_json(report.recall)},
-               {"recall_at", recall_at},
-               {"rmse",
-                {{"precision", ratio_json(report.rmse_precision)},
-                 {"recall", ratio_json(report.rmse_recall)}}},
-               {"mean_add_m", report.mean_add},
-               {"mean_adds_m", report.mean_adds},
-               {"by_object", groups_json(report.by_object, true)},
-               {"by_visible_fraction", groups_json(report.by_visible_fraction, false)},
-               {"by_distance", groups_json(report.by_distance, true)},
-               {"calibration", calibration_json(report)},
-               {"coverage", coverage},
-               {"normalised_square", report.normalised_square},
-               {"false_reports",
-                {{"free_frames", report.false_reports.free_frames},
-                 {"frames_with_report", report.false_reports.frames_with_report},
-                 {"reports", report.false_reports.reports}}},
-               {"visible_fraction",
-                {{"median", report.median_visible_fraction}, {"tenths", report.visible_tenths}}},
-               {"seconds",
-                {{"frames", report.time.frames},
-                 {"mean", report.time.mean},
-                 {"median", report.time.median},
-                 {"max", report.time.max}}},
-               {"outcomes", frames_json(report)}};
+  Json json = {
+      {"format", "bpa evaluation"},
+      {"version", 1},
+      {"frames", report.frames},
+      {"precision", ratio_json(report.precision)},
+      {"recall", ratio_json(report.recall)},
+      {"recall_at", recall_at},
+      {"rmse",
+       {{"precision", ratio_json(report.rmse_precision)},
+        {"recall", ratio_json(report.rmse_recall)}}},
+      {"mean_add_m", report.mean_add},
+      {"mean_adds_m", report.mean_adds},
+      {"by_object", groups_json(report.by_object, true)},
+      {"by_visible_fraction", groups_json(report.by_visible_fraction, false)},
+      {"by_distance", groups_json(report.by_distance, true)},
+      {"calibration", calibration_json(report)},
+      {"coverage", coverage},
+      {"normalised_square", report.normalised_square},
+      {"open_poses",
+       {{"own", ratio_json(report.open_poses.own)}, {"held", ratio_json(report.open_poses.held)}}},
+      {"false_reports",
+       {{"free_frames", report.false_reports.free_frames},
+        {"frames_with_report", report.false_reports.frames_with_report},
+        {"reports", report.false_reports.reports}}},
+      {"visible_fraction",
+       {{"median", report.median_visible_fraction}, {"tenths", report.visible_tenths}}},
+      {"seconds",
+       {{"frames", report.time.frames},
+        {"mean", report.time.mean},
+        {"median", report.time.median},
+        {"max", report.time.max}}},
+      {"outcomes", frames_json(report)}};
   if (report.has_bop) {
     json["bop"] = {{"vsd", report.vsd},
                    {"mssd", report.mssd},

@@ -265,6 +265,29 @@ TEST(Evaluation, CoverageOfABallHasThreeDegreesOfFreedom) {
   EXPECT_EQ(report->coverage[0].covered.hits, 1);  // 2.366
 }
 
+TEST(Evaluation, OpenPosesByHand) {
+  // A plain object turned by a quarter of a turn; a second one that is not there.
+  io::ResultPlacement first = placement(1, at(0, 0.7), 0.4);
+  first.alternatives = {{at(0.01, 0.7, kPi / 2), 0.25}, {at(0, 0.7, kPi), 0.22}};
+  io::ResultPlacement second = placement(1, at(0.5, 0.7), 0.4);
+  second.alternatives = {{at(0.5, 0.7, kPi), 0.5}};
+  io::ResultPlacement third = placement(1, at(-0.5, 0.7), 0.9);
+  const auto report =
+      evaluate({frame(0, {{1, at(0, 0.7, kPi / 2), 1.0}, {1, at(-0.5, 0.7), 1.0}})}, objects(),
+               {result(0, 0.4, {{first, second, third}})}, without_bop());
+  ASSERT_TRUE(report.ok()) << report.status().message;
+  const OpenPoses& open = report->open_poses;
+  EXPECT_EQ(open.held.hits, 1);
+  EXPECT_EQ(open.held.total, 1) << "of an object that is there, with alternatives";
+  EXPECT_EQ(open.own.hits, 0);
+  EXPECT_EQ(open.weights[5].correct.total, 1) << "what the alternatives leave";
+  EXPECT_EQ(open.weights[5].correct.hits, 0);
+  EXPECT_NEAR(open.weights[5].mean_probability, 0.53, 1e-12);
+  EXPECT_EQ(open.weights[2].correct.hits, 1);
+  EXPECT_EQ(open.weights[2].correct.total, 2);
+  EXPECT_NE(report_text(*report).find("placements with alternatives"), std::string::npos);
+}
+
 TEST(Evaluation, FalseReportsWhereNothingIs) {
   // An empty frame with two reports, one without, one whose only instance is too hidden to count
   // and was found all the same, and one with an object.
