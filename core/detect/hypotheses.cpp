@@ -6,6 +6,7 @@
 
 #include <bpa/core/align/align.hpp>
 #include <bpa/core/base/random.hpp>
+#include <bpa/core/base/stopwatch.hpp>
 #include <bpa/core/cloud/neighbor_grid.hpp>
 #include <bpa/core/detect/hypotheses.hpp>
 #include <bpa/core/detect/refinement.hpp>
@@ -53,11 +54,12 @@ align::OrientedPair oriented_pair(const SceneFeatures& scene, const ModelIndex& 
 class Sampler {
  public:
   Sampler(const SceneFeatures& scene, const ObjectModel& model, const HypothesisOptions& options,
-          std::vector<FastPose>* considered)
+          SamplingTrace* trace)
       : scene_(scene),
         model_(model),
         options_(options),
-        considered_(considered),
+        trace_(trace),
+        dropped_(trace ? &trace->dropped : nullptr),
         tolerance_(loose_tolerance(model)),
         random_(options.seed, static_cast<std::uint64_t>(model.number)) {}
 
@@ -103,6 +105,7 @@ class Sampler {
 
   // Looks again at everything that was kept, with more points, after a first small correction.
   std::vector<Hypothesis> take() {
+    const Stopwatch watch;
     std::vector<std::pair<std::uint64_t, const PoseCell*>> cells;
     for (const auto& [key, cell] : cells_) cells.push_back({key, &cell});
     std::sort(cells.begin(), cells.end());
@@ -113,25 +116,42 @@ class Sampler {
     keep_best(kept, 2 * options_.max_kept);
     for (Hypothesis& hypothesis : kept) correct(hypothesis);
     keep_best(kept, options_.max_kept);
+    if (trace_) trace_->check_milliseconds += watch.milliseconds();
     return kept;
   }
 
  private:
   void consider(Hypothesis& hypothesis) {
-    if (considered_) considered_->push_back(hypothesis.camera_from_object);
+    if (!trace_) {
+      check_and_keep(hypothesis);
+      return;
+    }
+    trace_->considered.push_back(hypothesis.camera_from_object);
+    const Stopwatch watch;
+    check_and_keep(hypothesis);
+    trace_->check_milliseconds += watch.milliseconds();
+  }
+
+  void check_and_keep(Hypothesis& hypothesis) {
+    const FastPose& pose = hypothesis.camera_from_object;
     const PoseCheck check =
-        check_pose(scene_.image, model_.index->check, hypothesis.camera_from_object,
-                   options_.check_points, tolerance_);
-    // Paper section V: more than 20 % of the points in free space rejects the pose.
-    if (5 * check.free_space > check.seen || check.seen < 6) return;
+        check_pose(scene_.image, model_.index->check, pose, options_.check_points, tolerance_);
     hypothesis.score = check.score();
-    if (hypothesis.score < static_cast<float>(options_.min_check_score)) return;
-    keep(hypothesis);
+    // Paper section V: more than 20 % of the points in free space rejects the pose.
+    if (5 * check.free_space > check.seen) {
+      drop(dropped_, "over 20 % in free space", pose);
+    } else if (check.seen < 6) {
+      drop(dropped_, "fewer than 6 points in sight", pose);
+    } else if (hypothesis.score < static_cast<float>(options_.min_check_score)) {
+      drop(dropped_, "not on the surface", pose);
+    } else {
+      keep(hypothesis);
+    }
   }
 
   // The best, and those of each place in the scene: an object that is easily mistaken for this one
   // must not crowd out a place where the fit is worse but true. Leaves them sorted by score.
-  static void keep_best(std::vector<Hypothesis>& all, int count) {
+  void keep_best(std::vector<Hypothesis>& all, int count) const {
     constexpr float kRankPenalty = 0.004f;  // of the score, for each better one at the same place
     const auto by_score = [](const auto& a, const auto& b) { return a.score > b.score; };
     std::stable_sort(all.begin(), all.end(), by_score);
@@ -143,6 +163,9 @@ class Sampler {
       order.push_back({-all[i].score + kRankPenalty * static_cast<float>(rank), i});
     }
     std::stable_sort(order.begin(), order.end());
+    for (auto o = order.begin() + count; o != order.end(); ++o) {
+      drop(dropped_, "better ones are enough", all[o->second].camera_from_object);
+    }
     order.resize(static_cast<std::size_t>(count));
     std::vector<Hypothesis> kept;
     for (const auto& [penalised, i] : order) kept.push_back(all[i]);
@@ -182,7 +205,9 @@ class Sampler {
     Hypothesis* worst = std::min_element(
         cell.members, cell.members + kPerCell,
         [](const Hypothesis& a, const Hypothesis& b) { return a.score < b.score; });
-    if (hypothesis.score > worst->score) *worst = hypothesis;
+    const bool better = hypothesis.score > worst->score;
+    drop(dropped_, "better ones beside it", (better ? *worst : hypothesis).camera_from_object);
+    if (better) *worst = hypothesis;
   }
 
   // The cube, of which `per_metre` make a metre, that a place lies in.
@@ -219,7 +244,8 @@ class Sampler {
   const SceneFeatures& scene_;
   const ObjectModel& model_;
   const HypothesisOptions& options_;
-  std::vector<FastPose>* considered_;
+  SamplingTrace* trace_;
+  DroppedPoses* dropped_;
   CheckTolerance tolerance_;
   RandomStream random_;
   std::unordered_map<std::uint64_t, PoseCell> cells_;
@@ -249,9 +275,8 @@ Pose align_cluster(const SceneFeatures& scene, const ObjectModel& model,
 }  // namespace
 
 std::vector<Hypothesis> sample_hypotheses(const SceneFeatures& scene, const ObjectModel& model,
-                                          const HypothesisOptions& options,
-                                          std::vector<FastPose>* considered) {
-  Sampler sampler(scene, model, options, considered);
+                                          const HypothesisOptions& options, SamplingTrace* trace) {
+  Sampler sampler(scene, model, options, trace);
   sampler.from_features();
   sampler.from_pairs();
   return sampler.take();
@@ -259,7 +284,7 @@ std::vector<Hypothesis> sample_hypotheses(const SceneFeatures& scene, const Obje
 
 std::vector<Hypothesis> cluster_hypotheses(const SceneFeatures& scene, const ObjectModel& model,
                                            const std::vector<Hypothesis>& hypotheses,
-                                           int max_clusters) {
+                                           int max_clusters, DroppedPoses* dropped) {
   constexpr double kPosition = 0.025;
   constexpr double kAngle = M_PI / 16;
   std::vector<Cluster> clusters;
@@ -272,14 +297,17 @@ std::vector<Hypothesis> cluster_hypotheses(const SceneFeatures& scene, const Obj
     });
     if (found != clusters.end()) {
       found->members.push_back(h);
+      drop(dropped, "in the group of a better one", hypotheses[h].camera_from_object);
     } else {
       clusters.push_back({pose, {h}});
     }
   }
   std::erase_if(clusters, [&](const Cluster& cluster) {
     // A voted pose stands for many pairs.
-    return cluster.members.size() < 2 &&
-           hypotheses[cluster.members[0]].source == Hypothesis::Source::feature;
+    const Hypothesis& first = hypotheses[cluster.members.front()];
+    const bool alone = cluster.members.size() < 2 && first.source == Hypothesis::Source::feature;
+    if (alone) drop(dropped, "one feature match alone", first.camera_from_object);
+    return alone;
   });
   const CheckTolerance tolerance = loose_tolerance(model);
   std::vector<Hypothesis> out;
@@ -296,9 +324,11 @@ std::vector<Hypothesis> cluster_hypotheses(const SceneFeatures& scene, const Obj
   }
   std::stable_sort(out.begin(), out.end(),
                    [](const auto& a, const auto& b) { return a.score > b.score; });
-  if (out.size() > static_cast<std::size_t>(max_clusters)) {
-    out.resize(static_cast<std::size_t>(max_clusters));
+  const auto end = static_cast<std::size_t>(max_clusters);
+  for (std::size_t i = end; i < out.size(); ++i) {
+    drop(dropped, "better ones are enough", out[i].camera_from_object);
   }
+  if (out.size() > end) out.resize(end);
   return out;
 }
 

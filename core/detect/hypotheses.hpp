@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <bpa/core/align/correspondence.hpp>
+#include <bpa/core/detect/object_trace.hpp>
 #include <bpa/core/detect/scene_features.hpp>
 #include <bpa/core/model/object_model.hpp>
 
@@ -34,17 +35,17 @@ struct HypothesisOptions {
 
 /// One-correspondence poses by BPA from FPFH matches, and poses voted for by oriented point pairs;
 /// those that would hang in free space or find no surface where they should are rejected (paper
-/// section V). Best first.
-/// `considered`, if given, receives every pose that was looked at.
+/// section V). Best first. `trace`, if given, receives what happened on the way.
 std::vector<Hypothesis> sample_hypotheses(const SceneFeatures& scene, const ObjectModel& model,
                                           const HypothesisOptions& options,
-                                          std::vector<FastPose>* considered = nullptr);
+                                          SamplingTrace* trace = nullptr);
 
 /// Groups hypotheses within 2.5 cm and π/16 of one another (modulo the model's symmetry), keeps
 /// groups of at least two correspondences, and aligns each group's best member again with BPA from
-/// the group's correspondences (paper section V). Best first, at most `max_clusters`.
+/// the group's correspondences (paper section V). Best first, at most `max_clusters`. `dropped`, if
+/// given, receives the poses that are in no group that is returned, and all but the first of each.
 std::vector<Hypothesis> cluster_hypotheses(const SceneFeatures& scene, const ObjectModel& model,
                                            const std::vector<Hypothesis>& hypotheses,
-                                           int max_clusters);
+                                           int max_clusters, DroppedPoses* dropped = nullptr);
 
 }  // namespace bpa

@@ -65,10 +65,20 @@ bool similar(const Pose& a, const Pose& b, const SymmetryGroup& symmetry) {
   return error.position < 0.008 && error.angle < 0.1;
 }
 
+// Keeps the first `count`, for whatever reason they are first.
+template <class Item, class PoseOf>
+void keep_first(std::vector<Item>& items, int count, const PoseOf& pose_of, DroppedPoses* dropped) {
+  const auto end = static_cast<std::size_t>(count);
+  for (std::size_t i = end; i < items.size(); ++i) {
+    drop(dropped, "better ones are enough", to_fast(pose_of(items[i])));
+  }
+  if (items.size() > end) items.erase(items.begin() + count, items.end());
+}
+
 // Sorts by falling score and drops whatever is nearly the same as something better.
 template <class Item, class PoseOf>
-void remove_similar(std::vector<Item>& items, const SymmetryGroup& symmetry,
-                    const PoseOf& pose_of) {
+void remove_similar(std::vector<Item>& items, const SymmetryGroup& symmetry, const PoseOf& pose_of,
+                    DroppedPoses* dropped) {
   std::stable_sort(items.begin(), items.end(),
                    [](const Item& a, const Item& b) { return a.score > b.score; });
   std::vector<Item> kept;
@@ -76,7 +86,11 @@ void remove_similar(std::vector<Item>& items, const SymmetryGroup& symmetry,
     const bool seen = std::any_of(kept.begin(), kept.end(), [&](const Item& other) {
       return similar(pose_of(item), pose_of(other), symmetry);
     });
-    if (!seen) kept.push_back(std::move(item));
+    if (seen) {
+      drop(dropped, "like a better one", to_fast(pose_of(item)));
+    } else {
+      kept.push_back(std::move(item));
+    }
   }
   items = std::move(kept);
 }
@@ -145,6 +159,39 @@ Pose climb(const SceneFeatures& scene, const ObjectModel& model, const Pose& sta
   return best.pose;
 }
 
+// Writes down what a stage left alive, if anybody wants to know.
+class StageWriter {
+ public:
+  explicit StageWriter(ObjectTrace* trace) : trace_(trace) {}
+
+  DroppedPoses* dropped() { return trace_ ? &dropped_ : nullptr; }
+
+  template <class Item, class PoseOf>
+  void finish(const char* name, const std::vector<Item>& items, const PoseOf& pose_of) {
+    if (!trace_) return;
+    trace_->stages.push_back({name, {}, watch_.lap_milliseconds(), std::move(dropped_)});
+    dropped_.clear();
+    for (const Item& item : items) trace_->stages.back().poses.push_back(to_fast(pose_of(item)));
+  }
+  // Sampling and checks run together; they are two stages.
+  void finish_sampling(SamplingTrace sampling, const std::vector<Hypothesis>& kept) {
+    if (!trace_) return;
+    const double both = watch_.lap_milliseconds();
+    trace_->stages.push_back({"sampled",
+                              std::move(sampling.considered),
+                              std::max(0.0, both - sampling.check_milliseconds),
+                              {}});
+    trace_->stages.push_back(
+        {"free_space", {}, sampling.check_milliseconds, std::move(sampling.dropped)});
+    for (const Hypothesis& h : kept) trace_->stages.back().poses.push_back(h.camera_from_object);
+  }
+
+ private:
+  ObjectTrace* trace_;
+  Stopwatch watch_;
+  DroppedPoses dropped_;
+};
+
 }  // namespace
 
 PlacementEvaluator::PlacementEvaluator(const SceneFeatures& scene,
@@ -167,31 +214,25 @@ Candidate PlacementEvaluator::evaluate(Refinement refinement) const {
 std::vector<Candidate> detect_object(const SceneFeatures& scene,
                                      const std::shared_ptr<const ObjectModel>& model,
                                      const SingleObjectOptions& options, ObjectTrace* trace) {
-  Stopwatch watch;
-  const auto finish_stage = [&](const char* name, const auto& items, const auto& pose_of) {
-    if (!trace) return;
-    trace->stages.push_back({name, {}, watch.lap_milliseconds()});
-    for (const auto& item : items) trace->stages.back().poses.push_back(pose_of(item));
-  };
-  const auto of_hypothesis = [](const Hypothesis& h) { return h.camera_from_object; };
-
-  std::vector<FastPose> considered;
+  StageWriter stages(trace);
+  SamplingTrace sampling;
   const std::vector<Hypothesis> sampled =
-      sample_hypotheses(scene, *model, options.hypotheses, trace ? &considered : nullptr);
-  finish_stage("sampled", considered, [](const FastPose& pose) { return pose; });
-  finish_stage("free_space", sampled, of_hypothesis);
+      sample_hypotheses(scene, *model, options.hypotheses, trace ? &sampling : nullptr);
+  stages.finish_sampling(std::move(sampling), sampled);
   const std::vector<Hypothesis> clustered =
-      cluster_hypotheses(scene, *model, sampled, options.max_clusters);
-  finish_stage("clusters", clustered, of_hypothesis);
+      cluster_hypotheses(scene, *model, sampled, options.max_clusters, stages.dropped());
+  stages.finish("clusters", clustered,
+                [](const Hypothesis& h) { return to_pose(h.camera_from_object); });
+
   std::vector<Aligned> aligned;
   for (const Hypothesis& hypothesis : clustered) {
     aligned.push_back(round_two(scene, *model, to_pose(hypothesis.camera_from_object), options));
   }
-  finish_stage("round_two", aligned, [](const Aligned& a) { return to_fast(a.pose); });
-  remove_similar(aligned, model->symmetry, [](const Aligned& a) -> const Pose& { return a.pose; });
-  if (aligned.size() > static_cast<std::size_t>(options.max_refined)) {
-    aligned.resize(static_cast<std::size_t>(options.max_refined));
-  }
+  const auto of_aligned = [](const Aligned& a) -> const Pose& { return a.pose; };
+  stages.finish("round_two", aligned, of_aligned);
+
+  remove_similar(aligned, model->symmetry, of_aligned, stages.dropped());
+  keep_first(aligned, options.max_refined, of_aligned, stages.dropped());
   RefinementOptions last;
   last.iterations = 8;
   last.max_points = 500;
@@ -207,22 +248,25 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
   for (const Aligned& start : aligned) {
     candidates.push_back(evaluator.evaluate(refine_pose(scene, *model, start.pose, last)));
   }
-  const auto of_candidate = [](const Candidate& c) { return to_fast(c.pose()); };
-  finish_stage("aligned", candidates, of_candidate);
+  const auto of_candidate = [](const Candidate& c) -> const Pose& { return c.pose(); };
+  stages.finish("aligned", candidates, of_candidate);
+
   std::stable_sort(candidates.begin(), candidates.end(), by_score);
   for (std::size_t i = 0; i < std::min(candidates.size(), max_climbed); ++i) {
     const Pose climbed = climb(scene, *model, candidates[i].pose(), options);
     Candidate moved = evaluator.evaluate(refine_pose(scene, *model, climbed, there));
     if (moved.score > candidates[i].score) candidates[i] = std::move(moved);
   }
-  finish_stage("climbed", candidates, of_candidate);
-  std::erase_if(candidates, [&](const Candidate& c) { return c.score < options.min_score; });
-  remove_similar(candidates, model->symmetry,
-                 [](const Candidate& c) -> const Pose& { return c.pose(); });
-  if (candidates.size() > static_cast<std::size_t>(options.max_placements)) {
-    candidates.resize(static_cast<std::size_t>(options.max_placements));
-  }
-  finish_stage("final", candidates, of_candidate);
+  stages.finish("climbed", candidates, of_candidate);
+
+  std::erase_if(candidates, [&](const Candidate& c) {
+    const bool low = c.score < options.min_score;
+    if (low) drop(stages.dropped(), "low score", to_fast(c.pose()));
+    return low;
+  });
+  remove_similar(candidates, model->symmetry, of_candidate, stages.dropped());
+  keep_first(candidates, options.max_placements, of_candidate, stages.dropped());
+  stages.finish("final", candidates, of_candidate);
   return candidates;
 }
 

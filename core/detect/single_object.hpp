@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <bpa/core/detect/hypotheses.hpp>
+#include <bpa/core/detect/object_trace.hpp>
 #include <bpa/core/detect/placement.hpp>
 #include <bpa/core/detect/refinement.hpp>
 #include <bpa/core/score/feature_score.hpp>
@@ -41,18 +42,8 @@ struct SingleObjectOptions {
   std::uint64_t seed = 0;
 };
 
-/// What became of one model's hypotheses, for experiments and pictures.
-struct ObjectTrace {
-  struct Stage {
-    const char* name;
-    std::vector<FastPose> poses;  ///< Still alive after the stage.
-    double milliseconds = 0;
-  };
-  std::vector<Stage>
-      stages;  ///< sampled, free_space, clusters, round_two, aligned, climbed, final.
-};
-
 /// The best placements of one model in the scene (paper section V), best first. Deterministic.
+/// `trace`, if given, receives what happened on the way.
 std::vector<Candidate> detect_object(const SceneFeatures& scene,
                                      const std::shared_ptr<const ObjectModel>& model,
                                      const SingleObjectOptions& options,
