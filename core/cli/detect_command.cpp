@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // bpa detect: frames in, ranked interpretations out.
+#include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 
@@ -10,13 +12,16 @@
 #include <bpa/core/cli/command.hpp>
 #include <bpa/core/cli/contact_sheet.hpp>
 #include <bpa/core/cli/detection_files.hpp>
+#include <bpa/core/cli/explain_folder.hpp>
 #include <bpa/core/cli/progress.hpp>
 #include <bpa/core/io/bop_dataset.hpp>
 #include <bpa/core/io/camera_file.hpp>
+#include <bpa/core/io/file_bytes.hpp>
 #include <bpa/core/io/frame_file.hpp>
 #include <bpa/core/io/pcd_file.hpp>
 #include <bpa/core/pipeline/annotate.hpp>
 #include <bpa/core/pipeline/detector.hpp>
+#include <bpa/core/pipeline/frame_trace.hpp>
 #include <bpa/core/pipeline/score_layer_file.hpp>
 
 namespace bpa::cli {
@@ -33,7 +38,7 @@ struct DetectArguments {
   std::string scenes, models;
   int top = 20;
   double budget_ms = 0;
-  std::string csv, json, annotate;
+  std::string csv, json, annotate, explain;
 };
 
 /// A frame and where its poses are to be reported.
@@ -50,6 +55,13 @@ std::string input_name(const DetectArguments& a, int scene_id, int im_id) {
   if (!a.pcd.empty()) return a.pcd[static_cast<std::size_t>(im_id)];
   if (a.bop.empty()) return a.depth;
   return "scene " + std::to_string(scene_id) + " image " + std::to_string(im_id);
+}
+
+/// For files about it.
+std::string frame_name(const Input& input) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06d_%06d", input.scene_id, input.im_id);
+  return name;
 }
 
 Result<Input> read_pcd_input(const DetectArguments& a, int index) {
@@ -126,8 +138,9 @@ void print_result(const std::string& name, const io::FrameResult& result) {
 /// Runs over the inputs and writes what was asked for.
 class DetectRun {
  public:
-  DetectRun(const DetectArguments& arguments, const Detector& detector)
+  DetectRun(const DetectArguments& arguments, const Detector& detector, std::size_t num_frames)
       : a_(arguments), detector_(detector) {
+    if (!a_.explain.empty()) explain_.emplace(a_.explain, num_frames > 1);
     request_.models = split_commas(a_.models);
     request_.top_k = a_.top;
     request_.budget_ms = a_.budget_ms;
@@ -139,13 +152,20 @@ class DetectRun {
     const std::string name = input_name(a_, input.scene_id, input.im_id);
     clean_depth(input.frame);
     const Stopwatch watch;
-    const Result<SceneInterpretations> scene = detector_.detect(input.frame, request_);
+    FrameTrace trace;
+    const Result<SceneInterpretations> scene =
+        detector_.detect(input.frame, request_, explain_ ? &trace : nullptr);
     const double seconds = watch.seconds();
     if (!scene.ok()) return Status(scene.status().code, name + ": " + scene.status().message);
     results_.push_back(
         to_frame_result(*scene, input.scene_id, input.im_id, seconds, input.reported_from_camera));
     print_result(name, results_.back());
     std::fflush(stdout);
+    if (explain_) {
+      Status status = explain_->add({name, frame_name(input), input.frame, trace, *scene,
+                                     detector_.score_layer(), input.truth});
+      if (!status.ok()) return status;
+    }
     return a_.annotate.empty() ? Status() : annotate_frame(input, *scene, name);
   }
 
@@ -155,6 +175,9 @@ class DetectRun {
     }
     if (!a_.json.empty()) {
       if (Status s = io::write_results_json(a_.json, results_); !s.ok()) return s;
+    }
+    if (explain_) {
+      if (Status s = explain_->finish(); !s.ok()) return s;
     }
     return a_.annotate.empty() ? Status() : write_sheets();
   }
@@ -177,19 +200,18 @@ class DetectRun {
                         const std::string& name) {
     if (scene.interpretations.empty()) return {};
     const Interpretation& best = scene.interpretations.front();
-    char file[32];
-    std::snprintf(file, sizeof file, "/%06d_%06d.png", input.scene_id, input.im_id);
+    const std::string file = a_.annotate + "/" + frame_name(input) + ".png";
     if (!input.has_truth) {
-      return io::write_color_png(a_.annotate + file,
-                                 annotate(input.frame, best, detector_.library()));
+      return io::write_color_png(file, annotate(input.frame, best, detector_.library()));
     }
     sheet_.push_back(
         truth_beside_result(input.frame, input.truth, best, detector_.library(), name));
-    return io::write_color_png(a_.annotate + file, sheet_.back().image);
+    return io::write_color_png(file, sheet_.back().image);
   }
 
   const DetectArguments& a_;
   const Detector& detector_;
+  std::optional<ExplainFolder> explain_;
   DetectRequest request_;
   std::vector<io::FrameResult> results_;
   std::vector<AnnotatedFrame> sheet_;
@@ -211,7 +233,7 @@ Status run_bop(const DetectArguments& a, const Detector& detector) {
   if (!scenes.ok()) return scenes.status();
   const Result<std::vector<io::BopFrame>> frames = io::read_bop_frames(a.bop, a.split, *scenes);
   if (!frames.ok()) return frames.status();
-  DetectRun run(a, detector);
+  DetectRun run(a, detector, frames->size());
   Progress progress("frames", static_cast<int>(frames->size()));
   for (std::size_t i = 0; i < frames->size(); ++i) {
     progress.show(static_cast<int>(i));
@@ -230,18 +252,21 @@ Status detect(const DetectArguments& a) {
     if (!loaded.ok()) return loaded.status();
     options = *loaded;
   }
-  // A bad frame is said before the library is loaded, which takes longer.
+  // A bad frame or folder is said before the library is loaded, which takes longer.
   Result<Input> first = Input{};
   if (!a.pcd.empty()) first = read_pcd_input(a, 0);
   if (!a.depth.empty()) first = read_png_input(a);
   if (!first.ok()) return first.status();
+  if (!a.explain.empty()) {
+    if (Status s = io::make_folder(a.explain); !s.ok()) return s;
+  }
   const auto library = load_detection_library(a.library, split_commas(a.models), a.common.threads);
   if (!library.ok()) return library.status();
   Result<ScoreLayer> layer = library_score_layer(a.library);
   if (!layer.ok()) return layer.status();
   const Detector detector(*library, options, std::move(*layer));
   if (!a.bop.empty()) return run_bop(a, detector);
-  DetectRun run(a, detector);
+  DetectRun run(a, detector, std::max<std::size_t>(1, a.pcd.size()));
   if (Status s = run.one(std::move(*first)); !s.ok()) return s;
   for (int i = 1; i < static_cast<int>(a.pcd.size()); ++i) {
     Result<Input> next = read_pcd_input(a, i);
@@ -312,6 +337,11 @@ void add_detect_command(CLI::App& program, Action& action) {
       .add_option("--annotate", a->annotate,
                   "Write a picture of each frame and, where the truth is known, contact_sheet.png "
                   "and worst_frames.png")
+      ->type_name("DIR");
+  command
+      .add_option("--explain", a->explain,
+                  "Write pictures of what each stage of the search made of each frame and model, "
+                  "with counts, times and score components; begin with index.html")
       ->type_name("DIR");
   add_common_options(command, a->common);
   command.callback([&action, a] {

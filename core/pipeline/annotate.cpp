@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include <bpa/core/pipeline/annotate.hpp>
+#include <bpa/core/pipeline/silhouette.hpp>
 
 namespace bpa {
 namespace {
@@ -41,45 +42,6 @@ cv::Mat canvas(const Frame& frame) {
   return image;
 }
 
-/// About the distance of neighbouring points: the median over a few of them.
-double point_spacing(const std::vector<Eigen::Vector3f>& points) {
-  constexpr std::size_t kSamples = 15;
-  if (points.size() < 2) return 0.003;
-  std::vector<float> nearest;
-  for (std::size_t s = 0; s < kSamples; ++s) {
-    const std::size_t i = s * (points.size() - 1) / kSamples;
-    float best = std::numeric_limits<float>::max();
-    for (std::size_t j = 0; j < points.size(); ++j) {
-      if (j != i) best = std::min(best, (points[j] - points[i]).squaredNorm());
-    }
-    nearest.push_back(best);
-  }
-  std::nth_element(nearest.begin(), nearest.begin() + kSamples / 2, nearest.end());
-  return std::sqrt(nearest[kSamples / 2]);
-}
-
-/// What the points cover when each is a disc that reaches its neighbours.
-cv::Mat silhouette(const Camera& camera, const DrawnObject& object) {
-  cv::Mat mask(camera.height, camera.width, CV_8U, cv::Scalar(0));
-  const double spacing = point_spacing(object.surface->points);
-  const Eigen::Matrix3d rotation = object.camera_from_object.matrix();
-  double radius = 1;
-  for (const Eigen::Vector3f& p : object.surface->points) {
-    const Eigen::Vector3d at = rotation * p.cast<double>() + object.camera_from_object.translation;
-    if (!(at.z() > 0.05)) continue;
-    const Eigen::Vector2d pixel = camera.project(at);
-    if (!camera.contains(pixel.x(), pixel.y())) continue;
-    radius = std::clamp(0.9 * spacing * camera.fx / at.z(), 1.0, 30.0);
-    cv::circle(mask, {cvRound(pixel.x()), cvRound(pixel.y())}, cvRound(radius), {255}, cv::FILLED);
-  }
-  // Discs make the outline too wide by their radius, and bumpy.
-  const int size = 2 * cvRound(radius) + 1;
-  const cv::Mat disc = cv::getStructuringElement(cv::MORPH_ELLIPSE, {size, size});
-  cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, disc);
-  cv::erode(mask, mask, disc);
-  return mask;
-}
-
 void fill(cv::Mat& image, const cv::Mat& mask, const cv::Scalar& color) {
   for (int v = 0; v < mask.rows; ++v) {
     for (int u = 0; u < mask.cols; ++u) {
@@ -95,15 +57,22 @@ void fill(cv::Mat& image, const cv::Mat& mask, const cv::Scalar& color) {
 
 /// Draws outline and fill; returns the box of what is in the image, empty when nothing is.
 cv::Rect draw_silhouette(cv::Mat& image, const Camera& camera, const DrawnObject& object) {
-  const cv::Mat mask = silhouette(camera, object);
+  Silhouette shape = silhouette(camera, *object.surface, object.camera_from_object);
+  if (shape.mask.empty()) return {};
+  const cv::Mat mask(shape.mask.height, shape.mask.width, CV_8U, shape.mask.pixels.data());
+  const cv::Point corner(shape.left, shape.top);
   const cv::Scalar color(object.color[0], object.color[1], object.color[2]);
-  if (!object.emphasised) fill(image, mask, color);
+  if (!object.emphasised) {
+    cv::Mat part = image(cv::Rect(corner, mask.size()));
+    fill(part, mask, color);
+  }
   std::vector<std::vector<cv::Point>> contours;
-  cv::findContours(mask, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+  cv::findContours(mask, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE, corner);
   const int thickness = object.emphasised ? 3 : 2;
   cv::drawContours(image, contours, -1, {20, 20, 20}, thickness + 2, cv::LINE_AA);
   cv::drawContours(image, contours, -1, color, thickness, cv::LINE_AA);
-  return cv::boundingRect(mask);
+  const cv::Rect box = cv::boundingRect(mask);
+  return box.empty() ? box : box + corner;
 }
 
 /// The place nearest to the wished one that covers none of `taken`, looked for up and down.

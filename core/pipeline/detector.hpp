@@ -44,6 +44,7 @@ class Detector {
 
   const ModelLibrary& library() const { return *library_; }
   const DetectorOptions& options() const { return options_; }
+  const ScoreLayer& score_layer() const { return layer_; }
 
  private:
   std::shared_ptr<const ModelLibrary> library_;

@@ -2,14 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include <bpa/core/cloud/frame.hpp>
 #include <bpa/core/features/edge_image.hpp>
 #include <bpa/core/io/image_file.hpp>
+#include <bpa/core/pipeline/annotate.hpp>
 #include <bpa/core/score/segment_scores.hpp>
 #include <bpa/core/segment/super_pixels.hpp>
 
-// Pictures of what the detector makes of a frame, for people; as large as the frame, ready for
-// io::write_color_png.
+// Pictures of what the detector makes of a frame, for people, ready for io::write_color_png. As
+// large as the frame unless it says otherwise.
 
 namespace bpa {
 
@@ -32,5 +36,32 @@ io::ColorImage draw_segment_matches(const Frame& frame, const Segmentation& segm
 /// Every super-pixel in its mean colour (without colour: shaded by its mean normal); black where
 /// there is no surface.
 io::ColorImage draw_segment_means(const Frame& frame, const Segmentation& segmentation);
+
+/// Poses of one model that are drawn alike.
+struct DrawnPoses {
+  enum class Style {
+    dots,      ///< A dot in the model's middle.
+    outlines,  ///< Of the model's silhouette.
+    bold,      ///< Thick outlines.
+    dashed,    ///< Dashed outlines.
+  };
+  std::span<const FastPose> poses;  ///< Best first: those are drawn last and brightest.
+  Rgb color{};
+  Style style = Style::outlines;
+};
+
+struct DrawPosesOptions {
+  int min_width = 960;  ///< The frame is enlarged until it is as wide, pixels.
+  bool dimmed = true;   ///< Show the frame darker and paler.
+};
+
+/// Poses of a model over the frame, later groups over earlier ones.
+io::ColorImage draw_poses(const Frame& frame, const ObjectModel& model,
+                          const std::vector<DrawnPoses>& groups,
+                          const DrawPosesOptions& options = {});
+
+/// Part of a frame, with the camera that sees just that. Only depth, colour and camera are kept.
+/// `part` must lie in the frame.
+Frame crop(const Frame& frame, const RegionOfInterest& part);
 
 }  // namespace bpa

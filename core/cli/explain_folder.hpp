@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/core/io/bop_dataset.hpp>
+#include <bpa/core/pipeline/frame_trace.hpp>
+#include <bpa/core/scene/interpretation.hpp>
+
+namespace bpa::cli {
+
+/// A searched frame; nothing is owned.
+struct ExplainedFrame {
+  std::string title;  ///< For people.
+  std::string name;   ///< Of its folder where there are several frames.
+  const Frame& frame;
+  const FrameTrace& trace;
+  const SceneInterpretations& result;
+  const ScoreLayer& layer;  ///< That the frame was searched with.
+  const std::vector<io::BopInstance>& truth;
+};
+
+/// Writes what happened to frames as pictures and pages, for bpa detect --explain:
+///
+///   index.html             the stages with counts and times, what each picture is
+///   01_edges.png, 02_super_pixels.png           of the frame
+///   03_sampled.png ... 08_final.png             the hypotheses after each stage of the detector
+///   09_best.png, 10_best_segments.png           the best placement and its score components
+///
+/// With several frames all of this is in a folder for each, with several models 03 to 10 in a
+/// folder for each, and index.html leads there.
+class ExplainFolder {
+ public:
+  ExplainFolder(std::string folder, bool several_frames)
+      : folder_(std::move(folder)), several_frames_(several_frames) {}
+
+  /// Folders are made as needed. Fails with unavailable.
+  Status add(const ExplainedFrame& frame);
+  /// Writes the page that leads to the frames, where there are several.
+  Status finish() const;
+
+ private:
+  std::string folder_;
+  bool several_frames_;
+  std::vector<std::vector<std::string>> frames_;  ///< The rows of the page.
+};
+
+}  // namespace bpa::cli

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bpa::cli {
+
+/// A page of headings, paragraphs, tables and pictures, in one file. Whatever is added is text
+/// unless it says otherwise.
+class HtmlPage {
+ public:
+  explicit HtmlPage(std::string_view title);
+
+  void heading(std::string_view text);
+  void paragraph(std::string_view text);
+  /// `text` beside the picture's file name, the picture below; `file` is relative to the page.
+  void picture(std::string_view file, std::string_view text);
+  /// The cells of `rows` are HTML already.
+  void table(const std::vector<std::string>& head,
+             const std::vector<std::vector<std::string>>& rows);
+  /// The whole page.
+  std::string finish() const;
+
+  static std::string escape(std::string_view text);
+  static std::string link(std::string_view file, std::string_view text);
+
+ private:
+  std::string body_;
+};
+
+}  // namespace bpa::cli

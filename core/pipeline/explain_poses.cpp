@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+#include <bpa/core/pipeline/explain.hpp>
+#include <bpa/core/pipeline/silhouette.hpp>
+
+namespace bpa {
+namespace {
+
+constexpr double kDim = 0.55, kPale = 0.7;  // brightness, and how much of the colour is gone
+constexpr double kFaintest = 0.35;          // brightness of the last of several poses
+constexpr std::size_t kDash = 10;           // pixels, and as many between dashes
+
+Camera enlarged(const Camera& camera, double factor) {
+  Camera out;
+  out.width = cvRound(factor * camera.width);
+  out.height = cvRound(factor * camera.height);
+  out.fx = factor * camera.fx;
+  out.fy = factor * camera.fy;
+  out.cx = factor * (camera.cx + 0.5) - 0.5;  // (0, 0) is the middle of a pixel
+  out.cy = factor * (camera.cy + 0.5) - 0.5;
+  return out;
+}
+
+cv::Mat canvas_of(const Frame& frame, const Camera& camera, bool dimmed) {
+  io::ColorImage picture = draw_objects(frame, {});
+  cv::Mat image(picture.height, picture.width, CV_8UC3, picture.pixels.data());
+  if (dimmed) {
+    cv::Mat grey;
+    cv::cvtColor(image, grey, cv::COLOR_RGB2GRAY);
+    cv::cvtColor(grey, grey, cv::COLOR_GRAY2RGB);
+    cv::addWeighted(image, kDim * (1 - kPale), grey, kDim * kPale, 0, image);
+  }
+  cv::Mat canvas;
+  cv::resize(image, canvas, {camera.width, camera.height}, 0, 0, cv::INTER_CUBIC);
+  return canvas;
+}
+
+cv::Scalar shade(const DrawnPoses& group, std::size_t i) {
+  const bool ranked =
+      group.style == DrawnPoses::Style::outlines || group.style == DrawnPoses::Style::dots;
+  const double place = static_cast<double>(i) / static_cast<double>(group.poses.size());
+  const double bright = ranked ? 1 - (1 - kFaintest) * place : 1;
+  return {bright * group.color[0], bright * group.color[1], bright * group.color[2]};
+}
+
+void draw_dashes(cv::Mat& canvas, const std::vector<cv::Point>& contour, const cv::Scalar& color) {
+  for (std::size_t i = 0; i + 1 < contour.size(); ++i) {
+    if (i / kDash % 2 == 0) cv::line(canvas, contour[i], contour[i + 1], color, 2, cv::LINE_AA);
+  }
+}
+
+void draw_outline(cv::Mat& canvas, const Camera& camera, const ObjectModel& model,
+                  const FastPose& pose, const cv::Scalar& color, DrawnPoses::Style style) {
+  Silhouette shape = silhouette(camera, model.surface, to_pose(pose));
+  if (shape.mask.empty()) return;
+  const cv::Mat mask(shape.mask.height, shape.mask.width, CV_8U, shape.mask.pixels.data());
+  std::vector<std::vector<cv::Point>> contours;
+  cv::findContours(mask, contours, cv::RETR_LIST, cv::CHAIN_APPROX_NONE, {shape.left, shape.top});
+  if (style == DrawnPoses::Style::dashed) {
+    for (const auto& contour : contours) draw_dashes(canvas, contour, color);
+    return;
+  }
+  const int thickness = style == DrawnPoses::Style::bold ? 2 : 1;
+  cv::drawContours(canvas, contours, -1, color, thickness, cv::LINE_AA);
+}
+
+void draw_dot(cv::Mat& canvas, const Camera& camera, const Eigen::Vector3d& at,
+              const cv::Scalar& color) {
+  if (!(at.z() > 0.05)) return;
+  const Eigen::Vector2d pixel = camera.project(at);
+  if (!camera.contains(pixel.x(), pixel.y())) return;
+  cv::circle(canvas, {cvRound(pixel.x()), cvRound(pixel.y())}, 2, color, cv::FILLED, cv::LINE_AA);
+}
+
+Eigen::Vector3f middle_of(const std::vector<Eigen::Vector3f>& points) {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (const Eigen::Vector3f& p : points) sum += p;
+  return sum / static_cast<float>(std::max<std::size_t>(1, points.size()));
+}
+
+}  // namespace
+
+io::ColorImage draw_poses(const Frame& frame, const ObjectModel& model,
+                          const std::vector<DrawnPoses>& groups, const DrawPosesOptions& options) {
+  const double factor = std::max(1.0, static_cast<double>(options.min_width) / frame.camera.width);
+  const Camera camera = enlarged(frame.camera, factor);
+  cv::Mat canvas = canvas_of(frame, camera, options.dimmed);
+  const Eigen::Vector3f middle = middle_of(model.surface.points);
+  for (const DrawnPoses& group : groups) {
+    for (std::size_t i = group.poses.size(); i-- > 0;) {
+      const FastPose& pose = group.poses[i];
+      const cv::Scalar color = shade(group, i);
+      if (group.style == DrawnPoses::Style::dots) {
+        const Eigen::Vector3f at = pose.rotation * middle + pose.translation;
+        draw_dot(canvas, camera, at.cast<double>(), color);
+      } else {
+        draw_outline(canvas, camera, model, pose, color, group.style);
+      }
+    }
+  }
+  return {canvas.cols, canvas.rows, {canvas.datastart, canvas.dataend}};
+}
+
+Frame crop(const Frame& frame, const RegionOfInterest& part) {
+  Frame out;
+  out.camera = frame.camera;
+  out.camera.width = part.width;
+  out.camera.height = part.height;
+  out.camera.cx -= part.x;
+  out.camera.cy -= part.y;
+  for (int v = part.y; v < part.y + part.height; ++v) {
+    const std::ptrdiff_t from = std::ptrdiff_t{v} * frame.camera.width + part.x;
+    const std::ptrdiff_t to = from + part.width;
+    out.depth.insert(out.depth.end(), frame.depth.begin() + from, frame.depth.begin() + to);
+    if (frame.color.empty()) continue;
+    out.color.insert(out.color.end(), frame.color.begin() + 3 * from, frame.color.begin() + 3 * to);
+  }
+  return out;
+}
+
+}  // namespace bpa
