@@ -5,23 +5,9 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/pipeline/frame_trace.hpp>
-#include <bpa/core/scene/interpretation.hpp>
+#include <bpa/core/cli/explain_model.hpp>
 
 namespace bpa::cli {
-
-/// A searched frame; nothing is owned.
-struct ExplainedFrame {
-  std::string title;  ///< For people.
-  std::string name;   ///< Of its folder where there are several frames.
-  const Frame& frame;
-  const FrameTrace& trace;
-  const SceneInterpretations& result;
-  const ScoreLayer& layer;  ///< That the frame was searched with.
-  const std::vector<io::BopInstance>& truth;
-};
 
 /// Writes what happened to frames as pictures and pages, for bpa detect --explain:
 ///

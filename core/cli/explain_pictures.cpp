@@ -133,9 +133,12 @@ void write_components(cv::Mat& sheet, const Candidate& candidate, const ScoreLay
   table.rest("adds to the log odds");
   table.rule();
   const ScoreFeatures features = score_features(candidate.components);
-  const ScoreFeatures parts = layer.contributions(features);
+  ScoreFeatures parts{};
   double largest = std::abs(layer.bias);
-  for (const double part : parts) largest = std::max(largest, std::abs(part));
+  for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
+    parts[i] = layer.components[i].at(features[i]);
+    largest = std::max(largest, std::abs(parts[i]));
+  }
   const auto names = score_feature_names();
   for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
     table.row(names[i], number(features[i]));

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <bpa/core/detect/single_object.hpp>
+#include <bpa/core/model/model_index.hpp>
 
 #include "support/l_scene.hpp"
 
@@ -65,6 +66,52 @@ TEST_F(SingleObject, SameSeedSameCandidates) {
     EXPECT_EQ(a[i].pose().rotation.coeffs(), b[i].pose().rotation.coeffs());
     EXPECT_EQ(a[i].score, b[i].score);
     EXPECT_EQ(a[i].explained, b[i].explained);
+  }
+}
+
+TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
+  const SceneFeatures scene = features_of(everything(), 1);
+  ObjectTrace trace;
+  const auto traced = detect_object(scene, l_, {}, &trace);
+  const auto plain = detect_object(scene, l_, {});
+  ASSERT_EQ(traced.size(), plain.size());
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    EXPECT_EQ(traced[i].pose().translation, plain[i].pose().translation);
+    EXPECT_EQ(traced[i].score, plain[i].score);
+  }
+  std::vector<std::string> names;
+  for (std::size_t s = 0; s < trace.stages.size(); ++s) {
+    const ObjectTrace::Stage& stage = trace.stages[s];
+    names.emplace_back(stage.name);
+    EXPECT_GE(stage.milliseconds, 0) << stage.name;
+    std::size_t all = stage.poses.size();
+    for (const Dropped& dropped : stage.dropped) {
+      EXPECT_FALSE(dropped.poses.empty()) << stage.name << ": " << dropped.reason;
+      all += dropped.poses.size();
+    }
+    if (s > 0) {
+      EXPECT_EQ(all, trace.stages[s - 1].poses.size()) << stage.name;
+    }
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"sampled", "free_space", "clusters", "round_two",
+                                             "aligned", "final"}));
+  EXPECT_GT(trace.stages[0].poses.size(), 1000u);
+  EXPECT_TRUE(trace.stages[3].dropped.empty()) << "round two drops nothing";
+  ASSERT_EQ(trace.stages.back().poses.size(), plain.size());
+  EXPECT_LT((trace.stages.back().poses[0].translation.cast<double>() - plain[0].pose().translation)
+                .norm(),
+            1e-6);
+  // What was dropped over free space does hang in it: seen again, with all points.
+  for (const Dropped& dropped : trace.stages[1].dropped) {
+    if (std::string(dropped.reason) != "over 20 % in free space") continue;
+    int hanging = 0;
+    for (const FastPose& pose : dropped.poses) {
+      CheckTolerance tolerance;
+      tolerance.free_depth = 0.03f;
+      const PoseCheck check = check_pose(scene.image, l_->index->check, pose, 1024, tolerance);
+      hanging += check.free_space > 0;
+    }
+    EXPECT_GT(hanging, 0.98 * static_cast<double>(dropped.poses.size()));
   }
 }
 

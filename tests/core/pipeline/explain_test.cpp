@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include <bpa/core/pipeline/explain.hpp>
+#include <bpa/core/pipeline/silhouette.hpp>
 
 namespace bpa {
 namespace {
@@ -117,6 +120,114 @@ TEST(Draw, NothingKnown) {
   expect_frame_size(draw_segment_borders(white_frame(), {}));
   expect_frame_size(draw_segment_matches(white_frame(), {}, {}));
   expect_frame_size(draw_segment_means(white_frame(), {}));
+}
+
+// A plate of 0.2 m x 0.1 m that faces the camera.
+ObjectModel plate() {
+  ObjectModel model;
+  for (float x = -0.1f; x < 0.1001f; x += 0.0025f) {
+    for (float y = -0.05f; y < 0.0501f; y += 0.0025f) model.surface.points.emplace_back(x, y, 0.0f);
+  }
+  return model;
+}
+
+Frame grey_frame() {
+  Frame frame;
+  frame.camera = {320, 240, 300, 300, 159.5, 119.5};
+  frame.depth.assign(320 * 240, 1.0f);
+  frame.color.assign(3 * 320 * 240, 100);
+  return frame;
+}
+
+TEST(Silhouette, OfAPlateIsItsRectangle) {
+  const ObjectModel model = plate();
+  Pose pose;
+  pose.translation = {0.05, -0.02, 0.8};
+  const Silhouette shape = silhouette(grey_frame().camera, model.surface, pose);
+  int left = 1000, right = -1, top = 1000, bottom = -1, covered = 0;
+  for (int v = 0; v < shape.mask.height; ++v) {
+    for (int u = 0; u < shape.mask.width; ++u) {
+      if (shape.mask.at(u, v) == 0) continue;
+      ++covered;
+      left = std::min(left, shape.left + u), right = std::max(right, shape.left + u);
+      top = std::min(top, shape.top + v), bottom = std::max(bottom, shape.top + v);
+    }
+  }
+  EXPECT_NEAR(left, 300 * -0.05 / 0.8 + 159.5, 1.5);
+  EXPECT_NEAR(right, 300 * 0.15 / 0.8 + 159.5, 1.5);
+  EXPECT_NEAR(top, 300 * -0.07 / 0.8 + 119.5, 1.5);
+  EXPECT_NEAR(bottom, 300 * 0.03 / 0.8 + 119.5, 1.5);
+  EXPECT_GT(covered, 0.9 * (right - left + 1) * (bottom - top + 1));
+  pose.translation.z() = -0.8;
+  EXPECT_TRUE(silhouette(grey_frame().camera, model.surface, pose).mask.empty());
+}
+
+TEST(DrawPoses, OutlinesAndDotsWhereThePosesAre) {
+  const ObjectModel model = plate();
+  FastPose pose;
+  pose.translation = {0.05f, -0.02f, 0.8f};
+  // In the enlarged picture, three times the frame.
+  const auto at = [](double x, double y) {
+    return std::pair(static_cast<int>(std::lround(3 * (300 * x / 0.8 + 160) - 0.5)),
+                     static_cast<int>(std::lround(3 * (300 * y / 0.8 + 120) - 0.5)));
+  };
+  const auto is_green = [](const std::array<int, 3>& c) { return c[1] > c[0] + 60; };
+  for (const auto style : {DrawnPoses::Style::dots, DrawnPoses::Style::outlines}) {
+    const io::ColorImage picture =
+        draw_poses(grey_frame(), model, {{{&pose, 1}, {0, 255, 0}, style}});
+    ASSERT_EQ(picture.width, 960);
+    ASSERT_EQ(picture.height, 720);
+    int green = 0, near_edge = 0, near_middle = 0;
+    const auto [u0, v0] = at(-0.05, -0.07);
+    const auto [u1, v1] = at(0.15, 0.03);
+    const auto [um, vm] = at(0.05, -0.02);
+    for (int v = 0; v < picture.height; ++v) {
+      for (int u = 0; u < picture.width; ++u) {
+        if (!is_green(color_at(picture, u, v))) continue;
+        ++green;
+        const int edge =
+            std::min({std::abs(u - u0), std::abs(u - u1), std::abs(v - v0), std::abs(v - v1)});
+        near_edge += edge <= 4;
+        near_middle += std::max(std::abs(u - um), std::abs(v - vm)) <= 3;
+      }
+    }
+    if (style == DrawnPoses::Style::dots) {
+      EXPECT_GT(near_middle, 4);
+      EXPECT_EQ(near_middle, green);
+    } else {
+      EXPECT_GT(green, (u1 - u0) + (v1 - v0));  // Half of the border, at least.
+      EXPECT_EQ(near_edge, green);
+    }
+  }
+}
+
+TEST(DrawPoses, LaterGroupsCoverEarlierOnesAndTheBestIsBrightest) {
+  const ObjectModel model = plate();
+  std::vector<FastPose> poses(2);
+  poses[0].translation = {-0.1f, 0, 0.8f};
+  poses[1].translation = {0.1f, 0, 0.8f};
+  const io::ColorImage picture =
+      draw_poses(grey_frame(), model,
+                 {{poses, {255, 0, 0}, DrawnPoses::Style::dots},
+                  {std::span(poses).first(1), {0, 255, 0}, DrawnPoses::Style::dots}});
+  const auto first = color_at(picture, 480 - 113, 360), second = color_at(picture, 480 + 112, 360);
+  EXPECT_GT(first[1], 200);
+  EXPECT_LT(first[0], 60);
+  EXPECT_GT(second[0], 120);
+  EXPECT_LT(second[0], 230);
+}
+
+TEST(Crop, SeesTheSameInItsPart) {
+  Frame frame = grey_frame();
+  frame.depth[120 * 320 + 170] = 0.5f;
+  frame.color[3 * (120 * 320 + 170) + 1] = 7;
+  const Frame part = crop(frame, {160, 100, 80, 60});
+  EXPECT_EQ(part.camera.width, 80);
+  EXPECT_EQ(part.camera.height, 60);
+  ASSERT_EQ(part.depth.size(), 80u * 60);
+  EXPECT_EQ(part.depth[20 * 80 + 10], 0.5f);
+  EXPECT_EQ(part.color[3 * (20 * 80 + 10) + 1], 7);
+  EXPECT_EQ(part.camera.unproject(10, 20, 0.5), frame.camera.unproject(170, 120, 0.5));
 }
 
 }  // namespace

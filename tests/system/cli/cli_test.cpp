@@ -188,6 +188,12 @@ TEST_F(BadInput, ConfigurationFile) {
                  {"a.yaml", "max_range_m is 2000", "between"});
 }
 
+TEST_F(BadInput, FolderForPictures) {
+  spill(folder_ / "file", "");
+  expect_failure(detect("d.png", "camera.json", "--explain " + (folder_ / "file/out")),
+                 {"file/out"});
+}
+
 TEST_F(BadInput, DataSets) {
   expect_failure("detect --library " + (folder_ / "L") + " --bop " + (folder_ / "none"),
                  {"none/test"});
@@ -248,7 +254,7 @@ TEST(Commands, FromADataSetToFigures) {
   EXPECT_NE(outcome.out.find("3 discrete"), std::string::npos) << outcome.out;
   outcome = run("detect --library " + (folder / "L") + " --bop " + (folder / "set") +
                 " --scenes 3 --csv " + (folder / "r.csv") + " --json " + (folder / "r.json") +
-                " --annotate " + (folder / "pictures"));
+                " --annotate " + (folder / "pictures") + " --explain " + (folder / "why"));
   ASSERT_EQ(outcome.code, 0) << outcome.out;
   EXPECT_NE(outcome.out.find("scene 3 image 9"), std::string::npos) << outcome.out;
   const auto results = io::read_results_json(folder / "r.json");
@@ -256,9 +262,12 @@ TEST(Commands, FromADataSetToFigures) {
   ASSERT_EQ(results->size(), 1u);
   EXPECT_EQ(results->at(0).im_id, 9);
   for (const char* picture :
-       {"pictures/000003_000009.png", "pictures/contact_sheet.png", "pictures/worst_frames.png"}) {
+       {"pictures/000003_000009.png", "pictures/contact_sheet.png", "pictures/worst_frames.png",
+        "why/01_edges.png", "why/02_super_pixels.png", "why/03_sampled.png", "why/08_final.png",
+        "why/09_best.png"}) {
     EXPECT_TRUE(io::read_color_image(folder / picture).ok()) << picture;
   }
+  EXPECT_NE(slurp(folder / "why/index.html").find("box in scene 3 image 9"), std::string::npos);
   for (const std::string& file : {"--csv " + (folder / "r.csv"), "--json " + (folder / "r.json")}) {
     outcome = run("evaluate --bop " + (folder / "set") + " " + file + " --plots " +
                   (folder / "plots") + " --json-out " + (folder / "e.json"));
