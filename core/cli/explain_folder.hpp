@@ -13,10 +13,10 @@ namespace bpa::cli {
 ///
 ///   index.html             the stages with counts and times, what each picture is
 ///   01_edges.png, 02_super_pixels.png           of the frame
-///   03_sampled.png ... 08_final.png             the hypotheses after each stage of the detector
-///   09_best.png, 10_best_segments.png           the best placement and its score components
+///   03_sampled.png ... 09_final.png             the hypotheses after each stage of the detector
+///   10_best.png, 11_best_segments.png          the best placement and its score components
 ///
-/// With several frames all of this is in a folder for each, with several models 03 to 10 in a
+/// With several frames all of this is in a folder for each, with several models 03 to 11 in a
 /// folder for each, and index.html leads there.
 class ExplainFolder {
  public:

@@ -48,6 +48,9 @@ constexpr StageText kStages[] = {
     {"aligned", "The best, aligned to the end",
      "What is left of round two without repetitions, aligned once more and scored with all "
      "components (round three)."},
+    {"climbed", "Climbed",
+     "The best of them climb the score by small steps, and from beside where they are. Nothing is "
+     "dropped."},
     {"final", "The model's placements",
      "Distinct and good enough: the interpretation of the scene chooses from these."},
 };

@@ -19,8 +19,9 @@ using cli::ExplainedFrame;
 using cli::ExplainFolder;
 
 constexpr const char* kModelPictures[] = {
-    "03_sampled.png", "04_free_space.png", "05_clusters.png", "06_round_two.png",
-    "07_aligned.png", "08_final.png",      "09_best.png",     "10_best_segments.png"};
+    "03_sampled.png",   "04_free_space.png", "05_clusters.png",
+    "06_round_two.png", "07_aligned.png",    "08_climbed.png",
+    "09_final.png",     "10_best.png",       "11_best_segments.png"};
 
 /// An L on a table, and a brick that is not there.
 class Explain : public ::testing::Test {
@@ -128,7 +129,7 @@ TEST_F(Explain, SeveralModelsHaveAFolderEach) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/03_sampled.png"));
   const std::string text = page("out/index.html");
   for (const char* name : {"l", "brick"}) {
-    expect_picture(std::string("out/") + name + "/08_final.png");
+    expect_picture(std::string("out/") + name + "/09_final.png");
     EXPECT_NE(text.find("href=\"" + std::string(name) + "/index.html\""), std::string::npos);
     EXPECT_FALSE(page(std::string("out/") + name + "/index.html").empty());
   }

@@ -94,7 +94,7 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
     }
   }
   EXPECT_EQ(names, (std::vector<std::string>{"sampled", "free_space", "clusters", "round_two",
-                                             "aligned", "final"}));
+                                             "aligned", "climbed", "final"}));
   EXPECT_GT(trace.stages[0].poses.size(), 1000u);
   EXPECT_TRUE(trace.stages[3].dropped.empty()) << "round two drops nothing";
   ASSERT_EQ(trace.stages.back().poses.size(), plain.size());
