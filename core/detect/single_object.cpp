@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -116,8 +114,8 @@ void add_round_three(const SceneFeatures& scene, const ObjectModel& model,
 constexpr double kBeside = 0.17;  // radians
 
 // Local hill climbing of the score (paper section V): the best of alignments from beside the start,
-// then small steps along and about each axis of the
-// camera through the object's origin, kept when the score rises; then smaller ones.
+// then small steps along and about each axis of the camera through the object's origin, kept when
+// the score rises; then smaller ones.
 Pose climb(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
            const SingleObjectOptions& options) {
   const auto score = [&](const Pose& pose) {
@@ -192,6 +190,76 @@ class StageWriter {
   DroppedPoses dropped_;
 };
 
+RefinementOptions last_alignment() {
+  RefinementOptions last;
+  last.iterations = 8;
+  last.max_points = 500;
+  last.start_gate_m = 0.015f;
+  last.end_gate_m = 0.008f;
+  return last;
+}
+
+const Pose& of_aligned(const Aligned& aligned) { return aligned.pose; }
+const Pose& of_candidate(const Candidate& candidate) { return candidate.pose(); }
+
+// Round two of every cluster.
+std::vector<Aligned> align_clusters(const SceneFeatures& scene, const ObjectModel& model,
+                                    const std::vector<Hypothesis>& clusters,
+                                    const SingleObjectOptions& options, StageWriter& stages) {
+  std::vector<Aligned> aligned;
+  for (const Hypothesis& hypothesis : clusters) {
+    aligned.push_back(round_two(scene, model, to_pose(hypothesis.camera_from_object), options));
+  }
+  stages.finish("round_two", aligned, of_aligned);
+  return aligned;
+}
+
+// The distinct best of round two, aligned to the end and scored with all components; best first.
+std::vector<Candidate> align_best(const SceneFeatures& scene, const ObjectModel& model,
+                                  std::vector<Aligned> aligned, const PlacementEvaluator& evaluator,
+                                  const SingleObjectOptions& options, StageWriter& stages) {
+  remove_similar(aligned, model.symmetry, of_aligned, stages.dropped());
+  keep_first(aligned, options.max_refined, of_aligned, stages.dropped());
+  std::vector<Candidate> candidates;
+  for (const Aligned& start : aligned) {
+    candidates.push_back(
+        evaluator.evaluate(refine_pose(scene, model, start.pose, last_alignment())));
+  }
+  stages.finish("aligned", candidates, of_candidate);
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  return candidates;
+}
+
+// The first of the candidates climb; each goes where it got to if that scores better.
+void climb_first(const SceneFeatures& scene, const ObjectModel& model,
+                 const PlacementEvaluator& evaluator, const SingleObjectOptions& options,
+                 std::vector<Candidate>& candidates, StageWriter& stages) {
+  RefinementOptions there = last_alignment();  // no step: what is known of the pose
+  there.iterations = 0;
+  there.start_gate_m = there.end_gate_m;
+  const std::size_t count =
+      std::min(candidates.size(), static_cast<std::size_t>(options.max_climbed));
+  for (std::size_t i = 0; i < count; ++i) {
+    const Pose climbed = climb(scene, model, candidates[i].pose(), options);
+    Candidate moved = evaluator.evaluate(refine_pose(scene, model, climbed, there));
+    if (moved.score > candidates[i].score) candidates[i] = std::move(moved);
+  }
+  stages.finish("climbed", candidates, of_candidate);
+}
+
+void keep_good(const SymmetryGroup& symmetry, const SingleObjectOptions& options,
+               std::vector<Candidate>& candidates, StageWriter& stages) {
+  std::erase_if(candidates, [&](const Candidate& c) {
+    const bool low = c.score < options.min_score;
+    if (low) drop(stages.dropped(), "low score", to_fast(c.pose()));
+    return low;
+  });
+  remove_similar(candidates, symmetry, of_candidate, stages.dropped());
+  keep_first(candidates, options.max_placements, of_candidate, stages.dropped());
+  stages.finish("final", candidates, of_candidate);
+}
+
 }  // namespace
 
 PlacementEvaluator::PlacementEvaluator(const SceneFeatures& scene,
@@ -219,125 +287,17 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
   const std::vector<Hypothesis> sampled =
       sample_hypotheses(scene, *model, options.hypotheses, trace ? &sampling : nullptr);
   stages.finish_sampling(std::move(sampling), sampled);
-  const std::vector<Hypothesis> clustered =
+  const std::vector<Hypothesis> clusters =
       cluster_hypotheses(scene, *model, sampled, options.max_clusters, stages.dropped());
-  stages.finish("clusters", clustered,
+  stages.finish("clusters", clusters,
                 [](const Hypothesis& h) { return to_pose(h.camera_from_object); });
-
-  std::vector<Aligned> aligned;
-  for (const Hypothesis& hypothesis : clustered) {
-    aligned.push_back(round_two(scene, *model, to_pose(hypothesis.camera_from_object), options));
-  }
-  const auto of_aligned = [](const Aligned& a) -> const Pose& { return a.pose; };
-  stages.finish("round_two", aligned, of_aligned);
-
-  remove_similar(aligned, model->symmetry, of_aligned, stages.dropped());
-  keep_first(aligned, options.max_refined, of_aligned, stages.dropped());
-  RefinementOptions last;
-  last.iterations = 8;
-  last.max_points = 500;
-  last.start_gate_m = 0.015f;
-  last.end_gate_m = 0.008f;
-  const auto by_score = [](const Candidate& a, const Candidate& b) { return a.score > b.score; };
-  const auto max_climbed = static_cast<std::size_t>(options.max_climbed);
-  RefinementOptions there = last;  // no step: what is known of the pose
-  there.iterations = 0;
-  there.start_gate_m = there.end_gate_m;
   const PlacementEvaluator evaluator(scene, model, options.layer);
-  std::vector<Candidate> candidates;
-  for (const Aligned& start : aligned) {
-    candidates.push_back(evaluator.evaluate(refine_pose(scene, *model, start.pose, last)));
-  }
-  const auto of_candidate = [](const Candidate& c) -> const Pose& { return c.pose(); };
-  stages.finish("aligned", candidates, of_candidate);
-
-  std::stable_sort(candidates.begin(), candidates.end(), by_score);
-  for (std::size_t i = 0; i < std::min(candidates.size(), max_climbed); ++i) {
-    const Pose climbed = climb(scene, *model, candidates[i].pose(), options);
-    Candidate moved = evaluator.evaluate(refine_pose(scene, *model, climbed, there));
-    if (moved.score > candidates[i].score) candidates[i] = std::move(moved);
-  }
-  stages.finish("climbed", candidates, of_candidate);
-
-  std::erase_if(candidates, [&](const Candidate& c) {
-    const bool low = c.score < options.min_score;
-    if (low) drop(stages.dropped(), "low score", to_fast(c.pose()));
-    return low;
-  });
-  remove_similar(candidates, model->symmetry, of_candidate, stages.dropped());
-  keep_first(candidates, options.max_placements, of_candidate, stages.dropped());
-  stages.finish("final", candidates, of_candidate);
+  std::vector<Candidate> candidates =
+      align_best(scene, *model, align_clusters(scene, *model, clusters, options, stages), evaluator,
+                 options, stages);
+  climb_first(scene, *model, evaluator, options, candidates, stages);
+  keep_good(model->symmetry, options, candidates, stages);
   return candidates;
-}
-
-namespace {
-
-// Depth errors of neighbouring pixels go together, so that the correspondences count for fewer.
-constexpr double kCorrelatedPoints = 12;
-
-Eigen::Matrix<double, 6, 6> pose_covariance(const Refinement& refinement) {
-  Eigen::Matrix<double, 6, 6> information = refinement.information / kCorrelatedPoints;
-  const double position = 1 / (0.02 * 0.02);
-  const double angle = 1 / (0.5 * 0.5);
-  information.diagonal().head<3>().array() += position;
-  information.diagonal().tail<3>().array() += angle;
-  const Eigen::Matrix<double, 6, 6> inverse = information.inverse();
-  return 0.5 * (inverse + inverse.transpose());
-}
-
-// A small rotation by d about the camera's axes has the quaternion (1, d / 2), so that a Gaussian
-// of covariance C in d is a Bingham with the exponent -2 v^T C^-1 v in v = d / 2.
-OrientationUncertainty orientation_uncertainty(const Pose& pose,
-                                               const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  OrientationUncertainty out;
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d axis = solver.eigenvectors().col(k);
-    const Eigen::Quaterniond turned =
-        Eigen::Quaterniond(0, axis.x(), axis.y(), axis.z()) * pose.rotation;
-    out.axes.col(k) = to_wxyz(turned);
-    out.concentrations[k] = -2 / solver.eigenvalues()[k];
-  }
-  return out;
-}
-
-}  // namespace
-
-Placement to_placement(const Candidate& candidate) {
-  Placement out;
-  out.model_number = candidate.model->number;
-  out.model = candidate.model->name;
-  out.camera_from_object = candidate.pose();
-  out.covariance = pose_covariance(candidate.refinement);
-  out.orientation =
-      orientation_uncertainty(out.camera_from_object, out.covariance.bottomRightCorner<3, 3>());
-  out.score = candidate.score;
-  out.probability = candidate.probability;
-  const ScoreComponents& c = candidate.components;
-  out.visible_fraction = c.visibility;
-  out.components = {{"range", c.range},
-                    {"normal", c.normal},
-                    {"visibility", c.visibility},
-                    {"edge", c.edge},
-                    {"edge_visibility", c.edge_visibility},
-                    {"edge_support", c.edge_support},
-                    {"shape", c.shape},
-                    {"free_space", c.free_space},
-                    {"agreeing", c.agreeing},
-                    {"explained_pixels", c.explained_pixels},
-                    {"expected_pixels", c.expected_pixels},
-                    {"explained_area", c.explained_area},
-                    {"relative_area", c.relative_area},
-                    {"unknown", c.unknown},
-                    {"background", c.background},
-                    {"edge_likelihood", c.edge_likelihood},
-                    {"occlusion_edge", c.occlusion_edge},
-                    {"random_walk", c.random_walk},
-                    {"segment", c.segment},
-                    {"segment_affinity", c.segment_affinity},
-                    {"fpfh", c.fpfh}};
-  if (!std::isnan(c.color)) out.components.push_back({"color", c.color});
-  return out;
 }
 
 }  // namespace bpa
