@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // bpa bench accuracy: how many of the true placements are still alive after each stage.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -13,6 +12,7 @@
 #include <bpa/core/cli/bench.hpp>
 #include <bpa/core/cli/detection_files.hpp>
 #include <bpa/core/cli/progress.hpp>
+#include <bpa/core/eval/pose_errors.hpp>
 #include <bpa/core/io/bop_dataset.hpp>
 #include <bpa/core/io/file_bytes.hpp>
 #include <bpa/core/pipeline/detector.hpp>
@@ -28,13 +28,6 @@ struct AccuracyArguments {
   std::vector<int> scenes;
   double min_visible = 0.1;
 };
-
-// Right within the paper's tolerance (section VII).
-bool is_right(const Pose& pose, const Pose& truth, const SymmetryGroup& symmetry) {
-  if ((pose.translation - truth.translation).norm() > 0.2) return false;
-  const PoseError error = pose_error(pose, truth, symmetry);
-  return error.position < 0.025 && error.angle < M_PI / 16;
-}
 
 // For some instances: how many there were, and how many were alive after each stage.
 struct Survival {
@@ -73,11 +66,11 @@ const ObjectTrace* trace_of(const FrameTrace& trace, int number, SymmetryGroup& 
 
 bool holds(const Interpretation& interpretation, const io::BopInstance& truth,
            const SymmetryGroup& symmetry) {
-  return std::any_of(interpretation.placements.begin(), interpretation.placements.end(),
-                     [&](const Placement& p) {
-                       return p.model_number == truth.obj_id &&
-                              is_right(p.camera_from_object, truth.camera_from_object, symmetry);
-                     });
+  return std::any_of(
+      interpretation.placements.begin(), interpretation.placements.end(), [&](const Placement& p) {
+        return p.model_number == truth.obj_id &&
+               eval::is_right(p.camera_from_object, truth.camera_from_object, symmetry);
+      });
 }
 
 void add_instance(const io::BopInstance& truth, const FrameTrace& trace,
@@ -90,7 +83,7 @@ void add_instance(const io::BopInstance& truth, const FrameTrace& trace,
   for (const ObjectTrace::Stage& stage : object->stages) {
     tally.stages.emplace_back(stage.name);
     alive.push_back(std::any_of(stage.poses.begin(), stage.poses.end(), [&](const FastPose& pose) {
-      return is_right(to_pose(pose), truth.camera_from_object, symmetry);
+      return eval::is_right(to_pose(pose), truth.camera_from_object, symmetry);
     }));
   }
   const auto& ranked = result.interpretations;
@@ -110,7 +103,7 @@ void add_reported(const std::vector<io::BopInstance>& truth, const FrameTrace& t
       SymmetryGroup symmetry;
       return instance.obj_id == placement.model_number &&
              trace_of(trace, instance.obj_id, symmetry) &&
-             is_right(placement.camera_from_object, instance.camera_from_object, symmetry);
+             eval::is_right(placement.camera_from_object, instance.camera_from_object, symmetry);
     });
   }
 }

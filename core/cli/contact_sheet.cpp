@@ -4,21 +4,19 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <numbers>
 #include <numeric>
 
 #include <opencv2/imgproc.hpp>
 
 #include <bpa/core/cli/contact_sheet.hpp>
 #include <bpa/core/eval/matching.hpp>
+#include <bpa/core/eval/pose_errors.hpp>
 #include <bpa/core/pipeline/annotate.hpp>
 
 namespace bpa::cli {
 namespace {
 
 constexpr Rgb kWrong = {255, 40, 40};
-constexpr double kPosition = 0.025;
-constexpr double kAngle = std::numbers::pi / 16;
 constexpr double kMinVisible = 0.1;
 constexpr int kHeader = 24;
 
@@ -35,9 +33,11 @@ std::vector<int> match(const std::vector<io::BopInstance>& truth,
     for (std::size_t t = 0; t < truth.size(); ++t) {
       const auto model = models.find(truth[t].obj_id);
       if (model == models.end() || truth[t].obj_id != placement.model_number) continue;
-      const PoseError error = pose_error(placement.camera_from_object, truth[t].camera_from_object,
-                                         model->second->symmetry, kPosition, kAngle);
-      const double cost = std::max(error.position / kPosition, error.angle / kAngle);
+      const PoseError error =
+          pose_error(placement.camera_from_object, truth[t].camera_from_object,
+                     model->second->symmetry, eval::kRightPosition, eval::kRightAngle);
+      const double cost =
+          std::max(error.position / eval::kRightPosition, error.angle / eval::kRightAngle);
       if (cost <= 1) costs.back()[t] = cost;
     }
   }

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <string_view>
 
 #include <bpa/core/cli/explain_model.hpp>
 #include <bpa/core/cli/explain_pictures.hpp>
+#include <bpa/core/eval/pose_errors.hpp>
 #include <bpa/core/io/image_file.hpp>
 #include <bpa/core/pipeline/explain.hpp>
 #include <bpa/core/score/predicted_surface.hpp>
@@ -71,9 +71,7 @@ std::string numbered(int number, std::string_view name) {
 bool is_right(const FastPose& pose, const std::vector<Pose>& truths,
               const SymmetryGroup& symmetry) {
   return std::any_of(truths.begin(), truths.end(), [&](const Pose& truth) {
-    if ((pose.translation.cast<double>() - truth.translation).norm() > 0.2) return false;
-    const PoseError error = pose_error(to_pose(pose), truth, symmetry);
-    return error.position < 0.025 && error.angle < std::numbers::pi / 16;
+    return eval::is_right(to_pose(pose), truth, symmetry);
   });
 }
 
@@ -86,6 +84,7 @@ Row stage_names() {
 }
 
 std::string fixed(double value, int digits) {
+  if (std::isnan(value)) return "not known";
   char text[48];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   return text;

@@ -27,7 +27,7 @@ struct ExplainedFrame {
 /// The stages that a model's hypotheses go through.
 std::vector<std::string> stage_names();
 
-/// "1.25" for (1.25, 2).
+/// "1.25" for (1.25, 2); "not known" for what is not a number.
 std::string fixed(double value, int digits);
 
 /// Writes pictures and page sections of what became of one model in one frame.

@@ -42,6 +42,7 @@ void write_right(cv::Mat& image, const std::string& text, int x, int y) {
 }
 
 std::string number(double value) {
+  if (std::isnan(value)) return "not known";
   char text[32];
   std::snprintf(text, sizeof text, std::abs(value) < 10 ? "%.3f" : "%.1f", value);
   return text;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // bpa train: the score layer, from frames with truth.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -11,6 +10,7 @@
 #include <bpa/core/cli/command.hpp>
 #include <bpa/core/cli/detection_files.hpp>
 #include <bpa/core/cli/progress.hpp>
+#include <bpa/core/eval/pose_errors.hpp>
 #include <bpa/core/io/bop_dataset.hpp>
 #include <bpa/core/io/file_bytes.hpp>
 #include <bpa/core/pipeline/detector.hpp>
@@ -35,10 +35,8 @@ struct Samples {
 
 bool is_right(const Candidate& candidate, const std::vector<io::BopInstance>& truth) {
   return std::any_of(truth.begin(), truth.end(), [&](const io::BopInstance& instance) {
-    if (instance.obj_id != candidate.model->number) return false;
-    const PoseError error =
-        pose_error(candidate.pose(), instance.camera_from_object, candidate.model->symmetry);
-    return error.position < 0.025 && error.angle < M_PI / 16;
+    return instance.obj_id == candidate.model->number &&
+           eval::is_right(candidate.pose(), instance.camera_from_object, candidate.model->symmetry);
   });
 }
 

@@ -10,6 +10,7 @@
 
 #include <bpa/core/base/options.hpp>
 #include <bpa/core/base/status.hpp>
+#include <bpa/core/eval/pose_errors.hpp>
 #include <bpa/core/io/bop_dataset.hpp>
 #include <bpa/core/io/mesh_file.hpp>
 #include <bpa/core/io/results.hpp>
@@ -19,8 +20,8 @@ namespace bpa::eval {
 /// When a placement counts as right (paper section VII: 2.5 cm and π/16 "with respect to the
 /// model's symmetry group" on Clutter, RMSE 1 cm on Kinect), and what counts at all.
 struct EvaluationOptions {
-  double position_m = 0.025;
-  double angle_rad = 0.19634954084936207;
+  double position_m = kRightPosition;
+  double angle_rad = kRightAngle;
   double rmse_m = 0.01;
   double min_visible_fraction = 0.1;
   bool bop_errors = true;

@@ -45,6 +45,13 @@ Eigen::Matrix2Xd projected(const Eigen::Matrix3Xd& points, const Camera& camera)
 
 }  // namespace
 
+bool is_right(const Pose& estimate, const Pose& truth, const SymmetryGroup& symmetry) {
+  constexpr double kNowhereNear = 0.2;
+  if ((estimate.translation - truth.translation).norm() > kNowhereNear) return false;
+  const PoseError error = pose_error(estimate, truth, symmetry, kRightPosition, kRightAngle);
+  return error.position < kRightPosition && error.angle < kRightAngle;
+}
+
 std::vector<Pose> discretised_symmetries(const SymmetryGroup& group, double max_step) {
   const std::vector<Pose> discrete = discrete_elements(group);
   if (group.continuous.empty()) return discrete;

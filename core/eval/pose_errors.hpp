@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <numbers>
 #include <vector>
 
 #include <bpa/core/geometry/camera.hpp>
@@ -16,6 +17,15 @@
 namespace bpa::eval {
 
 using Points = std::vector<Eigen::Vector3f>;
+
+/// A pose within these is right (paper section VII), metres and radians.
+inline constexpr double kRightPosition = 0.025;
+inline constexpr double kRightAngle = std::numbers::pi / 16;
+
+/// Whether an estimate is within the paper's tolerance of the truth, modulo the symmetry. Cheap for
+/// estimates that are nowhere near: symmetries are taken to move the object's origin by less than
+/// 17 cm.
+bool is_right(const Pose& estimate, const Pose& truth, const SymmetryGroup& symmetry);
 
 /// The discrete symmetries times the continuous one in steps so small that no vertex moves by more
 /// than `max_step` diameters (BOP: 0.01, which makes ceil(π / 0.01) steps). The identity is first.

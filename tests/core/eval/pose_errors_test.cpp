@@ -70,6 +70,24 @@ TEST(PoseErrors, MspdIsInPixels) {
       std::isinf(max_projection_distance(square(), at(0, 0, -1), at(0, 0, 1), {Pose{}}, camera)));
 }
 
+TEST(PoseErrors, RightIsWithinBothTolerancesModuloSymmetry) {
+  const Pose truth = at(0, 0, 1);
+  EXPECT_TRUE(is_right(at(0.024, 0, 1), truth, {}));
+  EXPECT_FALSE(is_right(at(0.026, 0, 1), truth, {}));
+  EXPECT_FALSE(is_right(at(1, 0, 1), truth, {}));
+  EXPECT_TRUE(is_right(turned_about_z(kPi / 17), truth, {}));
+  EXPECT_FALSE(is_right(turned_about_z(kPi / 15), truth, {}));
+  SymmetryGroup half_turn;
+  half_turn.discrete = {{rotation_from_vector({0, 0, kPi}), {0, 0, 0}}};
+  EXPECT_FALSE(is_right(turned_about_z(kPi), truth, {}));
+  EXPECT_TRUE(is_right(turned_about_z(kPi), truth, half_turn));
+  // The symmetry may move the origin, by a part of the object's size.
+  half_turn.discrete[0].translation = {0.1, 0, 0};
+  Pose moved = turned_about_z(kPi);
+  moved.translation.x() = 0.1;
+  EXPECT_TRUE(is_right(moved, truth, half_turn));
+}
+
 TEST(PoseErrors, ContinuousSymmetryIsCutInto315Steps) {
   SymmetryGroup group;
   group.continuous = {{Eigen::Vector3d::UnitZ(), {0.5, 0, 0}}};
