@@ -178,7 +178,7 @@ class Sampler {
     RefinementOptions small;
     small.iterations = 2;
     small.max_points = 64;
-    small.max_edges = 24;
+    small.max_edges = options_.use_edges ? 24 : 0;
     small.start_gate_m = 0.020f;
     small.end_gate_m = 0.012f;
     const FastPose corrected =

@@ -30,6 +30,7 @@ struct HypothesisOptions {
   int check_points = 64;         ///< Model points that a pose is checked with.
   int max_kept = 1500;           ///< Best hypotheses that go on.
   double min_check_score = 0.15;
+  bool use_edges = true;  ///< Also in the correction of what is kept.
   std::uint64_t seed = 0;
 };
 

@@ -164,7 +164,7 @@ void add_edge_pairs(const SceneFeatures& scene, const ObjectModel& model, const 
 }  // namespace
 
 Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
-                      float gate, int count, std::uint64_t seed, bool use_orientation) {
+                      float gate, int count, std::uint64_t seed, const AlignmentCues& cues) {
   RandomStream random(seed, 17);
   const std::uint64_t segment_seed = random();
   const CheckPoints& check = model.index->check;
@@ -175,7 +175,9 @@ Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, cons
   for (int tries = 0; tries < 8 * count && static_cast<int>(pairs.size()) < count; ++tries) {
     const auto i = static_cast<std::size_t>(random.index(total));
     if (!match_point(scene, check, i, fast, gate, match)) continue;
-    if (!segment_sampled(scene.segmentation.labels[match.pixel], segment_seed)) continue;
+    if (cues.segments && !segment_sampled(scene.segmentation.labels[match.pixel], segment_seed)) {
+      continue;
+    }
     align::OrientedPair& pair = pairs.emplace_back();
     pair.model.point = check.points[i].cast<double>();
     pair.model.orientation = align::feature_orientation(check.normals[i].cast<double>());
@@ -185,11 +187,11 @@ Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, cons
   }
   if (pairs.size() < 4) return start;
   std::vector<align::PositionPair> edges;
-  add_edge_pairs(scene, model, fast, gate, count / 2, random, edges);
+  if (cues.edges) add_edge_pairs(scene, model, fast, gate, count / 2, random, edges);
   align::Correspondences data;
   data.oriented = pairs;
   data.positions = edges;
-  return (use_orientation ? align::bpa_mode(data) : align::icp_mode(data)).camera_from_object;
+  return (cues.orientation ? align::bpa_mode(data) : align::icp_mode(data)).camera_from_object;
 }
 
 }  // namespace bpa

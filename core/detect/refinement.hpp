@@ -31,12 +31,18 @@ struct Refinement {
 Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
                        const RefinementOptions& options);
 
+/// What a round-two alignment makes use of; experiments leave some of it out.
+struct AlignmentCues {
+  bool orientation = true;  ///< False: positions only, which is what ICP does (paper's ablation).
+  bool segments = true;     ///< False: matches on all surface, not on sampled super-pixels.
+  bool edges = true;        ///< False: no edge points.
+};
+
 /// One round-two alignment step by BPA (paper section V) to sampled segments, the super-pixels: up
 /// to `count` model points that fall near the surface of these are matched with it as oriented
-/// pairs, and half as many edge points with the frame's edges; without `use_orientation` by their
-/// positions only, which is what ICP does (the paper's ablation). The start where fewer than four
+/// pairs, and half as many edge points with the frame's edges. The start where fewer than four
 /// points match.
 Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
-                      float gate, int count, std::uint64_t seed, bool use_orientation = true);
+                      float gate, int count, std::uint64_t seed, const AlignmentCues& cues = {});
 
 }  // namespace bpa

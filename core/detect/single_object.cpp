@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <bpa/core/base/stopwatch.hpp>
 #include <bpa/core/detect/single_object.hpp>
@@ -32,20 +33,27 @@ float check_score(const SceneFeatures& scene, const ObjectModel& model, const Po
   return check_pose(scene.image, model.index->check, to_fast(pose), 300, tight_tolerance()).score();
 }
 
+// With what experiments leave out left out.
+RefinementOptions refinement_options(const SingleObjectOptions& options) {
+  RefinementOptions out;
+  if (!options.use_edges) out.max_edges = 0;
+  return out;
+}
+
 // Round two (paper section V): propose an alignment, accept it if the score has improved.
 Aligned round_two(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
                   const SingleObjectOptions& options) {
   Aligned best{start, check_score(scene, model, start)};
+  const AlignmentCues cues{options.use_orientation, options.use_segments, options.use_edges};
   float gate = 0.030f;
   for (int step = 0; step < options.bpa_steps; ++step) {
-    const Pose proposed =
-        align_to_surface(scene, model, best.pose, gate, 12,
-                         options.seed + static_cast<std::uint64_t>(step), options.use_orientation);
+    const Pose proposed = align_to_surface(scene, model, best.pose, gate, 12,
+                                           options.seed + static_cast<std::uint64_t>(step), cues);
     const double score = check_score(scene, model, proposed);
     if (score > best.score) best = {proposed, score};
     gate *= 0.8f;
   }
-  RefinementOptions refinement;
+  RefinementOptions refinement = refinement_options(options);
   refinement.iterations = 4;
   refinement.max_points = 160;
   refinement.start_gate_m = 0.025f;
@@ -111,6 +119,11 @@ void add_round_three(const SceneFeatures& scene, const ObjectModel& model,
   }
 }
 
+void forget_round_three(ScoreComponents& out) {
+  out.edge_likelihood = out.occlusion_edge = out.random_walk = out.segment = out.segment_affinity =
+      out.fpfh = out.color = std::numeric_limits<double>::quiet_NaN();
+}
+
 constexpr double kBeside = 0.17;  // radians
 
 // Local hill climbing of the score (paper section V): the best of alignments from beside the start,
@@ -124,7 +137,7 @@ Pose climb(const SceneFeatures& scene, const ObjectModel& model, const Pose& sta
   };
   Aligned best{start, score(start)};
   // From beside the start, gradients may lead elsewhere.
-  RefinementOptions refinement;
+  RefinementOptions refinement = refinement_options(options);
   refinement.iterations = 6;
   refinement.max_points = 200;
   refinement.start_gate_m = 0.020f;
@@ -190,8 +203,8 @@ class StageWriter {
   DroppedPoses dropped_;
 };
 
-RefinementOptions last_alignment() {
-  RefinementOptions last;
+RefinementOptions last_alignment(const SingleObjectOptions& options) {
+  RefinementOptions last = refinement_options(options);
   last.iterations = 8;
   last.max_points = 500;
   last.start_gate_m = 0.015f;
@@ -223,7 +236,7 @@ std::vector<Candidate> align_best(const SceneFeatures& scene, const ObjectModel&
   std::vector<Candidate> candidates;
   for (const Aligned& start : aligned) {
     candidates.push_back(
-        evaluator.evaluate(refine_pose(scene, model, start.pose, last_alignment())));
+        evaluator.evaluate(refine_pose(scene, model, start.pose, last_alignment(options))));
   }
   stages.finish("aligned", candidates, of_candidate);
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -235,7 +248,7 @@ std::vector<Candidate> align_best(const SceneFeatures& scene, const ObjectModel&
 void climb_first(const SceneFeatures& scene, const ObjectModel& model,
                  const PlacementEvaluator& evaluator, const SingleObjectOptions& options,
                  std::vector<Candidate>& candidates, StageWriter& stages) {
-  RefinementOptions there = last_alignment();  // no step: what is known of the pose
+  RefinementOptions there = last_alignment(options);  // no step: what is known of the pose
   there.iterations = 0;
   there.start_gate_m = there.end_gate_m;
   const std::size_t count =
@@ -264,14 +277,22 @@ void keep_good(const SymmetryGroup& symmetry, const SingleObjectOptions& options
 
 PlacementEvaluator::PlacementEvaluator(const SceneFeatures& scene,
                                        std::shared_ptr<const ObjectModel> model,
-                                       const ScoreLayer& layer)
-    : scene_(scene), model_(std::move(model)), layer_(layer), places_(*model_) {}
+                                       const ScoreLayer& layer, bool use_round_three)
+    : scene_(scene),
+      model_(std::move(model)),
+      layer_(layer),
+      use_round_three_(use_round_three),
+      places_(*model_) {}
 
 Candidate PlacementEvaluator::evaluate(Refinement refinement) const {
   Candidate candidate;
   candidate.model = model_;
   candidate.components = score_placement(scene_.image, *model_, refinement.camera_from_object);
-  add_round_three(scene_, *model_, places_, refinement.camera_from_object, candidate.components);
+  if (use_round_three_) {
+    add_round_three(scene_, *model_, places_, refinement.camera_from_object, candidate.components);
+  } else {
+    forget_round_three(candidate.components);
+  }
   candidate.explained = explained_pixels(scene_.image, *model_, refinement.camera_from_object);
   candidate.refinement = std::move(refinement);
   candidate.score = placement_score(candidate.components, layer_);
@@ -291,7 +312,7 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
       cluster_hypotheses(scene, *model, sampled, options.max_clusters, stages.dropped());
   stages.finish("clusters", clusters,
                 [](const Hypothesis& h) { return to_pose(h.camera_from_object); });
-  const PlacementEvaluator evaluator(scene, model, options.layer);
+  const PlacementEvaluator evaluator(scene, model, options.layer, options.use_round_three);
   std::vector<Candidate> candidates =
       align_best(scene, *model, align_clusters(scene, *model, clusters, options, stages), evaluator,
                  options, stages);

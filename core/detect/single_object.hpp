@@ -35,7 +35,10 @@ struct SingleObjectOptions {
   int climb_rounds = 4;         ///< Rounds of twelve small steps each.
   int quick_points = 200;       ///< Surface points that round two scores a placement with.
   int bpa_steps = 3;            ///< Round-two alignments by BPA.
-  bool use_orientation = true;  ///< False: align by positions only (ICP, the paper's ablation).
+  bool use_orientation = true;  ///< See AlignmentCues; likewise
+  bool use_segments = true;     ///< this
+  bool use_edges = true;        ///< and this, which also goes for gradient-based alignment.
+  bool use_round_three = true;  ///< False: the components of round three are not known.
   double min_score = -12;       ///< Log odds below which a placement is dropped.
   int max_placements = 50;      ///< Paper section VI.
   ScoreLayer layer = default_score_layer();
@@ -49,11 +52,12 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
                                      const SingleObjectOptions& options,
                                      ObjectTrace* trace = nullptr);
 
-/// Scores poses of one model with every component of rounds two and three. Keeps references.
+/// Scores poses of one model with every component of rounds two and three, or of round two alone:
+/// then those of round three are not known. Keeps references.
 class PlacementEvaluator {
  public:
   PlacementEvaluator(const SceneFeatures& scene, std::shared_ptr<const ObjectModel> model,
-                     const ScoreLayer& layer);
+                     const ScoreLayer& layer, bool use_round_three = true);
 
   Candidate evaluate(Refinement refinement) const;
 
@@ -61,6 +65,7 @@ class PlacementEvaluator {
   const SceneFeatures& scene_;
   std::shared_ptr<const ObjectModel> model_;
   const ScoreLayer& layer_;
+  bool use_round_three_;
   FeaturePlaces places_;
 };
 

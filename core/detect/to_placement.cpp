@@ -72,8 +72,10 @@ Placement to_placement(const Candidate& candidate) {
                     {"random_walk", c.random_walk},
                     {"segment", c.segment},
                     {"segment_affinity", c.segment_affinity},
-                    {"fpfh", c.fpfh}};
-  if (!std::isnan(c.color)) out.components.push_back({"color", c.color});
+                    {"fpfh", c.fpfh},
+                    {"color", c.color}};
+  std::erase_if(out.components,
+                [](const ScoreComponent& known) { return std::isnan(known.value); });
   return out;
 }
 

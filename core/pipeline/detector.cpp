@@ -57,10 +57,15 @@ SingleObjectOptions object_options(const DetectorOptions& options, std::uint64_t
   out.hypotheses.matches_per_keypoint = options.matches_per_keypoint;
   out.hypotheses.draws_per_match = options.draws_per_match;
   out.hypotheses.peaks_per_reference = options.peaks_per_reference;
+  out.hypotheses.use_edges = options.use_edges;
   out.hypotheses.seed = seed;
   out.max_clusters = options.max_clusters;
   out.max_refined = options.max_refined;
+  if (!options.climb) out.max_climbed = 0;
   out.use_orientation = options.use_orientation;
+  out.use_segments = options.use_segments;
+  out.use_edges = options.use_edges;
+  out.use_round_three = options.use_round_three;
   out.seed = seed;
   return out;
 }
@@ -123,7 +128,8 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   feature_options.max_references = options_.max_references;
   feature_options.seed = request.seed;
   feature_options.num_threads = request.num_threads;
-  const Image<Eigen::Vector3f> rgb = reduced_color(frame, map, request.num_threads);
+  Image<Eigen::Vector3f> rgb;
+  if (options_.use_color) rgb = reduced_color(frame, map, request.num_threads);
   SceneFeatures scene = scene_features(std::move(map), std::move(planes), feature_options, rgb);
   finish_stage("features");
 

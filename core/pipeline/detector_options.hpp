@@ -23,6 +23,11 @@ struct DetectorOptions {
   int max_clusters = 200;
   int max_refined = 40;
   bool use_orientation = true;
+  bool use_segments = true;
+  bool use_edges = true;
+  bool climb = true;
+  bool use_round_three = true;
+  bool use_color = true;
   double min_probability = 0.3;
   double object_penalty = 0.2;
   double explained_weight = 2;
@@ -54,6 +59,23 @@ struct DetectorOptions {
           FieldRule{1, 10000, "Placements of each model that are aligned to the end."});
     visit("use_orientation", use_orientation,
           FieldRule{0, 1, "Align with orientations (BPA); false aligns by positions only (ICP)."});
+    // What experiments leave out, one at a time (tests/accuracy/leave_one_out.sh).
+    visit("use_segments", use_segments,
+          FieldRule{0, 1,
+                    "Align to sampled super-pixels; false, for experiments, aligns to all "
+                    "surface."});
+    visit("use_edges", use_edges,
+          FieldRule{0, 1, "Align edges with edges, too; false, for experiments, surface alone."});
+    visit("climb", climb,
+          FieldRule{0, 1,
+                    "Let the best placements climb the score; false, for experiments, leaves them "
+                    "where alignment ends."});
+    visit("use_round_three", use_round_three,
+          FieldRule{0, 1,
+                    "Score with edges, random walks, segments, features and colours, too; false, "
+                    "for experiments, leaves these components unknown."});
+    visit("use_color", use_color,
+          FieldRule{0, 1, "Use the frame's colours; false, for experiments, ignores them."});
     visit("min_probability", min_probability,
           FieldRule{0, 1,
                     "Placements less probable than this are not part of the best "

@@ -31,7 +31,8 @@ struct ScoreComponents {
   double relative_area = 0;     ///< The same, in squares of the model's diameter.
   double unknown = 0;           ///< Share of the facing model points where no depth is known.
   double background = 0;        ///< Share of the agreeing points on labelled background.
-  // Round three; each in [-1, 0], 0 is best. See the functions of the same names.
+  // Round three; each in [-1, 0], 0 is best; not a number where it is not known. See the functions
+  // of the same names.
   double edge_likelihood = -1;
   double occlusion_edge = -1;
   double random_walk = -1;

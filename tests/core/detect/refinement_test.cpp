@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <bpa/core/detect/refinement.hpp>
+#include <bpa/core/model/model_index.hpp>
 
 #include "support/l_scene.hpp"
 
@@ -82,6 +83,46 @@ TEST_F(RefinementOf, AlignmentByBpaComesNearer) {
     after += pose_error(aligned, l_truth_).angle;
   }
   EXPECT_LT(after, 0.7 * before);
+}
+
+TEST_F(RefinementOf, WithoutSegmentsAllSurfaceIsAlignedTo) {
+  SceneFeatures scene = features_of(everything());
+  for (std::int32_t& label : scene.segmentation.labels.pixels) label = -1;  // no super-pixels
+  AlignmentCues all_surface;
+  all_surface.segments = false;
+  double before = 0, after = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Pose start = test::disturbed(l_truth_, 0.015, 8 * kDegree, seed);
+    const Pose sampled = align_to_surface(scene, *l_, start, 0.03f, 30, seed);
+    EXPECT_EQ(sampled.translation, start.translation) << "nothing to align to";
+    const Pose aligned = align_to_surface(scene, *l_, start, 0.03f, 30, seed, all_surface);
+    before += pose_error(start, l_truth_).angle;
+    after += pose_error(aligned, l_truth_).angle;
+  }
+  EXPECT_LT(after, 0.7 * before);
+}
+
+TEST_F(RefinementOf, WithoutEdgesIsAsIfTheModelHadNone) {
+  const SceneFeatures scene = features_of(everything());
+  ObjectModel smooth = *l_;
+  const auto index = std::make_shared<ModelIndex>();  // what alignment reads
+  index->check = l_->index->check;
+  index->views = l_->index->views;
+  for (ModelView& view : index->views) view.edges.clear();
+  smooth.index = index;
+  AlignmentCues no_edges;
+  no_edges.edges = false;
+  int moved_by_edges = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Pose start = test::disturbed(l_truth_, 0.01, 5 * kDegree, seed);
+    const Pose all = align_to_surface(scene, *l_, start, 0.03f, 12, seed);
+    const Pose left_out = align_to_surface(scene, *l_, start, 0.03f, 12, seed, no_edges);
+    const Pose none_there = align_to_surface(scene, smooth, start, 0.03f, 12, seed);
+    EXPECT_EQ(left_out.translation, none_there.translation);
+    EXPECT_EQ(left_out.rotation.coeffs(), none_there.rotation.coeffs());
+    moved_by_edges += all.translation != left_out.translation;
+  }
+  EXPECT_GT(moved_by_edges, 10);
 }
 
 TEST_F(RefinementOf, SameStartSameEnd) {

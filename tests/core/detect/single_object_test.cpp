@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -112,6 +113,34 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
       hanging += check.free_space > 0;
     }
     EXPECT_GT(hanging, 0.98 * static_cast<double>(dropped.poses.size()));
+  }
+}
+
+TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
+  const SceneFeatures scene = features_of(everything(), 1);
+  SingleObjectOptions options;
+  options.use_round_three = false;
+  const auto candidates = detect_object(scene, l_, options);
+  ASSERT_FALSE(candidates.empty());
+  EXPECT_LT(pose_error(candidates[0].pose(), l_truth_, l_->symmetry).position, 0.01);
+  const std::set<std::string> third = {
+      "edge_likelihood",  "occlusion_edge", "random_walk", "segment",
+      "segment_affinity", "fpfh",           "color"};
+  for (const Candidate& candidate : candidates) {
+    const ScoreFeatures features = score_features(candidate.components);
+    double sum = options.layer.bias;
+    std::size_t left_out = 0;
+    for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
+      const bool skip = third.contains(score_feature_names()[i]);
+      EXPECT_EQ(std::isnan(features[i]), skip) << score_feature_names()[i];
+      left_out += skip;
+      if (!skip) sum += options.layer.components[i].at(features[i]);
+    }
+    EXPECT_EQ(left_out, third.size());
+    EXPECT_NEAR(candidate.score, sum, 1e-9);
+    for (const ScoreComponent& component : to_placement(candidate).components) {
+      EXPECT_FALSE(third.contains(component.name)) << component.name;
+    }
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -59,13 +60,16 @@ class DetectorOf : public test::LScene {
     LScene::TearDownTestSuite();
   }
 
-  static Result<SceneInterpretations> detect(const DetectRequest& request,
-                                             const Frame& frame = frame_) {
-    DetectorOptions options;  // enough for two objects, and quick
+  static DetectorOptions quick() {  // enough for two objects
+    DetectorOptions options;
     options.max_references = 200;
     options.max_refined = 10;
     options.annealing_steps = 3000;
-    return Detector(library_, options).detect(frame, request);
+    return options;
+  }
+  static Result<SceneInterpretations> detect(const DetectRequest& request,
+                                             const Frame& frame = frame_) {
+    return Detector(library_, quick()).detect(frame, request);
   }
   static SceneInterpretations found(const DetectRequest& request, const Frame& frame = frame_) {
     auto result = detect(request, frame);
@@ -223,6 +227,51 @@ TEST_F(DetectorOf, SearchesOnlyTheRegionOfInterest) {
   const SceneInterpretations result = found({}, by_roi);
   EXPECT_EQ(names(result.interpretations[0]), std::vector<std::string>{"brick"});
   expect_same(result, found({}, by_mask));
+}
+
+TEST_F(DetectorOf, WithAnyOneThingLeftOutItsAnswerIsValidAndHoldsBothObjects) {
+  const double score_of_all = found({}).interpretations.at(0).score;
+  for (bool DetectorOptions::*part :
+       {&DetectorOptions::use_orientation, &DetectorOptions::use_segments,
+        &DetectorOptions::use_edges, &DetectorOptions::climb, &DetectorOptions::use_round_three}) {
+    DetectorOptions options = quick();
+    options.*part = false;
+    const auto result = Detector(library_, options).detect(frame_);
+    ASSERT_TRUE(result.ok()) << result.status().message;
+    ASSERT_FALSE(result->interpretations.empty());
+    EXPECT_NE(result->interpretations[0].score, score_of_all) << "nothing was left out";
+    std::set<std::string> right;
+    for (const Interpretation& interpretation : result->interpretations) {
+      for (const Placement& placement : interpretation.placements) {
+        const bool is_l = placement.model == "l";
+        const PoseError error =
+            pose_error(placement.camera_from_object, is_l ? l_truth_ : brick_truth_,
+                       (is_l ? l_ : brick_)->symmetry);
+        if (error.position < 0.01 && error.angle < 0.12) right.insert(placement.model);
+        EXPECT_TRUE(placement.probability > 0 && placement.probability <= 1);
+        EXPECT_TRUE(placement.covariance.allFinite());
+        for (const ScoreComponent& component : placement.components) {
+          EXPECT_TRUE(std::isfinite(component.value)) << component.name;
+        }
+      }
+    }
+    EXPECT_EQ(right, (std::set<std::string>{"brick", "l"}));
+  }
+}
+
+TEST_F(DetectorOf, WithoutColoursItIsAsIfTheFrameHadNone) {
+  Frame painted = frame_;
+  painted.color.resize(3 * painted.depth.size());
+  for (std::size_t i = 0; i < painted.depth.size(); ++i) {  // stripes: edges of the image alone
+    const bool light = i % static_cast<std::size_t>(painted.camera.width) / 16 % 2 == 0;
+    std::fill_n(painted.color.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, light ? 220 : 40);
+  }
+  DetectorOptions options = quick();
+  options.use_color = false;
+  const auto ignored = Detector(library_, options).detect(painted);
+  ASSERT_TRUE(ignored.ok()) << ignored.status().message;
+  expect_same(*ignored, found({}));
+  EXPECT_NE(found({}, painted).interpretations.at(0).score, ignored->interpretations.at(0).score);
 }
 
 TEST_F(DetectorOf, InvalidDepthIsLikeNone) {
