@@ -113,7 +113,8 @@ Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, con
   Refinement out;
   Pose pose = start;
   const Matrix6f prior = damping(model.diameter);
-  const ModelView& view = nearest_view(model.index->views, to_fast(start));
+  const FastPose seen_from = to_fast(start);
+  const ModelView& view = nearest_view(model.index->views, seen_from);
   for (int k = 0; k <= options.iterations; ++k) {
     const float part = static_cast<float>(k) / static_cast<float>(std::max(1, options.iterations));
     const float gate = options.start_gate_m + part * (options.end_gate_m - options.start_gate_m);
