@@ -44,15 +44,18 @@ Result<std::shared_ptr<LibraryDetector>> LibraryDetector::create(const std::stri
             "with `bpa model from-mesh` or `bpa model from-bop`");
     return self;
   }
-  auto sources = io::load_library(folder, num_threads);
-  if (!sources.ok()) return sources.status();
+  auto contents = io::read_library(folder, num_threads);
+  if (!contents.ok()) return contents.status();
   auto library = std::make_shared<ModelLibrary>();
-  for (ModelSource& source : *sources) {
+  for (ModelSource& source : contents->models) {
     const std::string name = source.name;
-    if (Status s = add_model(std::move(source), num_threads, *library); !s.ok()) {
-      return Status(s.code, "model " + name + " of " + folder + ": " + s.message);
-    }
+    Status s = add_model(std::move(source), num_threads, *library);
+    if (!s.ok()) contents->broken.push_back({name, std::move(s)});
   }
+  if (const Status s = io::explain_broken(folder, contents->broken); !s.ok()) {
+    log(hook, LogLevel::error, s.message);
+  }
+  self->broken_ = std::move(contents->broken);
   log(hook, LogLevel::info,
       "library " + folder + ": " + std::to_string(library->size()) + " models");
   self->replace(std::move(library), options);
@@ -72,6 +75,11 @@ int LibraryDetector::version() const {
 std::shared_ptr<const ModelLibrary> LibraryDetector::library() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return library_;
+}
+
+std::vector<io::BrokenModel> LibraryDetector::broken() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return broken_;
 }
 
 void LibraryDetector::replace(std::shared_ptr<const ModelLibrary> library,
@@ -115,6 +123,10 @@ Result<std::shared_ptr<const ObjectModel>> LibraryDetector::load(const std::stri
   if (Status s = add_model(std::move(read).value(), num_threads_, library); !s.ok()) return s;
   auto model = library.find(wanted);
   replace(std::make_shared<const ModelLibrary>(std::move(library)), current()->options());
+  if (!is_path) {  // it has been mended
+    const std::lock_guard<std::mutex> mended(mutex_);
+    std::erase_if(broken_, [&](const io::BrokenModel& other) { return other.name == source; });
+  }
   return model;
 }
 
@@ -137,6 +149,7 @@ Recognition LibraryDetector::recognition(std::shared_ptr<LibraryDetector> self) 
     return annotate(frame, interpretation, self->current()->library()).pixels;
   };
   recognition.models = [self] { return self->current()->library().models(); };
+  recognition.broken = [self] { return self->broken(); };
   recognition.load = [self](const std::string& source, const std::string& name) {
     return self->load(source, name);
   };

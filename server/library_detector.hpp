@@ -5,9 +5,11 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include <bpa/core/base/log.hpp>
 #include <bpa/core/base/status.hpp>
+#include <bpa/core/io/model_file.hpp>
 #include <bpa/core/pipeline/detector.hpp>
 #include <bpa/server/recognition.hpp>
 
@@ -17,8 +19,8 @@ namespace bpa::server {
 /// search that runs keeps the library it began with.
 class LibraryDetector {
  public:
-  /// Reads the library. A folder without models is no failure (searches fail until one is loaded);
-  /// a folder that is not there or a broken model is.
+  /// Reads the library. A folder without models is no failure (searches fail until one is loaded),
+  /// and a broken model is left out and told to `log`; a folder that is not there is a failure.
   static Result<std::shared_ptr<LibraryDetector>> create(const std::string& folder,
                                                          const DetectorOptions& options,
                                                          int num_threads, const LogHook& log);
@@ -37,6 +39,7 @@ class LibraryDetector {
   void replace(std::shared_ptr<const ModelLibrary> library, const DetectorOptions& options);
   std::shared_ptr<const ModelLibrary> library() const;
   int version() const;
+  std::vector<io::BrokenModel> broken() const;
 
   const std::string folder_;
   const int num_threads_;
@@ -45,6 +48,7 @@ class LibraryDetector {
   mutable std::mutex mutex_;  ///< Guards what follows, never held for long.
   std::shared_ptr<const ModelLibrary> library_;
   std::shared_ptr<const Detector> detector_;  ///< Of that library.
+  std::vector<io::BrokenModel> broken_;       ///< Of the folder.
   int version_ = 0;
 };
 

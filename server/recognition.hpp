@@ -9,6 +9,7 @@
 
 #include <bpa/core/base/status.hpp>
 #include <bpa/core/cloud/frame.hpp>
+#include <bpa/core/io/model_file.hpp>
 #include <bpa/core/pipeline/detector.hpp>
 #include <bpa/core/scene/interpretation.hpp>
 #include <bpa/server/convert/results.hpp>
@@ -24,6 +25,8 @@ struct Recognition {
   std::function<Result<std::vector<std::uint8_t>>(const Frame&, const Interpretation&)> annotate;
   /// The models now, by number; empty: none.
   std::function<Models()> models;
+  /// The models of the library's folder that cannot be read; empty: none.
+  std::function<std::vector<io::BrokenModel>()> broken;
   /// Takes a model up, by its name in the library's folder or by file; empty: not supported.
   std::function<Result<std::shared_ptr<const ObjectModel>>(const std::string& source,
                                                            const std::string& name)>

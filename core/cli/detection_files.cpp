@@ -48,11 +48,24 @@ io::ResultPlacement to_result(const Placement& placement, const Pose& reported_f
   return result;
 }
 
+/// The models of a library; a broken one is a failure only where it is asked for. No names: all.
+Result<std::vector<ModelSource>> wanted_models(const std::string& folder,
+                                               const std::vector<std::string>& names,
+                                               int num_threads) {
+  if (names.empty()) return io::load_library(folder, num_threads);
+  Result<io::LibraryContents> contents = io::read_library(folder, num_threads);
+  if (!contents.ok()) return contents.status();
+  for (const io::BrokenModel& broken : contents->broken) {
+    if (std::find(names.begin(), names.end(), broken.name) != names.end()) return broken.reason;
+  }
+  return std::move(contents->models);
+}
+
 }  // namespace
 
 Result<std::shared_ptr<const ModelLibrary>> load_detection_library(
     const std::string& folder, const std::vector<std::string>& names, int num_threads) {
-  Result<std::vector<ModelSource>> sources = io::load_library(folder, num_threads);
+  Result<std::vector<ModelSource>> sources = wanted_models(folder, names, num_threads);
   if (!sources.ok()) return sources.status();
   for (const std::string& name : names) {
     const bool known = std::any_of(sources->begin(), sources->end(),

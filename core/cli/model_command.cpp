@@ -119,12 +119,12 @@ void print_saved(const ModelSource& model, const std::string& library) {
   }
 }
 
-/// The number of a model of that name, else the first that is free.
-Result<int> choose_number(const std::string& library, const std::string& name) {
+/// The number of a model of that name, else the first that is free. Broken models have none.
+int choose_number(const std::string& library, const std::string& name) {
   int largest = 0;
   for (const std::string& other : io::list_models(library)) {
     const Result<ModelSource> model = io::describe_model(library, other);
-    if (!model.ok()) return model.status();
+    if (!model.ok()) continue;
     if (other == name) return model->number;
     largest = std::max(largest, model->number);
   }
@@ -145,11 +145,7 @@ Result<ModelSource> source_from_file(const ModelArguments& a) {
 }
 
 Status from_mesh(ModelArguments a) {
-  if (a.number == 0) {
-    const Result<int> number = choose_number(a.library, a.name);
-    if (!number.ok()) return number.status();
-    a.number = *number;
-  }
+  if (a.number == 0) a.number = choose_number(a.library, a.name);
   a.options.num_threads = a.common.threads;
   Result<ModelSource> source = source_from_file(a);
   if (!source.ok()) {
@@ -222,11 +218,7 @@ Result<std::vector<PosedView>> posed_views(const ModelArguments& a,
 }
 
 Status from_scans(ModelArguments a) {
-  if (a.number == 0) {
-    const Result<int> number = choose_number(a.library, a.name);
-    if (!number.ok()) return number.status();
-    a.number = *number;
-  }
+  if (a.number == 0) a.number = choose_number(a.library, a.name);
   a.options.num_threads = a.common.threads;
   std::vector<std::string> warnings;
   Result<std::vector<PosedView>> views = posed_views(a, warnings);
@@ -277,15 +269,19 @@ Status info(const ModelArguments& a) {
 }
 
 Status list(const ModelArguments& a) {
-  const Result<std::vector<ModelSource>> models = io::load_library(a.library, a.common.threads);
-  if (!models.ok()) return models.status();
+  const Result<io::LibraryContents> found = io::read_library(a.library, a.common.threads);
+  if (!found.ok()) return found.status();
+  if (found->models.empty() && found->broken.empty()) {
+    return invalid_argument("library " + a.library + " is empty");
+  }
   std::printf("%6s  %-28s %12s %8s  %s\n", "number", "name", "diameter", "points", "symmetries");
-  for (const ModelSource& model : *models) {
+  for (const ModelSource& model : found->models) {
     std::printf("%6d  %-28s %9.1f mm %8zu  %zu discrete, %zu continuous\n", model.number,
                 model.name.c_str(), 1000 * model.diameter, model.surface.size(),
                 model.symmetry.discrete.size(), model.symmetry.continuous.size());
   }
-  return {};
+  std::fflush(stdout);
+  return io::explain_broken(a.library, found->broken);
 }
 
 Status remove(const ModelArguments& a) {
@@ -395,8 +391,9 @@ void add_model_command(CLI::App& program, Action& action) {
       .add_flag_callback(
           "--none", [a] { a->symmetry = "none"; }, "The object has none")
       ->excludes(confirm);
-  add(model, "list", "The models of a library", a, action,
-      [](ModelArguments m) { return list(m); });
+  add(model, "list",
+      "The models of a library; exits with 1, after the list, when one of them cannot be read", a,
+      action, [](ModelArguments m) { return list(m); });
   add(model, "remove", "Take a model out of a library", a, action,
       [](ModelArguments m) { return remove(m); })
       .add_option("name", a->name, "Name of the model")

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include <bpa/core/base/parallel.hpp>
 #include <bpa/core/io/mesh_file.hpp>
@@ -301,7 +302,7 @@ std::vector<std::string> list_models(const std::string& library) {
   return names;
 }
 
-Result<std::vector<ModelSource>> load_library(const std::string& library, int num_threads) {
+Result<LibraryContents> read_library(const std::string& library, int num_threads) {
   std::error_code error;
   if (!fs::is_directory(library, error)) {
     return Status(StatusCode::not_found, "library " + library + " is not there");
@@ -312,24 +313,49 @@ Result<std::vector<ModelSource>> load_library(const std::string& library, int nu
     const auto k = static_cast<std::size_t>(i);
     loaded[k] = load_model(library, names[k]);
   });
-  std::vector<ModelSource> models;
-  for (Result<ModelSource>& model : loaded) {
-    if (!model.ok()) return model.status();
-    models.push_back(std::move(*model));
-  }
-  if (models.empty()) {
-    return invalid_argument("library " + library + " is empty; it must hold at least one model");
-  }
-  std::sort(models.begin(), models.end(),
-            [](const ModelSource& a, const ModelSource& b) { return a.number < b.number; });
-  for (std::size_t i = 1; i < models.size(); ++i) {
-    if (models[i].number == models[i - 1].number) {
-      return Status(StatusCode::corrupt, "library " + library + ": " + models[i - 1].name +
-                                             " and " + models[i].name + " have the same number " +
-                                             std::to_string(models[i].number));
+  LibraryContents contents;
+  std::map<int, std::string> owners;  // of numbers
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    Status reason = loaded[k].status();
+    if (reason.ok()) {
+      const auto [owner, free] = owners.emplace(loaded[k]->number, names[k]);
+      if (!free) {
+        reason = Status(StatusCode::corrupt, owner->second + " and " + names[k] +
+                                                 " have the same number " +
+                                                 std::to_string(owner->first));
+      }
+    }
+    if (reason.ok()) {
+      contents.models.push_back(std::move(*loaded[k]));
+    } else {
+      contents.broken.push_back({names[k], std::move(reason)});
     }
   }
-  return models;
+  std::sort(contents.models.begin(), contents.models.end(),
+            [](const ModelSource& a, const ModelSource& b) { return a.number < b.number; });
+  return contents;
+}
+
+Status explain_broken(const std::string& library, const std::vector<BrokenModel>& broken) {
+  if (broken.empty()) return {};
+  std::string text = "library " + library + ": " + std::to_string(broken.size()) +
+                     (broken.size() == 1 ? " model" : " models") + " cannot be read";
+  const char* separator = ": ";
+  for (const BrokenModel& model : broken) {
+    text += separator + model.name + " (" + model.reason.message + ")";
+    separator = ", ";
+  }
+  return Status(StatusCode::corrupt, text);
+}
+
+Result<std::vector<ModelSource>> load_library(const std::string& library, int num_threads) {
+  Result<LibraryContents> contents = read_library(library, num_threads);
+  if (!contents.ok()) return contents.status();
+  if (!contents->broken.empty()) return contents->broken.front().reason;
+  if (contents->models.empty()) {
+    return invalid_argument("library " + library + " is empty; it must hold at least one model");
+  }
+  return std::move(contents->models);
 }
 
 Status remove_model(const std::string& library, const std::string& name) {

@@ -32,8 +32,28 @@ Result<ModelSource> load_model(const std::string& library, const std::string& na
 /// The same without surface and index, which are not read.
 Result<ModelSource> describe_model(const std::string& library, const std::string& name);
 
-/// Every model of a library by increasing number, read in parallel. Fails with not_found when the
-/// folder is not there, invalid_argument when it holds no model, corrupt when any of its models is.
+/// A model that cannot be read, and why.
+struct BrokenModel {
+  std::string name;
+  Status reason;
+};
+
+/// What a library holds.
+struct LibraryContents {
+  std::vector<ModelSource> models;  ///< By increasing number.
+  /// By name: models that load_model refuses, and those with a number that another has.
+  std::vector<BrokenModel> broken;
+};
+
+/// Every model of a library, read in parallel: one that is broken costs no other. Fails with
+/// not_found when the folder is not there.
+Result<LibraryContents> read_library(const std::string& library, int num_threads = 0);
+
+/// One line that says which models of a library cannot be read, and why; ok when all can be.
+Status explain_broken(const std::string& library, const std::vector<BrokenModel>& broken);
+
+/// The models of a library of which none is broken. Fails with not_found when the folder is not
+/// there, invalid_argument when it holds no model, corrupt when any of its models is.
 Result<std::vector<ModelSource>> load_library(const std::string& library, int num_threads = 0);
 
 /// The names of a library's models, sorted by name; empty for an empty or missing folder.

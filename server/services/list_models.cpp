@@ -16,12 +16,17 @@ msgs::ListModels_Response list(const Recognition& recognition,
   response.library = recognition.library;
   response.database_version = recognition.version ? recognition.version() : 1;
   const Models models = recognition.models ? recognition.models() : Models();
+  const auto broken = recognition.broken ? recognition.broken() : std::vector<io::BrokenModel>();
   for (const std::string& name : names) {
     const bool known = std::any_of(models.begin(), models.end(),
                                    [&](const auto& model) { return model->name == name; });
     if (known) continue;
+    const auto damaged = std::find_if(broken.begin(), broken.end(),
+                                      [&](const auto& model) { return model.name == name; });
     response.status =
-        to_message(Status(StatusCode::not_found, "there is no model named \"" + name + "\""));
+        to_message(damaged != broken.end()
+                       ? damaged->reason
+                       : Status(StatusCode::not_found, "there is no model named \"" + name + "\""));
     return response;
   }
   for (const auto& model : models) {
@@ -30,6 +35,7 @@ msgs::ListModels_Response list(const Recognition& recognition,
     if (wanted) response.models.push_back(model_message(*model));
   }
   response.success = true;
+  if (names.empty()) response.status = to_message(io::explain_broken(recognition.library, broken));
   return response;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
@@ -135,6 +136,57 @@ Frame box_frame() {
   }
   frame.color.assign(3 * frame.depth.size(), 128);
   return frame;
+}
+
+// A library with a broken model serves the others, says which one is broken, and takes it when it
+// has been mended.
+TEST(Library, OneBrokenModelCostsNoOther) {
+  const std::string folder = support::scratch_folder() + "/broken_library";
+  int number = 0;
+  for (const char* name : {"good", "bad"}) {
+    const auto source = model_source_from_mesh(stepped_box(), name, ++number);
+    ASSERT_TRUE(source.ok());
+    ASSERT_TRUE(io::save_model(folder, *source).ok());
+  }
+  const std::string surface = support::read_text(folder + "/bad/surface.ply");
+  std::filesystem::resize_file(folder + "/bad/surface.ply", surface.size() / 2);
+  const std::string log = support::scratch_folder() + "/broken.log";
+  const support::Process server(
+      {BPA_BINARY_DIR "/bin/bpa-server", "--localhost", "--library", folder, "--namespace",
+       support::test_namespace(), "--domain", std::to_string(support::test_domain())},
+      log);
+  auto participant = support::test_participant("tester");
+  ASSERT_TRUE(participant.ok()) << participant.status().message;
+  auto list = wire::ServiceClient<msgs::ListModels>::create(*participant, "list_models");
+  auto load = wire::ServiceClient<msgs::LoadModel>::create(*participant, "load_model");
+  ASSERT_TRUE(list.ok() && load.ok());
+  const auto reply = list->call({}, milliseconds(30000));
+  ASSERT_TRUE(reply.ok()) << reply.status().message << support::read_text(log);
+  EXPECT_TRUE(reply->success);
+  ASSERT_EQ(reply->models.size(), 1U);
+  EXPECT_EQ(reply->models[0].name, "good");
+  EXPECT_EQ(reply->status.code, static_cast<std::uint8_t>(StatusCode::corrupt));
+  for (const char* words : {"bad (", "truncated"}) {
+    EXPECT_NE(reply->status.message.find(words), std::string::npos) << reply->status.message;
+    EXPECT_NE(support::read_text(log).find(words), std::string::npos);
+  }
+  msgs::ListModels_Request one;
+  one.names = {"bad"};
+  const auto asked = list->call(one, milliseconds(30000));
+  ASSERT_TRUE(asked.ok());
+  EXPECT_FALSE(asked->success);
+  EXPECT_NE(asked->status.message.find("truncated"), std::string::npos) << asked->status.message;
+
+  std::ofstream(folder + "/bad/surface.ply", std::ios::binary) << surface;
+  msgs::LoadModel_Request mended;
+  mended.source = "bad";
+  const auto loaded = load->call(mended, milliseconds(30000));
+  ASSERT_TRUE(loaded.ok());
+  EXPECT_TRUE(loaded->success) << loaded->status.message;
+  const auto again = list->call({}, milliseconds(30000));
+  ASSERT_TRUE(again.ok());
+  EXPECT_EQ(again->models.size(), 2U);
+  EXPECT_EQ(again->status.message, "");
 }
 
 TEST(Identity, OfASyntheticFrame) {

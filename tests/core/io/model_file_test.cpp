@@ -186,6 +186,33 @@ TEST(ModelFile, DamageIsSaid) {
   EXPECT_NE(message().find("index.bin was altered"), std::string::npos);
 }
 
+TEST(ModelFile, OneBrokenModelCostsNoOther) {
+  const test::TemporaryFolder folder;
+  for (int k = 0; k < 4; ++k) {
+    const std::string name(1, static_cast<char>('a' + k));
+    ASSERT_TRUE(save_model(folder.path(), some_model(name, 9 - k)).ok());
+  }
+  EXPECT_TRUE(explain_broken(folder.path(), read_library(folder.path())->broken).ok());
+  spill(folder / "b/surface.ply", slurp(folder / "b/surface.ply").substr(0, 60));
+  spill(folder / "d/model.json", slurp(folder / "a/model.json"));  // another's name
+  std::string json = slurp(folder / "c/model.json");
+  json.replace(json.find("\"number\": 7"), 11, "\"number\": 9");  // that of a
+  spill(folder / "c/model.json", json);
+  const auto contents = read_library(folder.path());
+  ASSERT_TRUE(contents.ok()) << contents.status().message;
+  ASSERT_EQ(contents->models.size(), 1u);
+  EXPECT_EQ(contents->models[0].name, "a");
+  ASSERT_EQ(contents->broken.size(), 3u);
+  EXPECT_EQ(contents->broken[0].name, "b");
+  const std::string why = explain_broken(folder.path(), contents->broken).message;
+  for (const char* words : {"3 models", "b (", "truncated", "a and c have the same number 9",
+                            "names the model \"a\"; its folder must too"}) {
+    EXPECT_NE(why.find(words), std::string::npos) << words << " in " << why;
+  }
+  EXPECT_EQ(load_library(folder.path()).status().code, StatusCode::corrupt);
+  EXPECT_EQ(read_library(folder / "none").status().code, StatusCode::not_found);
+}
+
 // The definition of the checksum, bit by bit.
 TEST(FileBytes, ChecksumIsThatOfPngAndZip) {
   EXPECT_EQ(crc32("123456789"), 0xcbf43926u);  // the check value of the standard

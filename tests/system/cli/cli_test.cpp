@@ -177,6 +177,20 @@ TEST_F(BadInput, DamagedModel) {
   const std::string bytes = slurp(path);
   spill(path, bytes.substr(0, bytes.size() - 1));
   expect_failure(detect("d.png"), {"surface.ply", "truncated"});
+  // The others are listed and found all the same, and it can be made again.
+  const std::string make_box = "model from-mesh " + (folder_ / "box.ply") +
+                               " --views 0 --library " + (folder_ / "L") + " --name ";
+  ASSERT_EQ(run(make_box + "other").code, 0);
+  Outcome listed = run("model list --library " + (folder_ / "L"));
+  EXPECT_EQ(listed.code, 1);
+  for (const char* words : {"  other  ", "bpa: ", "1 model cannot be read", "box (", "truncated"}) {
+    EXPECT_NE(listed.out.find(words), std::string::npos) << words << " in " << listed.out;
+  }
+  EXPECT_EQ(listed.out.find("  box  "), std::string::npos) << listed.out;
+  EXPECT_EQ(run(detect("d.png", "camera.json", "--models other")).code, 0);
+  expect_failure(detect("d.png", "camera.json", "--models other,box"), {"surface.ply"});
+  ASSERT_EQ(run(make_box + "box").code, 0);
+  EXPECT_EQ(run("model list --library " + (folder_ / "L")).code, 0);
 }
 
 TEST_F(BadInput, ConfigurationFile) {
