@@ -47,7 +47,7 @@ class Look {
     Eigen::AlignedBox3f box;
     for (const Eigen::Vector3f& p : model.surface.points) box.extend(p);
     middle_ = box.center();
-    scale_ = 0.86f * kTile / static_cast<float>(model.diameter);
+    scale_ = 0.80f * kTile / static_cast<float>(model.diameter);
   }
 
   cv::Point place(const Eigen::Vector3f& p) const {

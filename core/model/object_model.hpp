@@ -77,6 +77,9 @@ double largest_distance(const std::vector<Eigen::Vector3f>& points);
 /// Fails with invalid_argument, with a hint about units, for a diameter under 5 mm or over 3 m.
 Status check_size(const std::string& name, double diameter);
 
+/// What people should know about a surface of that shape: that it is a single flat face.
+std::vector<std::string> shape_warnings(const PointCloud& surface);
+
 /// The normal variances that follow from the surface alone: a sensor averages normals over its
 /// window, so that they vary as those of the surface within it do.
 std::vector<float> geometric_normal_variance(const PointCloud& surface, int num_threads);

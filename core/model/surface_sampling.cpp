@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -163,6 +164,7 @@ ModelSource make_source(PointCloud surface, const std::string& name, int number,
   source.number = number;
   source.diameter = largest_distance(surface.points);
   source.normal_variance = geometric_normal_variance(surface, num_threads);
+  source.warnings = shape_warnings(surface);
   source.surface = std::move(surface);
   return source;
 }
@@ -200,6 +202,18 @@ Status check_size(const std::string& name, double diameter) {
   return invalid_argument(text.str());
 }
 
+std::vector<std::string> shape_warnings(const PointCloud& surface) {
+  constexpr float kFlat = 0.99f;  // share of the squared normals along one axis
+  Eigen::Matrix3f scatter = Eigen::Matrix3f::Zero();
+  for (const Eigen::Vector3f& n : surface.normals) scatter += n * n.transpose();
+  scatter /= static_cast<float>(std::max<std::size_t>(1, surface.normals.size()));
+  const float most = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>(scatter).eigenvalues()[2];
+  if (surface.normals.empty() || most < kFlat) return {};
+  return {
+      "is one flat face: only its outline tells where it lies in its plane, and every table looks "
+      "like it"};
+}
+
 Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::string& name,
                                            int number, const ModelOptions& options) {
   if (Status status = validate(options); !status.ok()) return status;
@@ -218,7 +232,9 @@ Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::
   }
   ModelSource source = make_source(downsample(visible.cloud, static_cast<float>(spacing)), name,
                                    number, options.num_threads);
-  source.warnings = mesh_warnings(visible, samples.places.size());
+  for (std::string& warning : mesh_warnings(visible, samples.places.size())) {
+    source.warnings.push_back(std::move(warning));
+  }
   return source;
 }
 

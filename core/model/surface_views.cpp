@@ -84,6 +84,7 @@ Result<ModelSource> model_source_from_views(std::vector<PosedView> views, const 
   source.surface = std::move(fused.points);
   source.diameter = largest_distance(source.surface.points);
   if (Status s = check_size(name, source.diameter); !s.ok()) return s;
+  source.warnings = shape_warnings(source.surface);
   learn_noise(source, views, options.num_threads);
   if (const Unseen unseen = unseen_part(source.surface, options.num_threads); unseen.share > 0.04) {
     source.warnings.push_back("about " + std::to_string(std::lround(100 * unseen.share)) +

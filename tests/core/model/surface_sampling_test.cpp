@@ -192,8 +192,9 @@ TEST(SurfaceSampling, OpenSheetHasTwoSides) {
   }
   EXPECT_EQ(up, down);
   EXPECT_GT(up, 1200);
-  ASSERT_EQ(source.warnings.size(), 1u);
-  EXPECT_NE(source.warnings[0].find("open mesh"), std::string::npos);
+  ASSERT_EQ(source.warnings.size(), 2u);
+  EXPECT_NE(source.warnings[0].find("one flat face"), std::string::npos);
+  EXPECT_NE(source.warnings[1].find("open mesh"), std::string::npos);
 }
 
 TEST(SurfaceSampling, NonManifoldMeshesAreSampled) {
