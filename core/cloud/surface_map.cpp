@@ -44,7 +44,7 @@ float block_depth(const Frame& frame, int u0, int v0, int reduction) {
   return sum / static_cast<float>(used);
 }
 
-bool block_searched(const Frame& frame, int u, int v) {
+bool pixel_searched(const Frame& frame, int u, int v) {
   const RegionOfInterest& roi = frame.roi;
   if (!roi.empty() &&
       (u < roi.x || v < roi.y || u >= roi.x + roi.width || v >= roi.y + roi.height)) {
@@ -53,6 +53,22 @@ bool block_searched(const Frame& frame, int u, int v) {
   const auto index = static_cast<std::size_t>(v * frame.camera.width + u);
   if (!frame.mask.empty() && frame.mask[index] == 0) return false;
   return frame.background.empty() || frame.background[index] == 0;
+}
+
+// Whether at least half of the block's pixels on the surface at `depth`, which stands for the
+// block, are searched. Any of them would let a mask grow by up to a block to each side, and all of
+// them shrink it; half keeps its area, and pixels on another surface have no say.
+bool block_searched(const Frame& frame, int u0, int v0, int reduction, float depth) {
+  int searched = 0, on_surface = 0;
+  for (int v = v0; v < v0 + reduction; ++v) {
+    for (int u = u0; u < u0 + reduction; ++u) {
+      const float z = frame.depth[static_cast<std::size_t>(v * frame.camera.width + u)];
+      if (!(std::abs(z - depth) <= same_surface_gate(depth))) continue;
+      ++on_surface;
+      searched += pixel_searched(frame, u, v);
+    }
+  }
+  return searched > 0 && 2 * searched >= on_surface;
 }
 
 // The normal of the plane fitted to the neighbours that lie on the same surface; zero when fewer
@@ -113,8 +129,9 @@ SurfaceMap surface_map(const Frame& frame, const SurfaceMapOptions& options) {
           const float z = block_depth(frame, u * map.reduction, v * map.reduction, map.reduction);
           map.depth[index] = z;
           map.points[index] = map.camera.unproject(u, v, z).cast<float>();
-          map.searched[index] = z > 0 && z <= static_cast<float>(options.max_range_m) &&
-                                block_searched(frame, u * map.reduction, v * map.reduction);
+          map.searched[index] =
+              z > 0 && z <= static_cast<float>(options.max_range_m) &&
+              block_searched(frame, u * map.reduction, v * map.reduction, map.reduction, z);
         }
       },
       16);

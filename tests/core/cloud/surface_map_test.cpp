@@ -171,6 +171,48 @@ TEST(SurfaceMap, SearchesWhereItMay) {
   }
 }
 
+// The map has half the frame's resolution: blocks of 2 x 2 pixels that a mask cuts.
+TEST(SurfaceMap, BlockIsSearchedWhenHalfOfItIs) {
+  auto image = test::render({tilted_wall(1.0, 0)}, test::kinect_camera());
+  for (int pattern = 0; pattern < 16; ++pattern) {  // one bit for each pixel of a block
+    image.frame.mask.assign(640 * 480, 0);
+    int count = 0;
+    for (int k = 0; k < 4; ++k) {
+      if ((pattern >> k & 1) == 0) continue;
+      ++count;
+      for (int v = k / 2; v < 480; v += 2) {
+        for (int u = k % 2; u < 640; u += 2)
+          image.frame.mask[static_cast<std::size_t>(v * 640 + u)] = 1;
+      }
+    }
+    const SurfaceMap map = surface_map(image.frame, {});
+    ASSERT_EQ(map.reduction, 2);
+    const auto searched = std::count(map.searched.begin(), map.searched.end(), 1);
+    EXPECT_EQ(searched, count >= 2 ? 320 * 240 : 0) << pattern;
+  }
+}
+
+// Left of u = 321 the wall is near, and only that is searched: of the blocks across the border,
+// which the near surface stands for, the pixels of the far one have no say.
+TEST(SurfaceMap, PixelsOnAnotherSurfaceHaveNoSay) {
+  auto image = test::render({tilted_wall(1.0, 0)}, test::kinect_camera());
+  for (const bool near_is_searched : {true, false}) {
+    image.frame.mask.assign(640 * 480, 0);
+    for (int v = 0; v < 480; ++v) {
+      for (int u = 0; u < 640; ++u) {
+        const auto i = static_cast<std::size_t>(v * 640 + u);
+        image.frame.depth[i] = u < 321 ? 1.0f : 1.5f;
+        image.frame.mask[i] = (u < 321) == near_is_searched;
+      }
+    }
+    const SurfaceMap map = surface_map(image.frame, {});
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      ASSERT_EQ(map.searched[i] != 0, (map.depth[i] < 1.2f) == near_is_searched) << i % 320;
+    }
+    EXPECT_NEAR(map.depth[160], 1.0f, 1e-6f);  // the block across the border
+  }
+}
+
 TEST(SurfaceMap, DoesNotSearchBeyondItsRange) {
   const auto image = test::render({tilted_wall(1.5, 0.7)}, test::kinect_camera());
   SurfaceMapOptions options;
