@@ -22,6 +22,7 @@
 #include <bpa/core/pipeline/annotate.hpp>
 #include <bpa/core/pipeline/detector.hpp>
 #include <bpa/core/pipeline/frame_trace.hpp>
+#include <bpa/core/pipeline/pose_prior_file.hpp>
 #include <bpa/core/pipeline/score_layer_file.hpp>
 
 namespace bpa::cli {
@@ -35,7 +36,9 @@ struct DetectArguments {
   std::vector<std::string> pcd;
   std::string depth, color, camera, bop;
   std::string split = "test";
-  std::string scenes, models;
+  std::string scenes, models, priors;
+  std::string mask;
+  std::vector<int> roi;
   int top = 20;
   double budget_ms = 0;
   std::string csv, json, annotate, explain;
@@ -135,11 +138,35 @@ void print_result(const std::string& name, const io::FrameResult& result) {
   }
 }
 
+/// What the caller says of every frame.
+struct Given {
+  RegionOfInterest roi;
+  std::vector<std::uint8_t> mask;
+  std::vector<PosePrior> priors;  ///< In the frame that poses are reported in.
+};
+
+Result<Given> read_given(const DetectArguments& a) {
+  Given given;
+  if (!a.roi.empty()) given.roi = {a.roi[0], a.roi[1], a.roi[2], a.roi[3]};
+  if (!a.mask.empty()) {
+    const Result<io::GrayImage> mask = io::read_gray_png(a.mask);
+    if (!mask.ok()) return mask.status();
+    for (const std::uint16_t value : mask->pixels) given.mask.push_back(value > 0);
+  }
+  if (!a.priors.empty()) {
+    Result<std::vector<PosePrior>> priors = read_pose_priors(a.priors);
+    if (!priors.ok()) return priors.status();
+    given.priors = std::move(*priors);
+  }
+  return given;
+}
+
 /// Runs over the inputs and writes what was asked for.
 class DetectRun {
  public:
-  DetectRun(const DetectArguments& arguments, const Detector& detector, std::size_t num_frames)
-      : a_(arguments), detector_(detector) {
+  DetectRun(const DetectArguments& arguments, const Detector& detector, const Given& given,
+            std::size_t num_frames)
+      : a_(arguments), detector_(detector), given_(given) {
     if (!a_.explain.empty()) explain_.emplace(a_.explain, num_frames > 1);
     request_.models = split_commas(a_.models);
     request_.top_k = a_.top;
@@ -151,6 +178,12 @@ class DetectRun {
   Status one(Input input) {
     const std::string name = input_name(a_, input.scene_id, input.im_id);
     clean_depth(input.frame);
+    input.frame.roi = given_.roi;
+    input.frame.mask = given_.mask;
+    request_.priors.clear();
+    for (const PosePrior& prior : given_.priors) {
+      request_.priors.push_back(transformed(input.reported_from_camera.inverse(), prior));
+    }
     const Stopwatch watch;
     FrameTrace trace;
     const Result<SceneInterpretations> scene =
@@ -211,6 +244,7 @@ class DetectRun {
 
   const DetectArguments& a_;
   const Detector& detector_;
+  const Given& given_;
   std::optional<ExplainFolder> explain_;
   DetectRequest request_;
   std::vector<io::FrameResult> results_;
@@ -228,12 +262,12 @@ Result<std::vector<int>> parse_scenes(const std::string& list) {
   return scenes;
 }
 
-Status run_bop(const DetectArguments& a, const Detector& detector) {
+Status run_bop(const DetectArguments& a, const Detector& detector, const Given& given) {
   const Result<std::vector<int>> scenes = parse_scenes(a.scenes);
   if (!scenes.ok()) return scenes.status();
   const Result<std::vector<io::BopFrame>> frames = io::read_bop_frames(a.bop, a.split, *scenes);
   if (!frames.ok()) return frames.status();
-  DetectRun run(a, detector, frames->size());
+  DetectRun run(a, detector, given, frames->size());
   Progress progress("frames", static_cast<int>(frames->size()));
   for (std::size_t i = 0; i < frames->size(); ++i) {
     progress.show(static_cast<int>(i));
@@ -257,6 +291,8 @@ Status detect(const DetectArguments& a) {
   if (!a.pcd.empty()) first = read_pcd_input(a, 0);
   if (!a.depth.empty()) first = read_png_input(a);
   if (!first.ok()) return first.status();
+  const Result<Given> given = read_given(a);
+  if (!given.ok()) return given.status();
   if (!a.explain.empty()) {
     if (Status s = io::make_folder(a.explain); !s.ok()) return s;
   }
@@ -265,8 +301,8 @@ Status detect(const DetectArguments& a) {
   Result<ScoreLayer> layer = library_score_layer(a.library);
   if (!layer.ok()) return layer.status();
   const Detector detector(*library, options, std::move(*layer));
-  if (!a.bop.empty()) return run_bop(a, detector);
-  DetectRun run(a, detector, std::max<std::size_t>(1, a.pcd.size()));
+  if (!a.bop.empty()) return run_bop(a, detector, *given);
+  DetectRun run(a, detector, *given, std::max<std::size_t>(1, a.pcd.size()));
   if (Status s = run.one(std::move(*first)); !s.ok()) return s;
   for (int i = 1; i < static_cast<int>(a.pcd.size()); ++i) {
     Result<Input> next = read_pcd_input(a, i);
@@ -313,6 +349,20 @@ void add_inputs(CLI::App& command, DetectArguments& a) {
       ->type_name("LIST");
   command.add_option("--models", a.models, "Names of models to look for; all if not given")
       ->type_name("LIST");
+  command
+      .add_option("--roi", a.roi, "Part of each frame that is searched: X Y WIDTH HEIGHT, pixels")
+      ->expected(4);
+  command
+      .add_option("--mask", a.mask,
+                  "8-bit PNG of the frames' size; where it is black, they are not searched")
+      ->type_name("FILE");
+  command
+      .add_option("--priors", a.priors,
+                  "What is known beforehand of the objects' poses, in the frame that they are "
+                  "reported in: JSON, {\"priors\": [{\"model\": NAME, \"pose\": "
+                  "{\"rotation_wxyz\": [4], \"translation_m\": [3]}, \"position_sigma_m\": S, "
+                  "\"rotation_sigma_deg\": S, \"weight\": W}]}")
+      ->type_name("FILE");
   command.add_option("--config", a.config, "Settings of the detector (detector.yaml)")
       ->type_name("FILE");
 }

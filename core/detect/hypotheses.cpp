@@ -51,6 +51,11 @@ align::OrientedPair oriented_pair(const SceneFeatures& scene, const ModelIndex& 
   return pair;
 }
 
+void sort_by_score(std::vector<Hypothesis>& all) {
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
+}
+
 class Sampler {
  public:
   Sampler(const SceneFeatures& scene, const ObjectModel& model, const HypothesisOptions& options,
@@ -103,6 +108,26 @@ class Sampler {
     }
   }
 
+  // A pose that the caller suggests is as far off as the caller is unsure, and the surface may be
+  // nearer than the checks allow for: it is looked at as it is and aligned.
+  void from_caller() {
+    RefinementOptions wide;
+    wide.iterations = 4;
+    wide.max_points = 100;
+    wide.max_edges = options_.use_edges ? 30 : 0;
+    wide.start_gate_m = 0.050f;
+    wide.end_gate_m = 0.015f;
+    for (const Pose& pose : options_.suggested) {
+      Hypothesis hypothesis;
+      hypothesis.source = Hypothesis::Source::caller;
+      for (const Pose& start : {pose, refine_pose(scene_, model_, pose, wide).camera_from_object}) {
+        hypothesis.camera_from_object = to_fast(start);
+        if (passes(hypothesis)) suggested_.push_back(hypothesis);
+      }
+    }
+    keep_best(suggested_, options_.max_suggested);
+  }
+
   // Looks again at everything that was kept, with more points, after a first small correction.
   std::vector<Hypothesis> take() {
     const Stopwatch watch;
@@ -116,23 +141,29 @@ class Sampler {
     keep_best(kept, 2 * options_.max_kept);
     for (Hypothesis& hypothesis : kept) correct(hypothesis);
     keep_best(kept, options_.max_kept);
+    for (Hypothesis& hypothesis : suggested_) correct(hypothesis);
+    kept.insert(kept.end(), suggested_.begin(), suggested_.end());
+    sort_by_score(kept);
     if (trace_) trace_->check_milliseconds += watch.milliseconds();
     return kept;
   }
 
  private:
   void consider(Hypothesis& hypothesis) {
-    if (!trace_) {
-      check_and_keep(hypothesis);
-      return;
-    }
-    trace_->considered.push_back(hypothesis.camera_from_object);
-    const Stopwatch watch;
-    check_and_keep(hypothesis);
-    trace_->check_milliseconds += watch.milliseconds();
+    if (passes(hypothesis)) keep(hypothesis);
   }
 
-  void check_and_keep(Hypothesis& hypothesis) {
+  // Checks and scores it; says in the trace what was looked at, and why it was dropped.
+  bool passes(Hypothesis& hypothesis) {
+    if (!trace_) return check(hypothesis);
+    trace_->considered.push_back(hypothesis.camera_from_object);
+    const Stopwatch watch;
+    const bool passed = check(hypothesis);
+    trace_->check_milliseconds += watch.milliseconds();
+    return passed;
+  }
+
+  bool check(Hypothesis& hypothesis) {
     const FastPose& pose = hypothesis.camera_from_object;
     const PoseCheck check =
         check_pose(scene_.image, model_.index->check, pose, options_.check_points, tolerance_);
@@ -145,16 +176,16 @@ class Sampler {
     } else if (hypothesis.score < static_cast<float>(options_.min_check_score)) {
       drop(dropped_, "not on the surface", pose);
     } else {
-      keep(hypothesis);
+      return true;
     }
+    return false;
   }
 
   // The best, and those of each place in the scene: an object that is easily mistaken for this one
   // must not crowd out a place where the fit is worse but true. Leaves them sorted by score.
   void keep_best(std::vector<Hypothesis>& all, int count) const {
     constexpr float kRankPenalty = 0.004f;  // of the score, for each better one at the same place
-    const auto by_score = [](const auto& a, const auto& b) { return a.score > b.score; };
-    std::stable_sort(all.begin(), all.end(), by_score);
+    sort_by_score(all);
     if (all.size() <= static_cast<std::size_t>(count)) return;
     std::unordered_map<std::uint64_t, int> met;
     std::vector<std::pair<float, std::size_t>> order;
@@ -169,7 +200,7 @@ class Sampler {
     order.resize(static_cast<std::size_t>(count));
     std::vector<Hypothesis> kept;
     for (const auto& [penalised, i] : order) kept.push_back(all[i]);
-    std::stable_sort(kept.begin(), kept.end(), by_score);
+    sort_by_score(kept);
     all = std::move(kept);
   }
 
@@ -249,6 +280,7 @@ class Sampler {
   CheckTolerance tolerance_;
   RandomStream random_;
   std::unordered_map<std::uint64_t, PoseCell> cells_;
+  std::vector<Hypothesis> suggested_;
 };
 
 struct Cluster {
@@ -256,7 +288,8 @@ struct Cluster {
   std::vector<std::size_t> members;
 };
 
-// BPA from the cluster's correspondences, up to ten of them, those of its best members first.
+// BPA from the cluster's correspondences, up to ten of them, those of its best members first. The
+// best member where there are none, since the caller suggested all.
 Pose align_cluster(const SceneFeatures& scene, const ObjectModel& model,
                    const std::vector<Hypothesis>& hypotheses, const Cluster& cluster) {
   align::OrientedPair pairs[10];
@@ -264,12 +297,33 @@ Pose align_cluster(const SceneFeatures& scene, const ObjectModel& model,
   for (std::size_t member : cluster.members) {
     if (count == 10) break;
     const Hypothesis& h = hypotheses[member];
+    if (h.source == Hypothesis::Source::caller) continue;
     pairs[count++] = oriented_pair(scene, *model.index, h.scene, h.model,
                                    h.source == Hypothesis::Source::feature);
   }
+  if (count == 0) return to_pose(hypotheses[cluster.members.front()].camera_from_object);
   align::Correspondences data;
   data.oriented = std::span<const align::OrientedPair>(pairs, count);
   return align::bpa_mode(data).camera_from_object;
+}
+
+// The best `count`; the first quarter of the places is for those with the caller's suggestions.
+void keep_clusters(std::vector<Hypothesis>& clusters, std::size_t count, DroppedPoses* dropped) {
+  sort_by_score(clusters);
+  if (clusters.size() <= count) return;
+  std::vector<Hypothesis> kept, others;
+  for (const Hypothesis& cluster : clusters) {
+    const bool suggested = cluster.source == Hypothesis::Source::caller;
+    (suggested && kept.size() < count / 4 ? kept : others).push_back(cluster);
+  }
+  const std::size_t left = count - kept.size();
+  for (std::size_t i = left; i < others.size(); ++i) {
+    drop(dropped, "better ones are enough", others[i].camera_from_object);
+  }
+  others.resize(std::min(others.size(), left));
+  kept.insert(kept.end(), others.begin(), others.end());
+  sort_by_score(kept);
+  clusters = std::move(kept);
 }
 
 }  // namespace
@@ -279,6 +333,7 @@ std::vector<Hypothesis> sample_hypotheses(const SceneFeatures& scene, const Obje
   Sampler sampler(scene, model, options, trace);
   sampler.from_features();
   sampler.from_pairs();
+  sampler.from_caller();
   return sampler.take();
 }
 
@@ -320,15 +375,13 @@ std::vector<Hypothesis> cluster_hypotheses(const SceneFeatures& scene, const Obj
     const float score =
         check_pose(scene.image, model.index->check, aligned, 256, tolerance).score();
     if (score > best.score) best.camera_from_object = aligned, best.score = score;
+    for (std::size_t member : cluster.members) {
+      if (hypotheses[member].source == Hypothesis::Source::caller)
+        best.source = Hypothesis::Source::caller;
+    }
     out.push_back(best);
   }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const auto& a, const auto& b) { return a.score > b.score; });
-  const auto end = static_cast<std::size_t>(max_clusters);
-  for (std::size_t i = end; i < out.size(); ++i) {
-    drop(dropped, "better ones are enough", out[i].camera_from_object);
-  }
-  if (out.size() > end) out.resize(end);
+  keep_clusters(out, static_cast<std::size_t>(max_clusters), dropped);
   return out;
 }
 

@@ -29,6 +29,11 @@ struct OrientationUncertainty {
   Eigen::Vector3d concentrations = Eigen::Vector3d::Zero();  ///< Not positive; 0 is uniform.
 };
 
+/// That of an orientation with small Gaussian errors: rotation vectors about the camera's axes of
+/// this covariance, rad².
+OrientationUncertainty orientation_uncertainty(const Eigen::Quaterniond& rotation,
+                                               const Eigen::Matrix3d& covariance);
+
 /// One object at one pose in a frame.
 struct Placement {
   int model_number = 0;     ///< The model's number in its library.

@@ -16,6 +16,8 @@
 namespace bpa {
 namespace {
 
+constexpr std::uint64_t kPriorStream = 1ULL << 32U;  // apart from the other streams of the seed
+
 struct Aligned {
   Pose pose;
   double score = 0;
@@ -38,6 +40,14 @@ RefinementOptions refinement_options(const SingleObjectOptions& options) {
   RefinementOptions out;
   if (!options.use_edges) out.max_edges = 0;
   return out;
+}
+
+// What a placement's score gains by the caller's priors.
+void add_prior(const ModelPriors& priors, Candidate& candidate) {
+  if (priors.empty()) return;
+  candidate.prior = priors.evidence(candidate.pose());
+  candidate.score += candidate.prior;
+  candidate.probability = 1 / (1 + std::exp(-candidate.score));
 }
 
 // Round two (paper section V): propose an alignment, accept it if the score has improved.
@@ -218,10 +228,12 @@ const Pose& of_candidate(const Candidate& candidate) { return candidate.pose(); 
 // Round two of every cluster.
 std::vector<Aligned> align_clusters(const SceneFeatures& scene, const ObjectModel& model,
                                     const std::vector<Hypothesis>& clusters,
-                                    const SingleObjectOptions& options, StageWriter& stages) {
+                                    const ModelPriors& priors, const SingleObjectOptions& options,
+                                    StageWriter& stages) {
   std::vector<Aligned> aligned;
   for (const Hypothesis& hypothesis : clusters) {
     aligned.push_back(round_two(scene, model, to_pose(hypothesis.camera_from_object), options));
+    aligned.back().score += priors.evidence(aligned.back().pose);
   }
   stages.finish("round_two", aligned, of_aligned);
   return aligned;
@@ -230,13 +242,15 @@ std::vector<Aligned> align_clusters(const SceneFeatures& scene, const ObjectMode
 // The distinct best of round two, aligned to the end and scored with all components; best first.
 std::vector<Candidate> align_best(const SceneFeatures& scene, const ObjectModel& model,
                                   std::vector<Aligned> aligned, const PlacementEvaluator& evaluator,
-                                  const SingleObjectOptions& options, StageWriter& stages) {
+                                  const ModelPriors& priors, const SingleObjectOptions& options,
+                                  StageWriter& stages) {
   remove_similar(aligned, model.symmetry, of_aligned, stages.dropped());
   keep_first(aligned, options.max_refined, of_aligned, stages.dropped());
   std::vector<Candidate> candidates;
   for (const Aligned& start : aligned) {
     candidates.push_back(
         evaluator.evaluate(refine_pose(scene, model, start.pose, last_alignment(options))));
+    add_prior(priors, candidates.back());
   }
   stages.finish("aligned", candidates, of_candidate);
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -246,8 +260,9 @@ std::vector<Candidate> align_best(const SceneFeatures& scene, const ObjectModel&
 
 // The first of the candidates climb; each goes where it got to if that scores better.
 void climb_first(const SceneFeatures& scene, const ObjectModel& model,
-                 const PlacementEvaluator& evaluator, const SingleObjectOptions& options,
-                 std::vector<Candidate>& candidates, StageWriter& stages) {
+                 const PlacementEvaluator& evaluator, const ModelPriors& priors,
+                 const SingleObjectOptions& options, std::vector<Candidate>& candidates,
+                 StageWriter& stages) {
   RefinementOptions there = last_alignment(options);  // no step: what is known of the pose
   there.iterations = 0;
   there.start_gate_m = there.end_gate_m;
@@ -256,6 +271,7 @@ void climb_first(const SceneFeatures& scene, const ObjectModel& model,
   for (std::size_t i = 0; i < count; ++i) {
     const Pose climbed = climb(scene, model, candidates[i].pose(), options);
     Candidate moved = evaluator.evaluate(refine_pose(scene, model, climbed, there));
+    add_prior(priors, moved);
     if (moved.score > candidates[i].score) candidates[i] = std::move(moved);
   }
   stages.finish("climbed", candidates, of_candidate);
@@ -304,9 +320,13 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
                                      const std::shared_ptr<const ObjectModel>& model,
                                      const SingleObjectOptions& options, ObjectTrace* trace) {
   StageWriter stages(trace);
+  const ModelPriors priors(options.priors, *model);
+  HypothesisOptions hypotheses = options.hypotheses;
+  RandomStream random(options.seed, kPriorStream + static_cast<std::uint64_t>(model->number));
+  hypotheses.suggested = priors.draw(scene.coarse, options.draws_per_prior, random);
   SamplingTrace sampling;
   const std::vector<Hypothesis> sampled =
-      sample_hypotheses(scene, *model, options.hypotheses, trace ? &sampling : nullptr);
+      sample_hypotheses(scene, *model, hypotheses, trace ? &sampling : nullptr);
   stages.finish_sampling(std::move(sampling), sampled);
   const std::vector<Hypothesis> clusters =
       cluster_hypotheses(scene, *model, sampled, options.max_clusters, stages.dropped());
@@ -314,9 +334,9 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
                 [](const Hypothesis& h) { return to_pose(h.camera_from_object); });
   const PlacementEvaluator evaluator(scene, model, options.layer, options.use_round_three);
   std::vector<Candidate> candidates =
-      align_best(scene, *model, align_clusters(scene, *model, clusters, options, stages), evaluator,
-                 options, stages);
-  climb_first(scene, *model, evaluator, options, candidates, stages);
+      align_best(scene, *model, align_clusters(scene, *model, clusters, priors, options, stages),
+                 evaluator, priors, options, stages);
+  climb_first(scene, *model, evaluator, priors, options, candidates, stages);
   keep_good(model->symmetry, options, candidates, stages);
   return candidates;
 }

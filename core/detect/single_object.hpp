@@ -9,6 +9,7 @@
 #include <bpa/core/detect/hypotheses.hpp>
 #include <bpa/core/detect/object_trace.hpp>
 #include <bpa/core/detect/placement.hpp>
+#include <bpa/core/detect/pose_prior.hpp>
 #include <bpa/core/detect/refinement.hpp>
 #include <bpa/core/score/feature_score.hpp>
 #include <bpa/core/score/score_layer.hpp>
@@ -20,8 +21,9 @@ struct Candidate {
   std::shared_ptr<const ObjectModel> model;
   Refinement refinement;  ///< The pose and what the last alignment knew of it.
   ScoreComponents components;
-  double score = 0;                      ///< placement_score of the components: log odds.
-  double probability = 0;                ///< placement_probability of the components.
+  double prior = 0;        ///< Log odds that the caller's priors add; 0 without any.
+  double score = 0;        ///< placement_score of the components, and the priors: log odds.
+  double probability = 0;  ///< Of that score, without rivals.
   std::vector<std::uint32_t> explained;  ///< Sorted pixels of the reduced image on the model.
 
   const Pose& pose() const { return refinement.camera_from_object; }
@@ -29,18 +31,20 @@ struct Candidate {
 
 struct SingleObjectOptions {
   HypothesisOptions hypotheses;
-  int max_clusters = 200;       ///< Pose clusters that round two looks at.
-  int max_refined = 40;         ///< Of those, how many are aligned to the end.
-  int max_climbed = 8;          ///< The best of these climb the score at last.
-  int climb_rounds = 4;         ///< Rounds of twelve small steps each.
-  int quick_points = 200;       ///< Surface points that round two scores a placement with.
-  int bpa_steps = 3;            ///< Round-two alignments by BPA.
-  bool use_orientation = true;  ///< See AlignmentCues; likewise
-  bool use_segments = true;     ///< this
-  bool use_edges = true;        ///< and this, which also goes for gradient-based alignment.
-  bool use_round_three = true;  ///< False: the components of round three are not known.
-  double min_score = -12;       ///< Log odds below which a placement is dropped.
-  int max_placements = 50;      ///< Paper section VI.
+  int max_clusters = 200;         ///< Pose clusters that round two looks at.
+  int max_refined = 40;           ///< Of those, how many are aligned to the end.
+  int max_climbed = 8;            ///< The best of these climb the score at last.
+  int climb_rounds = 4;           ///< Rounds of twelve small steps each.
+  int quick_points = 200;         ///< Surface points that round two scores a placement with.
+  int bpa_steps = 3;              ///< Round-two alignments by BPA.
+  bool use_orientation = true;    ///< See AlignmentCues; likewise
+  bool use_segments = true;       ///< this
+  bool use_edges = true;          ///< and this, which also goes for gradient-based alignment.
+  bool use_round_three = true;    ///< False: the components of round three are not known.
+  double min_score = -12;         ///< Log odds below which a placement is dropped.
+  int max_placements = 50;        ///< Paper section VI.
+  std::vector<PosePrior> priors;  ///< Valid; those of other models are ignored.
+  int draws_per_prior = 300;      ///< Poses that each prior suggests.
   ScoreLayer layer = default_score_layer();
   std::uint64_t seed = 0;
 };

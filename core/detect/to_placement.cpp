@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 
@@ -22,22 +21,6 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const Refinement& refinement) {
   return 0.5 * (inverse + inverse.transpose());
 }
 
-// A small rotation by d about the camera's axes has the quaternion (1, d / 2), so that a Gaussian
-// of covariance C in d is a Bingham with the exponent -2 v^T C^-1 v in v = d / 2.
-OrientationUncertainty orientation_uncertainty(const Pose& pose,
-                                               const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  OrientationUncertainty out;
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d axis = solver.eigenvectors().col(k);
-    const Eigen::Quaterniond turned =
-        Eigen::Quaterniond(0, axis.x(), axis.y(), axis.z()) * pose.rotation;
-    out.axes.col(k) = to_wxyz(turned);
-    out.concentrations[k] = -2 / solver.eigenvalues()[k];
-  }
-  return out;
-}
-
 }  // namespace
 
 Placement to_placement(const Candidate& candidate) {
@@ -46,8 +29,8 @@ Placement to_placement(const Candidate& candidate) {
   out.model = candidate.model->name;
   out.camera_from_object = candidate.pose();
   out.covariance = pose_covariance(candidate.refinement);
-  out.orientation =
-      orientation_uncertainty(out.camera_from_object, out.covariance.bottomRightCorner<3, 3>());
+  out.orientation = orientation_uncertainty(out.camera_from_object.rotation,
+                                            out.covariance.bottomRightCorner<3, 3>());
   out.score = candidate.score;
   out.probability = candidate.probability;
   const ScoreComponents& c = candidate.components;
@@ -76,6 +59,7 @@ Placement to_placement(const Candidate& candidate) {
                     {"color", c.color}};
   std::erase_if(out.components,
                 [](const ScoreComponent& known) { return std::isnan(known.value); });
+  if (candidate.prior != 0) out.components.push_back({"prior", candidate.prior});
   return out;
 }
 

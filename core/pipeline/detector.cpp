@@ -27,6 +27,18 @@ Status check_request(const DetectRequest& request) {
   return {};
 }
 
+Status check_priors(const ModelLibrary& library, const std::vector<PosePrior>& priors) {
+  for (std::size_t i = 0; i < priors.size(); ++i) {
+    const std::string name = "priors[" + std::to_string(i) + "]";
+    if (!library.find(priors[i].model)) {
+      return Status(StatusCode::not_found,
+                    name + ": the library holds no model named \"" + priors[i].model + "\"");
+    }
+    if (Status status = validate(priors[i], name); !status.ok()) return status;
+  }
+  return {};
+}
+
 Result<Models> chosen_models(const ModelLibrary& library, const DetectRequest& request) {
   if (library.empty()) {
     return invalid_argument("the model library is empty; add models with 'bpa model'");
@@ -101,6 +113,7 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   if (Status status = check_request(request); !status.ok()) return status;
   const Result<Models> models = chosen_models(*library_, request);
   if (!models.ok()) return models.status();
+  if (Status status = check_priors(*library_, request.priors); !status.ok()) return status;
 
   Stopwatch total;
   Stopwatch stage;
@@ -136,6 +149,7 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   // The budget is looked at between models: whoever is not begun in time is left out, and said so.
   SingleObjectOptions single = object_options(options_, request.seed);
   single.layer = layer_;
+  single.priors = request.priors;
   std::vector<std::vector<Candidate>> found(models->size());
   std::vector<std::uint8_t> late(models->size(), 0);
   if (trace) trace->objects.resize(models->size());

@@ -10,6 +10,7 @@
 #include <bpa/core/base/log.hpp>
 #include <bpa/core/base/status.hpp>
 #include <bpa/core/cloud/frame.hpp>
+#include <bpa/core/detect/pose_prior.hpp>
 #include <bpa/core/model/library.hpp>
 #include <bpa/core/pipeline/detector_options.hpp>
 #include <bpa/core/scene/interpretation.hpp>
@@ -22,6 +23,7 @@ struct FrameTrace;  // see frame_trace.hpp
 /// What to look for in one frame.
 struct DetectRequest {
   std::vector<std::string> models;  ///< Names; empty means every model of the library.
+  std::vector<PosePrior> priors;    ///< What is known beforehand, in the camera frame.
   int top_k = 20;                   ///< Number of interpretations to return, 1 to 100.
   double budget_ms = 0;             ///< Return the best so far after this long; 0 = no limit.
   std::uint64_t seed = 0;           ///< Same frame, library, options and seed: same answer.
@@ -36,9 +38,9 @@ class Detector {
            ScoreLayer layer = default_score_layer());
 
   /// Ranked interpretations of the frame. Fails with invalid_argument on a frame, request or
-  /// library that breaks a rule (an empty library too), with not_found on a model name that the
-  /// library does not hold. An empty scene is a result, not an error. `trace`, if given, receives
-  /// what happened on the way.
+  /// library that breaks a rule (an empty library too), with not_found on the name of a model, also
+  /// of a prior, that the library does not hold. An empty scene is a result, not an error. `trace`,
+  /// if given, receives what happened on the way.
   Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request = {},
                                       FrameTrace* trace = nullptr) const;
 

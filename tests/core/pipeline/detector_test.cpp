@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <bpa/core/pipeline/detector.hpp>
+#include <bpa/core/pipeline/frame_trace.hpp>
 
 #include "support/l_scene.hpp"
 
@@ -272,6 +273,68 @@ TEST_F(DetectorOf, WithoutColoursItIsAsIfTheFrameHadNone) {
   ASSERT_TRUE(ignored.ok()) << ignored.status().message;
   expect_same(*ignored, found({}));
   EXPECT_NE(found({}, painted).interpretations.at(0).score, ignored->interpretations.at(0).score);
+}
+
+// Where hypotheses come from: nothing that is looked at outside is found, nor in the picture's rest
+// a reason for anything inside.
+TEST_F(DetectorOf, RegionAndMaskRestrictWhereHypothesesComeFrom) {
+  const Eigen::Vector2d middle = frame_.camera.project(brick_truth_.translation);
+  Frame odd = frame_;  // cuts the blocks of the reduced image
+  odd.roi = {static_cast<int>(middle.x()) / 2 * 2 - 71, static_cast<int>(middle.y()) / 2 * 2 - 71,
+             141, 141};
+  FrameTrace trace;
+  ASSERT_TRUE(Detector(library_, {}).detect(odd, {}, &trace).ok());
+  ASSERT_GT(trace.scene.surface.size(), 50u);
+  for (const PointCloud* cloud : {&trace.scene.surface, &trace.scene.coarse}) {
+    for (const Eigen::Vector3f& p : cloud->points) {
+      const Eigen::Vector2d pixel = frame_.camera.project(p.cast<double>());
+      EXPECT_GE(pixel.x(), odd.roi.x - 1.5);
+      EXPECT_GE(pixel.y(), odd.roi.y - 1.5);
+      EXPECT_LE(pixel.x(), odd.roi.x + odd.roi.width + 0.5);
+      EXPECT_LE(pixel.y(), odd.roi.y + odd.roi.height + 0.5);
+    }
+  }
+}
+
+PosePrior prior_of(const std::string& model, const Pose& pose) {
+  PosePrior prior;
+  prior.model = model;
+  prior.position = align::PositionPrior{pose.translation, 4e-4 * Eigen::Matrix3d::Identity()};
+  prior.orientation = orientation_uncertainty(pose.rotation, 0.01 * Eigen::Matrix3d::Identity());
+  return prior;
+}
+
+TEST_F(DetectorOf, TakesPriorsIntoAccount) {
+  DetectRequest request;
+  const SceneInterpretations without = found(request);
+  request.priors = {prior_of("brick", brick_truth_)};
+  const SceneInterpretations with = found(request);
+  const auto of_brick = [](const SceneInterpretations& result) {
+    for (const Placement& p : result.interpretations[0].placements) {
+      if (p.model == "brick") return p;
+    }
+    return Placement{};
+  };
+  ASSERT_EQ(of_brick(with).model, "brick");
+  EXPECT_GT(of_brick(with).probability, of_brick(without).probability);
+  EXPECT_EQ(of_brick(with).components.back().name, "prior");
+  EXPECT_EQ(of_brick(with).components.back().value, kMostPriorEvidence);
+  EXPECT_NE(of_brick(without).components.back().name, "prior");
+  // The other model has nothing to do with it.
+  EXPECT_EQ(names(with.interpretations[0]), (std::vector<std::string>{"brick", "l"}));
+  request.num_threads = 1;
+  expect_same(with, found(request));
+}
+
+TEST_F(DetectorOf, RefusesBadPriors) {
+  DetectRequest request;
+  request.priors = {prior_of("brick", brick_truth_), prior_of("brick", brick_truth_)};
+  request.priors[1].weight = 2;
+  EXPECT_EQ(refusal(request), "priors[1].weight is 2; it must be above 0 and at most 1");
+  request.priors[1] = prior_of("teapot", brick_truth_);
+  const auto unknown = detect(request);
+  EXPECT_EQ(unknown.status().code, StatusCode::not_found);
+  EXPECT_EQ(unknown.status().message, "priors[1]: the library holds no model named \"teapot\"");
 }
 
 TEST_F(DetectorOf, InvalidDepthIsLikeNone) {

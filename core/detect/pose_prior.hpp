@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <bpa/core/align/correspondence.hpp>
+#include <bpa/core/base/random.hpp>
+#include <bpa/core/base/status.hpp>
+#include <bpa/core/detect/placement.hpp>
+#include <bpa/core/model/object_model.hpp>
+
+// What a caller knows beforehand of where an object is: from tracking, from touch, from where a
+// robot put it down. Such a prior is a Gaussian of the position times a Bingham of the orientation,
+// true with some probability, and it does two things. Poses drawn from it are looked at as those
+// that features suggest are, so that an object with few features is found near where the caller
+// says. And it multiplies in: with p the density of the pose under the prior and u that under the
+// uniform distribution of an object that may be anywhere, a placement gains the log odds
+//
+//   log((1 - weight) + weight p / u).
+
+namespace bpa {
+
+/// One prior, of one object, in the camera frame.
+struct PosePrior {
+  std::string model;  ///< The model's name.
+  /// Of camera_from_object's translation, metres; none: unknown.
+  std::optional<align::PositionPrior> position;
+  /// Of camera_from_object's rotation, as Placement::orientation has it; concentrations of zero:
+  /// unknown.
+  OrientationUncertainty orientation;
+  double weight = 0.95;  ///< Probability that the object is there at all so; in (0, 1].
+};
+
+/// Checks that all numbers are finite, the weight is in its range, the covariance is symmetric and
+/// positive definite, the concentrations are not positive, and the axes orthonormal unless all
+/// concentrations are zero. The message names the field, its value and the rule, after `name`.
+Status validate(const PosePrior& prior, const std::string& name);
+
+/// The Bingham of the prior's orientation.
+Bingham orientation_of(const PosePrior& prior);
+
+/// The same prior of a_from_object, from one of b_from_object.
+PosePrior transformed(const Pose& a_from_b, const PosePrior& prior);
+
+/// The uniform distribution that a prior is compared with has the object's origin anywhere in this
+/// volume, that over a table, and every orientation.
+constexpr double kBackgroundVolume = 1;  // m³
+/// The most that priors add to or take from the log odds of a placement (150 to 1): an image that
+/// clearly shows otherwise outweighs them.
+constexpr double kMostPriorEvidence = 5;
+/// A placement counts as right within 2.5 cm and π/16, and is off by some of that; priors are
+/// widened by half of it as the standard deviation of a placement's position and rotation.
+constexpr double kPlacementSigma_m = 0.0125;
+constexpr double kPlacementSigma_rad = M_PI / 32;
+
+/// The priors of one model. Those of other models are ignored; each must be valid.
+class ModelPriors {
+ public:
+  ModelPriors(std::span<const PosePrior> priors, const ObjectModel& model);
+
+  bool empty() const { return priors_.empty(); }
+
+  /// The log odds that a placement of the model gains, within ±kMostPriorEvidence; 0 without
+  /// priors. Modulo the model's symmetry: p is the mean over the poses that look the same. Several
+  /// priors are of as many instances, and a placement is as likely to be any one of them: the mean
+  /// of what the logarithm is taken of.
+  double evidence(const Pose& camera_from_object) const;
+
+  /// `count` poses drawn from each prior. Where a prior leaves the position open, a point of the
+  /// model that faces the camera is put on a point of `surface` whose normal agrees with its own;
+  /// none when there is no such surface. Camera frame.
+  std::vector<Pose> draw(const PointCloud& surface, int count, RandomStream& random) const;
+
+ private:
+  struct Prior {
+    double weight = 0;
+    std::optional<align::PositionPrior> position;
+    Bingham orientation;
+    // Widened, and the logarithm of what makes exp(-d² / 2) and exp(qᵀ C q) a ratio of densities.
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    double log_position_peak = 0;
+    Bingham widened;
+    double log_orientation_peak = 0;
+
+    double ratio(const Pose& pose) const;
+  };
+  static Prior prepare(const PosePrior& prior);
+  double mean_ratio(const Prior& prior, const Pose& pose) const;
+
+  const ObjectModel& model_;
+  std::vector<Prior> priors_;
+  std::vector<Pose> same_;  ///< object_from_object: what the model looks the same under.
+};
+
+}  // namespace bpa

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <bpa/core/base/status.hpp>
+#include <bpa/core/detect/pose_prior.hpp>
+
+namespace bpa {
+
+/// Reads {"priors": [PRIOR, ...]}, where a PRIOR has
+///
+///   "model"                  the model's name;
+///   "pose"                   {"rotation_wxyz": [4], "translation_m": [3]}: the most probable one,
+///   "position_sigma_m"       standard deviation of the position along each axis, or
+///   "position_covariance_m2" [9] row by row; neither: the position is unknown;
+///   "rotation_sigma_deg"     standard deviation of the rotation about each axis, or
+///   "bingham"                {"axes": [12] row by row, 4 x 3, "concentrations": [3]}, as results
+///                            have it (the pose's rotation does not count then); neither: unknown;
+///   "weight"                 probability that it is true, 0.95 if not given.
+///
+/// Fails with not_found, or with corrupt (naming the file, the prior and what is wrong) on a file
+/// that is not JSON, on unknown, missing or wrong fields. The numbers are validate()'s to judge.
+Result<std::vector<PosePrior>> read_pose_priors(const std::string& path);
+
+}  // namespace bpa
