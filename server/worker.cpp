@@ -14,6 +14,12 @@ bool same_search(const DetectRequest& a, const DetectRequest& b) {
          a.seed == b.seed;
 }
 
+/// The request about a frame that came with priors of its own.
+DetectRequest with_priors(DetectRequest request, const std::vector<PosePrior>& priors) {
+  request.priors.insert(request.priors.end(), priors.begin(), priors.end());
+  return request;
+}
+
 }  // namespace
 
 Worker::Worker(std::shared_ptr<const Recognition> recognition, const WorkerOptions& options,
@@ -232,17 +238,18 @@ void Worker::work_on_frame(const WorkerOptions& options, IncomingFrame incoming,
   }
   std::optional<Result<SceneInterpretations>> result;
   if (options.continuous) {
-    result.emplace(detect(*frame, options.request));
+    result.emplace(detect(*frame, with_priors(options.request, incoming.priors)));
     statistics_.add(result->ok() ? &Counts::frames_processed : &Counts::frames_failed);
     on_result_(incoming, &*frame, *result);
   }
   for (const DetectJob& job : waiting) {
-    answer_next_frame(options, *frame, job, result ? &*result : nullptr);
+    answer_next_frame(options, incoming, *frame, job, result ? &*result : nullptr);
   }
 }
 
-void Worker::answer_next_frame(const WorkerOptions& options, const Frame& frame,
-                               const DetectJob& job, const Result<SceneInterpretations>* shared) {
+void Worker::answer_next_frame(const WorkerOptions& options, const IncomingFrame& incoming,
+                               const Frame& frame, const DetectJob& job,
+                               const Result<SceneInterpretations>* shared) {
   if (shared != nullptr && !job.restrict_frame && same_search(job.request, options.request)) {
     statistics_.add(&Counts::requests_served);
     job.done(job, &frame, *shared);
@@ -256,7 +263,8 @@ void Worker::answer_next_frame(const WorkerOptions& options, const Frame& frame,
       return;
     }
   }
-  const Result<SceneInterpretations> result = detect(narrowed, job.request);
+  const Result<SceneInterpretations> result =
+      detect(narrowed, with_priors(job.request, incoming.priors));
   statistics_.add(result.ok() ? &Counts::requests_served : &Counts::requests_refused);
   job.done(job, &narrowed, result);
 }

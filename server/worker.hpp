@@ -33,6 +33,7 @@ struct IncomingFrame {
   std::function<Result<Frame>()> decode;
   std::int64_t stamp_ns = 0;
   std::string frame_id;
+  std::vector<PosePrior> priors = {};  ///< What whoever sent it knows of its objects.
 };
 
 /// One detect request that waits for its answer.
@@ -101,7 +102,8 @@ class Worker {
   void work_on_frame(const WorkerOptions& options, IncomingFrame incoming,
                      std::vector<DetectJob> waiting);
   void work_on_request(const DetectJob& job);
-  void answer_next_frame(const WorkerOptions& options, const Frame& frame, const DetectJob& job,
+  void answer_next_frame(const WorkerOptions& options, const IncomingFrame& incoming,
+                         const Frame& frame, const DetectJob& job,
                          const Result<SceneInterpretations>* shared);
   Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request);
 

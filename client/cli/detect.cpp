@@ -8,13 +8,16 @@
 #include "commands.hpp"
 #include "options.hpp"
 #include "output.hpp"
+#include "prior_files.hpp"
 
 namespace bpa::cli {
 namespace {
 
 struct DetectCommand {
   FrameFiles files;
+  Restriction restriction;
   DetectQuery query;
+  std::string priors;
   std::string json;
   int top = 5;
   double wait_s = 60;
@@ -39,8 +42,9 @@ Status detect(Client& client, const DetectCommand& command) {
     if (!entries.ok()) return entries.status();
     for (const FrameEntry& entry : *entries) {
       if (interrupted()) return Status(StatusCode::unavailable, "interrupted");
-      const auto frame = load_frame(entry, 0);
+      auto frame = load_frame(entry, 0);
       if (!frame.ok()) return frame.status();
+      if (Status s = command.restriction.apply(frame->view); !s.ok()) return s;
       const auto found = client.detect_in(frame->view, command.query, wait);
       if (Status s = report(found, command, sets); !s.ok()) return s;
     }
@@ -56,6 +60,7 @@ void add_detect(CLI::App& program, Common& common) {
       "ask for one search: of frames from disk, or of the next one of the server's camera");
   auto command = std::make_shared<DetectCommand>();
   add_frame_options(*sub, command->files);
+  add_restriction_options(*sub, command->restriction);
   sub->add_option("--models", command->query.models, "names of models; default all")
       ->delimiter(',');
   sub->add_option("--top-k", command->query.top_k, "interpretations wanted; default the server's")
@@ -63,6 +68,7 @@ void add_detect(CLI::App& program, Common& common) {
   sub->add_option("--budget-ms", command->query.budget_ms, "report the best so far after this long")
       ->check(CLI::NonNegativeNumber);
   sub->add_option("--seed", command->query.seed, "same frame and seed: same answer");
+  sub->add_option("--priors", command->priors, kPriorsHelp);
   sub->add_option("--json", command->json, "write all results to this file");
   sub->add_option("--top", command->top, "interpretations to print")->capture_default_str();
   sub->add_option("--wait", command->wait_s, "seconds to wait for an answer")
@@ -71,6 +77,15 @@ void add_detect(CLI::App& program, Common& common) {
   sub->callback([command, &common] {
     Status status = check_frame_options(command->files, false);
     if (!status.ok()) throw CLI::ValidationError("detect", status.message);
+    if (!command->restriction.empty() && command->files.bop.empty() &&
+        command->files.depth.empty()) {
+      throw CLI::ValidationError("detect", "--roi and --mask need frames from disk");
+    }
+    status = command->restriction.load();
+    if (!status.ok()) return common.fail(status);
+    auto priors = read_priors(command->priors);
+    if (!priors.ok()) return common.fail(priors.status());
+    command->query.priors = std::move(priors).value();
     auto client = common.connect();
     if (!client.ok()) return common.fail(client.status());
     status = detect(*client, *command);

@@ -19,6 +19,40 @@ void add_frame_options(CLI::App& command, FrameFiles& files) {
   command.add_option("--camera", files.camera, "BOP camera.json: fx fy cx cy, depth_scale (mm)");
 }
 
+void add_restriction_options(CLI::App& command, Restriction& restriction) {
+  command.add_option("--roi", restriction.roi, "part of each frame to search: x y width height")
+      ->expected(4)
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--mask", restriction.mask_path,
+                     "8-bit PNG of the frames' size; where it is black, they are not searched");
+}
+
+Status Restriction::load() {
+  if (mask_path.empty()) return {};
+  const auto image = read_color_png(mask_path);
+  if (!image.ok()) return image.status();
+  mask_width = image->width;
+  mask_height = image->height;
+  mask.clear();
+  for (std::size_t i = 0; i + 2 < image->rgb.size(); i += 3) {
+    mask.push_back(image->rgb[i] != 0 || image->rgb[i + 1] != 0 || image->rgb[i + 2] != 0);
+  }
+  return {};
+}
+
+Status Restriction::apply(FrameView& frame) const {
+  if (!roi.empty()) frame.roi = {{roi[0], roi[1], roi[2], roi[3]}};
+  if (mask.empty()) return {};
+  if (mask_width != frame.width || mask_height != frame.height) {
+    return invalid_argument(mask_path + " is " + std::to_string(mask_width) + "x" +
+                            std::to_string(mask_height) + " but the frame is " +
+                            std::to_string(frame.width) + "x" + std::to_string(frame.height) +
+                            "; they must be equal");
+  }
+  frame.mask = mask.data();
+  return {};
+}
+
 void add_sink_options(CLI::App& command, Sinks& sinks) {
   command.add_option("--json", sinks.json, "write all results to this file");
   command.add_option("--annotated", sinks.annotated, "write annotated images to this folder");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,22 @@ struct Sinks {
   int top = 5;            ///< Interpretations to print a frame; 0 prints nothing.
 };
 
+/// What of each frame is searched.
+struct Restriction {
+  std::vector<int> roi;            ///< x, y, width, height; empty: the whole image.
+  std::string mask_path;           ///< An 8-bit PNG; empty: none.
+  std::vector<std::uint8_t> mask;  ///< Its pixels once load() has read them, 0 where it is black.
+  int mask_width = 0;
+  int mask_height = 0;
+
+  bool empty() const { return roi.empty() && mask_path.empty(); }
+  Status load();
+  /// Fails with invalid_argument where the mask has another size than the frame, which will point
+  /// to it.
+  Status apply(FrameView& frame) const;
+};
+
+void add_restriction_options(CLI::App& command, Restriction& restriction);
 void add_frame_options(CLI::App& command, FrameFiles& files);
 void add_sink_options(CLI::App& command, Sinks& sinks);
 

@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "options.hpp"
 #include "output.hpp"
+#include "prior_files.hpp"
 
 // Sends frames one by one and waits for what the server finds in each (or sends them at a rate and
 // takes what comes).
@@ -24,8 +25,11 @@ using Clock = std::chrono::steady_clock;
 
 struct SendOptions {
   FrameFiles files;
+  Restriction restriction;
   Sinks sinks;
-  double rate_hz = 0;  ///< 0: the next frame when the last one is answered.
+  std::string priors_file;
+  std::vector<ExpectedPose> priors;  ///< Of each frame.
+  double rate_hz = 0;                ///< 0: the next frame when the last one is answered.
   double wait_s = 120;
   int repeat = 1;
 };
@@ -114,9 +118,11 @@ Status Sender::subscribe() {
 }
 
 Status Sender::send(const FrameEntry& entry) {
-  const auto frame = load_frame(entry, now_ns());
+  auto frame = load_frame(entry, now_ns());
   if (!frame.ok()) return frame.status();
-  if (Status status = client_.publish_frame(frame->view); !status.ok()) return status;
+  if (Status status = options_.restriction.apply(frame->view); !status.ok()) return status;
+  if (Status status = client_.publish_frame(frame->view, options_.priors); !status.ok())
+    return status;
   sent_.push_back(frame->view.stamp_ns);
   if (options_.rate_hz > 0) {
     std::this_thread::sleep_for(std::chrono::duration<double>(1 / options_.rate_hz));
@@ -183,11 +189,13 @@ void add_send(CLI::App& program, Common& common) {
       "send", "publish frames from disk to the server's stream and print what it finds");
   auto options = std::make_shared<SendOptions>();
   add_frame_options(*command, options->files);
+  add_restriction_options(*command, options->restriction);
   add_sink_options(*command, options->sinks);
   command
       ->add_option("--rate", options->rate_hz,
                    "frames a second; default: each one when the last is answered")
       ->check(CLI::PositiveNumber);
+  command->add_option("--priors", options->priors_file, kPriorsHelp);
   command->add_option("--wait", options->wait_s, "seconds to wait for the answer to a frame")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -196,6 +204,11 @@ void add_send(CLI::App& program, Common& common) {
   command->callback([options, &common] {
     Status status = check_frame_options(options->files, true);
     if (!status.ok()) throw CLI::ValidationError("send", status.message);
+    status = options->restriction.load();
+    if (!status.ok()) return common.fail(status);
+    auto priors = read_priors(options->priors_file);
+    if (!priors.ok()) return common.fail(priors.status());
+    options->priors = std::move(priors).value();
     auto client = common.connect();
     if (!client.ok()) return common.fail(client.status());
     status = Sender(*client, *options).run();

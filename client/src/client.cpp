@@ -144,6 +144,9 @@ Result<DetectionSet> Client::Impl::search(msgs::Detect_Request request, const De
                             "; it must be between 1 and 100, or 0 for the server's setting");
   }
   const Milliseconds timeout = asked > Milliseconds(0) ? asked : options.detect_timeout;
+  auto priors = sdk::to_messages(query.priors);
+  if (!priors.ok()) return priors.status();
+  request.frame.priors = std::move(priors).value();
   request.models = query.models;
   request.top_k = static_cast<std::uint32_t>(query.top_k);
   request.time_budget_ms = query.budget_ms;
@@ -245,14 +248,18 @@ Result<DetectionSet> Client::detect_in(const FrameView& frame, const DetectQuery
   });
 }
 
-Status Client::publish_frame(const FrameView& frame) {
+Status Client::publish_frame(const FrameView& frame, const std::vector<ExpectedPose>& priors) {
   return guarded([&]() -> Status {
     if (Status status = sdk::check(frame); !status.ok()) return status;
     auto publisher = impl_->frame_publisher();
     if (!publisher.ok()) return publisher.status();
     auto& frames = **publisher;
     if (Status status = impl_->wait_for_listener(frames); !status.ok()) return status;
-    return frames.publish(sdk::to_message(frame));
+    auto known = sdk::to_messages(priors);
+    if (!known.ok()) return known.status();
+    msgs::RgbdFrameView message = sdk::to_message(frame);
+    message.priors = std::move(known).value();
+    return frames.publish(message);
   });
 }
 

@@ -90,6 +90,24 @@ msgs::BasicRgbdFrame<Bytes> make_message(const FrameView& frame) {
   return message;
 }
 
+msgs::PosePrior to_message(const ExpectedPose& prior) {
+  msgs::PosePrior message;
+  message.model = prior.model;
+  const auto& p = prior.camera_from_object.position;
+  const auto& q = prior.camera_from_object.orientation;
+  message.pose.position = {p[0], p[1], p[2]};
+  message.pose.orientation = {q[0], q[1], q[2], q[3]};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      message.orientation.axes[4 * axis + i] = prior.orientation_spread.axes[axis][i];
+    }
+  }
+  message.orientation.concentrations = prior.orientation_spread.concentrations;
+  message.position_covariance = prior.position_covariance;
+  message.weight = prior.weight;
+  return message;
+}
+
 }  // namespace
 
 Status to_status(const msgs::Status& message) {
@@ -223,4 +241,43 @@ wire::bpa_msgs::RgbdFrame to_owned_message(const FrameView& frame) {
   return make_message<std::vector<std::uint8_t>>(frame);
 }
 
+Result<std::vector<msgs::PosePrior>> to_messages(const std::vector<ExpectedPose>& priors) {
+  std::vector<msgs::PosePrior> messages;
+  for (const ExpectedPose& prior : priors) {
+    if (!(prior.weight > 0 && prior.weight <= 1)) {
+      return invalid_argument("priors[" + std::to_string(messages.size()) + "].weight is " +
+                              std::to_string(prior.weight) + "; it must be above 0 and at most 1");
+    }
+    messages.push_back(to_message(prior));
+  }
+  return messages;
+}
+
 }  // namespace bpa::sdk
+
+namespace bpa {
+
+// A small turn by d about the camera's axes has the quaternion (d / 2, 1): the Gaussian exp(-d^2 /
+// 2 sigma^2) is the Bingham with the concentration -2 / sigma^2 about (axis, 0) * orientation.
+OrientationSpread spread_about(const std::array<double, 4>& orientation, double sigma_rad) {
+  const auto [x, y, z, w] = orientation;
+  OrientationSpread spread;
+  spread.axes = {{{{-x, w, -z, y}}, {{-y, z, w, -x}}, {{-z, -y, x, w}}}};
+  spread.concentrations.fill(-2 / (sigma_rad * sigma_rad));
+  return spread;
+}
+
+ExpectedPose expected_pose(const std::string& model, const ObjectPose& camera_from_object,
+                           double position_sigma_m, double sigma_rad, double weight) {
+  ExpectedPose prior;
+  prior.model = model;
+  prior.camera_from_object = camera_from_object;
+  for (std::size_t i = 0; i < 3; ++i) {
+    prior.position_covariance[4 * i] = position_sigma_m * position_sigma_m;
+  }
+  prior.orientation_spread = spread_about(camera_from_object.orientation, sigma_rad);
+  prior.weight = weight;
+  return prior;
+}
+
+}  // namespace bpa

@@ -27,4 +27,7 @@ wire::bpa_msgs::RgbdFrameView to_message(const FrameView& frame);
 /// The same with copies of the pixels.
 wire::bpa_msgs::RgbdFrame to_owned_message(const FrameView& frame);
 
+/// Checks the weights, of which 0 means the default on the wire; the rest is the server's to judge.
+Result<std::vector<wire::bpa_msgs::PosePrior>> to_messages(const std::vector<ExpectedPose>& priors);
+
 }  // namespace bpa::sdk

@@ -4,6 +4,7 @@
 
 #include <bpa/server/capture/topic_source.hpp>
 #include <bpa/server/convert/frames.hpp>
+#include <bpa/server/convert/priors.hpp>
 
 namespace bpa::server {
 namespace {
@@ -42,6 +43,17 @@ IncomingFrame incoming(Message message, Convert convert) {
   IncomingFrame frame{{}, to_ns(message.header.stamp), message.header.frame_id};
   const auto shared = std::make_shared<Message>(std::move(message));
   frame.decode = [shared, convert] { return convert(std::move(*shared)); };
+  return frame;
+}
+
+IncomingFrame incoming(RgbdFrame message) {
+  auto priors = priors_from_messages(message.priors);
+  IncomingFrame frame = incoming(std::move(message), frame_from_message);
+  if (priors.ok()) {
+    frame.priors = std::move(priors).value();
+  } else {
+    frame.decode = [status = priors.status()]() -> Result<Frame> { return status; };
+  }
   return frame;
 }
 
@@ -109,7 +121,7 @@ Status TopicSource::subscribe_frames(const wire::Participant& participant,
       participant, options_.frames, subscription,
       [this](RgbdFrame&& message, const SampleMeta&) {
         frames_pulse_.beat();
-        on_frame_(incoming(std::move(message), frame_from_message));
+        on_frame_(incoming(std::move(message)));
       },
       frames_);
   if (status.ok()) log(log_, LogLevel::info, "frames are taken from " + frames_->topic());

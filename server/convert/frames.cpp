@@ -124,11 +124,6 @@ Result<Frame> frame_from_message(msgs::RgbdFrame message) {
   frame.camera = camera_of(message.width, message.height, message.k.data(), 3);
   if (Status status = validate(frame.camera); !status.ok()) return status;
   if (Status status = check_distortion(message.d); !status.ok()) return status;
-  if (!message.priors.empty()) {
-    return Status(StatusCode::unsupported,
-                  "priors has " + std::to_string(message.priors.size()) +
-                      " entries; this server takes none yet, so it must be empty");
-  }
   auto depth = depth_from_image({"depth", message.depth_encoding, message.width, message.height, 0,
                                  false, message.depth.data(), message.depth.size()});
   if (!depth.ok()) return depth.status();
@@ -145,8 +140,12 @@ Result<Frame> frame_from_message(msgs::RgbdFrame message) {
 }
 
 Status restrict_frame(const msgs::RgbdFrame& message, Frame& frame) {
-  if (!message.priors.empty()) {
-    return Status(StatusCode::unsupported, "priors must be empty; this server takes none yet");
+  const std::string& frame_id = message.header.frame_id;
+  if (!message.priors.empty() && !frame_id.empty() && frame_id != frame.frame_id) {
+    return invalid_argument("header.frame_id is \"" + frame_id +
+                            "\", which priors are in; it must be "
+                            "empty or that of the camera, \"" +
+                            frame.frame_id + "\"");
   }
   const RegionOfInterest roi = roi_of(message.roi);
   if (roi.empty() && message.mask.empty()) return {};

@@ -15,12 +15,13 @@
 
 namespace bpa::server {
 
-/// A frame of bpa_msgs/RgbdFrame. Lens distortion is taken out (nearest pixel). `unsupported` when
-/// it carries priors. Move the message in: pixels that are as a Frame has them are not copied then.
+/// A frame of bpa_msgs/RgbdFrame but for its priors (priors.hpp). Lens distortion is taken out
+/// (nearest pixel). Move the message in: pixels that are as a Frame has them are not copied then.
 Result<Frame> frame_from_message(wire::bpa_msgs::RgbdFrame message);
 
 /// Puts the region of interest and the mask of a message on a frame that has been checked; a
-/// message without them changes nothing.
+/// message without them changes nothing. Fails where it has priors in another frame_id than the
+/// frame's.
 Status restrict_frame(const wire::bpa_msgs::RgbdFrame& message, Frame& frame);
 
 /// An image as it came: raw, or as image_transport's plugins compress it.

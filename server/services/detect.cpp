@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <bpa/server/convert/frames.hpp>
+#include <bpa/server/convert/priors.hpp>
 #include <bpa/server/convert/results.hpp>
 #include <bpa/server/services/services.hpp>
 
@@ -41,7 +42,10 @@ Result<DetectRequest> search_of(const msgs::Detect_Request& request,
     return invalid_argument("timeout_ms is " + std::to_string(request.timeout_ms) +
                             "; it must be between 0 and 10000000");
   }
+  auto priors = priors_from_messages(request.frame.priors);
+  if (!priors.ok()) return priors.status();
   DetectRequest search;
+  search.priors = std::move(priors).value();
   search.models = request.models;
   search.top_k = request.top_k > 0 ? static_cast<int>(request.top_k) : options.top_k;
   search.budget_ms = request.time_budget_ms > 0 ? request.time_budget_ms : options.budget_ms;

@@ -94,7 +94,6 @@ const BadFrame kBadFrames[] = {
      [](RgbdFrame& f) { f.d.resize(14); },
      {"d has 14", "8"},
      StatusCode::unsupported},
-    {"Priors", [](RgbdFrame& f) { f.priors.resize(1); }, {"priors"}, StatusCode::unsupported},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, BadFrames, testing::ValuesIn(kBadFrames),
@@ -143,6 +142,21 @@ TEST(RestrictFrame, AddsRegionAndMask) {
   EXPECT_EQ(frame.roi.width, 40);
   message.mask.resize(5);
   EXPECT_FALSE(restrict_frame(message, frame).ok());
+}
+
+TEST(RestrictFrame, RefusesPriorsInAnotherFrame) {
+  Frame frame = *frame_from_message(support::wall_frame());
+  RgbdFrame message;
+  message.priors.resize(1);
+  EXPECT_TRUE(restrict_frame(message, frame).ok());
+  message.header.frame_id = "wall_camera";
+  EXPECT_TRUE(restrict_frame(message, frame).ok());
+  message.header.frame_id = "map";
+  const Status status = restrict_frame(message, frame);
+  EXPECT_EQ(status.code, StatusCode::invalid_argument);
+  EXPECT_EQ(status.message,
+            "header.frame_id is \"map\", which priors are in; it must be empty or that of the "
+            "camera, \"wall_camera\"");
 }
 
 }  // namespace

@@ -24,6 +24,8 @@ class Gate {
   Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request) {
     std::unique_lock<std::mutex> lock(mutex_);
     stamps_.push_back(frame.stamp_ns);
+    priors_.push_back({});
+    for (const PosePrior& prior : request.priors) priors_.back() += prior.model + " ";
     changed_.notify_all();
     changed_.wait(lock, [this] { return open_; });
     if (request.seed == 666) throw std::runtime_error("out of luck");
@@ -46,10 +48,17 @@ class Gate {
     return stamps_;
   }
 
+  /// The models of the priors that each search was asked with.
+  std::vector<std::string> priors() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return priors_;
+  }
+
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<std::int64_t> stamps_;
+  std::vector<std::string> priors_;
   bool open_ = false;
 };
 
@@ -242,6 +251,24 @@ TEST_F(WorkerTest, NextFrameRequestsShareTheStreamsSearch) {
   EXPECT_EQ(gate.stamps(), std::vector<std::int64_t>{5});
   EXPECT_EQ(statistics.counts().frames_rejected, 1U);
   EXPECT_EQ(statistics.rejections().front().first, "frame depth has");
+}
+
+TEST_F(WorkerTest, FramesBringTheirPriors) {
+  auto worker = make();
+  gate.open();
+  DetectJob own = job(false);
+  own.request.priors.resize(1);
+  own.request.priors[0].model = "mug";
+  own.restrict_frame = [](Frame&) { return Status(); };  // as requests with priors have it
+  ASSERT_TRUE(worker->push(std::move(own)).ok());
+  IncomingFrame tracked = frame(5);
+  tracked.priors.resize(1);
+  tracked.priors[0].model = "bowl";
+  worker->push(std::move(tracked));
+  ASSERT_TRUE(answers.wait_for(1));
+  worker->push(frame(6));
+  ASSERT_TRUE(streamed.wait_for(2));
+  EXPECT_EQ(gate.priors(), (std::vector<std::string>{"bowl ", "mug bowl ", ""}));
 }
 
 TEST_F(WorkerTest, NextFrameRequestsWithoutAFrameTimeOut) {

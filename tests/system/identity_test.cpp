@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
 
+#include <bpa/client.hpp>
 #include <bpa/core/io/bop_dataset.hpp>
 #include <bpa/core/io/mesh_file.hpp>
 #include <bpa/core/io/model_file.hpp>
@@ -51,6 +53,90 @@ msgs::RgbdFrame message_of(const Frame& frame) {
   return message;
 }
 
+FrameView view_of(const Frame& frame) {
+  FrameView view;
+  view.width = frame.camera.width;
+  view.height = frame.camera.height;
+  view.rgb = frame.color.empty() ? nullptr : frame.color.data();
+  view.depth_m = frame.depth.data();
+  view.fx = frame.camera.fx;
+  view.fy = frame.camera.fy;
+  view.cx = frame.camera.cx;
+  view.cy = frame.camera.cy;
+  view.stamp_ns = frame.stamp_ns;
+  view.frame_id = frame.frame_id;
+  view.mask = frame.mask.empty() ? nullptr : frame.mask.data();
+  view.roi = {{frame.roi.x, frame.roi.y, frame.roi.width, frame.roi.height}};
+  return view;
+}
+
+PosePrior prior_of(const ExpectedPose& expected) {
+  PosePrior prior;
+  prior.model = expected.model;
+  const auto& p = expected.camera_from_object.position;
+  prior.position = align::PositionPrior{
+      {p[0], p[1], p[2]}, Eigen::Map<const Eigen::Matrix3d>(expected.position_covariance.data())};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& from = expected.orientation_spread.axes[static_cast<std::size_t>(axis)];
+    prior.orientation.axes.col(axis) = Eigen::Map<const Eigen::Vector4d>(from.data());
+  }
+  prior.orientation.concentrations =
+      Eigen::Map<const Eigen::Vector3d>(expected.orientation_spread.concentrations.data());
+  prior.weight = expected.weight;
+  return prior;
+}
+
+/// A request with a region, a mask, models, a budget and a prior, through the SDK.
+void expect_same_question(const Detector& detector, Frame frame, std::uint64_t seed) {
+  const Camera& camera = frame.camera;
+  frame.roi = {camera.width / 8, camera.height / 8, 3 * camera.width / 4, 3 * camera.height / 4};
+  frame.mask.assign(frame.depth.size(), 1);
+  std::fill_n(frame.mask.begin(), frame.mask.size() / 4, std::uint8_t{0});
+  DetectQuery query;
+  query.models = {detector.library().models().front()->name};
+  query.budget_ms = 1e6;
+  query.seed = seed;
+  query.top_k = 7;
+  query.priors = {
+      expected_pose(query.models[0], {{{0.0, 0.0, 0.58}}, {{0.6, 0, 0, 0.8}}}, 0.05, 0.5, 0.9)};
+  DetectRequest request;
+  request.models = query.models;
+  request.budget_ms = query.budget_ms;
+  request.seed = query.seed;
+  request.top_k = query.top_k;
+  request.priors = {prior_of(query.priors[0])};
+  const auto expected = detector.detect(frame, request);
+  ASSERT_TRUE(expected.ok()) << expected.status().message;
+
+  auto client = Client::connect(support::client_options());
+  ASSERT_TRUE(client.ok()) << client.status().message;
+  const auto found = client->detect_in(view_of(frame), query, milliseconds(90000));
+  ASSERT_TRUE(found.ok()) << found.status().message;
+  EXPECT_EQ(found->models_searched, 1);
+  EXPECT_FALSE(found->budget_exhausted);
+  ASSERT_EQ(found->interpretations.size(), expected->interpretations.size());
+  for (std::size_t k = 0; k < found->interpretations.size(); ++k) {
+    const auto& detections = found->interpretations[k].detections;
+    const auto& placements = expected->interpretations[k].placements;
+    ASSERT_EQ(detections.size(), placements.size());
+    for (std::size_t i = 0; i < detections.size(); ++i) {
+      EXPECT_EQ(detections[i].probability, placements[i].probability);
+      EXPECT_EQ(detections[i].camera_from_object.position[0],
+                placements[i].camera_from_object.translation.x());
+      EXPECT_EQ(detections[i].score_parts.back().name, "prior");
+    }
+  }
+  query.budget_ms = 1e-3;
+  const auto hurried = client->detect_in(view_of(frame), query, milliseconds(90000));
+  ASSERT_TRUE(hurried.ok()) << hurried.status().message;
+  EXPECT_TRUE(hurried->budget_exhausted);
+  query.priors[0].model = "teapot";
+  EXPECT_EQ(client->detect_in(view_of(frame), query, milliseconds(90000)).status().code,
+            StatusCode::not_found);
+  query.priors[0].weight = 0;
+  EXPECT_EQ(client->detect_in(view_of(frame), query).status().code, StatusCode::invalid_argument);
+}
+
 /// Detects `frame` with the library both ways.
 void expect_identity(const std::string& folder, const Frame& frame) {
   constexpr std::uint64_t kSeed = 5;
@@ -91,6 +177,7 @@ void expect_identity(const std::string& folder, const Frame& frame) {
     ASSERT_TRUE(reply->success) << reply->status.message;
     EXPECT_EQ(reply->result.interpretations.size(), offline->interpretations.size());
     EXPECT_TRUE(bits(reply->result) == expected) << "with " << threads << " threads";
+    expect_same_question(detector, frame, kSeed);
   }
 }
 

@@ -122,6 +122,14 @@ TEST(Requests, BadInputIsAFailedReplyAndTheServerGoesOn) {
        },
        "roi"},
       {"mask of another size", [](auto& r) { r.frame.mask.resize(9); }, "mask"},
+      {"prior turned otherwise than its distribution",
+       [](auto& r) {
+         r.frame.priors.resize(1);
+         r.frame.priors[0].pose.orientation = {1, 0, 0, 0};
+         r.frame.priors[0].orientation.axes = {0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+         r.frame.priors[0].orientation.concentrations = {-100, -100, -100};
+       },
+       "priors[0].pose.orientation"},
       {"top_k", [](auto& r) { r.top_k = 101; }, "top_k is 101"},
       {"NaN budget", [](auto& r) { r.time_budget_ms = std::nan(""); }, "time_budget_ms"},
       {"negative timeout", [](auto& r) { r.timeout_ms = -1; }, "timeout_ms"},

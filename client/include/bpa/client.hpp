@@ -71,7 +71,8 @@ class Client {
   /// Hands a frame to the server's stream; what is found comes to the subscribers. When frames come
   /// faster than they are searched, the server takes the newest. Returns once the frame is sent,
   /// not when it is searched; fails with `unavailable` when no server listens within the time-out.
-  Status publish_frame(const FrameView& frame);
+  /// `priors` tell what is known beforehand of the frame.
+  Status publish_frame(const FrameView& frame, const std::vector<ExpectedPose>& priors = {});
 
   /// `on_result` runs on one thread of the SDK for every frame that the server searched, until the
   /// client is destroyed (not by that function); DetectionSet::status tells why a frame could not

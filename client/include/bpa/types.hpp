@@ -114,12 +114,33 @@ struct FrameView {
   std::array<int, 4> roi{};  ///< x, y, width, height; all zero: the whole image.
 };
 
+/// What you know beforehand of where an object is, in the camera frame: from tracking, from touch,
+/// from where a robot put it down. The server looks there besides, and weighs what it finds by it.
+struct ExpectedPose {
+  std::string model;
+  /// The most probable pose. Its orientation does not count where orientation_spread is uniform,
+  /// its position where position_covariance is zero.
+  ObjectPose camera_from_object;
+  std::array<double, 9> position_covariance{};  ///< m^2, row by row; all zero: position unknown.
+  OrientationSpread orientation_spread;         ///< As Detection has it; uniform: unknown.
+  double weight = 0.95;  ///< Probability that there is an object so at all, in (0, 1].
+};
+
+/// The spread of an orientation (x, y, z, w) known up to a turn of standard deviation `sigma_rad`
+/// about each axis.
+OrientationSpread spread_about(const std::array<double, 4>& orientation, double sigma_rad);
+/// A prior about a pose with the same standard deviations along and about each axis; metres,
+/// radians, each above 0.
+ExpectedPose expected_pose(const std::string& model, const ObjectPose& camera_from_object,
+                           double position_sigma_m, double sigma_rad, double weight = 0.95);
+
 /// What to look for. Zero and empty fields leave the choice to the server.
 struct DetectQuery {
   std::vector<std::string> models;  ///< Names; empty means every model of the library.
   int top_k = 0;                    ///< Number of interpretations wanted, at most 100.
   double budget_ms = 0;             ///< Time for the search; the best so far is returned.
   std::uint64_t seed = 0;
+  std::vector<ExpectedPose> priors = {};  ///< What is known beforehand of the frame.
 };
 
 /// One model of the server's library.

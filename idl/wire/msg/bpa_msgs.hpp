@@ -46,6 +46,7 @@ struct PosePrior {
   geometry_msgs::Pose pose;
   Bingham orientation;
   std::array<double, 9> position_covariance{};  ///< m^2; all zero: position unknown.
+  double weight = 0;                            ///< That it is true; 0: 0.95.
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor&& visit) {
@@ -53,6 +54,7 @@ struct PosePrior {
     visit("pose", self.pose);
     visit("orientation", self.orientation);
     visit("position_covariance", self.position_covariance);
+    visit("weight", self.weight);
   }
 };
 
