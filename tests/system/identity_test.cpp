@@ -17,6 +17,7 @@
 #include <bpa/wire/messages.hpp>
 #include <bpa/wire/service.hpp>
 
+#include "support/frame_view.hpp"
 #include "support/process.hpp"
 #include "support/stub_server.hpp"
 
@@ -51,23 +52,6 @@ msgs::RgbdFrame message_of(const Frame& frame) {
   const Camera& c = frame.camera;
   message.k = {c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1};
   return message;
-}
-
-FrameView view_of(const Frame& frame) {
-  FrameView view;
-  view.width = frame.camera.width;
-  view.height = frame.camera.height;
-  view.rgb = frame.color.empty() ? nullptr : frame.color.data();
-  view.depth_m = frame.depth.data();
-  view.fx = frame.camera.fx;
-  view.fy = frame.camera.fy;
-  view.cx = frame.camera.cx;
-  view.cy = frame.camera.cy;
-  view.stamp_ns = frame.stamp_ns;
-  view.frame_id = frame.frame_id;
-  view.mask = frame.mask.empty() ? nullptr : frame.mask.data();
-  view.roi = {{frame.roi.x, frame.roi.y, frame.roi.width, frame.roi.height}};
-  return view;
 }
 
 PosePrior prior_of(const ExpectedPose& expected) {
@@ -110,7 +94,7 @@ void expect_same_question(const Detector& detector, Frame frame, std::uint64_t s
 
   auto client = Client::connect(support::client_options());
   ASSERT_TRUE(client.ok()) << client.status().message;
-  const auto found = client->detect_in(view_of(frame), query, milliseconds(90000));
+  const auto found = client->detect_in(support::view_of(frame), query, milliseconds(90000));
   ASSERT_TRUE(found.ok()) << found.status().message;
   EXPECT_EQ(found->models_searched, 1);
   EXPECT_FALSE(found->budget_exhausted);
@@ -127,14 +111,15 @@ void expect_same_question(const Detector& detector, Frame frame, std::uint64_t s
     }
   }
   query.budget_ms = 1e-3;
-  const auto hurried = client->detect_in(view_of(frame), query, milliseconds(90000));
+  const auto hurried = client->detect_in(support::view_of(frame), query, milliseconds(90000));
   ASSERT_TRUE(hurried.ok()) << hurried.status().message;
   EXPECT_TRUE(hurried->budget_exhausted);
   query.priors[0].model = "teapot";
-  EXPECT_EQ(client->detect_in(view_of(frame), query, milliseconds(90000)).status().code,
+  EXPECT_EQ(client->detect_in(support::view_of(frame), query, milliseconds(90000)).status().code,
             StatusCode::not_found);
   query.priors[0].weight = 0;
-  EXPECT_EQ(client->detect_in(view_of(frame), query).status().code, StatusCode::invalid_argument);
+  EXPECT_EQ(client->detect_in(support::view_of(frame), query).status().code,
+            StatusCode::invalid_argument);
 }
 
 /// Detects `frame` with the library both ways.
@@ -177,7 +162,7 @@ void expect_identity(const std::string& folder, const Frame& frame) {
     ASSERT_TRUE(reply->success) << reply->status.message;
     EXPECT_EQ(reply->result.interpretations.size(), offline->interpretations.size());
     EXPECT_TRUE(bits(reply->result) == expected) << "with " << threads << " threads";
-    expect_same_question(detector, frame, kSeed);
+    if (threads == std::string("2")) expect_same_question(detector, frame, kSeed);
   }
 }
 

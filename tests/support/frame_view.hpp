@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/types.hpp>
+
+namespace bpa::support {
+
+/// A frame of the library as the SDK takes it; points into `frame`.
+inline FrameView view_of(const Frame& frame) {
+  FrameView view;
+  view.width = frame.camera.width;
+  view.height = frame.camera.height;
+  view.rgb = frame.color.empty() ? nullptr : frame.color.data();
+  view.depth_m = frame.depth.data();
+  view.fx = frame.camera.fx;
+  view.fy = frame.camera.fy;
+  view.cx = frame.camera.cx;
+  view.cy = frame.camera.cy;
+  view.stamp_ns = frame.stamp_ns;
+  view.frame_id = frame.frame_id;
+  view.mask = frame.mask.empty() ? nullptr : frame.mask.data();
+  view.roi = {{frame.roi.x, frame.roi.y, frame.roi.width, frame.roi.height}};
+  return view;
+}
+
+}  // namespace bpa::support
