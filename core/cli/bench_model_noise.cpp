@@ -152,6 +152,7 @@ Status measure_noise(const ModelSource& model, const std::vector<PosedView>& vie
   std::vector<PosedView> half[2];
   for (std::size_t i = 0; i < views.size(); ++i) half[i % 2].push_back(views[i]);
   ModelSource learned = model;
+  learned.normal_variance.clear();
   learn_noise(learned, half[0], num_threads);
   const SurfaceObservations seen = observe_surface(model.surface, half[1], num_threads);
   const Kind range{"range noise", "mm", kMillimetres, learned.noise.range,

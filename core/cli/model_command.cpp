@@ -17,6 +17,7 @@
 #include <bpa/core/io/file_bytes.hpp>
 #include <bpa/core/io/mesh_file.hpp>
 #include <bpa/core/io/model_file.hpp>
+#include <bpa/core/model/occupancy_grid.hpp>
 #include <bpa/core/model/registration.hpp>
 #include <bpa/core/model/symmetry_search.hpp>
 #include <bpa/core/model/view_sphere.hpp>
@@ -33,7 +34,7 @@ struct ModelArguments {
   std::string name;
   double scale = 1;
   int number = 0;
-  int views = 40;
+  int views = 120;
   std::string symmetry = "find";
   std::string render;          // a PNG
   std::string split = "test";  // of scans
@@ -42,7 +43,7 @@ struct ModelArguments {
   ModelOptions options;
 };
 
-/// A mesh's model, with what a simulated sensor is off by.
+/// A mesh's model: what a simulated sensor sees of it, and what that is off by.
 Result<ModelSource> source_from_mesh(const TriangleMesh& mesh, const ModelArguments& a,
                                      const std::string& name, int number) {
   Result<ModelSource> source = model_source_from_mesh(mesh, name, number, a.options);
@@ -51,7 +52,7 @@ Result<ModelSource> source_from_mesh(const TriangleMesh& mesh, const ModelArgume
   const std::vector<PosedView> views =
       simulate_views(mesh, a.views, a.common.seed, a.common.threads,
                      [&progress](int done) { progress.show(done, "simulated views"); });
-  learn_noise(*source, views, a.common.threads);
+  keep_measured(*source, views, a.common.threads);
   return source;
 }
 
@@ -103,6 +104,9 @@ Status set_symmetry(const ModelArguments& a) {
   if (a.symmetry == "none") model->symmetry = {};
   if (a.symmetry != "find") {
     model->symmetry_origin = SymmetryOrigin::declared;
+    auto occupancy = io::load_occupancy(a.library, a.name);
+    if (!occupancy.ok()) return occupancy.status();
+    model->occupancy = std::move(*occupancy);
     if (Status s = io::save_model(a.library, *model, a.common.threads); !s.ok()) return s;
   }
   std::printf("%s: symmetries: %s%s\n", a.name.c_str(), describe(model->symmetry).c_str(),
@@ -239,6 +243,21 @@ Status from_scans(ModelArguments a) {
   return {};
 }
 
+void print_occupancy(const OccupancyGrid* grid) {
+  if (grid == nullptr) {
+    std::printf("occupancy   none: not made from views\n");
+    return;
+  }
+  int full = 0, walls = 0;
+  for (const OccupancyCell& cell : grid->cells) {
+    const bool a = occupied(cell.buckets[0]), b = occupied(cell.buckets[1]);
+    full += a || b;
+    walls += a && b;
+  }
+  std::printf("occupancy   %d cells of %.1f mm, %d of them with a surface on both sides\n", full,
+              static_cast<double>(1000 * grid->cell), walls);
+}
+
 Status info(const ModelArguments& a) {
   const Result<ModelSource> model = io::load_model(a.library, a.name);
   if (!model.ok()) return model.status();
@@ -260,6 +279,9 @@ Status info(const ModelArguments& a) {
               noise.fitted ? "fitted" : "the usual", noise.depth,
               1000 * noise.range(kMaxEdgeDistance, 0),
               noise.normal(kMaxEdgeDistance, 0) * 180 / M_PI);
+  const auto occupancy = io::load_occupancy(a.library, a.name);
+  if (!occupancy.ok()) return occupancy.status();
+  print_occupancy(occupancy->get());
   for (const std::string& warning : model->warnings)
     std::printf("warning     %s\n", warning.c_str());
   if (a.render.empty()) return {};
@@ -306,7 +328,8 @@ CLI::App& add(CLI::App& model, const char* name, const char* description,
 void add_views_option(CLI::App& command, ModelArguments& a) {
   command
       .add_option("--views", a.views,
-                  "Simulated views that noise is learned from; 0 = take the usual noise")
+                  "Simulated views: what none of them measures is left out, and noise is learned "
+                  "from them; 0 = keep all that is not inside, take the usual noise")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
 }

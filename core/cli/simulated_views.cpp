@@ -36,6 +36,24 @@ TriangleMesh room(float half, const Eigen::Vector3f& middle) {
   return mesh;
 }
 
+// A mask of the pixels that measured something in the box or a little beside it.
+std::vector<std::uint8_t> near(const Frame& frame, const Pose& box_from_camera,
+                               const Eigen::AlignedBox3f& box) {
+  constexpr float kBeside = 0.015f;  // metres: what a sensor may be off by
+  const Eigen::Vector3f low = box.min().array() - kBeside, high = box.max().array() + kBeside;
+  const Eigen::AlignedBox3f inside(low, high);
+  std::vector<std::uint8_t> mask(frame.depth.size(), 0);
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (!(frame.depth[i] > 0)) continue;
+    const int u = static_cast<int>(i) % frame.camera.width;
+    const int v = static_cast<int>(i) / frame.camera.width;
+    const Eigen::Vector3d p =
+        box_from_camera * frame.camera.unproject(u, v, double(frame.depth[i]));
+    mask[i] = inside.contains(p.cast<float>());
+  }
+  return mask;
+}
+
 Pose look_from(const Eigen::Vector3d& direction, double distance, const Eigen::Vector3d& at) {
   Eigen::Matrix3d axes;  // columns: right, down, forward, of the camera in the object's frame
   axes.col(2) = -direction;
@@ -78,12 +96,11 @@ std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::
     const Eigen::Vector3d direction(r * std::cos(golden_angle * k), r * std::sin(golden_angle * k),
                                     z);
     const Pose object_from_camera = look_from(direction, distance, box.center().cast<double>());
-    const sim::KinectImage image =
-        sim::simulate_kinect(scene, camera, object_from_camera, shading, kinect,
-                             RandomStream(seed, static_cast<std::uint64_t>(k))(), 1);
+    const Frame frame = sim::simulate_depth(scene, camera, object_from_camera, shading, kinect,
+                                            RandomStream(seed, static_cast<std::uint64_t>(k))(), 1);
     PosedView& view = views[static_cast<std::size_t>(k)];
-    view = make_posed_view(image.frame, {}, object_from_camera.inverse());
-    view.colors.clear();  // lamps and shadows are not the mesh's own
+    view =
+        make_posed_view(frame, near(frame, object_from_camera, box), object_from_camera.inverse());
     if (!progress) return;
     const std::lock_guard lock(mutex);
     progress(++done);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include <bpa/core/base/parallel.hpp>
 #include <bpa/core/io/mesh_file.hpp>
@@ -10,6 +11,7 @@
 
 #include "json_file.hpp"
 #include "model_index_file.hpp"
+#include "occupancy_file.hpp"
 
 namespace bpa::io {
 namespace fs = std::filesystem;
@@ -19,6 +21,7 @@ constexpr const char* kFormat = "bpa model";
 constexpr const char* kModelFile = "model.json";
 constexpr const char* kSurfaceFile = "surface.ply";
 constexpr const char* kIndexFile = "index.bin";
+constexpr const char* kOccupancyFile = "occupancy.bin";
 constexpr const char* kOrigins[] = {"none", "declared", "found"};  // by SymmetryOrigin
 
 bool legal_character(char c) {
@@ -72,7 +75,10 @@ Json symmetry_json(const ModelSource& model) {
   return symmetries;
 }
 
-Json model_json(const ModelSource& model, const std::string& surface, const std::string& index) {
+// `files` by name: their bytes.
+Json model_json(const ModelSource& model, const std::map<std::string, std::string>& files) {
+  Json records = Json::object();
+  for (const auto& [name, bytes] : files) records[name] = file_json(bytes);
   return {{"format", kFormat},
           {"version", kModelFileVersion},
           {"name", model.name},
@@ -88,7 +94,7 @@ Json model_json(const ModelSource& model, const std::string& surface, const std:
             {"fitted", model.noise.fitted}}},
           {"warnings", model.warnings},
           {"points", model.surface.size()},
-          {"files", {{kSurfaceFile, file_json(surface)}, {kIndexFile, file_json(index)}}}};
+          {"files", records}};
 }
 
 struct FileRecord {
@@ -104,6 +110,7 @@ struct Description {
   ModelSource model;
   std::size_t points = 0;
   FileRecord surface, index;
+  std::optional<FileRecord> occupancy;
 };
 
 void parse_symmetry(const Json& json, ModelSource& model) {
@@ -129,7 +136,8 @@ Result<Description> parse_description(const std::string& path, const Json& json)
     return Status(StatusCode::corrupt, path + " has format version " + std::to_string(version) +
                                            "; this program reads version " +
                                            std::to_string(kModelFileVersion) +
-                                           ": build the model again");
+                                           ": make the model again (bpa model from-mesh, "
+                                           "from-bop or from-scans)");
   }
   Description result;
   ModelSource& model = result.model;
@@ -146,8 +154,12 @@ Result<Description> parse_description(const std::string& path, const Json& json)
   model.noise.fitted = noise.at("fitted").get<bool>();
   model.warnings = json.at("warnings").get<std::vector<std::string>>();
   result.points = json.at("points").get<std::size_t>();
-  result.surface = record_from_json(json.at("files").at(kSurfaceFile));
-  result.index = record_from_json(json.at("files").at(kIndexFile));
+  const Json& files = json.at("files");
+  result.surface = record_from_json(files.at(kSurfaceFile));
+  result.index = record_from_json(files.at(kIndexFile));
+  if (files.contains(kOccupancyFile)) {
+    result.occupancy = record_from_json(files.at(kOccupancyFile));
+  }
   return result;
 }
 
@@ -214,6 +226,24 @@ Status read_index(const std::string& path, Description& description) {
   return {};
 }
 
+/// The bytes of the occupancy grid; empty when the model has none.
+Result<std::string> read_occupancy(const std::string& path, const Description& description) {
+  if (!description.occupancy) return std::string();
+  return read_checked(path, *description.occupancy);
+}
+
+/// The files of a model but for its description, by name.
+Result<std::map<std::string, std::string>> model_files(const ObjectModel& model) {
+  std::map<std::string, std::string> files{
+      {kSurfaceFile, ply_bytes(model.surface)},
+      {kIndexFile, index_bytes(*model.index, model.normal_variance)}};
+  if (model.occupancy == nullptr) return files;
+  Result<std::string> occupancy = occupancy_bytes(*model.occupancy);
+  if (!occupancy.ok()) return occupancy.status();
+  files[kOccupancyFile] = std::move(*occupancy);
+  return files;
+}
+
 /// Fails when another model of the library has the number already.
 Status check_number(const std::string& library, const ModelSource& model) {
   if (model.number < 1) {
@@ -258,12 +288,13 @@ Status save_model(const std::string& library, const ModelSource& source, int num
   const fs::path old = fs::path(library) / ("." + model.name + ".old");
   std::error_code error;
   fs::remove_all(fresh, error);
-  const std::string surface = ply_bytes(model.surface);
-  const std::string index = index_bytes(*model.index, model.normal_variance);
-  const std::string json = model_json(model, surface, index).dump(1) + "\n";
-  Status status = write_file((fresh / kSurfaceFile).string(), surface);
-  if (status.ok()) status = write_file((fresh / kIndexFile).string(), index);
-  if (status.ok()) status = write_file((fresh / kModelFile).string(), json);
+  const auto files = model_files(model);
+  if (!files.ok()) return files.status();
+  Status status =
+      write_file((fresh / kModelFile).string(), model_json(model, *files).dump(1) + "\n");
+  for (const auto& [name, bytes] : *files) {
+    if (status.ok()) status = write_file((fresh / name).string(), bytes);
+  }
   if (!status.ok()) return status;
   fs::remove_all(old, error);
   if (fs::exists(target)) fs::rename(target, old, error);
@@ -282,7 +313,23 @@ Result<ModelSource> load_model(const std::string& library, const std::string& na
   const fs::path folder = fs::path(library) / name;
   if (Status s = read_surface((folder / kSurfaceFile).string(), *description); !s.ok()) return s;
   if (Status s = read_index((folder / kIndexFile).string(), *description); !s.ok()) return s;
+  if (auto bytes = read_occupancy((folder / kOccupancyFile).string(), *description); !bytes.ok()) {
+    return bytes.status();
+  }
   return std::move(description->model);
+}
+
+Result<std::shared_ptr<const OccupancyGrid>> load_occupancy(const std::string& library,
+                                                            const std::string& name) {
+  const Result<Description> description = find_description(library, name);
+  if (!description.ok()) return description.status();
+  const std::string path = (fs::path(library) / name / kOccupancyFile).string();
+  const Result<std::string> bytes = read_occupancy(path, *description);
+  if (!bytes.ok()) return bytes.status();
+  if (!description->occupancy) return std::shared_ptr<const OccupancyGrid>();
+  Result<OccupancyGrid> grid = parse_occupancy(*bytes, path);
+  if (!grid.ok()) return grid.status();
+  return std::shared_ptr<const OccupancyGrid>(std::make_shared<OccupancyGrid>(std::move(*grid)));
 }
 
 Result<ModelSource> describe_model(const std::string& library, const std::string& name) {

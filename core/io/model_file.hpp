@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,11 @@
 //   LIBRARY/NAME/model.json   what the model is, and the size and checksum of the other files
 //   LIBRARY/NAME/surface.ply  its surface (binary; points, normals, colours; metres)
 //   LIBRARY/NAME/index.bin    what was computed from it, so that loading is quick
+//   LIBRARY/NAME/occupancy.bin  the occupancy grid that it was made of, if it was made from views
 
 namespace bpa::io {
 
-constexpr int kModelFileVersion = 2;
+constexpr int kModelFileVersion = 3;
 
 /// Writes a model into a library, replacing one of the same name; the old model stays whole until
 /// the new one is. Computes the index unless model.prepared has it. Fails with invalid_argument
@@ -25,11 +27,17 @@ constexpr int kModelFileVersion = 2;
 /// to make a model of; unavailable when it cannot be written.
 Status save_model(const std::string& library, const ModelSource& model, int num_threads = 0);
 
-/// Reads LIBRARY/NAME; `prepared` is the stored index. Fails with not_found, or with corrupt saying
+/// Reads LIBRARY/NAME but for the occupancy grid, whose file is only checked; `prepared` is the
+/// stored index. Fails with not_found, or with corrupt saying
 /// whether the file is truncated, altered (its checksum differs), or of another version.
 Result<ModelSource> load_model(const std::string& library, const std::string& name);
 
-/// The same without surface and index, which are not read.
+/// The occupancy grid of LIBRARY/NAME, exact to 1/65535 of a cell; null when the model was made
+/// without views. Fails as load_model does.
+Result<std::shared_ptr<const OccupancyGrid>> load_occupancy(const std::string& library,
+                                                            const std::string& name);
+
+/// The same as load_model without surface and index, which are not read.
 Result<ModelSource> describe_model(const std::string& library, const std::string& name);
 
 /// A model that cannot be read, and why.

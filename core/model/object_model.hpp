@@ -14,7 +14,8 @@
 
 namespace bpa {
 
-struct ModelIndex;  // what detection computes from the source; see model_index.hpp
+struct ModelIndex;     // what detection computes from the source; see model_index.hpp
+struct OccupancyGrid;  // see occupancy_grid.hpp
 
 /// Where a model's symmetries come from.
 enum class SymmetryOrigin {
@@ -42,6 +43,9 @@ struct ModelSource {
   std::vector<std::string> warnings;  ///< For people: what may be wrong with the model.
   /// The index of this very surface if it was computed before (a model file holds it); else null.
   std::shared_ptr<const ModelIndex> prepared;
+  /// What the views say of the space about the object; null for models made without views, and
+  /// where it was not read from the file: detection does not need it.
+  std::shared_ptr<const OccupancyGrid> occupancy;
 };
 
 /// A known object, ready for detection.

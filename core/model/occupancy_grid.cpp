@@ -16,7 +16,6 @@ namespace bpa {
 namespace {
 
 constexpr float kMinCosine = 0.2f;  // of views that count
-constexpr int kMinRays = 3;         // that a surface takes
 
 struct FastPose {
   Eigen::Matrix3f rotation;
@@ -264,12 +263,11 @@ OccupancyGrid trace_occupancy(const std::vector<PosedView>& views, float cell, i
 }
 
 GridSurface surface_of(const OccupancyGrid& grid, float spacing, int num_threads) {
-  constexpr float kOccupied = 0.5f;
   GridSurface all;
   std::vector<float> weight;
   for (const OccupancyCell& cell : grid.cells) {
     for (const ViewBucket& bucket : cell.buckets) {
-      if (bucket.rays < kMinRays || bucket.occupancy < kOccupied) continue;
+      if (!occupied(bucket)) continue;
       all.points.points.push_back(bucket.position);
       all.points.normals.push_back(bucket.normal);
       all.normal_variance.push_back(bucket.normal_variance);
@@ -292,14 +290,17 @@ GridSurface surface_of(const OccupancyGrid& grid, float spacing, int num_threads
   }
   GridSurface out;
   out.points = downsample(seen, spacing);
-  // The variance of a point is the mean of those it was made of.
+  // About the normal of a point: the mean of those it was made of, about theirs, and what lies
+  // between the two.
   const NeighborGrid neighbors(all.points.points, spacing);
   for (std::size_t i = 0; i < out.points.size(); ++i) {
     float sum = 0, total = 0;
     neighbors.for_each_neighbor(out.points.points[i], [&](int neighbor, float) {
       const auto j = static_cast<std::size_t>(neighbor);
-      if (all.points.normals[j].dot(out.points.normals[i]) < 0.5f) return;
-      sum += weight[j] * all.normal_variance[j];
+      const float cosine = all.points.normals[j].dot(out.points.normals[i]);
+      if (cosine < 0.5f) return;
+      const float bias = std::acos(std::min(1.0f, cosine));
+      sum += weight[j] * (all.normal_variance[j] + bias * bias);
       total += weight[j];
     });
     out.normal_variance.push_back(total > 0 ? sum / total : 0);

@@ -21,6 +21,12 @@ struct ViewBucket {
   float normal_variance = 0;  ///< Mean squared angle from that mean, radians squared.
 };
 
+/// Whether a bucket is part of the surface: likelier there than not, and seen more than by chance.
+inline bool occupied(const ViewBucket& bucket) {
+  constexpr int kFewestRays = 3;
+  return bucket.rays >= kFewestRays && bucket.occupancy >= 0.5f;
+}
+
 /// A cell with two view-buckets, since a wall thinner than a cell has two surfaces in it (paper
 /// section III, footnote).
 struct OccupancyCell {
@@ -46,7 +52,7 @@ OccupancyGrid trace_occupancy(const std::vector<PosedView>& views, float cell, i
 
 /// The surface of what is occupied (probability 0.5 or more) and seen from outside: bucket means,
 /// drawn together along their normals to one sheet for each side of a wall, `spacing` apart. With
-/// the normal variance of each point.
+/// the normal variance of each point: the mean squared angle of measured normals from its own.
 struct GridSurface {
   PointCloud points;
   std::vector<float> normal_variance;

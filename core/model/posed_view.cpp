@@ -231,13 +231,14 @@ void learn_noise(ModelSource& source, const std::vector<PosedView>& views, int n
     source.noise.fitted = true;
   }
   const std::vector<float> geometric = geometric_normal_variance(source.surface, num_threads);
-  source.normal_variance = seen.normal_variance;
+  source.normal_variance.resize(seen.seen.size(), 0);
   std::size_t never = 0;
   for (std::size_t i = 0; i < seen.seen.size(); ++i) {
     never += seen.seen[i] == 0;
-    if (source.normal_variance[i] > 0) continue;
+    float& variance = source.normal_variance[i];
+    if (!(variance > 0)) variance = seen.normal_variance[i];
     const auto floor = static_cast<float>(source.noise.normal.floor);
-    source.normal_variance[i] = geometric[i] + floor * floor;
+    if (!(variance > 0)) variance = geometric[i] + floor * floor;
   }
   if (source.surface.colors.empty()) source.surface.colors = seen.colors;
   const double share = static_cast<double>(never) / static_cast<double>(seen.seen.size());

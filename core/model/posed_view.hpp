@@ -46,9 +46,16 @@ struct SurfaceObservations {
 SurfaceObservations observe_surface(const PointCloud& surface, const std::vector<PosedView>& views,
                                     int num_threads);
 
-/// Fills a model's noise curves, normal variances and, where it has none, colours from views of it;
-/// warns when part of it was never measured.
+/// Fills a model's noise curves from views of it, and colours and normal variances where it has
+/// none; warns when part of it was never measured.
 void learn_noise(ModelSource& source, const std::vector<PosedView>& views, int num_threads);
+
+/// Makes a model whose surface is known exactly one of what a sensor can see: traces the views
+/// through the occupancy grid, drops the points of the surface where the grid is not occupied on
+/// their side, takes the normal variances from the grid and learns the noise. Points stay where
+/// they are, which is nearer to the truth than means of measurements. Warns when much drops out;
+/// a surface that the views do not show at all stays whole, with another warning.
+void keep_measured(ModelSource& source, const std::vector<PosedView>& views, int num_threads);
 
 /// A model of what the views show: traced, thresholded and thinned (occupancy_grid.hpp), in the
 /// frame of their poses. Fails with invalid_argument when less than 100 surface points come out, or

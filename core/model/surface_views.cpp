@@ -13,9 +13,10 @@ namespace bpa {
 namespace {
 
 // The share of the object's outline, over all view angles, where one looks at the back of the
-// surface: through a part that was never seen. `direction` is where most of it is.
+// surface: through a part that was never seen; and in the view from the worst `direction` alone.
 struct Unseen {
   double share = 0;
+  double worst = 0;
   Eigen::Vector3f direction = Eigen::Vector3f::UnitZ();
 };
 
@@ -38,7 +39,7 @@ Unseen unseen_part(const PointCloud& surface, int num_threads) {
   }
   const auto views = render_views(both, 0.004f, num_threads);
   Unseen out;
-  double front = 0, back = 0, worst = 0;
+  double front = 0, back = 0;
   for (const ModelView& view : views) {
     double own_front = 0, own_back = 0;
     for (const std::uint32_t i : view.visible) {
@@ -50,8 +51,8 @@ Unseen unseen_part(const PointCloud& surface, int num_threads) {
     front += own_front;
     back += own_back;
     const double share = own_back / std::max(1e-9, own_front + own_back);
-    if (share <= worst) continue;
-    worst = share;
+    if (share <= out.worst) continue;
+    out.worst = share;
     out.direction = view.direction;
   }
   out.share = back / std::max(1e-9, front + back);
@@ -71,8 +72,9 @@ Result<ModelSource> model_source_from_views(std::vector<PosedView> views, const 
                                             int number, const ModelOptions& options) {
   if (Status status = validate(options); !status.ok()) return status;
   const auto spacing = static_cast<float>(options.spacing_m);
-  const OccupancyGrid grid = trace_occupancy(views, spacing, options.num_threads);
-  GridSurface fused = surface_of(grid, spacing, options.num_threads);
+  const auto grid =
+      std::make_shared<OccupancyGrid>(trace_occupancy(views, spacing, options.num_threads));
+  GridSurface fused = surface_of(*grid, spacing, options.num_threads);
   if (fused.points.size() < 100) {
     return invalid_argument("model " + name + " has " + std::to_string(fused.points.size()) +
                             " surface points in " + std::to_string(views.size()) +
@@ -82,11 +84,16 @@ Result<ModelSource> model_source_from_views(std::vector<PosedView> views, const 
   source.name = name;
   source.number = number;
   source.surface = std::move(fused.points);
+  source.normal_variance = std::move(fused.normal_variance);
+  source.occupancy = grid;
   source.diameter = largest_distance(source.surface.points);
   if (Status s = check_size(name, source.diameter); !s.ok()) return s;
   source.warnings = shape_warnings(source.surface);
   learn_noise(source, views, options.num_threads);
-  if (const Unseen unseen = unseen_part(source.surface, options.num_threads); unseen.share > 0.04) {
+  // Little of the whole, but most of what one sees from one side: the floor inside of a mug.
+  constexpr double kMuch = 0.04, kMuchOfOneView = 0.3;
+  const Unseen unseen = unseen_part(source.surface, options.num_threads);
+  if (unseen.share > kMuch || unseen.worst > kMuchOfOneView) {
     source.warnings.push_back("about " + std::to_string(std::lround(100 * unseen.share)) +
                               " % of the object was never seen, most of it from " +
                               name_of(unseen.direction) + ": scan it in one more resting position");

@@ -283,10 +283,9 @@ double published_axial_noise(double depth, double angle) {
   return sigma;
 }
 
-KinectImage simulate_kinect(const RayScene& scene, const Camera& camera,
-                            const Pose& world_from_camera, const Shading& shading,
-                            const KinectOptions& options, std::uint64_t seed, int num_threads) {
-  KinectImage image;
+Frame simulate_depth(const RayScene& scene, const Camera& camera, const Pose& world_from_camera,
+                     const Shading& shading, const KinectOptions& options, std::uint64_t seed,
+                     int num_threads) {
   Camera infrared = camera;
   Pose camera_from_infrared;
   if (options.registered) {
@@ -308,10 +307,20 @@ KinectImage simulate_kinect(const RayScene& scene, const Camera& camera,
       8);
   const double pixels_per_inverse = infrared.fx * std::max(options.baseline, 1e-3);
   depth = without_specks(depth, infrared, pixels_per_inverse);
-  image.frame.camera = camera;
-  image.frame.depth = options.registered ? carried_over(depth, infrared, camera,
-                                                        options.color_baseline, pixels_per_inverse)
-                                         : std::move(depth);
+  Frame frame;
+  frame.camera = camera;
+  frame.depth = options.registered ? carried_over(depth, infrared, camera, options.color_baseline,
+                                                  pixels_per_inverse)
+                                   : std::move(depth);
+  return frame;
+}
+
+KinectImage simulate_kinect(const RayScene& scene, const Camera& camera,
+                            const Pose& world_from_camera, const Shading& shading,
+                            const KinectOptions& options, std::uint64_t seed, int num_threads) {
+  KinectImage image;
+  image.frame =
+      simulate_depth(scene, camera, world_from_camera, shading, options, seed, num_threads);
   image.ideal = render(scene, camera, world_from_camera, shading, num_threads);
   const std::vector<std::uint8_t>* color = &image.ideal.color;
   RenderedImage shifted;

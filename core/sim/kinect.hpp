@@ -97,4 +97,10 @@ KinectImage simulate_kinect(const RayScene& scene, const Camera& camera,
                             const Pose& world_from_camera, const Shading& shading,
                             const KinectOptions& options, std::uint64_t seed, int num_threads = 0);
 
+/// The depth of simulate_kinect() without its colours, in the fraction of the time; the frame has
+/// no colour.
+Frame simulate_depth(const RayScene& scene, const Camera& camera, const Pose& world_from_camera,
+                     const Shading& shading, const KinectOptions& options, std::uint64_t seed,
+                     int num_threads = 0);
+
 }  // namespace bpa::sim

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <bpa/core/base/random.hpp>
 #include <bpa/core/io/file_bytes.hpp>
 #include <bpa/core/io/model_file.hpp>
 #include <bpa/core/io/model_index_file.hpp>
+#include <bpa/core/io/occupancy_file.hpp>
 #include <bpa/core/model/model_index.hpp>
+#include <bpa/core/model/occupancy_grid.hpp>
 
 #include "support/meshes.hpp"
 #include "support/temporary_folder.hpp"
@@ -138,6 +141,113 @@ TEST(ModelFile, NoIndexLeavesItsArrays) {
   }
 }
 
+// A grid of 5 x 40 x 7 cells with one bucket, the other or both in each.
+OccupancyGrid some_grid() {
+  OccupancyGrid grid;
+  grid.low = {-0.1f, 0.02f, 0.3f};
+  grid.cell = 0.003f;
+  grid.size = {5, 40, 7};
+  RandomStream random(3);
+  const auto share = [&random] { return static_cast<float>(random.uniform()); };
+  for (int k = 0; k < 300; ++k) {
+    OccupancyCell cell;
+    cell.place = {random.index(5), random.index(40), random.index(7)};
+    for (std::size_t b = 0; b < 2; ++b) {
+      if (k % 3 == static_cast<int>(b)) continue;
+      ViewBucket& bucket = cell.buckets[b];
+      bucket.rays = 1 + random.index(70000);
+      bucket.occupancy = k == 5 ? 0.5f : share();
+      bucket.position = grid.low + grid.cell * (cell.place.cast<float>() +
+                                                Eigen::Vector3f(share(), share(), share()));
+      bucket.normal = Eigen::Vector3f(share() - 0.5f, share() - 0.5f, share() - 0.5f).normalized();
+      bucket.normal_variance = share();
+    }
+    grid.cells.push_back(cell);
+  }
+  return grid;
+}
+
+TEST(ModelFile, OccupancyGridIsPartOfIt) {
+  const test::TemporaryFolder folder;
+  ModelSource model = some_model("a", 1);
+  ASSERT_TRUE(save_model(folder.path(), model).ok());
+  const auto none = load_occupancy(folder.path(), "a");
+  ASSERT_TRUE(none.ok()) << none.status().message;
+  EXPECT_EQ(*none, nullptr);
+  const OccupancyGrid grid = some_grid();
+  model.occupancy = std::make_shared<OccupancyGrid>(grid);
+  ASSERT_TRUE(save_model(folder.path(), model).ok());
+  EXPECT_EQ(load_model(folder.path(), "a")->occupancy, nullptr) << "detection does not need it";
+  const auto read = load_occupancy(folder.path(), "a");
+  ASSERT_TRUE(read.ok()) << read.status().message;
+  const OccupancyGrid& back = **read;
+  EXPECT_EQ(back.low, grid.low);
+  EXPECT_EQ(back.cell, grid.cell);
+  EXPECT_EQ(back.size, grid.size);
+  ASSERT_EQ(back.cells.size(), grid.cells.size());
+  for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+    EXPECT_EQ(back.cells[i].place, grid.cells[i].place);
+    for (std::size_t b = 0; b < 2; ++b) {
+      const ViewBucket &is = back.cells[i].buckets[b], &was = grid.cells[i].buckets[b];
+      EXPECT_EQ(is.rays, was.rays);
+      EXPECT_EQ(occupied(is), occupied(was));
+      EXPECT_NEAR(is.occupancy, was.occupancy, 1e-5f);
+      EXPECT_LT((is.position - was.position).norm(), 1e-7f);
+      EXPECT_LT((is.normal - was.normal).norm(), 1e-4f);
+      EXPECT_NEAR(is.normal_variance, was.normal_variance, 2e-4f);
+    }
+  }
+}
+
+TEST(ModelFile, DamageOfTheOccupancyGridIsSaid) {
+  const test::TemporaryFolder folder;
+  ModelSource model = some_model("a", 1);
+  model.occupancy = std::make_shared<OccupancyGrid>(some_grid());
+  ASSERT_TRUE(save_model(folder.path(), model).ok());
+  const std::string bytes = slurp(folder / "a/occupancy.bin");
+  const auto expect_refused = [&](const std::string& words) {
+    for (const Status& status :
+         {load_model(folder.path(), "a").status(), load_occupancy(folder.path(), "a").status()}) {
+      EXPECT_EQ(status.code, StatusCode::corrupt);
+      EXPECT_NE(status.message.find(words), std::string::npos) << status.message;
+    }
+  };
+  spill(folder / "a/occupancy.bin", bytes.substr(0, bytes.size() / 2));
+  expect_refused("occupancy.bin is truncated");
+  std::string altered = bytes;
+  altered[bytes.size() / 3] = static_cast<char>(altered[bytes.size() / 3] ^ 4);
+  spill(folder / "a/occupancy.bin", altered);
+  expect_refused("occupancy.bin was altered");
+  std::filesystem::remove(folder / "a/occupancy.bin");
+  EXPECT_FALSE(load_model(folder.path(), "a").ok());
+  EXPECT_FALSE(load_occupancy(folder.path(), "a").ok());
+}
+
+// A file whose checksum was made to fit must not give cells that are not in the grid either.
+TEST(ModelFile, NoOccupancyGridLeavesItself) {
+  const auto written = occupancy_bytes(some_grid());
+  ASSERT_TRUE(written.ok());
+  const std::string& bytes = *written;
+  ASSERT_TRUE(parse_occupancy(bytes, "x").ok());
+  EXPECT_FALSE(parse_occupancy(bytes + "x", "x").ok());
+  std::string other = bytes;
+  other[8] = static_cast<char>(other[8] + 1);  // the version, after "bpaoccup"
+  EXPECT_NE(parse_occupancy(other, "x").status().message.find("version 2"), std::string::npos);
+  for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 20) {
+    EXPECT_FALSE(parse_occupancy(bytes.substr(0, size), "x").ok()) << size;
+  }
+  for (std::size_t at = 12; at + 8 < bytes.size(); at += 1 + at / 100) {
+    std::string damaged = bytes;
+    damaged.replace(at, 8, 8, '\xff');
+    const auto grid = parse_occupancy(damaged, "x");  // must not crash
+    if (!grid.ok()) continue;
+    for (const OccupancyCell& cell : grid->cells) {
+      ASSERT_TRUE((cell.place.array() < grid->size.array()).all());
+      ASSERT_GE(cell.buckets[0].rays, 0);
+    }
+  }
+}
+
 TEST(ModelFile, LibrariesAreOrderedByNumber) {
   const test::TemporaryFolder folder;
   ASSERT_TRUE(save_model(folder.path(), some_model("a", 9)).ok());
@@ -173,9 +283,11 @@ TEST(ModelFile, DamageIsSaid) {
   spill(folder / "a/model.json", json.substr(0, json.size() / 2));
   EXPECT_NE(message().find("truncated"), std::string::npos);
   std::string newer = json;
-  newer.replace(newer.find("\"version\": 2"), 12, "\"version\": 3");
+  newer.replace(newer.find("\"version\": 3"), 12, "\"version\": 2");
   spill(folder / "a/model.json", newer);
-  EXPECT_NE(message().find("version 3"), std::string::npos);
+  EXPECT_NE(message().find("has format version 2; this program reads version 3: make the model "
+                           "again (bpa model from-mesh"),
+            std::string::npos);
   spill(folder / "a/model.json", json);
   const std::string index = slurp(folder / "a/index.bin");
   spill(folder / "a/index.bin", index.substr(0, 100));

@@ -104,6 +104,45 @@ TEST(PosedView, WhatNoViewMeasuresIsSaid) {
   for (const float variance : source.normal_variance) EXPECT_GT(variance, 0);
 }
 
+// Of a plate with two sides, the one that no camera sees drops out; the other stays where it is.
+TEST(PosedView, WhatIsNotMeasuredIsNoPartOfTheModel) {
+  ModelSource source;
+  source.surface = plate(0.0025f);
+  const PointCloud front = source.surface;
+  for (const Eigen::Vector3f& p : front.points) {
+    source.surface.points.push_back(p - Eigen::Vector3f(0, 0, 0.003f));
+    source.surface.normals.push_back(-Eigen::Vector3f::UnitZ());
+  }
+  ModelSource small = source;  // and one that is nowhere near
+  for (Eigen::Vector3f& p : small.surface.points) p.z() += 0.3f;
+  std::vector<PosedView> views;
+  for (int k = 0; k < 8; ++k) views.push_back(view_of(0.4, 0.8 * k, 0.001, 40 + k));
+  for (PosedView& view : views) {
+    for (std::size_t i = 0; i < view.object.size(); ++i) view.object[i] = view.map.depth[i] < 1.2f;
+  }
+  keep_measured(source, views, 2);
+  EXPECT_EQ(source.surface.points, front.points);
+  EXPECT_EQ(source.surface.normals, front.normals);
+  ASSERT_EQ(source.normal_variance.size(), front.size());
+  for (const float variance : source.normal_variance) {
+    EXPECT_GT(variance, 0);
+    EXPECT_LT(variance, 0.6f * 0.6f);
+  }
+  EXPECT_NEAR(source.diameter, largest_distance(front.points), 1e-9);
+  EXPECT_TRUE(source.noise.fitted);
+  ASSERT_EQ(source.warnings.size(), 1u);
+  EXPECT_NE(source.warnings[0].find("50 % of the surface was measured in no view"),
+            std::string::npos);
+  ASSERT_NE(source.occupancy, nullptr);
+  EXPECT_GT(source.occupancy->cells.size(), 1000u);
+
+  const std::size_t all = small.surface.size();
+  keep_measured(small, views, 2);
+  EXPECT_EQ(small.surface.size(), all);
+  ASSERT_FALSE(small.warnings.empty());
+  EXPECT_NE(small.warnings[0].find("hardly sees it"), std::string::npos);
+}
+
 // A sheet 3 mm thick, seen from both sides: both surfaces in cells of 5 mm.
 TEST(OccupancyGrid, ThinWallFillsBothBuckets) {
   std::vector<PosedView> views;

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <bpa/core/base/random.hpp>
 #include <bpa/core/eval/depth_render.hpp>
 #include <bpa/core/io/bop_writer.hpp>
 #include <bpa/core/io/camera_file.hpp>
@@ -90,8 +91,8 @@ class BadInput : public ::testing::Test {
  protected:
   void SetUp() override {
     ASSERT_TRUE(io::write_ply(folder_ / "box.ply", box(0.06f, 0.04f, 0.09f)).ok());
-    const Outcome made = run("model from-mesh " + (folder_ / "box.ply") + " --name box --library " +
-                             (folder_ / "L"));
+    const Outcome made = run("model from-mesh " + (folder_ / "box.ply") +
+                             " --name box --views 0 --library " + (folder_ / "L"));
     ASSERT_EQ(made.code, 0) << made.out;
     write_depth("d.png", 160, 120, 700);
     io::ColorImage color{160, 120, {}};
@@ -208,6 +209,28 @@ TEST_F(BadInput, FolderForPictures) {
                  {"file/out"});
 }
 
+// A plate before a wall that turns with nothing on it.
+TEST_F(BadInput, EmptyTurntable) {
+  io::BopSceneWriter writer(folder_ / "scan", "test", 1);
+  const Camera camera{320, 240, 290, 290, 159.5, 119.5};
+  const Pose camera_from_plate{rotation_from_vector({-2.2, 0, 0}), Eigen::Vector3d(0, 0.05, 0.75)};
+  RandomStream random(1);
+  for (int k = 0; k < 6; ++k) {
+    Frame frame;
+    frame.camera = camera;
+    frame.depth = eval::render_depth(box(0.2f, 0.2f, 0.01f), camera_from_plate, camera);
+    for (float& z : frame.depth) {
+      z = (z > 0 ? z : 1.6f) + 0.001f * static_cast<float>(random.normal());
+    }
+    frame.color.assign(3 * frame.depth.size(), 128);
+    ASSERT_TRUE(writer.add(k, frame, {}).ok());
+  }
+  ASSERT_TRUE(writer.finish().ok());
+  expect_failure(
+      "model from-scans " + (folder_ / "scan") + " --name x --library " + (folder_ / "S"),
+      {"scan", "nothing stands on the turntable"});
+}
+
 TEST_F(BadInput, DataSets) {
   expect_failure("detect --library " + (folder_ / "L") + " --bop " + (folder_ / "none"),
                  {"none/test"});
@@ -303,6 +326,11 @@ TEST(Commands, FromADataSetToFigures) {
   EXPECT_NE(outcome.out.find("1 placements, 3 trials"), std::string::npos) << outcome.out;
   EXPECT_NE(slurp(folder / "alignment/alignment.json").find("bpa_normals"), std::string::npos);
   EXPECT_TRUE(io::read_color_image(folder / "alignment/alignment_position.png").ok());
+  outcome = run("model symmetry box --none --library " + (folder / "L"));
+  EXPECT_EQ(outcome.code, 0) << outcome.out;
+  outcome = run("model info box --library " + (folder / "L"));
+  EXPECT_NE(outcome.out.find("symmetries  none"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(" cells of 3.0 mm"), std::string::npos) << outcome.out;
   outcome = run("model remove box --library " + (folder / "L"));
   EXPECT_EQ(outcome.code, 0) << outcome.out;
 }
