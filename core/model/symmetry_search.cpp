@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <numeric>
+#include <optional>
 
 #include <bpa/core/base/parallel.hpp>
+#include <bpa/core/cloud/neighbor_grid.hpp>
 #include <bpa/core/model/distance_transform.hpp>
 #include <bpa/core/model/symmetry_search.hpp>
 
@@ -13,6 +17,33 @@ namespace bpa {
 namespace {
 
 constexpr double kTurn = 2 * M_PI;
+constexpr float kSameSide = 0.6f;    // cosine between normals
+constexpr double kSymmetric = 0.98;  // share of the points
+constexpr double kPromising = 0.85;  // the same by a quick look
+constexpr double kNearly = 0.95;     // the same where other turns have shown half of it already
+
+struct Axis {
+  Eigen::Vector3d direction, point;
+};
+
+// Twice the mean distance of a point to its nearest neighbour on the same side, from some 100 of
+// them: no point of an evenly sampled surface is farther from the samples.
+float hole_size(const PointCloud& surface) {
+  const std::vector<Eigen::Vector3f>& points = surface.points;
+  const std::size_t step = std::max<std::size_t>(1, points.size() / 100);
+  float sum = 0, count = 0;
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    float nearest = std::numeric_limits<float>::infinity();
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      if (j == i || surface.normals[j].dot(surface.normals[i]) < kSameSide) continue;
+      nearest = std::min(nearest, (points[j] - points[i]).squaredNorm());
+    }
+    if (!std::isfinite(nearest)) continue;
+    sum += std::sqrt(nearest);
+    ++count;
+  }
+  return count > 0 ? 2 * sum / count : 0;
+}
 
 // How well turned copies of a surface lie on it.
 class SelfMatch {
@@ -20,66 +51,107 @@ class SelfMatch {
   SelfMatch(const PointCloud& surface, float tolerance)
       : surface_(surface),
         tolerance_(tolerance),
-        distances_(distance_transform(surface.points, 0.003f, 0.02f)) {
+        distances_(distance_transform(surface.points, 0.003f, 0.02f)),
+        neighbors_(surface.points, tolerance + hole_size(surface)) {
     mean_.setZero();
     for (const Eigen::Vector3f& p : surface.points) {
       mean_ += p.cast<double>() / static_cast<double>(surface.size());
     }
+    for (const Eigen::Vector3f& p : surface.points) {
+      radius_ = std::max(radius_, (p.cast<double>() - mean_).norm());
+    }
   }
 
   const Eigen::Vector3d& mean() const { return mean_; }
+  double radius() const { return radius_; }  // of the surface about the mean
 
   struct Fit {
     double share = 0;  // of the points that lie on the surface after the turn
     double off = 0;    // how far these are from it on average, as a share of the tolerance
   };
 
-  // Of about `count` points.
-  Fit fit(const Eigen::Vector3d& axis, double angle, std::size_t count) const {
-    const Eigen::Matrix3f r = Eigen::AngleAxisd(angle, axis).toRotationMatrix().cast<float>();
-    const Eigen::Vector3f mean = mean_.cast<float>();
-    const std::size_t stride = std::max<std::size_t>(1, surface_.size() / count);
+  // Of about `count` points, by the distance transform: quick, but a point that lies in the plane
+  // of the surface a little beyond its rim counts as on it.
+  Fit fit(const Axis& axis, double angle, std::size_t count) const {
     double on = 0, all = 0, off = 0;
-    for (std::size_t i = 0; i < surface_.size(); i += stride) {
+    for_each_turned(axis, angle, count, [&](const Eigen::Vector3f& p, const Eigen::Vector3f& n) {
       ++all;
-      const float distance =
-          distance_to(r * (surface_.points[i] - mean) + mean, r * surface_.normals[i]);
-      if (distance > tolerance_) continue;
+      const float distance = distance_to(p, n);
+      if (distance > tolerance_) return;
       ++on;
       off += static_cast<double>(distance / tolerance_);
-    }
+    });
     return {on / all, on > 0 ? off / on : 1};
   }
-  double share(const Eigen::Vector3d& axis, double angle, std::size_t count) const {
+  double share(const Axis& axis, double angle, std::size_t count) const {
     return fit(axis, angle, count).share;
   }
 
+  // The share by exact neighbours: beyond the rim is off the surface.
+  double exact_share(const Axis& axis, double angle) const {
+    double on = 0, all = 0;
+    for_each_turned(axis, angle, 3000, [&](const Eigen::Vector3f& p, const Eigen::Vector3f& n) {
+      ++all;
+      bool found = false;
+      neighbors_.for_each_neighbor(p, [&](int k, float) {
+        const auto j = static_cast<std::size_t>(k);
+        const Eigen::Vector3f& normal = surface_.normals[j];
+        found = found || (normal.dot(n) > kSameSide &&
+                          std::abs(normal.dot(p - surface_.points[j])) < tolerance_);
+      });
+      on += found ? 1 : 0;
+    });
+    return on / all;
+  }
+
  private:
+  template <class Visit>
+  void for_each_turned(const Axis& axis, double angle, std::size_t count,
+                       const Visit& visit) const {
+    const Eigen::Matrix3f r =
+        Eigen::AngleAxisd(angle, axis.direction).toRotationMatrix().cast<float>();
+    const Eigen::Vector3f point = axis.point.cast<float>();
+    const std::size_t stride = std::max<std::size_t>(1, surface_.size() / count);
+    for (std::size_t i = 0; i < surface_.size(); i += stride) {
+      visit(Eigen::Vector3f(r * (surface_.points[i] - point) + point),
+            Eigen::Vector3f(r * surface_.normals[i]));
+    }
+  }
+
   // To the tangent plane of the surface near p that faces like n; large where there is none. In a
-  // thin wall the point nearest to p may be of the other side: one step outside it is not.
+  // thin wall the point nearest to p may be of the other side: one step outside it is not, unless
+  // the wall has no thickness.
   float distance_to(const Eigen::Vector3f& p, const Eigen::Vector3f& n) const {
+    float other_side = 1;
     for (const float step : {0.0f, 0.003f}) {
       const int found = distances_.nearest_to(p + step * n);
       if (found < 0) continue;
       const auto j = static_cast<std::size_t>(found);
       const Eigen::Vector3f d = p - surface_.points[j];
-      if (surface_.normals[j].dot(n) < 0.6f || d.norm() > 4 * tolerance_ + 0.004f) continue;
-      return std::abs(d.dot(surface_.normals[j]));
+      const float cosine = surface_.normals[j].dot(n);
+      if (std::abs(cosine) < kSameSide || d.norm() > 4 * tolerance_ + 0.004f) continue;
+      const float off = std::abs(d.dot(surface_.normals[j]));
+      if (cosine > 0) return off;
+      other_side = std::min(other_side, off);
     }
-    return 1;
+    return other_side;
   }
 
   const PointCloud& surface_;
   float tolerance_;
   DistanceTransform distances_;
+  NeighborGrid neighbors_;
   Eigen::Vector3d mean_;
+  double radius_ = 0;
 };
 
-// Hill climbing over the direction of the axis, about which turns by all the angles must fit;
-// returns the share of the points for which the worst of them does.
-double climb(const SelfMatch& match, const std::vector<double>& angles, Eigen::Vector3d& axis) {
+// Hill climbing over direction and place of the axis, about which turns by all the angles must fit;
+// returns the share of the points for which the worst of them does. The axis starts at the mean of
+// the points, which parts that a scan has missed have moved.
+double climb(const SelfMatch& match, const std::vector<double>& angles, Axis& axis) {
   constexpr std::size_t kPoints = 900;
-  const auto score = [&](const Eigen::Vector3d& a) {
+  constexpr int kMostSteps = 12;  // of one size
+  const auto score = [&](const Axis& a) {
     double least = 1;
     for (const double angle : angles) {
       const SelfMatch::Fit fit = match.fit(a, angle, kPoints);
@@ -89,17 +161,22 @@ double climb(const SelfMatch& match, const std::vector<double>& angles, Eigen::V
   };
   double best = score(axis);
   for (double step = 0.03; step > 0.002; step *= 0.5) {
-    for (bool better = true; better;) {
+    bool better = true;
+    for (int k = 0; better && k < kMostSteps; ++k) {
       better = false;
-      const Eigen::Vector3d u = axis.unitOrthogonal(), v = axis.cross(u);
+      const Eigen::Vector3d u = axis.direction.unitOrthogonal(), v = axis.direction.cross(u);
       for (const Eigen::Vector3d& d : {u, v, Eigen::Vector3d(-u), Eigen::Vector3d(-v)}) {
-        const Eigen::Vector3d next = (axis + step * d).normalized();
-        const double s = score(next);
-        if (s <= best + 1e-9) continue;
-        best = s;
-        axis = next;
-        better = true;
-        break;
+        const Axis turned{(axis.direction + step * d).normalized(), axis.point};
+        const Axis moved{axis.direction, axis.point + step * match.radius() * d};
+        for (const Axis& next : {turned, moved}) {
+          const double s = score(next);
+          if (s <= best + 1e-9) continue;
+          best = s;
+          axis = next;
+          better = true;
+          break;
+        }
+        if (better) break;
       }
     }
   }
@@ -108,31 +185,40 @@ double climb(const SelfMatch& match, const std::vector<double>& angles, Eigen::V
   return least;
 }
 
-constexpr double kSymmetric = 0.98;  // share of the points
+// The worst of the angles, by exact neighbours, or what is not enough anyway.
+double worst_share(const SelfMatch& match, const Axis& axis, const std::vector<double>& angles) {
+  double least = 1;
+  for (const double angle : angles) {
+    if (least < kNearly) break;
+    least = std::min(least, match.exact_share(axis, angle));
+  }
+  return least;
+}
 
 // Axes about which turns by all of the angles fit, no two within 8 degrees.
-std::vector<Eigen::Vector3d> axes_of(const SelfMatch& match, const std::vector<double>& angles,
-                                     int num_threads) {
+std::vector<Axis> axes_of(const SelfMatch& match, const std::vector<double>& angles,
+                          int num_threads) {
   constexpr int kDirections = 900, kTried = 24;
-  std::vector<std::pair<double, Eigen::Vector3d>> tried(kDirections);
+  std::vector<std::pair<double, Axis>> tried(kDirections);
   const double golden_angle = M_PI * (3 - std::sqrt(5.0));
   parallel_for(
       kDirections, num_threads,
       [&](int i) {
         const double z = 1 - (i + 0.5) / kDirections;  // half the sphere
         const double r = std::sqrt(1 - z * z);
-        const Eigen::Vector3d axis(r * std::cos(golden_angle * i), r * std::sin(golden_angle * i),
-                                   z);
+        const Axis axis{{r * std::cos(golden_angle * i), r * std::sin(golden_angle * i), z},
+                        match.mean()};
         tried[static_cast<std::size_t>(i)] = {match.share(axis, angles.front(), 150), axis};
       },
       16);
   std::stable_sort(tried.begin(), tried.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  const auto apart = [](const std::vector<Eigen::Vector3d>& axes, const Eigen::Vector3d& axis) {
-    return std::none_of(axes.begin(), axes.end(),
-                        [&](const auto& a) { return std::abs(a.dot(axis)) > std::cos(0.14); });
+  const auto apart = [](const std::vector<Axis>& axes, const Axis& axis) {
+    return std::none_of(axes.begin(), axes.end(), [&](const Axis& a) {
+      return std::abs(a.direction.dot(axis.direction)) > std::cos(0.14);
+    });
   };
-  std::vector<Eigen::Vector3d> starts, axes;
+  std::vector<Axis> starts, axes;
   for (const auto& [share, axis] : tried) {
     if (static_cast<int>(starts.size()) >= kTried || share < 0.4) break;
     if (apart(starts, axis)) starts.push_back(axis);
@@ -141,6 +227,7 @@ std::vector<Eigen::Vector3d> axes_of(const SelfMatch& match, const std::vector<d
   parallel_for(static_cast<int>(starts.size()), num_threads, [&](int k) {
     const auto i = static_cast<std::size_t>(k);
     score[i] = climb(match, angles, starts[i]);
+    if (score[i] >= kPromising) score[i] = worst_share(match, starts[i], angles);
   });
   for (std::size_t i = 0; i < starts.size(); ++i) {
     if (score[i] >= kSymmetric && apart(axes, starts[i])) axes.push_back(starts[i]);
@@ -182,31 +269,86 @@ Eigen::Vector3d upright(Eigen::Vector3d axis) {
   return axis[largest] < 0 ? Eigen::Vector3d(-axis) : axis;
 }
 
+// A turn by a part of the whole.
+struct Turn {
+  Axis axis;
+  int order = 2;  // how many of it make a whole turn
+};
+
+// The point that all axes pass by most closely, and that is near `mean` where they leave it open.
+Eigen::Vector3d common_point(const std::vector<Turn>& turns, const Eigen::Vector3d& mean) {
+  constexpr double kPull = 1e-3;
+  Eigen::Matrix3d normal = kPull * Eigen::Matrix3d::Identity();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();  // all relative to the mean
+  for (const Turn& turn : turns) {
+    const Eigen::Vector3d& d = turn.axis.direction;
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - d * d.transpose();
+    normal += across;
+    right += across * (turn.axis.point - mean);
+  }
+  return mean + normal.ldlt().solve(right);
+}
+
+// Turns that no discrete symmetry has together.
+const std::vector<double>& any_turns() {
+  static const std::vector<double> kAny{kTurn * 0.381, kTurn * 0.107, kTurn * 0.23, kTurn * 0.5};
+  return kAny;
+}
+
+// The axis about which turns of several orders follow one another so closely, 24 degrees or less,
+// that the surface may well turn by any angle; it does if it nearly passes that test. Noise may
+// keep a scanned bowl just below the threshold for some angle and above it for others.
+std::optional<Axis> nearly_continuous(const SelfMatch& match, const std::vector<Turn>& turns) {
+  constexpr int kMany = 15;
+  for (const Turn& one : turns) {
+    int together = one.order;
+    for (const Turn& other : turns) {
+      if (std::abs(one.axis.direction.dot(other.axis.direction)) < std::cos(0.14)) continue;
+      together = std::lcm(together, other.order);
+    }
+    if (together < kMany) continue;
+    if (worst_share(match, one.axis, any_turns()) >= kNearly) return one.axis;
+  }
+  return std::nullopt;
+}
+
+// A surface that turns about these axes by any angle.
+SymmetryGroup continuous_group(const SelfMatch& match, const std::vector<Axis>& axes) {
+  SymmetryGroup group;
+  for (const Axis& axis : axes) {
+    const Eigen::Vector3d along = axis.direction * axis.direction.dot(match.mean() - axis.point);
+    group.continuous.push_back({upright(axis.direction), axis.point + along});
+  }
+  if (axes.size() > 1) return group;
+  const ContinuousSymmetry& only = group.continuous.front();
+  const Axis across{only.axis.unitOrthogonal(), only.point};
+  if (match.exact_share(across, M_PI) >= kSymmetric) {
+    group.discrete.push_back(turn_about(across.point, across.direction, M_PI));
+  }
+  return group;
+}
+
 }  // namespace
 
 SymmetryGroup find_symmetries(const PointCloud& surface, double diameter, int num_threads) {
   SymmetryGroup group;
   if (surface.size() < 100) return group;
   const SelfMatch match(surface, static_cast<float>(std::max(0.0015, 0.012 * diameter)));
-  // Turns that no discrete symmetry has together.
-  const std::vector<double> any{kTurn * 0.381, kTurn * 0.107, kTurn * 0.23, kTurn * 0.5};
-  for (const Eigen::Vector3d& axis : axes_of(match, any, num_threads)) {
-    group.continuous.push_back({upright(axis), match.mean()});
-  }
-  if (!group.continuous.empty()) {
-    const Eigen::Vector3d across = group.continuous.front().axis.unitOrthogonal();
-    if (group.continuous.size() == 1 && match.share(across, M_PI, 2000) >= kSymmetric) {
-      group.discrete.push_back(turn_about(match.mean(), across, M_PI));
-    }
-    return group;
-  }
-  std::vector<Pose> turns;
+  const std::vector<Axis> continuous = axes_of(match, any_turns(), num_threads);
+  if (!continuous.empty()) return continuous_group(match, continuous);
+  std::vector<Turn> turns;
   for (int order = 6; order >= 2; --order) {
-    for (const Eigen::Vector3d& axis : axes_of(match, {kTurn / order}, num_threads)) {
-      turns.push_back(turn_about(match.mean(), upright(axis), kTurn / order));
+    for (const Axis& axis : axes_of(match, {kTurn / order}, num_threads)) {
+      turns.push_back({axis, order});
     }
   }
-  group.discrete = closed(std::move(turns));
+  if (const auto axis = nearly_continuous(match, turns)) return continuous_group(match, {*axis});
+  const Eigen::Vector3d centre = common_point(turns, match.mean());
+  std::vector<Pose> poses;
+  for (const Turn& turn : turns) {
+    poses.push_back(turn_about(centre, upright(turn.axis.direction), kTurn / turn.order));
+  }
+  group.discrete = closed(std::move(poses));
   return group;
 }
 

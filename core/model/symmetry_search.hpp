@@ -11,7 +11,9 @@ namespace bpa {
 
 /// The rotations that map a surface onto itself, within max(1.5 mm, 1.2 % of `diameter`) for at
 /// least 98 % of its points, normals considered and colours not: turns of a half to a sixth and
-/// continuous ones, about axes through the mean of the evenly spaced points. Deterministic.
+/// continuous ones. Where turns of several orders together are as fine as 24 degrees, 95 % of the
+/// points do for a continuous one. The points must be evenly spaced; parts of the surface may be
+/// missing. Deterministic.
 SymmetryGroup find_symmetries(const PointCloud& surface, double diameter, int num_threads);
 
 /// One line for people: "any turn about (0, 0, 1) through (0, 0, 12) mm; 3 single turns".
