@@ -65,6 +65,12 @@ void find_axis(RestingPosition& position, int sense, const TurntableOptions& opt
 std::vector<std::string> merge_resting_positions(std::vector<RestingPosition>& positions,
                                                  const TurntableOptions& options);
 
+/// Shifts a pose that lays the surface of one resting position onto that of another until the face
+/// that the object stands on in each of them, where the other one shows it, lies on its table
+/// (z = 0 in both frames). Leaves the pose as it is where the overlap would get worse by it.
+Pose settle_on_tables(const PointCloud& source, const PointCloud& target,
+                      const Pose& target_from_source);
+
 /// All of it: the views of all resting positions in one object frame (that of the first). The table
 /// turns the same way in all of them. Warnings say what was left out.
 struct AlignedScan {

@@ -143,7 +143,7 @@ std::vector<std::string> merge_resting_positions(std::vector<RestingPosition>& p
       positions[k].views.clear();
       continue;
     }
-    const Pose source_from_target = best.pose.inverse();
+    const Pose source_from_target = settle_on_tables(surfaces[k], surfaces[0], best.pose).inverse();
     for (PosedView& view : positions[k].views) {
       view.camera_from_object = view.camera_from_object * source_from_target;
     }

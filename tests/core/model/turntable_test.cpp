@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Scans drawn ray by ray of shapes that are known in closed form, on a plate in front of a wall.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -12,6 +13,7 @@ namespace bpa {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
+constexpr double kCanHeight = 0.1;  // metres
 
 // An L of two boxes, which looks different from all sides; z up from the plate.
 struct Box {
@@ -86,7 +88,7 @@ Frame image(const Stage& stage, int k, std::uint64_t seed) {
       t = std::min(t, (0.9 - eye.y()) / d.y() > 0 ? (0.9 - eye.y()) / d.y() : 1e9);  // a wall
       if (stage.can) {
         const Eigen::Vector3d axis(stage.axis.x(), stage.axis.y(), 0);
-        t = std::min(t, enter_cylinder(0.035, 0, 0.1, eye - axis, d));
+        t = std::min(t, enter_cylinder(0.035, 0, kCanHeight, eye - axis, d));
       } else if (stage.object) {
         const Eigen::Vector3d from = object_from_world * eye,
                               along = object_from_world.rotation * d;
@@ -226,6 +228,27 @@ TEST(Turntable, RestingPositionsAreMerged) {
   EXPECT_GT(close, 0.95 * static_cast<double>(model->surface.size()));
   EXPECT_TRUE(model->noise.fitted);
   EXPECT_NEAR(model->noise.range.floor, 0.001, 0.0007);
+}
+
+// A can is put upside down: it looks as before, and its side slides along itself.
+TEST(Turntable, CanUpsideDownKeepsItsHeight) {
+  Stage can;
+  can.can = true;
+  const auto aligned = align_scan({scan(can, 24, 11), scan(can, 24, 12)}, {});
+  ASSERT_TRUE(aligned.ok()) << aligned.status().message;
+  ASSERT_EQ(aligned->views.size(), 48u);
+  const auto model = model_source_from_views(aligned->views, "can", 1);
+  ASSERT_TRUE(model.ok()) << model.status().message;
+  std::vector<float> top, bottom;
+  for (std::size_t i = 0; i < model->surface.size(); ++i) {
+    const float up = model->surface.normals[i].z(), z = model->surface.points[i].z();
+    if (up > 0.98f) top.push_back(z);
+    if (up < -0.98f) bottom.push_back(z);
+  }
+  ASSERT_GT(top.size(), 100u);
+  ASSERT_GT(bottom.size(), 100u) << "seen in the second position only";
+  for (auto* heights : {&top, &bottom}) std::sort(heights->begin(), heights->end());
+  EXPECT_NEAR(top[top.size() / 2] - bottom[bottom.size() / 2], kCanHeight, 0.0015);
 }
 
 TEST(Turntable, MissingRestingPositionIsSaid) {
