@@ -283,7 +283,10 @@ void add_simulate_command(CLI::App& program, Action& action) {
   scenes.add_option("--models", a->models, "Only these of the household objects")
       ->excludes(meshes)
       ->type_name("LIST");
-  scenes.add_option("--views", a->scene.views, "Frames of each scene")->capture_default_str();
+  scenes.add_option("--views", a->scene.views, "Places that each scene is seen from")
+      ->capture_default_str();
+  scenes.add_option("--shots", a->scene.shots, "Frames from each place, with other noise")
+      ->capture_default_str();
   scenes.add_option("--empty", a->scene.empty_share, "Share of scenes with an empty table")
       ->capture_default_str();
   scenes

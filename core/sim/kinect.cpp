@@ -95,15 +95,21 @@ float window_agreement(const Measurement& m, int x, int y, float disparity) {
   return static_cast<float>(agree) / ((2 * kWindow + 1) * (2 * kWindow + 1));
 }
 
+// The seed of what differs from shot to shot.
+std::uint64_t shot_seed(std::uint64_t seed, int shot) {
+  return shot == 0 ? seed : RandomStream(seed, static_cast<std::uint64_t>(shot))();
+}
+
 // The random images that the measurement draws on.
 struct Noise {
   std::vector<float> lateral_x, lateral_y, shared, own, match, drop, smooth;
 
-  Noise(const Camera& camera, bool with_smooth, std::uint64_t seed, int num_threads) {
+  Noise(const Camera& camera, bool with_smooth, std::uint64_t seed, int shot, int num_threads) {
     std::uint64_t stream = 0;
-    const auto make = [&](int radius) {
-      return noise_field(camera.width, camera.height, radius, RandomStream(seed, stream++)(),
-                         num_threads);
+    const auto make = [&](int radius, bool always_so = false) {
+      const std::uint64_t drawn = RandomStream(seed, stream++)();
+      return noise_field(camera.width, camera.height, radius,
+                         always_so ? drawn : shot_seed(drawn, shot), num_threads);
     };
     lateral_x = make(3);
     lateral_y = make(3);
@@ -111,7 +117,7 @@ struct Noise {
     own = make(0);
     match = make(3);
     drop = make(4);
-    if (with_smooth) smooth = make(std::max(1, camera.width / 8));
+    if (with_smooth) smooth = make(std::max(1, camera.width / 8), true);
   }
 };
 
@@ -231,7 +237,7 @@ std::vector<float> carried_over(const std::vector<float>& depth, const Camera& i
 
 // Exposure, white balance, a lens and a mosaic of filters (blur), noise that grows with light.
 std::vector<std::uint8_t> photograph(const std::vector<std::uint8_t>& ideal, const Camera& camera,
-                                     const KinectOptions& options, std::uint64_t seed,
+                                     const KinectOptions& options, std::uint64_t seed, int shot,
                                      int num_threads) {
   RandomStream random(seed, 0);
   const double exposure = 0.9 * std::exp(options.exposure_spread * random.normal());
@@ -241,7 +247,8 @@ std::vector<std::uint8_t> photograph(const std::vector<std::uint8_t>& ideal, con
   }
   std::vector<std::vector<float>> noise;
   for (int c = 0; c < 3; ++c) {
-    noise.push_back(noise_field(camera.width, camera.height, 1, random(), num_threads));
+    noise.push_back(
+        noise_field(camera.width, camera.height, 1, shot_seed(random(), shot), num_threads));
   }
   std::vector<std::uint8_t> image(ideal.size());
   parallel_for(
@@ -285,7 +292,7 @@ double published_axial_noise(double depth, double angle) {
 
 Frame simulate_depth(const RayScene& scene, const Camera& camera, const Pose& world_from_camera,
                      const Shading& shading, const KinectOptions& options, std::uint64_t seed,
-                     int num_threads) {
+                     int num_threads, int shot) {
   Camera infrared = camera;
   Pose camera_from_infrared;
   if (options.registered) {
@@ -294,7 +301,7 @@ Frame simulate_depth(const RayScene& scene, const Camera& camera, const Pose& wo
   }
   const Measurement m =
       see(scene, infrared, world_from_camera * camera_from_infrared, shading, options, num_threads);
-  const Noise noise(infrared, options.calibration_error > 0, seed, num_threads);
+  const Noise noise(infrared, options.calibration_error > 0, seed, shot, num_threads);
   std::vector<float> depth(m.depth.size(), 0);
   parallel_for(
       infrared.height, num_threads,
@@ -317,10 +324,11 @@ Frame simulate_depth(const RayScene& scene, const Camera& camera, const Pose& wo
 
 KinectImage simulate_kinect(const RayScene& scene, const Camera& camera,
                             const Pose& world_from_camera, const Shading& shading,
-                            const KinectOptions& options, std::uint64_t seed, int num_threads) {
+                            const KinectOptions& options, std::uint64_t seed, int num_threads,
+                            int shot) {
   KinectImage image;
   image.frame =
-      simulate_depth(scene, camera, world_from_camera, shading, options, seed, num_threads);
+      simulate_depth(scene, camera, world_from_camera, shading, options, seed, num_threads, shot);
   image.ideal = render(scene, camera, world_from_camera, shading, num_threads);
   const std::vector<std::uint8_t>* color = &image.ideal.color;
   RenderedImage shifted;
@@ -333,7 +341,7 @@ KinectImage simulate_kinect(const RayScene& scene, const Camera& camera,
     shifted = render(scene, moved, world_from_camera, shading, num_threads);
     color = &shifted.color;
   }
-  image.frame.color = photograph(*color, camera, options, random(), num_threads);
+  image.frame.color = photograph(*color, camera, options, random(), shot, num_threads);
   return image;
 }
 

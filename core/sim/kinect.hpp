@@ -90,17 +90,19 @@ struct KinectImage {
   RenderedImage ideal;  ///< The same view without any error.
 };
 
-/// What the camera measures. `camera` is the colour camera (also the depth camera if not
+/// What the camera measures. Another `shot` of the same seed has other noise: the same camera, a
+/// moment later. `camera` is the colour camera (also the depth camera if not
 /// `registered`); `shading` holds the materials of the posed meshes. The same options and seed give
 /// the same image for any number of threads.
 KinectImage simulate_kinect(const RayScene& scene, const Camera& camera,
                             const Pose& world_from_camera, const Shading& shading,
-                            const KinectOptions& options, std::uint64_t seed, int num_threads = 0);
+                            const KinectOptions& options, std::uint64_t seed, int num_threads = 0,
+                            int shot = 0);
 
 /// The depth of simulate_kinect() without its colours, in the fraction of the time; the frame has
 /// no colour.
 Frame simulate_depth(const RayScene& scene, const Camera& camera, const Pose& world_from_camera,
                      const Shading& shading, const KinectOptions& options, std::uint64_t seed,
-                     int num_threads = 0);
+                     int num_threads = 0, int shot = 0);
 
 }  // namespace bpa::sim

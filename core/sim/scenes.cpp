@@ -237,8 +237,11 @@ SimulatedScene simulate_scene(const Stage& stage, const SceneOptions& options, s
     RandomStream view_random(seed, 1 + static_cast<std::uint64_t>(view));
     const double azimuth = first_azimuth + 2 * kPi * view / options.views;
     const Pose world_from_camera = draw_camera(things, options, result.kind, azimuth, view_random);
-    result.frames.push_back(capture(scene, objects, options.camera, world_from_camera, shading,
-                                    options.kinect, view_random(), num_threads));
+    const std::uint64_t view_seed = view_random();
+    for (int shot = 0; shot < options.shots; ++shot) {
+      result.frames.push_back(capture(scene, objects, options.camera, world_from_camera, shading,
+                                      options.kinect, view_seed, num_threads, shot));
+    }
   }
   return result;
 }

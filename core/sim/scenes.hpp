@@ -35,6 +35,7 @@ struct SceneOptions {
   double min_elevation_deg = 25;
   double max_elevation_deg = 65;
   int views = 1;
+  int shots = 1;
   double empty_share = 0;
   double distractor_share = 0;
   double border_share = 0.1;
@@ -53,7 +54,8 @@ struct SceneOptions {
     visit("max_distance", max_distance, {0.3, 4, "Camera to the middle of the pile, metres."});
     visit("min_elevation_deg", min_elevation_deg, {5, 89, "Camera above the table, degrees."});
     visit("max_elevation_deg", max_elevation_deg, {5, 89, "Camera above the table, degrees."});
-    visit("views", views, {1, 1000, "Frames of each scene, from all around."});
+    visit("views", views, {1, 1000, "Places that each scene is seen from, all around."});
+    visit("shots", shots, {1, 100, "Frames from each place, with other noise."});
     visit("empty_share", empty_share, {0, 1, "Share of scenes with an empty table."});
     visit("distractor_share", distractor_share, {0, 1, "Share of scenes without any object."});
     visit("border_share", border_share, {0, 1, "Share of scenes with an object at the border."});
@@ -80,7 +82,7 @@ struct SimulatedFrame {
 /// A scene and its views.
 struct SimulatedScene {
   SceneKind kind = SceneKind::pile;
-  std::vector<SimulatedFrame> frames;
+  std::vector<SimulatedFrame> frames;  ///< All shots of a view, then those of the next.
 };
 
 /// The objects, the distractors, tables, a bin and the room, made ready for rendering once.

@@ -35,9 +35,9 @@ const std::vector<SimulatedObject>& Stage::objects() const { return impl_->objec
 
 SimulatedFrame capture(const RayScene& scene, const std::vector<int>& objects, const Camera& camera,
                        const Pose& world_from_camera, const Shading& shading,
-                       const KinectOptions& kinect, std::uint64_t seed, int num_threads) {
+                       const KinectOptions& kinect, std::uint64_t seed, int num_threads, int shot) {
   KinectImage image =
-      simulate_kinect(scene, camera, world_from_camera, shading, kinect, seed, num_threads);
+      simulate_kinect(scene, camera, world_from_camera, shading, kinect, seed, num_threads, shot);
   SimulatedFrame frame;
   frame.frame = std::move(image.frame);
   frame.camera_from_world = world_from_camera.inverse();

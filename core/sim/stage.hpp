@@ -32,6 +32,7 @@ struct Stage::Impl {
 /// `objects` says what they are.
 SimulatedFrame capture(const RayScene& scene, const std::vector<int>& objects, const Camera& camera,
                        const Pose& world_from_camera, const Shading& shading,
-                       const KinectOptions& kinect, std::uint64_t seed, int num_threads);
+                       const KinectOptions& kinect, std::uint64_t seed, int num_threads,
+                       int shot = 0);
 
 }  // namespace bpa::sim

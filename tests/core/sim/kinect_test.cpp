@@ -36,14 +36,15 @@ KinectOptions at_depth_camera() {
 
 // A wide plane through (0, 0, depth), turned about the image's y axis.
 KinectImage see_plane(double depth, double angle, const Material& material,
-                      const KinectOptions& options, int num_threads = 2) {
+                      const KinectOptions& options, int num_threads = 2, int shot = 0) {
   static const TriangleMesh mesh = quad(20, 20);
   const RayMeshes meshes({&mesh});
   const RayScene scene(
       meshes,
       {{0,
         {Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY())), {0, 0, depth}}}});
-  return simulate_kinect(scene, kCamera, Pose{}, with_material(material), options, 5, num_threads);
+  return simulate_kinect(scene, kCamera, Pose{}, with_material(material), options, 5, num_threads,
+                         shot);
 }
 
 // The standard deviation of the measured depth where the plane is `depth` away within 3 %.
@@ -191,6 +192,23 @@ TEST(Kinect, RegistrationKeepsDepthWhereItIs) {
     }
   }
   EXPECT_LT(worst, 0.006);  // a step of quantisation and one pixel of slope
+}
+
+TEST(Kinect, AnotherShotHasOtherNoiseAndTheSameErrorsOfTheCamera) {
+  KinectOptions options = at_depth_camera();
+  options.calibration_error = 0.4;
+  options.misregistration = 3;
+  const KinectImage first = see_plane(1.0, 0.3, {}, options);
+  const KinectImage second = see_plane(1.0, 0.3, {}, options, 2, 1);
+  EXPECT_EQ(first.ideal.depth, second.ideal.depth);
+  EXPECT_NE(first.frame.depth, second.frame.depth);
+  EXPECT_NE(first.frame.color, second.frame.color);
+  options.axial_noise = options.lateral_noise = options.dropouts = options.color_noise = 0;
+  const KinectImage third = see_plane(1.0, 0.3, {}, options);
+  const KinectImage fourth = see_plane(1.0, 0.3, {}, options, 2, 1);
+  EXPECT_NE(third.frame.depth, third.ideal.depth);
+  EXPECT_EQ(third.frame.depth, fourth.frame.depth);
+  EXPECT_EQ(third.frame.color, fourth.frame.color);
 }
 
 TEST(Kinect, IsTheSameForAnyNumberOfThreads) {
