@@ -11,18 +11,15 @@
 #include <bpa/core/base/stopwatch.hpp>
 #include <bpa/core/cli/command.hpp>
 #include <bpa/core/cli/contact_sheet.hpp>
+#include <bpa/core/cli/detect_inputs.hpp>
 #include <bpa/core/cli/detection_files.hpp>
 #include <bpa/core/cli/explain_folder.hpp>
 #include <bpa/core/cli/progress.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/camera_file.hpp>
+#include <bpa/core/cloud/frame_fusion.hpp>
 #include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/io/frame_file.hpp>
-#include <bpa/core/io/pcd_file.hpp>
 #include <bpa/core/pipeline/annotate.hpp>
 #include <bpa/core/pipeline/detector.hpp>
 #include <bpa/core/pipeline/frame_trace.hpp>
-#include <bpa/core/pipeline/pose_prior_file.hpp>
 #include <bpa/core/pipeline/score_layer_file.hpp>
 
 namespace bpa::cli {
@@ -30,99 +27,12 @@ namespace {
 
 constexpr std::size_t kWorstFrames = 6;
 
-struct DetectArguments {
-  CommonOptions common;
-  std::string library, config;
-  std::vector<std::string> pcd;
-  std::string depth, color, camera, bop;
-  std::string split = "test";
-  std::string scenes, models, priors;
-  std::string mask;
-  std::vector<int> roi;
-  int top = 20;
-  double budget_ms = 0;
-  std::string csv, json, annotate, explain;
-};
-
-/// A frame and where its poses are to be reported.
-struct Input {
-  Frame frame;
-  Pose reported_from_camera;
-  int scene_id = 0;
-  int im_id = 0;
-  bool has_truth = false;
-  std::vector<io::BopInstance> truth;
-};
-
-std::string input_name(const DetectArguments& a, int scene_id, int im_id) {
-  if (!a.pcd.empty()) return a.pcd[static_cast<std::size_t>(im_id)];
-  if (a.bop.empty()) return a.depth;
-  return "scene " + std::to_string(scene_id) + " image " + std::to_string(im_id);
-}
-
-/// For files about it.
-std::string frame_name(const Input& input) {
-  char name[32];
-  std::snprintf(name, sizeof name, "%06d_%06d", input.scene_id, input.im_id);
-  return name;
-}
-
-Result<Input> read_pcd_input(const DetectArguments& a, int index) {
-  const std::string& path = a.pcd[static_cast<std::size_t>(index)];
-  const Result<io::PcdCloud> cloud = io::read_pcd(path);
-  if (!cloud.ok()) return cloud.status();
-  Result<io::OrganisedFrame> organised = Status(StatusCode::internal, "not read");
-  if (a.camera.empty()) {
-    organised = io::frame_from_organised_cloud(*cloud);
-  } else {
-    Result<io::CameraFile> camera = io::read_camera(a.camera);
-    if (!camera.ok()) return camera.status();
-    if (camera->camera.width == 0) {
-      camera->camera.width = cloud->width;
-      camera->camera.height = cloud->height;
-    }
-    organised = io::frame_from_organised_cloud(*cloud, &camera->camera);
-  }
-  if (!organised.ok()) {
-    return Status(organised.status().code, path + ": " + organised.status().message);
-  }
-  for (const std::string& note : organised->notes) {
-    std::printf("%s: %s\n", path.c_str(), note.c_str());
-  }
-  Input input;
-  input.im_id = index;
-  input.frame = std::move(organised->frame);
-  input.reported_from_camera = organised->cloud_from_camera;
-  return input;
-}
-
-Result<Input> read_png_input(const DetectArguments& a) {
-  const Result<io::CameraFile> camera = io::read_camera(a.camera);
-  if (!camera.ok()) return camera.status();
-  if (!camera->note.empty()) std::printf("%s: %s\n", a.camera.c_str(), camera->note.c_str());
-  Result<Frame> frame = io::read_frame(a.depth, a.color, camera->camera, camera->depth_scale_mm);
-  if (!frame.ok()) return frame.status();
-  Input input;
-  input.frame = std::move(*frame);
-  return input;
-}
-
-Result<Input> read_bop_input(const io::BopFrame& entry) {
-  Result<Frame> frame = io::load_bop_frame(entry);
-  if (!frame.ok()) return frame.status();
-  Input input;
-  input.frame = std::move(*frame);
-  input.scene_id = entry.scene_id;
-  input.im_id = entry.im_id;
-  input.has_truth = entry.has_truth;
-  input.truth = entry.truth;
-  return input;
-}
-
 void print_result(const std::string& name, const io::FrameResult& result) {
-  std::printf("%s: %zu interpretation%s, %.2f s%s\n", name.c_str(), result.interpretations.size(),
+  std::printf("%s: %zu interpretation%s, %.2f s%s", name.c_str(), result.interpretations.size(),
               result.interpretations.size() == 1 ? "" : "s", result.seconds,
               result.budget_exhausted ? " (time budget exhausted)" : "");
+  if (result.fused_frames > 1) std::printf(", %d frames combined", result.fused_frames);
+  std::printf("\n");
   if (result.interpretations.empty() || result.interpretations.front().placements.empty()) {
     std::printf("  nothing known is there\n");
     return;
@@ -138,35 +48,12 @@ void print_result(const std::string& name, const io::FrameResult& result) {
   }
 }
 
-/// What the caller says of every frame.
-struct Given {
-  RegionOfInterest roi;
-  std::vector<std::uint8_t> mask;
-  std::vector<PosePrior> priors;  ///< In the frame that poses are reported in.
-};
-
-Result<Given> read_given(const DetectArguments& a) {
-  Given given;
-  if (!a.roi.empty()) given.roi = {a.roi[0], a.roi[1], a.roi[2], a.roi[3]};
-  if (!a.mask.empty()) {
-    const Result<io::GrayImage> mask = io::read_gray_png(a.mask);
-    if (!mask.ok()) return mask.status();
-    for (const std::uint16_t value : mask->pixels) given.mask.push_back(value > 0);
-  }
-  if (!a.priors.empty()) {
-    Result<std::vector<PosePrior>> priors = read_pose_priors(a.priors);
-    if (!priors.ok()) return priors.status();
-    given.priors = std::move(*priors);
-  }
-  return given;
-}
-
 /// Runs over the inputs and writes what was asked for.
 class DetectRun {
  public:
   DetectRun(const DetectArguments& arguments, const Detector& detector, const Given& given,
             std::size_t num_frames)
-      : a_(arguments), detector_(detector), given_(given) {
+      : a_(arguments), detector_(detector), given_(given), fusion_(arguments.fuse) {
     if (!a_.explain.empty()) explain_.emplace(a_.explain, num_frames > 1);
     request_.models = split_commas(a_.models);
     request_.top_k = a_.top;
@@ -175,9 +62,47 @@ class DetectRun {
     request_.num_threads = a_.common.threads;
   }
 
-  Status one(Input input) {
-    const std::string name = input_name(a_, input.scene_id, input.im_id);
-    clean_depth(input.frame);
+  /// Takes up a frame. Searches once those that are to be combined are there, or with the `last`
+  /// of a scene.
+  Status add(Input input, bool last) {
+    if (a_.fuse == 1) return search(std::move(input));
+    if (Status s = validate(input.frame); !s.ok()) {
+      return Status(s.code, input.name + ": " + s.message);
+    }
+    const bool complete = ++combined_ == a_.fuse || last;
+    FusedFrame fused;
+    if (complete) {
+      fused = fusion_.add(std::move(input.frame), a_.common.threads);
+    } else {
+      fused.restart = fusion_.hold(input.frame);
+    }
+    if (!fused.restart.empty()) {
+      std::printf("%s: not combined with those before it: %s\n", input.name.c_str(),
+                  fused.restart.c_str());
+    }
+    if (!complete) return {};
+    combined_ = 0;
+    fusion_ = FrameFusion(a_.fuse);
+    input.frame = std::move(fused.frame);
+    return search(std::move(input));
+  }
+
+  Status finish() const {
+    if (!a_.csv.empty()) {
+      if (Status s = io::write_results_csv(a_.csv, results_); !s.ok()) return s;
+    }
+    if (!a_.json.empty()) {
+      if (Status s = io::write_results_json(a_.json, results_); !s.ok()) return s;
+    }
+    if (explain_) {
+      if (Status s = explain_->finish(); !s.ok()) return s;
+    }
+    return a_.annotate.empty() ? Status() : write_sheets();
+  }
+
+ private:
+  Status search(Input input) {
+    const std::string& name = input.name;
     input.frame.roi = given_.roi;
     input.frame.mask = given_.mask;
     request_.priors.clear();
@@ -195,27 +120,13 @@ class DetectRun {
     print_result(name, results_.back());
     std::fflush(stdout);
     if (explain_) {
-      Status status = explain_->add({name, frame_name(input), input.frame, trace, *scene,
+      Status status = explain_->add({name, file_name(input), input.frame, trace, *scene,
                                      detector_.score_layer(), input.truth});
       if (!status.ok()) return status;
     }
     return a_.annotate.empty() ? Status() : annotate_frame(input, *scene, name);
   }
 
-  Status finish() const {
-    if (!a_.csv.empty()) {
-      if (Status s = io::write_results_csv(a_.csv, results_); !s.ok()) return s;
-    }
-    if (!a_.json.empty()) {
-      if (Status s = io::write_results_json(a_.json, results_); !s.ok()) return s;
-    }
-    if (explain_) {
-      if (Status s = explain_->finish(); !s.ok()) return s;
-    }
-    return a_.annotate.empty() ? Status() : write_sheets();
-  }
-
- private:
   Status write_sheets() const {
     std::vector<io::ColorImage> all, worst;
     for (const AnnotatedFrame& frame : sheet_) all.push_back(frame.image);
@@ -233,7 +144,7 @@ class DetectRun {
                         const std::string& name) {
     if (scene.interpretations.empty()) return {};
     const Interpretation& best = scene.interpretations.front();
-    const std::string file = a_.annotate + "/" + frame_name(input) + ".png";
+    const std::string file = a_.annotate + "/" + file_name(input) + ".png";
     if (!input.has_truth) {
       return io::write_color_png(file, annotate(input.frame, best, detector_.library()));
     }
@@ -245,39 +156,13 @@ class DetectRun {
   const DetectArguments& a_;
   const Detector& detector_;
   const Given& given_;
+  FrameFusion fusion_;
+  int combined_ = 0;  ///< Frames since the last search.
   std::optional<ExplainFolder> explain_;
   DetectRequest request_;
   std::vector<io::FrameResult> results_;
   std::vector<AnnotatedFrame> sheet_;
 };
-
-Result<std::vector<int>> parse_scenes(const std::string& list) {
-  std::vector<int> scenes;
-  for (const std::string& part : split_commas(list)) {
-    if (part.size() > 6 || part.find_first_not_of("0123456789") != std::string::npos) {
-      return invalid_argument("--scenes has \"" + part + "\"; it must be numbers and commas");
-    }
-    scenes.push_back(std::stoi(part));
-  }
-  return scenes;
-}
-
-Status run_bop(const DetectArguments& a, const Detector& detector, const Given& given) {
-  const Result<std::vector<int>> scenes = parse_scenes(a.scenes);
-  if (!scenes.ok()) return scenes.status();
-  const Result<std::vector<io::BopFrame>> frames = io::read_bop_frames(a.bop, a.split, *scenes);
-  if (!frames.ok()) return frames.status();
-  DetectRun run(a, detector, given, frames->size());
-  Progress progress("frames", static_cast<int>(frames->size()));
-  for (std::size_t i = 0; i < frames->size(); ++i) {
-    progress.show(static_cast<int>(i));
-    Result<Input> input = read_bop_input((*frames)[i]);
-    if (!input.ok()) return input.status();
-    progress.clear();
-    if (Status s = run.one(std::move(*input)); !s.ok()) return s;
-  }
-  return run.finish();
-}
 
 Status detect(const DetectArguments& a) {
   DetectorOptions options;
@@ -287,10 +172,10 @@ Status detect(const DetectArguments& a) {
     options = *loaded;
   }
   // A bad frame or folder is said before the library is loaded, which takes longer.
-  Result<Input> first = Input{};
-  if (!a.pcd.empty()) first = read_pcd_input(a, 0);
-  if (!a.depth.empty()) first = read_png_input(a);
-  if (!first.ok()) return first.status();
+  const Result<Inputs> inputs = Inputs::open(a);
+  if (!inputs.ok()) return inputs.status();
+  Result<Input> input = inputs->size() > 0 ? inputs->read(0) : Input{};
+  if (!input.ok()) return input.status();
   const Result<Given> given = read_given(a);
   if (!given.ok()) return given.status();
   if (!a.explain.empty()) {
@@ -301,13 +186,14 @@ Status detect(const DetectArguments& a) {
   Result<ScoreLayer> layer = library_score_layer(a.library);
   if (!layer.ok()) return layer.status();
   const Detector detector(*library, options, std::move(*layer));
-  if (!a.bop.empty()) return run_bop(a, detector, *given);
-  DetectRun run(a, detector, *given, std::max<std::size_t>(1, a.pcd.size()));
-  if (Status s = run.one(std::move(*first)); !s.ok()) return s;
-  for (int i = 1; i < static_cast<int>(a.pcd.size()); ++i) {
-    Result<Input> next = read_pcd_input(a, i);
-    if (!next.ok()) return next.status();
-    if (Status s = run.one(std::move(*next)); !s.ok()) return s;
+  DetectRun run(a, detector, *given, inputs->size());
+  Progress progress("frames", static_cast<int>(inputs->size()));
+  for (std::size_t i = 0; i < inputs->size(); ++i) {
+    progress.show(static_cast<int>(i));
+    if (i > 0) input = inputs->read(i);
+    if (!input.ok()) return input.status();
+    progress.clear();
+    if (Status s = run.add(std::move(*input), inputs->ends_scene(i)); !s.ok()) return s;
   }
   return run.finish();
 }
@@ -324,6 +210,9 @@ void check_usage(const DetectArguments& a) {
   if (a.depth.empty() && !a.color.empty()) {
     throw CLI::ValidationError("--color", "needs --depth FILE");
   }
+  if (!a.color.empty() && a.color.size() != a.depth.size()) {
+    throw CLI::ValidationError("--color", "needs as many files as --depth");
+  }
   if (!a.bop.empty() && !a.camera.empty()) {
     throw CLI::ValidationError("--camera", "is not for --bop: the data set has its cameras");
   }
@@ -336,9 +225,10 @@ void add_inputs(CLI::App& command, DetectArguments& a) {
       ->type_name("DIR");
   command.add_option("--pcd", a.pcd, "Organised PCD clouds; the camera is estimated from them")
       ->type_name("FILE...");
-  command.add_option("--depth", a.depth, "16-bit depth PNG, registered to colour")
-      ->type_name("FILE");
-  command.add_option("--color", a.color, "8-bit colour PNG of the same size")->type_name("FILE");
+  command.add_option("--depth", a.depth, "16-bit depth PNGs, registered to colour")
+      ->type_name("FILE...");
+  command.add_option("--color", a.color, "8-bit colour PNGs of the same size")
+      ->type_name("FILE...");
   command.add_option("--camera", a.camera, "BOP camera.json or ROS camera_info YAML")
       ->type_name("FILE");
   command.add_option("--bop", a.bop, "Folder of a BOP data set")->type_name("DIR");
@@ -347,6 +237,13 @@ void add_inputs(CLI::App& command, DetectArguments& a) {
       ->capture_default_str();
   command.add_option("--scenes", a.scenes, "Scenes of the split, such as 1,4; all if not given")
       ->type_name("LIST");
+  command
+      .add_option("--fuse", a.fuse,
+                  "Combine the depth of so many frames that follow one another in one scene, and "
+                  "search them once; for a camera and a scene that stand still")
+      ->check(CLI::Range(1, 30))
+      ->type_name("N")
+      ->capture_default_str();
   command.add_option("--models", a.models, "Names of models to look for; all if not given")
       ->type_name("LIST");
   command

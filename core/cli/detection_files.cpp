@@ -98,6 +98,7 @@ io::FrameResult to_frame_result(const SceneInterpretations& scene, int scene_id,
   result.im_id = im_id;
   result.seconds = seconds;
   result.budget_exhausted = scene.budget_exhausted;
+  result.fused_frames = scene.fused_frames;
   for (const StageTiming& timing : scene.timings) {
     result.timings.push_back({timing.stage, timing.milliseconds});
   }

@@ -32,6 +32,7 @@ struct Frame {
                                          ///< surface); empty = the detector finds it.
   std::int64_t stamp_ns = 0;             ///< Exposure time, UTC.
   std::string frame_id;                  ///< Name of the optical frame.
+  int fused = 1;  ///< How many frames its depth is made of (frame_fusion.hpp).
 };
 
 /// Checks sizes and the camera, and that at least 500 pixels have a depth in (0, 20] m. Names the

@@ -58,6 +58,7 @@ struct FrameResult {
   int im_id = 0;
   double seconds = 0;  ///< Spent on the whole frame.
   bool budget_exhausted = false;
+  int fused_frames = 1;                               ///< How many frames its depth is made of.
   std::vector<ResultInterpretation> interpretations;  ///< Ranked.
   std::vector<ResultTiming> timings;
 };

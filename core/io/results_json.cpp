@@ -91,9 +91,13 @@ Json frame_json(const FrameResult& frame) {
   for (const ResultTiming& timing : frame.timings) {
     timings.push_back({{"stage", timing.stage}, {"milliseconds", timing.milliseconds}});
   }
-  return {{"scene_id", frame.scene_id}, {"im_id", frame.im_id},
-          {"seconds", frame.seconds},   {"budget_exhausted", frame.budget_exhausted},
-          {"timings", timings},         {"interpretations", interpretations}};
+  return {{"scene_id", frame.scene_id},
+          {"im_id", frame.im_id},
+          {"seconds", frame.seconds},
+          {"budget_exhausted", frame.budget_exhausted},
+          {"timings", timings},
+          {"interpretations", interpretations},
+          {"fused_frames", frame.fused_frames}};
 }
 
 FrameResult frame_from_json(const Json& json) {
@@ -102,6 +106,7 @@ FrameResult frame_from_json(const Json& json) {
   frame.im_id = json.at("im_id").get<int>();
   frame.seconds = json.at("seconds").get<double>();
   frame.budget_exhausted = json.value("budget_exhausted", false);
+  frame.fused_frames = json.value("fused_frames", 1);
   if (json.contains("timings")) {
     for (const Json& timing : json.at("timings")) {
       frame.timings.push_back(

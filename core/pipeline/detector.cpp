@@ -120,6 +120,7 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   SceneInterpretations out;
   out.stamp_ns = frame.stamp_ns;
   out.frame_id = frame.frame_id;
+  out.fused_frames = frame.fused;
   const auto finish_stage = [&](const char* name) {
     out.timings.push_back({name, stage.lap_milliseconds()});
   };

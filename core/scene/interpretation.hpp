@@ -31,6 +31,7 @@ struct SceneInterpretations {
   std::vector<StageTiming> timings;             ///< In the order the stages ran.
   double total_milliseconds = 0;
   bool budget_exhausted = false;  ///< The time budget ended the search: this is the best so far.
+  int fused_frames = 1;           ///< How many frames the depth that was searched is made of.
 };
 
 }  // namespace bpa

@@ -31,6 +31,7 @@ std::vector<FrameResult> some_results() {
   frame.scene_id = 2;
   frame.im_id = 5;
   frame.seconds = 0.1;
+  frame.fused_frames = 5;
   frame.timings = {{"edges", 12.5}};
   frame.interpretations.resize(2);
   frame.interpretations[0].placements = {some_placement(3, 0.9), some_placement(4, 0.1)};
@@ -76,6 +77,7 @@ TEST(Results, CsvHoldsTheBestInterpretation) {
   EXPECT_EQ(back->front().scene_id, 2);
   EXPECT_EQ(back->front().im_id, 5);
   EXPECT_EQ(back->front().seconds, 0.1);
+  EXPECT_EQ(back->front().fused_frames, 5);
   ASSERT_EQ(back->front().interpretations.at(0).placements.size(), 2u);
   const ResultPlacement& placement = back->front().interpretations[0].placements[0];
   EXPECT_EQ(placement.obj_id, 3);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bpa/core/cloud/frame_fusion.hpp>
 #include <bpa/core/sim/physics.hpp>
 #include <bpa/core/sim/scenes.hpp>
 
@@ -234,6 +235,49 @@ TEST(Scenes, CamerasLookAtTheirTarget) {
   EXPECT_LT((target - Eigen::Vector3d(0, 0, 1.2)).norm(), 1e-9);
   EXPECT_NEAR(pose.translation.z(), 0.3 + 1.2 * std::sin(0.7), 1e-9);
   EXPECT_LT((pose.rotation * Eigen::Vector3d::UnitY()).z(), -0.5);  // image y points down
+}
+
+// Errors of depth where there is one, metres, and how many pixels on things have none.
+struct DepthErrors {
+  double median = 0;
+  int holes = 0;
+};
+
+DepthErrors depth_errors(const std::vector<float>& depth, const std::vector<float>& ideal) {
+  DepthErrors out;
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (ideal[i] <= 0 || ideal[i] > 2) continue;
+    if (depth[i] > 0) {
+      errors.push_back(std::abs(depth[i] - ideal[i]));
+    } else {
+      ++out.holes;
+    }
+  }
+  std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
+  out.median = errors[errors.size() / 2];
+  return out;
+}
+
+TEST(Scenes, ShotsOfOneViewCombinedComeCloserToTheTruth) {
+  SceneOptions options = small_options();
+  options.shots = 5;
+  const SimulatedScene scene = simulate_scene(stage(), options, 3);
+  ASSERT_EQ(scene.frames.size(), 5u);
+  FrameFusion fusion(5);
+  FusedFrame fused;
+  for (const SimulatedFrame& shot : scene.frames) {
+    ASSERT_EQ(shot.ideal_depth, scene.frames[0].ideal_depth);
+    ASSERT_EQ(shot.camera_from_world.translation, scene.frames[0].camera_from_world.translation);
+    fused = fusion.add(shot.frame);
+    ASSERT_EQ(fused.restart, "");
+  }
+  EXPECT_EQ(fused.frame.fused, 5);
+  const DepthErrors single = depth_errors(scene.frames[4].frame.depth, scene.frames[4].ideal_depth);
+  const DepthErrors five = depth_errors(fused.frame.depth, scene.frames[4].ideal_depth);
+  // Not by 1 / sqrt(5): the steps of disparity are about as large as the noise.
+  EXPECT_LT(five.median, 0.75 * single.median);
+  EXPECT_LT(five.holes, single.holes);
 }
 
 }  // namespace

@@ -239,10 +239,59 @@ TEST_F(BadInput, DataSets) {
   expect_failure("evaluate --bop " + (folder_ / "none") + " --csv x.csv", {"none/test"});
 }
 
+class Fusion : public BadInput {};
+
+TEST_F(Fusion, SearchesFramesOfOneStillSceneOnce) {
+  write_depth("d2.png", 160, 120, 702);
+  write_depth("moved.png", 160, 120, 900);
+  const auto fused = [&](const std::string& names) {
+    std::string depths;
+    for (const char* name : {"d.png", "d2.png"}) (depths += " ") += folder_ / name;
+    if (!names.empty()) (depths += " ") += folder_ / names;
+    const Outcome outcome =
+        run("detect --library " + (folder_ / "L") + " --camera " + (folder_ / "camera.json") +
+            " --fuse 3 --json " + (folder_ / "r.json") + " --depth" + depths);
+    EXPECT_EQ(outcome.code, 0) << outcome.out;
+    const auto results = io::read_results_json(folder_ / "r.json");
+    EXPECT_TRUE(results.ok() && results->size() == 1);
+    const bool one = results.ok() && results->size() == 1;
+    return std::pair(one ? results->front().fused_frames : 0, outcome.out);
+  };
+  EXPECT_EQ(fused("").first, 2);
+  EXPECT_EQ(fused("d.png").first, 3);
+  const auto [count, said] = fused("moved.png");
+  EXPECT_EQ(count, 1);
+  EXPECT_NE(said.find("moved.png: not combined with those before it: 100 % of the depths changed"),
+            std::string::npos)
+      << said;
+}
+
+TEST_F(Fusion, TakesTheImagesOfEachSceneOfADataSet) {
+  for (const int scene : {1, 2}) {
+    io::BopSceneWriter writer(folder_ / "set", "test", scene);
+    for (int image = 0; image < 2 + scene; ++image) {
+      ASSERT_TRUE(writer.add(image, box_frame(box_pose()), {}).ok());
+    }
+    ASSERT_TRUE(writer.finish().ok());
+  }
+  const Outcome outcome = run("detect --library " + (folder_ / "L") + " --bop " +
+                              (folder_ / "set") + " --fuse 3 --json " + (folder_ / "r.json"));
+  ASSERT_EQ(outcome.code, 0) << outcome.out;
+  const auto results = io::read_results_json(folder_ / "r.json");
+  ASSERT_TRUE(results.ok()) << results.status().message;
+  std::vector<std::array<int, 3>> found;
+  for (const io::FrameResult& frame : *results) {
+    found.push_back({frame.scene_id, frame.im_id, frame.fused_frames});
+  }
+  EXPECT_EQ(found, (std::vector<std::array<int, 3>>{{1, 2, 3}, {2, 2, 3}, {2, 3, 1}}))
+      << "of each three images the last, and what is left over at the end of a scene";
+}
+
 TEST(Usage, IsExitCodeTwo) {
   for (const char* arguments :
        {"", "teapot", "detect", "detect --library L", "detect --library L --pcd a --bop b",
-        "detect --library L --depth a", "detect --library L --pcd a --top 0",
+        "detect --library L --depth a", "detect --library L --pcd a --fuse 0",
+        "detect --library L --camera c --depth a b --color c", "detect --library L --pcd a --top 0",
         "detect --library L --pcd a --threads x", "model", "model from-mesh a", "evaluate --bop b",
         "evaluate --bop b --csv a --json c", "evaluate --csv a",
         "evaluate --bop b --nothing-there --csv a", "bench sensor --sheet s.png",

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <bpa/core/cloud/frame.hpp>
+
+// What a camera that stands still sees of a scene that stands still: the depths of its last frames
+// combined, pixel by pixel, so that what noise is new in every frame shrinks with the root of their
+// number and a pixel without depth takes that of the frames which have it. What a sensor always
+// gets wrong stays (its calibration, its steps of disparity where there is less noise than steps,
+// surfaces that it never sees). A thing that moves is seen as the newest frame shows it.
+
+namespace bpa {
+
+/// Two depths agree when they differ by at most this many standard deviations of the sensor's noise
+/// there (depth_noise()).
+constexpr float kFusionAgreement = 3;
+
+/// The robust mean of a pixel's depths: the mean of those that agree with the median, which is the
+/// lower of the two middle ones of an even number, so that nothing between two surfaces is made up.
+struct AgreedDepth {
+  float median = 0;  ///< metres
+  float mean = 0;    ///< metres
+  int agreeing = 0;  ///< How many depths agree with the median, which is one of them.
+};
+/// `depths`: at least one; metres, above 0; in any order, and left in another.
+AgreedDepth agreed_depth(std::span<float> depths);
+
+/// A frame whose depth is that of the frames so far.
+struct FusedFrame {
+  Frame frame;  ///< The newest with all that belongs to it, but for depth and Frame::fused.
+  /// Why this frame begins anew, such as "camera.fx changed from 525 to 600"; empty when it does
+  /// not, and for the first.
+  std::string restart;
+};
+
+/// Combines the depth of the last frames of one camera. Of each pixel:
+///
+///  - the robust mean of its depths, where the newest one is among those that agree;
+///  - the newest, where it is not: something moved;
+///  - where the newest has none, the robust mean of the others', if at least half of all frames
+///    have one and most of these agree. So a hole in what has just come shows what was behind it
+///    until most frames have the hole.
+///
+/// Begins anew with a frame of another camera (size, intrinsics by more than kSameCamera,
+/// frame_id), and with one of which more than kMostMoved has moved: the camera did, or all of the
+/// scene. Not thread-safe.
+class FrameFusion {
+ public:
+  /// The share of the pixels with depth in the newest frame and in one before whose depth does not
+  /// agree with half of those before.
+  static constexpr double kMostMoved = 0.25;
+  /// Pixels. Cameras that are estimated from clouds are not the same to the last bit.
+  static constexpr double kSameCamera = 0.1;
+
+  /// Combines up to `max_frames`, at least 1, from the next one on. 1 leaves frames as they are
+  /// and keeps none.
+  explicit FrameFusion(int max_frames = 1) { set_max_frames(max_frames); }
+  void set_max_frames(int max_frames);
+
+  /// Takes up the newest frame, which must be valid, its depth clean (clean_depth()). The same
+  /// frames give the same depth for any number of threads.
+  FusedFrame add(Frame frame, int num_threads = 0);
+
+  /// Takes up a frame that a newer one will follow before anything is asked: does not compare it
+  /// with those before. Returns FusedFrame::restart, which is about the camera alone then.
+  std::string hold(const Frame& frame);
+
+ private:
+  std::string change_of(const Frame& frame) const;
+
+  std::size_t max_frames_ = 1;
+  Camera camera_;  ///< Of the frames that are held.
+  std::string frame_id_;
+  std::deque<std::vector<float>> depths_;  ///< Of the last frames, as they came; oldest first.
+};
+
+}  // namespace bpa
