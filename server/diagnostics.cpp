@@ -57,6 +57,7 @@ Line detection_line(const Health& health) {
   line.add("frames received", health.status.frames_received);
   line.add("frames searched", health.status.frames_processed);
   line.add("requests served", health.status.requests_served);
+  for (const auto& [key, value] : health.fusion) line.add(key, value);
   for (const auto& timing : health.status.stage_timings) {
     line.add("median ms of " + timing.name, number(timing.duration_ms, "%.3f"));
   }

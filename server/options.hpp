@@ -173,6 +173,7 @@ struct DetectionOptions {
   bool continuous = true;
   int top_k = 20;
   double budget_ms = 0;
+  int fuse_frames = 1;
   std::uint64_t seed = 0;
   int threads = 0;
   double request_timeout_ms = 30000;
@@ -188,6 +189,10 @@ struct DetectionOptions {
     visit("top_k", top_k, at_run_time(FieldRule{1, 100, "Interpretations to report."}));
     visit("budget_ms", budget_ms,
           at_run_time(FieldRule{0, 1e6, "Report the best so far after this long; 0: no limit."}));
+    visit("fuse_frames", fuse_frames,
+          at_run_time(FieldRule{1, 30,
+                                "Search the last so many frames of the stream combined, for a "
+                                "camera and a scene that stand still; 1: each by itself."}));
     visit("seed", seed,
           at_run_time(FieldRule{0, 9.0e15, "Same frame, library and seed: same answer."}));
     visit("threads", threads,

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <chrono>
 #include <sstream>
 #include <utility>
@@ -37,11 +38,17 @@ Result<std::optional<wire::Discovery>> discovery_of(const NetworkOptions& option
   return std::optional<wire::Discovery>(discovery);
 }
 
+/// Frames that are to be combined must be able to wait for one another.
+int frame_capacity(const ServerOptions& options) {
+  return std::max(options.queue.frames, options.detection.fuse_frames);
+}
+
 WorkerOptions worker_options(const ServerOptions& options) {
   WorkerOptions worker;
-  worker.frame_capacity = static_cast<std::size_t>(options.queue.frames);
+  worker.frame_capacity = static_cast<std::size_t>(frame_capacity(options));
   worker.request_capacity = static_cast<std::size_t>(options.queue.requests);
   worker.continuous = options.detection.continuous;
+  worker.fuse_frames = options.detection.fuse_frames;
   worker.request.top_k = options.detection.top_k;
   worker.request.budget_ms = options.detection.budget_ms;
   worker.request.seed = options.detection.seed;
@@ -237,7 +244,7 @@ msgs::GetStatus_Response Server::status() const {
   response.requests_refused = counts.requests_refused;
   response.queue_length = static_cast<std::uint32_t>(worker_->queue_length());
   response.queue_capacity =
-      static_cast<std::uint32_t>(options->queue.frames + options->queue.requests);
+      static_cast<std::uint32_t>(frame_capacity(*options) + options->queue.requests);
   if (recognition_->models) {
     response.model_count = static_cast<std::uint32_t>(recognition_->models().size());
   }
@@ -268,8 +275,20 @@ std::vector<SourceReport> Server::source_reports() const {
   return reports;
 }
 
+/// Empty while frames are searched each by itself.
+std::vector<KeyValue> Server::fusion() const {
+  const Counts counts = statistics_.counts();
+  if (settings_.get()->detection.fuse_frames == 1 && counts.fusion_restarts == 0) return {};
+  std::vector<KeyValue> values = {
+      {"frames searched as a part of newer ones", std::to_string(counts.frames_fused)},
+      {"frames combined anew", std::to_string(counts.fusion_restarts)}};
+  const std::string reason = statistics_.fusion_restart();
+  if (!reason.empty()) values.push_back({"frames last combined anew because", reason});
+  return values;
+}
+
 std::vector<KeyValue> Server::details() const {
-  std::vector<KeyValue> details;
+  std::vector<KeyValue> details = fusion();
   for (const auto& [cause, count] : drops()) details.push_back({cause, std::to_string(count)});
   for (const SourceReport& report : source_reports()) {
     for (const auto& [key, value] : report.values) details.push_back({key, value});
@@ -283,9 +302,10 @@ void Server::report() {
     rates_.add(Clock::now(), statistics_.counts());
     if (publisher_->diagnostics_wanted()) {
       const auto now = std::chrono::system_clock::now().time_since_epoch();
-      publisher_->publish(diagnostics_message(
-          {participant_->node().full(), status(), rates_.rates(), drops(), source_reports()},
-          std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()));
+      publisher_->publish(
+          diagnostics_message({participant_->node().full(), status(), rates_.rates(), drops(),
+                               source_reports(), fusion()},
+                              std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()));
     }
     report_losses();
   }

@@ -56,6 +56,7 @@ class Server {
   wire::bpa_msgs::GetStatus_Response status() const;
   std::vector<wire::diagnostic_msgs::KeyValue> details() const;
   std::vector<std::pair<std::string, std::uint64_t>> drops() const;
+  std::vector<wire::diagnostic_msgs::KeyValue> fusion() const;
   std::vector<SourceReport> source_reports() const;
   void report();
   void report_losses();

@@ -66,6 +66,17 @@ void Statistics::add_timings(const SceneInterpretations& result) {
   }
 }
 
+void Statistics::add_fusion_restart(const std::string& reason) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++counts_.fusion_restarts;
+  fusion_restart_ = reason;
+}
+
+std::string Statistics::fusion_restart() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return fusion_restart_;
+}
+
 Counts Statistics::counts() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return counts_;

@@ -21,6 +21,8 @@ struct Counts {
   std::uint64_t frames_received = 0;
   std::uint64_t frames_processed = 0;
   std::uint64_t frames_dropped = 0;   ///< A newer one took the place.
+  std::uint64_t frames_fused = 0;     ///< Searched only as a part of a newer one.
+  std::uint64_t fusion_restarts = 0;  ///< Frames were combined anew: the camera or scene changed.
   std::uint64_t frames_rejected = 0;  ///< Broke a rule.
   std::uint64_t frames_failed = 0;    ///< Legal, but the search failed.
   std::uint64_t requests_served = 0;
@@ -39,8 +41,12 @@ class Statistics {
   /// Counts a rejected frame under its message's first words.
   void add_rejection(const std::string& reason);
   void add_timings(const SceneInterpretations& result);
+  /// Counts it, and remembers why.
+  void add_fusion_restart(const std::string& reason);
 
   Counts counts() const;
+  /// The last reason; empty before the first.
+  std::string fusion_restart() const;
   /// Reason and count of every rejection.
   std::vector<std::pair<std::string, std::uint64_t>> rejections() const;
   /// Medians over the last 50 frames, in the order of the stages, "total" last.
@@ -57,6 +63,7 @@ class Statistics {
   Counts counts_;
   std::optional<std::chrono::steady_clock::time_point> last_frame_;
   std::map<std::string, std::uint64_t> rejections_;
+  std::string fusion_restart_;
   std::vector<std::pair<std::string, std::deque<double>>> stages_;
   std::deque<double> totals_;
 };

@@ -199,10 +199,10 @@ void Worker::run_one(std::unique_lock<std::mutex>& lock) {
     task();
   } else if (take_frame) {
     frame_was_last_ = true;
-    IncomingFrame incoming = *frames_.pop();
+    const std::vector<IncomingFrame> taken = take_frames(options);
     std::vector<DetectJob> waiting = std::exchange(awaiting_frame_, {});
     lock.unlock();
-    work_on_frame(options, std::move(incoming), std::move(waiting));
+    work_on_frames(options, taken, std::move(waiting));
   } else {
     frame_was_last_ = false;
     const DetectJob job = *requests_.pop();
@@ -223,27 +223,58 @@ void Worker::expire(std::vector<DetectJob> jobs) {
   }
 }
 
-void Worker::work_on_frame(const WorkerOptions& options, IncomingFrame incoming,
-                           std::vector<DetectJob> waiting) {
-  Result<Frame> frame = incoming.decode();
-  if (!frame.ok()) {
-    statistics_.add_rejection(frame.status().message);
-    const std::lock_guard<std::mutex> lock(mutex_);  // the jobs go on waiting for a better frame
+/// The oldest, or all that wait where they are combined.
+std::vector<IncomingFrame> Worker::take_frames(const WorkerOptions& options) {
+  std::vector<IncomingFrame> taken;
+  do {
+    taken.push_back(*frames_.pop());
+  } while (options.fuse_frames > 1 && !frames_.empty());
+  return taken;
+}
+
+void Worker::note_restart(const std::string& reason) {
+  if (reason.empty()) return;
+  statistics_.add_fusion_restart(reason);
+  if (last_fused_ > 1) log(log_, LogLevel::info, "frames are combined anew: " + reason);
+}
+
+void Worker::work_on_frames(const WorkerOptions& options, const std::vector<IncomingFrame>& taken,
+                            std::vector<DetectJob> waiting) {
+  fusion_.set_max_frames(options.fuse_frames);
+  std::optional<Frame> frame;  // the newest that can be used
+  const IncomingFrame* newest = nullptr;
+  for (const IncomingFrame& incoming : taken) {
+    Result<Frame> decoded = incoming.decode();
+    if (!decoded.ok()) {
+      statistics_.add_rejection(decoded.status().message);
+      on_result_(incoming, nullptr, decoded.status());
+      continue;
+    }
+    if (newest) {
+      statistics_.add(&Counts::frames_fused);
+      note_restart(fusion_.hold(*frame));
+    }
+    frame = std::move(decoded).value();
+    newest = &incoming;
+  }
+  if (!newest) {  // the jobs go on waiting for a better frame
+    const std::lock_guard<std::mutex> lock(mutex_);
     awaiting_frame_.insert(awaiting_frame_.begin(), std::make_move_iterator(waiting.begin()),
                            std::make_move_iterator(waiting.end()));
-  }
-  if (!frame.ok()) {  // the lock is released
-    on_result_(incoming, nullptr, frame.status());
     return;
   }
+  FusedFrame fused = fusion_.add(*std::move(frame), options.request.num_threads);
+  note_restart(fused.restart);
+  last_fused_ = fused.frame.fused;
+  frame = std::move(fused.frame);
   std::optional<Result<SceneInterpretations>> result;
   if (options.continuous) {
-    result.emplace(detect(*frame, with_priors(options.request, incoming.priors)));
+    result.emplace(detect(*frame, with_priors(options.request, newest->priors)));
     statistics_.add(result->ok() ? &Counts::frames_processed : &Counts::frames_failed);
-    on_result_(incoming, &*frame, *result);
+    on_result_(*newest, &*frame, *result);
   }
   for (const DetectJob& job : waiting) {
-    answer_next_frame(options, incoming, *frame, job, result ? &*result : nullptr);
+    answer_next_frame(options, *newest, *frame, job, result ? &*result : nullptr);
   }
 }
 

@@ -14,7 +14,7 @@
 
 #include <bpa/core/base/log.hpp>
 #include <bpa/core/base/status.hpp>
-#include <bpa/core/cloud/frame.hpp>
+#include <bpa/core/cloud/frame_fusion.hpp>
 #include <bpa/server/fair_queue.hpp>
 #include <bpa/server/newest_queue.hpp>
 #include <bpa/server/recognition.hpp>
@@ -56,6 +56,7 @@ struct WorkerOptions {
   std::size_t frame_capacity = 1;
   std::size_t request_capacity = 8;
   bool continuous = true;  ///< Search frames that nobody requested.
+  int fuse_frames = 1;     ///< Above 1, all frames that wait are taken at once and combined.
   DetectRequest request;   ///< For those.
 };
 
@@ -99,8 +100,10 @@ class Worker {
   std::vector<DetectJob> take_expired();
   void expire(std::vector<DetectJob> jobs);
   void run_one(std::unique_lock<std::mutex>& lock);
-  void work_on_frame(const WorkerOptions& options, IncomingFrame incoming,
-                     std::vector<DetectJob> waiting);
+  std::vector<IncomingFrame> take_frames(const WorkerOptions& options);
+  void work_on_frames(const WorkerOptions& options, const std::vector<IncomingFrame>& taken,
+                      std::vector<DetectJob> waiting);
+  void note_restart(const std::string& reason);
   void work_on_request(const DetectJob& job);
   void answer_next_frame(const WorkerOptions& options, const IncomingFrame& incoming,
                          const Frame& frame, const DetectJob& job,
@@ -111,6 +114,8 @@ class Worker {
   Statistics& statistics_;
   const OnResult on_result_;
   const LogHook log_;
+  FrameFusion fusion_;  ///< The worker's own thread's.
+  int last_fused_ = 1;  ///< Likewise: how many frames the last one was made of.
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;

@@ -129,7 +129,9 @@ void print_detections(std::ostream& out, const DetectionSet& set, int max_interp
   }
   out << set.interpretations.size() << " interpretations of " << set.models_searched
       << " models in " << format("%.0f", set.total_ms) << " ms"
-      << (set.budget_exhausted ? " (time was up)" : "") << '\n';
+      << (set.budget_exhausted ? " (time was up)" : "");
+  if (set.fused_frames > 1) out << ", " << set.fused_frames << " frames combined";
+  out << '\n';
   int printed = 0;
   for (const RankedInterpretation& interpretation : set.interpretations) {
     if (printed++ == max_interpretations) break;
@@ -174,6 +176,7 @@ Json to_json(const DetectionSet& set) {
           {"seconds", 0.001 * set.total_ms},
           {"queue_position", set.queue_position},
           {"budget_exhausted", set.budget_exhausted},
+          {"fused_frames", set.fused_frames},
           {"timings", timings},
           {"interpretations", interpretations}};
 }

@@ -136,6 +136,7 @@ DetectionSet to_detections(const msgs::SceneInterpretations& message) {
   set.stage_times = to_stage_times(message.stage_timings);
   set.total_ms = message.total_ms;
   set.budget_exhausted = message.budget_exhausted;
+  set.fused_frames = static_cast<int>(message.fused_frames);
   set.models_searched = static_cast<int>(message.models_searched);
   set.seed = message.seed;
   return set;

@@ -166,6 +166,7 @@ msgs::SceneInterpretations interpretations_message(const Result<SceneInterpretat
   }
   message.total_ms = result->total_milliseconds;
   message.budget_exhausted = result->budget_exhausted;
+  message.fused_frames = static_cast<std::uint32_t>(result->fused_frames);
   return message;
 }
 

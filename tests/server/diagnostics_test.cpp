@@ -77,11 +77,13 @@ TEST_F(Diagnostics, RatesTimesAndMemory) {
   health.rates.frames_received = 29.97;
   health.status.stage_timings = {{"cloud", 12.5}};
   health.status.memory_bytes = 123'400'000;
+  health.fusion = {{"frames combined anew", "2"}};
   EXPECT_EQ(status("detection").level, DiagnosticStatus::kOk);
   EXPECT_EQ(status("detection").hardware_id, "bpa-server 9.1");
   EXPECT_EQ(values("detection").at("frames received per s"), "29.97");
   EXPECT_EQ(values("detection").at("median ms of cloud"), "12.500");
   EXPECT_EQ(values("detection").at("memory MB"), "123.4");
+  EXPECT_EQ(values("detection").at("frames combined anew"), "2");
 }
 
 TEST_F(Diagnostics, DropsByCauseWarnWhileFramesAreBad) {

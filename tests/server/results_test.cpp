@@ -39,6 +39,7 @@ SceneInterpretations scene() {
   second.rank = 2;
   second.probability = 0.25;
   scene.interpretations = {best, second};
+  scene.fused_frames = 4;
   return scene;
 }
 
@@ -58,6 +59,7 @@ TEST(Results, InterpretationsKeepEveryField) {
   EXPECT_EQ(to_ns(message.header.stamp), 3'000'000'007);
   EXPECT_EQ(message.models_searched, 18U);
   EXPECT_EQ(message.seed, 7U);
+  EXPECT_EQ(message.fused_frames, 4U);
   EXPECT_EQ(message.stage_timings.at(0).name, "cloud");
   ASSERT_EQ(message.interpretations.size(), 2U);
   EXPECT_EQ(message.interpretations[1].probability, 0.25);

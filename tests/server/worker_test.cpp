@@ -24,6 +24,7 @@ class Gate {
   Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request) {
     std::unique_lock<std::mutex> lock(mutex_);
     stamps_.push_back(frame.stamp_ns);
+    fused_.push_back(frame.fused);
     priors_.push_back({});
     for (const PosePrior& prior : request.priors) priors_.back() += prior.model + " ";
     changed_.notify_all();
@@ -48,6 +49,11 @@ class Gate {
     return stamps_;
   }
 
+  /// How many frames each that was searched is made of.
+  std::vector<int> fused() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return fused_;
+  }
   /// The models of the priors that each search was asked with.
   std::vector<std::string> priors() {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -58,6 +64,7 @@ class Gate {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<std::int64_t> stamps_;
+  std::vector<int> fused_;
   std::vector<std::string> priors_;
   bool open_ = false;
 };
@@ -269,6 +276,55 @@ TEST_F(WorkerTest, FramesBringTheirPriors) {
   worker->push(frame(6));
   ASSERT_TRUE(streamed.wait_for(2));
   EXPECT_EQ(gate.priors(), (std::vector<std::string>{"bowl ", "mug bowl ", ""}));
+}
+
+TEST_F(WorkerTest, FramesThatWaitAreCombinedAndTheNewestIsSearched) {
+  WorkerOptions options;
+  options.fuse_frames = options.frame_capacity = 3;
+  auto worker = make(options);
+  worker->push(frame(0));
+  ASSERT_TRUE(gate.wait_for_started(1));
+  for (int stamp = 1; stamp <= 4; ++stamp) worker->push(frame(stamp));
+  ASSERT_TRUE(worker->push(job(false)).ok());
+  gate.open();
+  ASSERT_TRUE(answers.wait_for(1));
+  EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 4}));
+  EXPECT_EQ(gate.fused(), (std::vector<int>{1, 3}));
+  const Counts counts = statistics.counts();
+  EXPECT_EQ(counts.frames_received, 5U);
+  EXPECT_EQ(counts.frames_dropped, 1U);
+  EXPECT_EQ(counts.frames_fused, 2U);
+  EXPECT_EQ(counts.frames_processed, 2U);
+  EXPECT_EQ(counts.fusion_restarts, 0U);
+
+  ASSERT_TRUE(worker->push(job(true)).ok());  // its own frame is its own affair
+  ASSERT_TRUE(answers.wait_for(2));
+  IncomingFrame other = frame(6);
+  other.decode = [] {
+    auto message = support::wall_frame(6);
+    message.k[0] = 61;
+    return frame_from_message(message);
+  };
+  worker->push(std::move(other));
+  ASSERT_TRUE(streamed.wait_for(3));
+  EXPECT_EQ(gate.fused(), (std::vector<int>{1, 3, 1, 1}));
+  EXPECT_EQ(statistics.counts().fusion_restarts, 1U);
+  EXPECT_EQ(statistics.fusion_restart(), "camera.fx changed from 60 to 61");
+}
+
+TEST_F(WorkerTest, ABrokenFrameDoesNotCostThoseItIsCombinedWith) {
+  WorkerOptions options;
+  options.fuse_frames = options.frame_capacity = 3;
+  auto worker = make(options);
+  worker->push(frame(0));
+  ASSERT_TRUE(gate.wait_for_started(1));
+  worker->push(frame(1));
+  worker->push(bad_frame());
+  gate.open();
+  ASSERT_TRUE(streamed.wait_for(3));
+  EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 1}));
+  EXPECT_EQ(gate.fused(), (std::vector<int>{1, 2}));
+  EXPECT_EQ(statistics.counts().frames_rejected, 1U);
 }
 
 TEST_F(WorkerTest, NextFrameRequestsWithoutAFrameTimeOut) {

@@ -43,6 +43,7 @@ bpa::Result<bpa::SceneInterpretations> detect(const bpa::Frame& frame,
   bpa::SceneInterpretations result;
   result.stamp_ns = frame.stamp_ns;
   result.frame_id = frame.frame_id;
+  result.fused_frames = frame.fused;
   result.interpretations.push_back({1, 0.5, 1.0, {placement}});
   result.timings = {{"sleep", static_cast<double>(delay_ms)}};
   result.total_milliseconds = delay_ms;

@@ -115,6 +115,59 @@ TEST_F(Stream, ASlowSearchDropsOldFramesAndCountsThem) {
   EXPECT_EQ(results.items().back().stamp_ns, kSent);  // the newest wins
 }
 
+TEST_F(Stream, FramesOfAStillSceneAreCombinedAndOthersBeginAnew) {
+  support::StubServer server({"detection.fuse_frames=3"});
+  Arrivals<DetectionSet> results;
+  auto client = Client::connect(support::client_options());
+  ASSERT_TRUE(client.ok()) << client.status().message;
+  ASSERT_TRUE(client->subscribe([&](const DetectionSet& set) { results.add(set); }).ok());
+  std::vector<std::uint16_t> shifted = depth;
+  std::size_t sent = 0;
+  // The stub says how deep the middle is, once the frame before has been searched.
+  const auto middle_of = [&](int shift_mm, double fx, int* fused) {
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+      shifted[i] = static_cast<std::uint16_t>(depth[i] + shift_mm);
+    }
+    FrameView frame = view(static_cast<std::int64_t>(++sent));
+    frame.depth_mm = shifted.data();
+    frame.fx = fx;
+    EXPECT_TRUE(client->publish_frame(frame).ok());
+    EXPECT_TRUE(results.wait_for(sent)) << server.log();
+    const DetectionSet set = results.items().back();
+    EXPECT_EQ(set.stamp_ns, static_cast<std::int64_t>(sent));
+    *fused = set.fused_frames;
+    return set.best().at(0).camera_from_object.position[2];
+  };
+  int fused = 0;
+  const double start = middle_of(0, 60, &fused);
+  EXPECT_EQ(fused, 1);
+  EXPECT_NEAR(middle_of(3, 60, &fused), start + 0.0015, 1e-6);
+  EXPECT_EQ(fused, 2);
+  EXPECT_NEAR(middle_of(3, 60, &fused), start + 0.002, 1e-6);
+  EXPECT_EQ(fused, 3);
+  EXPECT_NEAR(middle_of(0, 60, &fused), start + 0.002, 1e-6) << "of the last three";
+  EXPECT_EQ(fused, 3);
+  EXPECT_NEAR(middle_of(100, 60, &fused), start + 0.1, 1e-6);
+  EXPECT_EQ(fused, 1);
+  EXPECT_NEAR(middle_of(102, 60, &fused), start + 0.101, 1e-6);
+  EXPECT_EQ(fused, 2);
+  EXPECT_NEAR(middle_of(102, 61, &fused), start + 0.102, 1e-6);
+  EXPECT_EQ(fused, 1);
+  const std::string log = server.log();
+  EXPECT_NE(log.find("frames are combined anew: 100 % of the depths changed"), std::string::npos)
+      << log;
+  EXPECT_NE(log.find("camera.fx changed from 60 to 61"), std::string::npos) << log;
+  const auto status = client->status();
+  ASSERT_TRUE(status.ok());
+  EXPECT_EQ(status->frames_processed, sent);
+
+  // A request with a frame of its own is about that frame alone.
+  const auto own = client->detect_in(view(9));
+  ASSERT_TRUE(own.ok()) << own.status().message;
+  EXPECT_EQ(own->fused_frames, 1);
+  EXPECT_EQ(own->best().at(0).camera_from_object.position[2], start);
+}
+
 TEST_F(Stream, ABadFrameIsReportedToSubscribersAndForgotten) {
   support::StubServer server;
   Arrivals<DetectionSet> results;

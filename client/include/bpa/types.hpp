@@ -82,6 +82,9 @@ struct DetectionSet {
   std::vector<StageTime> stage_times;                 ///< In the order in which the stages ran.
   double total_ms = 0;
   bool budget_exhausted = false;  ///< The time budget ended the search: the best found so far.
+  /// How many frames of the stream the depth that was searched is made of (the server's setting
+  /// detection.fuse_frames); 1: of this one alone.
+  int fused_frames = 1;
   int models_searched = 0;
   std::uint64_t seed = 0;  ///< Gives the same answer again for the same frame and options.
   /// How many frames and requests waited before this one when the server accepted it; 0 for frames

@@ -183,6 +183,7 @@ struct SceneInterpretations {
   std::vector<StageTiming> stage_timings;
   double total_ms = 0;
   bool budget_exhausted = false;
+  std::uint32_t fused_frames = 0;
   std::uint32_t models_searched = 0;
   std::uint64_t seed = 0;
 
@@ -194,6 +195,7 @@ struct SceneInterpretations {
     visit("stage_timings", self.stage_timings);
     visit("total_ms", self.total_ms);
     visit("budget_exhausted", self.budget_exhausted);
+    visit("fused_frames", self.fused_frames);
     visit("models_searched", self.models_searched);
     visit("seed", self.seed);
   }
