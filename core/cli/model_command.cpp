@@ -43,16 +43,20 @@ struct ModelArguments {
   ModelOptions options;
 };
 
-/// A mesh's model: what a simulated sensor sees of it, and what that is off by.
-Result<ModelSource> source_from_mesh(const TriangleMesh& mesh, const ModelArguments& a,
-                                     const std::string& name, int number) {
-  Result<ModelSource> source = model_source_from_mesh(mesh, name, number, a.options);
-  if (!source.ok() || a.views == 0) return source;
-  Progress progress(name, a.views);
+/// Leaves of a model what a simulated sensor sees of its mesh, and learns what that is off by.
+void look_at(const TriangleMesh& mesh, const ModelArguments& a, ModelSource& source) {
+  if (a.views == 0) return;
+  Progress progress(source.name, a.views);
   const std::vector<PosedView> views =
       simulate_views(mesh, a.views, a.common.seed, a.common.threads,
                      [&progress](int done) { progress.show(done, "simulated views"); });
-  keep_measured(*source, views, a.common.threads);
+  keep_measured(source, views, a.common.threads);
+}
+
+Result<ModelSource> source_from_mesh(const TriangleMesh& mesh, const ModelArguments& a,
+                                     const std::string& name, int number) {
+  Result<ModelSource> source = model_source_from_mesh(mesh, name, number, a.options);
+  if (source.ok()) look_at(mesh, a, *source);
   return source;
 }
 
@@ -145,7 +149,9 @@ Result<ModelSource> source_from_file(const ModelArguments& a) {
   }
   const Result<PointCloud> cloud = io::read_point_cloud(a.input, a.scale);
   if (!cloud.ok()) return cloud.status();
-  return model_source_from_points(*cloud, a.name, a.number, a.options);
+  Result<ModelSource> source = model_source_from_points(*cloud, a.name, a.number, a.options);
+  if (source.ok() && source->complete) look_at(squares_of(source->surface), a, *source);
+  return source;
 }
 
 Status from_mesh(ModelArguments a) {

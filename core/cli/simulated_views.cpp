@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 #include <bpa/core/base/parallel.hpp>
@@ -63,6 +64,36 @@ Pose look_from(const Eigen::Vector3d& direction, double distance, const Eigen::V
 }
 
 }  // namespace
+
+TriangleMesh squares_of(const PointCloud& cloud) {
+  // Twice the mean distance of a point to its nearest neighbour, from some 100 of them.
+  const std::size_t step = std::max<std::size_t>(1, cloud.size() / 100);
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < cloud.size(); i += step) {
+    float nearest = std::numeric_limits<float>::infinity();
+    for (std::size_t j = 0; j < cloud.size(); ++j) {
+      if (j == i || cloud.normals[j].dot(cloud.normals[i]) < 0.5f) continue;
+      nearest = std::min(nearest, (cloud.points[j] - cloud.points[i]).squaredNorm());
+    }
+    if (!std::isfinite(nearest)) continue;
+    sum += std::sqrt(static_cast<double>(nearest));
+    ++count;
+  }
+  const auto half = static_cast<float>(count > 0 ? sum / count : 0);
+  TriangleMesh mesh;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3f u = half * cloud.normals[i].unitOrthogonal();
+    const Eigen::Vector3f v = cloud.normals[i].cross(u);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Eigen::Vector3f& corner :
+         std::initializer_list<Eigen::Vector3f>{-u - v, u - v, u + v, v - u}) {
+      mesh.vertices.push_back(cloud.points[i] + corner);
+    }
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+  }
+  return mesh;
+}
 
 std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::uint64_t seed,
                                       int num_threads, const std::function<void(int)>& progress) {

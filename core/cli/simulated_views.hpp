@@ -17,4 +17,8 @@ namespace bpa::cli {
 std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::uint64_t seed,
                                       int num_threads, const std::function<void(int)>& progress);
 
+/// A surface of squares, one for each oriented point, large enough to leave no hole between
+/// neighbours: what a camera can look at in place of a point cloud.
+TriangleMesh squares_of(const PointCloud& cloud);
+
 }  // namespace bpa::cli

@@ -111,6 +111,30 @@ TEST(SimulatedViews, InnerFloorThatNobodySawIsSaid) {
       << warnings(halfway);
 }
 
+// Of a point cloud the camera sees squares about the points: whole, and where they are.
+TEST(SimulatedViews, PointCloudIsSeenWhole) {
+  ModelSource source = whole(test::sphere_mesh(0.04));
+  const PointCloud all = source.surface;
+  const TriangleMesh squares = squares_of(all);
+  ASSERT_EQ(squares.triangles.size(), 2 * all.size());
+  const std::vector<PosedView> views = simulate_views(squares, 40, 1, 2, {});
+  double off = 0, count = 0;
+  for (const PosedView& view : views) {
+    const Pose sphere_from_camera = view.camera_from_object.inverse();
+    for (std::size_t i = 0; i < view.map.size(); ++i) {
+      if (!view.object[i] || !(view.map.depth[i] > 0)) continue;
+      off += (sphere_from_camera * view.map.points[i].cast<double>()).norm() - 0.04;
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 10000);
+  EXPECT_NEAR(off / count, 0, 0.001);
+  keep_measured(source, views, 2);
+  EXPECT_GE(source.surface.size(), all.size() * 99 / 100);
+  EXPECT_TRUE(source.noise.fitted);
+  EXPECT_LT(source.noise.range(0.05, 0), 0.003);
+}
+
 TEST(SimulatedViews, SameModelForAnyThreads) {
   const TriangleMesh mesh = test::l_mesh();
   const ModelSource one = measured(mesh, 12, 1), two = measured(mesh, 12, 2);
