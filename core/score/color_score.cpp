@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <bpa/core/score/color_score.hpp>
 #include <bpa/core/score/likelihood.hpp>
+#include <bpa/core/score/placement_score.hpp>
 
 namespace bpa {
 namespace {
@@ -11,8 +14,13 @@ namespace {
 constexpr float kExplained = 0.01f;  // metres between prediction and observation
 constexpr double kColorSigma = 12;   // CIELAB
 constexpr float kLightnessWeight = 0.5f;
+// CIELAB is linear in the cube roots of light, L + 16 and a and b alike: what half the light falls
+// on has all three smaller by the same factor.
+constexpr float kLightnessOfNothing = -16;
 
-// The sums of both sides' colours over a few pixels.
+float brightness(const Eigen::Vector3f& lab) { return lab[0] - kLightnessOfNothing; }
+
+// Both sides' colours, the mean of a few pixels.
 struct Window {
   Eigen::Vector3f observed = Eigen::Vector3f::Zero();
   Eigen::Vector3f predicted = Eigen::Vector3f::Zero();
@@ -35,30 +43,41 @@ Window compare_at(const CheckImage& image, const Image<Eigen::Vector3f>& observe
       ++window.count;
     }
   }
+  window.observed /= static_cast<float>(std::max(1, window.count));
+  window.predicted /= static_cast<float>(std::max(1, window.count));
   return window;
+}
+
+// How far apart they are, in CIELAB as it was observed, if the whole placement is seen `gain`
+// times as bright as predicted: colours as under the light that falls here.
+float distance(const Window& window, float gain) {
+  const float here = brightness(window.observed) / brightness(window.predicted);
+  const float lighter = brightness(window.observed) - gain * brightness(window.predicted);
+  const Eigen::Vector2f color = window.observed.tail<2>() - here * window.predicted.tail<2>();
+  return std::hypot(kLightnessWeight * lighter, color.norm());
 }
 
 }  // namespace
 
 double color_score(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
                    std::span<const Eigen::Vector3f> surface, const PredictedSurface& predicted) {
-  if (observed.empty() || surface.empty()) return 0;
-  std::vector<Eigen::Vector3f> differences;
-  float lighter = 0;
+  if (observed.empty() || surface.empty()) return ScoreComponents::kNotKnown;
+  std::vector<Window> windows;
+  float seen = 0, expected = 0;
   predicted.for_each([&](int u, int v, float, std::uint32_t) {
     const Window window = compare_at(image, observed, surface, predicted, u, v);
     if (window.count < 5) return;  // the rim, where neighbours shine through
-    differences.push_back((window.observed - window.predicted) / static_cast<float>(window.count));
-    lighter += differences.back()[0];
+    windows.push_back(window);
+    seen += brightness(window.observed);
+    expected += brightness(window.predicted);
   });
-  if (differences.empty()) return 0;
-  lighter /= static_cast<float>(differences.size());
+  if (windows.empty()) return ScoreComponents::kNotKnown;
   double sum = 0;
-  for (Eigen::Vector3f& difference : differences) {
-    difference[0] = kLightnessWeight * (difference[0] - lighter);
-    sum += truncated_log_normal(static_cast<double>(difference.norm()), kColorSigma);
+  for (const Window& window : windows) {
+    sum +=
+        truncated_log_normal(static_cast<double>(distance(window, seen / expected)), kColorSigma);
   }
-  return sum / static_cast<double>(differences.size());
+  return sum / static_cast<double>(windows.size());
 }
 
 }  // namespace bpa

@@ -14,11 +14,11 @@ namespace bpa {
 
 /// How far the predicted colours agree with the observed ones where the placement explains the
 /// depth (within 1 cm): the average truncated log-likelihood of their distance in CIELAB, standard
-/// deviation 12, in [-1, 0]. Lightness, which follows the lamps, counts less: its mean difference
-/// over the placement is taken out first, and what is left counts for a half. Both sides are
-/// averaged over 3x3 pixels. 0 when nothing can be compared. `observed` is the frame's CIELAB at
-/// the image's size, `surface` the model's
-/// (ModelIndex::cielab); either may be empty.
+/// deviation 12, in [-1, 0]. How much light falls on the object is not known: the model's colours
+/// are compared as they look under as much light as is seen at each place, and of lightness only
+/// how it varies over the placement counts, for a half. Both sides are averaged over 3x3 pixels.
+/// ScoreComponents::kNotKnown when nothing can be compared. `observed` is the frame's CIELAB at the
+/// image's size, `surface` the model's (ModelIndex::cielab); either may be empty.
 double color_score(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
                    std::span<const Eigen::Vector3f> surface, const PredictedSurface& predicted);
 

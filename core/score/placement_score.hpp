@@ -33,18 +33,18 @@ struct ScoreComponents {
   double background = 0;        ///< Share of the agreeing points on labelled background.
   // Round three; each in [-1, 0], 0 is best; not a number where it is not known. See the functions
   // of the same names.
-  double edge_likelihood = -1;
-  double occlusion_edge = -1;
-  double random_walk = -1;
-  double segment = -1;
-  double segment_affinity = -1;
-  double fpfh = -1;
-  /// Agreement of colours; not a number where model or frame has none.
-  double color = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+  double edge_likelihood = kNotKnown;
+  double occlusion_edge = kNotKnown;
+  double random_walk = kNotKnown;
+  double segment = kNotKnown;
+  double segment_affinity = kNotKnown;
+  double fpfh = kNotKnown;
+  double color = kNotKnown;  ///< Not known where model or frame has no colour, either.
 };
 
 /// Scores `model` at `pose` from about `max_points` of the surface points that its nearest view
-/// shows (0: all of them).
+/// shows (0: all of them). The components of round three are left not known.
 ScoreComponents score_placement(const CheckImage& image, const ObjectModel& model, const Pose& pose,
                                 int max_points = 0);
 
