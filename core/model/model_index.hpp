@@ -47,6 +47,7 @@ struct ModelIndex {
   DistanceTransform distances;          ///< Of `surface`.
   NoiseTable noise;                     ///< Of the model's noise.
   std::vector<Eigen::Vector3f> cielab;  ///< Of the surface points; empty without colours.
+  std::vector<Pose> near_symmetries;    ///< near_symmetries() of the surface.
   double point_area = 0;  ///< Surface that each surface point stands for, square metres.
 };
 
@@ -58,7 +59,8 @@ constexpr int kIndexVersion = 1;
 std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threads);
 
 /// The parts of an index that are quicker to compute than to read from a file: check points, the
-/// tree over `fpfh`, the pairs of `coarse`, the noise table, CIELAB colours, the area of a point.
+/// tree over `fpfh`, the pairs of `coarse`, the noise table, CIELAB colours, near symmetries, the
+/// area of a point.
 void derive_index(const ModelSource& source, ModelIndex& index);
 
 }  // namespace bpa

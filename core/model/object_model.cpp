@@ -11,6 +11,7 @@
 #include <bpa/core/cloud/curvature.hpp>
 #include <bpa/core/cloud/neighbor_grid.hpp>
 #include <bpa/core/model/model_index.hpp>
+#include <bpa/core/model/near_symmetry.hpp>
 #include <bpa/core/model/object_model.hpp>
 
 namespace bpa {
@@ -166,6 +167,12 @@ void derive_index(const ModelSource& source, ModelIndex& index) {
   for (const auto& [r, g, b] : source.surface.colors) {
     index.cielab.push_back(convert(Eigen::Vector3f(r, g, b)));
   }
+  constexpr std::size_t kSelfSample = 256;
+  const std::span<const std::uint32_t> sample(index.check.surface);
+  index.near_symmetries = near_symmetries(
+      {source.surface.points, source.surface.normals,
+       sample.first(std::min(sample.size(), kSelfSample)), index.distances, source.diameter},
+      source.symmetry);
   index.point_area = mean_point_area(source.surface);
   index.feature_tree = FeatureTree(index.fpfh);
   index.pairs =
