@@ -20,8 +20,8 @@ Status add_model(ModelSource source, int num_threads, ModelLibrary& library) {
 }  // namespace
 
 LibraryDetector::LibraryDetector(std::string folder, const DetectorOptions& options,
-                                 int num_threads, ScoreLayer layer)
-    : folder_(std::move(folder)), num_threads_(num_threads), layer_(std::move(layer)) {
+                                 int num_threads, ScoreLayers layers)
+    : folder_(std::move(folder)), num_threads_(num_threads), layers_(std::move(layers)) {
   replace(std::make_shared<const ModelLibrary>(), options);
 }
 
@@ -33,10 +33,10 @@ Result<std::shared_ptr<LibraryDetector>> LibraryDetector::create(const std::stri
   if (!std::filesystem::is_directory(folder, error)) {
     return Status(StatusCode::not_found, "library " + folder + ": there is no such folder");
   }
-  Result<ScoreLayer> layer = library_score_layer(folder);
-  if (!layer.ok()) return layer.status();
+  Result<ScoreLayers> layers = library_score_layers(folder);
+  if (!layers.ok()) return layers.status();
   std::shared_ptr<LibraryDetector> self(
-      new LibraryDetector(folder, options, num_threads, std::move(*layer)));
+      new LibraryDetector(folder, options, num_threads, std::move(*layers)));
   if (io::list_models(folder).empty()) {
     log(hook, LogLevel::warning,
         "library " + folder +
@@ -84,7 +84,7 @@ std::vector<io::BrokenModel> LibraryDetector::broken() const {
 
 void LibraryDetector::replace(std::shared_ptr<const ModelLibrary> library,
                               const DetectorOptions& options) {
-  auto detector = std::make_shared<const Detector>(library, options, layer_);
+  auto detector = std::make_shared<const Detector>(library, options, layers_);
   const std::lock_guard<std::mutex> lock(mutex_);
   if (library_ != library) ++version_;
   library_.swap(library);

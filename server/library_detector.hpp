@@ -30,7 +30,7 @@ class LibraryDetector {
 
  private:
   LibraryDetector(std::string folder, const DetectorOptions& options, int num_threads,
-                  ScoreLayer layer);
+                  ScoreLayers layers);
   std::shared_ptr<const Detector> current() const;
   Result<std::shared_ptr<const ObjectModel>> load(const std::string& source,
                                                   const std::string& name);
@@ -43,7 +43,7 @@ class LibraryDetector {
 
   const std::string folder_;
   const int num_threads_;
-  const ScoreLayer layer_;    ///< The library's own, or the built-in one.
+  const ScoreLayers layers_;  ///< The library's own, or the built-in ones.
   std::mutex change_mutex_;   ///< Held while a change is being made.
   mutable std::mutex mutex_;  ///< Guards what follows, never held for long.
   std::shared_ptr<const ModelLibrary> library_;

@@ -171,9 +171,9 @@ Status bench_accuracy(const AccuracyArguments& a) {
   if (!library.ok()) return library.status();
   const auto frames = io::read_bop_frames(a.bop, a.split, a.scenes);
   if (!frames.ok()) return frames.status();
-  Result<ScoreLayer> layer = library_score_layer(a.library);
-  if (!layer.ok()) return layer.status();
-  const Detector detector(*library, options, std::move(*layer));
+  Result<ScoreLayers> layers = library_score_layers(a.library);
+  if (!layers.ok()) return layers.status();
+  const Detector detector(*library, options, std::move(*layers));
   DetectRequest request;
   request.seed = a.common.seed;
   request.num_threads = a.common.threads;

@@ -121,7 +121,7 @@ class DetectRun {
     std::fflush(stdout);
     if (explain_) {
       Status status = explain_->add({name, file_name(input), input.frame, trace, *scene,
-                                     detector_.score_layer(), input.truth});
+                                     detector_.score_layers(), input.truth});
       if (!status.ok()) return status;
     }
     return a_.annotate.empty() ? Status() : annotate_frame(input, *scene, name);
@@ -183,9 +183,9 @@ Status detect(const DetectArguments& a) {
   }
   const auto library = load_detection_library(a.library, split_commas(a.models), a.common.threads);
   if (!library.ok()) return library.status();
-  Result<ScoreLayer> layer = library_score_layer(a.library);
-  if (!layer.ok()) return layer.status();
-  const Detector detector(*library, options, std::move(*layer));
+  Result<ScoreLayers> layers = library_score_layers(a.library);
+  if (!layers.ok()) return layers.status();
+  const Detector detector(*library, options, std::move(*layers));
   DetectRun run(a, detector, *given, inputs->size());
   Progress progress("frames", static_cast<int>(inputs->size()));
   for (std::size_t i = 0; i < inputs->size(); ++i) {

@@ -51,6 +51,11 @@ constexpr StageText kStages[] = {
     {"climbed", "Climbed",
      "The best of them climb the score by small steps, and from beside where they are. Nothing is "
      "dropped."},
+    {"turned", "Turned",
+     "The best of them once more, turned by what maps most of the model onto itself: the other "
+     "poses "
+     "that the view may leave open. Nothing is dropped but turns that are there already or fit "
+     "worse."},
     {"final", "The model's placements",
      "Distinct and good enough: the interpretation of the scene chooses from these."},
 };
@@ -219,8 +224,9 @@ Status ModelExplanation::write_best(HtmlPage& page) const {
       sheet,
       "The placement in green (the truth, where it is known, in dashed white), and what each "
       "score component is and adds to the log odds of the learned score layer.");
-  Status status = io::write_color_png(folder_ + "/" + sheet,
-                                      placement_sheet(frame_.frame, *best_, frame_.layer, truths_));
+  Status status = io::write_color_png(
+      folder_ + "/" + sheet,
+      placement_sheet(frame_.frame, *best_, frame_.layers.last_for(best_->components), truths_));
   if (!status.ok()) return status;
   write_layer(page);
   const SceneFeatures& scene = frame_.trace.scene;
@@ -235,15 +241,16 @@ Status ModelExplanation::write_best(HtmlPage& page) const {
 }
 
 void ModelExplanation::write_layer(HtmlPage& page) const {
+  const ScoreLayer& layer = frame_.layers.last_for(best_->components);
   const ScoreFeatures features = score_features(best_->components);
   std::vector<Row> rows;
   for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
-    const ScoreLayer::Component& c = frame_.layer.components[i];
+    const ScoreLayer::Component& c = layer.components[i];
     rows.push_back({score_feature_names()[i], fixed(features[i], 4),
                     fixed(c.place.front(), 3) + " to " + fixed(c.place.back(), 3),
                     fixed(c.at(features[i]), 3)});
   }
-  rows.push_back({"bias", "", "", fixed(frame_.layer.bias, 3)});
+  rows.push_back({"bias", "", "", fixed(layer.bias, 3)});
   rows.push_back({"sum", "", "", fixed(best_->score, 3)});
   page.table({"read by the score layer", "value", "usual in training", "adds to the log odds"},
              rows);
@@ -252,7 +259,7 @@ void ModelExplanation::write_layer(HtmlPage& page) const {
     rows.push_back({component.name, fixed(component.value, 4)});
   }
   page.table({"score component", "value"}, rows);
-  page.paragraph("The score layer: " + frame_.layer.provenance + ".");
+  page.paragraph("The score layer: " + layer.provenance + ".");
 }
 
 }  // namespace bpa::cli

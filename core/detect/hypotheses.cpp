@@ -56,6 +56,37 @@ void sort_by_score(std::vector<Hypothesis>& all) {
                    [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
 }
 
+// The cube, of which `per_metre` make a metre, that a place lies in.
+std::uint64_t place_cell(const Eigen::Vector3f& place, float per_metre) {
+  const Eigen::Vector3i cell = (place * per_metre).array().floor().cast<int>() + 512;
+  return static_cast<std::uint64_t>(cell.x() & 1023) << 20 |
+         static_cast<std::uint64_t>(cell.y() & 1023) << 10 |
+         static_cast<std::uint64_t>(cell.z() & 1023);
+}
+
+// The best, and those of each place in the scene: an object that is easily mistaken for this one
+// must not crowd out a place where the fit is worse but true. Each better one within the same 5 cm
+// costs `rank_penalty` of the score. Leaves them sorted by score.
+void keep_best(std::vector<Hypothesis>& all, int count, float rank_penalty, DroppedPoses* dropped) {
+  sort_by_score(all);
+  if (all.size() <= static_cast<std::size_t>(count)) return;
+  std::unordered_map<std::uint64_t, int> met;
+  std::vector<std::pair<float, std::size_t>> order;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const int rank = met[place_cell(all[i].camera_from_object.translation, 20)]++;
+    order.push_back({-all[i].score + rank_penalty * static_cast<float>(rank), i});
+  }
+  std::stable_sort(order.begin(), order.end());
+  for (auto o = order.begin() + count; o != order.end(); ++o) {
+    drop(dropped, "better ones are enough", all[o->second].camera_from_object);
+  }
+  order.resize(static_cast<std::size_t>(count));
+  std::vector<Hypothesis> kept;
+  for (const auto& [penalised, i] : order) kept.push_back(all[i]);
+  sort_by_score(kept);
+  all = std::move(kept);
+}
+
 class Sampler {
  public:
   Sampler(const SceneFeatures& scene, const ObjectModel& model, const HypothesisOptions& options,
@@ -125,7 +156,7 @@ class Sampler {
         if (passes(hypothesis)) suggested_.push_back(hypothesis);
       }
     }
-    keep_best(suggested_, options_.max_suggested);
+    keep_best(suggested_, options_.max_suggested, kRankPenalty, dropped_);
   }
 
   // Looks again at everything that was kept, with more points, after a first small correction.
@@ -138,9 +169,9 @@ class Sampler {
     for (const auto& [key, cell] : cells) {
       kept.insert(kept.end(), cell->members, cell->members + cell->count);
     }
-    keep_best(kept, 2 * options_.max_kept);
+    keep_best(kept, 2 * options_.max_kept, kRankPenalty, dropped_);
     for (Hypothesis& hypothesis : kept) correct(hypothesis);
-    keep_best(kept, options_.max_kept);
+    keep_best(kept, options_.max_kept, kRankPenalty, dropped_);
     for (Hypothesis& hypothesis : suggested_) correct(hypothesis);
     kept.insert(kept.end(), suggested_.begin(), suggested_.end());
     sort_by_score(kept);
@@ -165,8 +196,13 @@ class Sampler {
 
   bool check(Hypothesis& hypothesis) {
     const FastPose& pose = hypothesis.camera_from_object;
-    const PoseCheck check =
+    PoseCheck check =
         check_pose(scene_.image, model_.index->check, pose, options_.check_points, tolerance_);
+    // Where most of the object is hidden, the few points in sight are too few to judge by.
+    if (check.seen < kFewSeen && check.agreeing > 0 && 2 * check.free_space <= check.seen) {
+      check = check_pose(scene_.image, model_.index->check, pose, options_.hidden_check_points,
+                         tolerance_);
+    }
     hypothesis.score = check.score();
     // Paper section V: more than 20 % of the points in free space rejects the pose.
     if (5 * check.free_space > check.seen) {
@@ -179,29 +215,6 @@ class Sampler {
       return true;
     }
     return false;
-  }
-
-  // The best, and those of each place in the scene: an object that is easily mistaken for this one
-  // must not crowd out a place where the fit is worse but true. Leaves them sorted by score.
-  void keep_best(std::vector<Hypothesis>& all, int count) const {
-    constexpr float kRankPenalty = 0.004f;  // of the score, for each better one at the same place
-    sort_by_score(all);
-    if (all.size() <= static_cast<std::size_t>(count)) return;
-    std::unordered_map<std::uint64_t, int> met;
-    std::vector<std::pair<float, std::size_t>> order;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const int rank = met[place_cell(all[i].camera_from_object.translation, 20)]++;
-      order.push_back({-all[i].score + kRankPenalty * static_cast<float>(rank), i});
-    }
-    std::stable_sort(order.begin(), order.end());
-    for (auto o = order.begin() + count; o != order.end(); ++o) {
-      drop(dropped_, "better ones are enough", all[o->second].camera_from_object);
-    }
-    order.resize(static_cast<std::size_t>(count));
-    std::vector<Hypothesis> kept;
-    for (const auto& [penalised, i] : order) kept.push_back(all[i]);
-    sort_by_score(kept);
-    all = std::move(kept);
   }
 
   // A sampled pose is off by as much as the sampling of both surfaces is coarse.
@@ -241,14 +254,6 @@ class Sampler {
     if (better) *worst = hypothesis;
   }
 
-  // The cube, of which `per_metre` make a metre, that a place lies in.
-  static std::uint64_t place_cell(const Eigen::Vector3f& place, float per_metre) {
-    const Eigen::Vector3i cell = (place * per_metre).array().floor().cast<int>() + 512;
-    return static_cast<std::uint64_t>(cell.x() & 1023) << 20 |
-           static_cast<std::uint64_t>(cell.y() & 1023) << 10 |
-           static_cast<std::uint64_t>(cell.z() & 1023);
-  }
-
   // Cells of 25 mm and about 25 degrees; of an object that may be turned about an axis, the turn
   // does not count.
   std::uint64_t pose_cell(const FastPose& pose) const {
@@ -267,6 +272,8 @@ class Sampler {
   }
 
   static constexpr int kPerCell = 3;
+  static constexpr int kFewSeen = 20;
+  static constexpr float kRankPenalty = 0.02f;
   struct PoseCell {
     int count = 0;
     Hypothesis members[kPerCell];
@@ -307,23 +314,20 @@ Pose align_cluster(const SceneFeatures& scene, const ObjectModel& model,
   return align::bpa_mode(data).camera_from_object;
 }
 
-// The best `count`; the first quarter of the places is for those with the caller's suggestions.
-void keep_clusters(std::vector<Hypothesis>& clusters, std::size_t count, DroppedPoses* dropped) {
+// The best `count`; a quarter of the places is for those with the caller's suggestions.
+void keep_clusters(std::vector<Hypothesis>& clusters, int count, DroppedPoses* dropped) {
+  constexpr float kRankPenalty = 0.04f;
   sort_by_score(clusters);
-  if (clusters.size() <= count) return;
-  std::vector<Hypothesis> kept, others;
+  std::vector<Hypothesis> suggested, others;
   for (const Hypothesis& cluster : clusters) {
-    const bool suggested = cluster.source == Hypothesis::Source::caller;
-    (suggested && kept.size() < count / 4 ? kept : others).push_back(cluster);
+    const bool first = cluster.source == Hypothesis::Source::caller &&
+                       suggested.size() < static_cast<std::size_t>(count) / 4;
+    (first ? suggested : others).push_back(cluster);
   }
-  const std::size_t left = count - kept.size();
-  for (std::size_t i = left; i < others.size(); ++i) {
-    drop(dropped, "better ones are enough", others[i].camera_from_object);
-  }
-  others.resize(std::min(others.size(), left));
-  kept.insert(kept.end(), others.begin(), others.end());
-  sort_by_score(kept);
-  clusters = std::move(kept);
+  keep_best(others, count - static_cast<int>(suggested.size()), kRankPenalty, dropped);
+  clusters = std::move(suggested);
+  clusters.insert(clusters.end(), others.begin(), others.end());
+  sort_by_score(clusters);
 }
 
 }  // namespace
@@ -381,7 +385,7 @@ std::vector<Hypothesis> cluster_hypotheses(const SceneFeatures& scene, const Obj
     }
     out.push_back(best);
   }
-  keep_clusters(out, static_cast<std::size_t>(max_clusters), dropped);
+  keep_clusters(out, max_clusters, dropped);
   return out;
 }
 

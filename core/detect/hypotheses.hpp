@@ -24,11 +24,12 @@ struct Hypothesis {
 };
 
 struct HypothesisOptions {
-  int matches_per_keypoint = 2;  ///< Nearest model features of each scene keypoint.
-  int draws_per_match = 3;       ///< BPA draws for each correspondence.
-  int peaks_per_reference = 12;  ///< Voted model points of each scene reference point.
-  int check_points = 64;         ///< Model points that a pose is checked with.
-  int max_kept = 1500;           ///< Best hypotheses that go on.
+  int matches_per_keypoint = 2;   ///< Nearest model features of each scene keypoint.
+  int draws_per_match = 3;        ///< BPA draws for each correspondence.
+  int peaks_per_reference = 12;   ///< Voted model points of each scene reference point.
+  int check_points = 64;          ///< Model points that a pose is checked with,
+  int hidden_check_points = 512;  ///< and where few of them are in sight.
+  int max_kept = 1500;            ///< Best hypotheses that go on.
   double min_check_score = 0.15;
   bool use_edges = true;        ///< Also in the correction of what is kept.
   std::vector<Pose> suggested;  ///< By the caller: looked at besides, as drawn and aligned.

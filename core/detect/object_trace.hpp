@@ -44,7 +44,7 @@ struct ObjectTrace {
     /// Given up since the stage before: with `poses`, as many as were alive after that.
     DroppedPoses dropped;
   };
-  /// sampled, free_space, clusters, round_two, aligned, climbed, final.
+  /// sampled, free_space, clusters, round_two, aligned, climbed, turned, final.
   std::vector<Stage> stages;
 };
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <bpa/core/base/stopwatch.hpp>
 #include <bpa/core/detect/single_object.hpp>
@@ -70,8 +69,8 @@ Aligned round_two(const SceneFeatures& scene, const ObjectModel& model, const Po
   refinement.end_gate_m = 0.012f;
   const Pose refined = refine_pose(scene, model, best.pose, refinement).camera_from_object;
   if (check_score(scene, model, refined) > best.score) best.pose = refined;
-  best.score = placement_score(score_placement(scene.image, model, best.pose, options.quick_points),
-                               options.layer);
+  best.score = placement_score(score_placement(scene.image, model, best.pose, kQuickPoints),
+                               options.layers.round_two);
   return best;
 }
 
@@ -129,12 +128,8 @@ void add_round_three(const SceneFeatures& scene, const ObjectModel& model,
   }
 }
 
-void forget_round_three(ScoreComponents& out) {
-  out.edge_likelihood = out.occlusion_edge = out.random_walk = out.segment = out.segment_affinity =
-      out.fpfh = out.color = std::numeric_limits<double>::quiet_NaN();
-}
-
-constexpr double kBeside = 0.17;  // radians
+constexpr double kBeside = 0.17;      // radians
+constexpr double kWorthTurning = -5;  // log odds
 
 // Local hill climbing of the score (paper section V): the best of alignments from beside the start,
 // then small steps along and about each axis of the camera through the object's origin, kept when
@@ -142,8 +137,8 @@ constexpr double kBeside = 0.17;  // radians
 Pose climb(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
            const SingleObjectOptions& options) {
   const auto score = [&](const Pose& pose) {
-    return placement_score(score_placement(scene.image, model, pose, options.quick_points),
-                           options.layer);
+    return placement_score(score_placement(scene.image, model, pose, kQuickPoints),
+                           options.layers.round_two);
   };
   Aligned best{start, score(start)};
   // From beside the start, gradients may lead elsewhere.
@@ -277,6 +272,42 @@ void climb_first(const SceneFeatures& scene, const ObjectModel& model,
   stages.finish("climbed", candidates, of_candidate);
 }
 
+// What the best are mistaken for most easily, and what the view may leave open: the same object
+// turned by a near symmetry. Those of them that nothing stands for yet are aligned and scored.
+void try_turned(const SceneFeatures& scene, const ObjectModel& model,
+                const PlacementEvaluator& evaluator, const ModelPriors& priors,
+                const SingleObjectOptions& options, std::vector<Candidate>& candidates,
+                StageWriter& stages) {
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  std::vector<Aligned> turned;
+  const std::size_t count =
+      std::min(candidates.size(), static_cast<std::size_t>(options.max_turned));
+  for (std::size_t i = 0; i < count && candidates[i].score > kWorthTurning; ++i) {
+    for (const Pose& motion : model.index->near_symmetries) {
+      const Pose pose = candidates[i].pose() * motion;
+      const double score = placement_score(score_placement(scene.image, model, pose, kQuickPoints),
+                                           options.layers.round_two);
+      turned.push_back({pose, score + priors.evidence(pose)});
+    }
+  }
+  remove_similar(turned, model.symmetry, of_aligned, stages.dropped());
+  std::erase_if(turned, [&](const Aligned& t) {
+    const bool known = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
+      return similar(t.pose, c.pose(), model.symmetry);
+    });
+    if (known) drop(stages.dropped(), "there already", to_fast(t.pose));
+    return known;
+  });
+  keep_first(turned, options.max_kept_turned, of_aligned, stages.dropped());
+  for (const Aligned& start : turned) {
+    candidates.push_back(
+        evaluator.evaluate(refine_pose(scene, model, start.pose, last_alignment(options))));
+    add_prior(priors, candidates.back());
+  }
+  stages.finish("turned", candidates, of_candidate);
+}
+
 void keep_good(const SymmetryGroup& symmetry, const SingleObjectOptions& options,
                std::vector<Candidate>& candidates, StageWriter& stages) {
   std::erase_if(candidates, [&](const Candidate& c) {
@@ -293,10 +324,10 @@ void keep_good(const SymmetryGroup& symmetry, const SingleObjectOptions& options
 
 PlacementEvaluator::PlacementEvaluator(const SceneFeatures& scene,
                                        std::shared_ptr<const ObjectModel> model,
-                                       const ScoreLayer& layer, bool use_round_three)
+                                       const ScoreLayers& layers, bool use_round_three)
     : scene_(scene),
       model_(std::move(model)),
-      layer_(layer),
+      layers_(layers),
       use_round_three_(use_round_three),
       places_(*model_) {}
 
@@ -306,13 +337,12 @@ Candidate PlacementEvaluator::evaluate(Refinement refinement) const {
   candidate.components = score_placement(scene_.image, *model_, refinement.camera_from_object);
   if (use_round_three_) {
     add_round_three(scene_, *model_, places_, refinement.camera_from_object, candidate.components);
-  } else {
-    forget_round_three(candidate.components);
   }
   candidate.explained = explained_pixels(scene_.image, *model_, refinement.camera_from_object);
   candidate.refinement = std::move(refinement);
-  candidate.score = placement_score(candidate.components, layer_);
-  candidate.probability = placement_probability(candidate.components, layer_);
+  const ScoreLayer& layer = layers_.last_for(candidate.components);
+  candidate.score = placement_score(candidate.components, layer);
+  candidate.probability = placement_probability(candidate.components, layer);
   return candidate;
 }
 
@@ -332,11 +362,12 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
       cluster_hypotheses(scene, *model, sampled, options.max_clusters, stages.dropped());
   stages.finish("clusters", clusters,
                 [](const Hypothesis& h) { return to_pose(h.camera_from_object); });
-  const PlacementEvaluator evaluator(scene, model, options.layer, options.use_round_three);
+  const PlacementEvaluator evaluator(scene, model, options.layers, options.use_round_three);
   std::vector<Candidate> candidates =
       align_best(scene, *model, align_clusters(scene, *model, clusters, priors, options, stages),
                  evaluator, priors, options, stages);
   climb_first(scene, *model, evaluator, priors, options, candidates, stages);
+  try_turned(scene, *model, evaluator, priors, options, candidates, stages);
   keep_good(model->symmetry, options, candidates, stages);
   return candidates;
 }

@@ -29,13 +29,16 @@ struct Candidate {
   const Pose& pose() const { return refinement.camera_from_object; }
 };
 
+constexpr int kQuickPoints = 200;  ///< Surface points that round two scores a placement with.
+
 struct SingleObjectOptions {
   HypothesisOptions hypotheses;
   int max_clusters = 200;         ///< Pose clusters that round two looks at.
-  int max_refined = 40;           ///< Of those, how many are aligned to the end.
+  int max_refined = 50;           ///< Of those, how many are aligned to the end.
   int max_climbed = 8;            ///< The best of these climb the score at last.
   int climb_rounds = 4;           ///< Rounds of twelve small steps each.
-  int quick_points = 200;         ///< Surface points that round two scores a placement with.
+  int max_turned = 6;             ///< The best of these are also tried turned by near symmetries.
+  int max_kept_turned = 12;       ///< Of these turns, how many are aligned to the end.
   int bpa_steps = 3;              ///< Round-two alignments by BPA.
   bool use_orientation = true;    ///< See AlignmentCues; likewise
   bool use_segments = true;       ///< this
@@ -45,7 +48,7 @@ struct SingleObjectOptions {
   int max_placements = 50;        ///< Paper section VI.
   std::vector<PosePrior> priors;  ///< Valid; those of other models are ignored.
   int draws_per_prior = 300;      ///< Poses that each prior suggests.
-  ScoreLayer layer = default_score_layer();
+  ScoreLayers layers = default_score_layers();
   std::uint64_t seed = 0;
 };
 
@@ -61,14 +64,14 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
 class PlacementEvaluator {
  public:
   PlacementEvaluator(const SceneFeatures& scene, std::shared_ptr<const ObjectModel> model,
-                     const ScoreLayer& layer, bool use_round_three = true);
+                     const ScoreLayers& layers, bool use_round_three = true);
 
   Candidate evaluate(Refinement refinement) const;
 
  private:
   const SceneFeatures& scene_;
   std::shared_ptr<const ObjectModel> model_;
-  const ScoreLayer& layer_;
+  const ScoreLayers& layers_;
   bool use_round_three_;
   FeaturePlaces places_;
 };

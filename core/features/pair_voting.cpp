@@ -54,7 +54,7 @@ ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, flo
         auto& own = partners[index];
         grid.for_each_neighbor(cloud.points[i], [&](int neighbor, float) {
           const auto j = static_cast<std::size_t>(neighbor);
-          if (i == j) return;
+          if (i == j || (i + j) % 2 != 0) return;  // half of them
           const PointPairFeature feature = point_pair_feature(cloud.points[i], cloud.normals[i],
                                                               cloud.points[j], cloud.normals[j]);
           if (!fixes_pose(feature)) return;

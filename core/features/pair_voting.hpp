@@ -21,7 +21,8 @@ struct ScenePairs {
   std::vector<Partner> partners;     ///< by rising distance.
 };
 
-/// The pairs within `reach` metres that fix a pose, about the points `references`.
+/// Half of the pairs within `reach` metres that fix a pose, about the points `references`: those
+/// whose indices are both even or both odd.
 ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, float reach,
                        int num_threads);
 

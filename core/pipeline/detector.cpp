@@ -104,8 +104,8 @@ void keep_best(std::vector<Interpretation>& interpretations, std::size_t count) 
 }  // namespace
 
 Detector::Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions options,
-                   ScoreLayer layer)
-    : library_(std::move(library)), options_(std::move(options)), layer_(std::move(layer)) {}
+                   ScoreLayers layers)
+    : library_(std::move(library)), options_(std::move(options)), layers_(std::move(layers)) {}
 
 Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRequest& request,
                                               FrameTrace* trace) const {
@@ -149,7 +149,7 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
 
   // The budget is looked at between models: whoever is not begun in time is left out, and said so.
   SingleObjectOptions single = object_options(options_, request.seed);
-  single.layer = layer_;
+  single.layers = layers_;
   single.priors = request.priors;
   std::vector<std::vector<Candidate>> found(models->size());
   std::vector<std::uint8_t> late(models->size(), 0);

@@ -35,7 +35,7 @@ struct DetectRequest {
 class Detector {
  public:
   Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions options,
-           ScoreLayer layer = default_score_layer());
+           ScoreLayers layers = default_score_layers());
 
   /// Ranked interpretations of the frame. Fails with invalid_argument on a frame, request or
   /// library that breaks a rule (an empty library too), with not_found on the name of a model, also
@@ -46,12 +46,12 @@ class Detector {
 
   const ModelLibrary& library() const { return *library_; }
   const DetectorOptions& options() const { return options_; }
-  const ScoreLayer& score_layer() const { return layer_; }
+  const ScoreLayers& score_layers() const { return layers_; }
 
  private:
   std::shared_ptr<const ModelLibrary> library_;
   DetectorOptions options_;
-  ScoreLayer layer_;
+  ScoreLayers layers_;
 };
 
 }  // namespace bpa

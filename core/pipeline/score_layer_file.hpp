@@ -9,14 +9,14 @@
 
 namespace bpa {
 
-/// The file of a library's own score layer: "FOLDER/score_layer.json".
+/// The file of a library's own score layers: "FOLDER/score_layer.json".
 std::string score_layer_path(const std::string& library_folder);
 
-Status write_score_layer(const std::string& path, const ScoreLayer& layer);
+Status write_score_layers(const std::string& path, const ScoreLayers& layers);
 /// Fails with not_found, or with corrupt (naming the file and what is wrong) on a file that is not
-/// JSON, is of another version, or lacks a score component.
-Result<ScoreLayer> read_score_layer(const std::string& path);
-/// The layer of the library, or default_score_layer() where the library has none of its own.
-Result<ScoreLayer> library_score_layer(const std::string& library_folder);
+/// JSON, is of another version, or lacks a layer or a score component.
+Result<ScoreLayers> read_score_layers(const std::string& path);
+/// The layers of the library, or default_score_layers() where the library has none of its own.
+Result<ScoreLayers> library_score_layers(const std::string& library_folder);
 
 }  // namespace bpa

@@ -41,8 +41,23 @@ struct ScoreLayer {
   double log_odds(const ScoreFeatures& features) const;
 };
 
-/// The layer that `bpa train` made of simulated scenes; see ScoreLayer::provenance.
-const ScoreLayer& default_score_layer();
+/// The layers of a detector.
+struct ScoreLayers {
+  /// Orders what round two has aligned; the components of round three are not known to it.
+  ScoreLayer round_two;
+  /// Of all components: what probabilities come from.
+  ScoreLayer round_three;
+  /// The same where colours are not known, which are then missed: shapes have to say more.
+  ScoreLayer without_color;
+
+  const ScoreLayer& last_for(const ScoreComponents& components) const {
+    return std::isnan(components.color) ? without_color : round_three;
+  }
+};
+
+/// The layers that `bpa train` made of simulated scenes; see ScoreLayer::provenance.
+const ScoreLayers& default_score_layers();
+inline const ScoreLayer& default_score_layer() { return default_score_layers().round_three; }
 
 /// The learned score of a placement: its log odds.
 inline double placement_score(const ScoreComponents& components,

@@ -49,12 +49,13 @@ def line(worst, best):
 
 def write_layer(path):
     layer = {
-        "score_layer_version": 2,
         "provenance": "nothing: each component weighs the same",
         "bias": 0,
         "components": {name: line(*ends) for name, ends in RANGES.items()},
     }
-    path.write_text(json.dumps(layer, indent=2) + "\n")
+    layers = {"score_layer_version": 3, "round_two": layer, "round_three": layer,
+              "without_color": layer}
+    path.write_text(json.dumps(layers, indent=2) + "\n")
 
 
 def share(hits, total):

@@ -19,9 +19,9 @@ using cli::ExplainedFrame;
 using cli::ExplainFolder;
 
 constexpr const char* kModelPictures[] = {
-    "03_sampled.png",   "04_free_space.png", "05_clusters.png",
-    "06_round_two.png", "07_aligned.png",    "08_climbed.png",
-    "09_final.png",     "10_best.png",       "11_best_segments.png"};
+    "03_sampled.png", "04_free_space.png",   "05_clusters.png", "06_round_two.png",
+    "07_aligned.png", "08_climbed.png",      "09_turned.png",   "10_final.png",
+    "11_best.png",    "12_best_segments.png"};
 
 /// An L on a table, and a brick that is not there.
 class Explain : public ::testing::Test {
@@ -51,7 +51,7 @@ class Explain : public ::testing::Test {
     result_ = std::move(*result);
   }
   ExplainedFrame explained(const std::string& name = "000001_000002") const {
-    return {"scene 1 image 2", name, frame_, trace_, result_, default_score_layer(), truth_};
+    return {"scene 1 image 2", name, frame_, trace_, result_, default_score_layers(), truth_};
   }
   void expect_picture(const std::string& path) const {
     const auto image = io::read_color_image(folder_ / path);
@@ -98,11 +98,12 @@ TEST_F(Explain, OneModelIsOneFolderWhosePageAgreesWithTheTrace) {
   ASSERT_FALSE(trace_.candidates.empty());
   const Candidate& best = trace_.candidates.front();
   const ScoreFeatures features = score_features(best.components);
-  double sum = default_score_layer().bias;
+  const ScoreLayer& layer = default_score_layers().last_for(best.components);
+  double sum = layer.bias;
   const std::size_t table = text.find("adds to the log odds</th>");
   ASSERT_NE(table, std::string::npos);
   for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
-    const double part = default_score_layer().components[i].at(features[i]);
+    const double part = layer.components[i].at(features[i]);
     sum += part;
     const std::size_t row = text.find("<tr>" + cell(score_feature_names()[i]), table);
     ASSERT_NE(row, std::string::npos) << score_feature_names()[i];
@@ -129,7 +130,7 @@ TEST_F(Explain, SeveralModelsHaveAFolderEach) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/03_sampled.png"));
   const std::string text = page("out/index.html");
   for (const char* name : {"l", "brick"}) {
-    expect_picture(std::string("out/") + name + "/09_final.png");
+    expect_picture(std::string("out/") + name + "/10_final.png");
     EXPECT_NE(text.find("href=\"" + std::string(name) + "/index.html\""), std::string::npos);
     EXPECT_FALSE(page(std::string("out/") + name + "/index.html").empty());
   }

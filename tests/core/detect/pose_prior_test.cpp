@@ -226,7 +226,7 @@ TEST_F(PriorsOf, DecideBetweenPosesThatLookTheSame) {
   EXPECT_LT(error.angle, 0.06);
   // Each score is the image's and what the prior adds.
   const ModelPriors priors(options.priors, *brick);
-  const PlacementEvaluator evaluator(scene, brick, options.layer);
+  const PlacementEvaluator evaluator(scene, brick, options.layers);
   for (const Candidate& c : candidates) {
     EXPECT_EQ(c.prior, priors.evidence(c.pose()));
     EXPECT_EQ(c.score, evaluator.evaluate(c.refinement).score + c.prior);

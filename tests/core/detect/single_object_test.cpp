@@ -95,7 +95,7 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
     }
   }
   EXPECT_EQ(names, (std::vector<std::string>{"sampled", "free_space", "clusters", "round_two",
-                                             "aligned", "climbed", "final"}));
+                                             "aligned", "climbed", "turned", "final"}));
   EXPECT_GT(trace.stages[0].poses.size(), 1000u);
   EXPECT_TRUE(trace.stages[3].dropped.empty()) << "round two drops nothing";
   ASSERT_EQ(trace.stages.back().poses.size(), plain.size());
@@ -128,13 +128,13 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
       "segment_affinity", "fpfh",           "color"};
   for (const Candidate& candidate : candidates) {
     const ScoreFeatures features = score_features(candidate.components);
-    double sum = options.layer.bias;
+    double sum = options.layers.without_color.bias;
     std::size_t left_out = 0;
     for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
       const bool skip = third.contains(score_feature_names()[i]);
       EXPECT_EQ(std::isnan(features[i]), skip) << score_feature_names()[i];
       left_out += skip;
-      if (!skip) sum += options.layer.components[i].at(features[i]);
+      if (!skip) sum += options.layers.without_color.components[i].at(features[i]);
     }
     EXPECT_EQ(left_out, third.size());
     EXPECT_NEAR(candidate.score, sum, 1e-9);
