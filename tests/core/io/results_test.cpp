@@ -54,6 +54,7 @@ TEST(Results, JsonKeepsEverythingToTheLastBit) {
   EXPECT_EQ(back->at(1).interpretations.size(), 1u);
   const FrameResult& frame = back->at(0);
   EXPECT_EQ(frame.seconds, 0.1);
+  EXPECT_EQ(frame.fused_frames, 5);
   ASSERT_EQ(frame.interpretations.size(), 2u);
   const ResultPlacement& a = results[0].interpretations[0].placements[1];
   const ResultPlacement& b = frame.interpretations[0].placements.at(1);
@@ -77,7 +78,6 @@ TEST(Results, CsvHoldsTheBestInterpretation) {
   EXPECT_EQ(back->front().scene_id, 2);
   EXPECT_EQ(back->front().im_id, 5);
   EXPECT_EQ(back->front().seconds, 0.1);
-  EXPECT_EQ(back->front().fused_frames, 5);
   ASSERT_EQ(back->front().interpretations.at(0).placements.size(), 2u);
   const ResultPlacement& placement = back->front().interpretations[0].placements[0];
   EXPECT_EQ(placement.obj_id, 3);
