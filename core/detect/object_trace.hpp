@@ -41,7 +41,8 @@ struct ObjectTrace {
     const char* name;
     std::vector<FastPose> poses;  ///< Still alive after the stage.
     double milliseconds = 0;
-    /// Given up since the stage before: with `poses`, as many as were alive after that.
+    /// Given up since the stage before: with `poses`, as many as were alive after that, but for
+    /// "turned", which adds poses and gives up only such new ones.
     DroppedPoses dropped;
   };
   /// sampled, free_space, clusters, round_two, aligned, climbed, turned, final.

@@ -340,7 +340,8 @@ Candidate PlacementEvaluator::evaluate(Refinement refinement) const {
   }
   candidate.explained = explained_pixels(scene_.image, *model_, refinement.camera_from_object);
   candidate.refinement = std::move(refinement);
-  const ScoreLayer& layer = layers_.last_for(candidate.components);
+  const ScoreLayer& layer =
+      use_round_three_ ? layers_.last_for(candidate.components) : layers_.round_two;
   candidate.score = placement_score(candidate.components, layer);
   candidate.probability = placement_probability(candidate.components, layer);
   return candidate;

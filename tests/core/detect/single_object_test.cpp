@@ -90,8 +90,12 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
       EXPECT_FALSE(dropped.poses.empty()) << stage.name << ": " << dropped.reason;
       all += dropped.poses.size();
     }
-    if (s > 0) {
-      EXPECT_EQ(all, trace.stages[s - 1].poses.size()) << stage.name;
+    if (s == 0) continue;
+    const std::size_t before = trace.stages[s - 1].poses.size();
+    if (names.back() == "turned") {
+      EXPECT_GT(stage.poses.size(), before) << "an L has near symmetries";
+    } else {
+      EXPECT_EQ(all, before) << stage.name;
     }
   }
   EXPECT_EQ(names, (std::vector<std::string>{"sampled", "free_space", "clusters", "round_two",
@@ -128,13 +132,13 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
       "segment_affinity", "fpfh",           "color"};
   for (const Candidate& candidate : candidates) {
     const ScoreFeatures features = score_features(candidate.components);
-    double sum = options.layers.without_color.bias;
+    double sum = options.layers.round_two.bias;
     std::size_t left_out = 0;
     for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
       const bool skip = third.contains(score_feature_names()[i]);
       EXPECT_EQ(std::isnan(features[i]), skip) << score_feature_names()[i];
       left_out += skip;
-      if (!skip) sum += options.layers.without_color.components[i].at(features[i]);
+      if (!skip) sum += options.layers.round_two.components[i].at(features[i]);
     }
     EXPECT_EQ(left_out, third.size());
     EXPECT_NEAR(candidate.score, sum, 1e-9);
