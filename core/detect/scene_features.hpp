@@ -33,7 +33,7 @@ struct SceneFeatures {
 struct SceneFeatureOptions {
   int max_keypoints = 600;
   double coarse_spacing_m = 0.010;
-  int max_references = 1200;   ///< Points whose pairs vote for poses.
+  int max_references = 800;    ///< Points whose pairs vote for poses.
   double pair_reach_m = 0.30;  ///< Longest pairs.
   std::uint64_t seed = 0;
   int num_threads = 0;

@@ -34,7 +34,7 @@ constexpr int kQuickPoints = 200;  ///< Surface points that round two scores a p
 struct SingleObjectOptions {
   HypothesisOptions hypotheses;
   int max_clusters = 200;         ///< Pose clusters that round two looks at.
-  int max_refined = 50;           ///< Of those, how many are aligned to the end.
+  int max_refined = 40;           ///< Of those, how many are aligned to the end.
   int max_climbed = 8;            ///< The best of these climb the score at last.
   int climb_rounds = 4;           ///< Rounds of twelve small steps each.
   int max_turned = 6;             ///< The best of these are also tried turned by near symmetries.

@@ -18,10 +18,10 @@ struct DetectorOptions {
   int max_keypoints = 600;
   int matches_per_keypoint = 2;
   int draws_per_match = 3;
-  int max_references = 1200;
+  int max_references = 800;
   int peaks_per_reference = 12;
   int max_clusters = 200;
-  int max_refined = 50;
+  int max_refined = 40;
   bool use_orientation = true;
   bool use_segments = true;
   bool use_edges = true;
