@@ -29,6 +29,9 @@ struct Candidate {
   const Pose& pose() const { return refinement.camera_from_object; }
 };
 
+/// Two placements of one model that are nearer than this, in diameters, claim the same place.
+constexpr double kSamePlace = 0.4;
+
 constexpr int kQuickPoints = 200;  ///< Surface points that round two scores a placement with.
 
 struct SingleObjectOptions {

@@ -9,11 +9,16 @@
 namespace bpa {
 namespace {
 
-// Two solid things cannot have nearly the same place.
+// Of a solid model it is known what is inside of it.
+bool solid(const Candidate& c) { return c.model->complete && c.model->index; }
+
+// Two solid things cannot have nearly the same place; but of two models a thing may lie on a plate,
+// where only their surfaces tell.
 bool same_place(const Candidate& a, const Candidate& b) {
   const double distance = (a.pose().translation - b.pose().translation).norm();
   const double smaller = std::min(a.model->diameter, b.model->diameter);
-  return distance < (a.model == b.model ? 0.4 : 0.2) * smaller;
+  if (a.model == b.model) return distance < kSamePlace * smaller;
+  return distance < 0.2 * smaller && !(solid(a) && solid(b));
 }
 
 // The share of a's surface that lies clearly inside of b. Only a model that was seen from all sides
@@ -38,7 +43,6 @@ double share_inside(const Candidate& a, const Candidate& b) {
 
 bool interpenetrate(const Candidate& a, const Candidate& b) {
   constexpr double kMaxInside = 0.1;
-  const auto solid = [](const Candidate& c) { return c.model->complete && c.model->index; };
   if (!solid(a) || !solid(b)) return false;
   const double reach = 0.5 * (a.model->diameter + b.model->diameter);
   if ((a.pose().translation - b.pose().translation).norm() > reach) return false;

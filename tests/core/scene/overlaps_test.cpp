@@ -50,6 +50,21 @@ TEST_F(OverlapsOf, AModelSeenFromOneSideHasNoInside) {
   EXPECT_FALSE(conflict(first, second));
 }
 
+TEST_F(OverlapsOf, AThingMayLieOnATray) {
+  const float thickness = 0.010f;
+  Candidate tray = brick_at(0, 0, 500);
+  tray.model = test::model_of(test::box_mesh({0.08f, 0.08f, thickness / 2}), "tray", 3);
+  Candidate brick = brick_at(0, 0, 0);
+  EXPECT_TRUE(conflict(tray, brick)) << "through the middle of the brick";
+  tray.refinement.camera_from_object.translation.z() +=
+      static_cast<double>(test::kBrickHalf.z() + thickness / 2);
+  EXPECT_FALSE(conflict(tray, brick));
+  ModelSource open = *tray.model;
+  open.complete = false;
+  tray.model = make_object_model(std::move(open)).value();
+  EXPECT_TRUE(conflict(tray, brick)) << "of a model seen from one side only its place is known";
+}
+
 TEST_F(OverlapsOf, PixelsAreOwnedOnce) {
   const Candidate first = brick_at(0, 0, 0);
   EXPECT_TRUE(conflict(first, brick_at(0.5, 0, 60))) << "40 of 100 pixels shared";
