@@ -10,6 +10,7 @@
 #include <bpa/core/score/color_score.hpp>
 #include <bpa/core/score/feature_score.hpp>
 #include <bpa/core/score/random_walk_score.hpp>
+#include <bpa/core/score/rival_poses.hpp>
 #include <bpa/core/score/segment_scores.hpp>
 
 namespace bpa {
@@ -308,6 +309,40 @@ void try_turned(const SceneFeatures& scene, const ObjectModel& model,
   stages.finish("turned", candidates, of_candidate);
 }
 
+constexpr double kFarBehind = 6;  // log odds; worse placements are no rivals of the best
+
+// The best placement at each place and what else may be there of the same object: what they
+// disagree about tells which of them it is.
+void compare_rivals(const SceneFeatures& scene, const ObjectModel& model,
+                    const SingleObjectOptions& options, std::vector<Candidate>& candidates) {
+  if (!options.use_round_three) return;
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  std::vector<bool> compared(candidates.size(), false);
+  for (std::size_t best = 0; best < candidates.size(); ++best) {
+    if (compared[best] || candidates[best].score < kWorthTurning) continue;
+    std::vector<std::size_t> rivals;
+    std::vector<Pose> poses;
+    for (std::size_t i = best; i < candidates.size(); ++i) {
+      const double distance =
+          (candidates[i].pose().translation - candidates[best].pose().translation).norm();
+      if (compared[i] || distance > kSamePlace * model.diameter) continue;
+      compared[i] = true;
+      if (candidates[i].score < candidates[best].score - kFarBehind) continue;
+      rivals.push_back(i);
+      poses.push_back(candidates[i].pose());
+    }
+    const std::vector<double> behind = behind_best(scene.image, model, poses);
+    for (std::size_t k = 0; k < rivals.size(); ++k) {
+      Candidate& rival = candidates[rivals[k]];
+      rival.components.rivals = behind[k];
+      const ScoreLayer& layer = options.layers.last_for(rival.components);
+      rival.score = placement_score(rival.components, layer) + rival.prior;
+      rival.probability = 1 / (1 + std::exp(-rival.score));
+    }
+  }
+}
+
 void keep_good(const SymmetryGroup& symmetry, const SingleObjectOptions& options,
                std::vector<Candidate>& candidates, StageWriter& stages) {
   std::erase_if(candidates, [&](const Candidate& c) {
@@ -369,6 +404,7 @@ std::vector<Candidate> detect_object(const SceneFeatures& scene,
                  evaluator, priors, options, stages);
   climb_first(scene, *model, evaluator, priors, options, candidates, stages);
   try_turned(scene, *model, evaluator, priors, options, candidates, stages);
+  compare_rivals(scene, *model, options, candidates);
   keep_good(model->symmetry, options, candidates, stages);
   return candidates;
 }

@@ -56,7 +56,8 @@ Placement to_placement(const Candidate& candidate) {
                     {"segment", c.segment},
                     {"segment_affinity", c.segment_affinity},
                     {"fpfh", c.fpfh},
-                    {"color", c.color}};
+                    {"color", c.color},
+                    {"rivals", c.rivals}};
   std::erase_if(out.components,
                 [](const ScoreComponent& known) { return std::isnan(known.value); });
   if (candidate.prior != 0) out.components.push_back({"prior", candidate.prior});

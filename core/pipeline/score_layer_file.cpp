@@ -8,7 +8,7 @@
 namespace bpa {
 namespace {
 
-constexpr int kVersion = 3;
+constexpr int kVersion = 4;
 
 Status corrupt(const std::string& path, const std::string& what) {
   return Status(StatusCode::corrupt, path + ": " + what);

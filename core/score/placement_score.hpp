@@ -40,7 +40,9 @@ struct ScoreComponents {
   double segment = kNotKnown;
   double segment_affinity = kNotKnown;
   double fpfh = kNotKnown;
-  double color = kNotKnown;  ///< Not known where model or frame has no colour, either.
+  double color = kNotKnown;   ///< Not known where model or frame has no colour, either.
+  double rivals = kNotKnown;  ///< behind_best() of the object's poses in one place, [-500, 0];
+                              ///< not known where another is by far more probable.
 };
 
 /// Scores `model` at `pose` from about `max_points` of the surface points that its nearest view

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include <bpa/core/score/predicted_surface.hpp>
 
@@ -28,11 +29,13 @@ struct DrawnPoint {
   }
 };
 
+// Of the points with these indices.
+template <class Indices>
 std::vector<DrawnPoint> facing_points(const CheckImage& image, const ObjectModel& model,
-                                      const ModelView& view, const FastPose& pose) {
+                                      const Indices& indices, const FastPose& pose) {
   std::vector<DrawnPoint> drawn;
-  drawn.reserve(view.visible.size());
-  for (const std::uint32_t i : view.visible) {
+  drawn.reserve(indices.size());
+  for (const std::uint32_t i : indices) {
     const Eigen::Vector3f p = pose.rotation * model.surface.points[i] + pose.translation;
     if (!(p.z() > kNearest)) continue;
     const Eigen::Vector3f normal = pose.rotation * model.surface.normals[i];
@@ -62,27 +65,7 @@ Span covered(float centre, float radius, int size) {
   return {std::max(0, first), std::min(size - 1, last)};
 }
 
-}  // namespace
-
-const ModelView& closest_view(const ObjectModel& model, const Pose& camera_from_object) {
-  return nearest_view(model.index->views, to_fast(camera_from_object));
-}
-
-std::optional<PixelPlace> pixel_of(const CheckImage& image, const Eigen::Vector3f& point) {
-  if (!(point.z() > kNearest)) return std::nullopt;
-  const float u = std::floor(image.fx * point.x() / point.z() + image.cx + 0.5f);
-  const float v = std::floor(image.fy * point.y() / point.z() + image.cy + 0.5f);
-  if (!(u >= 0 && v >= 0 && u < static_cast<float>(image.width) &&
-        v < static_cast<float>(image.height))) {
-    return std::nullopt;
-  }
-  return PixelPlace{static_cast<int>(u), static_cast<int>(v)};
-}
-
-PredictedSurface predict_surface(const CheckImage& image, const ObjectModel& model,
-                                 const Pose& camera_from_object) {
-  const std::vector<DrawnPoint> drawn = facing_points(
-      image, model, closest_view(model, camera_from_object), to_fast(camera_from_object));
+PredictedSurface draw(const CheckImage& image, const std::vector<DrawnPoint>& drawn) {
   if (drawn.empty()) return {};
   Span columns{image.width, -1}, rows{image.height, -1};
   for (const DrawnPoint& p : drawn) {
@@ -106,6 +89,36 @@ PredictedSurface predict_surface(const CheckImage& image, const ObjectModel& mod
     }
   }
   return out;
+}
+
+}  // namespace
+
+const ModelView& closest_view(const ObjectModel& model, const Pose& camera_from_object) {
+  return nearest_view(model.index->views, to_fast(camera_from_object));
+}
+
+std::optional<PixelPlace> pixel_of(const CheckImage& image, const Eigen::Vector3f& point) {
+  if (!(point.z() > kNearest)) return std::nullopt;
+  const float u = std::floor(image.fx * point.x() / point.z() + image.cx + 0.5f);
+  const float v = std::floor(image.fy * point.y() / point.z() + image.cy + 0.5f);
+  if (!(u >= 0 && v >= 0 && u < static_cast<float>(image.width) &&
+        v < static_cast<float>(image.height))) {
+    return std::nullopt;
+  }
+  return PixelPlace{static_cast<int>(u), static_cast<int>(v)};
+}
+
+PredictedSurface predict_surface(const CheckImage& image, const ObjectModel& model,
+                                 const Pose& camera_from_object) {
+  return draw(image, facing_points(image, model, closest_view(model, camera_from_object).visible,
+                                   to_fast(camera_from_object)));
+}
+
+PredictedSurface predict_whole_surface(const CheckImage& image, const ObjectModel& model,
+                                       const Pose& camera_from_object) {
+  const auto all =
+      std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(model.surface.points.size()));
+  return draw(image, facing_points(image, model, all, to_fast(camera_from_object)));
 }
 
 }  // namespace bpa

@@ -42,6 +42,10 @@ struct PredictedSurface {
 PredictedSurface predict_surface(const CheckImage& image, const ObjectModel& model,
                                  const Pose& camera_from_object);
 
+/// The same from all points, hidden by one another as they are at just this pose; slower.
+PredictedSurface predict_whole_surface(const CheckImage& image, const ObjectModel& model,
+                                       const Pose& camera_from_object);
+
 /// The view that a placement shows.
 const ModelView& closest_view(const ObjectModel& model, const Pose& camera_from_object);
 

@@ -23,7 +23,8 @@ constexpr std::array<const char*, kNumScoreFeatures> kNames = {"range",         
                                                                "support",        "edge_likelihood",
                                                                "occlusion_edge", "random_walk",
                                                                "segment",        "segment_affinity",
-                                                               "fpfh",           "color"};
+                                                               "fpfh",           "color",
+                                                               "rivals"};
 
 constexpr std::size_t kKnots = ScoreLayer::kKnots;
 using Places = std::array<double, kKnots>;
@@ -201,7 +202,8 @@ ScoreFeatures score_features(const ScoreComponents& c) {
           c.segment,
           c.segment_affinity,
           c.fpfh,
-          c.color};
+          c.color,
+          c.rivals};
 }
 
 double ScoreLayer::Component::at(double x) const {

@@ -16,7 +16,7 @@ namespace bpa {
 
 /// What the score layer reads of a placement, one number for each name of score_feature_names();
 /// not a number where it is not known.
-constexpr std::size_t kNumScoreFeatures = 24;
+constexpr std::size_t kNumScoreFeatures = 25;
 using ScoreFeatures = std::array<double, kNumScoreFeatures>;
 
 std::span<const char* const, kNumScoreFeatures> score_feature_names();

@@ -32,6 +32,7 @@ RANGES = {
     "background": (1, 0), "support": (0, 100), "edge_likelihood": (-1, 0),
     "occlusion_edge": (-1, 0), "random_walk": (-1, 0), "segment": (-1, 0),
     "segment_affinity": (-1, 0), "fpfh": (-1, 0), "color": (-1, 0),
+    "rivals": (-500, 0),
 }
 KNOTS = 8
 

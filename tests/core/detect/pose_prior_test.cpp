@@ -224,12 +224,15 @@ TEST_F(PriorsOf, DecideBetweenPosesThatLookTheSame) {
   const PoseError error = pose_error(candidates[0].pose(), turned_over);
   EXPECT_LT(error.position, 0.005);
   EXPECT_LT(error.angle, 0.06);
-  // Each score is the image's and what the prior adds.
+  // Each score is the image's, which rivals are compared in, and what the prior adds.
   const ModelPriors priors(options.priors, *brick);
   const PlacementEvaluator evaluator(scene, brick, options.layers);
   for (const Candidate& c : candidates) {
     EXPECT_EQ(c.prior, priors.evidence(c.pose()));
-    EXPECT_EQ(c.score, evaluator.evaluate(c.refinement).score + c.prior);
+    Candidate alone = evaluator.evaluate(c.refinement);
+    alone.components.rivals = c.components.rivals;
+    const ScoreLayer& layer = options.layers.last_for(alone.components);
+    EXPECT_EQ(c.score, placement_score(alone.components, layer) + c.prior);
   }
   EXPECT_EQ(to_placement(candidates[0]).components.back().name, "prior");
   EXPECT_EQ(to_placement(candidates[0]).components.back().value, candidates[0].prior);

@@ -10,6 +10,7 @@
 
 #include <bpa/core/detect/single_object.hpp>
 #include <bpa/core/model/model_index.hpp>
+#include <bpa/core/score/rival_poses.hpp>
 
 #include "support/l_scene.hpp"
 
@@ -129,7 +130,7 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
   EXPECT_LT(pose_error(candidates[0].pose(), l_truth_, l_->symmetry).position, 0.01);
   const std::set<std::string> third = {
       "edge_likelihood",  "occlusion_edge", "random_walk", "segment",
-      "segment_affinity", "fpfh",           "color"};
+      "segment_affinity", "fpfh",           "color",       "rivals"};
   for (const Candidate& candidate : candidates) {
     const ScoreFeatures features = score_features(candidate.components);
     double sum = options.layers.round_two.bias;
@@ -146,6 +147,26 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
       EXPECT_FALSE(third.contains(component.name)) << component.name;
     }
   }
+}
+
+TEST_F(SingleObject, OfPosesInOnePlaceTheBestIsBehindNone) {
+  const SceneFeatures scene = features_of(everything(), 1);
+  const auto candidates = detect_object(scene, l_, {});
+  ASSERT_FALSE(candidates.empty());
+  EXPECT_LT(pose_error(candidates[0].pose(), l_truth_, l_->symmetry).position, 0.01);
+  EXPECT_GT(candidates[0].components.rivals, -10);
+  const PredictedSurface first = predict_whole_surface(scene.image, *l_, candidates[0].pose());
+  int behind = 0;
+  for (const Candidate& c : candidates) {
+    const double distance = (c.pose().translation - candidates[0].pose().translation).norm();
+    if (distance > kSamePlace * l_->diameter || std::isnan(c.components.rivals)) continue;
+    EXPECT_LE(c.components.rivals, 0);
+    const double evidence =
+        rival_evidence(scene.image, predict_whole_surface(scene.image, *l_, c.pose()), first);
+    EXPECT_LE(evidence, 10) << "better than what is called the best";
+    behind += c.components.rivals < -30;
+  }
+  EXPECT_GT(behind, 0);
 }
 
 TEST_F(SingleObject, EmptyTableHoldsNothingProbable) {

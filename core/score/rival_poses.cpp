@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <bpa/core/cloud/surface_map.hpp>
+#include <bpa/core/score/rival_poses.hpp>
+
+namespace bpa {
+namespace {
+
+constexpr float kSameDepth = 0.010f;   // metres: what both predictions may differ by
+constexpr float kModelSigma = 0.003f;  // metres: what models and their poses are off by
+constexpr float kSeen = 0.7f;          // of the pixels that a right pose covers
+constexpr float kSeenThrough = 0.02f;  // of them: holes in the data, models that are too large
+// What hides a part hides it whole: its pixels are no evidence each, or a pose that puts a handle
+// behind something would seem less likely than one that puts it behind the object itself.
+constexpr float kHidden = 0.9f;
+constexpr float kBroad = 1.0f;  // per metre: of what a pose says nothing about
+
+// Pixels by which two good alignments may place the same rim differently.
+int tolerance(const CheckImage& image, float depth) {
+  constexpr float kBeside = 0.006f;  // metres
+  return std::clamp(static_cast<int>(std::lround(kBeside * image.fx / depth)), 1, 3);
+}
+
+// True where the prediction has surface of about this depth at a pixel or beside it.
+bool agrees(const PredictedSurface& other, int u, int v, float depth, int beside) {
+  const auto near = [&](int du, int dv) {
+    const float there = other.depth_at(u + du, v + dv);
+    return there > 0 && std::abs(there - depth) < kSameDepth;
+  };
+  if (near(0, 0)) return true;
+  for (int dv = -beside; dv <= beside; ++dv) {
+    for (int du = -beside; du <= beside; ++du) {
+      if (near(du, dv)) return true;
+    }
+  }
+  return false;
+}
+
+// The share of the pixel that shows the predicted surface: beside its rim it may show what is
+// behind.
+float inside(const PredictedSurface& predicted, int u, int v) {
+  constexpr int kBeside[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+  int covered = 0;
+  for (const auto& step : kBeside) covered += predicted.depth_at(u + step[0], v + step[1]) > 0;
+  return covered == 4 ? 0.95f : 0.5f;
+}
+
+// log p(observed depth | predicted), relative to that of a pixel that is not covered.
+float log_likelihood(const PredictedSurface& predicted, int u, int v, float observed) {
+  const float depth = predicted.depth_at(u, v);
+  if (!(depth > 0)) return 0;
+  const float noise = depth_noise(depth);
+  const float sigma = 1.5f * std::sqrt(noise * noise + kModelSigma * kModelSigma);
+  const float z = (observed - depth) / sigma;
+  constexpr float kRootTwoPi = 2.5066283f;
+  const float on_surface = kSeen * std::exp(-0.5f * z * z) / (kRootTwoPi * sigma);
+  const float off_surface = (observed < depth ? kHidden : kSeenThrough) * kBroad;
+  const float share = inside(predicted, u, v);
+  return std::log(share * (on_surface + off_surface) / kBroad + 1 - share);
+}
+
+// Over the pixels of `first` where `second` disagrees.
+template <class Visit>
+void for_each_difference(const CheckImage& image, const PredictedSurface& first,
+                         const PredictedSurface& second, const Visit& visit) {
+  first.for_each([&](int u, int v, float depth, std::uint32_t) {
+    if (!agrees(second, u, v, depth, tolerance(image, depth))) visit(u, v);
+  });
+}
+
+}  // namespace
+
+double rival_evidence(const CheckImage& image, const PredictedSurface& first,
+                      const PredictedSurface& second) {
+  double sum = 0;
+  const auto add = [&](int u, int v) {
+    const float observed = image.pixels[static_cast<std::size_t>(v * image.width + u)].depth;
+    if (!(observed > 0)) return;
+    sum += log_likelihood(first, u, v, observed) - log_likelihood(second, u, v, observed);
+  };
+  for_each_difference(image, first, second, add);
+  for_each_difference(image, second, first, [&](int u, int v) {
+    const float depth = first.depth_at(u, v);
+    if (depth > 0 && !agrees(second, u, v, depth, tolerance(image, depth)))
+      return;  // counted above
+    add(u, v);
+  });
+  return sum;
+}
+
+std::vector<double> behind_best(const CheckImage& image, const ObjectModel& model,
+                                std::span<const Pose> poses) {
+  constexpr double kFarthest = 500;
+  if (poses.empty()) return {};
+  std::vector<double> evidence{0};
+  if (poses.size() > 1) {
+    const PredictedSurface first = predict_whole_surface(image, model, poses.front());
+    for (const Pose& pose : poses.subspan(1)) {
+      evidence.push_back(rival_evidence(image, predict_whole_surface(image, model, pose), first));
+    }
+  }
+  const double best = *std::max_element(evidence.begin(), evidence.end());
+  for (double& own : evidence) own = std::max(own - best, -kFarthest);
+  return evidence;
+}
+
+}  // namespace bpa
