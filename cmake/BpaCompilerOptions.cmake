@@ -13,12 +13,6 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 
-# Public headers are included as <bpa/...> in the build as in an installation.
-set(BPA_INCLUDE_DIR ${CMAKE_BINARY_DIR}/include)
-file(MAKE_DIRECTORY ${BPA_INCLUDE_DIR}/bpa)
-file(CREATE_LINK ${PROJECT_SOURCE_DIR}/core ${BPA_INCLUDE_DIR}/bpa/core SYMBOLIC)
-file(CREATE_LINK ${PROJECT_SOURCE_DIR}/idl/wire ${BPA_INCLUDE_DIR}/bpa/wire SYMBOLIC)
-
 # bpa_compile_options(TARGET): language level, warnings as errors, sanitizers.
 function(bpa_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)

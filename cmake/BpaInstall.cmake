@@ -58,6 +58,12 @@ install(DIRECTORY idl/wire DESTINATION ${bpa_header_folder} COMPONENT sdk
         FILES_MATCHING PATTERN "*.hpp" PATTERN "fastdds" EXCLUDE)
 install(DIRECTORY client/include/bpa DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT sdk
         FILES_MATCHING PATTERN "*.hpp")
+# In the tree, includes are paths of the tree; installed headers lie below include/bpa.
+foreach(component core sdk)
+  install(CODE "set(BPA_HEADERS \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${bpa_header_folder}\")"
+          COMPONENT ${component})
+  install(SCRIPT cmake/installed_includes.cmake COMPONENT ${component})
+endforeach()
 # The messages, for a ROS 2 workspace, and the settings: nothing reads these by itself.
 install(DIRECTORY idl/bpa_msgs DESTINATION ${CMAKE_INSTALL_DATADIR}/bpa COMPONENT server)
 install(DIRECTORY config DESTINATION ${CMAKE_INSTALL_DATADIR}/bpa COMPONENT server

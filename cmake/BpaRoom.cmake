@@ -13,7 +13,7 @@ function(bpa_room name)
   set_target_properties(${target} PROPERTIES EXPORT_NAME core_${name})
   bpa_compile_options(${target})
   target_include_directories(${target} PUBLIC
-    $<BUILD_INTERFACE:${BPA_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   foreach(room IN LISTS ROOM_USES)
     target_link_libraries(${target} PUBLIC bpa_core_${room})
   endforeach()

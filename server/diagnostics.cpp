@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/diagnostics.hpp"
+
 #include <cstdio>
 
-#include <bpa/server/diagnostics.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
+#include "idl/wire/msg/builtin_interfaces.hpp"
 
 namespace bpa::server {
 namespace {

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include <bpa/server/capture/frame_source.hpp>
-#include <bpa/server/statistics.hpp>
-#include <bpa/wire/msg/bpa_srvs.hpp>
-#include <bpa/wire/msg/diagnostic_msgs.hpp>
+#include "idl/wire/msg/bpa_srvs.hpp"
+#include "idl/wire/msg/diagnostic_msgs.hpp"
+#include "server/capture/frame_source.hpp"
+#include "server/statistics.hpp"
 
 // What /diagnostics says, from what the server counts.
 

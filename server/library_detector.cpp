@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/library_detector.hpp"
+
 #include <filesystem>
 #include <utility>
 
-#include <bpa/core/io/model_file.hpp>
-#include <bpa/core/pipeline/annotate.hpp>
-#include <bpa/core/pipeline/score_layer_file.hpp>
-#include <bpa/server/library_detector.hpp>
+#include "core/io/model_file.hpp"
+#include "core/pipeline/annotate.hpp"
+#include "core/pipeline/score_layer_file.hpp"
 
 namespace bpa::server {
 namespace {

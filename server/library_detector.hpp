@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/io/model_file.hpp>
-#include <bpa/core/pipeline/detector.hpp>
-#include <bpa/server/recognition.hpp>
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "core/io/model_file.hpp"
+#include "core/pipeline/detector.hpp"
+#include "server/recognition.hpp"
 
 namespace bpa::server {
 

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/log_relay.hpp"
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -7,8 +9,7 @@
 #include <mutex>
 #include <utility>
 
-#include <bpa/server/log_relay.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
+#include "idl/wire/msg/builtin_interfaces.hpp"
 
 namespace bpa::server {
 namespace {

@@ -7,11 +7,11 @@
 #include <string>
 #include <thread>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/wire/msg/rcl_interfaces.hpp>
-#include <bpa/wire/participant.hpp>
-#include <bpa/wire/publisher.hpp>
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "idl/wire/msg/rcl_interfaces.hpp"
+#include "idl/wire/participant.hpp"
+#include "idl/wire/publisher.hpp"
 
 namespace bpa::server {
 

@@ -7,12 +7,12 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <bpa/core/pipeline/detector_options.hpp>
-#include <bpa/server/capture/openni2_list.hpp>
-#include <bpa/server/library_detector.hpp>
-#include <bpa/server/options.hpp>
-#include <bpa/server/ros_arguments.hpp>
-#include <bpa/server/server.hpp>
+#include "core/pipeline/detector_options.hpp"
+#include "server/capture/openni2_list.hpp"
+#include "server/library_detector.hpp"
+#include "server/options.hpp"
+#include "server/ros_arguments.hpp"
+#include "server/server.hpp"
 
 // The daemon: command line, log and signals. Exits 0 after SIGINT or SIGTERM, 1 when it cannot
 // start (one clear line), 2 on a wrong command line.

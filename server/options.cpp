@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/options.hpp"
+
 #include <filesystem>
 #include <iomanip>
 #include <sstream>
@@ -7,8 +9,6 @@
 #include <type_traits>
 
 #include <yaml-cpp/yaml.h>
-
-#include <bpa/server/options.hpp>
 
 namespace bpa::server {
 namespace {

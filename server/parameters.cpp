@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/parameters.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <type_traits>
 
-#include <bpa/server/parameters.hpp>
-#include <bpa/wire/cdr.hpp>
+#include "idl/wire/cdr.hpp"
 
 namespace bpa::server {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/server/options.hpp>
-#include <bpa/wire/msg/rcl_interfaces.hpp>
+#include "core/base/status.hpp"
+#include "idl/wire/msg/rcl_interfaces.hpp"
+#include "server/options.hpp"
 
 // The settings as ROS 2 parameters: "group.key", such as detection.top_k. The types are those of
 // the fields; the ranges are their rules; what may not change at run time is read-only.

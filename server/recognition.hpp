@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/io/model_file.hpp>
-#include <bpa/core/pipeline/detector.hpp>
-#include <bpa/core/scene/interpretation.hpp>
-#include <bpa/server/convert/results.hpp>
+#include "core/base/status.hpp"
+#include "core/cloud/frame.hpp"
+#include "core/io/model_file.hpp"
+#include "core/pipeline/detector.hpp"
+#include "core/scene/interpretation.hpp"
+#include "server/convert/results.hpp"
 
 namespace bpa::server {
 

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/result_publisher.hpp"
+
 #include <chrono>
 #include <utility>
 
-#include <bpa/server/convert/results.hpp>
-#include <bpa/server/result_publisher.hpp>
+#include "server/convert/results.hpp"
 
 namespace bpa::server {
 namespace {

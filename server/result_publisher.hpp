@@ -7,14 +7,14 @@
 #include <optional>
 #include <string>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/server/recognition.hpp>
-#include <bpa/server/settings.hpp>
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/participant.hpp>
-#include <bpa/wire/publisher.hpp>
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "core/cloud/frame.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/participant.hpp"
+#include "idl/wire/publisher.hpp"
+#include "server/recognition.hpp"
+#include "server/settings.hpp"
 
 namespace bpa::server {
 

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/ros_arguments.hpp"
+
 #include <filesystem>
 #include <string_view>
 
 #include <yaml-cpp/yaml.h>
 
-#include <bpa/server/ros_arguments.hpp>
-#include <bpa/wire/names.hpp>
+#include "idl/wire/names.hpp"
 
 namespace bpa::server {
 namespace {

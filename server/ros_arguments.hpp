@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/server/options.hpp>
+#include "core/base/status.hpp"
+#include "server/options.hpp"
 
 // The part of a command line that every ROS 2 node understands, as `ros2 run` and launch files use
 // it: --ros-args -r FROM:=TO -r __node:=NAME -r __ns:=NAMESPACE -p NAME:=VALUE --params-file FILE

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/server.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <sstream>
 #include <utility>
 
-#include <bpa/server/capture/camera_source.hpp>
-#include <bpa/server/parameters.hpp>
-#include <bpa/server/server.hpp>
+#include "server/capture/camera_source.hpp"
+#include "server/parameters.hpp"
 
 #ifndef BPA_VERSION
 #define BPA_VERSION "0"

@@ -11,21 +11,21 @@
 #include <utility>
 #include <vector>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/server/capture/frame_source.hpp>
-#include <bpa/server/capture/topic_source.hpp>
-#include <bpa/server/diagnostics.hpp>
-#include <bpa/server/log_relay.hpp>
-#include <bpa/server/options.hpp>
-#include <bpa/server/recognition.hpp>
-#include <bpa/server/result_publisher.hpp>
-#include <bpa/server/services/parameter_services.hpp>
-#include <bpa/server/services/services.hpp>
-#include <bpa/server/settings.hpp>
-#include <bpa/server/statistics.hpp>
-#include <bpa/server/worker.hpp>
-#include <bpa/wire/participant.hpp>
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "idl/wire/participant.hpp"
+#include "server/capture/frame_source.hpp"
+#include "server/capture/topic_source.hpp"
+#include "server/diagnostics.hpp"
+#include "server/log_relay.hpp"
+#include "server/options.hpp"
+#include "server/recognition.hpp"
+#include "server/result_publisher.hpp"
+#include "server/services/parameter_services.hpp"
+#include "server/services/services.hpp"
+#include "server/settings.hpp"
+#include "server/statistics.hpp"
+#include "server/worker.hpp"
 
 namespace bpa::server {
 

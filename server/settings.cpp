@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <bpa/server/settings.hpp>
+#include "server/settings.hpp"
 
 namespace bpa::server {
 

@@ -7,8 +7,8 @@
 #include <mutex>
 #include <utility>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/server/options.hpp>
+#include "core/base/status.hpp"
+#include "server/options.hpp"
 
 namespace bpa::server {
 

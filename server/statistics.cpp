@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/statistics.hpp"
+
 #include <algorithm>
 #include <fstream>
 
 #include <unistd.h>
-
-#include <bpa/server/statistics.hpp>
 
 namespace bpa::server {
 namespace {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include <bpa/core/scene/interpretation.hpp>
+#include "core/scene/interpretation.hpp"
 
 namespace bpa::server {
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/worker.hpp"
+
 #include <algorithm>
 #include <exception>
 #include <utility>
-
-#include <bpa/server/worker.hpp>
 
 namespace bpa::server {
 namespace {

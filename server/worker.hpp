@@ -12,14 +12,14 @@
 #include <thread>
 #include <vector>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/cloud/frame_fusion.hpp>
-#include <bpa/server/fair_queue.hpp>
-#include <bpa/server/newest_queue.hpp>
-#include <bpa/server/recognition.hpp>
-#include <bpa/server/statistics.hpp>
-#include <bpa/wire/endpoint.hpp>
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "core/cloud/frame_fusion.hpp"
+#include "idl/wire/endpoint.hpp"
+#include "server/fair_queue.hpp"
+#include "server/newest_queue.hpp"
+#include "server/recognition.hpp"
+#include "server/statistics.hpp"
 
 // Between DDS and the detector: DDS threads put frames and requests into bounded queues and go; one
 // worker takes them out, computes with no lock held and hands the results on.

@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "commands.hpp"
-#include "options.hpp"
-#include "output.hpp"
-#include "prior_files.hpp"
+#include "client/cli/commands.hpp"
+#include "client/cli/options.hpp"
+#include "client/cli/output.hpp"
+#include "client/cli/prior_files.hpp"
 
 namespace bpa::cli {
 namespace {

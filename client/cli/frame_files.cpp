@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "frame_files.hpp"
+#include "client/cli/frame_files.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "png_file.hpp"
+#include "client/cli/png_file.hpp"
 
 namespace bpa::cli {
 namespace {

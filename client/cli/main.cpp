@@ -3,7 +3,7 @@
 #include <csignal>
 #include <iostream>
 
-#include "commands.hpp"
+#include "client/cli/commands.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <iostream>
 #include <memory>
 
-#include "commands.hpp"
+#include "client/cli/commands.hpp"
 
 namespace bpa::cli {
 namespace {

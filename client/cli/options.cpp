@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "options.hpp"
+#include "client/cli/options.hpp"
 
 #include <cstdio>
 #include <filesystem>
 
-#include "output.hpp"
-#include "png_file.hpp"
+#include "client/cli/output.hpp"
+#include "client/cli/png_file.hpp"
 
 namespace bpa::cli {
 

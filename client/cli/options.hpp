@@ -11,7 +11,7 @@
 #include <bpa/status.hpp>
 #include <bpa/types.hpp>
 
-#include "frame_files.hpp"
+#include "client/cli/frame_files.hpp"
 
 namespace bpa::cli {
 

@@ -7,10 +7,10 @@
 #include <mutex>
 #include <thread>
 
-#include "commands.hpp"
-#include "frame_files.hpp"
-#include "output.hpp"
-#include "recorder.hpp"
+#include "client/cli/commands.hpp"
+#include "client/cli/frame_files.hpp"
+#include "client/cli/output.hpp"
+#include "client/cli/recorder.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "png_file.hpp"
+#include "client/cli/png_file.hpp"
 
 #include <csetjmp>
 #include <cstdio>

@@ -6,8 +6,8 @@
 #include <memory>
 #include <thread>
 
-#include "commands.hpp"
-#include "recorder.hpp"
+#include "client/cli/commands.hpp"
+#include "client/cli/recorder.hpp"
 
 // Two things can be recorded. The server's own sensor: the server records every frame as it left
 // the driver, with nothing lost on the network; this program asks it to (--oni). And what clients

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "recorder.hpp"
+#include "client/cli/recorder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "output.hpp"
-#include "png_file.hpp"
+#include "client/cli/output.hpp"
+#include "client/cli/png_file.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -10,10 +10,10 @@
 #include <thread>
 #include <vector>
 
-#include "commands.hpp"
-#include "options.hpp"
-#include "output.hpp"
-#include "prior_files.hpp"
+#include "client/cli/commands.hpp"
+#include "client/cli/options.hpp"
+#include "client/cli/output.hpp"
+#include "client/cli/prior_files.hpp"
 
 // Sends frames one by one and waits for what the server finds in each (or sends them at a rate and
 // takes what comes).

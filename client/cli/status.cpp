@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "commands.hpp"
+#include "client/cli/commands.hpp"
 
 namespace bpa::cli {
 namespace {

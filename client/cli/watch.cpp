@@ -10,9 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "options.hpp"
-#include "output.hpp"
+#include "client/cli/commands.hpp"
+#include "client/cli/options.hpp"
+#include "client/cli/output.hpp"
 
 namespace bpa::cli {
 namespace {

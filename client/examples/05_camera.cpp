@@ -9,8 +9,8 @@
 #include <iostream>
 #include <thread>
 
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/publisher.hpp>
+#include "idl/wire/messages.hpp"
+#include "idl/wire/publisher.hpp"
 
 namespace wire = bpa::wire;
 using wire::sensor_msgs::CameraInfo;

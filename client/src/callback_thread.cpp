@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "callback_thread.hpp"
+#include "client/src/callback_thread.hpp"
 
 #include <utility>
 

@@ -8,14 +8,14 @@
 #include <utility>
 
 #include <bpa/client.hpp>
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/participant.hpp>
-#include <bpa/wire/publisher.hpp>
-#include <bpa/wire/service.hpp>
-#include <bpa/wire/subscriber.hpp>
 
-#include "callback_thread.hpp"
-#include "convert.hpp"
+#include "client/src/callback_thread.hpp"
+#include "client/src/convert.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/participant.hpp"
+#include "idl/wire/publisher.hpp"
+#include "idl/wire/service.hpp"
+#include "idl/wire/subscriber.hpp"
 
 namespace bpa {
 namespace {

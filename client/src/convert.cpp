@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "convert.hpp"
+#include "client/src/convert.hpp"
 
 #include <algorithm>
 #include <utility>

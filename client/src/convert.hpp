@@ -4,7 +4,8 @@
 
 #include <bpa/status.hpp>
 #include <bpa/types.hpp>
-#include <bpa/wire/messages.hpp>
+
+#include "idl/wire/messages.hpp"
 
 // The SDK's structs <-> messages.
 

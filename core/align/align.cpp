@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/align/align.hpp"
+
 #include <cstdint>
 
-#include <bpa/core/align/align.hpp>
-#include <bpa/core/align/moments.hpp>
-#include <bpa/core/bingham/eigen4.hpp>
+#include "core/align/moments.hpp"
+#include "core/bingham/eigen4.hpp"
 
 namespace bpa::align {
 namespace {

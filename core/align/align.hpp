@@ -4,9 +4,9 @@
 
 #include <Eigen/Core>
 
-#include <bpa/core/align/correspondence.hpp>
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/geometry/pose.hpp>
+#include "core/align/correspondence.hpp"
+#include "core/base/random.hpp"
+#include "core/geometry/pose.hpp"
 
 // Bingham Procrustean Alignment (paper, section II): a distribution over camera_from_object from
 // correspondences. Nothing here allocates. README.md derives it; posterior.hpp has the whole

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/align/anisotropy.hpp"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/align/anisotropy.hpp>
-#include <bpa/core/bingham/eigen4.hpp>
+#include "core/bingham/eigen4.hpp"
 
 namespace bpa::align {
 namespace {

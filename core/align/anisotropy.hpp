@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include <bpa/core/align/posterior.hpp>
-#include <bpa/core/align/samples.hpp>
+#include "core/align/posterior.hpp"
+#include "core/align/samples.hpp"
 
 // What the isotropic derivation leaves out. Claims 1 and 2 need Σi = σi² I: then |R x + t - y|²
 // depends on R through xᵀRᵀy only, which is linear in R and so quadratic in q. A general Σi leaves

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/align/convergence.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
-#include <bpa/core/align/convergence.hpp>
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/cloud/neighbor_grid.hpp"
 
 namespace bpa::align {
 namespace {

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/core/align/iterate.hpp>
-#include <bpa/core/base/options.hpp>
-#include <bpa/core/cloud/point_cloud.hpp>
-#include <bpa/core/geometry/symmetry.hpp>
+#include "core/align/iterate.hpp"
+#include "core/base/options.hpp"
+#include "core/cloud/point_cloud.hpp"
+#include "core/geometry/symmetry.hpp"
 
 // The paper's experiment of BPA against ICP (its section "BPA vs. ICP"), on plain clouds.
 

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include <bpa/core/align/oriented_point.hpp>
+#include "core/align/oriented_point.hpp"
 
 namespace bpa::align {
 

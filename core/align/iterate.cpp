@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <bpa/core/align/iterate.hpp>
+#include "core/align/iterate.hpp"
 
 namespace bpa::align {
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include <bpa/core/align/align.hpp>
-#include <bpa/core/base/options.hpp>
+#include "core/align/align.hpp"
+#include "core/base/options.hpp"
 
 namespace bpa::align {
 

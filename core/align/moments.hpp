@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include <bpa/core/align/correspondence.hpp>
+#include "core/align/correspondence.hpp"
 
 namespace bpa::align {
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/align/oriented_point.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include <bpa/core/align/oriented_point.hpp>
 
 namespace bpa::align {
 namespace {

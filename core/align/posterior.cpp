@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/align/posterior.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/align/moments.hpp>
-#include <bpa/core/align/posterior.hpp>
-#include <bpa/core/bingham/normalizer.hpp>
-#include <bpa/core/bingham/region.hpp>
+#include "core/align/moments.hpp"
+#include "core/bingham/normalizer.hpp"
+#include "core/bingham/region.hpp"
 
 namespace bpa::align {
 namespace {

@@ -5,10 +5,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include <bpa/core/align/align.hpp>
-#include <bpa/core/align/samples.hpp>
-#include <bpa/core/base/options.hpp>
-#include <bpa/core/bingham/mixture.hpp>
+#include "core/align/align.hpp"
+#include "core/align/samples.hpp"
+#include "core/base/options.hpp"
+#include "core/bingham/mixture.hpp"
 
 namespace bpa::align {
 

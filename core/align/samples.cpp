@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/align/samples.hpp"
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <utility>
-
-#include <bpa/core/align/samples.hpp>
 
 namespace bpa::align {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <type_traits>
 
-#include <bpa/core/base/status.hpp>
+#include "core/base/status.hpp"
 
 // Options are structs of defaults. Each one describes its fields once, in a
 //

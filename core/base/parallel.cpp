@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/base/parallel.hpp"
+
 #include <algorithm>
 #include <atomic>
 #include <thread>
 #include <vector>
-
-#include <bpa/core/base/parallel.hpp>
 
 namespace bpa {
 

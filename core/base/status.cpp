@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <bpa/core/base/status.hpp>
+#include "core/base/status.hpp"
 
 namespace bpa {
 

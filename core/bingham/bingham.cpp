@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/bingham/bingham.hpp"
+
 #include <cmath>
 
-#include <bpa/core/bingham/bingham.hpp>
-#include <bpa/core/bingham/normalizer.hpp>
+#include "core/bingham/normalizer.hpp"
 
 namespace bpa {
 namespace {

@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 #include <span>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/bingham/eigen4.hpp>
+#include "core/base/random.hpp"
+#include "core/bingham/eigen4.hpp"
 
 namespace bpa {
 

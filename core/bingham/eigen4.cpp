@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/bingham/eigen4.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include <bpa/core/bingham/eigen4.hpp>
 
 namespace bpa {
 namespace {

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/bingham/fit.hpp"
+
 #include <Eigen/Cholesky>
 #include <cassert>
 #include <cmath>
 
-#include <bpa/core/bingham/fit.hpp>
-#include <bpa/core/bingham/normalizer.hpp>
+#include "core/bingham/normalizer.hpp"
 
 namespace bpa {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include <bpa/core/bingham/bingham.hpp>
+#include "core/bingham/bingham.hpp"
 
 namespace bpa {
 

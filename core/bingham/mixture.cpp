@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/bingham/mixture.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include <bpa/core/bingham/fit.hpp>
-#include <bpa/core/bingham/mixture.hpp>
-#include <bpa/core/bingham/normalizer.hpp>
+#include "core/bingham/fit.hpp"
+#include "core/bingham/normalizer.hpp"
 
 namespace bpa {
 namespace {

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include <bpa/core/bingham/bingham.hpp>
+#include "core/bingham/bingham.hpp"
 
 namespace bpa {
 

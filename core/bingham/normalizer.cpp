@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/bingham/normalizer.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include <bpa/core/bingham/normalizer.hpp>
 
 namespace bpa {
 namespace {

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/bingham/region.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include <bpa/core/bingham/normalizer.hpp>
-#include <bpa/core/bingham/region.hpp>
+#include "core/bingham/normalizer.hpp"
 
 namespace bpa {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include <bpa/core/bingham/bingham.hpp>
+#include "core/bingham/bingham.hpp"
 
 // How sure a Bingham is, in terms a user can act on. Everything here is exact (to about 1e-6) for
 // any concentrations, uniform ones included; nothing assumes a Gaussian. README.md derives it.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bpa/core/cli/command.hpp>
+#include "core/cli/command.hpp"
 
 namespace bpa::cli {
 

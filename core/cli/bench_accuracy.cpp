@@ -9,15 +9,15 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <bpa/core/cli/bench.hpp>
-#include <bpa/core/cli/detection_files.hpp>
-#include <bpa/core/cli/progress.hpp>
-#include <bpa/core/eval/pose_errors.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/pipeline/detector.hpp>
-#include <bpa/core/pipeline/frame_trace.hpp>
-#include <bpa/core/pipeline/score_layer_file.hpp>
+#include "core/cli/bench.hpp"
+#include "core/cli/detection_files.hpp"
+#include "core/cli/progress.hpp"
+#include "core/eval/pose_errors.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/io/file_bytes.hpp"
+#include "core/pipeline/detector.hpp"
+#include "core/pipeline/frame_trace.hpp"
+#include "core/pipeline/score_layer_file.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -10,17 +10,17 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <bpa/core/align/convergence.hpp>
-#include <bpa/core/cli/bench.hpp>
-#include <bpa/core/cli/progress.hpp>
-#include <bpa/core/cloud/curvature.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/cloud/planes.hpp>
-#include <bpa/core/eval/plot.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/io/model_file.hpp>
-#include <bpa/core/model/model_index.hpp>
+#include "core/align/convergence.hpp"
+#include "core/cli/bench.hpp"
+#include "core/cli/progress.hpp"
+#include "core/cloud/curvature.hpp"
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/cloud/planes.hpp"
+#include "core/eval/plot.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/io/file_bytes.hpp"
+#include "core/io/model_file.hpp"
+#include "core/model/model_index.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -3,8 +3,8 @@
 // bpa bench: experiments. Each is its own file and its line here.
 #include <CLI/CLI.hpp>
 
-#include <bpa/core/cli/bench.hpp>
-#include <bpa/core/cli/command.hpp>
+#include "core/cli/bench.hpp"
+#include "core/cli/command.hpp"
 
 namespace bpa::cli {
 

@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The noise that a model has learned, against views it was not learned from and the simulator's
 // law.
+#include "core/cli/bench_model_noise.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include <bpa/core/cli/bench_model_noise.hpp>
-#include <bpa/core/eval/plot.hpp>
-#include <bpa/core/io/image_file.hpp>
-#include <bpa/core/sim/kinect.hpp>
+#include "core/eval/plot.hpp"
+#include "core/io/image_file.hpp"
+#include "core/sim/kinect.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/model/posed_view.hpp>
+#include "core/base/status.hpp"
+#include "core/model/posed_view.hpp"
 
 namespace bpa::cli {
 

@@ -10,17 +10,17 @@
 #include <CLI/CLI.hpp>
 #include <sys/resource.h>
 
-#include <bpa/core/base/stopwatch.hpp>
-#include <bpa/core/cli/bench.hpp>
-#include <bpa/core/cli/bench_model_noise.hpp>
-#include <bpa/core/cli/command.hpp>
-#include <bpa/core/cli/scan_files.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/mesh_file.hpp>
-#include <bpa/core/io/model_file.hpp>
-#include <bpa/core/model/symmetry_search.hpp>
-#include <bpa/core/model/view_sphere.hpp>
+#include "core/base/stopwatch.hpp"
+#include "core/cli/bench.hpp"
+#include "core/cli/bench_model_noise.hpp"
+#include "core/cli/command.hpp"
+#include "core/cli/scan_files.hpp"
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/io/mesh_file.hpp"
+#include "core/io/model_file.hpp"
+#include "core/model/symmetry_search.hpp"
+#include "core/model/view_sphere.hpp"
 
 namespace bpa::cli {
 namespace {

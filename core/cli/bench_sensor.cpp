@@ -11,15 +11,15 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <bpa/core/cli/bench.hpp>
-#include <bpa/core/cli/contact_sheet.hpp>
-#include <bpa/core/cli/progress.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/io/image_file.hpp>
-#include <bpa/core/io/pcd_file.hpp>
-#include <bpa/core/sim/depth_statistics.hpp>
-#include <bpa/core/sim/scenes.hpp>
+#include "core/cli/bench.hpp"
+#include "core/cli/contact_sheet.hpp"
+#include "core/cli/progress.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/io/file_bytes.hpp"
+#include "core/io/image_file.hpp"
+#include "core/io/pcd_file.hpp"
+#include "core/sim/depth_statistics.hpp"
+#include "core/sim/scenes.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cli/command.hpp"
+
 #include <sstream>
 
 #include <CLI/CLI.hpp>
-
-#include <bpa/core/cli/command.hpp>
 
 namespace bpa::cli {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
+#include "core/base/status.hpp"
 
 namespace CLI {
 class App;

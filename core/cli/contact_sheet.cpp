@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cli/contact_sheet.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -8,10 +10,9 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include <bpa/core/cli/contact_sheet.hpp>
-#include <bpa/core/eval/matching.hpp>
-#include <bpa/core/eval/pose_errors.hpp>
-#include <bpa/core/pipeline/annotate.hpp>
+#include "core/eval/matching.hpp"
+#include "core/eval/pose_errors.hpp"
+#include "core/pipeline/annotate.hpp"
 
 namespace bpa::cli {
 namespace {

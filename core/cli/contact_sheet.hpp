@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/image_file.hpp>
-#include <bpa/core/model/library.hpp>
-#include <bpa/core/scene/interpretation.hpp>
+#include "core/cloud/frame.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/io/image_file.hpp"
+#include "core/model/library.hpp"
+#include "core/scene/interpretation.hpp"
 
 namespace bpa::cli {
 

@@ -8,19 +8,19 @@
 
 #include <CLI/CLI.hpp>
 
-#include <bpa/core/base/stopwatch.hpp>
-#include <bpa/core/cli/command.hpp>
-#include <bpa/core/cli/contact_sheet.hpp>
-#include <bpa/core/cli/detect_inputs.hpp>
-#include <bpa/core/cli/detection_files.hpp>
-#include <bpa/core/cli/explain_folder.hpp>
-#include <bpa/core/cli/progress.hpp>
-#include <bpa/core/cloud/frame_fusion.hpp>
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/pipeline/annotate.hpp>
-#include <bpa/core/pipeline/detector.hpp>
-#include <bpa/core/pipeline/frame_trace.hpp>
-#include <bpa/core/pipeline/score_layer_file.hpp>
+#include "core/base/stopwatch.hpp"
+#include "core/cli/command.hpp"
+#include "core/cli/contact_sheet.hpp"
+#include "core/cli/detect_inputs.hpp"
+#include "core/cli/detection_files.hpp"
+#include "core/cli/explain_folder.hpp"
+#include "core/cli/progress.hpp"
+#include "core/cloud/frame_fusion.hpp"
+#include "core/io/file_bytes.hpp"
+#include "core/pipeline/annotate.hpp"
+#include "core/pipeline/detector.hpp"
+#include "core/pipeline/frame_trace.hpp"
+#include "core/pipeline/score_layer_file.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cli/detect_inputs.hpp"
+
 #include <cstdio>
 
-#include <bpa/core/cli/detect_inputs.hpp>
-#include <bpa/core/io/camera_file.hpp>
-#include <bpa/core/io/frame_file.hpp>
-#include <bpa/core/io/image_file.hpp>
-#include <bpa/core/io/pcd_file.hpp>
-#include <bpa/core/pipeline/pose_prior_file.hpp>
+#include "core/io/camera_file.hpp"
+#include "core/io/frame_file.hpp"
+#include "core/io/image_file.hpp"
+#include "core/io/pcd_file.hpp"
+#include "core/pipeline/pose_prior_file.hpp"
 
 namespace bpa::cli {
 namespace {

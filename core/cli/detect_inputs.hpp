@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/cli/command.hpp>
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/detect/pose_prior.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
+#include "core/cli/command.hpp"
+#include "core/cloud/frame.hpp"
+#include "core/detect/pose_prior.hpp"
+#include "core/io/bop_dataset.hpp"
 
 // What bpa detect is asked and what it reads.
 

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cli/detection_files.hpp"
+
 #include <algorithm>
 
-#include <bpa/core/cli/detection_files.hpp>
-#include <bpa/core/cli/progress.hpp>
-#include <bpa/core/io/model_file.hpp>
+#include "core/cli/progress.hpp"
+#include "core/io/model_file.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/io/results.hpp>
-#include <bpa/core/model/library.hpp>
-#include <bpa/core/scene/interpretation.hpp>
+#include "core/io/results.hpp"
+#include "core/model/library.hpp"
+#include "core/scene/interpretation.hpp"
 
 namespace bpa::cli {
 

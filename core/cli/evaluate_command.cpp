@@ -6,11 +6,11 @@
 
 #include <CLI/CLI.hpp>
 
-#include <bpa/core/cli/command.hpp>
-#include <bpa/core/cli/progress.hpp>
-#include <bpa/core/eval/evaluation.hpp>
-#include <bpa/core/eval/report.hpp>
-#include <bpa/core/io/file_bytes.hpp>
+#include "core/cli/command.hpp"
+#include "core/cli/progress.hpp"
+#include "core/eval/evaluation.hpp"
+#include "core/eval/report.hpp"
+#include "core/io/file_bytes.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <bpa/core/cli/explain_folder.hpp>
-#include <bpa/core/cli/explain_pictures.hpp>
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/io/image_file.hpp>
-#include <bpa/core/pipeline/explain.hpp>
+#include "core/cli/explain_folder.hpp"
+
+#include "core/cli/explain_pictures.hpp"
+#include "core/io/file_bytes.hpp"
+#include "core/io/image_file.hpp"
+#include "core/pipeline/explain.hpp"
 
 namespace bpa::cli {
 namespace {

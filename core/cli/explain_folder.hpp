@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/cli/explain_model.hpp>
+#include "core/cli/explain_model.hpp"
 
 namespace bpa::cli {
 

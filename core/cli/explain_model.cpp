@@ -1,17 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cli/explain_model.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string_view>
 
-#include <bpa/core/cli/explain_model.hpp>
-#include <bpa/core/cli/explain_pictures.hpp>
-#include <bpa/core/eval/pose_errors.hpp>
-#include <bpa/core/io/image_file.hpp>
-#include <bpa/core/pipeline/explain.hpp>
-#include <bpa/core/score/predicted_surface.hpp>
-#include <bpa/core/score/segment_scores.hpp>
+#include "core/cli/explain_pictures.hpp"
+#include "core/eval/pose_errors.hpp"
+#include "core/io/image_file.hpp"
+#include "core/pipeline/explain.hpp"
+#include "core/score/predicted_surface.hpp"
+#include "core/score/segment_scores.hpp"
 
 namespace bpa::cli {
 namespace {

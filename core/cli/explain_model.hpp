@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/cli/html_page.hpp>
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/pipeline/frame_trace.hpp>
-#include <bpa/core/scene/interpretation.hpp>
+#include "core/cli/html_page.hpp"
+#include "core/cloud/frame.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/pipeline/frame_trace.hpp"
+#include "core/scene/interpretation.hpp"
 
 namespace bpa::cli {
 

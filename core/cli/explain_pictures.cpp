@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cli/explain_pictures.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include <opencv2/imgproc.hpp>
 
-#include <bpa/core/cli/explain_pictures.hpp>
-#include <bpa/core/pipeline/explain.hpp>
-#include <bpa/core/pipeline/silhouette.hpp>
+#include "core/pipeline/explain.hpp"
+#include "core/pipeline/silhouette.hpp"
 
 namespace bpa::cli {
 namespace {

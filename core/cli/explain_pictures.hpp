@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/detect/single_object.hpp>
-#include <bpa/core/io/image_file.hpp>
-#include <bpa/core/pipeline/annotate.hpp>
+#include "core/detect/single_object.hpp"
+#include "core/io/image_file.hpp"
+#include "core/pipeline/annotate.hpp"
 
 // Pictures with words around them, for bpa detect --explain.
 

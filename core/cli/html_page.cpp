@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <bpa/core/cli/html_page.hpp>
+#include "core/cli/html_page.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <bpa/core/cli/command.hpp>
+#include "core/cli/command.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -8,19 +8,19 @@
 
 #include <CLI/CLI.hpp>
 
-#include <bpa/core/cli/command.hpp>
-#include <bpa/core/cli/model_render.hpp>
-#include <bpa/core/cli/progress.hpp>
-#include <bpa/core/cli/scan_files.hpp>
-#include <bpa/core/cli/simulated_views.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/io/mesh_file.hpp>
-#include <bpa/core/io/model_file.hpp>
-#include <bpa/core/model/occupancy_grid.hpp>
-#include <bpa/core/model/registration.hpp>
-#include <bpa/core/model/symmetry_search.hpp>
-#include <bpa/core/model/view_sphere.hpp>
+#include "core/cli/command.hpp"
+#include "core/cli/model_render.hpp"
+#include "core/cli/progress.hpp"
+#include "core/cli/scan_files.hpp"
+#include "core/cli/simulated_views.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/io/file_bytes.hpp"
+#include "core/io/mesh_file.hpp"
+#include "core/io/model_file.hpp"
+#include "core/model/occupancy_grid.hpp"
+#include "core/model/registration.hpp"
+#include "core/model/symmetry_search.hpp"
+#include "core/model/view_sphere.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cli/model_render.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -10,8 +12,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include <bpa/core/cli/model_render.hpp>
-#include <bpa/core/model/model_index.hpp>
+#include "core/model/model_index.hpp"
 
 namespace bpa::cli {
 namespace {

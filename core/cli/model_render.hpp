@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bpa/core/io/image_file.hpp>
-#include <bpa/core/model/object_model.hpp>
+#include "core/io/image_file.hpp"
+#include "core/model/object_model.hpp"
 
 namespace bpa::cli {
 

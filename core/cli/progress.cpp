@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cli/progress.hpp"
+
 #include <algorithm>
 #include <cstdio>
 #include <utility>
 
 #include <unistd.h>
-
-#include <bpa/core/cli/progress.hpp>
 
 namespace bpa::cli {
 

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cli/scan_files.hpp"
+
 #include <cstdio>
 #include <filesystem>
 #include <mutex>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/cli/progress.hpp>
-#include <bpa/core/cli/scan_files.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/image_file.hpp>
+#include "core/base/parallel.hpp"
+#include "core/cli/progress.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/io/image_file.hpp"
 
 namespace bpa::cli {
 namespace fs = std::filesystem;

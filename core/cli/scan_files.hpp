@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/cli/command.hpp>
-#include <bpa/core/model/turntable.hpp>
+#include "core/cli/command.hpp"
+#include "core/model/turntable.hpp"
 
 namespace bpa::cli {
 

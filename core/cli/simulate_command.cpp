@@ -9,14 +9,14 @@
 
 #include <CLI/CLI.hpp>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/cli/command.hpp>
-#include <bpa/core/cli/progress.hpp>
-#include <bpa/core/io/bop_writer.hpp>
-#include <bpa/core/io/mesh_file.hpp>
-#include <bpa/core/sim/scenes.hpp>
-#include <bpa/core/sim/turntable.hpp>
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/cli/command.hpp"
+#include "core/cli/progress.hpp"
+#include "core/io/bop_writer.hpp"
+#include "core/io/mesh_file.hpp"
+#include "core/sim/scenes.hpp"
+#include "core/sim/turntable.hpp"
 
 namespace bpa::cli {
 namespace fs = std::filesystem;

@@ -2,17 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Models of meshes are made of what a camera would see of them. Looking is the simulator's work and
 // making models is core/model's, which does not know the simulator: the two meet here.
+#include "core/cli/simulated_views.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <mutex>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/cli/simulated_views.hpp>
-#include <bpa/core/sim/kinect.hpp>
-#include <bpa/core/sim/scenery.hpp>
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/sim/kinect.hpp"
+#include "core/sim/scenery.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -7,17 +7,17 @@
 
 #include <CLI/CLI.hpp>
 
-#include <bpa/core/cli/command.hpp>
-#include <bpa/core/cli/detection_files.hpp>
-#include <bpa/core/cli/progress.hpp>
-#include <bpa/core/eval/pose_errors.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/pipeline/detector.hpp>
-#include <bpa/core/pipeline/frame_trace.hpp>
-#include <bpa/core/pipeline/score_layer_file.hpp>
-#include <bpa/core/scene/interpretations.hpp>
-#include <bpa/core/scene/overlaps.hpp>
+#include "core/cli/command.hpp"
+#include "core/cli/detection_files.hpp"
+#include "core/cli/progress.hpp"
+#include "core/eval/pose_errors.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/io/file_bytes.hpp"
+#include "core/pipeline/detector.hpp"
+#include "core/pipeline/frame_trace.hpp"
+#include "core/pipeline/score_layer_file.hpp"
+#include "core/scene/interpretations.hpp"
+#include "core/scene/overlaps.hpp"
 
 namespace bpa::cli {
 namespace {
@@ -174,9 +174,12 @@ std::string as_source(const ScoreLayers& layers) {
   return "// SPDX-FileCopyrightText: 2026 The bpa authors\n"
          "// SPDX-License-Identifier: Apache-2.0\n"
          "// Written by 'bpa train --source' (tests/accuracy/train.sh); see the provenance below.\n"
-         "#include <bpa/core/score/score_layer.hpp>\n\nnamespace bpa {\n\n"
-         "// clang-format off\nconst ScoreLayers& default_score_layers() {\n"
-         "  static const ScoreLayers layers = {\n      // round two\n" +
+         "#include " core /
+             score /
+             score_layer.hpp
+             "\n\nnamespace bpa {\n\n"
+             "// clang-format off\nconst ScoreLayers& default_score_layers() {\n"
+             "  static const ScoreLayers layers = {\n      // round two\n" +
          initialiser(layers.round_two) + ",\n      // round three\n" +
          initialiser(layers.round_three) + ",\n      // without colours\n" +
          initialiser(layers.without_color) +

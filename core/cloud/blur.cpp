@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cloud/blur.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/cloud/blur.hpp>
+#include "core/base/parallel.hpp"
 
 namespace bpa {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include <bpa/core/cloud/image.hpp>
+#include "core/cloud/image.hpp"
 
 namespace bpa {
 

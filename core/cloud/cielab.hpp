@@ -6,9 +6,9 @@
 #include <array>
 #include <vector>
 
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/cloud/image.hpp>
-#include <bpa/core/cloud/surface_map.hpp>
+#include "core/cloud/frame.hpp"
+#include "core/cloud/image.hpp"
+#include "core/cloud/surface_map.hpp"
 
 namespace bpa {
 

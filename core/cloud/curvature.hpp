@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bpa/core/cloud/point_cloud.hpp>
+#include "core/cloud/point_cloud.hpp"
 
 namespace bpa {
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <sstream>
+#include "core/cloud/frame.hpp"
 
-#include <bpa/core/cloud/frame.hpp>
+#include <sstream>
 
 namespace bpa {
 namespace {

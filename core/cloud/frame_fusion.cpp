@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cloud/frame_fusion.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <sstream>
 #include <utility>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/cloud/frame_fusion.hpp>
-#include <bpa/core/cloud/surface_map.hpp>
+#include "core/base/parallel.hpp"
+#include "core/cloud/surface_map.hpp"
 
 namespace bpa {
 namespace {

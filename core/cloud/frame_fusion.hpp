@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/cloud/frame.hpp>
+#include "core/cloud/frame.hpp"
 
 // What a camera that stands still sees of a scene that stands still: the depths of its last frames
 // combined, pixel by pixel, so that what noise is new in every frame shrinks with the root of their

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cloud/planes.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/cloud/planes.hpp>
+#include "core/base/random.hpp"
 
 namespace bpa {
 namespace {

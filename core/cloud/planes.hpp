@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/core/cloud/surface_map.hpp>
+#include "core/cloud/surface_map.hpp"
 
 namespace bpa {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/cloud/surface_map.hpp>
+#include "core/cloud/surface_map.hpp"
 
 namespace bpa {
 

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cloud/surface_map.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/cloud/surface_map.hpp>
+#include "core/base/parallel.hpp"
 
 namespace bpa {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/geometry/camera.hpp>
+#include "core/cloud/frame.hpp"
+#include "core/geometry/camera.hpp"
 
 namespace bpa {
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/detect/edge_matches.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include <bpa/core/detect/edge_matches.hpp>
 
 namespace bpa {
 namespace {

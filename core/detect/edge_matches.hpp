@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include <bpa/core/model/view_sphere.hpp>
-#include <bpa/core/score/pose_check.hpp>
+#include "core/model/view_sphere.hpp"
+#include "core/score/pose_check.hpp"
 
 namespace bpa {
 

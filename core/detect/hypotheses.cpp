@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/detect/hypotheses.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
-#include <bpa/core/align/align.hpp>
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/base/stopwatch.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/detect/hypotheses.hpp>
-#include <bpa/core/detect/refinement.hpp>
-#include <bpa/core/model/model_index.hpp>
+#include "core/align/align.hpp"
+#include "core/base/random.hpp"
+#include "core/base/stopwatch.hpp"
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/detect/refinement.hpp"
+#include "core/model/model_index.hpp"
 
 namespace bpa {
 namespace {

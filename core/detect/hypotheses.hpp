@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/core/align/correspondence.hpp>
-#include <bpa/core/detect/object_trace.hpp>
-#include <bpa/core/detect/scene_features.hpp>
-#include <bpa/core/model/object_model.hpp>
+#include "core/align/correspondence.hpp"
+#include "core/detect/object_trace.hpp"
+#include "core/detect/scene_features.hpp"
+#include "core/model/object_model.hpp"
 
 namespace bpa {
 

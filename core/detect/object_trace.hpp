@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include <bpa/core/score/pose_check.hpp>
+#include "core/score/pose_check.hpp"
 
 // What became of one model's hypotheses, for training, experiments and pictures. Whoever does not
 // ask for it pays a test of a pointer where a pose is dropped.

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Eigenvalues>
+#include "core/detect/placement.hpp"
 
-#include <bpa/core/detect/placement.hpp>
+#include <Eigen/Eigenvalues>
 
 namespace bpa {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/geometry/pose.hpp>
+#include "core/geometry/pose.hpp"
 
 namespace bpa {
 

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/detect/pose_prior.hpp"
+
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
@@ -7,8 +9,7 @@
 #include <numeric>
 #include <sstream>
 
-#include <bpa/core/detect/pose_prior.hpp>
-#include <bpa/core/model/model_index.hpp>
+#include "core/model/model_index.hpp"
 
 namespace bpa {
 namespace {

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/detect/refinement.hpp"
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/align/align.hpp>
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/detect/edge_matches.hpp>
-#include <bpa/core/detect/refinement.hpp>
-#include <bpa/core/model/model_index.hpp>
+#include "core/align/align.hpp"
+#include "core/base/random.hpp"
+#include "core/detect/edge_matches.hpp"
+#include "core/model/model_index.hpp"
 
 namespace bpa {
 namespace {

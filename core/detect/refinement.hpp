@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include <bpa/core/detect/scene_features.hpp>
-#include <bpa/core/model/object_model.hpp>
+#include "core/detect/scene_features.hpp"
+#include "core/model/object_model.hpp"
 
 namespace bpa {
 

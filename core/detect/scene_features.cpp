@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/detect/scene_features.hpp"
+
 #include <numeric>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/cloud/blur.hpp>
-#include <bpa/core/cloud/cielab.hpp>
-#include <bpa/core/cloud/curvature.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/detect/scene_features.hpp>
-#include <bpa/core/model/model_index.hpp>
+#include "core/base/random.hpp"
+#include "core/cloud/blur.hpp"
+#include "core/cloud/cielab.hpp"
+#include "core/cloud/curvature.hpp"
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/model/model_index.hpp"
 
 namespace bpa {
 namespace {

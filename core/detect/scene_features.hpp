@@ -4,14 +4,14 @@
 
 #include <vector>
 
-#include <bpa/core/cloud/planes.hpp>
-#include <bpa/core/cloud/point_cloud.hpp>
-#include <bpa/core/cloud/surface_map.hpp>
-#include <bpa/core/features/edge_image.hpp>
-#include <bpa/core/features/fpfh.hpp>
-#include <bpa/core/features/pair_voting.hpp>
-#include <bpa/core/score/pose_check.hpp>
-#include <bpa/core/segment/super_pixels.hpp>
+#include "core/cloud/planes.hpp"
+#include "core/cloud/point_cloud.hpp"
+#include "core/cloud/surface_map.hpp"
+#include "core/features/edge_image.hpp"
+#include "core/features/fpfh.hpp"
+#include "core/features/pair_voting.hpp"
+#include "core/score/pose_check.hpp"
+#include "core/segment/super_pixels.hpp"
 
 namespace bpa {
 

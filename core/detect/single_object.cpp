@@ -1,17 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/detect/single_object.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/base/stopwatch.hpp>
-#include <bpa/core/detect/single_object.hpp>
-#include <bpa/core/model/model_index.hpp>
-#include <bpa/core/score/boundary_scores.hpp>
-#include <bpa/core/score/color_score.hpp>
-#include <bpa/core/score/feature_score.hpp>
-#include <bpa/core/score/random_walk_score.hpp>
-#include <bpa/core/score/rival_poses.hpp>
-#include <bpa/core/score/segment_scores.hpp>
+#include "core/base/stopwatch.hpp"
+#include "core/model/model_index.hpp"
+#include "core/score/boundary_scores.hpp"
+#include "core/score/color_score.hpp"
+#include "core/score/feature_score.hpp"
+#include "core/score/random_walk_score.hpp"
+#include "core/score/rival_poses.hpp"
+#include "core/score/segment_scores.hpp"
 
 namespace bpa {
 namespace {

@@ -6,13 +6,13 @@
 #include <memory>
 #include <vector>
 
-#include <bpa/core/detect/hypotheses.hpp>
-#include <bpa/core/detect/object_trace.hpp>
-#include <bpa/core/detect/placement.hpp>
-#include <bpa/core/detect/pose_prior.hpp>
-#include <bpa/core/detect/refinement.hpp>
-#include <bpa/core/score/feature_score.hpp>
-#include <bpa/core/score/score_layer.hpp>
+#include "core/detect/hypotheses.hpp"
+#include "core/detect/object_trace.hpp"
+#include "core/detect/placement.hpp"
+#include "core/detect/pose_prior.hpp"
+#include "core/detect/refinement.hpp"
+#include "core/score/feature_score.hpp"
+#include "core/score/score_layer.hpp"
 
 namespace bpa {
 

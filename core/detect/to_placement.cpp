@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include <bpa/core/detect/single_object.hpp>
+#include "core/detect/single_object.hpp"
 
 namespace bpa {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/eval/depth_render.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include <bpa/core/eval/depth_render.hpp>
 
 namespace bpa::eval {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include <bpa/core/geometry/camera.hpp>
-#include <bpa/core/geometry/pose.hpp>
-#include <bpa/core/io/mesh_file.hpp>
+#include "core/geometry/camera.hpp"
+#include "core/geometry/pose.hpp"
+#include "core/io/mesh_file.hpp"
 
 namespace bpa::eval {
 

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/eval/evaluation.hpp"
+
 #include <algorithm>
 #include <cstdio>
 #include <mutex>
 #include <numeric>
 #include <optional>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/eval/evaluation.hpp>
-
-#include "frame_evaluation.hpp"
+#include "core/base/parallel.hpp"
+#include "core/eval/frame_evaluation.hpp"
 
 namespace bpa::eval {
 namespace {

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/options.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/eval/pose_errors.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/mesh_file.hpp>
-#include <bpa/core/io/results.hpp>
+#include "core/base/options.hpp"
+#include "core/base/status.hpp"
+#include "core/eval/pose_errors.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/io/mesh_file.hpp"
+#include "core/io/results.hpp"
 
 namespace bpa::eval {
 

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "frame_evaluation.hpp"
+#include "core/eval/frame_evaluation.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
 #include <functional>
 
-#include <bpa/core/eval/depth_render.hpp>
-#include <bpa/core/eval/matching.hpp>
-#include <bpa/core/eval/pose_errors.hpp>
+#include "core/eval/depth_render.hpp"
+#include "core/eval/matching.hpp"
+#include "core/eval/pose_errors.hpp"
 
 namespace bpa::eval {
 namespace {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bpa/core/eval/evaluation.hpp>
+#include "core/eval/evaluation.hpp"
 
 namespace bpa::eval {
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/eval/matching.hpp"
+
 #include <algorithm>
 #include <numeric>
-
-#include <bpa/core/eval/matching.hpp>
 
 namespace bpa::eval {
 

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/eval/plot.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include <opencv2/imgproc.hpp>
 
-#include <bpa/core/eval/plot.hpp>
-#include <bpa/core/eval/report.hpp>
+#include "core/eval/report.hpp"
 
 namespace bpa::eval {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/io/image_file.hpp>
+#include "core/io/image_file.hpp"
 
 namespace bpa::eval {
 

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <vector>
 
-#include <bpa/core/geometry/camera.hpp>
-#include <bpa/core/geometry/pose.hpp>
-#include <bpa/core/geometry/symmetry.hpp>
+#include "core/geometry/camera.hpp"
+#include "core/geometry/pose.hpp"
+#include "core/geometry/symmetry.hpp"
 
 // How wrong a pose is, by the definitions of the BOP benchmark (Hodan et al. 2016, 2020) and of
 // Hinterstoisser et al. 2012. `points` are the vertices of the object's mesh. Metres and pixels.

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/eval/report.hpp"
+
 #include <cstdarg>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
-
-#include <bpa/core/eval/report.hpp>
 
 namespace bpa::eval {
 namespace {

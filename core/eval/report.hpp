@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <bpa/core/eval/evaluation.hpp>
+#include "core/eval/evaluation.hpp"
 
 namespace bpa::eval {
 

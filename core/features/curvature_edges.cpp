@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/features/curvature_edges.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/cloud/surface_break.hpp>
-#include <bpa/core/features/curvature_edges.hpp>
+#include "core/base/parallel.hpp"
+#include "core/cloud/surface_break.hpp"
 
 namespace bpa {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-#include <bpa/core/base/options.hpp>
-#include <bpa/core/cloud/image.hpp>
-#include <bpa/core/cloud/surface_map.hpp>
+#include "core/base/options.hpp"
+#include "core/cloud/image.hpp"
+#include "core/cloud/surface_map.hpp"
 
 namespace bpa {
 

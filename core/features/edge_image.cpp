@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/features/edge_image.hpp"
+
 #include <algorithm>
 
-#include <bpa/core/cloud/blur.hpp>
-#include <bpa/core/features/edge_image.hpp>
+#include "core/cloud/blur.hpp"
 
 namespace bpa {
 

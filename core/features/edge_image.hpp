@@ -5,12 +5,12 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include <bpa/core/base/options.hpp>
-#include <bpa/core/cloud/image.hpp>
-#include <bpa/core/cloud/surface_map.hpp>
-#include <bpa/core/features/curvature_edges.hpp>
-#include <bpa/core/features/image_edges.hpp>
-#include <bpa/core/features/range_edges.hpp>
+#include "core/base/options.hpp"
+#include "core/cloud/image.hpp"
+#include "core/cloud/surface_map.hpp"
+#include "core/features/curvature_edges.hpp"
+#include "core/features/image_edges.hpp"
+#include "core/features/range_edges.hpp"
 
 namespace bpa {
 

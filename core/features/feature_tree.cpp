@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/features/feature_tree.hpp"
+
 #include <algorithm>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/features/feature_tree.hpp>
+#include "core/base/parallel.hpp"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"

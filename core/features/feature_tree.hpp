@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <bpa/core/features/fpfh.hpp>
+#include "core/features/fpfh.hpp"
 
 namespace bpa {
 

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/features/fpfh.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/features/fpfh.hpp>
+#include "core/base/parallel.hpp"
+#include "core/cloud/neighbor_grid.hpp"
 
 namespace bpa {
 namespace {

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/features/image_edges.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
 
-#include <bpa/core/cloud/blur.hpp>
-#include <bpa/core/features/image_edges.hpp>
+#include "core/cloud/blur.hpp"
 
 namespace bpa {
 

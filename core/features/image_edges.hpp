@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include <bpa/core/base/options.hpp>
-#include <bpa/core/cloud/image.hpp>
+#include "core/base/options.hpp"
+#include "core/cloud/image.hpp"
 
 namespace bpa {
 

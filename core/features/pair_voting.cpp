@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/features/pair_voting.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/features/pair_voting.hpp>
+#include "core/base/parallel.hpp"
+#include "core/cloud/neighbor_grid.hpp"
 
 namespace bpa {
 namespace {

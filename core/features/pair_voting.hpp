@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/core/features/point_pairs.hpp>
+#include "core/features/point_pairs.hpp"
 
 namespace bpa {
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/features/point_pairs.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-
-#include <bpa/core/features/point_pairs.hpp>
 
 namespace bpa {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <bpa/core/cloud/point_cloud.hpp>
+#include "core/cloud/point_cloud.hpp"
 
 namespace bpa {
 

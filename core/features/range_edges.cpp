@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/cloud/surface_break.hpp>
-#include <bpa/core/features/range_edges.hpp>
+#include "core/features/range_edges.hpp"
+
+#include "core/base/parallel.hpp"
+#include "core/cloud/surface_break.hpp"
 
 namespace bpa {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include <bpa/core/base/status.hpp>
+#include "core/base/status.hpp"
 
 namespace bpa {
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/geometry/pose.hpp"
+
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-
-#include <bpa/core/geometry/pose.hpp>
 
 namespace bpa {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include <bpa/core/geometry/pose.hpp>
+#include "core/geometry/pose.hpp"
 
 namespace bpa {
 

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/io/bop_dataset.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/frame_file.hpp>
-#include <bpa/core/io/image_file.hpp>
-
-#include "json_file.hpp"
+#include "core/io/frame_file.hpp"
+#include "core/io/image_file.hpp"
+#include "core/io/json_file.hpp"
 
 namespace bpa::io {
 namespace fs = std::filesystem;

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/geometry/symmetry.hpp>
+#include "core/base/status.hpp"
+#include "core/cloud/frame.hpp"
+#include "core/geometry/symmetry.hpp"
 
 // Data sets in the layout of the BOP benchmark (Hodan et al. 2018, bop_toolkit docs/
 // bop_datasets_format.md). Files are in millimetres; everything here is in metres.

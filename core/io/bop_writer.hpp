@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/cloud/point_cloud.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
+#include "core/cloud/point_cloud.hpp"
+#include "core/io/bop_dataset.hpp"
 
 namespace bpa::io {
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/io/camera_file.hpp"
+
 #include <cmath>
 #include <sstream>
 
 #include <yaml-cpp/yaml.h>
 
-#include <bpa/core/io/camera_file.hpp>
-
-#include "json_file.hpp"
+#include "core/io/json_file.hpp"
 
 namespace bpa::io {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/geometry/camera.hpp>
+#include "core/base/status.hpp"
+#include "core/geometry/camera.hpp"
 
 namespace bpa::io {
 

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/io/file_bytes.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -10,8 +12,6 @@
 #include <system_error>
 
 #include <unistd.h>
-
-#include <bpa/core/io/file_bytes.hpp>
 
 namespace bpa::io {
 namespace fs = std::filesystem;

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include <bpa/core/base/status.hpp>
+#include "core/base/status.hpp"
 
 namespace bpa::io {
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <bpa/core/io/frame_file.hpp>
-#include <bpa/core/io/image_file.hpp>
+#include "core/io/frame_file.hpp"
+
+#include "core/io/image_file.hpp"
 
 namespace bpa::io {
 namespace {

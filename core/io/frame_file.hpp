@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/cloud/frame.hpp>
+#include "core/base/status.hpp"
+#include "core/cloud/frame.hpp"
 
 namespace bpa::io {
 

@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenCV's codecs are private to this file. libpng reports damage on stderr before OpenCV can say
 // anything, so PNG bytes are checked chunk by chunk first, and only sound files reach it.
+#include "core/io/image_file.hpp"
+
 #include <cstring>
 #include <fstream>
 #include <string_view>
 
 #include <opencv2/imgcodecs.hpp>
 
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/io/image_file.hpp>
+#include "core/io/file_bytes.hpp"
 
 namespace bpa::io {
 namespace {

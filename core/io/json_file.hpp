@@ -7,9 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/geometry/pose.hpp>
-#include <bpa/core/io/file_bytes.hpp>
+#include "core/base/status.hpp"
+#include "core/geometry/pose.hpp"
+#include "core/io/file_bytes.hpp"
 
 // Private to io: JSON without exceptions leaving a function.
 

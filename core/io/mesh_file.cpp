@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/io/mesh_file.hpp"
+
 #include <filesystem>
 
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/io/mesh_file.hpp>
-#include <bpa/core/io/pcd_file.hpp>
-
-#include "mesh_assimp.hpp"
+#include "core/io/file_bytes.hpp"
+#include "core/io/mesh_assimp.hpp"
+#include "core/io/pcd_file.hpp"
 
 namespace bpa::io {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/cloud/point_cloud.hpp>
+#include "core/base/status.hpp"
+#include "core/cloud/point_cloud.hpp"
 
 namespace bpa::io {
 

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/io/model_file.hpp"
+
 #include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/io/mesh_file.hpp>
-#include <bpa/core/io/model_file.hpp>
-
-#include "json_file.hpp"
-#include "model_index_file.hpp"
-#include "occupancy_file.hpp"
+#include "core/base/parallel.hpp"
+#include "core/io/json_file.hpp"
+#include "core/io/mesh_file.hpp"
+#include "core/io/model_index_file.hpp"
+#include "core/io/occupancy_file.hpp"
 
 namespace bpa::io {
 namespace fs = std::filesystem;

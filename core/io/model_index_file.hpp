@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/model/model_index.hpp>
+#include "core/base/status.hpp"
+#include "core/model/model_index.hpp"
 
 // Private to io: index.bin of a model's folder. Little-endian; "bpaindex", kIndexVersion as u32,
 // then arrays in the order of for_each_array() in the source file: a u64 with the number of

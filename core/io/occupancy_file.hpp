@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/model/occupancy_grid.hpp>
+#include "core/base/status.hpp"
+#include "core/model/occupancy_grid.hpp"
 
 // Private to io: occupancy.bin of a model's folder. Little-endian, packed:
 //

@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-#include <bpa/core/io/pcd_file.hpp>
+#include "core/io/pcd_file.hpp"
 
 namespace bpa::io {
 namespace {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/cloud/point_cloud.hpp>
-#include <bpa/core/geometry/pose.hpp>
+#include "core/base/status.hpp"
+#include "core/cloud/frame.hpp"
+#include "core/cloud/point_cloud.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace bpa::io {
 

@@ -14,7 +14,7 @@
 #include <pcl/console/print.h>
 #include <pcl/io/pcd_io.h>
 
-#include <bpa/core/io/pcd_file.hpp>
+#include "core/io/pcd_file.hpp"
 
 namespace bpa::io {
 namespace {

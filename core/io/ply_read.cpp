@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string_view>
 
-#include <bpa/core/io/mesh_file.hpp>
+#include "core/io/mesh_file.hpp"
 
 namespace bpa::io {
 namespace {

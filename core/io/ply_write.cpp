@@ -4,8 +4,8 @@
 #include <cstring>
 #include <sstream>
 
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/io/mesh_file.hpp>
+#include "core/io/file_bytes.hpp"
+#include "core/io/mesh_file.hpp"
 
 namespace bpa::io {
 namespace {

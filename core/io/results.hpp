@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/geometry/pose.hpp>
+#include "core/base/status.hpp"
+#include "core/geometry/pose.hpp"
 
 // What detection reports, as files hold it. The CSV is the BOP benchmark's (scene_id, im_id,
 // obj_id, score, R, t, time; millimetres) and holds the best interpretation; our JSON holds all of

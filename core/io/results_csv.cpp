@@ -7,8 +7,8 @@
 #include <sstream>
 #include <string_view>
 
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/io/results.hpp>
+#include "core/io/file_bytes.hpp"
+#include "core/io/results.hpp"
 
 namespace bpa::io {
 namespace {

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <bpa/core/io/results.hpp>
-
-#include "json_file.hpp"
+#include "core/io/json_file.hpp"
+#include "core/io/results.hpp"
 
 namespace bpa::io {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/model/object_model.hpp>
+#include "core/base/status.hpp"
+#include "core/model/object_model.hpp"
 
 namespace bpa {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/model/occupancy_grid.hpp>
-#include <bpa/core/model/posed_view.hpp>
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/model/occupancy_grid.hpp"
+#include "core/model/posed_view.hpp"
 
 namespace bpa {
 namespace {

@@ -3,14 +3,15 @@
 // Each direction has an orthographic image of the mesh in which every pixel knows the triangle seen
 // at its centre. A point is compared with the plane of that triangle right where the point is, not
 // at the pixel's centre, so that the size of pixels hardly matters.
+#include "core/model/mesh_visibility.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <mutex>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/model/mesh_visibility.hpp>
+#include "core/base/parallel.hpp"
 
 namespace bpa {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <bpa/core/cloud/point_cloud.hpp>
+#include "core/cloud/point_cloud.hpp"
 
 namespace bpa {
 

@@ -6,12 +6,12 @@
 #include <memory>
 #include <vector>
 
-#include <bpa/core/features/feature_tree.hpp>
-#include <bpa/core/features/fpfh.hpp>
-#include <bpa/core/features/point_pairs.hpp>
-#include <bpa/core/model/distance_transform.hpp>
-#include <bpa/core/model/object_model.hpp>
-#include <bpa/core/model/view_sphere.hpp>
+#include "core/features/feature_tree.hpp"
+#include "core/features/fpfh.hpp"
+#include "core/features/point_pairs.hpp"
+#include "core/model/distance_transform.hpp"
+#include "core/model/object_model.hpp"
+#include "core/model/view_sphere.hpp"
 
 namespace bpa {
 

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/model/near_symmetry.hpp"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-
-#include <bpa/core/model/near_symmetry.hpp>
 
 namespace bpa {
 namespace {

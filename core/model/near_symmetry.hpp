@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include <bpa/core/geometry/symmetry.hpp>
-#include <bpa/core/model/distance_transform.hpp>
+#include "core/geometry/symmetry.hpp"
+#include "core/model/distance_transform.hpp"
 
 namespace bpa {
 

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/model/noise_model.hpp"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include <bpa/core/cloud/surface_map.hpp>
-#include <bpa/core/model/noise_model.hpp>
+#include "core/cloud/surface_map.hpp"
 
 namespace bpa {
 namespace {

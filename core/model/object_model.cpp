@@ -1,18 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/model/object_model.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/cloud/cielab.hpp>
-#include <bpa/core/cloud/curvature.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/model/model_index.hpp>
-#include <bpa/core/model/near_symmetry.hpp>
-#include <bpa/core/model/object_model.hpp>
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/cloud/cielab.hpp"
+#include "core/cloud/curvature.hpp"
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/model/model_index.hpp"
+#include "core/model/near_symmetry.hpp"
 
 namespace bpa {
 namespace {

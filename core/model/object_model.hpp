@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/options.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/cloud/point_cloud.hpp>
-#include <bpa/core/geometry/symmetry.hpp>
-#include <bpa/core/model/noise_model.hpp>
+#include "core/base/options.hpp"
+#include "core/base/status.hpp"
+#include "core/cloud/point_cloud.hpp"
+#include "core/geometry/symmetry.hpp"
+#include "core/model/noise_model.hpp"
 
 namespace bpa {
 

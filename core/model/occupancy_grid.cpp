@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/model/occupancy_grid.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,10 +9,9 @@
 #include <limits>
 #include <mutex>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/model/occupancy_grid.hpp>
-#include <bpa/core/model/view_sphere.hpp>
+#include "core/base/parallel.hpp"
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/model/view_sphere.hpp"
 
 namespace bpa {
 namespace {

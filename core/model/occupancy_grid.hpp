@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/core/model/posed_view.hpp>
+#include "core/model/posed_view.hpp"
 
 namespace bpa {
 

@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/cloud/surface_map.hpp>
-#include <bpa/core/geometry/pose.hpp>
-#include <bpa/core/model/noise_model.hpp>
-#include <bpa/core/model/object_model.hpp>
+#include "core/cloud/frame.hpp"
+#include "core/cloud/surface_map.hpp"
+#include "core/geometry/pose.hpp"
+#include "core/model/noise_model.hpp"
+#include "core/model/object_model.hpp"
 
 namespace bpa {
 

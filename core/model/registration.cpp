@@ -1,17 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/model/registration.hpp"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/features/point_pairs.hpp>
-#include <bpa/core/geometry/symmetry.hpp>
-#include <bpa/core/model/distance_transform.hpp>
-#include <bpa/core/model/registration.hpp>
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/features/point_pairs.hpp"
+#include "core/geometry/symmetry.hpp"
+#include "core/model/distance_transform.hpp"
 
 namespace bpa {
 namespace {

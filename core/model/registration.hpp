@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include <bpa/core/cloud/point_cloud.hpp>
-#include <bpa/core/geometry/pose.hpp>
+#include "core/cloud/point_cloud.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace bpa {
 

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <sstream>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/cloud/curvature.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/model/mesh_visibility.hpp>
-#include <bpa/core/model/object_model.hpp>
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/cloud/curvature.hpp"
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/model/mesh_visibility.hpp"
+#include "core/model/object_model.hpp"
 
 namespace bpa {
 namespace {

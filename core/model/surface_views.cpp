@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/model/occupancy_grid.hpp>
-#include <bpa/core/model/posed_view.hpp>
-#include <bpa/core/model/view_sphere.hpp>
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/model/occupancy_grid.hpp"
+#include "core/model/posed_view.hpp"
+#include "core/model/view_sphere.hpp"
 
 namespace bpa {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/model/symmetry_search.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -8,10 +10,9 @@
 #include <numeric>
 #include <optional>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/model/distance_transform.hpp>
-#include <bpa/core/model/symmetry_search.hpp>
+#include "core/base/parallel.hpp"
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/model/distance_transform.hpp"
 
 namespace bpa {
 namespace {

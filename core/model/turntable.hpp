@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/cloud/planes.hpp>
-#include <bpa/core/model/posed_view.hpp>
+#include "core/base/status.hpp"
+#include "core/cloud/planes.hpp"
+#include "core/model/posed_view.hpp"
 
 // From the images of an object on a turntable to views with poses (paper section III). Each resting
 // position is a set of views from a fixed camera; all that is known is the step of the table.

@@ -12,9 +12,9 @@
 #include <cmath>
 #include <limits>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/model/turntable.hpp>
+#include "core/base/parallel.hpp"
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/model/turntable.hpp"
 
 namespace bpa {
 namespace {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <optional>
 
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/model/turntable.hpp>
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/model/turntable.hpp"
 
 namespace bpa {
 namespace {

@@ -9,8 +9,8 @@
 #include <limits>
 #include <queue>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/model/turntable.hpp>
+#include "core/base/random.hpp"
+#include "core/model/turntable.hpp"
 
 namespace bpa {
 namespace {

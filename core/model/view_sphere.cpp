@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/model/view_sphere.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/model/distance_transform.hpp>
-#include <bpa/core/model/view_sphere.hpp>
+#include "core/base/parallel.hpp"
+#include "core/model/distance_transform.hpp"
 
 namespace bpa {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/core/cloud/point_cloud.hpp>
+#include "core/cloud/point_cloud.hpp"
 
 namespace bpa {
 

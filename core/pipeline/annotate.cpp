@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/annotate.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -8,8 +10,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include <bpa/core/pipeline/annotate.hpp>
-#include <bpa/core/pipeline/silhouette.hpp>
+#include "core/pipeline/silhouette.hpp"
 
 namespace bpa {
 namespace {

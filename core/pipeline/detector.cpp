@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/detector.hpp"
+
 #include <algorithm>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/base/stopwatch.hpp>
-#include <bpa/core/cloud/cielab.hpp>
-#include <bpa/core/detect/single_object.hpp>
-#include <bpa/core/pipeline/detector.hpp>
-#include <bpa/core/pipeline/frame_trace.hpp>
-#include <bpa/core/scene/interpretations.hpp>
+#include "core/base/parallel.hpp"
+#include "core/base/stopwatch.hpp"
+#include "core/cloud/cielab.hpp"
+#include "core/detect/single_object.hpp"
+#include "core/pipeline/frame_trace.hpp"
+#include "core/scene/interpretations.hpp"
 
 namespace bpa {
 namespace {

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/detect/pose_prior.hpp>
-#include <bpa/core/model/library.hpp>
-#include <bpa/core/pipeline/detector_options.hpp>
-#include <bpa/core/scene/interpretation.hpp>
-#include <bpa/core/score/score_layer.hpp>
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "core/cloud/frame.hpp"
+#include "core/detect/pose_prior.hpp"
+#include "core/model/library.hpp"
+#include "core/pipeline/detector_options.hpp"
+#include "core/scene/interpretation.hpp"
+#include "core/score/score_layer.hpp"
 
 namespace bpa {
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <bpa/core/pipeline/detector_options.hpp>
-#include <bpa/core/pipeline/yaml_options.hpp>
+#include "core/pipeline/detector_options.hpp"
+
+#include "core/pipeline/yaml_options.hpp"
 
 namespace bpa {
 

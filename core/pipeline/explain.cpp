@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/explain.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
 
-#include <bpa/core/pipeline/annotate.hpp>
-#include <bpa/core/pipeline/explain.hpp>
+#include "core/pipeline/annotate.hpp"
 
 namespace bpa {
 namespace {

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/features/edge_image.hpp>
-#include <bpa/core/io/image_file.hpp>
-#include <bpa/core/pipeline/annotate.hpp>
-#include <bpa/core/score/segment_scores.hpp>
-#include <bpa/core/segment/super_pixels.hpp>
+#include "core/cloud/frame.hpp"
+#include "core/features/edge_image.hpp"
+#include "core/io/image_file.hpp"
+#include "core/pipeline/annotate.hpp"
+#include "core/score/segment_scores.hpp"
+#include "core/segment/super_pixels.hpp"
 
 // Pictures of what the detector makes of a frame, for people, ready for io::write_color_png. As
 // large as the frame unless it says otherwise.

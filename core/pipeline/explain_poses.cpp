@@ -5,8 +5,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include <bpa/core/pipeline/explain.hpp>
-#include <bpa/core/pipeline/silhouette.hpp>
+#include "core/pipeline/explain.hpp"
+#include "core/pipeline/silhouette.hpp"
 
 namespace bpa {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include <bpa/core/detect/single_object.hpp>
+#include "core/detect/single_object.hpp"
 
 namespace bpa {
 

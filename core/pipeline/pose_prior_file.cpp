@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/pose_prior_file.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
 
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/pipeline/pose_prior_file.hpp>
+#include "core/io/file_bytes.hpp"
 
 namespace bpa {
 namespace {

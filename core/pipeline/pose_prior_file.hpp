@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/detect/pose_prior.hpp>
+#include "core/base/status.hpp"
+#include "core/detect/pose_prior.hpp"
 
 namespace bpa {
 

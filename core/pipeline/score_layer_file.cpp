@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/score_layer_file.hpp"
+
 #include <nlohmann/json.hpp>
 
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/pipeline/score_layer_file.hpp>
+#include "core/io/file_bytes.hpp"
 
 namespace bpa {
 namespace {

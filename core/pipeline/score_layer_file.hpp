@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/score/score_layer.hpp>
+#include "core/base/status.hpp"
+#include "core/score/score_layer.hpp"
 
 namespace bpa {
 

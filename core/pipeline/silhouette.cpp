@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/silhouette.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <opencv2/imgproc.hpp>
-
-#include <bpa/core/pipeline/silhouette.hpp>
 
 namespace bpa {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
-#include <bpa/core/cloud/image.hpp>
-#include <bpa/core/cloud/point_cloud.hpp>
-#include <bpa/core/geometry/camera.hpp>
-#include <bpa/core/geometry/pose.hpp>
+#include "core/cloud/image.hpp"
+#include "core/cloud/point_cloud.hpp"
+#include "core/geometry/camera.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace bpa {
 

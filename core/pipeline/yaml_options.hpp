@@ -8,7 +8,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <bpa/core/base/options.hpp>
+#include "core/base/options.hpp"
 
 namespace bpa {
 

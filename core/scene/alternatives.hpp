@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include <bpa/core/detect/single_object.hpp>
-#include <bpa/core/score/competition.hpp>
+#include "core/detect/single_object.hpp"
+#include "core/score/competition.hpp"
 
 namespace bpa {
 

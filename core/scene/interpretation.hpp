@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/detect/placement.hpp>
+#include "core/detect/placement.hpp"
 
 namespace bpa {
 

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/scene/interpretations.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/scene/alternatives.hpp>
-#include <bpa/core/scene/interpretations.hpp>
+#include "core/base/random.hpp"
+#include "core/scene/alternatives.hpp"
 
 namespace bpa {
 namespace {

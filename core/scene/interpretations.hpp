@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/core/detect/single_object.hpp>
-#include <bpa/core/scene/interpretation.hpp>
-#include <bpa/core/scene/overlaps.hpp>
+#include "core/detect/single_object.hpp"
+#include "core/scene/interpretation.hpp"
+#include "core/scene/overlaps.hpp"
 
 namespace bpa {
 

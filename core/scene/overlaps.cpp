@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/scene/overlaps.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-
-#include <bpa/core/scene/overlaps.hpp>
 
 namespace bpa {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/core/detect/single_object.hpp>
-#include <bpa/core/score/competition.hpp>
+#include "core/detect/single_object.hpp"
+#include "core/score/competition.hpp"
 
 namespace bpa {
 

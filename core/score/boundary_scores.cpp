@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/boundary_scores.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/score/boundary_scores.hpp>
-#include <bpa/core/score/likelihood.hpp>
+#include "core/score/likelihood.hpp"
 
 namespace bpa {
 namespace {

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bpa/core/cloud/image.hpp>
-#include <bpa/core/geometry/pose.hpp>
-#include <bpa/core/model/object_model.hpp>
-#include <bpa/core/score/pose_check.hpp>
-#include <bpa/core/score/predicted_surface.hpp>
+#include "core/cloud/image.hpp"
+#include "core/geometry/pose.hpp"
+#include "core/model/object_model.hpp"
+#include "core/score/pose_check.hpp"
+#include "core/score/predicted_surface.hpp"
 
 // How well the boundaries that a placement predicts fit the observed edge image (paper section V).
 // `edges` is the edge image, of the size of `image`.

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/color_score.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include <bpa/core/score/color_score.hpp>
-#include <bpa/core/score/likelihood.hpp>
-#include <bpa/core/score/placement_score.hpp>
+#include "core/score/likelihood.hpp"
+#include "core/score/placement_score.hpp"
 
 namespace bpa {
 namespace {

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include <bpa/core/cloud/image.hpp>
-#include <bpa/core/model/object_model.hpp>
-#include <bpa/core/score/predicted_surface.hpp>
+#include "core/cloud/image.hpp"
+#include "core/model/object_model.hpp"
+#include "core/score/predicted_surface.hpp"
 
 namespace bpa {
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/competition.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include <bpa/core/score/competition.hpp>
 
 namespace bpa {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Written by 'bpa train --source' (tests/accuracy/train.sh); see the provenance below. The
 // component rivals came later and was fitted to the same frames, the rest being held.
-#include <bpa/core/score/score_layer.hpp>
+#include "core/score/score_layer.hpp"
 
 namespace bpa {
 

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/feature_score.hpp"
+
 #include <cmath>
 #include <limits>
 
-#include <bpa/core/model/model_index.hpp>
-#include <bpa/core/score/feature_score.hpp>
-#include <bpa/core/score/likelihood.hpp>
-#include <bpa/core/score/pose_check.hpp>
+#include "core/model/model_index.hpp"
+#include "core/score/likelihood.hpp"
+#include "core/score/pose_check.hpp"
 
 namespace bpa {
 namespace {

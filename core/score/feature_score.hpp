@@ -4,11 +4,11 @@
 
 #include <span>
 
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/cloud/point_cloud.hpp>
-#include <bpa/core/features/fpfh.hpp>
-#include <bpa/core/geometry/pose.hpp>
-#include <bpa/core/model/object_model.hpp>
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/cloud/point_cloud.hpp"
+#include "core/features/fpfh.hpp"
+#include "core/geometry/pose.hpp"
+#include "core/model/object_model.hpp"
 
 namespace bpa {
 

@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include <bpa/core/geometry/pose.hpp>
-#include <bpa/core/model/object_model.hpp>
-#include <bpa/core/score/pose_check.hpp>
+#include "core/geometry/pose.hpp"
+#include "core/model/object_model.hpp"
+#include "core/score/pose_check.hpp"
 
 namespace bpa {
 

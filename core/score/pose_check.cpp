@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/pose_check.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include <bpa/core/score/pose_check.hpp>
 
 namespace bpa {
 namespace {

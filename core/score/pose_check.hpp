@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/core/cloud/surface_map.hpp>
-#include <bpa/core/geometry/pose.hpp>
-#include <bpa/core/model/model_index.hpp>
+#include "core/cloud/surface_map.hpp"
+#include "core/geometry/pose.hpp"
+#include "core/model/model_index.hpp"
 
 namespace bpa {
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/predicted_surface.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <ranges>
-
-#include <bpa/core/score/predicted_surface.hpp>
 
 namespace bpa {
 namespace {

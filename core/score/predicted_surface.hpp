@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <optional>
 
-#include <bpa/core/cloud/image.hpp>
-#include <bpa/core/geometry/pose.hpp>
-#include <bpa/core/model/object_model.hpp>
-#include <bpa/core/score/pose_check.hpp>
+#include "core/cloud/image.hpp"
+#include "core/geometry/pose.hpp"
+#include "core/model/object_model.hpp"
+#include "core/score/pose_check.hpp"
 
 namespace bpa {
 

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/random_walk_score.hpp"
+
 #include <cmath>
 #include <vector>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/model/model_index.hpp>
-#include <bpa/core/score/likelihood.hpp>
-#include <bpa/core/score/random_walk_score.hpp>
+#include "core/base/random.hpp"
+#include "core/model/model_index.hpp"
+#include "core/score/likelihood.hpp"
 
 namespace bpa {
 namespace {

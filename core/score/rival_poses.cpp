@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/rival_poses.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/cloud/surface_map.hpp>
-#include <bpa/core/score/rival_poses.hpp>
+#include "core/cloud/surface_map.hpp"
 
 namespace bpa {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/score_layer.hpp"
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>
-
-#include <bpa/core/score/score_layer.hpp>
 
 namespace bpa {
 namespace {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/score/competition.hpp>
-#include <bpa/core/score/placement_score.hpp>
+#include "core/base/status.hpp"
+#include "core/score/competition.hpp"
+#include "core/score/placement_score.hpp"
 
 namespace bpa {
 

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/segment_scores.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/model/model_index.hpp>
-#include <bpa/core/score/likelihood.hpp>
-#include <bpa/core/score/segment_scores.hpp>
+#include "core/model/model_index.hpp"
+#include "core/score/likelihood.hpp"
 
 namespace bpa {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <vector>
 
-#include <bpa/core/cloud/surface_map.hpp>
-#include <bpa/core/geometry/pose.hpp>
-#include <bpa/core/model/object_model.hpp>
-#include <bpa/core/score/predicted_surface.hpp>
-#include <bpa/core/segment/super_pixels.hpp>
+#include "core/cloud/surface_map.hpp"
+#include "core/geometry/pose.hpp"
+#include "core/model/object_model.hpp"
+#include "core/score/predicted_surface.hpp"
+#include "core/segment/super_pixels.hpp"
 
 // How a placement fits the super-pixels (paper section V).
 

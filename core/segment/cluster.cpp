@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/segment/pixel_features.hpp>
+#include "core/base/parallel.hpp"
+#include "core/segment/pixel_features.hpp"
 
 namespace bpa::detail {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include <bpa/core/cloud/surface_break.hpp>
-#include <bpa/core/segment/pixel_features.hpp>
+#include "core/cloud/surface_break.hpp"
+#include "core/segment/pixel_features.hpp"
 
 namespace bpa::detail {
 namespace {

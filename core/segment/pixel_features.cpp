@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/segment/pixel_features.hpp"
+
 #include <cmath>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/segment/pixel_features.hpp>
+#include "core/base/parallel.hpp"
 
 namespace bpa::detail {
 

@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include <bpa/core/cloud/image.hpp>
-#include <bpa/core/cloud/surface_map.hpp>
-#include <bpa/core/segment/super_pixels.hpp>
+#include "core/cloud/image.hpp"
+#include "core/cloud/surface_map.hpp"
+#include "core/segment/super_pixels.hpp"
 
 namespace bpa::detail {
 

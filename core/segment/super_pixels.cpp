@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/segment/super_pixels.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/cloud/surface_break.hpp>
-#include <bpa/core/segment/pixel_features.hpp>
-#include <bpa/core/segment/super_pixels.hpp>
+#include "core/cloud/surface_break.hpp"
+#include "core/segment/pixel_features.hpp"
 
 namespace bpa {
 namespace {

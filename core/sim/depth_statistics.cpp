@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/sim/depth_statistics.hpp"
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
-
-#include <bpa/core/sim/depth_statistics.hpp>
 
 namespace bpa::sim {
 namespace {

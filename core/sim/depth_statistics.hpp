@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/sim/kinect.hpp>
+#include "core/cloud/frame.hpp"
+#include "core/sim/kinect.hpp"
 
 // Figures by which a simulated depth camera can be held against published ones and against real
 // frames.

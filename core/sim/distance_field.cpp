@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/sim/distance_field.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <bpa/core/sim/distance_field.hpp>
 
 namespace bpa::sim {
 

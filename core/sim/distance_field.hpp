@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include <bpa/core/cloud/point_cloud.hpp>
+#include "core/cloud/point_cloud.hpp"
 
 // Solids as signed distance fields (metres; negative inside), and the closed mesh of their surface.
 // The formulas are the customary ones (Hart 1996, "Sphere tracing"; Quilez, "Distance functions").

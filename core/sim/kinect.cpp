@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/sim/kinect.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/sim/kinect.hpp>
-#include <bpa/core/sim/noise_field.hpp>
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/sim/noise_field.hpp"
 
 namespace bpa::sim {
 namespace {

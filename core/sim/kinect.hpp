@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-#include <bpa/core/base/options.hpp>
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/sim/render.hpp>
+#include "core/base/options.hpp"
+#include "core/cloud/frame.hpp"
+#include "core/sim/render.hpp"
 
 // A depth camera with a projected dot pattern (Kinect v1, Xtion, PrimeSense), simulated step by
 // step:

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/sim/noise_field.hpp"
+
 #include <cmath>
 #include <cstddef>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/sim/noise_field.hpp>
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
 
 namespace bpa::sim {
 namespace {

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/sim/objects.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/sim/objects.hpp>
-#include <bpa/core/sim/shapes.hpp>
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/sim/shapes.hpp"
 
 namespace bpa::sim {
 namespace {

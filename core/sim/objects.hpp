@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/cloud/point_cloud.hpp>
-#include <bpa/core/geometry/symmetry.hpp>
+#include "core/cloud/point_cloud.hpp"
+#include "core/geometry/symmetry.hpp"
 
 namespace bpa::sim {
 

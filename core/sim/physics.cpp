@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/sim/physics.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
 
 #include <btBulletDynamicsCommon.h>
-
-#include <bpa/core/sim/physics.hpp>
 
 namespace bpa::sim {
 namespace {

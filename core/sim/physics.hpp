@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include <bpa/core/geometry/pose.hpp>
-#include <bpa/core/sim/objects.hpp>
+#include "core/geometry/pose.hpp"
+#include "core/sim/objects.hpp"
 
 // Rigid bodies that fall onto a table and come to rest (Bullet).
 

@@ -10,7 +10,7 @@
 #include <embree3/rtcore.h>
 #endif
 
-#include <bpa/core/sim/render.hpp>
+#include "core/sim/render.hpp"
 
 namespace bpa::sim {
 namespace {

@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include <bpa/core/cloud/point_cloud.hpp>
-#include <bpa/core/geometry/camera.hpp>
-#include <bpa/core/geometry/pose.hpp>
-#include <bpa/core/sim/objects.hpp>
+#include "core/cloud/point_cloud.hpp"
+#include "core/geometry/camera.hpp"
+#include "core/geometry/pose.hpp"
+#include "core/sim/objects.hpp"
 
 // Ray casting of posed meshes (Embree).
 

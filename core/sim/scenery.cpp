@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/sim/scenery.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include <bpa/core/base/parallel.hpp>
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/sim/scenery.hpp>
-#include <bpa/core/sim/shapes.hpp>
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/sim/shapes.hpp"
 
 namespace bpa::sim {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <bpa/core/sim/objects.hpp>
+#include "core/sim/objects.hpp"
 
 // What stands round the objects. Private to the room.
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include <bpa/core/sim/kinect.hpp>
-#include <bpa/core/sim/objects.hpp>
-#include <bpa/core/sim/render.hpp>
+#include "core/sim/kinect.hpp"
+#include "core/sim/objects.hpp"
+#include "core/sim/render.hpp"
 
 // Whole scenes: objects fall on a table and are looked at as a robot would, with the truth.
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/sim/distance_field.hpp>
-#include <bpa/core/sim/objects.hpp>
+#include "core/sim/distance_field.hpp"
+#include "core/sim/objects.hpp"
 
 // How the household objects are described before they are meshed. Private to the room.
 

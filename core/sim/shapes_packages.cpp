@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <bpa/core/sim/shapes.hpp>
+#include "core/sim/shapes.hpp"
 
 namespace bpa::sim {
 namespace {

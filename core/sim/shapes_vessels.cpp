@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <bpa/core/sim/shapes.hpp>
+#include "core/sim/shapes.hpp"
 
 namespace bpa::sim {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <iterator>
+#include "core/sim/stage.hpp"
 
-#include <bpa/core/sim/stage.hpp>
+#include <iterator>
 
 namespace bpa::sim {
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include <bpa/core/sim/scenery.hpp>
-#include <bpa/core/sim/scenes.hpp>
+#include "core/sim/scenery.hpp"
+#include "core/sim/scenes.hpp"
 
 // What stands on a stage, and how it is photographed. Private to the room.
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include <bpa/core/sim/distance_field.hpp>
+#include "core/sim/distance_field.hpp"
 
 // A cube's corner is three bits (x, y, z). Its edge along axis a, at offsets u and v along the next
 // two axes, has number 4 a + u + 2 v.

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/sim/turntable.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/sim/physics.hpp>
-#include <bpa/core/sim/stage.hpp>
-#include <bpa/core/sim/turntable.hpp>
+#include "core/base/random.hpp"
+#include "core/sim/physics.hpp"
+#include "core/sim/stage.hpp"
 
 namespace bpa::sim {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/core/sim/scenes.hpp>
+#include "core/sim/scenes.hpp"
 
 // What building a model from scans starts from (paper, section on noise-aware models): an object on
 // a turntable, seen by a fixed camera, in two or three resting positions.

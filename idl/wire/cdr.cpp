@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <bpa/wire/cdr.hpp>
+#include "idl/wire/cdr.hpp"
 
 namespace bpa::wire {
 

@@ -10,8 +10,8 @@
 #include <type_traits>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/wire/field.hpp>
+#include "core/base/status.hpp"
+#include "idl/wire/field.hpp"
 
 // Plain CDR (XCDR1), the encoding of every ROS 2 message: a header of 4 bytes that says which byte
 // order, then the fields, each aligned to its size counted from the end of that header.

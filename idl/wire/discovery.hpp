@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
+#include "core/base/status.hpp"
 
 // How far a participant looks for others.
 

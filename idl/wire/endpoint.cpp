@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <cstring>
+#include "idl/wire/endpoint.hpp"
 
-#include <bpa/wire/endpoint.hpp>
+#include <cstring>
 
 namespace bpa::wire::detail {
 

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/wire/cdr.hpp>
-#include <bpa/wire/participant.hpp>
-#include <bpa/wire/qos.hpp>
-#include <bpa/wire/type_description.hpp>
+#include "core/base/status.hpp"
+#include "idl/wire/cdr.hpp"
+#include "idl/wire/participant.hpp"
+#include "idl/wire/qos.hpp"
+#include "idl/wire/type_description.hpp"
 
 // Writers and readers of bytes, on which the typed publishers, subscribers and services are built.
 // Use those.

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include <bpa/wire/endpoint.hpp>
+#include "idl/wire/endpoint.hpp"
 
 // What ros_discovery_info says of this participant: its one node and that node's readers and
 // writers. Always the complete state, in one message.

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include "idl/wire/names.hpp"
 
-#include <bpa/wire/names.hpp>
+#include <algorithm>
 
 namespace bpa::wire {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
+#include "core/base/status.hpp"
 
 // ROS names and what they are called in DDS.
 

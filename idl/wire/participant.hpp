@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/wire/discovery.hpp>
-#include <bpa/wire/names.hpp>
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "idl/wire/discovery.hpp"
+#include "idl/wire/names.hpp"
 
 namespace bpa::wire {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include <bpa/wire/endpoint.hpp>
+#include "idl/wire/endpoint.hpp"
 
 namespace bpa::wire {
 

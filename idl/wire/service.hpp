@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <bpa/wire/endpoint.hpp>
+#include "idl/wire/endpoint.hpp"
 
 // Requests and replies as ROS 2 makes them. A `Service` is a struct with the types Request and
 // Response, such as bpa_msgs::Detect.

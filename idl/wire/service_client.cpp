@@ -5,7 +5,7 @@
 #include <map>
 #include <mutex>
 
-#include <bpa/wire/service.hpp>
+#include "idl/wire/service.hpp"
 
 namespace bpa::wire::detail {
 

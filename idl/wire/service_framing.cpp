@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "idl/wire/service_framing.hpp"
+
 #include <algorithm>
 #include <cstring>
-
-#include <bpa/wire/service_framing.hpp>
 
 namespace bpa::wire::detail {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/wire/endpoint.hpp>
+#include "idl/wire/endpoint.hpp"
 
 // The two ways in which ROS 2 middlewares tell whose request a reply answers.
 //

@@ -4,9 +4,9 @@
 #include <map>
 #include <mutex>
 
-#include <bpa/wire/service.hpp>
-#include <bpa/wire/service_framing.hpp>
-#include <bpa/wire/worker.hpp>
+#include "idl/wire/service.hpp"
+#include "idl/wire/service_framing.hpp"
+#include "idl/wire/worker.hpp"
 
 namespace bpa::wire::detail {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "idl/wire/sha256.hpp"
+
 #include <array>
 #include <cstdint>
-
-#include <bpa/wire/sha256.hpp>
 
 namespace bpa::wire {
 namespace {

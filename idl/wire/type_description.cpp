@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "idl/wire/type_description.hpp"
+
 #include <algorithm>
 
-#include <bpa/wire/sha256.hpp>
-#include <bpa/wire/type_description.hpp>
+#include "idl/wire/sha256.hpp"
 
 namespace bpa::wire {
 namespace {

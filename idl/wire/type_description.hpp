@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <vector>
 
-#include <bpa/wire/cdr.hpp>
-#include <bpa/wire/field.hpp>
+#include "idl/wire/cdr.hpp"
+#include "idl/wire/field.hpp"
 
 // What REP 2011 calls the description of a type, and its hash RIHS01_<64 hex digits>, which ROS 2
 // peers from Iron on show and which they miss with a warning when it is not announced.

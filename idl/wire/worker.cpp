@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "idl/wire/worker.hpp"
+
 #include <condition_variable>
 #include <map>
 #include <mutex>
 #include <utility>
-
-#include <bpa/wire/worker.hpp>
 
 namespace bpa::wire::detail {
 

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/capture/bop_source.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <thread>
 
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/server/capture/bop_source.hpp>
-#include <bpa/server/capture/image_messages.hpp>
+#include "core/io/bop_dataset.hpp"
+#include "server/capture/image_messages.hpp"
 
 namespace bpa::server {
 namespace {

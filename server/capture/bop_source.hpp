@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include <bpa/server/capture/camera_device.hpp>
-#include <bpa/server/capture/capture_options.hpp>
+#include "server/capture/camera_device.hpp"
+#include "server/capture/capture_options.hpp"
 
 namespace bpa::server {
 

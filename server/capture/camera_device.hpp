@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/server/convert/frames.hpp>
+#include "core/base/status.hpp"
+#include "server/convert/frames.hpp"
 
 namespace bpa::server {
 

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/capture/camera_publisher.hpp"
+
 #include <cstring>
 #include <limits>
 #include <utility>
 
-#include <bpa/server/capture/camera_publisher.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
+#include "idl/wire/msg/builtin_interfaces.hpp"
 
 namespace bpa::server {
 namespace {

@@ -8,13 +8,13 @@
 #include <optional>
 #include <thread>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/server/capture/capture_options.hpp>
-#include <bpa/server/convert/frames.hpp>
-#include <bpa/wire/participant.hpp>
-#include <bpa/wire/publisher.hpp>
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "core/cloud/frame.hpp"
+#include "idl/wire/participant.hpp"
+#include "idl/wire/publisher.hpp"
+#include "server/capture/capture_options.hpp"
+#include "server/convert/frames.hpp"
 
 namespace bpa::server {
 

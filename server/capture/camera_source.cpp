@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/capture/camera_source.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include <bpa/server/capture/bop_source.hpp>
-#include <bpa/server/capture/camera_source.hpp>
-#include <bpa/server/capture/openni2_device.hpp>
-#include <bpa/server/capture/video_mode.hpp>
-#include <bpa/server/convert/results.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
+#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "server/capture/bop_source.hpp"
+#include "server/capture/openni2_device.hpp"
+#include "server/capture/video_mode.hpp"
+#include "server/convert/results.hpp"
 
 namespace bpa::server {
 namespace {

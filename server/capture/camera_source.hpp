@@ -8,16 +8,16 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/server/capture/camera_publisher.hpp>
-#include <bpa/server/capture/capture.hpp>
-#include <bpa/server/capture/capture_options.hpp>
-#include <bpa/server/capture/frame_source.hpp>
-#include <bpa/server/worker.hpp>
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/participant.hpp>
-#include <bpa/wire/service.hpp>
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/participant.hpp"
+#include "idl/wire/service.hpp"
+#include "server/capture/camera_publisher.hpp"
+#include "server/capture/capture.hpp"
+#include "server/capture/capture_options.hpp"
+#include "server/capture/frame_source.hpp"
+#include "server/worker.hpp"
 
 namespace bpa::server {
 

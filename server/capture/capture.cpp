@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/capture/capture.hpp"
+
 #include <condition_variable>
 #include <filesystem>
 #include <mutex>
@@ -7,8 +9,6 @@
 #include <thread>
 #include <utility>
 #include <vector>
-
-#include <bpa/server/capture/capture.hpp>
 
 namespace bpa::server {
 namespace {

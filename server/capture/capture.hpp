@@ -8,10 +8,10 @@
 #include <memory>
 #include <string>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/server/capture/camera_device.hpp>
-#include <bpa/server/capture/frame_source.hpp>
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "server/capture/camera_device.hpp"
+#include "server/capture/frame_source.hpp"
 
 namespace bpa::server {
 

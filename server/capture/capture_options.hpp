@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <bpa/core/base/options.hpp>
+#include "core/base/options.hpp"
 
 namespace bpa::server {
 

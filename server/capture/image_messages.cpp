@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/capture/image_messages.hpp"
+
 #include <chrono>
 
-#include <bpa/server/capture/image_messages.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
+#include "idl/wire/msg/builtin_interfaces.hpp"
 
 namespace bpa::server {
 

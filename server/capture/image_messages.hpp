@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/geometry/camera.hpp>
-#include <bpa/wire/msg/sensor_msgs.hpp>
+#include "core/geometry/camera.hpp"
+#include "idl/wire/msg/sensor_msgs.hpp"
 
 // Messages of the server's own camera.
 

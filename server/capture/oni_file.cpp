@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/capture/oni_file.hpp"
+
 #include <algorithm>
 #include <filesystem>
 #include <map>
 
-#include <bpa/server/capture/oni_file.hpp>
-#include <bpa/server/capture/oni_records.hpp>
+#include "server/capture/oni_records.hpp"
 
 namespace bpa::server {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
+#include "core/base/status.hpp"
 
 // The .oni files of OpenNI2: what is needed to check one and to write one. Playing them is left to
 // OpenNI2, which trusts them: a damaged file makes its driver spin or crash, so nothing is given to

@@ -3,8 +3,8 @@
 #include <cerrno>
 #include <limits>
 
-#include <bpa/server/capture/oni_file.hpp>
-#include <bpa/server/capture/oni_records.hpp>
+#include "server/capture/oni_file.hpp"
+#include "server/capture/oni_records.hpp"
 
 namespace bpa::server {
 namespace {

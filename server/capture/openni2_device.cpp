@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/capture/openni2_device.hpp"
+
 #include <atomic>
 #include <cstring>
 #include <thread>
@@ -7,13 +9,12 @@
 
 #include <openni2/OpenNI.h>
 
-#include <bpa/server/capture/frame_pairs.hpp>
-#include <bpa/server/capture/host_clock.hpp>
-#include <bpa/server/capture/image_messages.hpp>
-#include <bpa/server/capture/openni2_device.hpp>
-#include <bpa/server/capture/openni2_library.hpp>
-#include <bpa/server/capture/openni2_streams.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
+#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "server/capture/frame_pairs.hpp"
+#include "server/capture/host_clock.hpp"
+#include "server/capture/image_messages.hpp"
+#include "server/capture/openni2_library.hpp"
+#include "server/capture/openni2_streams.hpp"
 
 namespace bpa::server {
 namespace {

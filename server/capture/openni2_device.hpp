@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/server/capture/camera_device.hpp>
-#include <bpa/server/capture/capture_options.hpp>
+#include "core/base/log.hpp"
+#include "server/capture/camera_device.hpp"
+#include "server/capture/capture_options.hpp"
 
 namespace bpa::server {
 

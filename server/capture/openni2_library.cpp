@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <openni2/OpenNI.h>
+#include "server/capture/openni2_library.hpp"
 
-#include <bpa/server/capture/openni2_library.hpp>
+#include <openni2/OpenNI.h>
 
 namespace bpa::server {
 

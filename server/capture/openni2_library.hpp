@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include <bpa/core/base/status.hpp>
+#include "core/base/status.hpp"
 
 namespace bpa::server {
 

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/capture/openni2_list.hpp"
+
 #include <sstream>
 
 #include <openni2/OpenNI.h>
 
-#include <bpa/server/capture/openni2_library.hpp>
-#include <bpa/server/capture/openni2_list.hpp>
-#include <bpa/server/capture/openni2_streams.hpp>
-#include <bpa/server/capture/usb_sensors.hpp>
-#include <bpa/server/capture/video_mode.hpp>
+#include "server/capture/openni2_library.hpp"
+#include "server/capture/openni2_streams.hpp"
+#include "server/capture/usb_sensors.hpp"
+#include "server/capture/video_mode.hpp"
 
 namespace bpa::server {
 namespace {

@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/capture/openni2_streams.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include <openni2/PS1080.h>
 
-#include <bpa/core/io/camera_file.hpp>
-#include <bpa/server/capture/openni2_library.hpp>
-#include <bpa/server/capture/openni2_streams.hpp>
-#include <bpa/server/capture/video_mode.hpp>
+#include "core/io/camera_file.hpp"
+#include "server/capture/openni2_library.hpp"
+#include "server/capture/video_mode.hpp"
 
 namespace bpa::server {
 namespace {

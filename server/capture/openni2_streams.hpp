@@ -8,11 +8,11 @@
 
 #include <openni2/OpenNI.h>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/server/capture/capture_options.hpp>
-#include <bpa/server/capture/oni_file.hpp>
-#include <bpa/server/capture/registration.hpp>
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "server/capture/capture_options.hpp"
+#include "server/capture/oni_file.hpp"
+#include "server/capture/registration.hpp"
 
 // Single streams of OpenNI2: modes, properties, intrinsics, pixels. Only files named openni2*
 // include this.

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/capture/registration.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-
-#include <bpa/server/capture/registration.hpp>
 
 namespace bpa::server {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/core/geometry/camera.hpp>
+#include "core/geometry/camera.hpp"
 
 // Depth registered to colour: the depth image as the colour camera would measure it.
 

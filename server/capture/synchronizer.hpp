@@ -7,8 +7,8 @@
 #include <memory>
 #include <optional>
 
-#include <bpa/server/convert/frames.hpp>
-#include <bpa/wire/msg/sensor_msgs.hpp>
+#include "idl/wire/msg/sensor_msgs.hpp"
+#include "server/convert/frames.hpp"
 
 namespace bpa::server {
 

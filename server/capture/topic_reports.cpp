@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include <bpa/server/capture/topic_source.hpp>
+#include "server/capture/topic_source.hpp"
 
 // What the topics have to report. That a camera is gone is told by its silence: publishers on
 // Eclipse Cyclone DDS count as matched for seconds after they went.

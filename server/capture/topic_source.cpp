@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/capture/topic_source.hpp"
+
 #include <utility>
 
-#include <bpa/server/capture/topic_source.hpp>
-#include <bpa/server/convert/frames.hpp>
-#include <bpa/server/convert/priors.hpp>
+#include "server/convert/frames.hpp"
+#include "server/convert/priors.hpp"
 
 namespace bpa::server {
 namespace {

@@ -11,15 +11,15 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/server/capture/frame_source.hpp>
-#include <bpa/server/capture/synchronizer.hpp>
-#include <bpa/server/options.hpp>
-#include <bpa/server/worker.hpp>
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/participant.hpp>
-#include <bpa/wire/subscriber.hpp>
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/participant.hpp"
+#include "idl/wire/subscriber.hpp"
+#include "server/capture/frame_source.hpp"
+#include "server/capture/synchronizer.hpp"
+#include "server/options.hpp"
+#include "server/worker.hpp"
 
 namespace bpa::server {
 

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/capture/usb_sensors.hpp"
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -7,8 +9,6 @@
 #include <fstream>
 
 #include <unistd.h>
-
-#include <bpa/server/capture/usb_sensors.hpp>
 
 namespace bpa::server {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/capture/video_mode.hpp"
+
 #include <algorithm>
 #include <charconv>
-
-#include <bpa/server/capture/video_mode.hpp>
 
 namespace bpa::server {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include <bpa/core/io/pcd_file.hpp>
-#include <bpa/server/convert/frames.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
+#include "core/io/pcd_file.hpp"
+#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "server/convert/frames.hpp"
 
 namespace bpa::server {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/convert/compressed.hpp"
+
 #include <cmath>
 #include <cstring>
 #include <exception>
@@ -8,8 +10,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include <bpa/server/convert/compressed.hpp>
-#include <bpa/server/convert/rvl.hpp>
+#include "server/convert/rvl.hpp"
 
 namespace bpa::server {
 namespace {

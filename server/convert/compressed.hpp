@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/wire/msg/sensor_msgs.hpp>
+#include "core/base/status.hpp"
+#include "idl/wire/msg/sensor_msgs.hpp"
 
 // sensor_msgs/CompressedImage, as ROS 2's image_transport plugins write it, -> pixels. What a file
 // says of its size is checked before anything is decoded; failures name the field and the rule.

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/convert/frames.hpp"
+
 #include <array>
 #include <sstream>
 #include <utility>
 
-#include <bpa/server/convert/compressed.hpp>
-#include <bpa/server/convert/frames.hpp>
-#include <bpa/server/convert/images.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
+#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "server/convert/compressed.hpp"
+#include "server/convert/images.hpp"
 
 namespace bpa::server {
 namespace {

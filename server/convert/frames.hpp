@@ -5,10 +5,10 @@
 #include <memory>
 #include <variant>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/wire/msg/bpa_msgs.hpp>
-#include <bpa/wire/msg/sensor_msgs.hpp>
+#include "core/base/status.hpp"
+#include "core/cloud/frame.hpp"
+#include "idl/wire/msg/bpa_msgs.hpp"
+#include "idl/wire/msg/sensor_msgs.hpp"
 
 // Messages -> frames that are fit for the detector: sizes, camera and depth are checked here, once,
 // and everything behind may rely on them. Failures name the field, its value and the rule.

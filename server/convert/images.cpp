@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/convert/images.hpp"
+
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <sstream>
 
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/server/convert/images.hpp>
+#include "core/cloud/frame.hpp"
 
 namespace bpa::server {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/geometry/camera.hpp>
-#include <bpa/wire/msg/sensor_msgs.hpp>
+#include "core/base/status.hpp"
+#include "core/geometry/camera.hpp"
+#include "idl/wire/msg/sensor_msgs.hpp"
 
 // Pixels as messages carry them -> pixels as the core takes them. Every size is checked before a
 // byte is read; failures name the field, its value and the rule.

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/convert/priors.hpp"
+
 #include <algorithm>
 #include <string>
-
-#include <bpa/server/convert/priors.hpp>
 
 namespace bpa::server {
 namespace {

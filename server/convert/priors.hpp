@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/detect/pose_prior.hpp>
-#include <bpa/wire/msg/bpa_msgs.hpp>
+#include "core/base/status.hpp"
+#include "core/detect/pose_prior.hpp"
+#include "idl/wire/msg/bpa_msgs.hpp"
 
 namespace bpa::server {
 

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/convert/results.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
 
-#include <bpa/server/convert/results.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
+#include "idl/wire/msg/builtin_interfaces.hpp"
 
 namespace bpa::server {
 namespace {

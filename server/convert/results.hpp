@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/core/model/object_model.hpp>
-#include <bpa/core/scene/interpretation.hpp>
-#include <bpa/wire/msg/bpa_msgs.hpp>
-#include <bpa/wire/msg/sensor_msgs.hpp>
-#include <bpa/wire/msg/tf2_msgs.hpp>
-#include <bpa/wire/msg/vision_msgs.hpp>
-#include <bpa/wire/msg/visualization_msgs.hpp>
+#include "core/base/status.hpp"
+#include "core/model/object_model.hpp"
+#include "core/scene/interpretation.hpp"
+#include "idl/wire/msg/bpa_msgs.hpp"
+#include "idl/wire/msg/sensor_msgs.hpp"
+#include "idl/wire/msg/tf2_msgs.hpp"
+#include "idl/wire/msg/vision_msgs.hpp"
+#include "idl/wire/msg/visualization_msgs.hpp"
 
 // What the core found -> messages. Stamp and frame_id are always those of the frame.
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <cstring>
+#include "server/convert/rvl.hpp"
 
-#include <bpa/server/convert/rvl.hpp>
+#include <cstring>
 
 namespace bpa::server {
 namespace {

@@ -4,10 +4,10 @@
 #include <memory>
 #include <utility>
 
-#include <bpa/server/convert/frames.hpp>
-#include <bpa/server/convert/priors.hpp>
-#include <bpa/server/convert/results.hpp>
-#include <bpa/server/services/services.hpp>
+#include "server/convert/frames.hpp"
+#include "server/convert/priors.hpp"
+#include "server/convert/results.hpp"
+#include "server/services/services.hpp"
 
 namespace bpa::server {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <bpa/server/services/services.hpp>
+#include "server/services/services.hpp"
 
 namespace bpa::server {
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include <bpa/server/convert/results.hpp>
-#include <bpa/server/services/services.hpp>
+#include "server/convert/results.hpp"
+#include "server/services/services.hpp"
 
 namespace bpa::server {
 namespace {

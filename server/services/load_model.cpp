@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <utility>
 
-#include <bpa/server/convert/results.hpp>
-#include <bpa/server/services/services.hpp>
+#include "server/convert/results.hpp"
+#include "server/services/services.hpp"
 
 // Loading takes seconds, so it waits for its turn on the worker.
 

@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/services/parameter_services.hpp"
+
 #include <chrono>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <bpa/server/parameters.hpp>
-#include <bpa/server/services/parameter_services.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
-#include <bpa/wire/publisher.hpp>
-#include <bpa/wire/service.hpp>
+#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "idl/wire/publisher.hpp"
+#include "idl/wire/service.hpp"
+#include "server/parameters.hpp"
 
 namespace bpa::server {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/server/settings.hpp>
-#include <bpa/wire/participant.hpp>
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "idl/wire/participant.hpp"
+#include "server/settings.hpp"
 
 namespace bpa::server {
 

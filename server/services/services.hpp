@@ -6,15 +6,15 @@
 #include <memory>
 #include <optional>
 
-#include <bpa/core/base/log.hpp>
-#include <bpa/core/base/status.hpp>
-#include <bpa/server/recognition.hpp>
-#include <bpa/server/settings.hpp>
-#include <bpa/server/statistics.hpp>
-#include <bpa/server/worker.hpp>
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/participant.hpp>
-#include <bpa/wire/service.hpp>
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/participant.hpp"
+#include "idl/wire/service.hpp"
+#include "server/recognition.hpp"
+#include "server/settings.hpp"
+#include "server/statistics.hpp"
+#include "server/worker.hpp"
 
 // One function per service: each offers it until the returned object is destroyed. A request that
 // fails is answered with success = false, a code and a sentence; the server goes on.

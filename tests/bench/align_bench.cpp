@@ -5,8 +5,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include <bpa/core/align/align.hpp>
-#include <bpa/core/base/random.hpp>
+#include "core/align/align.hpp"
+#include "core/base/random.hpp"
 
 namespace bpa::align {
 namespace {

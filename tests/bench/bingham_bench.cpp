@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/bingham/bingham.hpp>
-#include <bpa/core/bingham/normalizer.hpp>
+#include "core/base/random.hpp"
+#include "core/bingham/bingham.hpp"
+#include "core/bingham/normalizer.hpp"
 
 namespace bpa {
 namespace {

@@ -5,15 +5,14 @@
 
 #include <benchmark/benchmark.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/cloud/cielab.hpp>
-#include <bpa/core/features/edge_image.hpp>
-#include <bpa/core/score/boundary_scores.hpp>
-#include <bpa/core/score/color_score.hpp>
-#include <bpa/core/score/random_walk_score.hpp>
-#include <bpa/core/score/segment_scores.hpp>
-
-#include "support/meshes.hpp"
+#include "core/base/random.hpp"
+#include "core/cloud/cielab.hpp"
+#include "core/features/edge_image.hpp"
+#include "core/score/boundary_scores.hpp"
+#include "core/score/color_score.hpp"
+#include "core/score/random_walk_score.hpp"
+#include "core/score/segment_scores.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace bpa {
 namespace {

@@ -5,11 +5,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/cloud/blur.hpp>
-#include <bpa/core/cloud/cielab.hpp>
-#include <bpa/core/features/edge_image.hpp>
-#include <bpa/core/segment/super_pixels.hpp>
+#include "core/base/random.hpp"
+#include "core/cloud/blur.hpp"
+#include "core/cloud/cielab.hpp"
+#include "core/features/edge_image.hpp"
+#include "core/segment/super_pixels.hpp"
 
 namespace bpa {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include "support/process.hpp"
+#include "tests/support/process.hpp"
 
 // The examples as a newcomer runs them: the default namespace, the domain from the environment.
 

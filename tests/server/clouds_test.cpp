@@ -6,9 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/server/convert/frames.hpp>
-
-#include "support/wall_messages.hpp"
+#include "server/convert/frames.hpp"
+#include "tests/support/wall_messages.hpp"
 
 namespace bpa::server {
 namespace {

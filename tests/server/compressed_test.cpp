@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/convert/compressed.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/server/convert/compressed.hpp>
-#include <bpa/server/convert/frames.hpp>
-#include <bpa/server/convert/rvl.hpp>
-
-#include "support/depth_codecs.hpp"
+#include "server/convert/frames.hpp"
+#include "server/convert/rvl.hpp"
+#include "tests/support/depth_codecs.hpp"
 
 namespace bpa::server {
 namespace {

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/diagnostics.hpp"
+
 #include <algorithm>
 #include <map>
 
 #include <gtest/gtest.h>
 
-#include <bpa/server/diagnostics.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
+#include "idl/wire/msg/builtin_interfaces.hpp"
 
 namespace bpa::server {
 namespace {

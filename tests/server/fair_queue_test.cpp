@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/fair_queue.hpp"
+
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
-
-#include <bpa/server/fair_queue.hpp>
 
 namespace bpa::server {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/convert/frames.hpp"
+
 #include <functional>
 
 #include <gtest/gtest.h>
 
-#include <bpa/server/convert/frames.hpp>
-
-#include "support/wall_messages.hpp"
+#include "tests/support/wall_messages.hpp"
 
 namespace bpa::server {
 namespace {

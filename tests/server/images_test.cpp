@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/convert/images.hpp"
+
 #include <cmath>
 #include <cstring>
 #include <limits>
 
 #include <gtest/gtest.h>
-
-#include <bpa/server/convert/images.hpp>
 
 namespace bpa::server {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/log_relay.hpp"
+
 #include <condition_variable>
 #include <mutex>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <bpa/server/log_relay.hpp>
-#include <bpa/wire/subscriber.hpp>
-
-#include "support/process.hpp"
+#include "idl/wire/subscriber.hpp"
+#include "tests/support/process.hpp"
 
 namespace bpa::server {
 namespace {

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/parameters.hpp"
+
 #include <algorithm>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include <bpa/server/parameters.hpp>
-#include <bpa/server/settings.hpp>
+#include "server/settings.hpp"
 
 namespace bpa::server {
 namespace {

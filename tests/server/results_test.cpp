@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/convert/results.hpp"
+
 #include <gtest/gtest.h>
 
-#include <bpa/core/geometry/pose.hpp>
-#include <bpa/server/convert/results.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
+#include "core/geometry/pose.hpp"
+#include "idl/wire/msg/builtin_interfaces.hpp"
 
 namespace bpa::server {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/ros_arguments.hpp"
+
 #include <fstream>
 
 #include <gtest/gtest.h>
 
-#include <bpa/server/ros_arguments.hpp>
-
-#include "support/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa::server {
 namespace {

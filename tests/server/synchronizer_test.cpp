@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/capture/synchronizer.hpp"
+
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
-#include <bpa/server/capture/synchronizer.hpp>
-
-#include "support/wall_messages.hpp"
+#include "tests/support/wall_messages.hpp"
 
 namespace bpa::server {
 namespace {

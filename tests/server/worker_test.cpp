@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "server/worker.hpp"
+
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
@@ -8,10 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/server/convert/frames.hpp>
-#include <bpa/server/worker.hpp>
-
-#include "support/wall_messages.hpp"
+#include "server/convert/frames.hpp"
+#include "tests/support/wall_messages.hpp"
 
 namespace bpa::server {
 namespace {

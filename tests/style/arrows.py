@@ -8,7 +8,6 @@ which files may include third-party headers.
 """
 
 import fnmatch
-import os
 import re
 from pathlib import Path
 
@@ -69,18 +68,10 @@ class Rooms:
         return None
 
 
-def included_path(path, bracket, header):
+def included_path(bracket, header):
     """Where an included header of the project lies, relative to the root; None for any other."""
-    if header.startswith(tuple(folder + "/" for folder in CHECKED_FOLDERS)):
+    if bracket == '"' or header.startswith(tuple(folder + "/" for folder in CHECKED_FOLDERS)):
         return header
-    if bracket == '"':
-        return os.path.normpath(Path(path).parent / header)
-    if header.startswith("bpa/core/"):
-        return header[len("bpa/"):]
-    if header.startswith("bpa/wire/"):
-        return "idl/" + header[len("bpa/"):]
-    if header.startswith("bpa/server/"):
-        return header[len("bpa/"):]
     if header.startswith("bpa/"):
         return "client/include/" + header
     return None
@@ -102,13 +93,14 @@ def check_includes(rooms, libraries, path, content):
         return [f"{path}: lies in no room of ARCHITECTURE.md"]
     problems = []
     for bracket, header in INCLUDE.findall(content):
-        target = included_path(path, bracket, header)
+        target = included_path(bracket, header)
         if target is None:
             problems += check_libraries(libraries, path, header)
             continue
         used = rooms.room_of(target)
         if used is None:
-            problems.append(f"{path}: includes {header}, which lies in no room")
+            problems.append(f"{path}: includes {header}, which lies in no room; an include of the "
+                            "project is a path from its root")
         elif used not in rooms.may_use[room]:
             problems.append(f"{path}: {room} may not include {header} of {used}")
     return problems

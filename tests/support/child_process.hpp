@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "support/leftovers.hpp"
+#include "tests/support/leftovers.hpp"
 
 namespace bpa {
 

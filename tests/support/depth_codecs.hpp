@@ -9,7 +9,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "support/wall_messages.hpp"
+#include "tests/support/wall_messages.hpp"
 
 // What a camera's image_transport plugins send, made here for the decoders of the server.
 

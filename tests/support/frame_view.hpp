@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bpa/core/cloud/frame.hpp>
 #include <bpa/types.hpp>
+
+#include "core/cloud/frame.hpp"
 
 namespace bpa::support {
 

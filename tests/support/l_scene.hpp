@@ -7,9 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/detect/scene_features.hpp>
-
-#include "support/posed_models.hpp"
+#include "core/detect/scene_features.hpp"
+#include "tests/support/posed_models.hpp"
 
 namespace bpa::test {
 

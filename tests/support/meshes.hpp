@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <bpa/core/cloud/point_cloud.hpp>
+#include "core/cloud/point_cloud.hpp"
 
 // Simple triangle meshes with known surfaces.
 

@@ -9,11 +9,10 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/model/object_model.hpp>
-
-#include "support/meshes.hpp"
-#include "support/solid_scene.hpp"
+#include "core/base/random.hpp"
+#include "core/model/object_model.hpp"
+#include "tests/support/meshes.hpp"
+#include "tests/support/solid_scene.hpp"
 
 // The same objects as models (from meshes) and as solids to render.
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "support/process.hpp"
+#include "tests/support/process.hpp"
 
 #include <csignal>
 #include <filesystem>
@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "support/leftovers.hpp"
+#include "tests/support/leftovers.hpp"
 
 extern char** environ;
 

@@ -12,10 +12,10 @@
 #include <optional>
 #include <vector>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/cloud/surface_map.hpp>
-#include <bpa/core/geometry/pose.hpp>
+#include "core/base/random.hpp"
+#include "core/cloud/frame.hpp"
+#include "core/cloud/surface_map.hpp"
+#include "core/geometry/pose.hpp"
 
 // Frames of scenes made of boxes, spheres and cylinders, by exact intersection of rays with the
 // solids: nothing of the project's own rendering or geometry is used.

@@ -9,8 +9,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include <bpa/server/ros_arguments.hpp>
-#include <bpa/server/server.hpp>
+#include "server/ros_arguments.hpp"
+#include "server/server.hpp"
 
 namespace {
 

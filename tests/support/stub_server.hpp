@@ -8,9 +8,9 @@
 #include <vector>
 
 #include <bpa/client.hpp>
-#include <bpa/wire/participant.hpp>
 
-#include "support/process.hpp"
+#include "idl/wire/participant.hpp"
+#include "tests/support/process.hpp"
 
 namespace bpa::support {
 

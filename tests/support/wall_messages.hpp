@@ -7,9 +7,9 @@
 #include <memory>
 #include <vector>
 
-#include <bpa/wire/msg/bpa_msgs.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
-#include <bpa/wire/msg/sensor_msgs.hpp>
+#include "idl/wire/msg/bpa_msgs.hpp"
+#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "idl/wire/msg/sensor_msgs.hpp"
 
 // Legal messages of a small camera that looks at a slanted wall, for tests to spoil.
 

@@ -8,13 +8,12 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/publisher.hpp>
-#include <bpa/wire/subscriber.hpp>
-
-#include "support/depth_codecs.hpp"
-#include "support/stub_server.hpp"
-#include "support/wall_messages.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/publisher.hpp"
+#include "idl/wire/subscriber.hpp"
+#include "tests/support/depth_codecs.hpp"
+#include "tests/support/stub_server.hpp"
+#include "tests/support/wall_messages.hpp"
 
 // A ROS 2 style camera in this process (three best-effort topics), the server in another one.
 

@@ -8,18 +8,18 @@
 #include <gtest/gtest.h>
 
 #include <bpa/client.hpp>
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/mesh_file.hpp>
-#include <bpa/core/io/model_file.hpp>
-#include <bpa/core/pipeline/detector.hpp>
-#include <bpa/server/convert/results.hpp>
-#include <bpa/wire/cdr.hpp>
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/service.hpp>
 
-#include "support/frame_view.hpp"
-#include "support/process.hpp"
-#include "support/stub_server.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/io/mesh_file.hpp"
+#include "core/io/model_file.hpp"
+#include "core/pipeline/detector.hpp"
+#include "idl/wire/cdr.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/service.hpp"
+#include "server/convert/results.hpp"
+#include "tests/support/frame_view.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/stub_server.hpp"
 
 // The same frame, library and seed through bpa-server and through the detector itself: the same
 // interpretations, bit for bit, for 1 and 2 threads.

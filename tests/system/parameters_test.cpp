@@ -7,12 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/service.hpp>
-#include <bpa/wire/subscriber.hpp>
-
-#include "support/stub_server.hpp"
-#include "support/wall_messages.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/service.hpp"
+#include "idl/wire/subscriber.hpp"
+#include "tests/support/stub_server.hpp"
+#include "tests/support/wall_messages.hpp"
 
 // What `ros2 param` and `ros2 run ... --ros-args` do, with a server in another process.
 

@@ -6,12 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <bpa/client.hpp>
-#include <bpa/core/io/model_file.hpp>
 
-#include "support/frame_view.hpp"
-#include "support/l_scene.hpp"
-#include "support/process.hpp"
-#include "support/stub_server.hpp"
+#include "core/io/model_file.hpp"
+#include "tests/support/frame_view.hpp"
+#include "tests/support/l_scene.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/stub_server.hpp"
 
 // What a request may narrow down does what it says, through the SDK and a real server.
 

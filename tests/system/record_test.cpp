@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <signal.h>
 
-#include "support/stub_server.hpp"
-#include "support/wall_messages.hpp"
+#include "tests/support/stub_server.hpp"
+#include "tests/support/wall_messages.hpp"
 
 // bpa-client record --to and play as processes, with the stub server.
 

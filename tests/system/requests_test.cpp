@@ -8,11 +8,10 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/service.hpp>
-
-#include "support/stub_server.hpp"
-#include "support/wall_messages.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/service.hpp"
+#include "tests/support/stub_server.hpp"
+#include "tests/support/wall_messages.hpp"
 
 // Requests from another process, good and bad: each gets its answer and the server goes on.
 

@@ -4,4 +4,4 @@
 
 // Status and Result<T>: what every call of the SDK returns. A Status is a code and one sentence; a
 // Result is a value or a Status. Both are [[nodiscard]].
-#include <bpa/core/base/status.hpp>
+#include "core/base/status.hpp"

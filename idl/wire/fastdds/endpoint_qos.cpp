@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "idl/wire/fastdds/endpoint_qos.hpp"
+
 #include <algorithm>
 #include <fstream>
 
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <bpa/wire/fastdds/endpoint_qos.hpp>
 
 namespace bpa::wire::detail {
 

@@ -8,8 +8,8 @@
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 
-#include <bpa/wire/endpoint.hpp>
-#include <bpa/wire/fastdds/version.hpp>
+#include "idl/wire/endpoint.hpp"
+#include "idl/wire/fastdds/version.hpp"
 
 // Private to idl/wire/fastdds, the only folder that includes Fast DDS.
 

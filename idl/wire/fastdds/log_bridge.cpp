@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "idl/wire/fastdds/log_bridge.hpp"
+
 #include <memory>
 
 #include <fastdds/dds/log/Log.hpp>
-
-#include <bpa/wire/fastdds/log_bridge.hpp>
 
 namespace bpa::wire::detail {
 namespace {

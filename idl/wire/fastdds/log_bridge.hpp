@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bpa/core/base/log.hpp>
+#include "core/base/log.hpp"
 
 namespace bpa::wire::detail {
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include "idl/wire/fastdds/matches.hpp"
 
-#include <bpa/wire/fastdds/matches.hpp>
+#include <algorithm>
 
 namespace bpa::wire::detail {
 

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <set>
 
-#include <bpa/wire/endpoint.hpp>
+#include "idl/wire/endpoint.hpp"
 
 namespace bpa::wire::detail {
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <bpa/wire/fastdds/participant_impl.hpp>
-#include <bpa/wire/participant.hpp>
+#include "idl/wire/participant.hpp"
+
+#include "idl/wire/fastdds/participant_impl.hpp"
 
 namespace bpa::wire {
 

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "idl/wire/fastdds/participant_impl.hpp"
+
 #include <cstring>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 
-#include <bpa/wire/fastdds/log_bridge.hpp>
-#include <bpa/wire/fastdds/participant_impl.hpp>
-#include <bpa/wire/fastdds/participant_qos.hpp>
-#include <bpa/wire/msg/rmw_dds_common.hpp>
+#include "idl/wire/fastdds/log_bridge.hpp"
+#include "idl/wire/fastdds/participant_qos.hpp"
+#include "idl/wire/msg/rmw_dds_common.hpp"
 
 #if BPA_FASTDDS_MAJOR < 3
 #include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>

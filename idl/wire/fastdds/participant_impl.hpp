@@ -15,11 +15,11 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
-#include <bpa/wire/fastdds/raw_type.hpp>
-#include <bpa/wire/fastdds/version.hpp>
-#include <bpa/wire/graph.hpp>
-#include <bpa/wire/participant.hpp>
-#include <bpa/wire/worker.hpp>
+#include "idl/wire/fastdds/raw_type.hpp"
+#include "idl/wire/fastdds/version.hpp"
+#include "idl/wire/graph.hpp"
+#include "idl/wire/participant.hpp"
+#include "idl/wire/worker.hpp"
 
 // Private to idl/wire/fastdds, the only folder that includes Fast DDS.
 

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "idl/wire/fastdds/participant_qos.hpp"
+
 #include <cstring>
 
-#include <bpa/wire/fastdds/participant_qos.hpp>
-#include <bpa/wire/fastdds/version.hpp>
+#include "idl/wire/fastdds/version.hpp"
 
 #if BPA_FASTDDS_MAJOR >= 3
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>

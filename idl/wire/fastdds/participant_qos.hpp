@@ -4,8 +4,8 @@
 
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
-#include <bpa/core/base/status.hpp>
-#include <bpa/wire/discovery.hpp>
+#include "core/base/status.hpp"
+#include "idl/wire/discovery.hpp"
 
 // Private to idl/wire/fastdds, the only folder that includes Fast DDS.
 

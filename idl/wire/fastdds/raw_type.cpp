@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <bpa/wire/fastdds/raw_type.hpp>
+#include "idl/wire/fastdds/raw_type.hpp"
 
 namespace bpa::wire::detail {
 namespace {

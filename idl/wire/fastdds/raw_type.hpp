@@ -9,8 +9,8 @@
 
 #include <fastdds/dds/topic/TopicDataType.hpp>
 
-#include <bpa/wire/endpoint.hpp>
-#include <bpa/wire/fastdds/version.hpp>
+#include "idl/wire/endpoint.hpp"
+#include "idl/wire/fastdds/version.hpp"
 
 // Private to idl/wire/fastdds, the only folder that includes Fast DDS.
 

@@ -7,9 +7,9 @@
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
-#include <bpa/wire/fastdds/endpoint_qos.hpp>
-#include <bpa/wire/fastdds/matches.hpp>
-#include <bpa/wire/fastdds/participant_impl.hpp>
+#include "idl/wire/fastdds/endpoint_qos.hpp"
+#include "idl/wire/fastdds/matches.hpp"
+#include "idl/wire/fastdds/participant_impl.hpp"
 
 namespace bpa::wire::detail {
 

@@ -6,9 +6,9 @@
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <sys/statvfs.h>
 
-#include <bpa/wire/fastdds/endpoint_qos.hpp>
-#include <bpa/wire/fastdds/matches.hpp>
-#include <bpa/wire/fastdds/participant_impl.hpp>
+#include "idl/wire/fastdds/endpoint_qos.hpp"
+#include "idl/wire/fastdds/matches.hpp"
+#include "idl/wire/fastdds/participant_impl.hpp"
 
 namespace bpa::wire::detail {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include <bpa/wire/field.hpp>
-#include <bpa/wire/msg/geometry_msgs.hpp>
-#include <bpa/wire/msg/sensor_msgs.hpp>
+#include "idl/wire/field.hpp"
+#include "idl/wire/msg/geometry_msgs.hpp"
+#include "idl/wire/msg/sensor_msgs.hpp"
 // Our own messages. What the fields mean, their units, frames and when they may be empty is said
 // once, in idl/bpa_msgs/msg/*.msg and srv/*.srv.
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <bpa/wire/field.hpp>
-#include <bpa/wire/msg/bpa_msgs.hpp>
-#include <bpa/wire/msg/diagnostic_msgs.hpp>
+#include "idl/wire/field.hpp"
+#include "idl/wire/msg/bpa_msgs.hpp"
+#include "idl/wire/msg/diagnostic_msgs.hpp"
 // Our services. What the fields mean is said in idl/bpa_msgs/srv/*.srv.
 
 namespace bpa::wire::bpa_msgs {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <bpa/wire/msg/std_msgs.hpp>
+#include "idl/wire/msg/std_msgs.hpp"
 
 namespace bpa::wire::diagnostic_msgs {
 

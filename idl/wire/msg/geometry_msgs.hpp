@@ -5,7 +5,7 @@
 #include <array>
 #include <string>
 
-#include <bpa/wire/msg/std_msgs.hpp>
+#include "idl/wire/msg/std_msgs.hpp"
 // Lengths in metres. A pose goes from the named thing's frame to the header's.
 
 namespace bpa::wire::geometry_msgs {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <bpa/wire/field.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
+#include "idl/wire/field.hpp"
+#include "idl/wire/msg/builtin_interfaces.hpp"
 
 namespace bpa::wire::rcl_interfaces {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <bpa/wire/field.hpp>
+#include "idl/wire/field.hpp"
 // What ROS 2 tools know of nodes comes from these, on the topic ros_discovery_info.
 
 namespace bpa::wire::rmw_dds_common {

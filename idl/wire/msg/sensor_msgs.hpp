@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <bpa/wire/msg/std_msgs.hpp>
+#include "idl/wire/msg/std_msgs.hpp"
 
 namespace bpa::wire::sensor_msgs {
 

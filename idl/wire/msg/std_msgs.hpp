@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <bpa/wire/msg/builtin_interfaces.hpp>
+#include "idl/wire/msg/builtin_interfaces.hpp"
 
 namespace bpa::wire::std_msgs {
 

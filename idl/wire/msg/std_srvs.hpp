@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include <bpa/wire/field.hpp>
+#include "idl/wire/field.hpp"
 
 namespace bpa::wire::std_srvs {
 

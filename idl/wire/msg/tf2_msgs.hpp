@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <bpa/wire/msg/geometry_msgs.hpp>
+#include "idl/wire/msg/geometry_msgs.hpp"
 
 namespace bpa::wire::tf2_msgs {
 

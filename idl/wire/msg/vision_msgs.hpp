@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <bpa/wire/msg/geometry_msgs.hpp>
+#include "idl/wire/msg/geometry_msgs.hpp"
 
 namespace bpa::wire::vision_msgs {
 

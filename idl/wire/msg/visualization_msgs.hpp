@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <bpa/wire/msg/geometry_msgs.hpp>
-#include <bpa/wire/msg/sensor_msgs.hpp>
+#include "idl/wire/msg/geometry_msgs.hpp"
+#include "idl/wire/msg/sensor_msgs.hpp"
 
 namespace bpa::wire::visualization_msgs {
 

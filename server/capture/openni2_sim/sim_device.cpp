@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim_device.hpp"
+#include "server/capture/openni2_sim/sim_device.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "sim_stream.hpp"
+#include "server/capture/openni2_sim/sim_stream.hpp"
 
 namespace bpa::sim_driver {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "sim_device.hpp"
+#include "server/capture/openni2_sim/sim_device.hpp"
 
 // The driver: announces the device while it is plugged in, opens and closes it.
 

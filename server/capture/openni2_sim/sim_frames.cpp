@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim_frames.hpp"
+#include "server/capture/openni2_sim/sim_frames.hpp"
 
 #include <cmath>
 #include <filesystem>
 
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/camera_file.hpp>
-#include <bpa/core/io/image_file.hpp>
+#include "core/io/bop_dataset.hpp"
+#include "core/io/camera_file.hpp"
+#include "core/io/image_file.hpp"
 
 namespace bpa::sim_driver {
 namespace {

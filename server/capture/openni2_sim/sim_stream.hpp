@@ -8,8 +8,8 @@
 
 #include <openni2/Driver/OniDriverAPI.h>
 
-#include "sim_config.hpp"
-#include "sim_frames.hpp"
+#include "server/capture/openni2_sim/sim_config.hpp"
+#include "server/capture/openni2_sim/sim_frames.hpp"
 
 namespace bpa::sim_driver {
 

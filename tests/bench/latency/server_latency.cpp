@@ -10,7 +10,7 @@
 #include <mutex>
 #include <vector>
 
-#include "support/stub_server.hpp"
+#include "tests/support/stub_server.hpp"
 
 int main(int argc, char** argv) {
   using Clock = std::chrono::steady_clock;

@@ -6,9 +6,9 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include <bpa/core/align/correspondence.hpp>
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/geometry/pose.hpp>
+#include "core/align/correspondence.hpp"
+#include "core/base/random.hpp"
+#include "core/geometry/pose.hpp"
 
 // Random alignment problems for the tests.
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/align/anisotropy.hpp"
+
 #include <Eigen/Cholesky>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/align/anisotropy.hpp>
-
-#include "core/align/align_problems.hpp"
+#include "tests/core/align/align_problems.hpp"
 
 namespace bpa::align {
 namespace {

@@ -6,11 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/align/anisotropy.hpp>
-#include <bpa/core/align/posterior.hpp>
-#include <bpa/core/bingham/region.hpp>
-
-#include "core/align/align_problems.hpp"
+#include "core/align/anisotropy.hpp"
+#include "core/align/posterior.hpp"
+#include "core/bingham/region.hpp"
+#include "tests/core/align/align_problems.hpp"
 
 // On data drawn from the model, regions of 50, 90 and 95 % hold the truth that often. There are
 // about eighty comparisons with three standard errors, of which one in four hundred fails by

@@ -6,9 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/align/align.hpp>
-
-#include "core/align/align_problems.hpp"
+#include "core/align/align.hpp"
+#include "tests/core/align/align_problems.hpp"
 
 // With positions only, the mode is the rotation of Horn (1987), here by the independent route of
 // Kabsch and Umeyama: a singular value decomposition of the 3x3 cross-covariance.

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/align/iterate.hpp"
+
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/align/convergence.hpp>
-#include <bpa/core/align/iterate.hpp>
-
-#include "core/align/align_problems.hpp"
+#include "core/align/convergence.hpp"
+#include "tests/core/align/align_problems.hpp"
 
 namespace bpa::align {
 namespace {

@@ -4,12 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/align/align.hpp>
-#include <bpa/core/align/moments.hpp>
-#include <bpa/core/bingham/fit.hpp>
-#include <bpa/core/bingham/normalizer.hpp>
-
-#include "core/align/align_problems.hpp"
+#include "core/align/align.hpp"
+#include "core/align/moments.hpp"
+#include "core/bingham/fit.hpp"
+#include "core/bingham/normalizer.hpp"
+#include "tests/core/align/align_problems.hpp"
 
 namespace bpa::align {
 namespace {

@@ -5,9 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/align/align.hpp>
-
-#include "core/align/align_problems.hpp"
+#include "core/align/align.hpp"
+#include "tests/core/align/align_problems.hpp"
 
 // The paper's figure of objects aligned with two correspondences, as numbers: the median error of
 // two oriented pairs beside position-only alignment of 2, 3 and 10 points.

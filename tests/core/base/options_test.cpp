@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/base/options.hpp"
+
 #include <limits>
 
 #include <gtest/gtest.h>
-
-#include <bpa/core/base/options.hpp>
 
 namespace bpa {
 namespace {

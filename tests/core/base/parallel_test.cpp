@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/base/parallel.hpp"
+
 #include <mutex>
 #include <vector>
 
 #include <gtest/gtest.h>
-
-#include <bpa/core/base/parallel.hpp>
 
 namespace bpa {
 namespace {

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/bingham/fit.hpp"
+
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/bingham/fit.hpp>
-#include <bpa/core/bingham/normalizer.hpp>
+#include "core/bingham/normalizer.hpp"
 
 namespace bpa {
 namespace {

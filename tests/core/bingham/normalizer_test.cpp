@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/bingham/normalizer.hpp"
+
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/bingham/normalizer.hpp>
-
-#include "core/bingham/bingham_oracle.hpp"
+#include "tests/core/bingham/bingham_oracle.hpp"
 
 namespace bpa {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/bingham/bingham.hpp>
-#include <bpa/core/bingham/normalizer.hpp>
+#include "core/bingham/bingham.hpp"
+#include "core/bingham/normalizer.hpp"
 
 namespace bpa {
 namespace {

@@ -5,12 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/cli/explain_folder.hpp>
-#include <bpa/core/io/image_file.hpp>
-#include <bpa/core/pipeline/detector.hpp>
-
-#include "support/posed_models.hpp"
-#include "support/temporary_folder.hpp"
+#include "core/cli/explain_folder.hpp"
+#include "core/io/image_file.hpp"
+#include "core/pipeline/detector.hpp"
+#include "tests/support/posed_models.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Models of meshes are what a simulated camera sees of them.
+#include "core/cli/simulated_views.hpp"
+
 #include <gtest/gtest.h>
 
-#include <bpa/core/cli/simulated_views.hpp>
-#include <bpa/core/model/occupancy_grid.hpp>
-
-#include "support/meshes.hpp"
+#include "core/model/occupancy_grid.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace bpa::cli {
 namespace {

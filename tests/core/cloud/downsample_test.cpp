@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
+#include "core/base/random.hpp"
+#include "core/cloud/neighbor_grid.hpp"
 
 namespace bpa {
 namespace {

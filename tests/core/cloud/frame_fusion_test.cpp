@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cloud/frame_fusion.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/cloud/frame_fusion.hpp>
-#include <bpa/core/cloud/surface_map.hpp>
-
-#include "support/solid_scene.hpp"
+#include "core/cloud/surface_map.hpp"
+#include "tests/support/solid_scene.hpp"
 
 namespace bpa {
 namespace {

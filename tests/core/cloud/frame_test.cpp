@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cloud/frame.hpp"
+
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
-
-#include <bpa/core/cloud/frame.hpp>
 
 namespace bpa {
 namespace {

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cloud/neighbor_grid.hpp"
+
 #include <algorithm>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/cloud/neighbor_grid.hpp>
+#include "core/base/random.hpp"
 
 namespace bpa {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cloud/planes.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/cloud/planes.hpp>
-
-#include "support/solid_scene.hpp"
+#include "tests/support/solid_scene.hpp"
 
 namespace bpa {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cloud/surface_break.hpp"
+
 #include <gtest/gtest.h>
 
-#include <bpa/core/cloud/surface_break.hpp>
-
-#include "support/solid_scene.hpp"
+#include "tests/support/solid_scene.hpp"
 
 namespace bpa {
 namespace {

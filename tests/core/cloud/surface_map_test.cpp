@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/cloud/surface_map.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/cloud/surface_map.hpp>
-
-#include "support/solid_scene.hpp"
+#include "tests/support/solid_scene.hpp"
 
 namespace bpa {
 namespace {

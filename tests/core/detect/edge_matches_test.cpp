@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/detect/edge_matches.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/detect/edge_matches.hpp>
-#include <bpa/core/detect/refinement.hpp>
-#include <bpa/core/model/model_index.hpp>
-
-#include "support/posed_models.hpp"
+#include "core/detect/refinement.hpp"
+#include "core/model/model_index.hpp"
+#include "tests/support/posed_models.hpp"
 
 namespace bpa {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/detect/hypotheses.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/detect/hypotheses.hpp>
-
-#include "support/l_scene.hpp"
+#include "tests/support/l_scene.hpp"
 
 namespace bpa {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/detect/pose_prior.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/detect/pose_prior.hpp>
-#include <bpa/core/detect/single_object.hpp>
-
-#include "support/l_scene.hpp"
+#include "core/detect/single_object.hpp"
+#include "tests/support/l_scene.hpp"
 
 namespace bpa {
 namespace {

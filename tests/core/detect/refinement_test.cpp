@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/detect/refinement.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/detect/refinement.hpp>
-#include <bpa/core/model/model_index.hpp>
-
-#include "support/l_scene.hpp"
+#include "core/model/model_index.hpp"
+#include "tests/support/l_scene.hpp"
 
 namespace bpa {
 namespace {

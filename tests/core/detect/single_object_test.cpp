@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/detect/single_object.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
@@ -8,11 +10,9 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/detect/single_object.hpp>
-#include <bpa/core/model/model_index.hpp>
-#include <bpa/core/score/rival_poses.hpp>
-
-#include "support/l_scene.hpp"
+#include "core/model/model_index.hpp"
+#include "core/score/rival_poses.hpp"
+#include "tests/support/l_scene.hpp"
 
 namespace bpa {
 namespace {

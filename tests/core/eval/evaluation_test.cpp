@@ -1,19 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // A data set of two frames whose every figure is worked out by hand.
+#include "core/eval/evaluation.hpp"
+
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <bpa/core/eval/evaluation.hpp>
-#include <bpa/core/eval/matching.hpp>
-#include <bpa/core/eval/report.hpp>
-#include <bpa/core/io/bop_writer.hpp>
-#include <bpa/core/io/image_file.hpp>
-
-#include "support/temporary_folder.hpp"
+#include "core/eval/matching.hpp"
+#include "core/eval/report.hpp"
+#include "core/io/bop_writer.hpp"
+#include "core/io/image_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa::eval {
 namespace {

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Each error against a case worked out by hand.
+#include "core/eval/pose_errors.hpp"
+
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/eval/depth_render.hpp>
-#include <bpa/core/eval/pose_errors.hpp>
+#include "core/eval/depth_render.hpp"
 
 namespace bpa::eval {
 namespace {

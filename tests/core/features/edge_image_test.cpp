@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/features/edge_image.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/cloud/cielab.hpp>
-#include <bpa/core/features/edge_image.hpp>
-
-#include "support/posed_models.hpp"
+#include "core/cloud/cielab.hpp"
+#include "tests/support/posed_models.hpp"
 
 namespace bpa {
 namespace {

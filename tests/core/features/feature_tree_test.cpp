@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/features/feature_tree.hpp"
+
 #include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/features/feature_tree.hpp>
+#include "core/base/random.hpp"
 
 namespace bpa {
 namespace {

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 #include <pcl/features/fpfh.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/features/fpfh.hpp>
+#include "core/base/random.hpp"
+#include "core/features/fpfh.hpp"
 
 namespace bpa {
 namespace {

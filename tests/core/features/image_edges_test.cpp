@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/features/image_edges.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/features/image_edges.hpp>
+#include "core/base/random.hpp"
 
 namespace bpa {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/features/pair_voting.hpp>
-#include <bpa/core/geometry/pose.hpp>
+#include "core/base/random.hpp"
+#include "core/features/pair_voting.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace bpa {
 namespace {

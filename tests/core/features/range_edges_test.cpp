@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/features/range_edges.hpp"
+
 #include <gtest/gtest.h>
 
-#include <bpa/core/features/range_edges.hpp>
-
-#include "support/solid_scene.hpp"
+#include "tests/support/solid_scene.hpp"
 
 namespace bpa {
 namespace {

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/geometry/symmetry.hpp"
+
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/geometry/symmetry.hpp>
+#include "core/base/random.hpp"
 
 namespace bpa {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/io/bop_dataset.hpp"
+
 #include <gtest/gtest.h>
 
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/bop_writer.hpp>
-#include <bpa/core/io/image_file.hpp>
-#include <bpa/core/io/mesh_file.hpp>
-
-#include "support/temporary_folder.hpp"
+#include "core/io/bop_writer.hpp"
+#include "core/io/image_file.hpp"
+#include "core/io/mesh_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa::io {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/io/image_file.hpp"
+
 #include <gtest/gtest.h>
 
-#include <bpa/core/io/frame_file.hpp>
-#include <bpa/core/io/image_file.hpp>
-
-#include "support/temporary_folder.hpp"
+#include "core/io/frame_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa::io {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/io/mesh_file.hpp"
+
 #include <gtest/gtest.h>
 
-#include <bpa/core/io/mesh_file.hpp>
-
-#include "support/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa::io {
 namespace {

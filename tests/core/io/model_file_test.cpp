@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/io/model_file.hpp"
+
 #include <gtest/gtest.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/io/model_file.hpp>
-#include <bpa/core/io/model_index_file.hpp>
-#include <bpa/core/io/occupancy_file.hpp>
-#include <bpa/core/model/model_index.hpp>
-#include <bpa/core/model/occupancy_grid.hpp>
-
-#include "support/meshes.hpp"
-#include "support/temporary_folder.hpp"
+#include "core/base/random.hpp"
+#include "core/io/file_bytes.hpp"
+#include "core/io/model_index_file.hpp"
+#include "core/io/occupancy_file.hpp"
+#include "core/model/model_index.hpp"
+#include "core/model/occupancy_grid.hpp"
+#include "tests/support/meshes.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa::io {
 namespace {

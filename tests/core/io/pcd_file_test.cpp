@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/io/pcd_file.hpp"
+
 #include <cmath>
 #include <limits>
 #include <sstream>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/io/mesh_file.hpp>
-#include <bpa/core/io/pcd_file.hpp>
-
-#include "support/temporary_folder.hpp"
+#include "core/io/mesh_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa::io {
 namespace {

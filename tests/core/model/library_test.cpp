@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
+#include "core/model/library.hpp"
 
-#include <bpa/core/model/library.hpp>
+#include <gtest/gtest.h>
 
 namespace bpa {
 namespace {

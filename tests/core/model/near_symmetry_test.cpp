@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/model/near_symmetry.hpp"
+
 #include <gtest/gtest.h>
 
-#include <bpa/core/model/model_index.hpp>
-#include <bpa/core/model/near_symmetry.hpp>
-
-#include "support/meshes.hpp"
+#include "core/model/model_index.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace bpa {
 namespace {

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/model/noise_model.hpp"
+
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/cloud/surface_map.hpp>
-#include <bpa/core/model/noise_model.hpp>
+#include "core/base/random.hpp"
+#include "core/cloud/surface_map.hpp"
 
 namespace bpa {
 namespace {

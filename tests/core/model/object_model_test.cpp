@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/model/object_model.hpp"
+
 #include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/model/model_index.hpp>
-#include <bpa/core/model/object_model.hpp>
-
-#include "support/meshes.hpp"
+#include "core/model/model_index.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace bpa {
 namespace {

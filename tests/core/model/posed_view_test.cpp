@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Views of a plate with noise that is drawn here, so that what is learned can be compared.
+#include "core/model/posed_view.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/model/occupancy_grid.hpp>
-#include <bpa/core/model/posed_view.hpp>
+#include "core/base/random.hpp"
+#include "core/model/occupancy_grid.hpp"
 
 namespace bpa {
 namespace {

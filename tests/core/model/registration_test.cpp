@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Boxes drawn face by face, laid onto each other from anywhere.
+#include "core/model/registration.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/geometry/symmetry.hpp>
-#include <bpa/core/model/registration.hpp>
+#include "core/geometry/symmetry.hpp"
 
 namespace bpa {
 namespace {

@@ -6,10 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/cloud/neighbor_grid.hpp>
-#include <bpa/core/model/object_model.hpp>
-
-#include "support/meshes.hpp"
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/model/object_model.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace bpa {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/model/symmetry_search.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/model/object_model.hpp>
-#include <bpa/core/model/symmetry_search.hpp>
-
-#include "support/meshes.hpp"
+#include "core/base/random.hpp"
+#include "core/model/object_model.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace bpa {
 namespace {

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Scans drawn ray by ray of shapes that are known in closed form, on a plate in front of a wall.
+#include "core/model/turntable.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/model/turntable.hpp>
+#include "core/base/random.hpp"
 
 namespace bpa {
 namespace {

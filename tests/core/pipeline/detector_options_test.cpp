@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/detector_options.hpp"
+
 #include <algorithm>
 #include <map>
 #include <sstream>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/pipeline/detector_options.hpp>
-
-#include "support/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/detector.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/pipeline/detector.hpp>
-#include <bpa/core/pipeline/frame_trace.hpp>
-
-#include "support/l_scene.hpp"
+#include "core/pipeline/frame_trace.hpp"
+#include "tests/support/l_scene.hpp"
 
 namespace bpa {
 namespace {

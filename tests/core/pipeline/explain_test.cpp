@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/explain.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/pipeline/explain.hpp>
-#include <bpa/core/pipeline/silhouette.hpp>
+#include "core/pipeline/silhouette.hpp"
 
 namespace bpa {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/pose_prior_file.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/io/file_bytes.hpp>
-#include <bpa/core/pipeline/pose_prior_file.hpp>
-
-#include "support/temporary_folder.hpp"
+#include "core/io/file_bytes.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa {
 namespace {

@@ -4,11 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/io/bop_dataset.hpp>
-#include <bpa/core/io/mesh_file.hpp>
-#include <bpa/core/pipeline/detector.hpp>
-
-#include "support/temporary_folder.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/io/mesh_file.hpp"
+#include "core/pipeline/detector.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 // A guard against regressions on a real frame, with wide margins; accuracy is measured elsewhere.
 

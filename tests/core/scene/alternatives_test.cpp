@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/scene/alternatives.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/scene/alternatives.hpp>
-#include <bpa/core/scene/overlaps.hpp>
+#include "core/scene/overlaps.hpp"
 
 namespace bpa {
 namespace {

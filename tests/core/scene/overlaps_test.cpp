@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/scene/overlaps.hpp"
+
 #include <gtest/gtest.h>
 
-#include <bpa/core/scene/overlaps.hpp>
-
-#include "support/posed_models.hpp"
+#include "tests/support/posed_models.hpp"
 
 namespace bpa {
 namespace {

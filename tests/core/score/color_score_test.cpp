@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/color_score.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/cloud/cielab.hpp>
-#include <bpa/core/score/color_score.hpp>
-
-#include "support/posed_models.hpp"
+#include "core/cloud/cielab.hpp"
+#include "tests/support/posed_models.hpp"
 
 namespace bpa {
 namespace {

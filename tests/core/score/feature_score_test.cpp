@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/feature_score.hpp"
+
 #include <cmath>
 #include <numeric>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/model/model_index.hpp>
-#include <bpa/core/score/feature_score.hpp>
-#include <bpa/core/score/pose_check.hpp>
-
-#include "support/posed_models.hpp"
+#include "core/model/model_index.hpp"
+#include "core/score/pose_check.hpp"
+#include "tests/support/posed_models.hpp"
 
 namespace bpa {
 namespace {

@@ -5,10 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/model/model_index.hpp>
-#include <bpa/core/score/score_layer.hpp>
-
-#include "support/posed_models.hpp"
+#include "core/model/model_index.hpp"
+#include "core/score/score_layer.hpp"
+#include "tests/support/posed_models.hpp"
 
 namespace bpa {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/pose_check.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/model/model_index.hpp>
-#include <bpa/core/score/pose_check.hpp>
-
-#include "support/posed_models.hpp"
+#include "core/model/model_index.hpp"
+#include "tests/support/posed_models.hpp"
 
 namespace bpa {
 namespace {

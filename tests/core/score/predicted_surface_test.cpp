@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/predicted_surface.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/score/likelihood.hpp>
-#include <bpa/core/score/predicted_surface.hpp>
-
-#include "support/posed_models.hpp"
+#include "core/score/likelihood.hpp"
+#include "tests/support/posed_models.hpp"
 
 namespace bpa {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/rival_poses.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/score/rival_poses.hpp>
-
-#include "support/posed_models.hpp"
+#include "tests/support/posed_models.hpp"
 
 namespace bpa {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/segment/super_pixels.hpp>
+#include "core/segment/super_pixels.hpp"
 
 namespace bpa {
 namespace {

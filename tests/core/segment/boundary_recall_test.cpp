@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/cloud/blur.hpp>
-#include <bpa/core/cloud/cielab.hpp>
-#include <bpa/core/features/edge_image.hpp>
-#include <bpa/core/segment/super_pixels.hpp>
-#include <bpa/core/sim/scenes.hpp>
+#include "core/cloud/blur.hpp"
+#include "core/cloud/cielab.hpp"
+#include "core/features/edge_image.hpp"
+#include "core/segment/super_pixels.hpp"
+#include "core/sim/scenes.hpp"
 
 // Super-pixels of simulated piles against the true masks of their instances.
 

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/segment/super_pixels.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,12 +10,10 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/cloud/cielab.hpp>
-#include <bpa/core/cloud/surface_break.hpp>
-#include <bpa/core/features/edge_image.hpp>
-#include <bpa/core/segment/super_pixels.hpp>
-
-#include "support/solid_scene.hpp"
+#include "core/cloud/cielab.hpp"
+#include "core/cloud/surface_break.hpp"
+#include "core/features/edge_image.hpp"
+#include "tests/support/solid_scene.hpp"
 
 namespace bpa {
 namespace {

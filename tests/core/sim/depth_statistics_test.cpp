@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Statistics of depth images whose every figure is known.
+#include "core/sim/depth_statistics.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/sim/depth_statistics.hpp>
+#include "core/base/random.hpp"
 
 namespace bpa::sim {
 namespace {

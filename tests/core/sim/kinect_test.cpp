@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/sim/kinect.hpp"
+
 #include <cmath>
 #include <numbers>
 #include <set>
 
 #include <gtest/gtest.h>
-
-#include <bpa/core/sim/kinect.hpp>
 
 namespace bpa::sim {
 namespace {

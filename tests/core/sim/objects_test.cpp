@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/sim/objects.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,8 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/sim/objects.hpp>
+#include "core/base/random.hpp"
 
 namespace bpa::sim {
 namespace {

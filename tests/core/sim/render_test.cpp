@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/sim/render.hpp"
+
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/sim/distance_field.hpp>
-#include <bpa/core/sim/render.hpp>
+#include "core/sim/distance_field.hpp"
 
 namespace bpa::sim {
 namespace {

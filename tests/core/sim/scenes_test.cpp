@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/sim/scenes.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/cloud/frame_fusion.hpp>
-#include <bpa/core/sim/physics.hpp>
-#include <bpa/core/sim/scenes.hpp>
+#include "core/cloud/frame_fusion.hpp"
+#include "core/sim/physics.hpp"
 
 namespace bpa::sim {
 namespace {

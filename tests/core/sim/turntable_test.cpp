@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/sim/turntable.hpp"
+
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
-
-#include <bpa/core/sim/turntable.hpp>
 
 namespace bpa::sim {
 namespace {

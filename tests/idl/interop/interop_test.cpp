@@ -9,14 +9,13 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/publisher.hpp>
-#include <bpa/wire/service.hpp>
-#include <bpa/wire/subscriber.hpp>
-
-#include "idl/wire/domain.hpp"
-#include "idl/wire/fill.hpp"
-#include "support/child_process.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/publisher.hpp"
+#include "idl/wire/service.hpp"
+#include "idl/wire/subscriber.hpp"
+#include "tests/idl/wire/domain.hpp"
+#include "tests/idl/wire/fill.hpp"
+#include "tests/support/child_process.hpp"
 
 namespace bpa::wire {
 namespace {

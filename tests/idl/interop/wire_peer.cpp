@@ -7,12 +7,11 @@
 
 #include <unistd.h>
 
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/publisher.hpp>
-#include <bpa/wire/service.hpp>
-#include <bpa/wire/subscriber.hpp>
-
-#include "idl/wire/domain.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/publisher.hpp"
+#include "idl/wire/service.hpp"
+#include "idl/wire/subscriber.hpp"
+#include "tests/idl/wire/domain.hpp"
 
 int main(int argc, char** argv) {
   using namespace bpa::wire;

@@ -4,7 +4,7 @@
 
 #include <tuple>
 
-#include <bpa/wire/messages.hpp>
+#include "idl/wire/messages.hpp"
 
 namespace bpa::wire {
 

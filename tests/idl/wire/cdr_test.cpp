@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "idl/wire/cdr.hpp"
+
 #include <algorithm>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <bpa/wire/cdr.hpp>
-
-#include "idl/wire/all_types.hpp"
-#include "idl/wire/fill.hpp"
+#include "tests/idl/wire/all_types.hpp"
+#include "tests/idl/wire/fill.hpp"
 
 namespace bpa::wire {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <unistd.h>
 
-#include <bpa/wire/participant.hpp>
+#include "idl/wire/participant.hpp"
 
 namespace bpa::wire {
 

@@ -8,10 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/wire/names.hpp>
-#include <bpa/wire/type_description.hpp>
-
-#include "idl/wire/all_types.hpp"
+#include "idl/wire/names.hpp"
+#include "idl/wire/type_description.hpp"
+#include "tests/idl/wire/all_types.hpp"
 
 namespace bpa::wire {
 namespace {

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-#include <bpa/wire/cdr.hpp>
+#include "idl/wire/cdr.hpp"
 
 namespace bpa::wire {
 

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "idl/wire/graph.hpp"
+
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <bpa/wire/graph.hpp>
-#include <bpa/wire/msg/rmw_dds_common.hpp>
+#include "idl/wire/msg/rmw_dds_common.hpp"
 
 namespace bpa::wire::detail {
 namespace {

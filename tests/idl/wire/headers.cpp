@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Compiled, not run: what users of the SDK may include is C++17.
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/publisher.hpp>
-#include <bpa/wire/service.hpp>
-#include <bpa/wire/subscriber.hpp>
+#include "idl/wire/messages.hpp"
+#include "idl/wire/publisher.hpp"
+#include "idl/wire/service.hpp"
+#include "idl/wire/subscriber.hpp"
 
 static_assert(__cplusplus == 201703L, "the wire's headers are for C++17");
 

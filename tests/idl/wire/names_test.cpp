@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "idl/wire/names.hpp"
+
 #include <cstdlib>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include <bpa/wire/discovery.hpp>
-#include <bpa/wire/names.hpp>
+#include "idl/wire/discovery.hpp"
 
 namespace bpa::wire {
 namespace {

@@ -7,12 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/publisher.hpp>
-#include <bpa/wire/subscriber.hpp>
-
-#include "idl/wire/domain.hpp"
-#include "support/temporary_folder.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/publisher.hpp"
+#include "idl/wire/subscriber.hpp"
+#include "tests/idl/wire/domain.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa::wire {
 namespace {

@@ -10,11 +10,10 @@
 #include <gtest/gtest.h>
 #include <sys/statvfs.h>
 
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/publisher.hpp>
-#include <bpa/wire/subscriber.hpp>
-
-#include "idl/wire/domain.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/publisher.hpp"
+#include "idl/wire/subscriber.hpp"
+#include "tests/idl/wire/domain.hpp"
 
 namespace bpa::wire {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "idl/wire/service.hpp"
+
 #include <chrono>
 #include <future>
 #include <optional>
@@ -9,11 +11,9 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/service.hpp>
-#include <bpa/wire/service_framing.hpp>
-
-#include "idl/wire/domain.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/service_framing.hpp"
+#include "tests/idl/wire/domain.hpp"
 
 namespace bpa::wire {
 namespace {

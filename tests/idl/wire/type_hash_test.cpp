@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/sha256.hpp>
-#include <bpa/wire/type_description.hpp>
+#include "idl/wire/messages.hpp"
+#include "idl/wire/sha256.hpp"
+#include "idl/wire/type_description.hpp"
 
 namespace bpa::wire {
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // The capture thread and its watchdog with a device that behaves as badly as it is told to.
+#include "server/capture/capture.hpp"
+
 #include <atomic>
 #include <condition_variable>
 #include <deque>
@@ -10,9 +12,7 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/server/capture/capture.hpp>
-
-#include "support/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa::server {
 namespace {

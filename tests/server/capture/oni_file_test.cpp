@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is written can be inspected; what is damaged is refused. That OpenNI2 plays what is written
 // is shown by tests/system/openni.
+#include "server/capture/oni_file.hpp"
+
 #include <gtest/gtest.h>
 
-#include <bpa/server/capture/oni_file.hpp>
-
-#include "support/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa::server {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Depth carried over to the colour camera, against closed forms.
+#include "server/capture/registration.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
-
-#include <bpa/server/capture/registration.hpp>
 
 namespace bpa::server {
 namespace {

@@ -9,16 +9,15 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/server/capture/bop_source.hpp>
-#include <bpa/server/capture/camera_publisher.hpp>
-#include <bpa/server/capture/capture_options.hpp>
-#include <bpa/server/capture/frame_pairs.hpp>
-#include <bpa/server/capture/host_clock.hpp>
-#include <bpa/server/capture/usb_sensors.hpp>
-#include <bpa/server/capture/video_mode.hpp>
-#include <bpa/server/options.hpp>
-
-#include "support/temporary_folder.hpp"
+#include "server/capture/bop_source.hpp"
+#include "server/capture/camera_publisher.hpp"
+#include "server/capture/capture_options.hpp"
+#include "server/capture/frame_pairs.hpp"
+#include "server/capture/host_clock.hpp"
+#include "server/capture/usb_sensors.hpp"
+#include "server/capture/video_mode.hpp"
+#include "server/options.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa::server {
 namespace {

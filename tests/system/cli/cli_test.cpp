@@ -11,15 +11,14 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
-#include <bpa/core/base/random.hpp>
-#include <bpa/core/eval/depth_render.hpp>
-#include <bpa/core/io/bop_writer.hpp>
-#include <bpa/core/io/camera_file.hpp>
-#include <bpa/core/io/image_file.hpp>
-#include <bpa/core/io/mesh_file.hpp>
-#include <bpa/core/io/results.hpp>
-
-#include "support/temporary_folder.hpp"
+#include "core/base/random.hpp"
+#include "core/eval/depth_render.hpp"
+#include "core/io/bop_writer.hpp"
+#include "core/io/camera_file.hpp"
+#include "core/io/image_file.hpp"
+#include "core/io/mesh_file.hpp"
+#include "core/io/results.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa {
 namespace {

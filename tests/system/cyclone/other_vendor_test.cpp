@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include "support/cyclone.hpp"
-#include "support/stub_server.hpp"
+#include "tests/support/cyclone.hpp"
+#include "tests/support/stub_server.hpp"
 
 // A robot on Eclipse Cyclone DDS that has our .idl and nothing else of us, and our server.
 

@@ -7,11 +7,10 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/service.hpp>
-
-#include "support/cyclone.hpp"
-#include "support/stub_server.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/service.hpp"
+#include "tests/support/cyclone.hpp"
+#include "tests/support/stub_server.hpp"
 
 // 200 requests in both framings while bad clients misbehave: every one is answered.
 

@@ -3,7 +3,7 @@
 #include <iostream>
 #include <string>
 
-#include <bpa/wire/names.hpp>
+#include "idl/wire/names.hpp"
 
 int main() {
   const std::string name = bpa::wire::dds_request_topic_name("/bpa/detect");

@@ -14,11 +14,10 @@
 #include <thread>
 #include <vector>
 
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/publisher.hpp>
-#include <bpa/wire/subscriber.hpp>
-
-#include "support/stub_server.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/publisher.hpp"
+#include "idl/wire/subscriber.hpp"
+#include "tests/support/stub_server.hpp"
 
 namespace {
 

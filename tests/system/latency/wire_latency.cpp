@@ -13,12 +13,11 @@
 #include <thread>
 #include <vector>
 
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/publisher.hpp>
-#include <bpa/wire/subscriber.hpp>
-
-#include "idl/wire/domain.hpp"
-#include "support/child_process.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/publisher.hpp"
+#include "idl/wire/subscriber.hpp"
+#include "tests/idl/wire/domain.hpp"
+#include "tests/support/child_process.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 // comes back is taken up again.
 #include <gtest/gtest.h>
 
-#include "sim_sensor.hpp"
+#include "tests/system/openni/sim_sensor.hpp"
 
 namespace bpa {
 namespace {

@@ -8,13 +8,12 @@
 
 #include <gtest/gtest.h>
 
-#include <bpa/core/io/mesh_file.hpp>
-#include <bpa/core/io/model_file.hpp>
-#include <bpa/wire/cdr.hpp>
-#include <bpa/wire/msg/builtin_interfaces.hpp>
-
-#include "sim_sensor.hpp"
-#include "support/posed_models.hpp"
+#include "core/io/mesh_file.hpp"
+#include "core/io/model_file.hpp"
+#include "idl/wire/cdr.hpp"
+#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "tests/support/posed_models.hpp"
+#include "tests/system/openni/sim_sensor.hpp"
 
 namespace bpa {
 namespace {

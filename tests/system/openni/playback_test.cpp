@@ -3,7 +3,7 @@
 // Recordings and data sets as cameras: all frames, some, again and again, and damaged files.
 #include <gtest/gtest.h>
 
-#include "sim_sensor.hpp"
+#include "tests/system/openni/sim_sensor.hpp"
 
 namespace bpa {
 namespace {

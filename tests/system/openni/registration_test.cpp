@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_sensor.hpp"
+#include "tests/system/openni/sim_sensor.hpp"
 
 namespace bpa {
 namespace {

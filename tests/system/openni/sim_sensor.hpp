@@ -21,16 +21,16 @@
 #include <vector>
 
 #include <bpa/client.hpp>
-#include <bpa/core/cloud/frame.hpp>
-#include <bpa/core/io/bop_writer.hpp>
-#include <bpa/core/io/camera_file.hpp>
-#include <bpa/core/io/image_file.hpp>
-#include <bpa/wire/messages.hpp>
-#include <bpa/wire/subscriber.hpp>
 
-#include "support/process.hpp"
-#include "support/stub_server.hpp"
-#include "support/temporary_folder.hpp"
+#include "core/cloud/frame.hpp"
+#include "core/io/bop_writer.hpp"
+#include "core/io/camera_file.hpp"
+#include "core/io/image_file.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/subscriber.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/stub_server.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 // A simulated OpenNI2 sensor (libBpaSim.so in the real OpenNI2), servers that open it, and what
 // other processes hear of it.

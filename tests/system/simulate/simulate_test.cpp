@@ -6,9 +6,8 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
-#include <bpa/core/io/bop_dataset.hpp>
-
-#include "support/temporary_folder.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace bpa {
 namespace {
