@@ -31,9 +31,7 @@ function(bpa_install_libraries component)
   endif()
 endfunction()
 
-# Every room but the program's own.
 get_property(bpa_rooms GLOBAL PROPERTY BPA_CORE_ROOMS)
-list(REMOVE_ITEM bpa_rooms bpa_core_cli)
 add_library(bpa_core INTERFACE)
 add_library(bpa::core ALIAS bpa_core)
 set_target_properties(bpa_core PROPERTIES EXPORT_NAME core)
@@ -51,7 +49,7 @@ endforeach()
 
 set(bpa_header_folder ${CMAKE_INSTALL_INCLUDEDIR}/bpa)
 install(DIRECTORY core DESTINATION ${bpa_header_folder} COMPONENT core
-        FILES_MATCHING PATTERN "*.hpp" PATTERN "cli" EXCLUDE PATTERN "base" EXCLUDE)
+        FILES_MATCHING PATTERN "*.hpp" PATTERN "base" EXCLUDE)
 install(DIRECTORY core/base DESTINATION ${bpa_header_folder}/core COMPONENT sdk
         FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY idl/wire DESTINATION ${bpa_header_folder} COMPONENT sdk

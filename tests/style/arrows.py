@@ -13,7 +13,7 @@ from pathlib import Path
 
 import tree
 
-CHECKED_FOLDERS = ("core", "idl", "client", "server")
+CHECKED_FOLDERS = ("core", "idl", "client", "server", "tools")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 USES = re.compile(r"\bUSES\b([^)]*?)(?=\b(?:SOURCES|PUBLIC_LIBS|PRIVATE_LIBS)\b|\))")
 

@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// What bpa detect --explain writes, against the trace that it is written from.
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "core/io/image_file.hpp"
+#include "core/pipeline/detector.hpp"
+#include "tests/support/posed_models.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tools/explain_folder.hpp"
+
+namespace bpa {
+namespace {
+
+using cli::ExplainedFrame;
+using cli::ExplainFolder;
+
+constexpr const char* kModelPictures[] = {
+    "03_sampled.png", "04_free_space.png",   "05_clusters.png", "06_round_two.png",
+    "07_aligned.png", "08_climbed.png",      "09_turned.png",   "10_final.png",
+    "11_best.png",    "12_best_segments.png"};
+
+/// An L on a table, and a brick that is not there.
+class Explain : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    l_ = test::l_model();
+    brick_ = test::brick_model();
+    const Pose camera_from_world = test::look_at({0.1, -0.6, 0.5}, {0, 0, 0});
+    truth_ = {{1, camera_from_world * test::standing_at(-0.08, 0, 0.02, 0.7), 1.0}};
+    const auto solids = test::together({test::table(camera_from_world)},
+                                       test::l_solids(truth_[0].camera_from_object));
+    frame_ = test::render(solids, test::kinect_camera(), 1, 8).frame;
+  }
+  static void TearDownTestSuite() {
+    l_.reset();
+    brick_.reset();
+  }
+
+  void search(const std::vector<std::shared_ptr<const ObjectModel>>& models, double budget_ms = 0) {
+    const auto library = std::make_shared<ModelLibrary>();
+    for (const auto& model : models) ASSERT_TRUE(library->add(model).ok());
+    DetectRequest request;
+    request.budget_ms = budget_ms;
+    trace_ = {};
+    auto result = Detector(library, {}).detect(frame_, request, &trace_);
+    ASSERT_TRUE(result.ok()) << result.status().message;
+    result_ = std::move(*result);
+  }
+  ExplainedFrame explained(const std::string& name = "000001_000002") const {
+    return {"scene 1 image 2", name, frame_, trace_, result_, default_score_layers(), truth_};
+  }
+  void expect_picture(const std::string& path) const {
+    const auto image = io::read_color_image(folder_ / path);
+    ASSERT_TRUE(image.ok()) << image.status().message;
+    EXPECT_GE(image->width, frame_.camera.width);
+  }
+  std::string page(const std::string& path) const { return test::slurp(folder_ / path); }
+
+  static inline std::shared_ptr<const ObjectModel> l_, brick_;
+  static inline std::vector<io::BopInstance> truth_;
+  static inline Frame frame_;
+  FrameTrace trace_;
+  SceneInterpretations result_;
+  const test::TemporaryFolder folder_;
+};
+
+std::string cell(const std::string& text) { return "<td>" + text + "</td>"; }
+
+TEST_F(Explain, OneModelIsOneFolderWhosePageAgreesWithTheTrace) {
+  search({l_});
+  ExplainFolder folder(folder_ / "out", false);
+  ASSERT_TRUE(folder.add(explained()).ok());
+  ASSERT_TRUE(folder.finish().ok());
+  expect_picture("out/01_edges.png");
+  expect_picture("out/02_super_pixels.png");
+  const std::string text = page("out/index.html");
+  for (const char* picture : kModelPictures) {
+    expect_picture(std::string("out/") + picture);
+    EXPECT_NE(text.find(std::string("src=\"") + picture), std::string::npos) << picture;
+  }
+  for (const ObjectTrace::Stage& stage : trace_.objects.at(0).stages) {
+    EXPECT_NE(text.find(cell(stage.name) + cell(std::to_string(stage.poses.size()))),
+              std::string::npos)
+        << stage.name;
+    for (const Dropped& dropped : stage.dropped) {
+      EXPECT_NE(text.find(std::to_string(dropped.poses.size()) + " " + dropped.reason),
+                std::string::npos)
+          << stage.name << ": " << dropped.reason;
+    }
+  }
+  EXPECT_NE(text.find("It is truly there 1 time"), std::string::npos);
+  EXPECT_NE(text.find("holds it."), std::string::npos);
+  // Every number that the score layer adds up is there, and they add up.
+  ASSERT_FALSE(trace_.candidates.empty());
+  const Candidate& best = trace_.candidates.front();
+  const ScoreFeatures features = score_features(best.components);
+  const ScoreLayer& layer = default_score_layers().last_for(best.components);
+  double sum = layer.bias;
+  const std::size_t table = text.find("adds to the log odds</th>");
+  ASSERT_NE(table, std::string::npos);
+  for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
+    const double part = layer.components[i].at(features[i]);
+    sum += part;
+    const std::size_t row = text.find("<tr>" + cell(score_feature_names()[i]), table);
+    ASSERT_NE(row, std::string::npos) << score_feature_names()[i];
+    const std::string line = text.substr(row, text.find("</tr>", row) - row);
+    EXPECT_NE(line.find(cell(cli::fixed(features[i], 4))), std::string::npos) << line;
+    EXPECT_NE(line.find(cell(cli::fixed(part, 3))), std::string::npos) << line;
+  }
+  EXPECT_NEAR(sum, best.score, 1e-9);
+  EXPECT_NE(text.find(cell("sum") + cell("") + cell("") + cell(cli::fixed(best.score, 3))),
+            std::string::npos);
+  for (const ScoreComponent& component : to_placement(best).components) {
+    EXPECT_NE(text.find(cell(component.name) + cell(cli::fixed(component.value, 4))),
+              std::string::npos)
+        << component.name;
+  }
+}
+
+TEST_F(Explain, SeveralModelsHaveAFolderEach) {
+  search({l_, brick_});
+  ExplainFolder folder(folder_ / "out", false);
+  ASSERT_TRUE(folder.add(explained()).ok());
+  ASSERT_TRUE(folder.finish().ok());
+  expect_picture("out/01_edges.png");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/03_sampled.png"));
+  const std::string text = page("out/index.html");
+  for (const char* name : {"l", "brick"}) {
+    expect_picture(std::string("out/") + name + "/10_final.png");
+    EXPECT_NE(text.find("href=\"" + std::string(name) + "/index.html\""), std::string::npos);
+    EXPECT_FALSE(page(std::string("out/") + name + "/index.html").empty());
+  }
+  EXPECT_NE(page("out/brick/index.html").find("The model is not truly there."), std::string::npos);
+}
+
+TEST_F(Explain, SeveralFramesHaveAFolderEach) {
+  search({l_});
+  ExplainFolder folder(folder_ / "out", true);
+  ASSERT_TRUE(folder.add(explained("000001_000002")).ok());
+  ASSERT_TRUE(folder.add(explained("000001_000003")).ok());
+  ASSERT_TRUE(folder.finish().ok());
+  const std::string text = page("out/index.html");
+  for (const std::string name : {"000001_000002", "000001_000003"}) {
+    expect_picture("out/" + name + "/03_sampled.png");
+    EXPECT_NE(text.find("href=\"" + name + "/index.html\""), std::string::npos);
+  }
+}
+
+TEST_F(Explain, AModelThatTimeWasTooShortForIsSaid) {
+  search({l_, brick_}, 1e-6);
+  ASSERT_TRUE(result_.budget_exhausted);
+  ExplainFolder folder(folder_ / "out", false);
+  ASSERT_TRUE(folder.add(explained()).ok());
+  EXPECT_NE(page("out/brick/index.html").find("time budget was exhausted"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/brick/03_sampled.png"));
+}
+
+TEST_F(Explain, AFolderThatCannotBeMadeIsNamed) {
+  search({l_});
+  test::spill(folder_ / "file", "");
+  ExplainFolder folder(folder_ / "file/out", false);
+  const Status status = folder.add(explained());
+  EXPECT_EQ(status.code, StatusCode::unavailable);
+  EXPECT_NE(status.message.find("file/out"), std::string::npos) << status.message;
+}
+
+}  // namespace
+}  // namespace bpa

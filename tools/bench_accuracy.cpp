@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// bpa bench accuracy: how many of the true placements are still alive after each stage.
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/eval/pose_errors.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/io/file_bytes.hpp"
+#include "core/pipeline/detector.hpp"
+#include "core/pipeline/frame_trace.hpp"
+#include "core/pipeline/score_layer_file.hpp"
+#include "tools/bench.hpp"
+#include "tools/detection_files.hpp"
+#include "tools/progress.hpp"
+
+namespace bpa::cli {
+namespace {
+
+struct AccuracyArguments {
+  CommonOptions common;
+  std::string library, bop, split = "test", config, json;
+  std::vector<int> scenes;
+  double min_visible = 0.1;
+};
+
+// For some instances: how many there were, and how many were alive after each stage.
+struct Survival {
+  int instances = 0;
+  std::vector<int> alive;
+
+  void add(const std::vector<bool>& flags) {
+    alive.resize(std::max(alive.size(), flags.size()));
+    ++instances;
+    for (std::size_t i = 0; i < flags.size(); ++i) alive[i] += flags[i];
+  }
+};
+
+struct Tally {
+  std::vector<std::string> stages;
+  std::map<std::string, Survival> by_object;
+  Survival all;
+  std::map<std::string, double> milliseconds;  // Summed over frames (and models, within a model).
+  std::vector<std::string> order;              // Of `milliseconds`.
+  int reported = 0, right = 0, frames = 0;
+
+  void add_time(const std::string& stage, double value) {
+    if (!milliseconds.contains(stage)) order.push_back(stage);
+    milliseconds[stage] += value;
+  }
+};
+
+const ObjectTrace* trace_of(const FrameTrace& trace, int number, SymmetryGroup& symmetry) {
+  for (std::size_t m = 0; m < trace.models.size(); ++m) {
+    if (trace.models[m]->number != number) continue;
+    symmetry = trace.models[m]->symmetry;
+    return &trace.objects[m];
+  }
+  return nullptr;
+}
+
+bool holds(const Interpretation& interpretation, const io::BopInstance& truth,
+           const SymmetryGroup& symmetry) {
+  return std::any_of(
+      interpretation.placements.begin(), interpretation.placements.end(), [&](const Placement& p) {
+        return p.model_number == truth.obj_id &&
+               eval::is_right(p.camera_from_object, truth.camera_from_object, symmetry);
+      });
+}
+
+void add_instance(const io::BopInstance& truth, const FrameTrace& trace,
+                  const SceneInterpretations& result, Tally& tally) {
+  SymmetryGroup symmetry;
+  const ObjectTrace* object = trace_of(trace, truth.obj_id, symmetry);
+  if (!object) return;
+  tally.stages.clear();
+  std::vector<bool> alive;
+  for (const ObjectTrace::Stage& stage : object->stages) {
+    tally.stages.emplace_back(stage.name);
+    alive.push_back(std::any_of(stage.poses.begin(), stage.poses.end(), [&](const FastPose& pose) {
+      return eval::is_right(to_pose(pose), truth.camera_from_object, symmetry);
+    }));
+  }
+  const auto& ranked = result.interpretations;
+  tally.stages.insert(tally.stages.end(), {"best 20", "best"});
+  alive.push_back(std::any_of(ranked.begin(), ranked.end(),
+                              [&](const Interpretation& i) { return holds(i, truth, symmetry); }));
+  alive.push_back(holds(ranked.front(), truth, symmetry));
+  tally.all.add(alive);
+  tally.by_object[io::bop_object_name(truth.obj_id)].add(alive);
+}
+
+void add_reported(const std::vector<io::BopInstance>& truth, const FrameTrace& trace,
+                  const Interpretation& best, Tally& tally) {
+  for (const Placement& placement : best.placements) {
+    ++tally.reported;
+    tally.right += std::any_of(truth.begin(), truth.end(), [&](const io::BopInstance& instance) {
+      SymmetryGroup symmetry;
+      return instance.obj_id == placement.model_number &&
+             trace_of(trace, instance.obj_id, symmetry) &&
+             eval::is_right(placement.camera_from_object, instance.camera_from_object, symmetry);
+    });
+  }
+}
+
+void add_times(const FrameTrace& trace, const SceneInterpretations& result, Tally& tally) {
+  for (const StageTiming& timing : result.timings) {
+    if (timing.stage == "objects") {
+      for (const ObjectTrace& object : trace.objects) {
+        for (const auto& stage : object.stages) {
+          tally.add_time(std::string("objects: ") + stage.name, stage.milliseconds);
+        }
+      }
+    }
+    tally.add_time(timing.stage, timing.milliseconds);
+  }
+}
+
+void print_row(const std::string& name, const Survival& survival) {
+  std::printf("%-18s %5d", name.c_str(), survival.instances);
+  for (int count : survival.alive) {
+    std::printf("  %9.1f %%", 100.0 * count / std::max(1, survival.instances));
+  }
+  std::printf("\n");
+}
+
+void print_tally(const Tally& tally) {
+  std::printf("Instances for which a right pose (2.5 cm, pi/16, modulo symmetry) is alive after\n");
+  std::printf("%-18s %5s", "object", "all");
+  for (const std::string& stage : tally.stages) std::printf("  %11s", stage.c_str());
+  std::printf("\n");
+  for (const auto& [name, survival] : tally.by_object) print_row(name, survival);
+  print_row("all", tally.all);
+  std::printf("best interpretation: %d of %d reported are right\n", tally.right, tally.reported);
+  std::printf(
+      "mean milliseconds a frame (stages of objects summed over models, on one core each)\n");
+  for (const std::string& stage : tally.order) {
+    std::printf("  %-22s %9.1f\n", stage.c_str(),
+                tally.milliseconds.at(stage) / std::max(1, tally.frames));
+  }
+}
+
+nlohmann::json to_json(const Tally& tally) {
+  const auto survival = [&](const Survival& s) {
+    nlohmann::json out = {{"instances", s.instances}};
+    for (std::size_t i = 0; i < s.alive.size(); ++i) out[tally.stages[i]] = s.alive[i];
+    return out;
+  };
+  nlohmann::json objects, times;
+  for (const auto& [name, s] : tally.by_object) objects[name] = survival(s);
+  for (const auto& [stage, sum] : tally.milliseconds) times[stage] = sum / tally.frames;
+  return {{"experiment", "bpa bench accuracy"}, {"frames", tally.frames},
+          {"alive", survival(tally.all)},       {"objects", objects},
+          {"reported", tally.reported},         {"right", tally.right},
+          {"mean_milliseconds", times}};
+}
+
+Status bench_accuracy(const AccuracyArguments& a) {
+  DetectorOptions options;
+  if (!a.config.empty()) {
+    const Result<DetectorOptions> loaded = load_detector_options(a.config);
+    if (!loaded.ok()) return loaded.status();
+    options = *loaded;
+  }
+  const auto library = load_detection_library(a.library, {}, a.common.threads);
+  if (!library.ok()) return library.status();
+  const auto frames = io::read_bop_frames(a.bop, a.split, a.scenes);
+  if (!frames.ok()) return frames.status();
+  Result<ScoreLayers> layers = library_score_layers(a.library);
+  if (!layers.ok()) return layers.status();
+  const Detector detector(*library, options, std::move(*layers));
+  DetectRequest request;
+  request.seed = a.common.seed;
+  request.num_threads = a.common.threads;
+  Tally tally;
+  Progress progress("frames", static_cast<int>(frames->size()));
+  for (const io::BopFrame& entry : *frames) {
+    progress.show(tally.frames++);
+    Result<Frame> frame = io::load_bop_frame(entry);
+    if (!frame.ok()) return frame.status();
+    clean_depth(*frame);
+    FrameTrace trace;
+    const Result<SceneInterpretations> result = detector.detect(*frame, request, &trace);
+    if (!result.ok()) return result.status();
+    for (const io::BopInstance& instance : entry.truth) {
+      if (instance.visible_fraction < a.min_visible) continue;
+      add_instance(instance, trace, *result, tally);
+    }
+    add_reported(entry.truth, trace, result->interpretations.front(), tally);
+    add_times(trace, *result, tally);
+  }
+  progress.clear();
+  print_tally(tally);
+  return a.json.empty() ? Status() : io::write_file(a.json, to_json(tally).dump(2) + "\n");
+}
+
+}  // namespace
+
+void add_bench_accuracy(CLI::App& bench, Action& action) {
+  CLI::App& command = *bench.add_subcommand(
+      "accuracy", "Where on its way through the detector a true placement is lost");
+  const auto a = std::make_shared<AccuracyArguments>();
+  command.add_option("--bop", a->bop, "Folder of a BOP data set with truth")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("--library", a->library, "Folder of the model library")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("--split", a->split, "Split of the data set")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command.add_option("--scenes", a->scenes, "Scenes of the split, such as 1,4; all if not given")
+      ->delimiter(',')
+      ->type_name("LIST");
+  command.add_option("--config", a->config, "Detector options as YAML")->type_name("FILE");
+  command.add_option("--min-visible", a->min_visible, "Leave out instances less visible")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option("--json", a->json, "Write the table as JSON")->type_name("FILE");
+  add_common_options(command, a->common);
+  command.callback([&action, a] { action = [a] { return bench_accuracy(*a); }; });
+}
+
+}  // namespace bpa::cli

@@ -1,0 +1,299 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// bpa bench models: models made from turntable scans against the true meshes.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <sys/resource.h>
+
+#include "core/base/stopwatch.hpp"
+#include "core/cloud/neighbor_grid.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/io/mesh_file.hpp"
+#include "core/io/model_file.hpp"
+#include "core/model/symmetry_search.hpp"
+#include "core/model/view_sphere.hpp"
+#include "tools/bench.hpp"
+#include "tools/bench_model_noise.hpp"
+#include "tools/command.hpp"
+#include "tools/scan_files.hpp"
+
+namespace bpa::cli {
+namespace {
+
+struct ModelsArguments {
+  CommonOptions common;
+  std::vector<std::string> scans;
+  std::string split = "test";
+  std::string plots, library;  // where to write; empty = nowhere
+  double step_deg = 10;
+};
+
+double quantile(std::vector<float> values, double q) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return static_cast<double>(*place);
+}
+
+/// The distance of each point to a densely sampled surface: to the tangent plane of the nearest
+/// sample that faces the same way; infinite beyond 2 cm.
+std::vector<float> distances(const PointCloud& points, const PointCloud& surface) {
+  constexpr float kReach = 0.02f, kSampling = 0.002f;
+  const NeighborGrid near(surface.points, 0.005f), far(surface.points, kReach);
+  std::vector<float> out;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    float squared = kReach * kReach, distance = std::numeric_limits<float>::infinity();
+    const auto consider = [&](int k, float d) {
+      const auto j = static_cast<std::size_t>(k);
+      if (d >= squared || surface.normals[j].dot(points.normals[i]) < 0.2f) return;
+      squared = d;
+      const float off = std::abs(surface.normals[j].dot(points.points[i] - surface.points[j]));
+      const float along = std::sqrt(std::max(0.0f, d - off * off));
+      distance = along < kSampling ? off : std::sqrt(d);
+    };
+    near.for_each_neighbor(points.points[i], consider);
+    if (distance > 1) far.for_each_neighbor(points.points[i], consider);
+    out.push_back(distance);
+  }
+  return out;
+}
+
+PointCloud moved(const PointCloud& cloud, const Pose& pose) {
+  PointCloud out = cloud;
+  const Eigen::Matrix3f r = pose.matrix().cast<float>();
+  for (auto& p : out.points) p = r * p + pose.translation.cast<float>();
+  for (auto& n : out.normals) n = r * n;
+  return out;
+}
+
+/// The part of the surface (mesh frame) that the images of the scan could show, whether or not the
+/// sensor measured it: in sight, not more slanted than 75 degrees.
+PointCloud in_sight(const PointCloud& surface, const std::vector<io::BopFrame>& frames) {
+  std::vector<std::uint8_t> seen(surface.size(), 0);
+  for (const io::BopFrame& frame : frames) {
+    if (frame.truth.empty()) continue;
+    const Eigen::Vector3f eye =
+        frame.truth[0].camera_from_object.inverse().translation.cast<float>();
+    for (const std::uint32_t i : render_from(surface, eye, 0.002f).visible) {
+      seen[i] |= surface.normals[i].dot((eye - surface.points[i]).normalized()) > 0.26f;
+    }
+  }
+  PointCloud out;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (!seen[i]) continue;
+    out.points.push_back(surface.points[i]);
+    out.normals.push_back(surface.normals[i]);
+  }
+  return out;
+}
+
+/// How far the found centre of rotation is from the axis about which the truth turns.
+double axis_error(const Eigen::Vector3d& centre, const Pose& first, const Pose& later) {
+  const Pose motion = later * first.inverse();
+  const Eigen::Vector3d axis = vector_from_rotation(motion.rotation).normalized();
+  const Eigen::Vector3d off = motion * centre - centre;  // 2 sin(angle / 2) times the distance
+  const double angle = vector_from_rotation(motion.rotation).norm();
+  return (off - off.dot(axis) * axis).norm() / (2 * std::sin(0.5 * angle));
+}
+
+/// What a scan was simulated of.
+struct Truth {
+  std::string name;
+  std::vector<io::BopFrame> frames;
+  PointCloud surface;  // of the mesh, a point each millimetre
+
+  const Pose& camera_from_mesh(std::size_t frame) const {
+    return frames[frame].truth[0].camera_from_object;
+  }
+};
+
+Result<Truth> read_truth(const std::string& folder, const std::string& split) {
+  auto frames = io::read_bop_frames(folder, split);
+  if (!frames.ok()) return frames.status();
+  for (const io::BopFrame& frame : *frames) {
+    if (frame.truth.empty()) return Status(StatusCode::not_found, "frames without truth");
+  }
+  const auto models = io::read_bop_models(folder);
+  if (!models.ok()) return models.status();
+  const auto mesh = io::read_mesh(models->front().path, 0.001);
+  if (!mesh.ok()) return mesh.status();
+  ModelOptions fine;
+  fine.spacing_m = 0.001;
+  auto surface = model_source_from_mesh(*mesh, "truth", 1, fine);
+  if (!surface.ok()) return surface.status();
+  return Truth{models->front().name, std::move(*frames), std::move(surface->surface)};
+}
+
+void print_axes(const AlignedScan& scan, const Truth& truth) {
+  std::size_t first = 0;
+  for (const RestingPosition& position : scan.positions) {
+    // The truth of this position: its first frame and one a quarter turn later.
+    const std::size_t later = std::min(first + 9, truth.frames.size() - 1);
+    std::printf("  axis off by %.2f mm, step %.3f degrees\n",
+                1000 * axis_error(position.centre, truth.camera_from_mesh(first),
+                                  truth.camera_from_mesh(later)),
+                position.step_deg);
+    const int scene = truth.frames[first].scene_id;
+    while (first + 1 < truth.frames.size() && truth.frames[first].scene_id == scene) ++first;
+  }
+}
+
+/// How far the poses of the views are from the truth.
+void print_poses(const AlignedScan& scan, const Truth& truth, const Pose& mesh_from_model) {
+  double worst = 0, worst_angle = 0;
+  for (const PosedView& view : scan.views) {
+    const Pose there = truth.camera_from_mesh(static_cast<std::size_t>(view.id));
+    const Pose error = there.inverse() * view.camera_from_object * mesh_from_model.inverse();
+    worst = std::max(worst, error.translation.norm());
+    worst_angle = std::max(worst_angle, vector_from_rotation(error.rotation).norm());
+  }
+  std::printf("  poses within %.2f mm and %.2f degrees of the truth (symmetries not considered)\n",
+              1000 * worst, worst_angle * 180 / M_PI);
+}
+
+double share_within(const std::vector<float>& distances, float most) {
+  const auto near =
+      std::count_if(distances.begin(), distances.end(), [most](float d) { return d <= most; });
+  return static_cast<double>(near) /
+         static_cast<double>(std::max<std::size_t>(1, distances.size()));
+}
+
+/// The points of walls: those with a point that faces the other way right behind them, and how far
+/// behind it is.
+struct Walls {
+  PointCloud points;
+  std::vector<float> thickness;
+};
+
+Walls walls_of(const PointCloud& surface, float thickest) {
+  constexpr float kAside = 0.002f;
+  const NeighborGrid grid(surface.points, thickest + kAside);
+  Walls out;
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    const Eigen::Vector3f &p = surface.points[i], &n = surface.normals[i];
+    float nearest = kAside * kAside, thickness = -1;
+    grid.for_each_neighbor(p, [&](int k, float) {
+      const auto j = static_cast<std::size_t>(k);
+      const Eigen::Vector3f to = surface.points[j] - p;
+      const float behind = -n.dot(to), aside = (to + behind * n).squaredNorm();
+      if (behind <= 0 || behind > thickest || aside >= nearest) return;
+      if (surface.normals[j].dot(n) > -0.8f) return;
+      nearest = aside;
+      thickness = behind;
+    });
+    if (thickness < 0) continue;
+    out.points.points.push_back(p);
+    out.points.normals.push_back(n);
+    out.thickness.push_back(thickness);
+  }
+  return out;
+}
+
+void print_surface(const PointCloud& surface, const Truth& truth) {
+  constexpr float kThickest = 0.008f, kNear = 0.004f;
+  const std::vector<float> off = distances(surface, truth.surface);
+  const PointCloud shown = in_sight(truth.surface, truth.frames);
+  std::printf(
+      "  surface error: median %.2f mm, 95 %% %.2f mm; completeness of what was in sight, within 4 "
+      "mm: %.1f %%\n",
+      1000 * quantile(off, 0.5), 1000 * quantile(off, 0.95),
+      100 * share_within(distances(shown, surface), kNear));
+  const Walls walls = walls_of(shown, kThickest);
+  if (walls.thickness.size() < shown.size() / 20) return;
+  const Walls kept = walls_of(surface, kThickest);
+  std::printf(
+      "  walls under 8 mm, each side for itself: %.1f %% within 4 mm; %.1f mm thick, in the model "
+      "%.1f mm (medians)\n",
+      100 * share_within(distances(walls.points, surface), kNear),
+      1000 * quantile(walls.thickness, 0.5), 1000 * quantile(kept.thickness, 0.5));
+}
+
+/// Writes the model, in the frame of the mesh, into the library.
+Status save(const ModelSource& scanned, const PointCloud& surface, const Truth& truth, int number,
+            const ModelsArguments& a) {
+  ModelSource model = scanned;
+  model.name = io::clean_model_name(truth.name);
+  model.number = number;
+  model.surface.points = surface.points;
+  model.surface.normals = surface.normals;
+  model.symmetry = find_symmetries(model.surface, model.diameter, a.common.threads);
+  model.symmetry_origin = SymmetryOrigin::found;
+  std::printf("  symmetries: %s\n", describe(model.symmetry).c_str());
+  return io::save_model(a.library, model, a.common.threads);
+}
+
+Status measure(const std::string& folder, int number, const ModelsArguments& a) {
+  const Result<Truth> truth = read_truth(folder, a.split);
+  if (!truth.ok()) return truth.status();
+  const Stopwatch watch;
+  auto scan = read_scan(folder, a.split, a.common.threads);
+  if (!scan.ok()) return scan.status();
+  TurntableOptions options;
+  options.step_deg = a.step_deg;
+  options.seed = a.common.seed;
+  options.num_threads = a.common.threads;
+  const auto aligned = align_scan(std::move(*scan), options);
+  if (!aligned.ok()) return aligned.status();
+  const auto model = model_source_from_views(aligned->views, "scan", 1);
+  if (!model.ok()) return model.status();
+  std::printf("%s: %zu views, %.1f s\n", truth->name.c_str(), aligned->views.size(),
+              watch.seconds());
+
+  const PosedView& first = aligned->views.front();
+  const Pose mesh_from_model =
+      truth->camera_from_mesh(static_cast<std::size_t>(first.id)).inverse() *
+      first.camera_from_object;
+  const PointCloud surface = moved(model->surface, mesh_from_model);
+  print_axes(*aligned, *truth);
+  print_poses(*aligned, *truth, mesh_from_model);
+  print_surface(surface, *truth);
+  for (const std::string& w : aligned->warnings) std::printf("  warning: %s\n", w.c_str());
+  for (const std::string& w : model->warnings) std::printf("  warning: %s\n", w.c_str());
+  if (Status s = measure_noise(*model, aligned->views, truth->name, a.plots, a.common.threads);
+      !s.ok()) {
+    return s;
+  }
+  return a.library.empty() ? Status{} : save(*model, surface, *truth, number, a);
+}
+
+Status bench_models(const ModelsArguments& a) {
+  int number = 0;
+  for (const std::string& folder : a.scans) {
+    if (Status s = measure(folder, ++number, a); !s.ok()) {
+      return Status(s.code, folder + ": " + s.message);
+    }
+  }
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::printf("peak memory %.0f MB\n", static_cast<double>(usage.ru_maxrss) / 1024);
+  return {};
+}
+
+}  // namespace
+
+void add_bench_models(CLI::App& bench, Action& action) {
+  const auto a = std::make_shared<ModelsArguments>();
+  CLI::App& command =
+      *bench.add_subcommand("models", "Models from simulated scans against the true meshes");
+  command.add_option("scans", a->scans, "Folders that `bpa simulate turntable` wrote")->required();
+  command.add_option("--split", a->split, "Split to read")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command.add_option("--step-deg", a->step_deg, "What to believe the table turns, degrees")
+      ->capture_default_str();
+  command.add_option("--plots", a->plots, "Write plots of the noise here")->type_name("DIR");
+  command
+      .add_option("--library", a->library,
+                  "Write the models here, in the frames of the meshes, numbered from 1 as listed")
+      ->type_name("DIR");
+  add_common_options(command, a->common);
+  command.callback([&action, a] { action = [a] { return bench_models(*a); }; });
+}
+
+}  // namespace bpa::cli

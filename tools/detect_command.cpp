@@ -1,0 +1,300 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// bpa detect: frames in, ranked interpretations out.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+#include "core/base/stopwatch.hpp"
+#include "core/cloud/frame_fusion.hpp"
+#include "core/io/file_bytes.hpp"
+#include "core/pipeline/annotate.hpp"
+#include "core/pipeline/detector.hpp"
+#include "core/pipeline/frame_trace.hpp"
+#include "core/pipeline/score_layer_file.hpp"
+#include "tools/command.hpp"
+#include "tools/contact_sheet.hpp"
+#include "tools/detect_inputs.hpp"
+#include "tools/detection_files.hpp"
+#include "tools/explain_folder.hpp"
+#include "tools/progress.hpp"
+
+namespace bpa::cli {
+namespace {
+
+constexpr std::size_t kWorstFrames = 6;
+
+void print_result(const std::string& name, const io::FrameResult& result) {
+  std::printf("%s: %zu interpretation%s, %.2f s%s", name.c_str(), result.interpretations.size(),
+              result.interpretations.size() == 1 ? "" : "s", result.seconds,
+              result.budget_exhausted ? " (time budget exhausted)" : "");
+  if (result.fused_frames > 1) std::printf(", %d frames combined", result.fused_frames);
+  std::printf("\n");
+  if (result.interpretations.empty() || result.interpretations.front().placements.empty()) {
+    std::printf("  nothing known is there\n");
+    return;
+  }
+  std::printf("  %-28s %5s %7s  %23s  %s\n", "model", "prob.", "visible", "x y z [m]",
+              "orientation w x y z");
+  for (const io::ResultPlacement& p : result.interpretations.front().placements) {
+    const Eigen::Vector3d& t = p.camera_from_object.translation;
+    const Eigen::Vector4d q = to_wxyz(p.camera_from_object.rotation);
+    std::printf("  %-28s %5.2f %5.0f %%  %7.3f %7.3f %7.3f  %6.3f %6.3f %6.3f %6.3f\n",
+                p.model.c_str(), p.probability, 100 * p.visible_fraction, t.x(), t.y(), t.z(), q[0],
+                q[1], q[2], q[3]);
+  }
+}
+
+/// Runs over the inputs and writes what was asked for.
+class DetectRun {
+ public:
+  DetectRun(const DetectArguments& arguments, const Detector& detector, const Given& given,
+            std::size_t num_frames)
+      : a_(arguments), detector_(detector), given_(given), fusion_(arguments.fuse) {
+    if (!a_.explain.empty()) explain_.emplace(a_.explain, num_frames > 1);
+    request_.models = split_commas(a_.models);
+    request_.top_k = a_.top;
+    request_.budget_ms = a_.budget_ms;
+    request_.seed = a_.common.seed;
+    request_.num_threads = a_.common.threads;
+  }
+
+  /// Takes up a frame. Searches once those that are to be combined are there, or with the `last`
+  /// of a scene.
+  Status add(Input input, bool last) {
+    if (a_.fuse == 1) return search(std::move(input));
+    if (Status s = validate(input.frame); !s.ok()) {
+      return Status(s.code, input.name + ": " + s.message);
+    }
+    const bool complete = ++combined_ == a_.fuse || last;
+    FusedFrame fused;
+    if (complete) {
+      fused = fusion_.add(std::move(input.frame), a_.common.threads);
+    } else {
+      fused.restart = fusion_.hold(input.frame);
+    }
+    if (!fused.restart.empty()) {
+      std::printf("%s: not combined with those before it: %s\n", input.name.c_str(),
+                  fused.restart.c_str());
+    }
+    if (!complete) return {};
+    combined_ = 0;
+    fusion_ = FrameFusion(a_.fuse);
+    input.frame = std::move(fused.frame);
+    return search(std::move(input));
+  }
+
+  Status finish() const {
+    if (!a_.csv.empty()) {
+      if (Status s = io::write_results_csv(a_.csv, results_); !s.ok()) return s;
+    }
+    if (!a_.json.empty()) {
+      if (Status s = io::write_results_json(a_.json, results_); !s.ok()) return s;
+    }
+    if (explain_) {
+      if (Status s = explain_->finish(); !s.ok()) return s;
+    }
+    return a_.annotate.empty() ? Status() : write_sheets();
+  }
+
+ private:
+  Status search(Input input) {
+    const std::string& name = input.name;
+    input.frame.roi = given_.roi;
+    input.frame.mask = given_.mask;
+    request_.priors.clear();
+    for (const PosePrior& prior : given_.priors) {
+      request_.priors.push_back(transformed(input.reported_from_camera.inverse(), prior));
+    }
+    const Stopwatch watch;
+    FrameTrace trace;
+    const Result<SceneInterpretations> scene =
+        detector_.detect(input.frame, request_, explain_ ? &trace : nullptr);
+    const double seconds = watch.seconds();
+    if (!scene.ok()) return Status(scene.status().code, name + ": " + scene.status().message);
+    results_.push_back(
+        to_frame_result(*scene, input.scene_id, input.im_id, seconds, input.reported_from_camera));
+    print_result(name, results_.back());
+    std::fflush(stdout);
+    if (explain_) {
+      Status status = explain_->add({name, file_name(input), input.frame, trace, *scene,
+                                     detector_.score_layers(), input.truth});
+      if (!status.ok()) return status;
+    }
+    return a_.annotate.empty() ? Status() : annotate_frame(input, *scene, name);
+  }
+
+  Status write_sheets() const {
+    std::vector<io::ColorImage> all, worst;
+    for (const AnnotatedFrame& frame : sheet_) all.push_back(frame.image);
+    if (all.empty()) return {};
+    for (const std::size_t i : worst_first(sheet_)) {
+      if (worst.size() < kWorstFrames) worst.push_back(sheet_[i].image);
+    }
+    const Status status =
+        io::write_color_png(a_.annotate + "/contact_sheet.png", contact_sheet(all, 2, 960));
+    if (!status.ok()) return status;
+    return io::write_color_png(a_.annotate + "/worst_frames.png", contact_sheet(worst, 2, 960));
+  }
+
+  Status annotate_frame(const Input& input, const SceneInterpretations& scene,
+                        const std::string& name) {
+    if (scene.interpretations.empty()) return {};
+    const Interpretation& best = scene.interpretations.front();
+    const std::string file = a_.annotate + "/" + file_name(input) + ".png";
+    if (!input.has_truth) {
+      return io::write_color_png(file, annotate(input.frame, best, detector_.library()));
+    }
+    sheet_.push_back(
+        truth_beside_result(input.frame, input.truth, best, detector_.library(), name));
+    return io::write_color_png(file, sheet_.back().image);
+  }
+
+  const DetectArguments& a_;
+  const Detector& detector_;
+  const Given& given_;
+  FrameFusion fusion_;
+  int combined_ = 0;  ///< Frames since the last search.
+  std::optional<ExplainFolder> explain_;
+  DetectRequest request_;
+  std::vector<io::FrameResult> results_;
+  std::vector<AnnotatedFrame> sheet_;
+};
+
+Status detect(const DetectArguments& a) {
+  DetectorOptions options;
+  if (!a.config.empty()) {
+    const Result<DetectorOptions> loaded = load_detector_options(a.config);
+    if (!loaded.ok()) return loaded.status();
+    options = *loaded;
+  }
+  // A bad frame or folder is said before the library is loaded, which takes longer.
+  const Result<Inputs> inputs = Inputs::open(a);
+  if (!inputs.ok()) return inputs.status();
+  Result<Input> input = inputs->size() > 0 ? inputs->read(0) : Input{};
+  if (!input.ok()) return input.status();
+  const Result<Given> given = read_given(a);
+  if (!given.ok()) return given.status();
+  if (!a.explain.empty()) {
+    if (Status s = io::make_folder(a.explain); !s.ok()) return s;
+  }
+  const auto library = load_detection_library(a.library, split_commas(a.models), a.common.threads);
+  if (!library.ok()) return library.status();
+  Result<ScoreLayers> layers = library_score_layers(a.library);
+  if (!layers.ok()) return layers.status();
+  const Detector detector(*library, options, std::move(*layers));
+  DetectRun run(a, detector, *given, inputs->size());
+  Progress progress("frames", static_cast<int>(inputs->size()));
+  for (std::size_t i = 0; i < inputs->size(); ++i) {
+    progress.show(static_cast<int>(i));
+    if (i > 0) input = inputs->read(i);
+    if (!input.ok()) return input.status();
+    progress.clear();
+    if (Status s = run.add(std::move(*input), inputs->ends_scene(i)); !s.ok()) return s;
+  }
+  return run.finish();
+}
+
+/// Usage: exactly one source of frames, and what belongs to it.
+void check_usage(const DetectArguments& a) {
+  const int sources = !a.pcd.empty() + !a.depth.empty() + !a.bop.empty();
+  if (sources != 1) {
+    throw CLI::ValidationError("frames", "give one of --pcd, --depth (with --camera) and --bop");
+  }
+  if (!a.depth.empty() && a.camera.empty()) {
+    throw CLI::ValidationError("--depth", "needs --camera FILE");
+  }
+  if (a.depth.empty() && !a.color.empty()) {
+    throw CLI::ValidationError("--color", "needs --depth FILE");
+  }
+  if (!a.color.empty() && a.color.size() != a.depth.size()) {
+    throw CLI::ValidationError("--color", "needs as many files as --depth");
+  }
+  if (!a.bop.empty() && !a.camera.empty()) {
+    throw CLI::ValidationError("--camera", "is not for --bop: the data set has its cameras");
+  }
+  if (a.bop.empty() && !a.scenes.empty()) throw CLI::ValidationError("--scenes", "needs --bop");
+}
+
+void add_inputs(CLI::App& command, DetectArguments& a) {
+  command.add_option("--library", a.library, "Folder of the model library")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("--pcd", a.pcd, "Organised PCD clouds; the camera is estimated from them")
+      ->type_name("FILE...");
+  command.add_option("--depth", a.depth, "16-bit depth PNGs, registered to colour")
+      ->type_name("FILE...");
+  command.add_option("--color", a.color, "8-bit colour PNGs of the same size")
+      ->type_name("FILE...");
+  command.add_option("--camera", a.camera, "BOP camera.json or ROS camera_info YAML")
+      ->type_name("FILE");
+  command.add_option("--bop", a.bop, "Folder of a BOP data set")->type_name("DIR");
+  command.add_option("--split", a.split, "Split of the data set")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command.add_option("--scenes", a.scenes, "Scenes of the split, such as 1,4; all if not given")
+      ->type_name("LIST");
+  command
+      .add_option("--fuse", a.fuse,
+                  "Combine the depth of so many frames that follow one another in one scene, and "
+                  "search them once; for a camera and a scene that stand still")
+      ->check(CLI::Range(1, 30))
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--models", a.models, "Names of models to look for; all if not given")
+      ->type_name("LIST");
+  command
+      .add_option("--roi", a.roi, "Part of each frame that is searched: X Y WIDTH HEIGHT, pixels")
+      ->expected(4);
+  command
+      .add_option("--mask", a.mask,
+                  "8-bit PNG of the frames' size; where it is black, they are not searched")
+      ->type_name("FILE");
+  command
+      .add_option("--priors", a.priors,
+                  "What is known beforehand of the objects' poses, in the frame that they are "
+                  "reported in: JSON, {\"priors\": [{\"model\": NAME, \"pose\": "
+                  "{\"rotation_wxyz\": [4], \"translation_m\": [3]}, \"position_sigma_m\": S, "
+                  "\"rotation_sigma_deg\": S, \"weight\": W}]}")
+      ->type_name("FILE");
+  command.add_option("--config", a.config, "Settings of the detector (detector.yaml)")
+      ->type_name("FILE");
+}
+
+}  // namespace
+
+void add_detect_command(CLI::App& program, Action& action) {
+  CLI::App& command = *program.add_subcommand("detect", "Find objects in RGB-D frames");
+  const auto a = std::make_shared<DetectArguments>();
+  add_inputs(command, *a);
+  command.add_option("--top", a->top, "Number of interpretations")
+      ->check(CLI::Range(1, 100))
+      ->type_name("K")
+      ->capture_default_str();
+  command.add_option("--budget-ms", a->budget_ms, "Time for a frame; 0 = no limit")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("T");
+  command.add_option("--csv", a->csv, "Write the best interpretation as BOP CSV")
+      ->type_name("FILE");
+  command.add_option("--json", a->json, "Write all interpretations as JSON")->type_name("FILE");
+  command
+      .add_option("--annotate", a->annotate,
+                  "Write a picture of each frame and, where the truth is known, contact_sheet.png "
+                  "and worst_frames.png")
+      ->type_name("DIR");
+  command
+      .add_option("--explain", a->explain,
+                  "Write pictures of what each stage of the search made of each frame and model, "
+                  "with counts, times and score components; begin with index.html")
+      ->type_name("DIR");
+  add_common_options(command, a->common);
+  command.callback([&action, a] {
+    check_usage(*a);
+    action = [a] { return detect(*a); };
+  });
+}
+
+}  // namespace bpa::cli

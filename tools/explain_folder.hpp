@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/explain_model.hpp"
+
+namespace bpa::cli {
+
+/// Writes what happened to frames as pictures and pages, for bpa detect --explain:
+///
+///   index.html             the stages with counts and times, what each picture is
+///   01_edges.png, 02_super_pixels.png           of the frame
+///   03_sampled.png ... 10_final.png             the hypotheses after each stage of the detector
+///   11_best.png, 12_best_segments.png          the best placement and its score components
+///
+/// With several frames all of this is in a folder for each, with several models 03 to 11 in a
+/// folder for each, and index.html leads there.
+class ExplainFolder {
+ public:
+  ExplainFolder(std::string folder, bool several_frames)
+      : folder_(std::move(folder)), several_frames_(several_frames) {}
+
+  /// Folders are made as needed. Fails with unavailable.
+  Status add(const ExplainedFrame& frame);
+  /// Writes the page that leads to the frames, where there are several.
+  Status finish() const;
+
+ private:
+  std::string folder_;
+  bool several_frames_;
+  std::vector<std::vector<std::string>> frames_;  ///< The rows of the page.
+};
+
+}  // namespace bpa::cli

@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/model_render.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/model/model_index.hpp"
+
+namespace bpa::cli {
+namespace {
+
+constexpr int kTile = 300;  // pixels
+constexpr int kColumns = 4, kRows = 3;
+const cv::Scalar kInk(40, 40, 40), kRed(220, 40, 40), kBlue(40, 80, 230), kGreen(30, 140, 60),
+    kEdge(0, 190, 220);
+
+using Paint = std::function<Eigen::Vector3f(std::size_t)>;  // rgb of a surface point, in [0, 1]
+
+void write(cv::Mat& sheet, const std::string& text, int x, int y) {
+  cv::putText(sheet, text, {x, y}, cv::FONT_HERSHEY_SIMPLEX, 0.38, kInk, 1, cv::LINE_AA);
+}
+
+/// Blue over green and yellow to red, for t in [0, 1].
+Eigen::Vector3f heat(float t) {
+  t = std::clamp(t, 0.0f, 1.0f);
+  return {std::clamp(2 * t - 0.5f, 0.0f, 1.0f),
+          std::clamp(1.5f - std::abs(2.4f * t - 1), 0.0f, 1.0f),
+          std::clamp(1.2f - 2.4f * t, 0.0f, 1.0f)};
+}
+
+/// An orthographic look at the model along -direction.
+class Look {
+ public:
+  Look(const ObjectModel& model, const Eigen::Vector3f& direction) : model_(model) {
+    Eigen::Vector3f up = std::abs(direction.z()) > 0.9f ? Eigen::Vector3f::UnitY().eval()
+                                                        : Eigen::Vector3f::UnitZ().eval();
+    axes_.row(2) = direction;
+    axes_.row(0) = up.cross(direction).normalized();
+    axes_.row(1) = direction.cross(Eigen::Vector3f(axes_.row(0)));
+    Eigen::AlignedBox3f box;
+    for (const Eigen::Vector3f& p : model.surface.points) box.extend(p);
+    middle_ = box.center();
+    scale_ = 0.80f * kTile / static_cast<float>(model.diameter);
+  }
+
+  cv::Point place(const Eigen::Vector3f& p) const {
+    const Eigen::Vector3f q = scale_ * (axes_ * (p - middle_));
+    return {static_cast<int>(std::lround(kTile / 2 + q.x())),
+            static_cast<int>(std::lround(kTile / 2 - q.y()))};
+  }
+
+  cv::Mat draw(const Paint& paint) const {
+    cv::Mat tile(kTile, kTile, CV_8UC3, cv::Scalar(255, 255, 255));
+    cv::Mat depth(kTile, kTile, CV_32F, cv::Scalar(-1e9));
+    const int radius = std::max(1, static_cast<int>(std::ceil(0.0017f * scale_)));
+    for (std::size_t i = 0; i < model_.surface.size(); ++i) {
+      const Eigen::Vector3f n = axes_ * model_.surface.normals[i];
+      if (n.z() <= 0) continue;
+      const float z = (axes_ * model_.surface.points[i]).z();
+      const Eigen::Vector3f rgb = 255 * (0.35f + 0.65f * n.z()) * paint(i);
+      const cv::Point at = place(model_.surface.points[i]);
+      for (int y = at.y - radius; y <= at.y + radius; ++y) {
+        for (int x = at.x - radius; x <= at.x + radius; ++x) {
+          if (x < 0 || y < 0 || x >= kTile || y >= kTile || depth.at<float>(y, x) >= z) continue;
+          depth.at<float>(y, x) = z;
+          for (int c = 0; c < 3; ++c) {
+            tile.at<cv::Vec3b>(y, x)[c] = cv::saturate_cast<std::uint8_t>(rgb[c]);
+          }
+        }
+      }
+    }
+    return tile;
+  }
+
+  void draw_edges(cv::Mat& tile) const {
+    const auto& views = model_.index->views;
+    const ModelView& view =
+        views[static_cast<std::size_t>(nearest_view(views, Eigen::Vector3f(axes_.row(2))))];
+    for (std::size_t k = 0; k < view.visible.size(); ++k) {
+      if (view.edge_distance[k] > 0.002f) continue;
+      cv::circle(tile, place(model_.surface.points[view.visible[k]]), 1, kEdge, cv::FILLED);
+    }
+  }
+
+  void draw_axes(cv::Mat& tile) const {
+    const auto line = [&](const Eigen::Vector3d& point, const Eigen::Vector3d& axis, int width) {
+      const Eigen::Vector3d half = 0.6 * model_.diameter * axis;
+      cv::line(tile, place((point - half).cast<float>()), place((point + half).cast<float>()),
+               kBlue, width, cv::LINE_AA);
+    };
+    for (const ContinuousSymmetry& c : model_.symmetry.continuous) line(c.point, c.axis, 2);
+    for (const Pose& pose : model_.symmetry.discrete) {
+      const Eigen::Vector3d v = vector_from_rotation(pose.rotation);
+      if (v.norm() > 1e-6) line(middle_.cast<double>(), v.normalized(), 1);
+    }
+  }
+
+ private:
+  const ObjectModel& model_;
+  Eigen::Matrix3f axes_;
+  Eigen::Vector3f middle_;
+  float scale_ = 1;
+};
+
+/// One curve against edge distance (angle 30 degrees) and one against angle (edges 3 cm away).
+void draw_curves(cv::Mat& tile, const NoiseCurve& curve, const std::string& title, double unit,
+                 const char* unit_name) {
+  constexpr int kLeft = 40, kTop = 30, kSize = kTile - 70;
+  constexpr double kFarEdge = 0.03, kAngle = M_PI / 6, kSteep = 85 * M_PI / 180;
+  const double highest = 1.1 * std::max(curve(0, kAngle), curve(kFarEdge, kSteep));
+  cv::rectangle(tile, {kLeft, kTop}, {kLeft + kSize, kTop + kSize}, kInk, 1);
+  const auto point = [&](double t, double sigma) {
+    return cv::Point(kLeft + static_cast<int>(t * kSize),
+                     kTop + kSize - static_cast<int>(std::min(1.0, sigma / highest) * kSize));
+  };
+  for (int k = 0; k < 100; ++k) {
+    const double a = 0.01 * k, b = a + 0.01;
+    cv::line(tile, point(a, curve(a * kFarEdge, kAngle)), point(b, curve(b * kFarEdge, kAngle)),
+             kRed, 2, cv::LINE_AA);
+    cv::line(tile, point(a, curve(kFarEdge, a * kSteep)), point(b, curve(kFarEdge, b * kSteep)),
+             kGreen, 2, cv::LINE_AA);
+  }
+  char text[80];
+  std::snprintf(text, sizeof text, "%s, up to %.3g %s", title.c_str(), unit * highest, unit_name);
+  write(tile, text, 10, 18);
+  write(tile, "red: edge distance 0-30 mm, at 30 deg", 10, kTile - 24);
+  write(tile, "green: angle 0-85 deg, no edge", 10, kTile - 8);
+}
+
+Paint own_colors(const ObjectModel& model) {
+  return [&model](std::size_t i) -> Eigen::Vector3f {
+    if (model.surface.colors.empty()) return Eigen::Vector3f::Constant(0.75f);
+    const auto& c = model.surface.colors[i];
+    return Eigen::Vector3f(c[0], c[1], c[2]) / 255;
+  };
+}
+
+/// The larger eigenvalue of curvature, of the feature point nearest to each surface point.
+Paint curvature(const ObjectModel& model) {
+  const PointCloud& features = model.index->features;
+  const DistanceTransform nearest = distance_transform(features.points, 0.004f, 0.01f);
+  std::vector<float> value(model.surface.size(), 0);
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const int k = nearest.nearest_to(model.surface.points[i]);
+    if (k >= 0) value[i] = features.curvatures[static_cast<std::size_t>(k)].x();
+  }
+  return [value](std::size_t i) { return heat(2.5f * value[i]); };
+}
+
+}  // namespace
+
+io::ColorImage render_model(const ObjectModel& model) {
+  cv::Mat sheet(kRows * kTile, kColumns * kTile, CV_8UC3, cv::Scalar(255, 255, 255));
+  const auto put = [&sheet](const cv::Mat& tile, int place, const std::string& title) {
+    const cv::Rect area(place % kColumns * kTile, place / kColumns * kTile, kTile, kTile);
+    tile.copyTo(sheet(area));
+    cv::rectangle(sheet, area, cv::Scalar(200, 200, 200), 1);
+    if (!title.empty()) write(sheet, title, area.x + 10, area.y + 18);
+  };
+  const char* const names[] = {"from +x", "from -x", "from +y", "from -y", "from +z", "from -z"};
+  const Paint colors = own_colors(model);
+  for (int k = 0; k < 6; ++k) {
+    const Look look(model, (k % 2 == 0 ? 1.0f : -1.0f) * Eigen::Vector3f::Unit(k / 2));
+    cv::Mat tile = look.draw(colors);
+    look.draw_edges(tile);
+    look.draw_axes(tile);
+    put(tile, k, names[k]);
+  }
+  const Look corner(model, Eigen::Vector3f(1, -1.2f, 0.9f).normalized());
+  cv::Mat tile = corner.draw(colors);
+  corner.draw_axes(tile);
+  put(tile, 6, "symmetry axes");
+  put(corner.draw(curvature(model)), 7, "curvature");
+  put(corner.draw(
+          [&model](std::size_t i) { return heat(std::sqrt(model.normal_variance[i]) / 0.7f); }),
+      8, "normals vary: 0 (blue) to 40 deg (red)");
+  cv::Mat range(kTile, kTile, CV_8UC3, cv::Scalar(255, 255, 255)), normal = range.clone();
+  draw_curves(range, model.noise.range, "range noise", 1000, "mm");
+  draw_curves(normal, model.noise.normal, "normal noise", 180 / M_PI, "deg");
+  put(range, 9, "");
+  put(normal, 10, "");
+  io::ColorImage image{sheet.cols, sheet.rows, {}};
+  image.pixels.assign(sheet.data, sheet.data + sheet.total() * sheet.elemSize());
+  return image;
+}
+
+}  // namespace bpa::cli

@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// Models of meshes are made of what a camera would see of them. Looking is the simulator's work and
+// making models is core/model's, which does not know the simulator: the two meet here.
+#include "tools/simulated_views.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "core/base/parallel.hpp"
+#include "core/base/random.hpp"
+#include "core/sim/kinect.hpp"
+#include "core/sim/scenery.hpp"
+
+namespace bpa::cli {
+namespace {
+
+// The inside of a cube: what lies behind the object.
+TriangleMesh room(float half, const Eigen::Vector3f& middle) {
+  TriangleMesh mesh;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float side : {-half, half}) {
+      const Eigen::Vector3f n = side * Eigen::Vector3f::Unit(axis);
+      const Eigen::Vector3f u = half * Eigen::Vector3f::Unit((axis + 1) % 3);
+      const Eigen::Vector3f v = half * Eigen::Vector3f::Unit((axis + 2) % 3);
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (const Eigen::Vector3f& corner :
+           std::initializer_list<Eigen::Vector3f>{n - u - v, n + u - v, n + u + v, n - u + v}) {
+        mesh.vertices.push_back(middle + corner);
+      }
+      mesh.triangles.push_back({first, first + 1, first + 2});
+      mesh.triangles.push_back({first, first + 2, first + 3});
+    }
+  }
+  return mesh;
+}
+
+// A mask of the pixels that measured something in the box or a little beside it.
+std::vector<std::uint8_t> near(const Frame& frame, const Pose& box_from_camera,
+                               const Eigen::AlignedBox3f& box) {
+  constexpr float kBeside = 0.015f;  // metres: what a sensor may be off by
+  const Eigen::Vector3f low = box.min().array() - kBeside, high = box.max().array() + kBeside;
+  const Eigen::AlignedBox3f inside(low, high);
+  std::vector<std::uint8_t> mask(frame.depth.size(), 0);
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (!(frame.depth[i] > 0)) continue;
+    const int u = static_cast<int>(i) % frame.camera.width;
+    const int v = static_cast<int>(i) / frame.camera.width;
+    const Eigen::Vector3d p =
+        box_from_camera * frame.camera.unproject(u, v, double(frame.depth[i]));
+    mask[i] = inside.contains(p.cast<float>());
+  }
+  return mask;
+}
+
+Pose look_from(const Eigen::Vector3d& direction, double distance, const Eigen::Vector3d& at) {
+  Eigen::Matrix3d axes;  // columns: right, down, forward, of the camera in the object's frame
+  axes.col(2) = -direction;
+  axes.col(0) = direction.unitOrthogonal();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return Pose::from_matrix(axes, at + distance * direction);
+}
+
+}  // namespace
+
+TriangleMesh squares_of(const PointCloud& cloud) {
+  // Twice the mean distance of a point to its nearest neighbour, from some 100 of them.
+  const std::size_t step = std::max<std::size_t>(1, cloud.size() / 100);
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < cloud.size(); i += step) {
+    float nearest = std::numeric_limits<float>::infinity();
+    for (std::size_t j = 0; j < cloud.size(); ++j) {
+      if (j == i || cloud.normals[j].dot(cloud.normals[i]) < 0.5f) continue;
+      nearest = std::min(nearest, (cloud.points[j] - cloud.points[i]).squaredNorm());
+    }
+    if (!std::isfinite(nearest)) continue;
+    sum += std::sqrt(static_cast<double>(nearest));
+    ++count;
+  }
+  const auto half = static_cast<float>(count > 0 ? sum / count : 0);
+  TriangleMesh mesh;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3f u = half * cloud.normals[i].unitOrthogonal();
+    const Eigen::Vector3f v = cloud.normals[i].cross(u);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Eigen::Vector3f& corner :
+         std::initializer_list<Eigen::Vector3f>{-u - v, u - v, u + v, v - u}) {
+      mesh.vertices.push_back(cloud.points[i] + corner);
+    }
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+  }
+  return mesh;
+}
+
+std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::uint64_t seed,
+                                      int num_threads, const std::function<void(int)>& progress) {
+  constexpr double kFocal = 570.3;  // of a Kinect's depth camera
+  constexpr double kDistance = 0.8, kMargin = 24;
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& v : mesh.vertices) box.extend(v);
+  const double size = static_cast<double>(box.diagonal().norm());
+  const double distance = std::max(kDistance, 0.5 * size + 0.6);
+  // As much of the camera's image as the object covers.
+  const double nearest = distance - 0.5 * size;
+  const int side = 2 * static_cast<int>(std::ceil(0.5 * kFocal * size / nearest + kMargin));
+  const double centre = 0.5 * (side - 1);
+  const Camera camera{side, side, kFocal, kFocal, centre, centre};
+
+  const TriangleMesh walls = room(static_cast<float>(1.7 * distance), box.center());
+  const sim::RayMeshes meshes({&mesh, &walls});
+  const sim::RayScene scene(meshes, {{0, Pose{}}, {1, Pose{}}});
+  sim::Shading shading;
+  shading.materials = {sim::Material{}, sim::Material{}};
+  sim::KinectOptions kinect;
+  kinect.registered = false;
+
+  std::vector<PosedView> views(static_cast<std::size_t>(count));
+  std::mutex mutex;
+  int done = 0;
+  const double golden_angle = M_PI * (3 - std::sqrt(5.0));
+  parallel_for(count, num_threads, [&](int k) {
+    const double z = 1 - (2 * k + 1.0) / count;
+    const double r = std::sqrt(1 - z * z);
+    const Eigen::Vector3d direction(r * std::cos(golden_angle * k), r * std::sin(golden_angle * k),
+                                    z);
+    const Pose object_from_camera = look_from(direction, distance, box.center().cast<double>());
+    const Frame frame = sim::simulate_depth(scene, camera, object_from_camera, shading, kinect,
+                                            RandomStream(seed, static_cast<std::uint64_t>(k))(), 1);
+    PosedView& view = views[static_cast<std::size_t>(k)];
+    view =
+        make_posed_view(frame, near(frame, object_from_camera, box), object_from_camera.inverse());
+    if (!progress) return;
+    const std::lock_guard lock(mutex);
+    progress(++done);
+  });
+  return views;
+}
+
+}  // namespace bpa::cli
