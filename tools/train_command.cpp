@@ -174,12 +174,9 @@ std::string as_source(const ScoreLayers& layers) {
   return "// SPDX-FileCopyrightText: 2026 The bpa authors\n"
          "// SPDX-License-Identifier: Apache-2.0\n"
          "// Written by 'bpa train --source' (tests/accuracy/train.sh); see the provenance below.\n"
-         "#include " core /
-             score /
-             score_layer.hpp
-             "\n\nnamespace bpa {\n\n"
-             "// clang-format off\nconst ScoreLayers& default_score_layers() {\n"
-             "  static const ScoreLayers layers = {\n      // round two\n" +
+         "#include \"core/score/score_layer.hpp\"\n\nnamespace bpa {\n\n"
+         "// clang-format off\nconst ScoreLayers& default_score_layers() {\n"
+         "  static const ScoreLayers layers = {\n      // round two\n" +
          initialiser(layers.round_two) + ",\n      // round three\n" +
          initialiser(layers.round_three) + ",\n      // without colours\n" +
          initialiser(layers.without_color) +
