@@ -11,7 +11,7 @@
 #include "core/cloud/frame.hpp"
 #include "core/io/model_file.hpp"
 #include "core/pipeline/detector.hpp"
-#include "core/scene/interpretation.hpp"
+#include "core/result/interpretation.hpp"
 #include "server/convert/results.hpp"
 
 namespace bpa::server {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/scene/interpretation.hpp"
+#include "core/result/interpretation.hpp"
 
 namespace bpa::server {
 

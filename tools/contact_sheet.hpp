@@ -9,7 +9,7 @@
 #include "core/io/bop_dataset.hpp"
 #include "core/io/image_file.hpp"
 #include "core/model/library.hpp"
-#include "core/scene/interpretation.hpp"
+#include "core/result/interpretation.hpp"
 
 namespace bpa::cli {
 

@@ -8,7 +8,7 @@
 
 #include "core/io/results.hpp"
 #include "core/model/library.hpp"
-#include "core/scene/interpretation.hpp"
+#include "core/result/interpretation.hpp"
 
 namespace bpa::cli {
 

@@ -8,7 +8,7 @@
 #include "core/cloud/frame.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/pipeline/frame_trace.hpp"
-#include "core/scene/interpretation.hpp"
+#include "core/result/interpretation.hpp"
 #include "tools/html_page.hpp"
 
 namespace bpa::cli {

@@ -12,8 +12,8 @@
 #include "core/align/correspondence.hpp"
 #include "core/base/random.hpp"
 #include "core/base/status.hpp"
-#include "core/detect/placement.hpp"
 #include "core/model/object_model.hpp"
+#include "core/result/placement.hpp"
 
 // What a caller knows beforehand of where an object is: from tracking, from touch, from where a
 // robot put it down. Such a prior is a Gaussian of the position times a Bingham of the orientation,

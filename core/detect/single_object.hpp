@@ -8,9 +8,9 @@
 
 #include "core/detect/hypotheses.hpp"
 #include "core/detect/object_trace.hpp"
-#include "core/detect/placement.hpp"
 #include "core/detect/pose_prior.hpp"
 #include "core/detect/refinement.hpp"
+#include "core/result/placement.hpp"
 #include "core/score/feature_score.hpp"
 #include "core/score/score_layer.hpp"
 

@@ -10,7 +10,7 @@
 #include "core/cloud/frame.hpp"
 #include "core/io/image_file.hpp"
 #include "core/model/library.hpp"
-#include "core/scene/interpretation.hpp"
+#include "core/result/interpretation.hpp"
 
 namespace bpa {
 

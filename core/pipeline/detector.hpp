@@ -13,7 +13,7 @@
 #include "core/detect/pose_prior.hpp"
 #include "core/model/library.hpp"
 #include "core/pipeline/detector_options.hpp"
-#include "core/scene/interpretation.hpp"
+#include "core/result/interpretation.hpp"
 #include "core/score/score_layer.hpp"
 
 namespace bpa {

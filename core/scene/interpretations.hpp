@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/detect/single_object.hpp"
-#include "core/scene/interpretation.hpp"
+#include "core/result/interpretation.hpp"
 #include "core/scene/overlaps.hpp"
 
 namespace bpa {

@@ -9,7 +9,7 @@
 
 #include "core/base/status.hpp"
 #include "core/model/object_model.hpp"
-#include "core/scene/interpretation.hpp"
+#include "core/result/interpretation.hpp"
 #include "idl/wire/msg/bpa_msgs.hpp"
 #include "idl/wire/msg/sensor_msgs.hpp"
 #include "idl/wire/msg/tf2_msgs.hpp"

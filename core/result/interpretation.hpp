@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/detect/placement.hpp"
+#include "core/result/placement.hpp"
 
 namespace bpa {
 
