@@ -82,8 +82,7 @@ class Look {
 
   void draw_edges(cv::Mat& tile) const {
     const auto& views = model_.index->views;
-    const ModelView& view =
-        views[static_cast<std::size_t>(nearest_view(views, Eigen::Vector3f(axes_.row(2))))];
+    const ModelView& view = nearest_view(views, Eigen::Vector3f(axes_.row(2)));
     for (std::size_t k = 0; k < view.visible.size(); ++k) {
       if (view.edge_distance[k] > 0.002f) continue;
       cv::circle(tile, place(model_.surface.points[view.visible[k]]), 1, kEdge, cv::FILLED);

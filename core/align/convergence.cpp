@@ -9,6 +9,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/cloud/neighbor_grid.hpp"
+#include "core/geometry/fast_pose.hpp"
 
 namespace bpa::align {
 namespace {
@@ -54,7 +55,7 @@ class Matcher {
   }
 
   void find(const Pose& pose, bool curvature, RandomStream& random, Matches& matches) const {
-    const FastPose object_from_camera(pose.inverse());
+    const FastPose object_from_camera = to_fast(pose.inverse());
     std::vector<std::size_t> assigned;
     for (const std::vector<std::size_t>& patch : patches_) {
       const int size = static_cast<int>(patch.size());
@@ -71,8 +72,7 @@ class Matcher {
     for (int tries = 0; tries < 4 * options_.points; ++tries) {
       const std::size_t i =
           assigned[static_cast<std::size_t>(random.index(static_cast<int>(assigned.size())))];
-      const Eigen::Vector3f p =
-          object_from_camera.rotation * scene_.points[i] + object_from_camera.translation;
+      const Eigen::Vector3f p = object_from_camera * scene_.points[i];
       const Eigen::Vector3f n = object_from_camera.rotation * scene_.normals[i];
       const int nearest = nearest_model_point(model_grid_, p, n);
       if (nearest < 0) continue;
@@ -85,13 +85,6 @@ class Matcher {
 
  private:
   static constexpr int kFitSamples = 4;
-
-  struct FastPose {
-    Eigen::Matrix3f rotation;
-    Eigen::Vector3f translation;
-    explicit FastPose(const Pose& pose)
-        : rotation(pose.matrix().cast<float>()), translation(pose.translation.cast<float>()) {}
-  };
 
   // Every point goes to the nearest patch centre that faces the same way.
   void make_patches(const PointCloud& near, const std::vector<std::size_t>& indices) {
@@ -130,8 +123,7 @@ class Matcher {
   }
 
   bool fits(const FastPose& object_from_camera, std::size_t i) const {
-    const Eigen::Vector3f p =
-        object_from_camera.rotation * scene_.points[i] + object_from_camera.translation;
+    const Eigen::Vector3f p = object_from_camera * scene_.points[i];
     if (p.norm() > radius_ + static_cast<float>(options_.assign_m)) return false;
     const Eigen::Vector3f n = object_from_camera.rotation * scene_.normals[i];
     const int nearest = nearest_model_point(fit_grid_, p, n);

@@ -46,8 +46,7 @@ class Walk {
 
 EdgePoint edge_point(const ObjectModel& model, const ModelView& view, const FastPose& pose,
                      std::size_t k) {
-  return {pose.rotation * model.surface.points[view.edges[k]] + pose.translation,
-          pose.rotation * view.outward[k]};
+  return {pose * model.surface.points[view.edges[k]], pose.rotation * view.outward[k]};
 }
 
 std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, float reach) {

@@ -28,7 +28,7 @@ struct Match {
 bool match_point(const SceneFeatures& scene, const CheckPoints& model, std::size_t i,
                  const FastPose& pose, float gate, Match& match) {
   match.model_normal = pose.rotation * model.normals[i];
-  match.model_point = pose.rotation * model.points[i] + pose.translation;
+  match.model_point = pose * model.points[i];
   const Eigen::Vector3f& p = match.model_point;
   if (p.z() < 0.1f || match.model_normal.dot(p) > -0.1f * p.z()) return false;
   const CheckImage& image = scene.image;

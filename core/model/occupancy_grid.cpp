@@ -18,14 +18,8 @@ namespace {
 
 constexpr float kMinCosine = 0.2f;  // of views that count
 
-struct FastPose {
-  Eigen::Matrix3f rotation;
-  Eigen::Vector3f translation;
-};
-
 FastPose object_from_camera(const PosedView& view) {
-  const Pose pose = view.camera_from_object.inverse();
-  return {pose.matrix().cast<float>(), pose.translation.cast<float>()};
+  return to_fast(view.camera_from_object.inverse());
 }
 
 // Calls visit(point, normal, weight), in the object's frame, for every pixel of the object that is
@@ -38,8 +32,7 @@ void for_each_measurement(const PosedView& view, const Visit& visit) {
     const Eigen::Vector3f& normal = view.map.normals[i];
     const float cosine = -normal.dot(view.map.points[i].normalized());
     if (!(cosine > kMinCosine)) continue;
-    visit(Eigen::Vector3f(pose.rotation * view.map.points[i] + pose.translation),
-          Eigen::Vector3f(pose.rotation * normal), cosine * cosine);
+    visit(pose * view.map.points[i], Eigen::Vector3f(pose.rotation * normal), cosine * cosine);
   }
 }
 

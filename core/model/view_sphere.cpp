@@ -215,11 +215,18 @@ std::array<Eigen::Vector3f, kNumViews> view_directions() {
   return directions;
 }
 
-int nearest_view(const std::vector<ModelView>& views, const Eigen::Vector3f& direction) {
-  const auto best = std::max_element(views.begin(), views.end(), [&](auto& a, auto& b) {
+const ModelView& nearest_view(const std::vector<ModelView>& views,
+                              const Eigen::Vector3f& direction) {
+  return *std::max_element(views.begin(), views.end(), [&](auto& a, auto& b) {
     return a.direction.dot(direction) < b.direction.dot(direction);
   });
-  return static_cast<int>(best - views.begin());
+}
+
+const ModelView& nearest_view(const std::vector<ModelView>& views,
+                              const FastPose& camera_from_object) {
+  const FastPose& pose = camera_from_object;
+  const Eigen::Vector3f to_camera = -(pose.rotation.transpose() * pose.translation).normalized();
+  return nearest_view(views, to_camera);
 }
 
 std::vector<ModelView> render_views(const PointCloud& surface, float spacing, int num_threads) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/cloud/point_cloud.hpp"
+#include "core/geometry/fast_pose.hpp"
 
 namespace bpa {
 
@@ -30,8 +31,13 @@ struct ModelView {
 /// 66 directions spread evenly over the sphere (a Fibonacci lattice).
 std::array<Eigen::Vector3f, kNumViews> view_directions();
 
-/// The view whose direction is nearest to `direction` (unit length, object to camera).
-int nearest_view(const std::vector<ModelView>& views, const Eigen::Vector3f& direction);
+/// The view whose direction is nearest to `direction` (unit length, object to camera). Needs views.
+const ModelView& nearest_view(const std::vector<ModelView>& views,
+                              const Eigen::Vector3f& direction);
+
+/// The view nearest to how a camera sees the object at `camera_from_object`. Needs views.
+const ModelView& nearest_view(const std::vector<ModelView>& views,
+                              const FastPose& camera_from_object);
 
 /// Renders the points into a depth buffer of cells as large as `spacing` along each direction.
 std::vector<ModelView> render_views(const PointCloud& surface, float spacing, int num_threads);

@@ -96,7 +96,7 @@ io::ColorImage draw_poses(const Frame& frame, const ObjectModel& model,
       const FastPose& pose = group.poses[i];
       const cv::Scalar color = shade(group, i);
       if (group.style == DrawnPoses::Style::dots) {
-        const Eigen::Vector3f at = pose.rotation * middle + pose.translation;
+        const Eigen::Vector3f at = pose * middle;
         draw_dot(canvas, camera, at.cast<double>(), color);
       } else {
         draw_outline(canvas, camera, model, pose, color, group.style);

@@ -32,7 +32,7 @@ double share_inside(const Candidate& a, const Candidate& b) {
   const std::size_t count = std::min(points.size(), kPoints);
   int inside = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    const Eigen::Vector3f point = a_in_b.rotation * points[k] + a_in_b.translation;
+    const Eigen::Vector3f point = a_in_b * points[k];
     const int nearest = b.model->index->distances.nearest_to(point);
     if (nearest < 0) continue;
     const auto i = static_cast<std::size_t>(nearest);

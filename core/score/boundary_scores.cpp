@@ -36,12 +36,11 @@ double edge_likelihood_score(const CheckImage& image, const Image<float>& edges,
                              const ObjectModel& model, const Pose& camera_from_object) {
   if (!model.complete) return 0;
   const FastPose pose = to_fast(camera_from_object);
-  const ModelView& view = closest_view(model, camera_from_object);
+  const ModelView& view = nearest_view(model.index->views, to_fast(camera_from_object));
   const std::size_t step = std::max<std::size_t>(1, view.edges.size() / kMaxEdgePoints);
   double sum = 0, weights = 0;
   for (std::size_t k = 0; k < view.edges.size(); k += step) {
-    const Eigen::Vector3f point =
-        pose.rotation * model.surface.points[view.edges[k]] + pose.translation;
+    const Eigen::Vector3f point = pose * model.surface.points[view.edges[k]];
     const auto place = pixel_of(image, point);
     if (!place) continue;
     const double weight =

@@ -53,7 +53,7 @@ double fpfh_score(const PointCloud& surface, std::span<const int> keypoints,
   int count = 0;
   for (std::size_t k = 0; k < keypoints.size(); ++k) {
     const auto i = static_cast<std::size_t>(keypoints[k]);
-    const Eigen::Vector3f point = pose.rotation * surface.points[i] + pose.translation;
+    const Eigen::Vector3f point = pose * surface.points[i];
     if (distances.cell_of(point) < 0) continue;  // far from the model, as most are
     const int match = places.nearest_to(point, pose.rotation * surface.normals[i]);
     if (match < 0) continue;

@@ -107,7 +107,7 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const ModelV
   int visible = 0, total = 0, ends = 0, goes_on = 0;
   for (std::size_t k = 0; k < view.edges.size(); k += step) {
     const std::uint32_t i = view.edges[k];
-    const Eigen::Vector3f point = pose.rotation * model.surface.points[i] + pose.translation;
+    const Eigen::Vector3f point = pose * model.surface.points[i];
     const Eigen::Vector3f normal = pose.rotation * model.surface.normals[i];
     const Eigen::Vector3f outward = pose.rotation * view.outward[k];
     int u = 0, v = 0;
@@ -138,7 +138,7 @@ namespace {
 bool see_point(const CheckImage& image, const ObjectModel& model, const ModelView& view,
                const FastPose& pose, std::size_t k, SeenPoint& out) {
   const std::uint32_t i = view.visible[k];
-  out.point = pose.rotation * model.surface.points[i] + pose.translation;
+  out.point = pose * model.surface.points[i];
   out.normal = pose.rotation * model.surface.normals[i];
   out.slant = -out.normal.dot(out.point) / out.point.norm();
   int u = 0, v = 0;

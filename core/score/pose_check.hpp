@@ -7,29 +7,10 @@
 #include <vector>
 
 #include "core/cloud/surface_map.hpp"
-#include "core/geometry/pose.hpp"
+#include "core/geometry/fast_pose.hpp"
 #include "core/model/model_index.hpp"
 
 namespace bpa {
-
-/// A pose in single precision, as a matrix, for inner loops.
-struct FastPose {
-  Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();
-  Eigen::Vector3f translation = Eigen::Vector3f::Zero();
-};
-
-inline FastPose to_fast(const Pose& pose) {
-  return {pose.matrix().cast<float>(), pose.translation.cast<float>()};
-}
-inline Pose to_pose(const FastPose& pose) {
-  return Pose::from_matrix(pose.rotation.cast<double>(), pose.translation.cast<double>());
-}
-
-/// The view that is nearest to how the camera sees a model at a pose.
-inline const ModelView& nearest_view(const std::vector<ModelView>& views, const FastPose& pose) {
-  const Eigen::Vector3f to_camera = -(pose.rotation.transpose() * pose.translation).normalized();
-  return views[static_cast<std::size_t>(nearest_view(views, to_camera))];
-}
 
 /// What a pose check reads of one pixel, packed so that a whole image stays in the cache.
 struct CheckPixel {

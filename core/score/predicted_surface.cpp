@@ -36,7 +36,7 @@ std::vector<DrawnPoint> facing_points(const CheckImage& image, const ObjectModel
   std::vector<DrawnPoint> drawn;
   drawn.reserve(indices.size());
   for (const std::uint32_t i : indices) {
-    const Eigen::Vector3f p = pose.rotation * model.surface.points[i] + pose.translation;
+    const Eigen::Vector3f p = pose * model.surface.points[i];
     if (!(p.z() > kNearest)) continue;
     const Eigen::Vector3f normal = pose.rotation * model.surface.normals[i];
     const float offset = normal.dot(p);
@@ -93,10 +93,6 @@ PredictedSurface draw(const CheckImage& image, const std::vector<DrawnPoint>& dr
 
 }  // namespace
 
-const ModelView& closest_view(const ObjectModel& model, const Pose& camera_from_object) {
-  return nearest_view(model.index->views, to_fast(camera_from_object));
-}
-
 std::optional<PixelPlace> pixel_of(const CheckImage& image, const Eigen::Vector3f& point) {
   if (!(point.z() > kNearest)) return std::nullopt;
   const float u = std::floor(image.fx * point.x() / point.z() + image.cx + 0.5f);
@@ -110,8 +106,9 @@ std::optional<PixelPlace> pixel_of(const CheckImage& image, const Eigen::Vector3
 
 PredictedSurface predict_surface(const CheckImage& image, const ObjectModel& model,
                                  const Pose& camera_from_object) {
-  return draw(image, facing_points(image, model, closest_view(model, camera_from_object).visible,
-                                   to_fast(camera_from_object)));
+  const FastPose pose = to_fast(camera_from_object);
+  return draw(image,
+              facing_points(image, model, nearest_view(model.index->views, pose).visible, pose));
 }
 
 PredictedSurface predict_whole_surface(const CheckImage& image, const ObjectModel& model,

@@ -46,9 +46,6 @@ PredictedSurface predict_surface(const CheckImage& image, const ObjectModel& mod
 PredictedSurface predict_whole_surface(const CheckImage& image, const ObjectModel& model,
                                        const Pose& camera_from_object);
 
-/// The view that a placement shows.
-const ModelView& closest_view(const ObjectModel& model, const Pose& camera_from_object);
-
 /// The pixel that a point of the camera's frame is seen at.
 struct PixelPlace {
   int u = 0;

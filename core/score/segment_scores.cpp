@@ -27,8 +27,7 @@ void judge(const Segment& segment, const SurfaceMap& map, const ObjectModel& mod
   int on_model = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t pixel = segment.pixels[(2 * k + 1) * segment.pixels.size() / (2 * count)];
-    const Eigen::Vector3f point =
-        object_from_camera.rotation * map.points[pixel] + object_from_camera.translation;
+    const Eigen::Vector3f point = object_from_camera * map.points[pixel];
     const int nearest = model.index->distances.nearest_to(point);
     if (nearest < 0) {
       distances -= 1;

@@ -112,9 +112,9 @@ TEST(ObjectModel, LargeObjectsStayWithinTheLimits) {
   // Sparse as its points are, the surface has no holes: the edges of a face seen straight on are
   // at its border.
   const ModelIndex& index = *(*model)->index;
-  const auto view = static_cast<std::size_t>(nearest_view(index.views, Eigen::Vector3f::UnitZ()));
-  EXPECT_GT(index.views[view].edges.size(), 100u);
-  for (const std::uint32_t i : index.views[view].edges) {
+  const ModelView& view = nearest_view(index.views, Eigen::Vector3f::UnitZ());
+  EXPECT_GT(view.edges.size(), 100u);
+  for (const std::uint32_t i : view.edges) {
     const Eigen::Vector3f& p = (*model)->surface.points[i];
     EXPECT_FALSE(std::abs(p.x()) < 0.4f && std::abs(p.y()) < 0.3f) << p.transpose();
   }
