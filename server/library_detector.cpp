@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "core/draw/annotate.hpp"
 #include "core/io/model_file.hpp"
-#include "core/pipeline/annotate.hpp"
 #include "core/pipeline/score_layer_file.hpp"
 
 namespace bpa::server {
@@ -147,7 +147,7 @@ Recognition LibraryDetector::recognition(std::shared_ptr<LibraryDetector> self) 
   recognition.annotate =
       [self](const Frame& frame,
              const Interpretation& interpretation) -> Result<std::vector<std::uint8_t>> {
-    return annotate(frame, interpretation, self->current()->library()).pixels;
+    return draw::annotate(frame, interpretation, self->current()->library()).pixels;
   };
   recognition.models = [self] { return self->current()->library().models(); };
   recognition.broken = [self] { return self->broken(); };

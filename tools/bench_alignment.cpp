@@ -14,7 +14,7 @@
 #include "core/cloud/curvature.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/cloud/planes.hpp"
-#include "core/eval/plot.hpp"
+#include "core/draw/plot.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/model_file.hpp"
@@ -144,16 +144,16 @@ double round_up(double value) {
 
 Status write_plot(const std::string& folder, const Quantity& quantity,
                   const align::ConvergenceResult& result) {
-  eval::PlotAxes axes;
+  draw::PlotAxes axes;
   axes.title = std::string("Mean of the least error so far: ") + quantity.name;
   axes.x_name = "iteration";
   axes.y_name = quantity.unit;
   const std::vector<double>& first = result.bpa.*quantity.values;
   axes.x_max = static_cast<double>(first.size() - 1);
   axes.y_max = first[0] > 0 ? round_up(quantity.scale * first[0]) : 1;
-  std::vector<eval::Series> all;
+  std::vector<draw::Series> all;
   const auto add = [&](const char* name, const align::ConvergenceCurve& curve) {
-    eval::Series series{name, {}, {}};
+    draw::Series series{name, {}, {}};
     for (const double value : curve.*quantity.values) {
       series.x.push_back(static_cast<double>(series.x.size()));
       series.y.push_back(quantity.scale * value);
@@ -164,7 +164,7 @@ Status write_plot(const std::string& folder, const Quantity& quantity,
   add("BPA, normals only", result.bpa_normals);
   add("ICP", result.icp);
   return io::write_color_png(folder + "/alignment_" + quantity.name + ".png",
-                             eval::line_plot(axes, all));
+                             draw::line_plot(axes, all));
 }
 
 void print_table(const Experiment& experiment, const align::ConvergenceResult& result) {

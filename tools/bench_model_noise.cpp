@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/eval/plot.hpp"
+#include "core/draw/plot.hpp"
 #include "core/io/image_file.hpp"
 #include "core/sim/kinect.hpp"
 
@@ -47,7 +47,7 @@ double factor_off(const Kind& kind) {
 
 /// Observed errors of what was predicted alike: bins by rising prediction, in about ten groups of
 /// as many errors.
-eval::Series observed_over_predicted(const Kind& kind) {
+draw::Series observed_over_predicted(const Kind& kind) {
   std::vector<NoiseBin> bins = kind.held_out;
   const auto predicted = [&kind](const NoiseBin& bin) {
     return kind.fitted(bin.edge_distance, bin.angle);
@@ -56,7 +56,7 @@ eval::Series observed_over_predicted(const Kind& kind) {
             [&](const NoiseBin& a, const NoiseBin& b) { return predicted(a) < predicted(b); });
   double all = 0;
   for (const NoiseBin& bin : bins) all += bin.count;
-  eval::Series series{"held-out views", {}, {}};
+  draw::Series series{"held-out views", {}, {}};
   double count = 0, expected = 0, squares = 0;
   for (std::size_t i = 0; i < bins.size(); ++i) {
     count += bins[i].count;
@@ -72,9 +72,9 @@ eval::Series observed_over_predicted(const Kind& kind) {
 
 /// Of the bins between two edge distances (metres): what `value` is of each, over its angle.
 template <class Value>
-eval::Series over_angle(const Kind& kind, const std::string& name, double nearest, double farthest,
+draw::Series over_angle(const Kind& kind, const std::string& name, double nearest, double farthest,
                         const Value& value) {
-  eval::Series series{name, {}, {}};
+  draw::Series series{name, {}, {}};
   for (const NoiseBin& bin : kind.held_out) {
     if (bin.edge_distance < nearest || bin.edge_distance > farthest) continue;
     series.x.push_back(kDegrees * bin.angle);
@@ -85,9 +85,9 @@ eval::Series over_angle(const Kind& kind, const std::string& name, double neares
 
 /// The same over edge distance, between two angles (radians).
 template <class Value>
-eval::Series over_edge_distance(const Kind& kind, const std::string& name, double least,
+draw::Series over_edge_distance(const Kind& kind, const std::string& name, double least,
                                 double most, const Value& value) {
-  eval::Series series{name, {}, {}};
+  draw::Series series{name, {}, {}};
   std::vector<NoiseBin> bins;
   for (const NoiseBin& bin : kind.held_out) {
     if (bin.angle >= least && bin.angle < most) bins.push_back(bin);
@@ -101,31 +101,31 @@ eval::Series over_edge_distance(const Kind& kind, const std::string& name, doubl
   return series;
 }
 
-double highest(const std::vector<eval::Series>& series) {
+double highest(const std::vector<draw::Series>& series) {
   double top = 0;
-  for (const eval::Series& s : series) {
+  for (const draw::Series& s : series) {
     for (const double y : s.y) top = std::max(top, y);
   }
   return std::max(1e-9, 1.1 * top);
 }
 
-Status save(const std::string& path, eval::PlotAxes axes, const std::vector<eval::Series>& series) {
+Status save(const std::string& path, draw::PlotAxes axes, const std::vector<draw::Series>& series) {
   axes.y_max = highest(series);
   if (axes.diagonal) {
     for (const double x : series.front().x) axes.y_max = std::max(axes.y_max, 1.1 * x);
     axes.x_max = axes.y_max;
   }
-  return io::write_color_png(path, eval::line_plot(axes, series));
+  return io::write_color_png(path, draw::line_plot(axes, series));
 }
 
-Status save_plots(const Kind& kind, const eval::Series& law, const std::string& start,
+Status save_plots(const Kind& kind, const draw::Series& law, const std::string& start,
                   const std::string& model) {
   const auto observed = [](const NoiseBin& bin) { return bin.sigma; };
   const auto fitted = [&kind](const NoiseBin& bin) {
     return kind.fitted(bin.edge_distance, bin.angle);
   };
   const std::string title = model + ": " + kind.name;
-  std::vector<eval::Series> curves = {over_angle(kind, "held-out views", 0.015, 0.025, observed),
+  std::vector<draw::Series> curves = {over_angle(kind, "held-out views", 0.015, 0.025, observed),
                                       over_angle(kind, "fitted sigmoids", 0.015, 0.025, fitted)};
   if (!law.x.empty()) curves.push_back(law);
   Status status = save(
@@ -163,7 +163,7 @@ Status measure_noise(const ModelSource& model, const std::vector<PosedView>& vie
   const auto published = [&seen](const NoiseBin& bin) {
     return sim::published_axial_noise(seen.depth, bin.angle);
   };
-  const eval::Series law = over_angle(range, "simulator's law", 0.015, 0.025, published);
+  const draw::Series law = over_angle(range, "simulator's law", 0.015, 0.025, published);
   std::printf(
       "  range noise 15 to 25 mm from edges, mm: angle, fitted, held-out views, simulator's law\n");
   std::size_t row = 0;

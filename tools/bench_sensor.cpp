@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "core/draw/sheet.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/image_file.hpp"
@@ -18,7 +19,6 @@
 #include "core/sim/depth_statistics.hpp"
 #include "core/sim/scenes.hpp"
 #include "tools/bench.hpp"
-#include "tools/contact_sheet.hpp"
 #include "tools/progress.hpp"
 
 namespace bpa::cli {
@@ -201,12 +201,12 @@ Result<Json> bench_frames(const SensorArguments& a) {
     print_row(frame.name, real_rows.back());
     print_row("  simulated", simulated_rows.back());
     for (const NamedFrame* one : {&frame, &beside})
-      cells.push_back(color_beside_depth(one->frame, one->name));
+      cells.push_back(draw::color_beside_depth(one->frame, one->name));
   }
   print_row("mean of the real ones", mean_of(real_rows));
   print_row("mean of the simulated", mean_of(simulated_rows));
   if (!a.sheet.empty()) {
-    const Status status = io::write_color_png(a.sheet, contact_sheet(cells, 2, 1280));
+    const Status status = io::write_color_png(a.sheet, draw::contact_sheet(cells, 2, 1280));
     if (!status.ok()) return status;
   }
   return Json{{"frames", count},

@@ -10,13 +10,14 @@
 
 #include "core/base/stopwatch.hpp"
 #include "core/cloud/frame_fusion.hpp"
+#include "core/draw/annotate.hpp"
+#include "core/draw/sheet.hpp"
+#include "core/draw/truth.hpp"
 #include "core/io/file_bytes.hpp"
-#include "core/pipeline/annotate.hpp"
 #include "core/pipeline/detector.hpp"
 #include "core/pipeline/frame_trace.hpp"
 #include "core/pipeline/score_layer_file.hpp"
 #include "tools/command.hpp"
-#include "tools/contact_sheet.hpp"
 #include "tools/detect_inputs.hpp"
 #include "tools/detection_files.hpp"
 #include "tools/explain_folder.hpp"
@@ -129,15 +130,16 @@ class DetectRun {
 
   Status write_sheets() const {
     std::vector<io::ColorImage> all, worst;
-    for (const AnnotatedFrame& frame : sheet_) all.push_back(frame.image);
+    for (const draw::JudgedFrame& frame : sheet_) all.push_back(frame.picture);
     if (all.empty()) return {};
-    for (const std::size_t i : worst_first(sheet_)) {
-      if (worst.size() < kWorstFrames) worst.push_back(sheet_[i].image);
+    for (const std::size_t i : draw::worst_first(sheet_)) {
+      if (worst.size() < kWorstFrames) worst.push_back(sheet_[i].picture);
     }
     const Status status =
-        io::write_color_png(a_.annotate + "/contact_sheet.png", contact_sheet(all, 2, 960));
+        io::write_color_png(a_.annotate + "/contact_sheet.png", draw::contact_sheet(all, 2, 960));
     if (!status.ok()) return status;
-    return io::write_color_png(a_.annotate + "/worst_frames.png", contact_sheet(worst, 2, 960));
+    return io::write_color_png(a_.annotate + "/worst_frames.png",
+                               draw::contact_sheet(worst, 2, 960));
   }
 
   Status annotate_frame(const Input& input, const SceneInterpretations& scene,
@@ -146,11 +148,11 @@ class DetectRun {
     const Interpretation& best = scene.interpretations.front();
     const std::string file = a_.annotate + "/" + file_name(input) + ".png";
     if (!input.has_truth) {
-      return io::write_color_png(file, annotate(input.frame, best, detector_.library()));
+      return io::write_color_png(file, draw::annotate(input.frame, best, detector_.library()));
     }
     sheet_.push_back(
-        truth_beside_result(input.frame, input.truth, best, detector_.library(), name));
-    return io::write_color_png(file, sheet_.back().image);
+        draw::truth_beside_result(input.frame, input.truth, best, detector_.library(), name));
+    return io::write_color_png(file, sheet_.back().picture);
   }
 
   const DetectArguments& a_;
@@ -161,7 +163,7 @@ class DetectRun {
   std::optional<ExplainFolder> explain_;
   DetectRequest request_;
   std::vector<io::FrameResult> results_;
-  std::vector<AnnotatedFrame> sheet_;
+  std::vector<draw::JudgedFrame> sheet_;
 };
 
 Status detect(const DetectArguments& a) {

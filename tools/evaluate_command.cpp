@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/draw/report_plots.hpp"
 #include "core/eval/evaluation.hpp"
 #include "core/eval/report.hpp"
 #include "core/io/file_bytes.hpp"
@@ -56,7 +57,7 @@ Status evaluate(const EvaluateArguments& a) {
   if (!a.json_out.empty()) {
     if (Status s = io::write_file(a.json_out, eval::report_json(*report)); !s.ok()) return s;
   }
-  return a.plots.empty() ? Status() : eval::write_plots(a.plots, *report);
+  return a.plots.empty() ? Status() : draw::write_plots(a.plots, *report);
 }
 
 }  // namespace

@@ -2,14 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/explain_folder.hpp"
 
+#include "core/draw/number.hpp"
+#include "core/draw/scene_features.hpp"
+#include "core/draw/sheet.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/image_file.hpp"
-#include "core/pipeline/explain.hpp"
-#include "tools/explain_pictures.hpp"
 
 namespace bpa::cli {
 namespace {
 
+using draw::fixed;
+using draw::HtmlPage;
 using Row = std::vector<std::string>;
 
 Status write_frame_pictures(const ExplainedFrame& frame, const std::string& folder,
@@ -21,15 +24,15 @@ Status write_frame_pictures(const ExplainedFrame& frame, const std::string& fold
       "Left: edges in red where a surface hides another, blue on the surface behind, green "
       "along creases, yellow in the colours. Right: the edge image, bright where an object "
       "is likely to end.");
-  Status status =
-      io::write_color_png(folder + "/01_edges.png",
-                          with_words(beside(draw_edges(frame.frame, scene.edges),
-                                            draw_edge_image(frame.frame, scene.edges.likelihood)),
-                                     "edges and edge image",
-                                     {{{255, 50, 50}, "occluding"},
-                                      {{60, 110, 255}, "occluded"},
-                                      {{40, 220, 70}, "curvature"},
-                                      {{250, 220, 40}, "image"}}));
+  Status status = io::write_color_png(
+      folder + "/01_edges.png",
+      draw::with_words(draw::beside(draw::edges(frame.frame, scene.edges),
+                                    draw::edge_image(frame.frame, scene.edges.likelihood)),
+                       "edges and edge image",
+                       {{{255, 50, 50}, "occluding"},
+                        {{60, 110, 255}, "occluded"},
+                        {{40, 220, 70}, "curvature"},
+                        {{250, 220, 40}, "image"}}));
   if (!status.ok()) return status;
   page.heading("Super-pixels");
   page.picture("02_super_pixels.png",
@@ -37,9 +40,9 @@ Status write_frame_pictures(const ExplainedFrame& frame, const std::string& fold
                "surface goes on. Right: each in its mean colour.");
   return io::write_color_png(
       folder + "/02_super_pixels.png",
-      with_words(beside(draw_segment_borders(frame.frame, scene.segmentation),
-                        draw_segment_means(frame.frame, scene.segmentation)),
-                 std::to_string(scene.segmentation.segments.size()) + " super-pixels", {}));
+      draw::with_words(draw::beside(draw::segment_borders(frame.frame, scene.segmentation),
+                                    draw::segment_means(frame.frame, scene.segmentation)),
+                       std::to_string(scene.segmentation.segments.size()) + " super-pixels"));
 }
 
 void write_timings(const SceneInterpretations& result, HtmlPage& page) {

@@ -14,7 +14,8 @@ namespace bpa::cli {
 ///   index.html             the stages with counts and times, what each picture is
 ///   01_edges.png, 02_super_pixels.png           of the frame
 ///   03_sampled.png ... 10_final.png             the hypotheses after each stage of the detector
-///   11_best.png, 12_best_segments.png          the best placement and its score components
+///   11_best.png, 12_best_segments.png           the best placement and its super-pixels; the score
+///                                               components are in a table of the page
 ///
 /// With several frames all of this is in a folder for each, with several models 03 to 11 in a
 /// folder for each, and index.html leads there.

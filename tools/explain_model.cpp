@@ -7,16 +7,23 @@
 #include <cstdio>
 #include <string_view>
 
+#include "core/draw/number.hpp"
+#include "core/draw/poses.hpp"
+#include "core/draw/scene_features.hpp"
+#include "core/draw/sheet.hpp"
 #include "core/eval/pose_errors.hpp"
 #include "core/io/image_file.hpp"
-#include "core/pipeline/explain.hpp"
 #include "core/score/predicted_surface.hpp"
 #include "core/score/segment_scores.hpp"
-#include "tools/explain_pictures.hpp"
 
 namespace bpa::cli {
 namespace {
 
+using draw::DrawnPoses;
+using draw::fixed;
+using draw::HtmlPage;
+using draw::LegendEntry;
+using draw::Rgb;
 using Row = std::vector<std::string>;
 
 constexpr Rgb kAlive{80, 255, 120}, kTrue{255, 255, 255};
@@ -87,13 +94,6 @@ Row stage_names() {
   Row names;
   for (const StageText& stage : kStages) names.emplace_back(stage.name);
   return names;
-}
-
-std::string fixed(double value, int digits) {
-  if (std::isnan(value)) return "not known";
-  char text[48];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
 }
 
 ModelExplanation::ModelExplanation(const ExplainedFrame& frame, std::size_t index,
@@ -212,8 +212,9 @@ Status ModelExplanation::write_stage(std::size_t index, HtmlPage& page) const {
   page.picture(file, std::string(text.text) + std::string(outlined ? kOutlines : kDots));
   const std::string title =
       model_.name + ": " + stage.name + ", " + fixed(stage.milliseconds, 1) + " ms";
-  return io::write_color_png(folder_ + "/" + file,
-                             with_words(draw_poses(frame_.frame, model_, groups), title, legend));
+  return io::write_color_png(
+      folder_ + "/" + file,
+      draw::with_words(draw::poses(frame_.frame, model_, groups), title, legend));
 }
 
 Status ModelExplanation::write_best(HtmlPage& page) const {
@@ -221,13 +222,14 @@ Status ModelExplanation::write_best(HtmlPage& page) const {
   const std::string sheet = numbered(number, "best"),
                     segments = numbered(number + 1, "best_segments");
   page.heading("The best placement");
-  page.picture(
-      sheet,
-      "The placement in green (the truth, where it is known, in dashed white), and what each "
-      "score component is and adds to the log odds of the learned score layer.");
+  page.picture(sheet,
+               "The placement in green and the truth, where it is known, in dashed white: in the "
+               "frame (left) and its surroundings (right).");
+  const std::string title =
+      model_.name + ": best placement, probability " + fixed(best_->probability, 3);
   Status status = io::write_color_png(
       folder_ + "/" + sheet,
-      placement_sheet(frame_.frame, *best_, frame_.layers.last_for(best_->components), truths_));
+      draw::with_words(draw::pose_from_near(frame_.frame, model_, best_->pose(), truths_), title));
   if (!status.ok()) return status;
   write_layer(page);
   const SceneFeatures& scene = frame_.trace.scene;
@@ -238,7 +240,7 @@ Status ModelExplanation::write_best(HtmlPage& page) const {
                "Those that the placement touches, from green (belongs to the model) to red (does "
                "not): what the components segment and segment_affinity are made of.");
   return io::write_color_png(folder_ + "/" + segments,
-                             draw_segment_matches(frame_.frame, scene.segmentation, matches));
+                             draw::segment_matches(frame_.frame, scene.segmentation, matches));
 }
 
 void ModelExplanation::write_layer(HtmlPage& page) const {
@@ -249,11 +251,11 @@ void ModelExplanation::write_layer(HtmlPage& page) const {
     const ScoreLayer::Component& c = layer.components[i];
     rows.push_back({score_feature_names()[i], fixed(features[i], 4),
                     fixed(c.place.front(), 3) + " to " + fixed(c.place.back(), 3),
-                    fixed(c.at(features[i]), 3)});
+                    fixed(c.at(features[i]), 3), HtmlPage::bar(c.at(features[i]))});
   }
-  rows.push_back({"bias", "", "", fixed(layer.bias, 3)});
-  rows.push_back({"sum", "", "", fixed(best_->score, 3)});
-  page.table({"read by the score layer", "value", "usual in training", "adds to the log odds"},
+  rows.push_back({"bias", "", "", fixed(layer.bias, 3), HtmlPage::bar(layer.bias)});
+  rows.push_back({"sum", "", "", fixed(best_->score, 3), HtmlPage::bar(best_->score)});
+  page.table({"read by the score layer", "value", "usual in training", "adds to the log odds", ""},
              rows);
   rows.clear();
   for (const ScoreComponent& component : to_placement(*best_).components) {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/cloud/frame.hpp"
+#include "core/draw/html_page.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/pipeline/frame_trace.hpp"
 #include "core/result/interpretation.hpp"
-#include "tools/html_page.hpp"
 
 namespace bpa::cli {
 
@@ -27,9 +27,6 @@ struct ExplainedFrame {
 /// The stages that a model's hypotheses go through.
 std::vector<std::string> stage_names();
 
-/// "1.25" for (1.25, 2); "not known" for what is not a number.
-std::string fixed(double value, int digits);
-
 /// Writes pictures and page sections of what became of one model in one frame.
 class ModelExplanation {
  public:
@@ -37,7 +34,7 @@ class ModelExplanation {
   ModelExplanation(const ExplainedFrame& frame, std::size_t index, std::string folder);
 
   /// Pictures 03 and on, and what the page says of them.
-  Status write(HtmlPage& page) const;
+  Status write(draw::HtmlPage& page) const;
 
   /// The model's row of a table: how many are alive after each of stage_names(), the probability of
   /// the best and whether the best interpretation holds it.
@@ -47,10 +44,10 @@ class ModelExplanation {
   bool is_reported() const;
   std::string verdict() const;
   std::size_t count_right(const ObjectTrace::Stage& stage) const;
-  void write_table(HtmlPage& page) const;
-  Status write_stage(std::size_t index, HtmlPage& page) const;
-  Status write_best(HtmlPage& page) const;
-  void write_layer(HtmlPage& page) const;
+  void write_table(draw::HtmlPage& page) const;
+  Status write_stage(std::size_t index, draw::HtmlPage& page) const;
+  Status write_best(draw::HtmlPage& page) const;
+  void write_layer(draw::HtmlPage& page) const;
 
   const ExplainedFrame& frame_;
   const ObjectModel& model_;

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/draw/model_sheet.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/mesh_file.hpp"
@@ -17,7 +18,6 @@
 #include "core/model/symmetry_search.hpp"
 #include "core/model/view_sphere.hpp"
 #include "tools/command.hpp"
-#include "tools/model_render.hpp"
 #include "tools/progress.hpp"
 #include "tools/scan_files.hpp"
 #include "tools/simulated_views.hpp"
@@ -293,7 +293,7 @@ Status info(const ModelArguments& a) {
   if (a.render.empty()) return {};
   const auto made = make_object_model(*model, a.common.threads);
   if (!made.ok()) return made.status();
-  return io::write_color_png(a.render, render_model(**made));
+  return io::write_color_png(a.render, draw::model_sheet(**made));
 }
 
 Status list(const ModelArguments& a) {

@@ -190,17 +190,19 @@ void add_calibration(EvaluationReport& report) {
   finish_bins(report.reliability);
 }
 
+/// The middle value; of an even number of them, the mean of the middle two.
+double median(const std::vector<double>& sorted) {
+  const std::size_t n = sorted.size();
+  return 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
+}
+
 void add_time(EvaluationReport& report) {
-  std::vector<double> seconds;
-  for (const FrameOutcome& frame : report.outcomes) {
-    if (frame.reported && frame.seconds >= 0) seconds.push_back(frame.seconds);  // BOP: -1 unknown
-  }
+  const std::vector<double> seconds = sorted_seconds(report);
   if (seconds.empty()) return;
-  std::sort(seconds.begin(), seconds.end());
-  const std::size_t n = seconds.size();
-  report.time.frames = static_cast<int>(n);
-  report.time.mean = std::accumulate(seconds.begin(), seconds.end(), 0.0) / static_cast<double>(n);
-  report.time.median = 0.5 * (seconds[(n - 1) / 2] + seconds[n / 2]);
+  report.time.frames = static_cast<int>(seconds.size());
+  report.time.mean =
+      std::accumulate(seconds.begin(), seconds.end(), 0.0) / static_cast<double>(seconds.size());
+  report.time.median = median(seconds);
   report.time.max = seconds.back();
 }
 
@@ -224,8 +226,7 @@ void add_scenes(EvaluationReport& report) {
   }
   if (fractions.empty()) return;
   std::sort(fractions.begin(), fractions.end());
-  const std::size_t n = fractions.size();
-  report.median_visible_fraction = 0.5 * (fractions[(n - 1) / 2] + fractions[n / 2]);
+  report.median_visible_fraction = median(fractions);
 }
 
 void add_paper(EvaluationReport& report) {
@@ -283,6 +284,15 @@ Result<EvalObjects> load_eval_objects(const std::string& dataset) {
     objects[model.obj_id] = {model.name, model.diameter, model.symmetry, std::move(*mesh)};
   }
   return objects;
+}
+
+std::vector<double> sorted_seconds(const EvaluationReport& report) {
+  std::vector<double> seconds;
+  for (const FrameOutcome& frame : report.outcomes) {
+    if (frame.reported && frame.seconds >= 0) seconds.push_back(frame.seconds);  // BOP: -1 unknown
+  }
+  std::sort(seconds.begin(), seconds.end());
+  return seconds;
 }
 
 Result<EvaluationReport> evaluate(const std::vector<io::BopFrame>& frames,

@@ -173,6 +173,9 @@ struct EvaluationReport {
   std::vector<FrameOutcome> outcomes;
 };
 
+/// The times of the reported frames whose time is known, ascending.
+std::vector<double> sorted_seconds(const EvaluationReport& report);
+
 /// Called after each frame with the number of frames done, from one thread at a time.
 using EvaluationProgress = std::function<void(int)>;
 

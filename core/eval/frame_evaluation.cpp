@@ -9,7 +9,6 @@
 
 #include "core/eval/depth_render.hpp"
 #include "core/eval/matching.hpp"
-#include "core/eval/pose_errors.hpp"
 
 namespace bpa::eval {
 namespace {
@@ -49,12 +48,8 @@ Costs below(Costs costs, double threshold) {
 /// The paper's criterion: both errors relative to their limits, the larger one.
 double paper_cost(const EvalObjects& objects, const EvaluationOptions& options,
                   const io::ResultPlacement& estimate, const io::BopInstance& truth) {
-  const PoseError error =
-      pose_error(estimate.camera_from_object, truth.camera_from_object,
-                 objects.at(truth.obj_id).symmetry, options.position_m, options.angle_rad);
-  const double cost =
-      std::max(error.position / options.position_m, error.angle / options.angle_rad);
-  return cost <= 1 ? cost : kNoMatch;
+  return right_cost(estimate.camera_from_object, truth.camera_from_object,
+                    objects.at(truth.obj_id).symmetry, options.position_m, options.angle_rad);
 }
 
 using Twist = Eigen::Matrix<double, 6, 1>;  // position, then turn; camera frame

@@ -7,6 +7,13 @@
 
 namespace bpa::eval {
 
+double right_cost(const Pose& estimate, const Pose& truth, const SymmetryGroup& symmetry,
+                  double position_m, double angle_rad) {
+  const PoseError error = pose_error(estimate, truth, symmetry, position_m, angle_rad);
+  const double cost = std::max(error.position / position_m, error.angle / angle_rad);
+  return cost <= 1 ? cost : kNoMatch;
+}
+
 std::vector<int> match_greedily(const std::vector<double>& scores,
                                 const std::vector<std::vector<double>>& costs) {
   std::vector<int> order(scores.size());

@@ -5,10 +5,17 @@
 #include <limits>
 #include <vector>
 
+#include "core/eval/pose_errors.hpp"
+
 namespace bpa::eval {
 
 /// The cost of a pair that cannot be matched.
 constexpr double kNoMatch = std::numeric_limits<double>::infinity();
+
+/// The larger of position error / position_m and orientation error / angle_rad, modulo the symmetry
+/// (paper section VII): 0 to 1, and kNoMatch above 1.
+double right_cost(const Pose& estimate, const Pose& truth, const SymmetryGroup& symmetry,
+                  double position_m = kRightPosition, double angle_rad = kRightAngle);
 
 /// Greedy one-to-one matching, as BOP does it: estimates by falling score (by index where equal)
 /// each take the free truth of the smallest cost. costs[e][t] is kNoMatch where the estimate is not

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/draw/number.hpp"
 #include "core/io/image_file.hpp"
 #include "core/pipeline/detector.hpp"
 #include "tests/support/posed_models.hpp"
@@ -107,14 +108,14 @@ TEST_F(Explain, OneModelIsOneFolderWhosePageAgreesWithTheTrace) {
     const std::size_t row = text.find("<tr>" + cell(score_feature_names()[i]), table);
     ASSERT_NE(row, std::string::npos) << score_feature_names()[i];
     const std::string line = text.substr(row, text.find("</tr>", row) - row);
-    EXPECT_NE(line.find(cell(cli::fixed(features[i], 4))), std::string::npos) << line;
-    EXPECT_NE(line.find(cell(cli::fixed(part, 3))), std::string::npos) << line;
+    EXPECT_NE(line.find(cell(draw::fixed(features[i], 4))), std::string::npos) << line;
+    EXPECT_NE(line.find(cell(draw::fixed(part, 3))), std::string::npos) << line;
   }
   EXPECT_NEAR(sum, best.score, 1e-9);
-  EXPECT_NE(text.find(cell("sum") + cell("") + cell("") + cell(cli::fixed(best.score, 3))),
+  EXPECT_NE(text.find(cell("sum") + cell("") + cell("") + cell(draw::fixed(best.score, 3))),
             std::string::npos);
   for (const ScoreComponent& component : to_placement(best).components) {
-    EXPECT_NE(text.find(cell(component.name) + cell(cli::fixed(component.value, 4))),
+    EXPECT_NE(text.find(cell(component.name) + cell(draw::fixed(component.value, 4))),
               std::string::npos)
         << component.name;
   }

@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/html_page.hpp"
+#include "core/draw/html_page.hpp"
 
-namespace bpa::cli {
+#include <algorithm>
+#include <cstdlib>
+
+namespace bpa::draw {
 namespace {
 
 constexpr std::string_view kHead =
@@ -18,24 +21,21 @@ constexpr std::string_view kHead =
 std::string HtmlPage::escape(std::string_view text) {
   std::string out;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
+    const char* const entity = c == '&'   ? "&amp;"
+                               : c == '<' ? "&lt;"
+                               : c == '>' ? "&gt;"
+                               : c == '"' ? "&quot;"
+                                          : nullptr;
+    out += entity ? entity : std::string(1, c);
   }
   return out;
+}
+
+std::string HtmlPage::bar(double value) {
+  const int length = static_cast<int>(12 * std::clamp(value, -10.0, 10.0));
+  return "<div style=\"background:" + std::string(length > 0 ? "#3ca050" : "#d7463c") +
+         ";height:1em;width:" + std::to_string(std::abs(length)) +
+         "px;margin-left:" + std::to_string(120 + std::min(0, length)) + "px\"></div>";
 }
 
 std::string HtmlPage::link(std::string_view file, std::string_view text) {
@@ -70,4 +70,4 @@ void HtmlPage::table(const std::vector<std::string>& head,
 
 std::string HtmlPage::finish() const { return std::string(kHead) + body_ + "</body></html>\n"; }
 
-}  // namespace bpa::cli
+}  // namespace bpa::draw

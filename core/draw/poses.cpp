@@ -1,14 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/draw/poses.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
 
-#include "core/pipeline/explain.hpp"
-#include "core/pipeline/silhouette.hpp"
+#include "core/draw/canvas.hpp"
+#include "core/draw/sheet.hpp"
+#include "core/draw/silhouette.hpp"
 
-namespace bpa {
+namespace bpa::draw {
 namespace {
 
 constexpr double kDim = 0.55, kPale = 0.7;  // brightness, and how much of the colour is gone
@@ -27,8 +30,7 @@ Camera enlarged(const Camera& camera, double factor) {
 }
 
 cv::Mat canvas_of(const Frame& frame, const Camera& camera, bool dimmed) {
-  io::ColorImage picture = draw_objects(frame, {});
-  cv::Mat image(picture.height, picture.width, CV_8UC3, picture.pixels.data());
+  cv::Mat image = to_mat(objects(frame, {}));
   if (dimmed) {
     cv::Mat grey;
     cv::cvtColor(image, grey, cv::COLOR_RGB2GRAY);
@@ -83,10 +85,41 @@ Eigen::Vector3f middle_of(const std::vector<Eigen::Vector3f>& points) {
   return sum / static_cast<float>(std::max<std::size_t>(1, points.size()));
 }
 
+constexpr int kView = 640, kViewRows = 480;  // pixels of each of two views of one pose
+constexpr Rgb kPlaced{80, 255, 120}, kTrue{255, 255, 255};
+
+io::ColorImage view(const Frame& frame, const ObjectModel& model, const Pose& pose,
+                    const std::vector<Pose>& truths) {
+  std::vector<FastPose> true_poses;
+  for (const Pose& truth : truths) true_poses.push_back(to_fast(truth));
+  const FastPose placed = to_fast(pose);
+  const io::ColorImage picture = poses(frame, model,
+                                       {{{&placed, 1}, kPlaced, DrawnPoses::Style::bold},
+                                        {true_poses, kTrue, DrawnPoses::Style::dashed}},
+                                       {kView, false});
+  cv::Mat out;
+  cv::resize(to_mat(picture), out, {kView, kViewRows}, 0, 0, cv::INTER_AREA);
+  return to_image(out);
+}
+
+// The surroundings of a pose, of the shape of a view.
+RegionOfInterest surroundings(const Camera& camera, const ObjectModel& model, const Pose& pose) {
+  const Silhouette shape = silhouette(camera, model.surface, pose);
+  if (shape.mask.empty()) return {0, 0, camera.width, camera.height};
+  const int height =
+      std::min({camera.height, camera.width * kViewRows / kView,
+                std::max(3 * shape.mask.height / 2, 3 * shape.mask.width * kViewRows / kView / 2)});
+  const int width = height * kView / kViewRows;
+  const int u = shape.left + shape.mask.width / 2 - width / 2;
+  const int v = shape.top + shape.mask.height / 2 - height / 2;
+  return {std::clamp(u, 0, camera.width - width), std::clamp(v, 0, camera.height - height), width,
+          height};
+}
+
 }  // namespace
 
-io::ColorImage draw_poses(const Frame& frame, const ObjectModel& model,
-                          const std::vector<DrawnPoses>& groups, const DrawPosesOptions& options) {
+io::ColorImage poses(const Frame& frame, const ObjectModel& model,
+                     const std::vector<DrawnPoses>& groups, const DrawPosesOptions& options) {
   const double factor = std::max(1.0, static_cast<double>(options.min_width) / frame.camera.width);
   const Camera camera = enlarged(frame.camera, factor);
   cv::Mat canvas = canvas_of(frame, camera, options.dimmed);
@@ -103,7 +136,13 @@ io::ColorImage draw_poses(const Frame& frame, const ObjectModel& model,
       }
     }
   }
-  return {canvas.cols, canvas.rows, {canvas.datastart, canvas.dataend}};
+  return to_image(canvas);
+}
+
+io::ColorImage pose_from_near(const Frame& frame, const ObjectModel& model, const Pose& pose,
+                              const std::vector<Pose>& truths) {
+  const Frame near = crop(frame, surroundings(frame.camera, model, pose));
+  return beside(view(frame, model, pose, truths), view(near, model, pose, truths));
 }
 
 Frame crop(const Frame& frame, const RegionOfInterest& part) {
@@ -123,4 +162,4 @@ Frame crop(const Frame& frame, const RegionOfInterest& part) {
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::draw

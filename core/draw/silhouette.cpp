@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/pipeline/silhouette.hpp"
+#include "core/draw/silhouette.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace bpa {
+namespace bpa::draw {
 namespace {
 
 /// About the distance of neighbouring points: the median over a few of them.
@@ -77,4 +77,4 @@ Silhouette silhouette(const Camera& camera, const PointCloud& surface,
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::draw

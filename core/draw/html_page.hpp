@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
-namespace bpa::cli {
+namespace bpa::draw {
 
-/// A page of headings, paragraphs, tables and pictures, in one file. Whatever is added is text
-/// unless it says otherwise.
+/// A page of headings, paragraphs, tables and pictures, in one file. Strings are plain text, which
+/// is escaped, unless the function says HTML.
 class HtmlPage {
  public:
   explicit HtmlPage(std::string_view title);
@@ -18,17 +18,20 @@ class HtmlPage {
   void paragraph(std::string_view text);
   /// `text` beside the picture's file name, the picture below; `file` is relative to the page.
   void picture(std::string_view file, std::string_view text);
-  /// The cells of `rows` are HTML already.
+  /// The cells of `rows` are HTML.
   void table(const std::vector<std::string>& head,
              const std::vector<std::vector<std::string>>& rows);
   /// The whole page.
   std::string finish() const;
 
   static std::string escape(std::string_view text);
+  /// A bar to the right for a positive value, to the left for a negative one, as HTML; 1 is 12
+  /// pixels long, and 10 and more are 120.
+  static std::string bar(double value);
   static std::string link(std::string_view file, std::string_view text);
 
  private:
   std::string body_;
 };
 
-}  // namespace bpa::cli
+}  // namespace bpa::draw

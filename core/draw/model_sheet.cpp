@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/model_render.hpp"
+#include "core/draw/model_sheet.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,24 +9,21 @@
 #include <limits>
 #include <string>
 
-#include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/draw/canvas.hpp"
 #include "core/model/model_index.hpp"
 
-namespace bpa::cli {
+namespace bpa::draw {
 namespace {
 
 constexpr int kTile = 300;  // pixels
+constexpr double kText = 0.38;
 constexpr int kColumns = 4, kRows = 3;
 const cv::Scalar kInk(40, 40, 40), kRed(220, 40, 40), kBlue(40, 80, 230), kGreen(30, 140, 60),
     kEdge(0, 190, 220);
 
 using Paint = std::function<Eigen::Vector3f(std::size_t)>;  // rgb of a surface point, in [0, 1]
-
-void write(cv::Mat& sheet, const std::string& text, int x, int y) {
-  cv::putText(sheet, text, {x, y}, cv::FONT_HERSHEY_SIMPLEX, 0.38, kInk, 1, cv::LINE_AA);
-}
 
 /// Blue over green and yellow to red, for t in [0, 1].
 Eigen::Vector3f heat(float t) {
@@ -129,9 +126,9 @@ void draw_curves(cv::Mat& tile, const NoiseCurve& curve, const std::string& titl
   }
   char text[80];
   std::snprintf(text, sizeof text, "%s, up to %.3g %s", title.c_str(), unit * highest, unit_name);
-  write(tile, text, 10, 18);
-  write(tile, "red: edge distance 0-30 mm, at 30 deg", 10, kTile - 24);
-  write(tile, "green: angle 0-85 deg, no edge", 10, kTile - 8);
+  write(tile, text, 10, 18, kText);
+  write(tile, "red: edge distance 0-30 mm, at 30 deg", 10, kTile - 24, kText);
+  write(tile, "green: angle 0-85 deg, no edge", 10, kTile - 8, kText);
 }
 
 Paint own_colors(const ObjectModel& model) {
@@ -156,13 +153,13 @@ Paint curvature(const ObjectModel& model) {
 
 }  // namespace
 
-io::ColorImage render_model(const ObjectModel& model) {
+io::ColorImage model_sheet(const ObjectModel& model) {
   cv::Mat sheet(kRows * kTile, kColumns * kTile, CV_8UC3, cv::Scalar(255, 255, 255));
   const auto put = [&sheet](const cv::Mat& tile, int place, const std::string& title) {
     const cv::Rect area(place % kColumns * kTile, place / kColumns * kTile, kTile, kTile);
     tile.copyTo(sheet(area));
     cv::rectangle(sheet, area, cv::Scalar(200, 200, 200), 1);
-    if (!title.empty()) write(sheet, title, area.x + 10, area.y + 18);
+    if (!title.empty()) write(sheet, title, area.x + 10, area.y + 18, kText);
   };
   const char* const names[] = {"from +x", "from -x", "from +y", "from -y", "from +z", "from -z"};
   const Paint colors = own_colors(model);
@@ -186,9 +183,7 @@ io::ColorImage render_model(const ObjectModel& model) {
   draw_curves(normal, model.noise.normal, "normal noise", 180 / M_PI, "deg");
   put(range, 9, "");
   put(normal, 10, "");
-  io::ColorImage image{sheet.cols, sheet.rows, {}};
-  image.pixels.assign(sheet.data, sheet.data + sheet.total() * sheet.elemSize());
-  return image;
+  return to_image(sheet);
 }
 
-}  // namespace bpa::cli
+}  // namespace bpa::draw

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/pipeline/explain.hpp"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "core/pipeline/silhouette.hpp"
+#include "core/draw/poses.hpp"
+#include "core/draw/scene_features.hpp"
+#include "core/draw/silhouette.hpp"
 
-namespace bpa {
+namespace bpa::draw {
 namespace {
 
 constexpr int kWidth = 8, kHeight = 4;  // of the maps; frames are twice as large
@@ -40,7 +40,7 @@ TEST(DrawEdges, EachKindInItsColour) {
   edges.curvature.at(3, 1) = 1;
   edges.image.at(4, 1) = 1;
   edges.image.at(1, 1) = 1;  // the range edge comes first
-  const io::ColorImage picture = draw_edges(white_frame(), edges);
+  const io::ColorImage picture = draw::edges(white_frame(), edges);
   expect_frame_size(picture);
   for (const auto& [du, dv] : {std::pair(0, 0), {1, 0}, {0, 1}, {1, 1}}) {
     const auto red = color_at(picture, 2 + du, 2 + dv), blue = color_at(picture, 4 + du, 2 + dv);
@@ -60,7 +60,7 @@ TEST(DrawEdgeImage, WhiteIsOne) {
   Image<float> likelihood(kWidth, kHeight, 0);
   likelihood.at(5, 2) = 1;
   likelihood.at(6, 2) = 0.5f;
-  const io::ColorImage picture = draw_edge_image(white_frame(), likelihood);
+  const io::ColorImage picture = edge_image(white_frame(), likelihood);
   expect_frame_size(picture);
   EXPECT_EQ(color_at(picture, 11, 5), (std::array{255, 255, 255}));
   EXPECT_EQ(color_at(picture, 12, 4), (std::array{127, 127, 127}));
@@ -85,7 +85,7 @@ TEST(DrawSegments, BordersTellAffinity) {
   for (const auto& [affinity, grey] : {std::pair(0.9f, 0), std::pair(0.1f, 255)}) {
     Frame frame = white_frame();
     std::fill(frame.color.begin(), frame.color.end(), std::uint8_t{100});
-    const io::ColorImage picture = draw_segment_borders(frame, halves(affinity));
+    const io::ColorImage picture = segment_borders(frame, halves(affinity));
     expect_frame_size(picture);
     for (int v = 0; v < 2 * kHeight; ++v) {
       EXPECT_EQ(color_at(picture, 5, v), (std::array{grey, grey, grey}));
@@ -96,7 +96,7 @@ TEST(DrawSegments, BordersTellAffinity) {
 }
 
 TEST(DrawSegments, MeansAreColours) {
-  const io::ColorImage picture = draw_segment_means(white_frame(), halves(1));
+  const io::ColorImage picture = segment_means(white_frame(), halves(1));
   expect_frame_size(picture);
   const auto red = color_at(picture, 1, 1), green = color_at(picture, 8, 3);
   EXPECT_TRUE(red[0] > 250 && red[1] < 8 && red[2] < 8);
@@ -106,21 +106,21 @@ TEST(DrawSegments, MeansAreColours) {
 
 TEST(DrawSegments, MatchesFromRedToGreen) {
   const io::ColorImage picture =
-      draw_segment_matches(white_frame(), halves(1), {{0, 5, 0.0, -1}, {1, 5, 1.0, 0}});
+      segment_matches(white_frame(), halves(1), {{0, 5, 0.0, -1}, {1, 5, 1.0, 0}});
   expect_frame_size(picture);
   const auto red = color_at(picture, 1, 1), green = color_at(picture, 8, 3);
   EXPECT_GT(red[0], red[1] + 100);
   EXPECT_GT(green[1], green[0] + 100);
-  const auto untouched = color_at(draw_segment_matches(white_frame(), halves(1), {}), 1, 1);
+  const auto untouched = color_at(segment_matches(white_frame(), halves(1), {}), 1, 1);
   EXPECT_EQ(untouched[0], untouched[1]);
 }
 
 TEST(Draw, NothingKnown) {
-  expect_frame_size(draw_edges(white_frame(), {}));
-  expect_frame_size(draw_edge_image(white_frame(), {}));
-  expect_frame_size(draw_segment_borders(white_frame(), {}));
-  expect_frame_size(draw_segment_matches(white_frame(), {}, {}));
-  expect_frame_size(draw_segment_means(white_frame(), {}));
+  expect_frame_size(edges(white_frame(), {}));
+  expect_frame_size(edge_image(white_frame(), {}));
+  expect_frame_size(segment_borders(white_frame(), {}));
+  expect_frame_size(segment_matches(white_frame(), {}, {}));
+  expect_frame_size(segment_means(white_frame(), {}));
 }
 
 // A plate of 0.2 m x 0.1 m that faces the camera.
@@ -150,8 +150,10 @@ TEST(Silhouette, OfAPlateIsItsRectangle) {
     for (int u = 0; u < shape.mask.width; ++u) {
       if (shape.mask.at(u, v) == 0) continue;
       ++covered;
-      left = std::min(left, shape.left + u), right = std::max(right, shape.left + u);
-      top = std::min(top, shape.top + v), bottom = std::max(bottom, shape.top + v);
+      left = std::min(left, shape.left + u);
+      right = std::max(right, shape.left + u);
+      top = std::min(top, shape.top + v);
+      bottom = std::max(bottom, shape.top + v);
     }
   }
   EXPECT_NEAR(left, 300 * -0.05 / 0.8 + 159.5, 1.5);
@@ -174,8 +176,7 @@ TEST(DrawPoses, OutlinesAndDotsWhereThePosesAre) {
   };
   const auto is_green = [](const std::array<int, 3>& c) { return c[1] > c[0] + 60; };
   for (const auto style : {DrawnPoses::Style::dots, DrawnPoses::Style::outlines}) {
-    const io::ColorImage picture =
-        draw_poses(grey_frame(), model, {{{&pose, 1}, {0, 255, 0}, style}});
+    const io::ColorImage picture = poses(grey_frame(), model, {{{&pose, 1}, {0, 255, 0}, style}});
     ASSERT_EQ(picture.width, 960);
     ASSERT_EQ(picture.height, 720);
     int green = 0, near_edge = 0, near_middle = 0;
@@ -208,9 +209,9 @@ TEST(DrawPoses, LaterGroupsCoverEarlierOnesAndTheBestIsBrightest) {
   poses[0].translation = {-0.1f, 0, 0.8f};
   poses[1].translation = {0.1f, 0, 0.8f};
   const io::ColorImage picture =
-      draw_poses(grey_frame(), model,
-                 {{poses, {255, 0, 0}, DrawnPoses::Style::dots},
-                  {std::span(poses).first(1), {0, 255, 0}, DrawnPoses::Style::dots}});
+      draw::poses(grey_frame(), model,
+                  {{poses, {255, 0, 0}, DrawnPoses::Style::dots},
+                   {std::span(poses).first(1), {0, 255, 0}, DrawnPoses::Style::dots}});
   const auto first = color_at(picture, 480 - 113, 360), second = color_at(picture, 480 + 112, 360);
   EXPECT_GT(first[1], 200);
   EXPECT_LT(first[0], 60);
@@ -232,4 +233,4 @@ TEST(Crop, SeesTheSameInItsPart) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::draw

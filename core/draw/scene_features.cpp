@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/pipeline/explain.hpp"
+#include "core/draw/scene_features.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "core/pipeline/annotate.hpp"
+#include "core/draw/annotate.hpp"
 
-namespace bpa {
+namespace bpa::draw {
 namespace {
 
 constexpr Rgb kOccluding{255, 50, 50}, kOccluded{60, 110, 255}, kCurvature{40, 220, 70},
@@ -34,7 +34,7 @@ void for_each_pixel(const io::ColorImage& picture, const Image<T>& map, const Vi
 }
 
 io::ColorImage dimmed(const Frame& frame) {
-  io::ColorImage picture = draw_objects(frame, {});
+  io::ColorImage picture = objects(frame, {});
   for (std::uint8_t& value : picture.pixels) {
     value = static_cast<std::uint8_t>(kDim * static_cast<float>(value));
   }
@@ -82,23 +82,23 @@ bool is_boundary(const Segmentation& segmentation, std::int32_t a, std::int32_t 
 
 }  // namespace
 
-io::ColorImage draw_edges(const Frame& frame, const SceneEdges& edges) {
+io::ColorImage edges(const Frame& frame, const SceneEdges& found) {
   io::ColorImage picture = dimmed(frame);
-  for_each_pixel(picture, edges.range, [&](int u, int v, std::size_t i) {
-    if (edges.range[i] == RangeEdge::occluding) {
+  for_each_pixel(picture, found.range, [&](int u, int v, std::size_t i) {
+    if (found.range[i] == RangeEdge::occluding) {
       set(picture, u, v, kOccluding);
-    } else if (edges.range[i] == RangeEdge::occluded) {
+    } else if (found.range[i] == RangeEdge::occluded) {
       set(picture, u, v, kOccluded);
-    } else if (edges.curvature[i]) {
+    } else if (found.curvature[i]) {
       set(picture, u, v, kCurvature);
-    } else if (edges.image[i]) {
+    } else if (found.image[i]) {
       set(picture, u, v, kImage);
     }
   });
   return picture;
 }
 
-io::ColorImage draw_edge_image(const Frame& frame, const Image<float>& likelihood) {
+io::ColorImage edge_image(const Frame& frame, const Image<float>& likelihood) {
   io::ColorImage picture = black(frame);
   for_each_pixel(picture, likelihood, [&](int u, int v, std::size_t i) {
     const auto grey = static_cast<std::uint8_t>(255 * std::clamp(likelihood[i], 0.0f, 1.0f));
@@ -107,8 +107,8 @@ io::ColorImage draw_edge_image(const Frame& frame, const Image<float>& likelihoo
   return picture;
 }
 
-io::ColorImage draw_segment_borders(const Frame& frame, const Segmentation& segmentation) {
-  io::ColorImage picture = draw_objects(frame, {});
+io::ColorImage segment_borders(const Frame& frame, const Segmentation& segmentation) {
+  io::ColorImage picture = objects(frame, {});
   const Image<std::int32_t>& labels = segmentation.labels;
   if (labels.empty()) return picture;
   const int reduction = std::max(1, picture.width / labels.width);
@@ -127,8 +127,8 @@ io::ColorImage draw_segment_borders(const Frame& frame, const Segmentation& segm
   return picture;
 }
 
-io::ColorImage draw_segment_matches(const Frame& frame, const Segmentation& segmentation,
-                                    const std::vector<SegmentMatch>& matches) {
+io::ColorImage segment_matches(const Frame& frame, const Segmentation& segmentation,
+                               const std::vector<SegmentMatch>& matches) {
   io::ColorImage picture = dimmed(frame);
   std::vector<double> probability(segmentation.segments.size(), -1);
   for (const SegmentMatch& match : matches) {
@@ -147,7 +147,7 @@ io::ColorImage draw_segment_matches(const Frame& frame, const Segmentation& segm
   return picture;
 }
 
-io::ColorImage draw_segment_means(const Frame& frame, const Segmentation& segmentation) {
+io::ColorImage segment_means(const Frame& frame, const Segmentation& segmentation) {
   std::vector<Rgb> colors;
   const bool colored = !frame.color.empty();
   for (const Segment& segment : segmentation.segments) {
@@ -161,4 +161,4 @@ io::ColorImage draw_segment_means(const Frame& frame, const Segmentation& segmen
   return picture;
 }
 
-}  // namespace bpa
+}  // namespace bpa::draw

@@ -1,72 +1,58 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/pipeline/annotate.hpp"
+#include "core/draw/annotate.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <limits>
-#include <numeric>
 
 #include <opencv2/imgproc.hpp>
 
-#include "core/pipeline/silhouette.hpp"
+#include "core/draw/canvas.hpp"
+#include "core/draw/number.hpp"
+#include "core/draw/silhouette.hpp"
 
-namespace bpa {
+namespace bpa::draw {
 namespace {
 
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kFillOpacity = 0.35;
 
+/// Near is bright; black has no depth.
 cv::Mat grey_depth(const Frame& frame) {
-  float nearest = std::numeric_limits<float>::max(), furthest = 0;
-  for (const float z : frame.depth) {
-    if (!(z > 0)) continue;
-    nearest = std::min(nearest, z);
-    furthest = std::max(furthest, z);
-  }
-  cv::Mat image(frame.camera.height, frame.camera.width, CV_8UC3, cv::Scalar::all(0));
-  const float range = std::max(furthest - nearest, 1e-3f);
-  for (std::size_t i = 0; i < frame.depth.size(); ++i) {
-    const float z = frame.depth[i];
-    if (!(z > 0)) continue;
-    const auto grey = static_cast<std::uint8_t>(230 - 180 * (z - nearest) / range);
-    std::fill_n(image.data + 3 * i, 3, grey);
-  }
+  constexpr double kBrightest = 230, kDarkest = 50;
+  auto* const metres = const_cast<float*>(frame.depth.data());
+  const cv::Mat depth(frame.camera.height, frame.camera.width, CV_32F, metres);
+  const cv::Mat measured = depth > 0;
+  double nearest = 0, furthest = 0;
+  cv::minMaxLoc(depth, &nearest, &furthest, nullptr, nullptr, measured);
+  const double slope = (kDarkest - kBrightest) / std::max(furthest - nearest, 1e-3);
+  cv::Mat grey, image;
+  depth.convertTo(grey, CV_8U, slope, kBrightest - slope * nearest);
+  grey.setTo(0, ~measured);
+  cv::cvtColor(grey, image, cv::COLOR_GRAY2RGB);
   return image;
 }
 
 cv::Mat canvas(const Frame& frame) {
   if (frame.color.empty()) return grey_depth(frame);
-  cv::Mat image(frame.camera.height, frame.camera.width, CV_8UC3);
-  std::copy(frame.color.begin(), frame.color.end(), image.data);
-  return image;
+  return to_mat({frame.camera.width, frame.camera.height, frame.color});
 }
 
-void fill(cv::Mat& image, const cv::Mat& mask, const cv::Scalar& color) {
-  for (int v = 0; v < mask.rows; ++v) {
-    for (int u = 0; u < mask.cols; ++u) {
-      if (mask.at<std::uint8_t>(v, u) == 0) continue;
-      auto& pixel = image.at<cv::Vec3b>(v, u);
-      for (int k = 0; k < 3; ++k) {
-        pixel[k] = cv::saturate_cast<std::uint8_t>((1 - kFillOpacity) * pixel[k] +
-                                                   kFillOpacity * color[k]);
-      }
-    }
-  }
+void fill(cv::Mat image, const cv::Mat& mask, const cv::Scalar& color) {
+  cv::Mat filled;
+  cv::addWeighted(image, 1 - kFillOpacity, cv::Mat(image.size(), image.type(), color), kFillOpacity,
+                  0, filled);
+  filled.copyTo(image, mask);
 }
 
-/// Draws outline and fill; returns the box of what is in the image, empty when nothing is.
+/// Draws outline and fill; returns the box of the part in the image, empty if there is none.
 cv::Rect draw_silhouette(cv::Mat& image, const Camera& camera, const DrawnObject& object) {
   Silhouette shape = silhouette(camera, *object.surface, object.camera_from_object);
   if (shape.mask.empty()) return {};
   const cv::Mat mask(shape.mask.height, shape.mask.width, CV_8U, shape.mask.pixels.data());
   const cv::Point corner(shape.left, shape.top);
   const cv::Scalar color(object.color[0], object.color[1], object.color[2]);
-  if (!object.emphasised) {
-    cv::Mat part = image(cv::Rect(corner, mask.size()));
-    fill(part, mask, color);
-  }
+  if (!object.emphasised) fill(image(cv::Rect(corner, mask.size())), mask, color);
   std::vector<std::vector<cv::Point>> contours;
   cv::findContours(mask, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE, corner);
   const int thickness = object.emphasised ? 3 : 2;
@@ -76,7 +62,7 @@ cv::Rect draw_silhouette(cv::Mat& image, const Camera& camera, const DrawnObject
   return box.empty() ? box : box + corner;
 }
 
-/// The place nearest to the wished one that covers none of `taken`, looked for up and down.
+/// The rectangle nearest to the wished one, above or below it, that covers none of `taken`.
 cv::Rect free_place(cv::Rect wished, cv::Size image, const std::vector<cv::Rect>& taken) {
   wished.x = std::clamp(wished.x, 0, std::max(0, image.width - wished.width));
   wished.y = std::clamp(wished.y, 0, std::max(0, image.height - wished.height));
@@ -120,7 +106,7 @@ Rgb object_color(int number) {
   // Turn the hue by the golden ratio: neighbours are far apart, and no two of the first 30 are
   // near.
   const double turns = 0.61803398875 * number;
-  const double hue = 6 * (0.08 + 0.84 * (turns - std::floor(turns)));  // red means trouble
+  const double hue = 6 * (0.08 + 0.84 * (turns - std::floor(turns)));  // red is for errors
   const double bright = number % 2 == 0 ? 255 : 215;
   Rgb color{};
   const double offsets[] = {5, 3, 1};
@@ -132,39 +118,39 @@ Rgb object_color(int number) {
   return color;
 }
 
-io::ColorImage draw_objects(const Frame& frame, const std::vector<DrawnObject>& objects) {
+io::ColorImage objects(const Frame& frame, const std::vector<DrawnObject>& drawn) {
   cv::Mat image = canvas(frame);
-  std::vector<std::size_t> order(objects.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&objects](std::size_t a, std::size_t b) {
-    return objects[a].camera_from_object.translation.z() >
-           objects[b].camera_from_object.translation.z();
+  std::vector<DrawnObject> furthest_first = drawn;
+  std::stable_sort(furthest_first.begin(), furthest_first.end(), [](const auto& a, const auto& b) {
+    return a.camera_from_object.translation.z() > b.camera_from_object.translation.z();
   });
-  std::vector<cv::Rect> boxes(objects.size());
-  for (const std::size_t i : order) {
-    boxes[i] = draw_silhouette(image, frame.camera, objects[i]);
+  std::vector<cv::Rect> boxes, taken;
+  for (const DrawnObject& object : furthest_first) {
+    boxes.push_back(draw_silhouette(image, frame.camera, object));
   }
-  std::vector<cv::Rect> taken;
-  for (const std::size_t i : order) {
-    if (!boxes[i].empty()) draw_label(image, objects[i], boxes[i], taken);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (!boxes[i].empty()) draw_label(image, furthest_first[i], boxes[i], taken);
   }
-  return {image.cols, image.rows, {image.datastart, image.dataend}};
+  return to_image(image);
+}
+
+DrawnObject placed(const Placement& placement, const ObjectModel& model) {
+  return {&model.surface, placement.camera_from_object,
+          placement.model + " " + fixed(placement.probability, 2),
+          object_color(placement.model_number), false};
 }
 
 io::ColorImage annotate(const Frame& frame, const Interpretation& interpretation,
                         const ModelLibrary& library) {
-  std::vector<DrawnObject> objects;
+  std::vector<DrawnObject> drawn;
   std::vector<std::shared_ptr<const ObjectModel>> keep;
   for (const Placement& placement : interpretation.placements) {
     const std::shared_ptr<const ObjectModel> model = library.find(placement.model);
     if (!model) continue;
     keep.push_back(model);
-    char probability[16];
-    std::snprintf(probability, sizeof probability, " %.2f", placement.probability);
-    objects.push_back({&model->surface, placement.camera_from_object, placement.model + probability,
-                       object_color(placement.model_number), false});
+    drawn.push_back(placed(placement, *model));
   }
-  return draw_objects(frame, objects);
+  return objects(frame, drawn);
 }
 
-}  // namespace bpa
+}  // namespace bpa::draw

@@ -7,9 +7,9 @@
 
 #include "core/io/image_file.hpp"
 
-namespace bpa::eval {
+namespace bpa::draw {
 
-/// Values over x, both in [0, 1] for the usual plots; drawn as a line with dots.
+/// Points (x, y), drawn as a line with dots. Both vectors have one length.
 struct Series {
   std::string name;
   std::vector<double> x;
@@ -25,13 +25,13 @@ struct PlotAxes {
 /// 640x480 rgb. Points outside the axes are left out.
 io::ColorImage line_plot(const PlotAxes& axes, const std::vector<Series>& series);
 
-/// Counts of equal bins over [x_min, x_max] as upright bars, one colour for each series; the bars
-/// of a bin stand on each other. The y axis fits the counts.
+/// Counts in equal bins over [x_min, x_max] as stacked bars, one colour for each series. The y axis
+/// fits the counts.
 io::ColorImage histogram_plot(const PlotAxes& axes, const std::vector<std::string>& names,
                               const std::vector<std::vector<int>>& counts);
 
-/// One horizontal bar for each name, values in [0, 1], with a note at its right end.
+/// One horizontal bar for each name, of length values[i] in [0, 1], with notes[i] at its right end.
 io::ColorImage bar_plot(const std::string& title, const std::vector<std::string>& names,
                         const std::vector<double>& values, const std::vector<std::string>& notes);
 
-}  // namespace bpa::eval
+}  // namespace bpa::draw

@@ -12,7 +12,7 @@
 #include "core/model/library.hpp"
 #include "core/result/interpretation.hpp"
 
-namespace bpa {
+namespace bpa::draw {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
@@ -22,7 +22,7 @@ struct DrawnObject {
   Pose camera_from_object;
   std::string label;
   Rgb color{};
-  bool emphasised = false;  ///< Thick outline without fill: something is the matter with it.
+  bool emphasised = false;  ///< Thick outline without fill, for errors.
 };
 
 /// A colour for each object number, far apart for neighbouring numbers, the same in every picture.
@@ -31,11 +31,15 @@ Rgb object_color(int number);
 /// The frame's colour image (depth as grey where it has none) with, for each object, the outline of
 /// its projected surface, a translucent fill and its label; nearer objects over further ones.
 /// Labels are moved so that they do not cover each other as long as there is room.
-io::ColorImage draw_objects(const Frame& frame, const std::vector<DrawnObject>& objects);
+io::ColorImage objects(const Frame& frame, const std::vector<DrawnObject>& drawn);
 
-/// The placements of an interpretation with names and probabilities. Placements whose model is not
-/// in the library are left out.
+/// A placement with its name and probability, in the colour of its model number. Points into
+/// `model`.
+DrawnObject placed(const Placement& placement, const ObjectModel& model);
+
+/// The placements of an interpretation with names and probabilities. Placements whose model the
+/// library does not hold are left out.
 io::ColorImage annotate(const Frame& frame, const Interpretation& interpretation,
                         const ModelLibrary& library);
 
-}  // namespace bpa
+}  // namespace bpa::draw

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/draw/plot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <opencv2/imgproc.hpp>
+
+#include "core/draw/canvas.hpp"
+
+namespace bpa::draw {
+namespace {
+
+const cv::Scalar kInk(40, 40, 40);
+const cv::Scalar kGrid(222, 222, 222);
+const cv::Scalar kColors[] = {{31, 119, 180}, {214, 39, 40}, {44, 160, 44}, {148, 103, 189}};
+
+void write_centred(cv::Mat& image, const std::string& text, cv::Point at, double size = 0.45) {
+  write(image, text, at.x - text_width(text, size) / 2, at.y, size);
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+/// From values to pixels.
+struct Mapping {
+  PlotAxes axes;
+  cv::Rect area{70, 50, 540, 360};
+
+  cv::Point operator()(double x, double y) const {
+    const double u = (x - axes.x_min) / (axes.x_max - axes.x_min);
+    const double v = (y - axes.y_min) / (axes.y_max - axes.y_min);
+    return {area.x + cvRound(u * area.width), area.y + area.height - cvRound(v * area.height)};
+  }
+};
+
+void draw_axes(cv::Mat& image, const Mapping& map) {
+  const PlotAxes& axes = map.axes;
+  for (int i = 0; i <= 5; ++i) {
+    const double x = axes.x_min + (axes.x_max - axes.x_min) * i / 5;
+    const double y = axes.y_min + (axes.y_max - axes.y_min) * i / 5;
+    cv::line(image, map(x, axes.y_min), map(x, axes.y_max), kGrid);
+    cv::line(image, map(axes.x_min, y), map(axes.x_max, y), kGrid);
+    write_centred(image, number(x), map(x, axes.y_min) + cv::Point(0, 18), 0.4);
+    write_centred(image, number(y), map(axes.x_min, y) + cv::Point(-22, 4), 0.4);
+  }
+  cv::rectangle(image, map.area, kInk);
+  if (axes.diagonal) {
+    cv::line(image, map(axes.x_min, axes.y_min), map(axes.x_max, axes.y_max), {150, 150, 150}, 1,
+             cv::LINE_AA);
+  }
+  write_centred(image, axes.title, {image.cols / 2, 26}, 0.6);
+  write_centred(image, axes.x_name, {map.area.x + map.area.width / 2, 452});
+  write(image, axes.y_name, 8, 44);
+}
+
+}  // namespace
+
+io::ColorImage line_plot(const PlotAxes& axes, const std::vector<Series>& series) {
+  cv::Mat image(480, 640, CV_8UC3, cv::Scalar::all(255));
+  const Mapping map{axes};
+  draw_axes(image, map);
+  for (std::size_t s = 0; s < series.size(); ++s) {
+    const cv::Scalar& color = kColors[s % std::size(kColors)];
+    cv::Point last;
+    for (std::size_t i = 0; i < series[s].x.size(); ++i) {
+      const cv::Point here = map(series[s].x[i], series[s].y[i]);
+      if (!map.area.contains(here) && !map.area.contains(here - cv::Point(1, 1))) continue;
+      if (i > 0) cv::line(image, last, here, color, 2, cv::LINE_AA);
+      cv::circle(image, here, 4, color, cv::FILLED, cv::LINE_AA);
+      last = here;
+    }
+    const cv::Point legend(map.area.x + 12, map.area.y + 20 + 20 * static_cast<int>(s));
+    cv::line(image, legend + cv::Point(0, -4), legend + cv::Point(20, -4), color, 2, cv::LINE_AA);
+    write(image, series[s].name, legend.x + 28, legend.y);
+  }
+  return to_image(image);
+}
+
+io::ColorImage histogram_plot(const PlotAxes& axes, const std::vector<std::string>& names,
+                              const std::vector<std::vector<int>>& counts) {
+  cv::Mat image(480, 640, CV_8UC3, cv::Scalar::all(255));
+  std::size_t bins = 0;
+  for (const auto& series : counts) bins = std::max(bins, series.size());
+  std::vector<int> totals(bins, 0);
+  for (const auto& series : counts) {
+    for (std::size_t i = 0; i < series.size(); ++i) totals[i] += series[i];
+  }
+  Mapping map{axes};
+  map.axes.y_min = 0;
+  const int highest = totals.empty() ? 0 : *std::max_element(totals.begin(), totals.end());
+  map.axes.y_max = std::max(5, (highest + 4) / 5 * 5);  // whole numbers at the five lines
+  draw_axes(image, map);
+  const double width = (axes.x_max - axes.x_min) / std::max<double>(static_cast<double>(bins), 1);
+  std::vector<int> base(bins, 0);
+  for (std::size_t s = 0; s < counts.size(); ++s) {
+    const cv::Scalar& color = kColors[s % std::size(kColors)];
+    for (std::size_t i = 0; i < counts[s].size(); ++i) {
+      if (counts[s][i] <= 0) continue;
+      const double left = axes.x_min + width * static_cast<double>(i);
+      const cv::Point low = map(left, base[i]);
+      const cv::Point high = map(left + width, base[i] + counts[s][i]);
+      cv::rectangle(image, low + cv::Point(2, 0), high - cv::Point(2, 0), color, cv::FILLED);
+      base[i] += counts[s][i];
+    }
+    const cv::Point legend(map.area.x + 12, map.area.y + 20 + 20 * static_cast<int>(s));
+    cv::rectangle(image, legend + cv::Point(0, -10), legend + cv::Point(20, 0), color, cv::FILLED);
+    write(image, names[s], legend.x + 28, legend.y);
+  }
+  return to_image(image);
+}
+
+io::ColorImage bar_plot(const std::string& title, const std::vector<std::string>& names,
+                        const std::vector<double>& values, const std::vector<std::string>& notes) {
+  constexpr int kRow = 24, kLeft = 230, kWidth = 320;
+  const int height = 60 + kRow * static_cast<int>(names.size());
+  cv::Mat image(height, 640, CV_8UC3, cv::Scalar::all(255));
+  write_centred(image, title, {320, 26}, 0.6);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const int y = 44 + kRow * static_cast<int>(i);
+    write(image, names[i].substr(0, 28), 8, y + 14, 0.4);
+    cv::rectangle(image, cv::Rect(kLeft, y, kWidth, kRow - 6), kGrid);
+    const int length = cvRound(kWidth * std::clamp(values[i], 0.0, 1.0));
+    if (length > 0) {
+      cv::rectangle(image, cv::Rect(kLeft, y, length, kRow - 6), kColors[0], cv::FILLED);
+    }
+    write(image, notes[i], kLeft + kWidth + 8, y + 14, 0.4);
+  }
+  return to_image(image);
+}
+
+}  // namespace bpa::draw

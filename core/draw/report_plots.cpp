@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/draw/report_plots.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/draw/number.hpp"
+#include "core/draw/plot.hpp"
+
+namespace bpa::draw {
+namespace {
+
+using eval::EvaluationReport;
+using eval::Ratio;
+
+/// The next of 1, 2, 5, 10, 20 ... that is not smaller.
+double round_up(double value) {
+  if (!(value > 0)) return 1;
+  const double power = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (step * power >= value) return step * power;
+  }
+  return 10 * power;
+}
+
+io::ColorImage groups_plot(const std::string& title, const std::vector<eval::Group>& groups) {
+  std::vector<std::string> names, notes;
+  std::vector<double> values;
+  for (const eval::Group& group : groups) {
+    names.push_back(group.name);
+    values.push_back(group.recall.value());
+    notes.push_back(std::to_string(group.recall.hits) + "/" + std::to_string(group.recall.total));
+  }
+  return bar_plot(title, names, values, notes);
+}
+
+/// Adds the point of a ratio, unless it is of nothing.
+void add(Series& series, double x, const Ratio& ratio) {
+  if (ratio.total == 0) return;
+  series.x.push_back(x);
+  series.y.push_back(ratio.value());
+}
+
+io::ColorImage recall_plot(const EvaluationReport& report) {
+  Series recall{"recall", {}, {}};
+  for (const auto& [rank, ratio] : report.recall_at) add(recall, rank, ratio);
+  return line_plot({"recall by number of interpretations", "interpretations", "recall", 0, 20},
+                   {recall});
+}
+
+io::ColorImage reliability_plot(const EvaluationReport& report) {
+  Series series{"Brier score " + fixed(report.brier, 3), {}, {}};
+  for (const auto& bin : report.reliability) add(series, bin.mean_probability, bin.correct);
+  PlotAxes axes{"calibration of probabilities", "probability said", "fraction right"};
+  axes.diagonal = true;
+  return line_plot(axes, {series});
+}
+
+io::ColorImage coverage_plot(const EvaluationReport& report) {
+  Series series{"right placements", {}, {}};
+  for (const auto& coverage : report.coverage) add(series, coverage.level, coverage.covered);
+  PlotAxes axes{"do credible regions of poses hold the truth?", "probability of the region",
+                "fraction that hold it"};
+  axes.diagonal = true;
+  return line_plot(axes, {series});
+}
+
+io::ColorImage reports_plot(const EvaluationReport& report) {
+  std::vector<int> right, wrong;
+  for (const auto& bin : report.reliability) {
+    right.push_back(bin.correct.hits);
+    wrong.push_back(bin.correct.total - bin.correct.hits);
+  }
+  return histogram_plot({"placements reported, by probability", "probability said", "placements"},
+                        {"right", "false"}, {right, wrong});
+}
+
+io::ColorImage visible_histogram(const EvaluationReport& report) {
+  return histogram_plot(
+      {"instances of the set, by visible fraction", "visible fraction", "instances"},
+      {"median " + fixed(report.median_visible_fraction, 2)},
+      {{report.visible_tenths.begin(), report.visible_tenths.end()}});
+}
+
+io::ColorImage time_plot(const EvaluationReport& report) {
+  Series series{"frames", eval::sorted_seconds(report), {}};
+  const auto count = static_cast<double>(series.x.size());
+  while (series.y.size() < series.x.size()) {
+    series.y.push_back(static_cast<double>(series.y.size() + 1) / count);
+  }
+  PlotAxes axes{"time of a frame", "seconds", "fraction of frames done"};
+  axes.x_max = round_up(report.time.max);
+  return line_plot(axes, {series});
+}
+
+}  // namespace
+
+Status write_plots(const std::string& folder, const EvaluationReport& report) {
+  const std::pair<const char*, io::ColorImage> plots[] = {
+      {"recall", recall_plot(report)},
+      {"reliability", reliability_plot(report)},
+      {"coverage", coverage_plot(report)},
+      {"reports", reports_plot(report)},
+      {"visible_histogram", visible_histogram(report)},
+      {"time", time_plot(report)},
+      {"visible_fraction", groups_plot("recall by visible fraction", report.by_visible_fraction)},
+      {"distance", groups_plot("recall by distance", report.by_distance)},
+      {"objects", groups_plot("recall by object", report.by_object)}};
+  for (const auto& [name, picture] : plots) {
+    const Status status = io::write_color_png(folder + "/" + name + ".png", picture);
+    if (!status.ok()) return status;
+  }
+  return {};
+}
+
+}  // namespace bpa::draw

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/draw/sheet.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+#include "core/draw/canvas.hpp"
+
+namespace bpa::draw {
+namespace {
+
+constexpr int kLine = 24;  // pixels
+
+// Where each entry of the legend goes: line and x.
+std::vector<cv::Point> places(const std::vector<LegendEntry>& legend, int width) {
+  std::vector<cv::Point> out;
+  cv::Point next(10, 0);
+  for (const LegendEntry& entry : legend) {
+    const int size = 40 + text_width(entry.text);
+    if (next.x > 10 && next.x + size > width) next = {10, next.y + 1};
+    out.push_back(next);
+    next.x += size;
+  }
+  return out;
+}
+
+}  // namespace
+
+io::ColorImage with_words(const io::ColorImage& picture, const std::string& title,
+                          const std::vector<LegendEntry>& legend) {
+  const std::vector<cv::Point> at = places(legend, picture.width);
+  const int lines = at.empty() ? 0 : at.back().y + 1;
+  const int header = kLine + 6, footer = lines > 0 ? kLine * lines + 6 : 0;
+  cv::Mat sheet(picture.height + header + footer, picture.width, CV_8UC3, cv::Scalar::all(255));
+  write(sheet, title, 10, 20, 0.6);
+  to_mat(picture).copyTo(sheet(cv::Rect(0, header, picture.width, picture.height)));
+  for (std::size_t i = 0; i < legend.size(); ++i) {
+    const Rgb& color = legend[i].color;
+    const int x = at[i].x, y = header + picture.height + kLine * at[i].y + 8;
+    cv::rectangle(sheet, cv::Rect(x, y, 14, 14), {color[0] * 1.0, color[1] * 1.0, color[2] * 1.0},
+                  cv::FILLED);
+    cv::rectangle(sheet, cv::Rect(x, y, 14, 14), cv::Scalar::all(40), 1);
+    write(sheet, legend[i].text, x + 20, y + 12);
+  }
+  return to_image(sheet);
+}
+
+io::ColorImage beside(const io::ColorImage& left, const io::ColorImage& right) {
+  cv::Mat both;
+  cv::hconcat(to_mat(left), to_mat(right), both);
+  return to_image(both);
+}
+
+io::ColorImage contact_sheet(const std::vector<io::ColorImage>& pictures, int columns,
+                             int cell_width) {
+  std::vector<cv::Mat> cells;
+  int height = 1;
+  for (const io::ColorImage& picture : pictures) {
+    const double scale = static_cast<double>(cell_width) / picture.width;
+    cv::Mat cell;
+    cv::resize(to_mat(picture), cell, {cell_width, cvRound(scale * picture.height)}, 0, 0,
+               cv::INTER_AREA);
+    height = std::max(height, cell.rows);
+    cells.push_back(cell);
+  }
+  const int rows = (static_cast<int>(cells.size()) + columns - 1) / columns;
+  cv::Mat sheet(std::max(rows, 1) * (height + 4), columns * (cell_width + 4), CV_8UC3,
+                cv::Scalar::all(255));
+  for (int i = 0; i < static_cast<int>(cells.size()); ++i) {
+    const cv::Mat& cell = cells[static_cast<std::size_t>(i)];
+    cell.copyTo(sheet(cv::Rect((i % columns) * (cell_width + 4), (i / columns) * (height + 4),
+                               cell.cols, cell.rows)));
+  }
+  return to_image(sheet);
+}
+
+io::ColorImage color_beside_depth(const Frame& frame, const std::string& caption) {
+  constexpr float kNearest = 0.5f, kFarthest = 2.5f, kBand = 0.06f;
+  const int width = frame.camera.width, height = frame.camera.height;
+  cv::Mat hsv(height, width, CV_8UC3, cv::Scalar::all(0));
+  io::ColorImage color{width, height, frame.color};
+  color.pixels.resize(3 * frame.depth.size(), 0);
+  for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+    const float z = frame.depth[i];
+    if (!(z > 0)) continue;
+    const float far = std::clamp((z - kNearest) / (kFarthest - kNearest), 0.0f, 1.0f);
+    const float band = z / kBand - std::floor(z / kBand);
+    hsv.at<cv::Vec3b>(static_cast<int>(i) / width, static_cast<int>(i) % width) = {
+        static_cast<std::uint8_t>(140 * far), 230, static_cast<std::uint8_t>(115 + 140 * band)};
+  }
+  cv::Mat depth;
+  cv::cvtColor(hsv, depth, cv::COLOR_HSV2RGB);
+  return with_words(beside(color, to_image(depth)), caption);
+}
+
+}  // namespace bpa::draw
