@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/model/turntable.hpp"
+#include "core/modeling/turntable.hpp"
 #include "tools/command.hpp"
 
 namespace bpa::cli {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/model/posed_view.hpp"
+#include "core/modeling/posed_view.hpp"
 
 namespace bpa::cli {
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <span>
 
 // What a sensor's measurements of an object are off by (paper section III): the standard deviation
 // of range and of normals as sigmoids of two things that both follow from the viewpoint,
@@ -75,18 +74,5 @@ class NoiseTable {
 /// The curves of a Kinect-class sensor over objects of a household: what models have that were not
 /// made from views.
 NoiseModel usual_noise();
-
-/// One bin of errors that were observed at nearly the same edge distance and surface angle.
-struct NoiseBin {
-  double edge_distance = 0;
-  double angle = 0;
-  double sigma = 0;  ///< Root mean square of the errors.
-  double count = 0;
-};
-
-/// The curve under which the bins are most likely: weighted least squares on log(sigma), whose
-/// variance is 1 / (2 count), by Levenberg-Marquardt from `start`. Bins of less than 30 errors do
-/// not count. Returns `start` when fewer than 7 bins are left.
-NoiseCurve fit_noise_curve(std::span<const NoiseBin> bins, const NoiseCurve& start);
 
 }  // namespace bpa

@@ -8,6 +8,7 @@
 #include "core/base/random.hpp"
 #include "core/cloud/cielab.hpp"
 #include "core/features/edge_image.hpp"
+#include "core/modeling/model_source.hpp"
 #include "core/score/boundary_scores.hpp"
 #include "core/score/color_score.hpp"
 #include "core/score/random_walk_score.hpp"

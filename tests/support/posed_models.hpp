@@ -11,6 +11,7 @@
 
 #include "core/base/random.hpp"
 #include "core/model/object_model.hpp"
+#include "core/modeling/model_source.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/solid_scene.hpp"
 

@@ -12,6 +12,7 @@
 #include "core/io/bop_dataset.hpp"
 #include "core/io/mesh_file.hpp"
 #include "core/io/model_file.hpp"
+#include "core/modeling/model_source.hpp"
 #include "core/pipeline/detector.hpp"
 #include "idl/wire/cdr.hpp"
 #include "idl/wire/messages.hpp"

@@ -8,6 +8,7 @@
 #include <bpa/client.hpp>
 
 #include "core/io/model_file.hpp"
+#include "core/modeling/model_source.hpp"
 #include "tests/support/frame_view.hpp"
 #include "tests/support/l_scene.hpp"
 #include "tests/support/process.hpp"

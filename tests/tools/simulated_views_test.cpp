@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/model/occupancy_grid.hpp"
+#include "core/modeling/model_source.hpp"
 #include "tests/support/meshes.hpp"
 
 namespace bpa::cli {

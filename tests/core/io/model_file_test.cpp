@@ -10,6 +10,7 @@
 #include "core/io/occupancy_file.hpp"
 #include "core/model/model_index.hpp"
 #include "core/model/occupancy_grid.hpp"
+#include "core/modeling/model_source.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/model/model_index.hpp"
+#include "core/modeling/model_source.hpp"
 #include "tests/support/meshes.hpp"
 
 namespace bpa {

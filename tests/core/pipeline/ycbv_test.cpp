@@ -6,6 +6,7 @@
 
 #include "core/io/bop_dataset.hpp"
 #include "core/io/mesh_file.hpp"
+#include "core/modeling/model_source.hpp"
 #include "core/pipeline/detector.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -10,6 +10,7 @@
 
 #include "core/io/mesh_file.hpp"
 #include "core/io/model_file.hpp"
+#include "core/modeling/model_source.hpp"
 #include "idl/wire/cdr.hpp"
 #include "idl/wire/msg/builtin_interfaces.hpp"
 #include "tests/support/posed_models.hpp"

@@ -3,7 +3,7 @@
 // Each direction has an orthographic image of the mesh in which every pixel knows the triangle seen
 // at its centre. A point is compared with the plane of that triangle right where the point is, not
 // at the pixel's centre, so that the size of pixels hardly matters.
-#include "core/model/mesh_visibility.hpp"
+#include "core/modeling/mesh_visibility.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

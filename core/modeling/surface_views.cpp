@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/cloud/neighbor_grid.hpp"
-#include "core/model/occupancy_grid.hpp"
-#include "core/model/posed_view.hpp"
 #include "core/model/view_sphere.hpp"
+#include "core/modeling/posed_view.hpp"
+#include "core/modeling/trace_occupancy.hpp"
 
 namespace bpa {
 namespace {

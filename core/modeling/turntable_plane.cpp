@@ -10,7 +10,7 @@
 #include <queue>
 
 #include "core/base/random.hpp"
-#include "core/model/turntable.hpp"
+#include "core/modeling/turntable.hpp"
 
 namespace bpa {
 namespace {

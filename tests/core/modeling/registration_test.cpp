@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Boxes drawn face by face, laid onto each other from anywhere.
-#include "core/model/registration.hpp"
+#include "core/modeling/registration.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Views of a plate with noise that is drawn here, so that what is learned can be compared.
-#include "core/model/posed_view.hpp"
+#include "core/modeling/posed_view.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
-#include "core/model/occupancy_grid.hpp"
+#include "core/modeling/trace_occupancy.hpp"
 
 namespace bpa {
 namespace {

@@ -10,8 +10,8 @@
 #include "core/base/random.hpp"
 #include "core/cloud/curvature.hpp"
 #include "core/cloud/neighbor_grid.hpp"
-#include "core/model/mesh_visibility.hpp"
-#include "core/model/object_model.hpp"
+#include "core/modeling/mesh_visibility.hpp"
+#include "core/modeling/model_source.hpp"
 
 namespace bpa {
 namespace {

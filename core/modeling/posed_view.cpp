@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/model/posed_view.hpp"
+#include "core/modeling/posed_view.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/cloud/neighbor_grid.hpp"
-#include "core/model/occupancy_grid.hpp"
-#include "core/model/posed_view.hpp"
+#include "core/modeling/posed_view.hpp"
+#include "core/modeling/trace_occupancy.hpp"
 
 namespace bpa {
 namespace {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "core/cloud/neighbor_grid.hpp"
-#include "core/model/turntable.hpp"
+#include "core/modeling/turntable.hpp"
 
 namespace bpa {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/model/occupancy_grid.hpp"
+#include "core/modeling/trace_occupancy.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

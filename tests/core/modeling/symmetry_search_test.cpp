@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/model/symmetry_search.hpp"
+#include "core/modeling/symmetry_search.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
-#include "core/model/object_model.hpp"
+#include "core/modeling/model_source.hpp"
 #include "tests/support/meshes.hpp"
 
 namespace bpa {

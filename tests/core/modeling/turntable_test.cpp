@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Scans drawn ray by ray of shapes that are known in closed form, on a plate in front of a wall.
-#include "core/model/turntable.hpp"
+#include "core/modeling/turntable.hpp"
 
 #include <algorithm>
 #include <cmath>

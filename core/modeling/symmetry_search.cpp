@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/model/symmetry_search.hpp"
+#include "core/modeling/symmetry_search.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -14,7 +14,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
-#include "core/model/turntable.hpp"
+#include "core/modeling/turntable.hpp"
 
 namespace bpa {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/base/status.hpp"
 #include "core/cloud/planes.hpp"
-#include "core/model/posed_view.hpp"
+#include "core/modeling/posed_view.hpp"
 
 // From the images of an object on a turntable to views with poses (paper section III). Each resting
 // position is a set of views from a fixed camera; all that is known is the step of the table.

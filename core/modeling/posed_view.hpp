@@ -9,8 +9,8 @@
 #include "core/cloud/frame.hpp"
 #include "core/cloud/surface_map.hpp"
 #include "core/geometry/pose.hpp"
-#include "core/model/noise_model.hpp"
-#include "core/model/object_model.hpp"
+#include "core/modeling/model_source.hpp"
+#include "core/modeling/noise_fit.hpp"
 
 namespace bpa {
 

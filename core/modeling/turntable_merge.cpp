@@ -10,9 +10,9 @@
 
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
-#include "core/model/occupancy_grid.hpp"
-#include "core/model/registration.hpp"
-#include "core/model/turntable.hpp"
+#include "core/modeling/registration.hpp"
+#include "core/modeling/trace_occupancy.hpp"
+#include "core/modeling/turntable.hpp"
 
 namespace bpa {
 namespace {

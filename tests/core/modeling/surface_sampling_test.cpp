@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/cloud/neighbor_grid.hpp"
-#include "core/model/object_model.hpp"
+#include "core/modeling/model_source.hpp"
 #include "tests/support/meshes.hpp"
 
 namespace bpa {

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/options.hpp"
+#include "core/base/status.hpp"
+#include "core/cloud/point_cloud.hpp"
+#include "core/model/object_model.hpp"
+
+namespace bpa {
+
+/// Options of making a model from a surface.
+struct ModelOptions {
+  double spacing_m = 0.0025;  ///< Distance of neighbouring surface points.
+  int num_threads = 0;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("spacing_m", spacing_m, FieldRule{0.0005, 0.02, "Distance of surface points."});
+    visit("num_threads", num_threads, FieldRule{0, 256, "0 = one per core."});
+  }
+};
+
+/// The evenly spaced, outwardly visible surface of a mesh or of a dense oriented point cloud.
+/// Fails with invalid_argument on an empty surface and on one larger than 3 m or smaller than 5 mm
+/// (with a hint about units).
+Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::string& name,
+                                           int number, const ModelOptions& options = {});
+/// The same for points. Where the cloud has no normals they are estimated, and point to the origin:
+/// such a cloud is one view of the object, in its camera's frame, and the model is not complete.
+Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std::string& name,
+                                             int number, const ModelOptions& options = {});
+
+/// The largest distance of two of the points, metres.
+double largest_distance(const std::vector<Eigen::Vector3f>& points);
+
+/// Fails with invalid_argument, with a hint about units, for a diameter under 5 mm or over 3 m.
+Status check_size(const std::string& name, double diameter);
+
+/// What people should know about a surface of that shape: that it is a single flat face.
+std::vector<std::string> shape_warnings(const PointCloud& surface);
+
+}  // namespace bpa
