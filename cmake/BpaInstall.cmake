@@ -52,7 +52,7 @@ install(DIRECTORY core DESTINATION ${bpa_header_folder} COMPONENT core
         FILES_MATCHING PATTERN "*.hpp" PATTERN "base" EXCLUDE)
 install(DIRECTORY core/base DESTINATION ${bpa_header_folder}/core COMPONENT sdk
         FILES_MATCHING PATTERN "*.hpp")
-install(DIRECTORY idl/wire DESTINATION ${bpa_header_folder} COMPONENT sdk
+install(DIRECTORY idl/wire ${CMAKE_BINARY_DIR}/generated/idl/wire DESTINATION ${bpa_header_folder} COMPONENT sdk
         FILES_MATCHING PATTERN "*.hpp" PATTERN "fastdds" EXCLUDE)
 install(DIRECTORY client/include/bpa DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT sdk
         FILES_MATCHING PATTERN "*.hpp")

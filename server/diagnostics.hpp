@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "idl/wire/msg/bpa_srvs.hpp"
+#include "idl/wire/msg/bpa_msgs.hpp"
 #include "idl/wire/msg/diagnostic_msgs.hpp"
 #include "server/capture/frame_source.hpp"
 #include "server/statistics.hpp"

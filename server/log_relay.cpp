@@ -9,7 +9,7 @@
 #include <mutex>
 #include <utility>
 
-#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "idl/wire/time.hpp"
 
 namespace bpa::server {
 namespace {

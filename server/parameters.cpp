@@ -14,8 +14,8 @@ namespace {
 
 using wire::rcl_interfaces::Parameter;
 using wire::rcl_interfaces::ParameterDescriptor;
+using wire::rcl_interfaces::ParameterType;
 using wire::rcl_interfaces::ParameterValue;
-namespace ParameterType = wire::rcl_interfaces::ParameterType;
 
 template <class T>
 constexpr std::uint8_t type_of() {

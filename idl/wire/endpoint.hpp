@@ -13,9 +13,9 @@
 
 #include "core/base/status.hpp"
 #include "idl/wire/cdr.hpp"
+#include "idl/wire/names.hpp"
 #include "idl/wire/participant.hpp"
 #include "idl/wire/qos.hpp"
-#include "idl/wire/type_description.hpp"
 
 // Writers and readers of bytes, on which the typed publishers, subscribers and services are built.
 // Use those.
@@ -96,7 +96,7 @@ struct EndpointSpec {
 template <class T>
 EndpointSpec endpoint_spec(std::string dds_topic, const Qos& qos, std::size_t shared_bytes) {
   return {std::move(dds_topic), dds_type_name(T::kType),
-          "typehash=" + type_hash(describe<T>()) + ";", qos, shared_bytes};
+          std::string("typehash=") + T::kTypeHash + ";", qos, shared_bytes};
 }
 
 class RawWriter {

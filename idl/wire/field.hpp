@@ -8,14 +8,15 @@
 // How a message describes itself. Every message is a plain struct with
 //
 //   static constexpr const char* kType = "std_msgs/msg/Header";
+//   static constexpr const char* kTypeHash = "RIHS01_<64 hex digits>";  // REP 2011
 //   template <class Self, class Visitor>
 //   static void fields(Self& self, Visitor&& visit) {
 //     visit("stamp", self.stamp);
 //     visit("frame_id", self.frame_id);
 //   }
 //
-// in the order of its .idl. Encoding, decoding, the type hash and the tests that compare the
-// structs with the .idl files all read that one list. The C++ types stand for IDL's as follows:
+// in the order of its .idl. idl/generate.py writes these structs at build time; encoding and
+// decoding read the list of fields. The C++ types stand for IDL's as follows:
 // bool boolean, std::byte octet, [u]intN_t [u]intN, float, double, std::string string, std::vector
 // sequence, std::array a fixed array, a struct of this kind a nested message.
 
@@ -26,16 +27,13 @@ struct Bound {
   std::size_t max = 0;
 };
 
-/// Bytes that belong to somebody else; stands for sequence<uint8> in messages that are sent without
-/// copying them first. Valid as long as what it points to.
+/// Bytes of another owner. Stands for sequence<uint8> in messages that are published without a
+/// copy. Valid as long as the memory it points to.
 struct ByteView {
   const std::uint8_t* data = nullptr;
   std::size_t size = 0;
 
   bool empty() const { return size == 0; }
 };
-
-/// The member that IDL puts into a struct without fields: one byte on the wire.
-inline constexpr const char* kEmptyStructField = "structure_needs_at_least_one_member";
 
 }  // namespace bpa::wire

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "idl/wire/time.hpp"
 
 namespace bpa::server {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "idl/wire/time.hpp"
 #include "server/capture/bop_source.hpp"
 #include "server/capture/openni2_device.hpp"
 #include "server/capture/video_mode.hpp"

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "idl/wire/time.hpp"
 
 namespace bpa::server {
 

@@ -9,7 +9,7 @@
 
 #include <openni2/OpenNI.h>
 
-#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "idl/wire/time.hpp"
 #include "server/capture/frame_pairs.hpp"
 #include "server/capture/host_clock.hpp"
 #include "server/capture/image_messages.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "idl/wire/time.hpp"
 
 namespace bpa::server {
 namespace {

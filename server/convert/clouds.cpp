@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/io/pcd_file.hpp"
-#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "idl/wire/time.hpp"
 #include "server/convert/frames.hpp"
 
 namespace bpa::server {

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "idl/wire/time.hpp"
 #include "server/convert/compressed.hpp"
 #include "server/convert/images.hpp"
 

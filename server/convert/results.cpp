@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <map>
 
-#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "idl/wire/time.hpp"
 
 namespace bpa::server {
 namespace {
@@ -194,7 +194,7 @@ markers::MarkerArray markers_message(const SceneInterpretations& result, const M
   markers::MarkerArray message;
   markers::Marker clear;
   clear.header = header(result.stamp_ns, result.frame_id);
-  clear.action = markers::Marker::kDeleteAll;
+  clear.action = markers::Marker::kDeleteall;
   message.markers.push_back(clear);
   std::int32_t id = 0;
   for_each_best(result, [&](const Placement& placement, std::uint32_t instance) {
@@ -213,7 +213,7 @@ markers::MarkerArray markers_message(const SceneInterpretations& result, const M
     marker.color = color_of(placement.model_number, 0.5f);
     message.markers.push_back(marker);
     marker.ns = "names";
-    marker.type = markers::Marker::kText;
+    marker.type = markers::Marker::kTextViewFacing;
     marker.scale = {0, 0, 0.03};
     marker.color = {1, 1, 1, 1};
     char percent[16];

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "idl/wire/msg/builtin_interfaces.hpp"
 #include "idl/wire/publisher.hpp"
 #include "idl/wire/service.hpp"
+#include "idl/wire/time.hpp"
 #include "server/parameters.hpp"
 
 namespace bpa::server {

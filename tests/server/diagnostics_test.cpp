@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "idl/wire/time.hpp"
 
 namespace bpa::server {
 namespace {

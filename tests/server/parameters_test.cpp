@@ -13,8 +13,8 @@ namespace bpa::server {
 namespace {
 
 using wire::rcl_interfaces::Parameter;
+using wire::rcl_interfaces::ParameterType;
 using wire::rcl_interfaces::ParameterValue;
-namespace ParameterType = wire::rcl_interfaces::ParameterType;
 
 Parameter integer(const std::string& name, std::int64_t value) {
   Parameter parameter;

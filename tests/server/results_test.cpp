@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/pose.hpp"
-#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "idl/wire/time.hpp"
 
 namespace bpa::server {
 namespace {
@@ -111,7 +111,7 @@ TEST(Results, NothingFoundIsEmptyNotMissing) {
   EXPECT_TRUE(transforms_message(nothing, "bpa").transforms.empty());
   const auto markers = markers_message(nothing, {}, 0);
   ASSERT_EQ(markers.markers.size(), 1U);  // clears those of the last frame
-  EXPECT_EQ(markers.markers[0].action, wire::visualization_msgs::Marker::kDeleteAll);
+  EXPECT_EQ(markers.markers[0].action, wire::visualization_msgs::Marker::kDeleteall);
 }
 
 TEST(Results, MarkersAndTransformsNameEveryInstance) {

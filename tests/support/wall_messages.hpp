@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "idl/wire/msg/bpa_msgs.hpp"
-#include "idl/wire/msg/builtin_interfaces.hpp"
 #include "idl/wire/msg/sensor_msgs.hpp"
+#include "idl/wire/time.hpp"
 
 // Legal messages of a small camera that looks at a slanted wall, for tests to spoil.
 

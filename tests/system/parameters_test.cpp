@@ -21,7 +21,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 namespace rcl = wire::rcl_interfaces;
-namespace ParameterType = rcl::ParameterType;
+using rcl::ParameterType;
 
 class ParametersOfAServer : public testing::Test {
  protected:

@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "idl/wire/names.hpp"
-#include "idl/wire/type_description.hpp"
 #include "tests/idl/wire/all_types.hpp"
+#include "tests/idl/wire/description.hpp"
 
 namespace bpa::wire {
 namespace {
@@ -54,7 +54,7 @@ TEST(Fields, AreThoseOfTheIdl) {
   std::size_t types = 0;
   for_each_type([&](const auto* type) {
     using T = std::decay_t<decltype(*type)>;
-    const std::string text = idl_of(describe<T>().type);
+    const std::string text = idl_of(describe<T>());
     EXPECT_NE(idl.find(text), std::string::npos) << T::kType << " is not in dds.idl as\n" << text;
     ++types;
   });

@@ -12,7 +12,7 @@
 #include "core/io/model_file.hpp"
 #include "core/modeling/model_source.hpp"
 #include "idl/wire/cdr.hpp"
-#include "idl/wire/msg/builtin_interfaces.hpp"
+#include "idl/wire/time.hpp"
 #include "tests/support/posed_models.hpp"
 #include "tests/system/openni/sim_sensor.hpp"
 
