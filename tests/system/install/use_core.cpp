@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
 
-#include "core/cloud/frame.hpp"
-#include "core/model/library.hpp"
+#include <bpa/core/cloud/frame.hpp>
+#include <bpa/core/model/library.hpp>
 
 // An empty library and an empty frame, each refused or told as what it is.
 int main() {
