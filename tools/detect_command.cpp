@@ -40,7 +40,7 @@ void print_result(const std::string& name, const io::FrameResult& result) {
   }
   std::printf("  %-28s %5s %7s  %23s  %s\n", "model", "prob.", "visible", "x y z [m]",
               "orientation w x y z");
-  for (const io::ResultPlacement& p : result.interpretations.front().placements) {
+  for (const Placement& p : result.interpretations.front().placements) {
     const Eigen::Vector3d& t = p.camera_from_object.translation;
     const Eigen::Vector4d q = to_wxyz(p.camera_from_object.rotation);
     std::printf("  %-28s %5.2f %5.0f %%  %7.3f %7.3f %7.3f  %6.3f %6.3f %6.3f %6.3f\n",

@@ -8,7 +8,7 @@
 #include "core/io/frame_file.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/pcd_file.hpp"
-#include "core/pipeline/pose_prior_file.hpp"
+#include "core/io/pose_prior_file.hpp"
 
 namespace bpa::cli {
 namespace {
@@ -130,11 +130,9 @@ Result<Given> read_given(const DetectArguments& a) {
     if (!mask.ok()) return mask.status();
     for (const std::uint16_t value : mask->pixels) given.mask.push_back(value > 0);
   }
-  if (!a.priors.empty()) {
-    Result<std::vector<PosePrior>> priors = read_pose_priors(a.priors);
-    if (!priors.ok()) return priors.status();
-    given.priors = std::move(*priors);
-  }
+  Result<std::vector<PosePrior>> priors = io::read_pose_priors(a.priors);
+  if (!priors.ok()) return priors.status();
+  given.priors = std::move(*priors);
   return given;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/align/oriented_point.hpp"
+#include "core/geometry/position_prior.hpp"
 
 namespace bpa::align {
 
@@ -23,12 +24,6 @@ struct OrientedPair {
   OrientedPoint model;
   OrientedPoint scene;
   double sigma = 0.005;  ///< Of the position, metres, along each axis.
-};
-
-/// What is known beforehand of where the object's origin is in the camera frame. Metres.
-struct PositionPrior {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
 };
 
 /// The evidence for one pose, camera_from_object: views, nothing is copied.

@@ -31,7 +31,7 @@ Status check_finite(const std::string& name, const std::string& field, const Mat
   return {};
 }
 
-Status check_position(const align::PositionPrior& position, const std::string& name) {
+Status check_position(const PositionPrior& position, const std::string& name) {
   if (Status s = check_finite(name, "position mean", position.mean); !s.ok()) return s;
   const Eigen::Matrix3d& c = position.covariance;
   if (Status s = check_finite(name, "position covariance", c); !s.ok()) return s;

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "core/align/correspondence.hpp"
 #include "core/base/random.hpp"
 #include "core/base/status.hpp"
+#include "core/bingham/bingham.hpp"
 #include "core/model/object_model.hpp"
-#include "core/result/placement.hpp"
+#include "core/result/pose_prior.hpp"
 
 // What a caller knows beforehand of where an object is: from tracking, from touch, from where a
 // robot put it down. Such a prior is a Gaussian of the position times a Bingham of the orientation,
@@ -25,17 +25,6 @@
 //   log((1 - weight) + weight p / u).
 
 namespace bpa {
-
-/// One prior, of one object, in the camera frame.
-struct PosePrior {
-  std::string model;  ///< The model's name.
-  /// Of camera_from_object's translation, metres; none: unknown.
-  std::optional<align::PositionPrior> position;
-  /// Of camera_from_object's rotation, as Placement::orientation has it; concentrations of zero:
-  /// unknown.
-  OrientationUncertainty orientation;
-  double weight = 0.95;  ///< Probability that the object is there at all so; in (0, 1].
-};
 
 /// Checks that all numbers are finite, the weight is in its range, the covariance is symmetric and
 /// positive definite, the concentrations are not positive, and the axes orthonormal unless all
@@ -80,7 +69,7 @@ class ModelPriors {
  private:
   struct Prior {
     double weight = 0;
-    std::optional<align::PositionPrior> position;
+    std::optional<PositionPrior> position;
     Bingham orientation;
     // Widened, and the logarithm of what makes exp(-d² / 2) and exp(qᵀ C q) a ratio of densities.
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();

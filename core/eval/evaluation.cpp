@@ -55,10 +55,11 @@ Result<std::vector<const io::FrameResult*>> assign(const std::vector<io::BopFram
       return invalid_argument("the results have " + frame_name(result.scene_id, result.im_id) +
                               ", which is not in the data set");
     }
-    for (const io::ResultInterpretation& interpretation : result.interpretations) {
-      for (const io::ResultPlacement& placement : interpretation.placements) {
-        if (objects.count(placement.obj_id) == 0) {
-          return invalid_argument("the results have obj_id " + std::to_string(placement.obj_id) +
+    for (const Interpretation& interpretation : result.interpretations) {
+      for (const Placement& placement : interpretation.placements) {
+        if (objects.count(placement.model_number) == 0) {
+          return invalid_argument("the results have obj_id " +
+                                  std::to_string(placement.model_number) +
                                   ", which is not among the data set's models");
         }
       }
@@ -338,10 +339,10 @@ Result<EvaluationReport> evaluate_nothing_there(const std::vector<io::FrameResul
     frames.back().scene_id = result.scene_id;
     frames.back().im_id = result.im_id;
     frames.back().has_truth = true;
-    for (const io::ResultInterpretation& interpretation : result.interpretations) {
-      for (const io::ResultPlacement& placement : interpretation.placements) {
-        objects[placement.obj_id].name =
-            placement.model.empty() ? io::bop_object_name(placement.obj_id) : placement.model;
+    for (const Interpretation& interpretation : result.interpretations) {
+      for (const Placement& placement : interpretation.placements) {
+        objects[placement.model_number].name =
+            placement.model.empty() ? io::bop_object_name(placement.model_number) : placement.model;
       }
     }
   }

@@ -13,10 +13,10 @@
 namespace bpa::eval {
 namespace {
 
-using Estimates = std::vector<io::ResultPlacement>;
+using Estimates = std::vector<Placement>;
 using Instances = std::vector<io::BopInstance>;
 using Costs = std::vector<std::vector<double>>;
-using Cost = std::function<double(const io::ResultPlacement&, const io::BopInstance&)>;
+using Cost = std::function<double(const Placement&, const io::BopInstance&)>;
 
 constexpr double kAddDiameters = 0.1;
 constexpr double kMspdPixelsPerThreshold = 100;  // 0.05 -> 5 pixels, at 640 pixels of width
@@ -25,7 +25,7 @@ Costs pair_costs(const Estimates& estimates, const Instances& truth, const Cost&
   Costs costs(estimates.size(), std::vector<double>(truth.size(), kNoMatch));
   for (std::size_t e = 0; e < estimates.size(); ++e) {
     for (std::size_t t = 0; t < truth.size(); ++t) {
-      if (estimates[e].obj_id == truth[t].obj_id) costs[e][t] = cost(estimates[e], truth[t]);
+      if (estimates[e].model_number == truth[t].obj_id) costs[e][t] = cost(estimates[e], truth[t]);
     }
   }
   return costs;
@@ -33,7 +33,7 @@ Costs pair_costs(const Estimates& estimates, const Instances& truth, const Cost&
 
 std::vector<double> scores_of(const Estimates& estimates) {
   std::vector<double> scores;
-  for (const io::ResultPlacement& estimate : estimates) scores.push_back(estimate.probability);
+  for (const Placement& estimate : estimates) scores.push_back(estimate.probability);
   return scores;
 }
 
@@ -47,7 +47,7 @@ Costs below(Costs costs, double threshold) {
 
 /// The paper's criterion: both errors relative to their limits, the larger one.
 double paper_cost(const EvalObjects& objects, const EvaluationOptions& options,
-                  const io::ResultPlacement& estimate, const io::BopInstance& truth) {
+                  const Placement& estimate, const io::BopInstance& truth) {
   return right_cost(estimate.camera_from_object, truth.camera_from_object,
                     objects.at(truth.obj_id).symmetry, options.position_m, options.angle_rad);
 }
@@ -84,7 +84,7 @@ struct CovarianceError {
 
 /// Squared length of the error in units of the reported covariance, both seen modulo the motions
 /// that the symmetry leaves free.
-CovarianceError covariance_error(const io::ResultPlacement& estimate, const io::BopInstance& truth,
+CovarianceError covariance_error(const Placement& estimate, const io::BopInstance& truth,
                                  const SymmetryGroup& symmetry) {
   const Pose nearest =
       nearest_symmetric_pose(truth.camera_from_object, estimate.camera_from_object, symmetry);
@@ -127,8 +127,8 @@ BopCase bop_case(const Estimates& estimates, const Instances& truth, double min_
   Estimates sorted = estimates;
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& a, const auto& b) { return a.probability > b.probability; });
-  for (const io::ResultPlacement& estimate : sorted) {
-    if (room[estimate.obj_id]-- > 0) result.estimates.push_back(estimate);
+  for (const Placement& estimate : sorted) {
+    if (room[estimate.model_number]-- > 0) result.estimates.push_back(estimate);
   }
   return result;
 }
@@ -148,11 +148,12 @@ std::array<Costs, 10> vsd_costs(const BopCase& bop, const EvalObjects& objects,
     return render_depth(objects.at(obj_id).mesh, pose, measured.camera);
   };
   for (std::size_t e = 0; e < bop.estimates.size(); ++e) {
-    const io::ResultPlacement& estimate = bop.estimates[e];
-    const std::vector<float> at_estimate = render(estimate.obj_id, estimate.camera_from_object);
+    const Placement& estimate = bop.estimates[e];
+    const std::vector<float> at_estimate =
+        render(estimate.model_number, estimate.camera_from_object);
     for (std::size_t t = 0; t < bop.truth.size(); ++t) {
       const io::BopInstance& truth = bop.truth[t];
-      if (estimate.obj_id != truth.obj_id) continue;
+      if (estimate.model_number != truth.obj_id) continue;
       const std::array<double, 10> errors = visible_surface_discrepancy(
           at_estimate, render(truth.obj_id, truth.camera_from_object), measured.depth,
           measured.camera, objects.at(truth.obj_id).diameter);
@@ -226,8 +227,7 @@ void add_rmse(const io::BopFrame& frame, const EvalObjects& objects, const Estim
 }
 
 std::vector<PoseOutcome> open_poses(const io::BopFrame& frame, const EvalObjects& objects,
-                                    const EvaluationOptions& options,
-                                    const io::ResultPlacement& estimate) {
+                                    const EvaluationOptions& options, const Placement& estimate) {
   constexpr double kSamePlace = 0.05;  // metres
   if (estimate.alternatives.empty()) return {};
   const io::BopInstance* nearest = nullptr;
@@ -235,18 +235,18 @@ std::vector<PoseOutcome> open_poses(const io::BopFrame& frame, const EvalObjects
   for (const io::BopInstance& truth : frame.truth) {
     const double distance =
         (truth.camera_from_object.translation - estimate.camera_from_object.translation).norm();
-    if (truth.obj_id != estimate.obj_id || distance > least) continue;
+    if (truth.obj_id != estimate.model_number || distance > least) continue;
     least = distance;
     nearest = &truth;
   }
   if (nearest == nullptr) return {};
   std::vector<PoseOutcome> out{{1, false}};
   const auto is_right = [&](const Pose& pose) {
-    io::ResultPlacement at_pose = estimate;
+    Placement at_pose = estimate;
     at_pose.camera_from_object = pose;
     return paper_cost(objects, options, at_pose, *nearest) < kNoMatch;
   };
-  for (const io::ResultAlternative& other : estimate.alternatives) {
+  for (const PoseAlternative& other : estimate.alternatives) {
     out.front().weight -= other.weight;
     out.push_back({other.weight, is_right(other.camera_from_object)});
   }
@@ -258,16 +258,16 @@ void add_estimates(const io::BopFrame& frame, const EvalObjects& objects,
                    const Estimates& estimates, const std::vector<int>& truth_of,
                    const EvaluationOptions& options, FrameOutcome& outcome) {
   for (std::size_t e = 0; e < estimates.size(); ++e) {
-    const io::ResultPlacement& estimate = estimates[e];
+    const Placement& estimate = estimates[e];
     EstimateOutcome result;
-    result.obj_id = estimate.obj_id;
+    result.obj_id = estimate.model_number;
     result.probability = estimate.probability;
     result.distance = estimate.camera_from_object.translation.norm();
     result.truth = truth_of[e];
     result.poses = open_poses(frame, objects, options, estimate);
     if (result.truth >= 0) {
       const auto t = static_cast<std::size_t>(result.truth);
-      const EvalObject& object = objects.at(estimate.obj_id);
+      const EvalObject& object = objects.at(estimate.model_number);
       result.ignored = !outcome.truth[t].counts;
       outcome.truth[t].found = true;
       const Pose& truth = frame.truth[t].camera_from_object;

@@ -17,43 +17,20 @@ namespace {
 
 constexpr double kMetres = 0.001;
 
-std::string padded(int number) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%06d", number);
-  return text;
-}
-
-Pose pose_from_arrays(const Json& rotation, const Json& translation_mm) {
-  const auto r = rotation.get<std::array<double, 9>>();
-  const auto t = translation_mm.get<std::array<double, 3>>();
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  for (int row = 0; row < 3; ++row) {
-    for (int col = 0; col < 3; ++col) matrix(row, col) = r[static_cast<std::size_t>(3 * row + col)];
-    matrix(row, 3) = kMetres * t[static_cast<std::size_t>(row)];
-  }
-  return Pose::from_matrix(matrix);
-}
-
 SymmetryGroup read_symmetry(const Json& info) {
   SymmetryGroup group;
   if (info.contains("symmetries_discrete")) {
     for (const Json& json : info.at("symmetries_discrete")) {
-      const auto m = json.get<std::array<double, 16>>();
-      Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-      for (int i = 0; i < 12; ++i) {
-        matrix(i / 4, i % 4) = (i % 4 == 3 ? kMetres : 1.0) * m[static_cast<std::size_t>(i)];
-      }
+      auto matrix = json.get<Eigen::Matrix4d>();
+      matrix.topRightCorner<3, 1>() *= kMetres;
       group.discrete.push_back(Pose::from_matrix(matrix));
     }
   }
   if (info.contains("symmetries_continuous")) {
     for (const Json& json : info.at("symmetries_continuous")) {
-      const auto axis = json.at("axis").get<std::array<double, 3>>();
-      const auto offset = json.value("offset", std::array<double, 3>{});
-      ContinuousSymmetry symmetry;
-      symmetry.axis = Eigen::Vector3d(axis[0], axis[1], axis[2]).normalized();
-      symmetry.point = kMetres * Eigen::Vector3d(offset[0], offset[1], offset[2]);
-      group.continuous.push_back(symmetry);
+      const Eigen::Vector3d offset = json.value("offset", Eigen::Vector3d(0, 0, 0));
+      group.continuous.push_back(
+          {json.at("axis").get<Eigen::Vector3d>().normalized(), kMetres * offset});
     }
   }
   return group;
@@ -62,7 +39,7 @@ SymmetryGroup read_symmetry(const Json& info) {
 /// The image with that number, whatever its extension; empty if there is none.
 std::string find_image(const fs::path& folder, int im_id) {
   for (const char* extension : {".png", ".jpg", ".jpeg"}) {
-    const fs::path path = folder / (padded(im_id) + extension);
+    const fs::path path = folder / (bop_number(im_id) + extension);
     if (fs::exists(path)) return path.string();
   }
   return {};
@@ -76,7 +53,9 @@ Status read_truth(const Json& gt, const Json& info, const std::string& key, BopF
     const Json& json = instances.at(i);
     BopInstance instance;
     instance.obj_id = json.at("obj_id").get<int>();
-    instance.camera_from_object = pose_from_arrays(json.at("cam_R_m2c"), json.at("cam_t_m2c"));
+    instance.camera_from_object =
+        Pose::from_matrix(json.at("cam_R_m2c").get<Eigen::Matrix3d>(),
+                          kMetres * json.at("cam_t_m2c").get<Eigen::Vector3d>());
     if (info.contains(key) && i < info.at(key).size()) {
       instance.visible_fraction = info.at(key).at(i).value("visib_fract", 1.0);
     }
@@ -93,7 +72,7 @@ Result<BopFrame> read_frame_entry(const fs::path& folder, int scene_id, const st
   const auto k = camera.at("cam_K").get<std::array<double, 9>>();
   frame.camera = {0, 0, k[0], k[4], k[2], k[5]};
   frame.depth_scale_mm = camera.value("depth_scale", 1.0);
-  frame.depth_path = (folder / "depth" / (padded(frame.im_id) + ".png")).string();
+  frame.depth_path = (folder / "depth" / (bop_number(frame.im_id) + ".png")).string();
   frame.color_path = find_image(folder / "rgb", frame.im_id);
   const Result<ImageSize> size = read_png_size(frame.depth_path);
   if (!size.ok()) return size.status();
@@ -128,7 +107,13 @@ Status read_scene(const fs::path& folder, int scene_id, std::vector<BopFrame>& f
 
 }  // namespace
 
-std::string bop_object_name(int obj_id) { return "obj_" + padded(obj_id); }
+std::string bop_number(int number) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%06d", number);
+  return text;
+}
+
+std::string bop_object_name(int obj_id) { return "obj_" + bop_number(obj_id); }
 
 Result<std::vector<BopModel>> read_bop_models(const std::string& dataset) {
   const std::string path = (fs::path(dataset) / "models" / "models_info.json").string();
@@ -177,7 +162,7 @@ Result<std::vector<BopFrame>> read_bop_frames(const std::string& dataset, const 
   std::vector<BopFrame> frames;
   for (const int scene : found) {
     if (!scenes.empty() && std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) continue;
-    if (Status s = read_scene(folder / padded(scene), scene, frames); !s.ok()) return s;
+    if (Status s = read_scene(folder / bop_number(scene), scene, frames); !s.ok()) return s;
   }
   if (frames.empty()) return Status(StatusCode::not_found, folder.string() + " has no frames");
   std::sort(frames.begin(), frames.end(), [](const BopFrame& a, const BopFrame& b) {

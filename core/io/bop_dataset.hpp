@@ -53,6 +53,8 @@ Result<std::vector<BopFrame>> read_bop_frames(const std::string& dataset, const 
 /// Loads the images; frame_id is "SCENE/IM", the stamp 0.
 Result<Frame> load_bop_frame(const BopFrame& frame);
 
+/// "000001" for 1, as scenes and images are named.
+std::string bop_number(int number);
 /// "obj_000001" for 1.
 std::string bop_object_name(int obj_id);
 

@@ -17,36 +17,16 @@ namespace {
 
 constexpr double kMillimetres = 1000;
 
-std::string padded(int number) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%06d", number);
-  return text;
-}
-
-Json rotation_json(const Pose& pose) {
-  const Eigen::Matrix3d r = pose.matrix();
-  Json json = Json::array();
-  for (int i = 0; i < 9; ++i) json.push_back(r(i / 3, i % 3));
-  return json;
-}
-
-Json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
 Json symmetries_json(const SymmetryGroup& group, Json info) {
   for (const Pose& pose : group.discrete) {
-    const Eigen::Matrix3d r = pose.matrix();
-    Json matrix = Json::array();
-    for (int row = 0; row < 3; ++row) {
-      for (int col = 0; col < 3; ++col) matrix.push_back(r(row, col));
-      matrix.push_back(kMillimetres * pose.translation[row]);
-    }
-    for (const double value : {0.0, 0.0, 0.0, 1.0}) matrix.push_back(value);
+    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+    matrix.topLeftCorner<3, 3>() = pose.matrix();
+    matrix.topRightCorner<3, 1>() = kMillimetres * pose.translation;
     info["symmetries_discrete"].push_back(matrix);
   }
   for (const ContinuousSymmetry& symmetry : group.continuous) {
     info["symmetries_continuous"].push_back(
-        {{"axis", vector_json(symmetry.axis)},
-         {"offset", vector_json(kMillimetres * symmetry.point)}});
+        {{"axis", symmetry.axis}, {"offset", Eigen::Vector3d(kMillimetres * symmetry.point)}});
   }
   return info;
 }
@@ -125,7 +105,7 @@ Status write_images(const fs::path& folder, int im_id, const Frame& frame, doubl
     depth.pixels[i] =
         units > 0 && units <= 65535 ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
   }
-  const std::string name = padded(im_id) + ".png";
+  const std::string name = bop_number(im_id) + ".png";
   if (Status s = write_gray_png((folder / "depth" / name).string(), depth); !s.ok()) return s;
   if (frame.color.empty()) return {};
   return write_color_png((folder / "rgb" / name).string(),
@@ -153,7 +133,7 @@ struct BopSceneWriter::Records {
 
 BopSceneWriter::BopSceneWriter(const std::string& dataset, const std::string& split, int scene_id,
                                double depth_scale_mm)
-    : folder_((fs::path(dataset) / split / padded(scene_id)).string()),
+    : folder_((fs::path(dataset) / split / bop_number(scene_id)).string()),
       depth_scale_mm_(depth_scale_mm),
       records_(std::make_unique<Records>()) {}
 
@@ -167,15 +147,15 @@ Status BopSceneWriter::add(int im_id, const Frame& frame,
   Json info = Json::array();
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const BopInstanceRecord& instance = instances[i];
-    const std::string name = padded(im_id) + "_" + padded(static_cast<int>(i)) + ".png";
+    const std::string name = bop_number(im_id) + "_" + bop_number(static_cast<int>(i)) + ".png";
     Status s = write_mask((folder / "mask_visib" / name).string(), frame, "mask_visible",
                           instance.mask_visible);
     if (s.ok()) s = write_mask((folder / "mask" / name).string(), frame, "mask", instance.mask);
     if (!s.ok()) return s;
     gt.push_back(
         {{"obj_id", instance.obj_id},
-         {"cam_R_m2c", rotation_json(instance.camera_from_object)},
-         {"cam_t_m2c", vector_json(kMillimetres * instance.camera_from_object.translation)}});
+         {"cam_R_m2c", instance.camera_from_object.matrix()},
+         {"cam_t_m2c", Eigen::Vector3d(kMillimetres * instance.camera_from_object.translation)}});
     info.push_back(info_json(instance, frame));
   }
   const std::string key = std::to_string(im_id);

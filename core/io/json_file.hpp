@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <exception>
 #include <string>
 
@@ -11,7 +12,38 @@
 #include "core/geometry/pose.hpp"
 #include "core/io/file_bytes.hpp"
 
-// Private to io: JSON without exceptions leaving a function.
+// Private to io: JSON without exceptions leaving a function, matrices and poses as JSON.
+
+/// A matrix as its values, row by row. More values than it has are ignored.
+template <int kRows, int kCols>
+struct nlohmann::adl_serializer<Eigen::Matrix<double, kRows, kCols>> {
+  using Matrix = Eigen::Matrix<double, kRows, kCols>;
+
+  static void to_json(json& out, const Matrix& matrix) {
+    out = json::array();
+    for (int i = 0; i < kRows * kCols; ++i) out.push_back(matrix(i / kCols, i % kCols));
+  }
+  static void from_json(const json& in, Matrix& matrix) {
+    const auto values = in.get<std::array<double, kRows * kCols>>();
+    for (int i = 0; i < kRows * kCols; ++i) {
+      matrix(i / kCols, i % kCols) = values[static_cast<std::size_t>(i)];
+    }
+  }
+};
+
+/// A pose as {"rotation_wxyz": [..4], "translation_m": [..3]}.
+template <>
+struct nlohmann::adl_serializer<bpa::Pose> {
+  static void to_json(json& out, const bpa::Pose& pose) {
+    out = {{"rotation_wxyz", bpa::to_wxyz(pose.rotation)}, {"translation_m", pose.translation}};
+  }
+  static void from_json(const json& in, bpa::Pose& pose) {
+    // Not normalised again: what was written is what is read, to the last bit.
+    const auto q = in.at("rotation_wxyz").get<Eigen::Vector4d>();
+    pose.rotation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    in.at("translation_m").get_to(pose.translation);
+  }
+};
 
 namespace bpa::io {
 
@@ -34,30 +66,11 @@ template <class Body>
 auto with_json(const std::string& path, const Body& body) -> decltype(body()) {
   try {
     return body();
-  } catch (const nlohmann::json::exception& error) {
-    const std::string text = error.what();  // "[json.exception.out_of_range.403] key 'x' not found"
-    const std::size_t end = text.find("] ");
-    return Status(StatusCode::corrupt,
-                  path + " does not have the expected content: " +
-                      (end == std::string::npos ? text : text.substr(end + 2)));
   } catch (const std::exception& error) {
-    return Status(StatusCode::corrupt,
-                  path + " does not have the expected content: " + error.what());
+    std::string text = error.what();  // "[json.exception.out_of_range.403] key 'x' not found"
+    if (const std::size_t end = text.find("] "); end != std::string::npos) text.erase(0, end + 2);
+    return Status(StatusCode::corrupt, path + " does not have the expected content: " + text);
   }
-}
-
-/// A pose as {"rotation_wxyz": [..4], "translation_m": [..3]}.
-inline Json pose_to_json(const Pose& pose) {
-  const Eigen::Vector4d q = to_wxyz(pose.rotation);
-  const Eigen::Vector3d& t = pose.translation;
-  return {{"rotation_wxyz", {q[0], q[1], q[2], q[3]}}, {"translation_m", {t[0], t[1], t[2]}}};
-}
-
-inline Pose pose_from_json(const Json& json) {
-  const auto q = json.at("rotation_wxyz").get<std::array<double, 4>>();
-  const auto t = json.at("translation_m").get<std::array<double, 3>>();
-  // Not normalised again: what was written is what is read, to the last bit.
-  return {Eigen::Quaterniond(q[0], q[1], q[2], q[3]), {t[0], t[1], t[2]}};
 }
 
 }  // namespace bpa::io

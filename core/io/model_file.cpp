@@ -34,13 +34,6 @@ bool legal_name(const std::string& name) {
          std::all_of(name.begin(), name.end(), legal_character);
 }
 
-Json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-Eigen::Vector3d vector_from_json(const Json& json) {
-  const auto v = json.get<std::array<double, 3>>();
-  return {v[0], v[1], v[2]};
-}
-
 Json curve_json(const NoiseCurve& c) {
   return {{"floor", c.floor},
           {"edge_height", c.edge_height},
@@ -65,12 +58,9 @@ Json symmetry_json(const ModelSource& model) {
   Json symmetries = {{"origin", kOrigins[static_cast<int>(model.symmetry_origin)]},
                      {"discrete", Json::array()},
                      {"continuous", Json::array()}};
-  for (const Pose& pose : model.symmetry.discrete) {
-    symmetries["discrete"].push_back(pose_to_json(pose));
-  }
+  for (const Pose& pose : model.symmetry.discrete) symmetries["discrete"].push_back(pose);
   for (const ContinuousSymmetry& symmetry : model.symmetry.continuous) {
-    symmetries["continuous"].push_back(
-        {{"axis", vector_json(symmetry.axis)}, {"point_m", vector_json(symmetry.point)}});
+    symmetries["continuous"].push_back({{"axis", symmetry.axis}, {"point_m", symmetry.point}});
   }
   return symmetries;
 }
@@ -118,12 +108,10 @@ void parse_symmetry(const Json& json, ModelSource& model) {
   for (int k = 0; k < 3; ++k) {
     if (origin == kOrigins[k]) model.symmetry_origin = static_cast<SymmetryOrigin>(k);
   }
-  for (const Json& pose : json.at("discrete")) {
-    model.symmetry.discrete.push_back(pose_from_json(pose));
-  }
+  model.symmetry.discrete = json.at("discrete").get<std::vector<Pose>>();
   for (const Json& symmetry : json.at("continuous")) {
-    model.symmetry.continuous.push_back(
-        {vector_from_json(symmetry.at("axis")), vector_from_json(symmetry.at("point_m"))});
+    model.symmetry.continuous.push_back({symmetry.at("axis").get<Eigen::Vector3d>(),
+                                         symmetry.at("point_m").get<Eigen::Vector3d>()});
   }
 }
 

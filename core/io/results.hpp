@@ -2,77 +2,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/status.hpp"
-#include "core/geometry/pose.hpp"
+#include "core/result/interpretation.hpp"
 
-// What detection reports, as files hold it. The CSV is the BOP benchmark's (scene_id, im_id,
-// obj_id, score, R, t, time; millimetres) and holds the best interpretation; our JSON holds all of
-// them.
+// Files of results. The CSV is the BOP benchmark's (scene_id, im_id, obj_id, score, R, t, time;
+// millimetres) and holds the best interpretation. Our JSON holds all of them.
 
 namespace bpa::io {
 
-/// A pose and its weight among the alternatives of a placement.
-struct ResultAlternative {
-  Pose camera_from_object;
-  double weight = 0;
+/// How a server answered for one frame. Files of bpa-client have it.
+struct ServerAnswer {
+  Status status;           ///< Why the frame was not searched; ok when it was.
+  int queue_position = 0;  ///< Frames and requests that waited before this one; 0: none.
 };
 
-struct ResultComponent {
-  std::string name;
-  double value = 0;
+/// What was found in one frame of a data set.
+struct FrameResult : SceneInterpretations {
+  int scene_id = 0;    ///< 0 for a frame of no data set.
+  int im_id = 0;       ///< 0 for a frame of no data set.
+  double seconds = 0;  ///< Time spent on the whole frame.
+  /// Empty: the detector ran in this process, and the file has no stamp and frame_id.
+  std::optional<ServerAnswer> server;
 };
 
-/// One object; the fields mean what those of Placement do.
-struct ResultPlacement {
-  int obj_id = 0;
-  std::string model;  ///< Empty when read from a CSV.
-  Pose camera_from_object;
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 4, 3> orientation_axes = Eigen::Matrix<double, 4, 3>::Zero();
-  Eigen::Vector3d orientation_concentrations = Eigen::Vector3d::Zero();
-  double score = 0;
-  double probability = 0;  ///< The CSV's score.
-  double visible_fraction = 0;
-  std::vector<ResultComponent> components;
-  std::vector<ResultAlternative> alternatives;
-};
-
-struct ResultInterpretation {
-  int rank = 1;
-  double score = 0;
-  double probability = 0;
-  std::vector<ResultPlacement> placements;
-};
-
-struct ResultTiming {
-  std::string stage;
-  double milliseconds = 0;
-};
-
-struct FrameResult {
-  int scene_id = 0;
-  int im_id = 0;
-  double seconds = 0;  ///< Spent on the whole frame.
-  bool budget_exhausted = false;
-  int fused_frames = 1;                               ///< How many frames its depth is made of.
-  std::vector<ResultInterpretation> interpretations;  ///< Ranked.
-  std::vector<ResultTiming> timings;
-};
-
-/// Writes the best interpretation of each frame; the score is the placement's probability.
+/// Writes the best interpretation of each frame; the score is the placement's probability. Fails
+/// with unavailable.
 Status write_results_csv(const std::string& path, const std::vector<FrameResult>& results);
 
-/// One interpretation a frame, frames by (scene_id, im_id). A frame in which nothing was found does
-/// not appear in a CSV at all. Scores outside [0, 1] are kept as they are. Fails with corrupt
+/// Reads one interpretation per frame, frames by (scene_id, im_id). A frame in which nothing was
+/// found is not in a CSV. Scores outside [0, 1] are kept. Fails with not_found, or with corrupt
 /// naming file, line and column.
 Result<std::vector<FrameResult>> read_results_csv(const std::string& path);
 
-/// Everything; numbers survive to the last bit.
+/// Writes everything; numbers survive to the last bit. Fails with unavailable.
 Status write_results_json(const std::string& path, const std::vector<FrameResult>& results);
+/// Reads what write_results_json wrote. Fails with not_found, or with corrupt naming the file.
 Result<std::vector<FrameResult>> read_results_json(const std::string& path);
+
+/// One frame of a result file as one line of JSON, without a line break.
+std::string result_json_line(const FrameResult& result);
 
 }  // namespace bpa::io

@@ -22,8 +22,8 @@ void write_number(std::ostream& out, double value) {
   out.write(text, end - text);
 }
 
-void write_row(std::ostream& out, const FrameResult& frame, const ResultPlacement& placement) {
-  out << frame.scene_id << ',' << frame.im_id << ',' << placement.obj_id << ',';
+void write_row(std::ostream& out, const FrameResult& frame, const Placement& placement) {
+  out << frame.scene_id << ',' << frame.im_id << ',' << placement.model_number << ',';
   write_number(out, placement.probability);
   const Eigen::Matrix3d r = placement.camera_from_object.matrix();
   for (int i = 0; i < 9; ++i) {
@@ -78,9 +78,9 @@ std::string parse_row(const std::string& line, Row& row) {
   return {};
 }
 
-ResultPlacement placement_of(const Row& row) {
-  ResultPlacement placement;
-  placement.obj_id = static_cast<int>(row.object[0]);
+Placement placement_of(const Row& row) {
+  Placement placement;
+  placement.model_number = static_cast<int>(row.object[0]);
   placement.score = row.score[0];
   placement.probability = row.score[0];
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
@@ -97,7 +97,7 @@ Status write_results_csv(const std::string& path, const std::vector<FrameResult>
   out << kHeader << '\n';
   for (const FrameResult& frame : results) {
     if (frame.interpretations.empty()) continue;
-    for (const ResultPlacement& placement : frame.interpretations.front().placements) {
+    for (const Placement& placement : frame.interpretations.front().placements) {
       write_row(out, frame, placement);
     }
   }

@@ -1,137 +1,147 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <concepts>
+#include <type_traits>
+
 #include "core/io/json_file.hpp"
 #include "core/io/results.hpp"
 
-namespace bpa::io {
+// Each struct's keys are listed once, in fields(), for the reader and the writer.
+
+namespace bpa {
 namespace {
+
+using io::Json;
 
 constexpr const char* kFormat = "bpa results";
 constexpr int kVersion = 1;
 
-template <class Matrix>
-Json matrix_json(const Matrix& matrix) {  // row-major
-  Json json = Json::array();
-  for (int row = 0; row < matrix.rows(); ++row) {
-    for (int col = 0; col < matrix.cols(); ++col) json.push_back(matrix(row, col));
-  }
-  return json;
-}
+enum Presence { optional, needed };
 
-template <class Matrix>
-void matrix_from_json(const Json& json, Matrix& matrix) {
-  for (int i = 0; i < static_cast<int>(matrix.size()); ++i) {
-    matrix(i / static_cast<int>(matrix.cols()), i % static_cast<int>(matrix.cols())) =
-        json.at(static_cast<std::size_t>(i)).template get<double>();
-  }
-}
+struct Writer {
+  Json& json;
 
-Json placement_json(const ResultPlacement& placement) {
-  Json components = Json::object();
-  for (const ResultComponent& part : placement.components) components[part.name] = part.value;
-  Json alternatives = Json::array();
-  for (const ResultAlternative& other : placement.alternatives) {
-    alternatives.push_back(
-        {{"pose", pose_to_json(other.camera_from_object)}, {"weight", other.weight}});
+  void operator()(const char* key, const auto& value, Presence = optional) { json[key] = value; }
+  void operator()(const char* key, const std::vector<ScoreComponent>& parts) {
+    json[key] = Json::object();
+    for (const ScoreComponent& part : parts) json[key][part.name] = part.value;
   }
-  return {{"obj_id", placement.obj_id},
-          {"model", placement.model},
-          {"pose", pose_to_json(placement.camera_from_object)},
-          {"covariance", matrix_json(placement.covariance)},
-          {"bingham",
-           {{"axes", matrix_json(placement.orientation_axes)},
-            {"concentrations", matrix_json(placement.orientation_concentrations)}}},
-          {"score", placement.score},
-          {"probability", placement.probability},
-          {"visible_fraction", placement.visible_fraction},
-          {"components", components},
-          {"alternatives", alternatives}};
-}
+  void operator()(const char* key, StatusCode code) { json[key] = to_string(code); }
+};
 
-ResultPlacement placement_from_json(const Json& json) {
-  ResultPlacement placement;
-  placement.obj_id = json.at("obj_id").get<int>();
-  placement.model = json.value("model", "");
-  placement.camera_from_object = pose_from_json(json.at("pose"));
-  if (json.contains("covariance")) matrix_from_json(json.at("covariance"), placement.covariance);
-  if (json.contains("bingham")) {
-    matrix_from_json(json.at("bingham").at("axes"), placement.orientation_axes);
-    matrix_from_json(json.at("bingham").at("concentrations"), placement.orientation_concentrations);
+/// A field whose key is missing keeps its value, unless it is needed.
+struct Reader {
+  const Json& json;
+
+  void operator()(const char* key, auto& value, Presence presence = optional) {
+    if (presence == needed || json.contains(key)) json.at(key).get_to(value);
   }
-  placement.score = json.value("score", 0.0);
-  placement.probability = json.at("probability").get<double>();
-  placement.visible_fraction = json.value("visible_fraction", 0.0);
-  if (json.contains("components")) {
-    for (const auto& [name, value] : json.at("components").items()) {
-      placement.components.push_back({name, value.get<double>()});
+  void operator()(const char* key, std::vector<ScoreComponent>& parts) {
+    const Json none = Json::object();
+    const Json& values = json.contains(key) ? json.at(key) : none;
+    for (const auto& [name, value] : values.items()) parts.push_back({name, value.get<double>()});
+  }
+  void operator()(const char* key, StatusCode& code) {
+    const auto name = json.value(key, "ok");
+    for (code = StatusCode::ok; code != StatusCode::internal && to_string(code) != name;) {
+      code = static_cast<StatusCode>(static_cast<int>(code) + 1);
     }
   }
-  if (json.contains("alternatives")) {
-    for (const Json& other : json.at("alternatives")) {
-      placement.alternatives.push_back(
-          {pose_from_json(other.at("pose")), other.at("weight").get<double>()});
-    }
-  }
-  return placement;
+};
+
+template <class T, class U>
+concept Is = std::same_as<std::remove_const_t<T>, U>;
+
+void fields(auto& visit, Is<PoseAlternative> auto& alternative) {
+  visit("pose", alternative.camera_from_object, needed);
+  visit("weight", alternative.weight, needed);
 }
 
-Json frame_json(const FrameResult& frame) {
-  Json interpretations = Json::array();
-  for (const ResultInterpretation& interpretation : frame.interpretations) {
-    Json placements = Json::array();
-    for (const ResultPlacement& p : interpretation.placements)
-      placements.push_back(placement_json(p));
-    interpretations.push_back({{"rank", interpretation.rank},
-                               {"score", interpretation.score},
-                               {"probability", interpretation.probability},
-                               {"placements", placements}});
-  }
-  Json timings = Json::array();
-  for (const ResultTiming& timing : frame.timings) {
-    timings.push_back({{"stage", timing.stage}, {"milliseconds", timing.milliseconds}});
-  }
-  return {{"scene_id", frame.scene_id},
-          {"im_id", frame.im_id},
-          {"seconds", frame.seconds},
-          {"budget_exhausted", frame.budget_exhausted},
-          {"timings", timings},
-          {"interpretations", interpretations},
-          {"fused_frames", frame.fused_frames}};
+void fields(auto& visit, Is<OrientationUncertainty> auto& orientation) {
+  visit("axes", orientation.axes, needed);
+  visit("concentrations", orientation.concentrations, needed);
 }
 
-FrameResult frame_from_json(const Json& json) {
-  FrameResult frame;
-  frame.scene_id = json.at("scene_id").get<int>();
-  frame.im_id = json.at("im_id").get<int>();
-  frame.seconds = json.at("seconds").get<double>();
-  frame.budget_exhausted = json.value("budget_exhausted", false);
-  frame.fused_frames = json.value("fused_frames", 1);
-  if (json.contains("timings")) {
-    for (const Json& timing : json.at("timings")) {
-      frame.timings.push_back(
-          {timing.at("stage").get<std::string>(), timing.at("milliseconds").get<double>()});
-    }
-  }
-  for (const Json& item : json.at("interpretations")) {
-    ResultInterpretation interpretation;
-    interpretation.rank = item.at("rank").get<int>();
-    interpretation.score = item.value("score", 0.0);
-    interpretation.probability = item.value("probability", 0.0);
-    for (const Json& placement : item.at("placements")) {
-      interpretation.placements.push_back(placement_from_json(placement));
-    }
-    frame.interpretations.push_back(std::move(interpretation));
-  }
-  return frame;
+void fields(auto& visit, Is<Placement> auto& placement) {
+  visit("obj_id", placement.model_number, needed);
+  visit("model", placement.model);
+  visit("pose", placement.camera_from_object, needed);
+  visit("covariance", placement.covariance);
+  visit("bingham", placement.orientation);
+  visit("score", placement.score);
+  visit("probability", placement.probability, needed);
+  visit("visible_fraction", placement.visible_fraction);
+  visit("components", placement.components);
+  visit("alternatives", placement.alternatives);
 }
+
+void fields(auto& visit, Is<Interpretation> auto& interpretation) {
+  visit("rank", interpretation.rank, needed);
+  visit("score", interpretation.score);
+  visit("probability", interpretation.probability);
+  visit("placements", interpretation.placements, needed);
+}
+
+void fields(auto& visit, Is<StageTiming> auto& timing) {
+  visit("stage", timing.stage, needed);
+  visit("milliseconds", timing.milliseconds, needed);
+}
+
+void server_fields(auto& visit, Is<io::FrameResult> auto& frame) {
+  visit("frame_id", frame.frame_id);
+  visit("stamp_ns", frame.stamp_ns);
+  visit("status", frame.server->status.code);
+  visit("message", frame.server->status.message);
+  visit("queue_position", frame.server->queue_position);
+}
+
+void fields(auto& visit, Is<io::FrameResult> auto& frame) {
+  visit("scene_id", frame.scene_id, needed);
+  visit("im_id", frame.im_id, needed);
+  visit("seconds", frame.seconds, needed);
+  visit("budget_exhausted", frame.budget_exhausted);
+  visit("fused_frames", frame.fused_frames);
+  visit("timings", frame.timings);
+  visit("interpretations", frame.interpretations, needed);
+  if (frame.server) server_fields(visit, frame);
+}
+
+template <class T>
+concept HasFields = requires(Writer& writer, const T& value) {
+  fields(writer, value);
+};
 
 }  // namespace
 
+// nlohmann::json finds these two by the namespace of the value.
+template <HasFields T>
+static void to_json(Json& json, const T& value) {
+  Writer writer{json};
+  fields(writer, value);
+}
+
+template <HasFields T>
+static void from_json(const Json& json, T& value) {
+  Reader reader{json};
+  fields(reader, value);
+}
+
+namespace io {
+
+static void from_json(const Json& json, FrameResult& frame) {
+  if (json.contains("status")) frame.server.emplace();
+  bpa::from_json<FrameResult>(json, frame);
+}
+
+std::string result_json_line(const FrameResult& result) {
+  return Json(result).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 Status write_results_json(const std::string& path, const std::vector<FrameResult>& results) {
-  Json frames = Json::array();
-  for (const FrameResult& frame : results) frames.push_back(frame_json(frame));
-  const Json json = {{"format", kFormat}, {"version", kVersion}, {"frames", frames}};
-  return with_json(path, [&]() { return write_file(path, json.dump(1) + "\n"); });
+  return with_json(path, [&]() {
+    const Json json = {{"format", kFormat}, {"version", kVersion}, {"frames", results}};
+    return write_file(path, json.dump(1) + "\n");
+  });
 }
 
 Result<std::vector<FrameResult>> read_results_json(const std::string& path) {
@@ -142,10 +152,9 @@ Result<std::vector<FrameResult>> read_results_json(const std::string& path) {
       return Status(StatusCode::corrupt,
                     path + " is not a result file of version " + std::to_string(kVersion));
     }
-    std::vector<FrameResult> results;
-    for (const Json& frame : json->at("frames")) results.push_back(frame_from_json(frame));
-    return results;
+    return json->at("frames").get<std::vector<FrameResult>>();
   });
 }
 
-}  // namespace bpa::io
+}  // namespace io
+}  // namespace bpa

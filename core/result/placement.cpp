@@ -22,4 +22,26 @@ OrientationUncertainty orientation_uncertainty(const Eigen::Quaterniond& rotatio
   return out;
 }
 
+Placement transformed(const Pose& a_from_b, const Placement& placement) {
+  const bool same = a_from_b.rotation.coeffs() == Eigen::Quaterniond::Identity().coeffs() &&
+                    a_from_b.translation.isZero(0);
+  Placement out = placement;
+  if (same) return out;
+  out.camera_from_object = a_from_b * placement.camera_from_object;
+  for (PoseAlternative& other : out.alternatives) {
+    other.camera_from_object = a_from_b * other.camera_from_object;
+  }
+  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
+  turn.topLeftCorner<3, 3>() = a_from_b.matrix();
+  turn.bottomRightCorner<3, 3>() = a_from_b.matrix();
+  out.covariance = turn * placement.covariance * turn.transpose();
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector4d axis = placement.orientation.axes.col(i);
+    const Eigen::Quaterniond turned =
+        a_from_b.rotation * Eigen::Quaterniond(axis[0], axis[1], axis[2], axis[3]);
+    out.orientation.axes.col(i) = to_wxyz(turned);
+  }
+  return out;
+}
+
 }  // namespace bpa

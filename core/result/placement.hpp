@@ -50,4 +50,8 @@ struct Placement {
   std::vector<PoseAlternative> alternatives;  ///< Empty when the view decides.
 };
 
+/// The placement in frame a, from one in frame b: poses, covariance and orientation. To the last
+/// bit the same where a_from_b is the identity.
+Placement transformed(const Pose& a_from_b, const Placement& placement);
+
 }  // namespace bpa

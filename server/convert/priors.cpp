@@ -32,7 +32,7 @@ PosePrior prior_from(const msgs::PosePrior& message) {
   const auto& covariance = message.position_covariance;
   if (std::any_of(covariance.begin(), covariance.end(), [](double c) { return c != 0; })) {
     const auto& p = message.pose.position;
-    prior.position = align::PositionPrior{{p.x, p.y, p.z}, Eigen::Matrix3d::Zero()};
+    prior.position = PositionPrior{{p.x, p.y, p.z}, Eigen::Matrix3d::Zero()};
     for (int i = 0; i < 9; ++i) {
       prior.position->covariance(i / 3, i % 3) = covariance[static_cast<std::size_t>(i)];
     }

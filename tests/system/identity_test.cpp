@@ -59,7 +59,7 @@ PosePrior prior_of(const ExpectedPose& expected) {
   PosePrior prior;
   prior.model = expected.model;
   const auto& p = expected.camera_from_object.position;
-  prior.position = align::PositionPrior{
+  prior.position = PositionPrior{
       {p[0], p[1], p[2]}, Eigen::Map<const Eigen::Matrix3d>(expected.position_covariance.data())};
   for (int axis = 0; axis < 3; ++axis) {
     const auto& from = expected.orientation_spread.axes[static_cast<std::size_t>(axis)];

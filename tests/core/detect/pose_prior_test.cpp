@@ -21,8 +21,7 @@ PosePrior prior_at(const std::string& model, const Pose& pose, double sigma_m = 
                    double sigma_rad = kTurn, double weight = 0.95) {
   PosePrior prior;
   prior.model = model;
-  prior.position =
-      align::PositionPrior{pose.translation, sigma_m * sigma_m * Eigen::Matrix3d::Identity()};
+  prior.position = PositionPrior{pose.translation, sigma_m * sigma_m * Eigen::Matrix3d::Identity()};
   prior.orientation =
       orientation_uncertainty(pose.rotation, sigma_rad * sigma_rad * Eigen::Matrix3d::Identity());
   prior.weight = weight;

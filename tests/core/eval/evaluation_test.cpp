@@ -56,9 +56,9 @@ io::BopFrame frame(int im_id, std::vector<io::BopInstance> truth) {
   return result;
 }
 
-io::ResultPlacement placement(int obj_id, const Pose& pose, double probability) {
-  io::ResultPlacement result;
-  result.obj_id = obj_id;
+Placement placement(int obj_id, const Pose& pose, double probability) {
+  Placement result;
+  result.model_number = obj_id;
   result.camera_from_object = pose;
   result.probability = probability;
   result.covariance = 1e-4 * Eigen::Matrix<double, 6, 6>::Identity();
@@ -66,7 +66,7 @@ io::ResultPlacement placement(int obj_id, const Pose& pose, double probability) 
 }
 
 io::FrameResult result(int im_id, double seconds,
-                       std::vector<std::vector<io::ResultPlacement>> interpretations) {
+                       std::vector<std::vector<Placement>> interpretations) {
   io::FrameResult frame;
   frame.scene_id = 1;
   frame.im_id = im_id;
@@ -267,11 +267,11 @@ TEST(Evaluation, CoverageOfABallHasThreeDegreesOfFreedom) {
 
 TEST(Evaluation, OpenPosesByHand) {
   // A plain object turned by a quarter of a turn; a second one that is not there.
-  io::ResultPlacement first = placement(1, at(0, 0.7), 0.4);
+  Placement first = placement(1, at(0, 0.7), 0.4);
   first.alternatives = {{at(0.01, 0.7, kPi / 2), 0.25}, {at(0, 0.7, kPi), 0.22}};
-  io::ResultPlacement second = placement(1, at(0.5, 0.7), 0.4);
+  Placement second = placement(1, at(0.5, 0.7), 0.4);
   second.alternatives = {{at(0.5, 0.7, kPi), 0.5}};
-  io::ResultPlacement third = placement(1, at(-0.5, 0.7), 0.9);
+  Placement third = placement(1, at(-0.5, 0.7), 0.9);
   const auto report =
       evaluate({frame(0, {{1, at(0, 0.7, kPi / 2), 1.0}, {1, at(-0.5, 0.7), 1.0}})}, objects(),
                {result(0, 0.4, {{first, second, third}})}, without_bop());
@@ -340,7 +340,7 @@ TEST(Evaluation, RefusesWhatDoesNotFit) {
   c.results[0].im_id = 77;
   EXPECT_EQ(evaluate(c.frames, objects(), c.results).status().code, StatusCode::invalid_argument);
   c = two_frames();
-  c.results[0].interpretations[0].placements[0].obj_id = 5;
+  c.results[0].interpretations[0].placements[0].model_number = 5;
   EXPECT_EQ(evaluate(c.frames, objects(), c.results).status().code, StatusCode::invalid_argument);
   c = two_frames();
   c.frames[1].has_truth = false;

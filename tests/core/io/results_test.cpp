@@ -9,15 +9,15 @@
 namespace bpa::io {
 namespace {
 
-ResultPlacement some_placement(int obj_id, double probability) {
-  ResultPlacement placement;
-  placement.obj_id = obj_id;
+Placement some_placement(int obj_id, double probability) {
+  Placement placement;
+  placement.model_number = obj_id;
   placement.model = "cup";
   placement.camera_from_object = {Eigen::Quaterniond(0.5, -0.1, 0.7, 0.3).normalized(),
                                   {0.1, -0.2, 0.9}};
   placement.covariance.setRandom();
-  placement.orientation_axes.setRandom();
-  placement.orientation_concentrations.setRandom();
+  placement.orientation.axes.setRandom();
+  placement.orientation.concentrations.setRandom();
   placement.score = -1.25;
   placement.probability = probability;
   placement.visible_fraction = 0.3;
@@ -56,13 +56,13 @@ TEST(Results, JsonKeepsEverythingToTheLastBit) {
   EXPECT_EQ(frame.seconds, 0.1);
   EXPECT_EQ(frame.fused_frames, 5);
   ASSERT_EQ(frame.interpretations.size(), 2u);
-  const ResultPlacement& a = results[0].interpretations[0].placements[1];
-  const ResultPlacement& b = frame.interpretations[0].placements.at(1);
-  EXPECT_EQ(b.obj_id, 4);
+  const Placement& a = results[0].interpretations[0].placements[1];
+  const Placement& b = frame.interpretations[0].placements.at(1);
+  EXPECT_EQ(b.model_number, 4);
   EXPECT_EQ(b.model, "cup");
   EXPECT_EQ(a.covariance, b.covariance);
-  EXPECT_EQ(a.orientation_axes, b.orientation_axes);
-  EXPECT_EQ(a.orientation_concentrations, b.orientation_concentrations);
+  EXPECT_EQ(a.orientation.axes, b.orientation.axes);
+  EXPECT_EQ(a.orientation.concentrations, b.orientation.concentrations);
   EXPECT_EQ(a.camera_from_object.rotation.coeffs(), b.camera_from_object.rotation.coeffs());
   EXPECT_EQ(a.camera_from_object.translation, b.camera_from_object.translation);
   EXPECT_EQ(b.components.at(0).value, 1.0 / 3);
@@ -79,8 +79,8 @@ TEST(Results, CsvHoldsTheBestInterpretation) {
   EXPECT_EQ(back->front().im_id, 5);
   EXPECT_EQ(back->front().seconds, 0.1);
   ASSERT_EQ(back->front().interpretations.at(0).placements.size(), 2u);
-  const ResultPlacement& placement = back->front().interpretations[0].placements[0];
-  EXPECT_EQ(placement.obj_id, 3);
+  const Placement& placement = back->front().interpretations[0].placements[0];
+  EXPECT_EQ(placement.model_number, 3);
   EXPECT_EQ(placement.probability, 0.9);
   const Pose pose = some_placement(3, 1).camera_from_object;
   EXPECT_LT(rotation_angle(placement.camera_from_object.rotation, pose.rotation), 1e-7);

@@ -299,7 +299,7 @@ TEST_F(DetectorOf, RegionAndMaskRestrictWhereHypothesesComeFrom) {
 PosePrior prior_of(const std::string& model, const Pose& pose) {
   PosePrior prior;
   prior.model = model;
-  prior.position = align::PositionPrior{pose.translation, 4e-4 * Eigen::Matrix3d::Identity()};
+  prior.position = PositionPrior{pose.translation, 4e-4 * Eigen::Matrix3d::Identity()};
   prior.orientation = orientation_uncertainty(pose.rotation, 0.01 * Eigen::Matrix3d::Identity());
   return prior;
 }

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/base/status.hpp"
-#include "core/detect/pose_prior.hpp"
+#include "core/result/pose_prior.hpp"
 
-namespace bpa {
+namespace bpa::io {
 
 /// Reads {"priors": [PRIOR, ...]}, where a PRIOR has
 ///
@@ -19,10 +19,11 @@ namespace bpa {
 ///   "rotation_sigma_deg"     standard deviation of the rotation about each axis, or
 ///   "bingham"                {"axes": [12] row by row, 4 x 3, "concentrations": [3]}, as results
 ///                            have it (the pose's rotation does not count then); neither: unknown;
-///   "weight"                 probability that it is true, 0.95 if not given.
+///   "weight"                 probability that the prior applies, in (0, 1]; 0.95 if not given.
 ///
-/// Fails with not_found, or with corrupt (naming the file, the prior and what is wrong) on a file
-/// that is not JSON, on unknown, missing or wrong fields. The numbers are validate()'s to judge.
+/// An empty path gives no priors. Fails with not_found, or with corrupt (naming the file, the prior
+/// and what is wrong) on a file that is not JSON, on unknown, missing or wrong fields. validate()
+/// checks the numbers.
 Result<std::vector<PosePrior>> read_pose_priors(const std::string& path);
 
-}  // namespace bpa
+}  // namespace bpa::io

@@ -1,22 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/pipeline/pose_prior_file.hpp"
+#include "core/io/pose_prior_file.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "core/detect/pose_prior.hpp"
 #include "core/io/file_bytes.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace bpa {
+namespace bpa::io {
 namespace {
 
 class PosePriorFile : public ::testing::Test {
  protected:
   Result<std::vector<PosePrior>> read(const std::string& text) {
     const std::string path = folder_.path() + "/priors.json";
-    EXPECT_TRUE(io::write_file(path, text).ok());
+    EXPECT_TRUE(write_file(path, text).ok());
     return read_pose_priors(path);
   }
   std::string refusal(const std::string& text) {
@@ -76,4 +77,4 @@ TEST_F(PosePriorFile, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::io

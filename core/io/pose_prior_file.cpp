@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/io/pose_prior_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/io/json_file.hpp"
+
+namespace bpa::io {
+namespace {
+
+Status corrupt(const std::string& where, const std::string& what) {
+  return Status(StatusCode::corrupt, where + ": " + what);
+}
+
+Status check_keys(const Json& prior, const std::string& where) {
+  const std::array<const char*, 7> known{
+      "model",   "pose",  "position_sigma_m", "position_covariance_m2", "rotation_sigma_deg",
+      "bingham", "weight"};
+  for (const auto& [key, value] : prior.items()) {
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      return corrupt(where, "unknown field \"" + key + "\"");
+    }
+  }
+  if (prior.contains("position_sigma_m") && prior.contains("position_covariance_m2")) {
+    return corrupt(where, "give position_sigma_m or position_covariance_m2, not both");
+  }
+  if (prior.contains("rotation_sigma_deg") && prior.contains("bingham")) {
+    return corrupt(where, "give rotation_sigma_deg or bingham, not both");
+  }
+  return {};
+}
+
+PosePrior prior_from(const Json& json) {
+  PosePrior prior;
+  json.at("model").get_to(prior.model);
+  prior.weight = json.value("weight", prior.weight);
+  const bool by_sigma = json.contains("position_sigma_m");
+  if (by_sigma || json.contains("position_covariance_m2")) {
+    prior.position.emplace();
+    json.at("pose").at("translation_m").get_to(prior.position->mean);
+  }
+  if (by_sigma) {
+    const double sigma = json.at("position_sigma_m").get<double>();
+    prior.position->covariance *= sigma * sigma;
+  } else if (prior.position) {
+    json.at("position_covariance_m2").get_to(prior.position->covariance);
+  }
+  if (json.contains("rotation_sigma_deg")) {
+    const double sigma = json.at("rotation_sigma_deg").get<double>() * M_PI / 180;
+    const auto q = json.at("pose").at("rotation_wxyz").get<Eigen::Vector4d>();
+    prior.orientation = orientation_uncertainty(Eigen::Quaterniond(q[0], q[1], q[2], q[3]),
+                                                sigma * sigma * Eigen::Matrix3d::Identity());
+  } else if (json.contains("bingham")) {
+    json.at("bingham").at("axes").get_to(prior.orientation.axes);
+    json.at("bingham").at("concentrations").get_to(prior.orientation.concentrations);
+  }
+  return prior;
+}
+
+}  // namespace
+
+Result<std::vector<PosePrior>> read_pose_priors(const std::string& path) {
+  std::vector<PosePrior> priors;
+  if (path.empty()) return priors;
+  const Result<Json> file = read_json(path);
+  if (!file.ok()) return file.status();
+  std::string where = path;
+  const auto read_all = [&]() -> Result<std::vector<PosePrior>> {
+    for (const Json& json : file->at("priors")) {
+      where = path + ": priors[" + std::to_string(priors.size()) + "]";
+      if (Status status = check_keys(json, where); !status.ok()) return status;
+      priors.push_back(prior_from(json));
+    }
+    return priors;
+  };
+  return with_json(where, read_all);
+}
+
+}  // namespace bpa::io

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/geometry/position_prior.hpp"
+#include "core/result/placement.hpp"
+
+namespace bpa {
+
+/// What a caller knows beforehand of one object's pose, in the camera frame.
+struct PosePrior {
+  std::string model;  ///< The model's name.
+  /// Of camera_from_object's translation, metres; none: the position is unknown.
+  std::optional<PositionPrior> position;
+  /// Of camera_from_object's rotation; concentrations of zero: the orientation is unknown.
+  OrientationUncertainty orientation;
+  double weight = 0.95;  ///< Probability that this prior applies, in (0, 1].
+};
+
+}  // namespace bpa
