@@ -3,7 +3,6 @@
 #include "core/io/file_bytes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
@@ -12,32 +11,10 @@
 #include <system_error>
 
 #include <unistd.h>
+#include <zlib.h>
 
 namespace bpa::io {
 namespace fs = std::filesystem;
-namespace {
-
-// Table k gives the effect of a byte that k further bytes follow, so that eight are done at once.
-using CrcTables = std::array<std::array<std::uint32_t, 256>, 8>;
-
-CrcTables make_crc_tables() {
-  CrcTables tables{};
-  for (std::uint32_t n = 0; n < 256; ++n) {
-    std::uint32_t c = n;
-    for (int k = 0; k < 8; ++k) c = (c & 1) ? 0xedb88320u ^ (c >> 1) : c >> 1;
-    tables[0][n] = c;
-  }
-  for (std::size_t k = 1; k < 8; ++k) {
-    for (std::size_t n = 0; n < 256; ++n) {
-      const std::uint32_t c = tables[k - 1][n];
-      tables[k][n] = tables[0][c & 0xff] ^ (c >> 8);
-    }
-  }
-  return tables;
-}
-
-}  // namespace
-
 Result<std::string> read_file(const std::string& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) {
@@ -88,19 +65,8 @@ Status write_file(const std::string& path, std::string_view bytes) {
 }
 
 std::uint32_t crc32(std::string_view bytes, std::uint32_t seed) {
-  static const CrcTables kTables = make_crc_tables();
-  const auto* byte = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  std::size_t left = bytes.size();
-  std::uint32_t crc = ~seed;
-  for (; left >= 8; left -= 8, byte += 8) {
-    const std::uint32_t low =
-        crc ^ (byte[0] | byte[1] << 8 | byte[2] << 16 | static_cast<std::uint32_t>(byte[3]) << 24);
-    crc = kTables[7][low & 0xff] ^ kTables[6][(low >> 8) & 0xff] ^ kTables[5][(low >> 16) & 0xff] ^
-          kTables[4][low >> 24] ^ kTables[3][byte[4]] ^ kTables[2][byte[5]] ^ kTables[1][byte[6]] ^
-          kTables[0][byte[7]];
-  }
-  for (; left > 0; --left, ++byte) crc = kTables[0][(crc ^ *byte) & 0xff] ^ (crc >> 8);
-  return ~crc;
+  const auto* data = reinterpret_cast<const Bytef*>(bytes.data());
+  return static_cast<std::uint32_t>(::crc32_z(seed, data, bytes.size()));
 }
 
 std::string lower_extension(const std::string& path) {
