@@ -26,6 +26,8 @@ struct Common {
   void fail(const Status& status);
 };
 
+/// The options that every subcommand has.
+void add_common(CLI::App& program, Common& common);
 void add_send(CLI::App& program, Common& common);
 void add_watch(CLI::App& program, Common& common);
 void add_detect(CLI::App& program, Common& common);
@@ -34,6 +36,8 @@ void add_status(CLI::App& program, Common& common);
 void add_play(CLI::App& program, Common& common);
 void add_record(CLI::App& program, Common& common);
 
+/// Has SIGINT and SIGTERM end the program in good order.
+void catch_interrupts();
 /// True after SIGINT or SIGTERM.
 bool interrupted();
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "client/cli/commands.hpp"
+#include "client/cli/frame_view.hpp"
 #include "client/cli/options.hpp"
 #include "client/cli/output.hpp"
-#include "client/cli/prior_files.hpp"
 
 namespace bpa::cli {
 namespace {
@@ -35,21 +35,20 @@ Status report(const Result<DetectionSet>& found, const DetectCommand& command,
 Status detect(Client& client, const DetectCommand& command) {
   const std::chrono::milliseconds wait(static_cast<long>(1000 * command.wait_s));
   std::vector<DetectionSet> sets;
-  if (command.files.bop.empty() && command.files.depth.empty()) {
+  if (command.files.empty()) {
     if (Status s = report(client.detect(command.query, wait), command, sets); !s.ok()) return s;
   } else {
     const auto entries = list_frames(command.files);
     if (!entries.ok()) return entries.status();
-    for (const FrameEntry& entry : *entries) {
+    for (const io::BopFrame& entry : *entries) {
       if (interrupted()) return Status(StatusCode::unavailable, "interrupted");
-      auto frame = load_frame(entry, 0);
+      const auto frame = load_frame(entry, command.restriction, 0);
       if (!frame.ok()) return frame.status();
-      if (Status s = command.restriction.apply(frame->view); !s.ok()) return s;
-      const auto found = client.detect_in(frame->view, command.query, wait);
+      const auto found = client.detect_in(view_of(*frame), command.query, wait);
       if (Status s = report(found, command, sets); !s.ok()) return s;
     }
   }
-  return command.json.empty() ? Status() : write_results(command.json, sets);
+  return write_results(command.json, sets);
 }
 
 }  // namespace
@@ -68,7 +67,7 @@ void add_detect(CLI::App& program, Common& common) {
   sub->add_option("--budget-ms", command->query.budget_ms, "report the best so far after this long")
       ->check(CLI::NonNegativeNumber);
   sub->add_option("--seed", command->query.seed, "same frame and seed: same answer");
-  sub->add_option("--priors", command->priors, kPriorsHelp);
+  add_priors_option(*sub, command->priors);
   sub->add_option("--json", command->json, "write all results to this file");
   sub->add_option("--top", command->top, "interpretations to print")->capture_default_str();
   sub->add_option("--wait", command->wait_s, "seconds to wait for an answer")
@@ -77,12 +76,9 @@ void add_detect(CLI::App& program, Common& common) {
   sub->callback([command, &common] {
     Status status = check_frame_options(command->files, false);
     if (!status.ok()) throw CLI::ValidationError("detect", status.message);
-    if (!command->restriction.empty() && command->files.bop.empty() &&
-        command->files.depth.empty()) {
+    if (!command->restriction.empty() && command->files.empty()) {
       throw CLI::ValidationError("detect", "--roi and --mask need frames from disk");
     }
-    status = command->restriction.load();
-    if (!status.ok()) return common.fail(status);
     auto priors = read_priors(command->priors);
     if (!priors.ok()) return common.fail(priors.status());
     command->query.priors = std::move(priors).value();

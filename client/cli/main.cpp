@@ -1,53 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <csignal>
 #include <iostream>
 
 #include "client/cli/commands.hpp"
 
-namespace bpa::cli {
-namespace {
-
-volatile std::sig_atomic_t interrupt_count = 0;
-
-void add_common(CLI::App& program, Common& common) {
-  program
-      .add_option("--domain", common.options.domain, "DDS domain; default ROS_DOMAIN_ID, else 0")
-      ->check(CLI::Range(0, 232));
-  program.add_option("--namespace", common.options.server_namespace, "ROS namespace of the server")
-      ->capture_default_str();
-  program.add_flag("--localhost", common.localhost, "look for servers on this machine only");
-  program.add_option("--peer", common.options.peers, "host to look at besides (repeatable)");
-  program.add_option("--timeout", common.timeout_s, "seconds to wait for the server")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-}
-
-}  // namespace
-
-bool interrupted() { return interrupt_count > 0; }
-
-Result<Client> Common::connect() const {
-  ClientOptions all = options;
-  all.timeout = std::chrono::milliseconds(static_cast<long>(1000 * timeout_s));
-  if (localhost) {
-    all.range_from_environment = false;
-    all.range = DiscoveryRange::localhost;
-  }
-  all.log = [](const std::string& text) { std::cerr << "bpa-client: " << text << '\n'; };
-  return Client::connect(all);
-}
-
-void Common::fail(const Status& status) {
-  std::cerr << "bpa-client: " << status.message << '\n';
-  exit_code = 1;
-}
-
-}  // namespace bpa::cli
-
 int main(int argc, char** argv) {
-  std::signal(SIGINT, [](int) { bpa::cli::interrupt_count = 1; });
-  std::signal(SIGTERM, [](int) { bpa::cli::interrupt_count = 1; });
+  bpa::cli::catch_interrupts();
   CLI::App program("Talks to a running bpa-server: sends frames, shows what is found.",
                    "bpa-client");
   program.require_subcommand(1);

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/options.hpp"
 
-#include <cstdio>
-#include <filesystem>
-
-#include "client/cli/output.hpp"
-#include "client/cli/png_file.hpp"
+#include "client/cli/convert.hpp"
+#include "core/io/camera_file.hpp"
+#include "core/io/image_file.hpp"
+#include "core/io/pose_prior_file.hpp"
 
 namespace bpa::cli {
 
@@ -16,7 +15,8 @@ void add_frame_options(CLI::App& command, FrameFiles& files) {
   command.add_option("--scenes", files.scenes, "scene numbers; default all")->delimiter(',');
   command.add_option("--depth", files.depth, "16-bit PNG registered to the colour image");
   command.add_option("--color", files.color, "PNG of the same size");
-  command.add_option("--camera", files.camera, "BOP camera.json: fx fy cx cy, depth_scale (mm)");
+  command.add_option("--camera", files.camera,
+                     "BOP camera.json (fx fy cx cy, depth_scale in mm) or camera_info YAML");
 }
 
 void add_restriction_options(CLI::App& command, Restriction& restriction) {
@@ -27,30 +27,38 @@ void add_restriction_options(CLI::App& command, Restriction& restriction) {
                      "8-bit PNG of the frames' size; where it is black, they are not searched");
 }
 
-Status Restriction::load() {
+Status Restriction::apply(Frame& frame) const {
+  if (!roi.empty()) frame.roi = {roi[0], roi[1], roi[2], roi[3]};
   if (mask_path.empty()) return {};
-  const auto image = read_color_png(mask_path);
+  const auto image = io::read_color_image(mask_path);
   if (!image.ok()) return image.status();
-  mask_width = image->width;
-  mask_height = image->height;
-  mask.clear();
-  for (std::size_t i = 0; i + 2 < image->rgb.size(); i += 3) {
-    mask.push_back(image->rgb[i] != 0 || image->rgb[i + 1] != 0 || image->rgb[i + 2] != 0);
+  const Camera& camera = frame.camera;
+  if (image->width != camera.width || image->height != camera.height) {
+    return invalid_argument(mask_path + " is " + std::to_string(image->width) + "x" +
+                            std::to_string(image->height) + " but the frame is " +
+                            std::to_string(camera.width) + "x" + std::to_string(camera.height) +
+                            "; they must be equal");
+  }
+  for (auto pixel = image->pixels.begin(); pixel != image->pixels.end(); pixel += 3) {
+    frame.mask.push_back(pixel[0] != 0 || pixel[1] != 0 || pixel[2] != 0);
   }
   return {};
 }
 
-Status Restriction::apply(FrameView& frame) const {
-  if (!roi.empty()) frame.roi = {{roi[0], roi[1], roi[2], roi[3]}};
-  if (mask.empty()) return {};
-  if (mask_width != frame.width || mask_height != frame.height) {
-    return invalid_argument(mask_path + " is " + std::to_string(mask_width) + "x" +
-                            std::to_string(mask_height) + " but the frame is " +
-                            std::to_string(frame.width) + "x" + std::to_string(frame.height) +
-                            "; they must be equal");
-  }
-  frame.mask = mask.data();
-  return {};
+void add_priors_option(CLI::App& command, std::string& path) {
+  command.add_option(
+      "--priors", path,
+      "what is known beforehand of the objects' poses, in the camera's frame: JSON, {\"priors\": "
+      "[{\"model\": NAME, \"pose\": {\"rotation_wxyz\": [4], \"translation_m\": [3]}, "
+      "\"position_sigma_m\": S, \"rotation_sigma_deg\": S, \"weight\": W}]}");
+}
+
+Result<std::vector<ExpectedPose>> read_priors(const std::string& path) {
+  const auto priors = io::read_pose_priors(path);
+  if (!priors.ok()) return priors.status();
+  std::vector<ExpectedPose> expected;
+  for (const PosePrior& prior : *priors) expected.push_back(to_expected_pose(prior));
+  return expected;
 }
 
 void add_sink_options(CLI::App& command, Sinks& sinks) {
@@ -74,18 +82,33 @@ Status check_frame_options(const FrameFiles& files, bool needed) {
   return {};
 }
 
+Result<std::vector<io::BopFrame>> list_frames(const FrameFiles& files) {
+  if (!files.bop.empty()) return io::read_bop_frames(files.bop, files.split, files.scenes);
+  const auto camera = io::read_camera(files.camera);
+  if (!camera.ok()) return camera.status();
+  io::BopFrame frame;
+  frame.camera = camera->camera;
+  frame.depth_scale_mm = camera->depth_scale_mm;
+  frame.depth_path = files.depth;
+  frame.color_path = files.color;
+  return std::vector<io::BopFrame>{frame};
+}
+
+Result<Frame> load_frame(const io::BopFrame& entry, const Restriction& restriction,
+                         std::int64_t stamp_ns) {
+  Result<Frame> frame = io::load_bop_frame(entry);
+  if (!frame.ok()) return frame;
+  frame->stamp_ns = stamp_ns;
+  if (Status status = restriction.apply(*frame); !status.ok()) return status;
+  return frame;
+}
+
 Status write_annotated(const std::string& folder, const AnnotatedImage& image) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
   const auto [scene, number] = scene_and_image(image.frame_id);
-  char name[64];
-  if (scene != 0 || number != 0) {
-    std::snprintf(name, sizeof name, "%06d_%06d.png", scene, number);
-  } else {
-    std::snprintf(name, sizeof name, "%lld.png", static_cast<long long>(image.stamp_ns));
-  }
-  return write_png((std::filesystem::path(folder) / name).string(), image.width, image.height,
-                   image.rgb);
+  const std::string name = scene != 0 || number != 0
+                               ? io::bop_number(scene) + "_" + io::bop_number(number)
+                               : std::to_string(image.stamp_ns);
+  return io::write_color_png(folder + "/" + name + ".png", {image.width, image.height, image.rgb});
 }
 
 }  // namespace bpa::cli

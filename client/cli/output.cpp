@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <map>
 
-#include <nlohmann/json.hpp>
+#include "client/cli/convert.hpp"
 
 namespace bpa::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 std::string format(const char* pattern, double value) {
   char text[64];
@@ -65,37 +62,6 @@ std::string difference(const RankedInterpretation& best, const RankedInterpretat
   return text.empty() ? " the same objects, placed differently" : text;
 }
 
-Json pose_json(const ObjectPose& pose) {
-  const auto& q = pose.orientation;
-  return {{"rotation_wxyz", {q[3], q[0], q[1], q[2]}}, {"translation_m", pose.position}};
-}
-
-Json detection_json(const Detection& d) {
-  Json components = Json::object();
-  for (const ScorePart& part : d.score_parts) components[part.name] = part.value;
-  Json alternatives = Json::array();
-  for (const AlternativePose& other : d.alternatives) {
-    alternatives.push_back(
-        {{"pose", pose_json(other.camera_from_object)}, {"weight", other.weight}});
-  }
-  Json axes = Json::array();  // row-major 4 x 3, an axis a column
-  for (std::size_t row = 0; row < 4; ++row) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      axes.push_back(d.orientation_spread.axes[axis][row]);
-    }
-  }
-  return {{"obj_id", d.model_number},
-          {"model", d.model},
-          {"pose", pose_json(d.camera_from_object)},
-          {"covariance", d.covariance},
-          {"bingham", {{"axes", axes}, {"concentrations", d.orientation_spread.concentrations}}},
-          {"score", d.score},
-          {"probability", d.probability},
-          {"visible_fraction", d.visible_fraction},
-          {"components", components},
-          {"alternatives", alternatives}};
-}
-
 }  // namespace
 
 void print_table(std::ostream& out, const DetectionSet& set, double frames_per_second) {
@@ -145,50 +111,11 @@ void print_detections(std::ostream& out, const DetectionSet& set, int max_interp
   }
 }
 
-std::pair<int, int> scene_and_image(const std::string& frame_id) {
-  int scene = 0, image = 0, length = 0;
-  const int found = std::sscanf(frame_id.c_str(), "%d/%d%n", &scene, &image, &length);
-  if (found != 2 || static_cast<std::size_t>(length) != frame_id.size()) return {0, 0};
-  return {scene, image};
-}
-
-Json to_json(const DetectionSet& set) {
-  Json interpretations = Json::array();
-  for (const RankedInterpretation& interpretation : set.interpretations) {
-    Json placements = Json::array();
-    for (const Detection& d : interpretation.detections) placements.push_back(detection_json(d));
-    interpretations.push_back({{"rank", interpretation.rank},
-                               {"score", interpretation.score},
-                               {"probability", interpretation.probability},
-                               {"placements", placements}});
-  }
-  Json timings = Json::array();
-  for (const StageTime& time : set.stage_times) {
-    timings.push_back({{"stage", time.stage}, {"milliseconds", time.milliseconds}});
-  }
-  const auto [scene, image] = scene_and_image(set.frame_id);
-  return {{"scene_id", scene},
-          {"im_id", image},
-          {"frame_id", set.frame_id},
-          {"stamp_ns", set.stamp_ns},
-          {"status", to_string(set.status.code)},
-          {"message", set.status.message},
-          {"seconds", 0.001 * set.total_ms},
-          {"queue_position", set.queue_position},
-          {"budget_exhausted", set.budget_exhausted},
-          {"fused_frames", set.fused_frames},
-          {"timings", timings},
-          {"interpretations", interpretations}};
-}
-
 Status write_results(const std::string& path, const std::vector<DetectionSet>& sets) {
-  Json frames = Json::array();
-  for (const DetectionSet& set : sets) frames.push_back(to_json(set));
-  std::ofstream file(path);
-  file << Json{{"format", "bpa results"}, {"version", 1}, {"frames", frames}}.dump(1) << '\n';
-  file.close();
-  if (file) return {};
-  return {StatusCode::unavailable, path + ": cannot be written"};
+  if (path.empty()) return {};
+  std::vector<io::FrameResult> frames;
+  for (const DetectionSet& set : sets) frames.push_back(to_frame_result(set));
+  return io::write_results_json(path, frames);
 }
 
 }  // namespace bpa::cli

@@ -8,7 +8,8 @@
 #include <thread>
 
 #include "client/cli/commands.hpp"
-#include "client/cli/frame_files.hpp"
+#include "client/cli/frame_view.hpp"
+#include "client/cli/options.hpp"
 #include "client/cli/output.hpp"
 #include "client/cli/recorder.hpp"
 
@@ -51,9 +52,7 @@ class Answers {
 Status play(Client& client, const PlayOptions& options, Answers& answers) {
   const auto times = read_recording(options.folder);
   if (!times.ok()) return times.status();
-  FrameFiles files;
-  files.bop = options.folder;
-  const auto entries = list_frames(files);
+  const auto entries = io::read_bop_frames(options.folder, "test");
   if (!entries.ok()) return entries.status();
   if (entries->size() != times->size()) {
     return Status(StatusCode::corrupt,
@@ -66,15 +65,15 @@ Status play(Client& client, const PlayOptions& options, Answers& answers) {
   double latest_s = 0;
   for (std::size_t i = 0; i < entries->size() && !interrupted(); ++i) {
     const RecordedFrame& recorded = (*times)[i];
-    auto frame = load_frame((*entries)[i], recorded.stamp_ns);
+    auto frame = load_frame((*entries)[i], {}, recorded.stamp_ns);
     if (!frame.ok()) return frame.status();
-    frame->view.frame_id = recorded.frame_id;
+    frame->frame_id = recorded.frame_id;
     if (i == 0) begun = Clock::now();
     const std::chrono::duration<double> due(recorded.after_s / options.speed);
     std::this_thread::sleep_until(begun + std::chrono::duration_cast<Clock::duration>(due));
     const std::chrono::duration<double> late = Clock::now() - begun - due;
     latest_s = std::max(latest_s, late.count());
-    if (status = client.publish_frame(frame->view); !status.ok()) return status;
+    if (status = client.publish_frame(view_of(*frame)); !status.ok()) return status;
     if (i == 0) begun = Clock::now();  // the first one waits until the server listens
   }
   const auto end = Clock::now() + std::chrono::duration<double>(options.wait_s);
@@ -83,7 +82,7 @@ Status play(Client& client, const PlayOptions& options, Answers& answers) {
   }
   std::printf("%zu frames played, at most %.0f ms late; %zu results\n", entries->size(),
               1000 * latest_s, answers.sets().size());
-  return options.json.empty() ? Status() : write_results(options.json, answers.sets());
+  return write_results(options.json, answers.sets());
 }
 
 }  // namespace

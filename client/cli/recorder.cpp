@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/recorder.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include <nlohmann/json.hpp>
 
 #include "client/cli/output.hpp"
-#include "client/cli/png_file.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/io/file_bytes.hpp"
+#include "core/io/image_file.hpp"
 
 namespace bpa::cli {
 namespace {
@@ -36,10 +36,7 @@ std::vector<std::uint16_t> depth_of(const FrameView& frame) {
 }
 
 Status write_json(const fs::path& path, const Json& json) {
-  std::ofstream file(path);
-  file << json.dump(1) << '\n';
-  if (file.flush()) return {};
-  return {StatusCode::unavailable, path.string() + ": cannot be written"};
+  return io::write_file(path.string(), json.dump(1) + "\n");
 }
 
 }  // namespace
@@ -47,11 +44,9 @@ Status write_json(const fs::path& path, const Json& json) {
 Status Recorder::start(Client& client) {
   std::error_code error;
   if (fs::exists(folder_, error)) return invalid_argument(folder_ + ": is there already");
-  for (const char* name : {"rgb", "depth"}) {
-    fs::create_directories(fs::path(folder_) / kScene / name, error);
-    if (error) return {StatusCode::unavailable, folder_ + ": " + error.message()};
-  }
-  Status status = client.subscribe_frames([this](const FrameView& frame) { add(frame); });
+  Status status = io::make_folder((fs::path(folder_) / kScene / "depth").string());
+  if (!status.ok()) return status;
+  status = client.subscribe_frames([this](const FrameView& frame) { add(frame); });
   if (!status.ok()) return status;
   return client.subscribe([this](const DetectionSet& set) {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -71,21 +66,21 @@ void Recorder::add(const FrameView& frame) {
 }
 
 Status Recorder::write(const FrameView& frame, int number) {
-  char name[24];
-  std::snprintf(name, sizeof name, "%06d.png", number);
+  const std::string name = io::bop_number(number) + ".png";
   const fs::path scene = fs::path(folder_) / kScene;
   if (frame.rgb != nullptr) {
     const auto bytes = std::size_t{3} * static_cast<std::size_t>(frame.width) *
                        static_cast<std::size_t>(frame.height);
-    Status status = write_png((scene / "rgb" / name).string(), frame.width, frame.height,
-                              {frame.rgb, frame.rgb + bytes}, true);
+    Status status =
+        io::write_color_png((scene / "rgb" / name).string(),
+                            {frame.width, frame.height, {frame.rgb, frame.rgb + bytes}});
     if (!status.ok()) return status;
   }
   const Json camera = {{"cam_K", {frame.fx, 0, frame.cx, 0, frame.fy, frame.cy, 0, 0, 1}},
                        {"depth_scale", frame.depth_mm != nullptr ? 1.0 : kFloatUnit_mm}};
   cameras_.push_back(camera.dump());
-  return write_depth_png((scene / "depth" / name).string(), frame.width, frame.height,
-                         depth_of(frame));
+  return io::write_gray_png((scene / "depth" / name).string(),
+                            {frame.width, frame.height, depth_of(frame)});
 }
 
 Status Recorder::finish() {
@@ -112,10 +107,10 @@ Status Recorder::finish() {
 
 Result<std::vector<RecordedFrame>> read_recording(const std::string& folder) {
   const std::string path = (fs::path(folder) / "recording.json").string();
-  std::ifstream file(path);
-  if (!file) return Status(StatusCode::not_found, path + ": there is no such file");
+  const auto bytes = io::read_file(path);
+  if (!bytes.ok()) return bytes.status();
   try {
-    const Json json = Json::parse(file);
+    const Json json = Json::parse(*bytes);
     std::vector<RecordedFrame> frames;
     for (const Json& frame : json.at("frames")) {
       frames.push_back({frame.at("after_s").get<double>(), frame.at("stamp_ns").get<std::int64_t>(),

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "client/cli/commands.hpp"
+#include "client/cli/frame_view.hpp"
 #include "client/cli/options.hpp"
 #include "client/cli/output.hpp"
-#include "client/cli/prior_files.hpp"
 
 // Sends frames one by one and waits for what the server finds in each (or sends them at a rate and
 // takes what comes).
@@ -99,7 +99,7 @@ class Sender {
 
  private:
   Status subscribe();
-  Status send(const FrameEntry& entry);
+  Status send(const io::BopFrame& entry);
   Status collect(std::int64_t stamp_ns);
 
   Client& client_;
@@ -117,18 +117,17 @@ Status Sender::subscribe() {
   return client_.subscribe_annotated([this](const AnnotatedImage& image) { inbox_.add(image); });
 }
 
-Status Sender::send(const FrameEntry& entry) {
-  auto frame = load_frame(entry, now_ns());
+Status Sender::send(const io::BopFrame& entry) {
+  const auto frame = load_frame(entry, options_.restriction, now_ns());
   if (!frame.ok()) return frame.status();
-  if (Status status = options_.restriction.apply(frame->view); !status.ok()) return status;
-  if (Status status = client_.publish_frame(frame->view, options_.priors); !status.ok())
-    return status;
-  sent_.push_back(frame->view.stamp_ns);
+  Status status = client_.publish_frame(view_of(*frame), options_.priors);
+  if (!status.ok()) return status;
+  sent_.push_back(frame->stamp_ns);
   if (options_.rate_hz > 0) {
     std::this_thread::sleep_for(std::chrono::duration<double>(1 / options_.rate_hz));
     return {};
   }
-  return collect(frame->view.stamp_ns);
+  return collect(frame->stamp_ns);
 }
 
 Status Sender::collect(std::int64_t stamp_ns) {
@@ -155,7 +154,7 @@ Status Sender::run() {
   if (!entries.ok()) return entries.status();
   if (Status status = subscribe(); !status.ok()) return status;
   for (int round = 0; round < options_.repeat; ++round) {
-    for (const FrameEntry& entry : *entries) {
+    for (const io::BopFrame& entry : *entries) {
       if (interrupted()) return Status(StatusCode::unavailable, "interrupted");
       if (Status status = send(entry); !status.ok()) return status;
     }
@@ -173,9 +172,7 @@ Status Sender::run() {
   std::cout << sent_.size() << " frames sent, "
             << results_.size() - static_cast<std::size_t>(refused_) << " searched, " << refused_
             << " refused, " << missing_ << " without an answer\n";
-  if (!options_.sinks.json.empty()) {
-    if (Status s = write_results(options_.sinks.json, results_); !s.ok()) return s;
-  }
+  if (Status s = write_results(options_.sinks.json, results_); !s.ok()) return s;
   // At a rate, frames that a newer one displaced are no failure.
   if (refused_ == 0 && (missing_ == 0 || options_.rate_hz > 0)) return {};
   return Status(StatusCode::unavailable,
@@ -195,7 +192,7 @@ void add_send(CLI::App& program, Common& common) {
       ->add_option("--rate", options->rate_hz,
                    "frames a second; default: each one when the last is answered")
       ->check(CLI::PositiveNumber);
-  command->add_option("--priors", options->priors_file, kPriorsHelp);
+  add_priors_option(*command, options->priors_file);
   command->add_option("--wait", options->wait_s, "seconds to wait for the answer to a frame")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -204,8 +201,6 @@ void add_send(CLI::App& program, Common& common) {
   command->callback([options, &common] {
     Status status = check_frame_options(options->files, true);
     if (!status.ok()) throw CLI::ValidationError("send", status.message);
-    status = options->restriction.load();
-    if (!status.ok()) return common.fail(status);
     auto priors = read_priors(options->priors_file);
     if (!priors.ok()) return common.fail(priors.status());
     options->priors = std::move(priors).value();

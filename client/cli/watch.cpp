@@ -8,9 +8,8 @@
 #include <mutex>
 #include <thread>
 
-#include <nlohmann/json.hpp>
-
 #include "client/cli/commands.hpp"
+#include "client/cli/convert.hpp"
 #include "client/cli/options.hpp"
 #include "client/cli/output.hpp"
 
@@ -46,7 +45,7 @@ Status watch(Client& client, const WatchOptions& options) {
   Status status = client.subscribe([&](const DetectionSet& set) {
     if (options.count > 0 && seen >= options.count) return;
     if (options.json) {
-      std::cout << to_json(set).dump() << std::endl;
+      std::cout << io::result_json_line(to_frame_result(set)) << std::endl;
     } else if (options.table) {
       std::cout << "\x1b[H\x1b[J";  // home, and clear what follows
       print_table(std::cout, set, rate.add());

@@ -83,7 +83,18 @@ Result<cv::Mat> decode(const std::string& path, const std::string& bytes, int fl
   }
 }
 
-Status encode(const std::string& path, const cv::Mat& image) {
+/// Writes width x height pixels of an OpenCV type, of which `pixels` holds `channels` values each.
+template <class T>
+Status encode(const std::string& path, int width, int height, int type, int channels,
+              const std::vector<T>& pixels) {
+  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
+      pixels.size() !=
+          static_cast<std::size_t>(width) * static_cast<std::size_t>(height * channels)) {
+    return invalid_argument(path + ": the image has " + std::to_string(pixels.size()) +
+                            " values; it must have " + std::to_string(channels) + " x " +
+                            std::to_string(width) + " x " + std::to_string(height));
+  }
+  const cv::Mat image(height, width, type, const_cast<T*>(pixels.data()));
   std::vector<std::uint8_t> bytes;
   try {
     if (!cv::imencode(".png", image, bytes)) bytes.clear();
@@ -161,17 +172,16 @@ Result<GrayImage> read_gray_png(const std::string& path) {
 Status write_color_png(const std::string& path, const ColorImage& image) {
   std::vector<std::uint8_t> bgr = image.pixels;
   swap_red_and_blue(bgr);
-  return encode(path, cv::Mat(image.height, image.width, CV_8UC3, bgr.data()));
+  return encode(path, image.width, image.height, CV_8UC3, 3, bgr);
 }
 
 Status write_gray_png(const std::string& path, const GrayImage& image) {
-  return encode(path, cv::Mat(image.height, image.width, CV_16U,
-                              const_cast<std::uint16_t*>(image.pixels.data())));
+  return encode(path, image.width, image.height, CV_16U, 1, image.pixels);
 }
 
 Status write_mask_png(const std::string& path, int width, int height,
                       const std::vector<std::uint8_t>& mask) {
-  return encode(path, cv::Mat(height, width, CV_8U, const_cast<std::uint8_t*>(mask.data())));
+  return encode(path, width, height, CV_8U, 1, mask);
 }
 
 }  // namespace bpa::io

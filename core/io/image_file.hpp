@@ -40,7 +40,8 @@ Result<GrayImage> read_gray_png(const std::string& path);
 /// Reads the header of a PNG only.
 Result<ImageSize> read_png_size(const std::string& path);
 
-/// Writers replace the file in one step and make missing folders.
+/// Writers replace the file in one step and make missing folders. They fail with invalid_argument
+/// when the pixels are not of the image's size, unavailable when the file cannot be written.
 Status write_color_png(const std::string& path, const ColorImage& image);
 /// 16 bits a pixel.
 Status write_gray_png(const std::string& path, const GrayImage& image);

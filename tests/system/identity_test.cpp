@@ -9,6 +9,7 @@
 
 #include <bpa/client.hpp>
 
+#include "client/cli/frame_view.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/mesh_file.hpp"
 #include "core/io/model_file.hpp"
@@ -18,7 +19,6 @@
 #include "idl/wire/messages.hpp"
 #include "idl/wire/service.hpp"
 #include "server/convert/results.hpp"
-#include "tests/support/frame_view.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/stub_server.hpp"
 
@@ -95,7 +95,7 @@ void expect_same_question(const Detector& detector, Frame frame, std::uint64_t s
 
   auto client = Client::connect(support::client_options());
   ASSERT_TRUE(client.ok()) << client.status().message;
-  const auto found = client->detect_in(support::view_of(frame), query, milliseconds(90000));
+  const auto found = client->detect_in(cli::view_of(frame), query, milliseconds(90000));
   ASSERT_TRUE(found.ok()) << found.status().message;
   EXPECT_EQ(found->models_searched, 1);
   EXPECT_FALSE(found->budget_exhausted);
@@ -112,14 +112,14 @@ void expect_same_question(const Detector& detector, Frame frame, std::uint64_t s
     }
   }
   query.budget_ms = 1e-3;
-  const auto hurried = client->detect_in(support::view_of(frame), query, milliseconds(90000));
+  const auto hurried = client->detect_in(cli::view_of(frame), query, milliseconds(90000));
   ASSERT_TRUE(hurried.ok()) << hurried.status().message;
   EXPECT_TRUE(hurried->budget_exhausted);
   query.priors[0].model = "teapot";
-  EXPECT_EQ(client->detect_in(support::view_of(frame), query, milliseconds(90000)).status().code,
+  EXPECT_EQ(client->detect_in(cli::view_of(frame), query, milliseconds(90000)).status().code,
             StatusCode::not_found);
   query.priors[0].weight = 0;
-  EXPECT_EQ(client->detect_in(support::view_of(frame), query).status().code,
+  EXPECT_EQ(client->detect_in(cli::view_of(frame), query).status().code,
             StatusCode::invalid_argument);
 }
 

@@ -7,9 +7,9 @@
 
 #include <bpa/client.hpp>
 
+#include "client/cli/frame_view.hpp"
 #include "core/io/model_file.hpp"
 #include "core/modeling/model_source.hpp"
-#include "tests/support/frame_view.hpp"
 #include "tests/support/l_scene.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/stub_server.hpp"
@@ -67,7 +67,7 @@ class Questions : public test::LScene {
   }
 
   static DetectionSet ask(const DetectQuery& query, const Frame& frame = frame_) {
-    const auto found = client_->detect_in(support::view_of(frame), query, milliseconds(60000));
+    const auto found = client_->detect_in(cli::view_of(frame), query, milliseconds(60000));
     EXPECT_TRUE(found.ok()) << found.status().message << support::read_text(log_);
     return found.ok() ? *found : DetectionSet{};
   }

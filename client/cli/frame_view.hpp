@@ -6,9 +6,9 @@
 
 #include "core/cloud/frame.hpp"
 
-namespace bpa::support {
+namespace bpa::cli {
 
-/// A frame of the library as the SDK takes it; points into `frame`.
+/// A core frame as the SDK takes it. Points into `frame`, which must outlive the view.
 inline FrameView view_of(const Frame& frame) {
   FrameView view;
   view.width = frame.camera.width;
@@ -26,4 +26,4 @@ inline FrameView view_of(const Frame& frame) {
   return view;
 }
 
-}  // namespace bpa::support
+}  // namespace bpa::cli
