@@ -48,12 +48,13 @@ foreach(component wire client)
 endforeach()
 
 set(bpa_header_folder ${CMAKE_INSTALL_INCLUDEDIR}/bpa)
+# A header in a folder "private" is its room's own (tests/style/arrows.py) and is not installed.
+set(bpa_public_headers FILES_MATCHING PATTERN "*.hpp" PATTERN "private" EXCLUDE)
 install(DIRECTORY core DESTINATION ${bpa_header_folder} COMPONENT core
-        FILES_MATCHING PATTERN "*.hpp" PATTERN "base" EXCLUDE)
-install(DIRECTORY core/base DESTINATION ${bpa_header_folder}/core COMPONENT sdk
-        FILES_MATCHING PATTERN "*.hpp")
-install(DIRECTORY idl/wire ${CMAKE_BINARY_DIR}/generated/idl/wire DESTINATION ${bpa_header_folder} COMPONENT sdk
-        FILES_MATCHING PATTERN "*.hpp" PATTERN "fastdds" EXCLUDE)
+        ${bpa_public_headers} PATTERN "base" EXCLUDE)
+install(DIRECTORY core/base DESTINATION ${bpa_header_folder}/core COMPONENT sdk ${bpa_public_headers})
+install(DIRECTORY idl/wire ${CMAKE_BINARY_DIR}/generated/idl/wire DESTINATION ${bpa_header_folder}
+        COMPONENT sdk ${bpa_public_headers} PATTERN "fastdds" EXCLUDE)
 install(DIRECTORY client/include/bpa DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT sdk
         FILES_MATCHING PATTERN "*.hpp")
 # In the tree, includes are paths of the tree; installed headers lie below include/bpa.

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "core/base/parallel.hpp"
-#include "core/eval/frame_evaluation.hpp"
+#include "core/eval/private/frame_evaluation.hpp"
 
 namespace bpa::eval {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/eval/frame_evaluation.hpp"
+#include "core/eval/private/frame_evaluation.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>

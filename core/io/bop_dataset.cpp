@@ -9,7 +9,7 @@
 
 #include "core/io/frame_file.hpp"
 #include "core/io/image_file.hpp"
-#include "core/io/json_file.hpp"
+#include "core/io/private/json_file.hpp"
 
 namespace bpa::io {
 namespace fs = std::filesystem;

@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "core/io/image_file.hpp"
-#include "core/io/json_file.hpp"
 #include "core/io/mesh_file.hpp"
+#include "core/io/private/json_file.hpp"
 
 namespace bpa::io {
 namespace fs = std::filesystem;

@@ -7,7 +7,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "core/io/json_file.hpp"
+#include "core/io/private/json_file.hpp"
 
 namespace bpa::io {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/io/mesh_assimp.hpp"
+#include "core/io/private/mesh_assimp.hpp"
 
 #include <algorithm>
 #include <cmath>

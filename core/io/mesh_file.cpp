@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "core/io/file_bytes.hpp"
-#include "core/io/mesh_assimp.hpp"
 #include "core/io/pcd_file.hpp"
+#include "core/io/private/mesh_assimp.hpp"
 
 namespace bpa::io {
 namespace {

@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "core/base/parallel.hpp"
-#include "core/io/json_file.hpp"
 #include "core/io/mesh_file.hpp"
-#include "core/io/model_index_file.hpp"
-#include "core/io/occupancy_file.hpp"
+#include "core/io/private/json_file.hpp"
+#include "core/io/private/model_index_file.hpp"
+#include "core/io/private/occupancy_file.hpp"
 
 namespace bpa::io {
 namespace fs = std::filesystem;

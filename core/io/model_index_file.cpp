@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/io/model_index_file.hpp"
+#include "core/io/private/model_index_file.hpp"
 
 #include <algorithm>
 #include <bit>

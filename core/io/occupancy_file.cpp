@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/io/occupancy_file.hpp"
+#include "core/io/private/occupancy_file.hpp"
 
 #include <algorithm>
 #include <bit>

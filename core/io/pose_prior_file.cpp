@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/io/json_file.hpp"
+#include "core/io/private/json_file.hpp"
 
 namespace bpa::io {
 namespace {

@@ -3,7 +3,7 @@
 #include <concepts>
 #include <type_traits>
 
-#include "core/io/json_file.hpp"
+#include "core/io/private/json_file.hpp"
 #include "core/io/results.hpp"
 
 // Each struct's keys are listed once, in fields(), for the reader and the writer.

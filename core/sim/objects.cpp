@@ -7,7 +7,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
-#include "core/sim/shapes.hpp"
+#include "core/sim/private/shapes.hpp"
 
 namespace bpa::sim {
 namespace {

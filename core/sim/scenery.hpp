@@ -6,7 +6,7 @@
 
 #include "core/sim/objects.hpp"
 
-// What stands round the objects. Private to the room.
+// What stands round the objects.
 
 namespace bpa::sim {
 

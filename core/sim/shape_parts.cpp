@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "core/sim/shapes.hpp"
+#include "core/sim/private/shapes.hpp"
 
 namespace bpa::sim {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/sim/shapes.hpp"
+#include "core/sim/private/shapes.hpp"
 
 namespace bpa::sim {
 namespace {

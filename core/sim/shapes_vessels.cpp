@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/sim/shapes.hpp"
+#include "core/sim/private/shapes.hpp"
 
 namespace bpa::sim {
 namespace {

@@ -3,8 +3,9 @@
 """Checks #include lines and USES lists against the two tables of ARCHITECTURE.md.
 
 The table of rooms (columns room, holds, may use) says which room may include which; a room may use
-only rooms further up in the table. The table of libraries (columns library, headers, only in) says
-which files may include third-party headers.
+only rooms further up in the table, and headers in a folder `private` are for their own room. The
+table of libraries (columns library, headers, only in) says which files may include third-party
+headers.
 """
 
 import fnmatch
@@ -103,6 +104,8 @@ def check_includes(rooms, libraries, path, content):
                             "project is a path from its root")
         elif used not in rooms.may_use[room]:
             problems.append(f"{path}: {room} may not include {header} of {used}")
+        elif "/private/" in target and used != room:
+            problems.append(f"{path}: {header} is private to {used}")
     return problems
 
 

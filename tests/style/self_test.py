@@ -50,6 +50,7 @@ class StyleChecks(unittest.TestCase):
 
     def test_allowed_arrows_pass(self):
         self.write("core/cloud/frame.cpp", '#include "core/base/status.hpp"\n#include <vector>\n')
+        self.write("core/cloud/b.cpp", '#include "core/cloud/private/x.hpp"\n')
         self.write("core/cloud/a_pcl.cpp", '#include <pcl/io.h>\n#include "core/cloud/frame.hpp"\n')
         self.write("client/src/a.cpp", '#include <bpa/client.hpp>\n#include "idl/wire/a.hpp"\n')
         self.assertEqual(arrows.check(self.root), [])
@@ -62,6 +63,7 @@ class StyleChecks(unittest.TestCase):
                 ("core/cloud/a.hpp", '"idl/wire/qos.hpp"', "core/cloud may not include"),
                 ("client/src/a.cpp", '"core/cloud/frame.hpp"', "client may not include"),
                 ("core/cloud/a.cpp", '"core/util/x.hpp"', "lies in no room"),
+                ("core/cloud/a.cpp", '"core/base/private/x.hpp"', "is private to core/base"),
                 ("core/cloud/a.cpp", "<pcl/io.h>", "PCL is allowed only in core/*/*_pcl.cpp"),
                 ("client/src/a.cpp", "<fastrtps/x.h>", "Fast DDS is allowed only in idl/wire/*")):
             with self.subTest(path=path, include=include):

@@ -15,6 +15,13 @@ function(run)
 endfunction()
 
 run(${CMAKE_COMMAND} --install ${BPA_BINARY_DIR} --prefix ${folder}/prefix)
+file(GLOB_RECURSE headers ${folder}/prefix/include/*.hpp)
+foreach(header IN LISTS headers)
+  file(STRINGS ${header} private REGEX "#include .*/private/")
+  if(header MATCHES "/private/" OR private)
+    message(FATAL_ERROR "${header}: a room's private header is installed or needed")
+  endif()
+endforeach()
 set(LANGUAGES CXX)
 if(COMPONENT STREQUAL core)
   set(LANGUAGES "C CXX")  # PCL's VTK asks for MPI_C

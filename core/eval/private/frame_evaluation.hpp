@@ -6,7 +6,7 @@
 
 namespace bpa::eval {
 
-/// Private to eval: one frame. `result` may be null: nothing was reported.
+/// Evaluates one frame. `result` may be null: nothing was reported.
 Result<FrameOutcome> evaluate_frame(const io::BopFrame& frame, const EvalObjects& objects,
                                     const io::FrameResult* result,
                                     const EvaluationOptions& options);

@@ -8,7 +8,7 @@
 #include "core/sim/scenery.hpp"
 #include "core/sim/scenes.hpp"
 
-// What stands on a stage, and how it is photographed. Private to the room.
+// What stands on a stage, and how it is photographed.
 
 namespace bpa::sim {
 

@@ -8,7 +8,7 @@
 #include "core/base/status.hpp"
 #include "core/model/model_index.hpp"
 
-// Private to io: index.bin of a model's folder. Little-endian; "bpaindex", kIndexVersion as u32,
+// index.bin of a model's folder. Little-endian; "bpaindex", kIndexVersion as u32,
 // then arrays in the order of for_each_array() in the source file: a u64 with the number of
 // elements, then these. Whatever derive_index() computes is not in it.
 

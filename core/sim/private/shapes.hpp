@@ -9,7 +9,7 @@
 #include "core/sim/distance_field.hpp"
 #include "core/sim/objects.hpp"
 
-// How the household objects are described before they are meshed. Private to the room.
+// How the household objects are described before they are meshed.
 
 namespace bpa::sim {
 

@@ -9,7 +9,7 @@
 
 namespace bpa::io {
 
-/// Private to io: reads OBJ and STL with Assimp, in the file's unit.
+/// Reads OBJ and STL with Assimp, in the file's unit. Fails with corrupt, naming the file.
 Result<TriangleMesh> read_mesh_with_assimp(const std::string& path);
 
 }  // namespace bpa::io

@@ -8,7 +8,7 @@
 #include "core/base/status.hpp"
 #include "core/model/occupancy_grid.hpp"
 
-// Private to io: occupancy.bin of a model's folder. Little-endian, packed:
+// occupancy.bin of a model's folder. Little-endian, packed:
 //
 //   "bpaoccup", version u32, corner of cell (0, 0, 0) 3 f32, side of a cell f32, size 3 i32,
 //   number of cells u64; then for each cell in which a ray ended

@@ -12,7 +12,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/io/file_bytes.hpp"
 
-// Private to io: JSON without exceptions leaving a function, matrices and poses as JSON.
+// JSON without exceptions leaving a function, matrices and poses as JSON.
 
 /// A matrix as its values, row by row. More values than it has are ignored.
 template <int kRows, int kCols>
