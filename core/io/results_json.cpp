@@ -1,136 +1,94 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <concepts>
-#include <type_traits>
-
-#include "core/io/private/json_file.hpp"
+#include "core/io/private/json_fields.hpp"
 #include "core/io/results.hpp"
 
-// Each struct's keys are listed once, in fields(), for the reader and the writer.
-
-namespace bpa {
-namespace {
-
-using io::Json;
-
-constexpr const char* kFormat = "bpa results";
-constexpr int kVersion = 1;
-
-enum Presence { optional, needed };
-
-struct Writer {
-  Json& json;
-
-  void operator()(const char* key, const auto& value, Presence = optional) { json[key] = value; }
-  void operator()(const char* key, const std::vector<ScoreComponent>& parts) {
-    json[key] = Json::object();
-    for (const ScoreComponent& part : parts) json[key][part.name] = part.value;
+/// The components as an object: name -> value.
+template <>
+struct nlohmann::adl_serializer<std::vector<bpa::ScoreComponent>> {
+  static void to_json(json& out, const std::vector<bpa::ScoreComponent>& components) {
+    out = json::object();
+    for (const bpa::ScoreComponent& component : components) out[component.name] = component.value;
   }
-  void operator()(const char* key, StatusCode code) { json[key] = to_string(code); }
+  static void from_json(const json& in, std::vector<bpa::ScoreComponent>& components) {
+    for (const auto& [name, value] : in.items()) components.push_back({name, value.get<double>()});
+  }
 };
 
-/// A field whose key is missing keeps its value, unless it is needed.
-struct Reader {
-  const Json& json;
-
-  void operator()(const char* key, auto& value, Presence presence = optional) {
-    if (presence == needed || json.contains(key)) json.at(key).get_to(value);
-  }
-  void operator()(const char* key, std::vector<ScoreComponent>& parts) {
-    const Json none = Json::object();
-    const Json& values = json.contains(key) ? json.at(key) : none;
-    for (const auto& [name, value] : values.items()) parts.push_back({name, value.get<double>()});
-  }
-  void operator()(const char* key, StatusCode& code) {
-    const auto name = json.value(key, "ok");
-    for (code = StatusCode::ok; code != StatusCode::internal && to_string(code) != name;) {
-      code = static_cast<StatusCode>(static_cast<int>(code) + 1);
+/// A code by its name; a name that this version does not know is `internal`.
+template <>
+struct nlohmann::adl_serializer<bpa::StatusCode> {
+  static void to_json(json& out, bpa::StatusCode code) { out = bpa::to_string(code); }
+  static void from_json(const json& in, bpa::StatusCode& code) {
+    const auto last = static_cast<int>(bpa::StatusCode::internal);
+    for (int k = 0; k <= last; ++k) {
+      code = static_cast<bpa::StatusCode>(k);
+      if (in == bpa::to_string(code)) return;
     }
   }
 };
 
-template <class T, class U>
-concept Is = std::same_as<std::remove_const_t<T>, U>;
+namespace bpa {
 
-void fields(auto& visit, Is<PoseAlternative> auto& alternative) {
-  visit("pose", alternative.camera_from_object, needed);
-  visit("weight", alternative.weight, needed);
+using io::kOptional;
+
+static void fields(auto& visit, io::Is<PoseAlternative> auto& alternative) {
+  visit("pose", alternative.camera_from_object);
+  visit("weight", alternative.weight);
 }
 
-void fields(auto& visit, Is<OrientationUncertainty> auto& orientation) {
-  visit("axes", orientation.axes, needed);
-  visit("concentrations", orientation.concentrations, needed);
+static void fields(auto& visit, io::Is<OrientationUncertainty> auto& orientation) {
+  visit("axes", orientation.axes);
+  visit("concentrations", orientation.concentrations);
 }
 
-void fields(auto& visit, Is<Placement> auto& placement) {
-  visit("obj_id", placement.model_number, needed);
-  visit("model", placement.model);
-  visit("pose", placement.camera_from_object, needed);
-  visit("covariance", placement.covariance);
-  visit("bingham", placement.orientation);
-  visit("score", placement.score);
-  visit("probability", placement.probability, needed);
-  visit("visible_fraction", placement.visible_fraction);
-  visit("components", placement.components);
-  visit("alternatives", placement.alternatives);
+static void fields(auto& visit, io::Is<Placement> auto& placement) {
+  visit("obj_id", placement.model_number);
+  visit("model", placement.model, kOptional);
+  visit("pose", placement.camera_from_object);
+  visit("covariance", placement.covariance, kOptional);
+  visit("bingham", placement.orientation, kOptional);
+  visit("score", placement.score, kOptional);
+  visit("probability", placement.probability);
+  visit("visible_fraction", placement.visible_fraction, kOptional);
+  visit("components", placement.components, kOptional);
+  visit("alternatives", placement.alternatives, kOptional);
 }
 
-void fields(auto& visit, Is<Interpretation> auto& interpretation) {
-  visit("rank", interpretation.rank, needed);
-  visit("score", interpretation.score);
-  visit("probability", interpretation.probability);
-  visit("placements", interpretation.placements, needed);
+static void fields(auto& visit, io::Is<Interpretation> auto& interpretation) {
+  visit("rank", interpretation.rank);
+  visit("score", interpretation.score, kOptional);
+  visit("probability", interpretation.probability, kOptional);
+  visit("placements", interpretation.placements);
 }
 
-void fields(auto& visit, Is<StageTiming> auto& timing) {
-  visit("stage", timing.stage, needed);
-  visit("milliseconds", timing.milliseconds, needed);
-}
-
-void server_fields(auto& visit, Is<io::FrameResult> auto& frame) {
-  visit("frame_id", frame.frame_id);
-  visit("stamp_ns", frame.stamp_ns);
-  visit("status", frame.server->status.code);
-  visit("message", frame.server->status.message);
-  visit("queue_position", frame.server->queue_position);
-}
-
-void fields(auto& visit, Is<io::FrameResult> auto& frame) {
-  visit("scene_id", frame.scene_id, needed);
-  visit("im_id", frame.im_id, needed);
-  visit("seconds", frame.seconds, needed);
-  visit("budget_exhausted", frame.budget_exhausted);
-  visit("fused_frames", frame.fused_frames);
-  visit("timings", frame.timings);
-  visit("interpretations", frame.interpretations, needed);
-  if (frame.server) server_fields(visit, frame);
-}
-
-template <class T>
-concept HasFields = requires(Writer& writer, const T& value) {
-  fields(writer, value);
-};
-
-}  // namespace
-
-// nlohmann::json finds these two by the namespace of the value.
-template <HasFields T>
-static void to_json(Json& json, const T& value) {
-  Writer writer{json};
-  fields(writer, value);
-}
-
-template <HasFields T>
-static void from_json(const Json& json, T& value) {
-  Reader reader{json};
-  fields(reader, value);
+static void fields(auto& visit, io::Is<StageTiming> auto& timing) {
+  visit("stage", timing.stage);
+  visit("milliseconds", timing.milliseconds);
 }
 
 namespace io {
 
-static void from_json(const Json& json, FrameResult& frame) {
-  if (json.contains("status")) frame.server.emplace();
-  bpa::from_json<FrameResult>(json, frame);
+constexpr const char* kFormat = "bpa results";
+constexpr int kVersion = 1;
+
+static void fields(auto& visit, Is<FrameResult> auto& frame) {
+  visit("scene_id", frame.scene_id);
+  visit("im_id", frame.im_id);
+  visit("seconds", frame.seconds);
+  visit("budget_exhausted", frame.budget_exhausted, kOptional);
+  visit("fused_frames", frame.fused_frames, kOptional);
+  visit("timings", frame.timings, kOptional);
+  visit("interpretations", frame.interpretations);
+  if constexpr (!std::is_const_v<std::remove_reference_t<decltype(frame)>>) {
+    if (visit.has("status")) frame.server.emplace();
+  }
+  if (!frame.server) return;
+  visit("frame_id", frame.frame_id, kOptional);
+  visit("stamp_ns", frame.stamp_ns, kOptional);
+  visit("status", frame.server->status.code);
+  visit("message", frame.server->status.message, kOptional);
+  visit("queue_position", frame.server->queue_position, kOptional);
 }
 
 std::string result_json_line(const FrameResult& result) {
