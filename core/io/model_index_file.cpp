@@ -3,15 +3,12 @@
 #include "core/io/private/model_index_file.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 #include <string_view>
-#include <type_traits>
+
+#include "core/io/private/byte_stream.hpp"
 
 namespace bpa::io {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "values are written as they are");
 
 constexpr std::string_view kMagic = "bpaindex";
 
@@ -35,46 +32,6 @@ void for_each_array(Index& index, const Visit& visit) {
   }
   visit(index.distances.nearest);
 }
-
-template <class T>
-void append(std::string& bytes, const T& value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
-}
-
-class Reader {
- public:
-  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
-
-  template <class T>
-  void value(T& out) {
-    raw(&out, 1);
-  }
-  template <class T>
-  void array(std::vector<T>& out) {
-    std::uint64_t count = 0;
-    value(count);
-    if (!ok_ || count > bytes_.size() / sizeof(T)) {
-      ok_ = false;
-      return;
-    }
-    out.resize(static_cast<std::size_t>(count));
-    raw(out.data(), out.size());
-  }
-  bool finished() const { return ok_ && bytes_.empty(); }
-
- private:
-  template <class T>
-  void raw(T* out, std::size_t count) {
-    const std::size_t size = count * sizeof(T);
-    ok_ = ok_ && size <= bytes_.size();
-    if (!ok_ || size == 0) return;
-    std::memcpy(static_cast<void*>(out), bytes_.data(), size);
-    bytes_.remove_prefix(size);
-  }
-
-  std::string_view bytes_;
-  bool ok_ = true;
-};
 
 bool below(const std::vector<std::uint32_t>& indices, std::size_t limit) {
   return std::all_of(indices.begin(), indices.end(), [limit](auto i) { return i < limit; });
@@ -112,13 +69,8 @@ std::string index_bytes(const ModelIndex& index, const std::vector<float>& norma
   append(bytes, index.distances.low);
   append(bytes, index.distances.cell);
   append(bytes, index.distances.size);
-  const auto write = [&bytes](const auto& array) {
-    append(bytes, static_cast<std::uint64_t>(array.size()));
-    if (array.empty()) return;
-    bytes.append(reinterpret_cast<const char*>(array.data()), array.size() * sizeof(array[0]));
-  };
-  write(normal_variance);
-  for_each_array(index, write);
+  append_array(bytes, normal_variance);
+  for_each_array(index, [&bytes](const auto& array) { append_array(bytes, array); });
   return bytes;
 }
 
@@ -126,9 +78,8 @@ Result<IndexFile> parse_index(const std::string& bytes, std::size_t points,
                               const std::string& name) {
   const Status damaged(StatusCode::corrupt, name + " does not fit the surface beside it");
   if (std::string_view(bytes).substr(0, kMagic.size()) != kMagic) return damaged;
-  Reader reader(std::string_view(bytes).substr(kMagic.size()));
-  std::uint32_t version = 0;
-  reader.value(version);
+  ByteReader reader(std::string_view(bytes).substr(kMagic.size()));
+  const auto version = reader.next<std::uint32_t>();
   IndexFile file;
   file.index = std::make_shared<ModelIndex>();
   ModelIndex& index = *file.index;

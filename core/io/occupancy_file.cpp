@@ -3,54 +3,28 @@
 #include "core/io/private/occupancy_file.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <string_view>
 
+#include "core/io/private/byte_stream.hpp"
+
 namespace bpa::io {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "values are written as they are");
 
 constexpr std::string_view kMagic = "bpaoccup";
 constexpr float kMost = std::numeric_limits<std::uint16_t>::max();
 constexpr float kMostSigned = std::numeric_limits<std::int16_t>::max();
 constexpr float kPi = 3.14159265358979f;
 
-template <class T>
-void append(std::string& bytes, const T& value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
-}
-
 // `value` in [0, 1].
 void append_share(std::string& bytes, float value) {
   append(bytes, static_cast<std::uint16_t>(std::lround(kMost * std::clamp(value, 0.0f, 1.0f))));
 }
 
-class Reader {
- public:
-  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
-
-  /// Zero, and not ok() from then on, behind the end.
-  template <class T>
-  T next() {
-    T value{};
-    ok_ = ok_ && sizeof(T) <= bytes_.size();
-    if (!ok_) return value;
-    std::memcpy(static_cast<void*>(&value), bytes_.data(), sizeof(T));
-    bytes_.remove_prefix(sizeof(T));
-    return value;
-  }
-  float share() { return static_cast<float>(next<std::uint16_t>()) / kMost; }
-  std::size_t left() const { return bytes_.size(); }
-  bool ok() const { return ok_; }
-
- private:
-  std::string_view bytes_;
-  bool ok_ = true;
-};
+float next_share(ByteReader& reader) {
+  return static_cast<float>(reader.next<std::uint16_t>()) / kMost;
+}
 
 void append_bucket(std::string& bytes, const ViewBucket& bucket, const Eigen::Vector3f& corner,
                    float cell) {
@@ -65,17 +39,17 @@ void append_bucket(std::string& bytes, const ViewBucket& bucket, const Eigen::Ve
   append_share(bytes, std::sqrt(std::max(0.0f, bucket.normal_variance)) / kPi);
 }
 
-ViewBucket read_bucket(Reader& reader, const Eigen::Vector3f& corner, float cell) {
+ViewBucket read_bucket(ByteReader& reader, const Eigen::Vector3f& corner, float cell) {
   ViewBucket bucket;
   bucket.rays = static_cast<int>(
       std::min<std::uint32_t>(reader.next<std::uint32_t>(), std::numeric_limits<int>::max()));
-  bucket.occupancy = reader.share();
-  for (int a = 0; a < 3; ++a) bucket.position[a] = corner[a] + cell * reader.share();
+  bucket.occupancy = next_share(reader);
+  for (int a = 0; a < 3; ++a) bucket.position[a] = corner[a] + cell * next_share(reader);
   for (int a = 0; a < 3; ++a) {
     bucket.normal[a] = static_cast<float>(reader.next<std::int16_t>()) / kMostSigned;
   }
   bucket.normal.normalize();
-  const float deviation = kPi * reader.share();
+  const float deviation = kPi * next_share(reader);
   bucket.normal_variance = deviation * deviation;
   return bucket;
 }
@@ -85,7 +59,7 @@ Eigen::Vector3f corner_of(const OccupancyGrid& grid, const Eigen::Vector3i& plac
 }
 
 // Fills the cells; false when they do not fit the grid or the bytes.
-bool read_cells(Reader& reader, std::uint64_t count, OccupancyGrid& grid) {
+bool read_cells(ByteReader& reader, std::uint64_t count, OccupancyGrid& grid) {
   constexpr std::size_t kSmallestCell = 3 * sizeof(std::uint16_t) + 1;
   if (count > reader.left() / kSmallestCell) return false;
   grid.cells.resize(static_cast<std::size_t>(count));
@@ -99,7 +73,7 @@ bool read_cells(Reader& reader, std::uint64_t count, OccupancyGrid& grid) {
       cell.buckets[b] = read_bucket(reader, corner_of(grid, cell.place), grid.cell);
     }
   }
-  return reader.ok() && reader.left() == 0;
+  return reader.finished();
 }
 
 }  // namespace
@@ -132,7 +106,7 @@ Result<OccupancyGrid> parse_occupancy(const std::string& bytes, const std::strin
   if (std::string_view(bytes).substr(0, kMagic.size()) != kMagic) {
     return damaged(" is not an occupancy grid");
   }
-  Reader reader(std::string_view(bytes).substr(kMagic.size()));
+  ByteReader reader(std::string_view(bytes).substr(kMagic.size()));
   if (const auto version = reader.next<std::uint32_t>(); version != kOccupancyVersion) {
     return damaged(" has format version " + std::to_string(version) +
                    "; this program reads version " + std::to_string(kOccupancyVersion) +

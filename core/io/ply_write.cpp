@@ -1,24 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <bit>
-#include <cstring>
 #include <sstream>
 
 #include "core/io/file_bytes.hpp"
 #include "core/io/mesh_file.hpp"
+#include "core/io/private/byte_stream.hpp"
 
 namespace bpa::io {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "binary_little_endian is written as is");
-
 using Colors = std::vector<std::array<std::uint8_t, 3>>;
 using Vectors = std::vector<Eigen::Vector3f>;
-
-template <class T>
-void append(std::string& bytes, const T& value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
-}
 
 std::string header(std::size_t vertices, bool normals, bool colors, std::size_t triangles) {
   std::ostringstream text;

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// Little-endian values one after the other, without padding.
+
+namespace bpa::io {
+
+static_assert(std::endian::native == std::endian::little, "values are written as they are");
+
+template <class T>
+void append(std::string& bytes, const T& value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+}
+
+/// An array as its length (u64) and its values.
+template <class T>
+void append_array(std::string& bytes, const std::vector<T>& values) {
+  append(bytes, static_cast<std::uint64_t>(values.size()));
+  if (values.empty()) return;
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+}
+
+/// Reads what append() wrote. From the first read past the end on, ok() is false and nothing is
+/// read any more.
+class ByteReader {
+ public:
+  explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
+
+  /// Leaves `out` as it is past the end.
+  template <class T>
+  void value(T& out) {
+    copy(&out, 1);
+  }
+  /// The next number; 0 past the end.
+  template <class T>
+  T next() {
+    T number = 0;
+    copy(&number, 1);
+    return number;
+  }
+  /// A length past the end takes no memory.
+  template <class T>
+  void array(std::vector<T>& out) {
+    const auto count = next<std::uint64_t>();
+    ok_ = ok_ && count <= bytes_.size() / sizeof(T);
+    if (!ok_) return;
+    out.resize(static_cast<std::size_t>(count));
+    copy(out.data(), out.size());
+  }
+  std::size_t left() const { return bytes_.size(); }
+  bool ok() const { return ok_; }
+  bool finished() const { return ok_ && bytes_.empty(); }
+
+ private:
+  template <class T>
+  void copy(T* out, std::size_t count) {
+    const std::size_t size = count * sizeof(T);
+    ok_ = ok_ && size <= bytes_.size();
+    if (!ok_ || size == 0) return;
+    std::memcpy(static_cast<void*>(out), bytes_.data(), size);
+    bytes_.remove_prefix(size);
+  }
+
+  std::string_view bytes_;
+  bool ok_ = true;
+};
+
+}  // namespace bpa::io
