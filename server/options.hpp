@@ -223,7 +223,6 @@ struct ServerOptions {
   /// How objects are found; config/detector.yaml shows them all.
   DetectorOptions detector;
 
-  /// visit(name of the group, the group, what it is about).
   template <class Visitor>
   void visit_groups(Visitor&& visit) {
     visit("node", node, "Names.");
@@ -241,7 +240,8 @@ struct ServerOptions {
 /// Checks every field; the message names group.field, its value and the rule.
 Status validate(const ServerOptions& options);
 
-/// Overrides the fields that a YAML file names. Fails with not_found, or with invalid_argument
+/// Overrides the fields that a YAML file names; see io::read_options(). A field of the detector may
+/// be named without its group: detector.max_range_m. Fails with not_found, or with invalid_argument
 /// naming file, line, key and rule; unknown keys are errors.
 Status load_options(const std::string& path, ServerOptions& options);
 

@@ -90,11 +90,15 @@ Status from_value(const std::string& name, const ParameterValue& value, T& field
 /// Calls visit(full name, field, rule) for every setting.
 template <class Visit>
 void for_each_setting(ServerOptions& options, Visit visit) {
-  options.visit_groups([&](const char* group, auto& fields, const char*) {
-    fields.visit_fields([&](const char* name, auto& field, const FieldRule& rule) {
-      visit(std::string(group) + "." + name, field, rule);
-    });
-  });
+  for (const Option& option : options_of(options)) {
+    std::visit(
+        [&](const auto& value) {
+          if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(value)>, std::monostate>) {
+            visit(option.path, *value, option.rule);
+          }
+        },
+        option.value);
+  }
 }
 
 bool is_read_only(const std::string& name, const FieldRule& rule) {

@@ -80,7 +80,7 @@ void add_instance(const io::BopInstance& truth, const FrameTrace& trace,
   if (!object) return;
   tally.stages.clear();
   std::vector<bool> alive;
-  for (const ObjectTrace::Stage& stage : object->stages) {
+  for (const TraceStage& stage : object->stages) {
     tally.stages.emplace_back(stage.name);
     alive.push_back(std::any_of(stage.poses.begin(), stage.poses.end(), [&](const FastPose& pose) {
       return eval::is_right(to_pose(pose), truth.camera_from_object, symmetry);
@@ -113,7 +113,7 @@ void add_times(const FrameTrace& trace, const SceneInterpretations& result, Tall
     if (timing.stage == "objects") {
       for (const ObjectTrace& object : trace.objects) {
         for (const auto& stage : object.stages) {
-          tally.add_time(std::string("objects: ") + stage.name, stage.milliseconds);
+          tally.add_time("objects: " + std::string(stage.name), stage.milliseconds);
         }
       }
     }

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "core/detect/stages.hpp"
 #include "core/draw/number.hpp"
 #include "core/draw/poses.hpp"
 #include "core/draw/scene_features.hpp"
@@ -27,7 +28,7 @@ using draw::Rgb;
 using Row = std::vector<std::string>;
 
 constexpr Rgb kAlive{80, 255, 120}, kTrue{255, 255, 255};
-constexpr Rgb kDropped[] = {
+constexpr Rgb kRejected[] = {
     {235, 75, 65}, {245, 165, 40}, {200, 100, 230}, {90, 150, 255}, {165, 165, 165}};
 
 /// More poses are dots in a picture: of those alive alone, and of all together.
@@ -35,45 +36,6 @@ constexpr std::size_t kMaxOutlinedAlive = 250, kMaxOutlined = 80;
 constexpr std::string_view kOutlines =
     " An outline is the model at one pose, the best ones brightest; a dot is its middle.";
 constexpr std::string_view kDots = " A dot is the middle of the model at one pose.";
-
-struct StageText {
-  std::string_view name, title, text;
-};
-constexpr StageText kStages[] = {
-    {"sampled", "Sampled",
-     "Every pose that was looked at: drawn by BPA from single matches of FPFH features, and voted "
-     "for by oriented point pairs."},
-    {"free_space", "Checked against the depth image",
-     "Poses of which over 20 % of the points are in free space, where the camera saw through, are "
-     "dropped, and those that meet no surface. Of many beside one another the best few stay; each "
-     "gets a first small correction."},
-    {"clusters", "Grouped",
-     "Poses within 2.5 cm and pi/16 are a group. Its best one is aligned again by BPA, with the "
-     "correspondences of the whole group."},
-    {"round_two", "Aligned (round two)",
-     "BPA and Gauss-Newton steps move each pose onto the surface around it, accepted where the "
-     "score improves. Nothing is dropped."},
-    {"aligned", "The best, aligned to the end",
-     "What is left of round two without repetitions, aligned once more and scored with all "
-     "components (round three)."},
-    {"climbed", "Climbed",
-     "The best of them climb the score by small steps, and from beside where they are. Nothing is "
-     "dropped."},
-    {"turned", "Turned",
-     "The best of them once more, turned by what maps most of the model onto itself: the other "
-     "poses "
-     "that the view may leave open. Nothing is dropped but turns that are there already or fit "
-     "worse."},
-    {"final", "The model's placements",
-     "Distinct and good enough: the interpretation of the scene chooses from these."},
-};
-
-StageText text_of(std::string_view name) {
-  for (const StageText& stage : kStages) {
-    if (stage.name == name) return stage;
-  }
-  return {name, name, ""};
-}
 
 std::string numbered(int number, std::string_view name) {
   char text[16];
@@ -92,7 +54,7 @@ bool is_right(const FastPose& pose, const std::vector<Pose>& truths,
 
 Row stage_names() {
   Row names;
-  for (const StageText& stage : kStages) names.emplace_back(stage.name);
+  for (const Stage& stage : detection_stages()) names.emplace_back(stage.name);
   return names;
 }
 
@@ -106,7 +68,7 @@ ModelExplanation::ModelExplanation(const ExplainedFrame& frame, std::size_t inde
     if (instance.obj_id == model_.number) truths_.push_back(instance.camera_from_object);
   }
   for (const Candidate& candidate : frame.trace.candidates) {
-    if (candidate.model.get() != &model_) continue;
+    if (candidate.model != &model_) continue;
     if (!best_ || candidate.score > best_->score) best_ = &candidate;
   }
 }
@@ -127,7 +89,7 @@ Status ModelExplanation::write(HtmlPage& page) const {
 Row ModelExplanation::summary() const {
   Row row = {HtmlPage::link(model_.name + "/index.html", model_.name)};
   for (const auto& stage : trace_.stages) row.push_back(std::to_string(stage.poses.size()));
-  row.resize(1 + std::size(kStages));
+  row.resize(1 + detection_stages().size());
   row.push_back(best_ ? fixed(best_->probability, 2) : "");
   row.push_back(is_reported() ? "yes" : "");
   return row;
@@ -161,41 +123,42 @@ std::string ModelExplanation::verdict() const {
   return text;
 }
 
-std::size_t ModelExplanation::count_right(const ObjectTrace::Stage& stage) const {
+std::size_t ModelExplanation::count_right(const TraceStage& stage) const {
   return static_cast<std::size_t>(std::count_if(
       stage.poses.begin(), stage.poses.end(),
       [&](const FastPose& pose) { return is_right(pose, truths_, model_.symmetry); }));
 }
 
 void ModelExplanation::write_table(HtmlPage& page) const {
-  Row head = {"stage", "alive", "dropped", "milliseconds"};
+  Row head = {"stage", "alive", "rejected", "milliseconds"};
   if (!truths_.empty()) head.push_back("right ones alive");
   std::vector<Row> rows;
   for (const auto& stage : trace_.stages) {
-    std::string dropped;
-    for (const Dropped& d : stage.dropped) {
-      dropped += (dropped.empty() ? "" : "<br>") + std::to_string(d.poses.size()) + " " +
-                 HtmlPage::escape(d.reason);
+    std::string rejected;
+    for (const Rejected& r : stage.rejected) {
+      rejected += (rejected.empty() ? "" : "<br>") + std::to_string(r.poses.size()) + " " +
+                  HtmlPage::escape(std::string(r.reason));
     }
-    rows.push_back(
-        {stage.name, std::to_string(stage.poses.size()), dropped, fixed(stage.milliseconds, 1)});
+    rows.push_back({std::string(stage.name), std::to_string(stage.poses.size()), rejected,
+                    fixed(stage.milliseconds, 1)});
     if (!truths_.empty()) rows.back().push_back(std::to_string(count_right(stage)));
   }
   page.table(head, rows);
 }
 
 Status ModelExplanation::write_stage(std::size_t index, HtmlPage& page) const {
-  const ObjectTrace::Stage& stage = trace_.stages[index];
+  const TraceStage& stage = trace_.stages[index];
   std::size_t all = stage.poses.size();
-  for (const Dropped& dropped : stage.dropped) all += dropped.poses.size();
+  for (const Rejected& rejected : stage.rejected) all += rejected.poses.size();
   std::vector<DrawnPoses> groups;
   std::vector<LegendEntry> legend = {{kAlive, std::to_string(stage.poses.size()) + " alive"}};
-  for (std::size_t i = 0; i < stage.dropped.size(); ++i) {
-    const Dropped& dropped = stage.dropped[i];
-    const Rgb color = kDropped[std::min(i, std::size(kDropped) - 1)];
-    groups.push_back({dropped.poses, color,
+  for (std::size_t i = 0; i < stage.rejected.size(); ++i) {
+    const Rejected& rejected = stage.rejected[i];
+    const Rgb color = kRejected[std::min(i, std::size(kRejected) - 1)];
+    groups.push_back({rejected.poses, color,
                       all <= kMaxOutlined ? DrawnPoses::Style::outlines : DrawnPoses::Style::dots});
-    legend.push_back({color, std::to_string(dropped.poses.size()) + " " + dropped.reason});
+    legend.push_back(
+        {color, std::to_string(rejected.poses.size()) + " " + std::string(rejected.reason)});
   }
   const bool outlined = stage.poses.size() <= kMaxOutlinedAlive;
   groups.push_back(
@@ -206,12 +169,11 @@ Status ModelExplanation::write_stage(std::size_t index, HtmlPage& page) const {
     groups.push_back({truths, kTrue, DrawnPoses::Style::dashed});
     legend.push_back({kTrue, "truth; right and alive: " + std::to_string(count_right(stage))});
   }
-  const StageText text = text_of(stage.name);
   const std::string file = numbered(static_cast<int>(index) + 3, stage.name);
-  page.heading(text.title);
-  page.picture(file, std::string(text.text) + std::string(outlined ? kOutlines : kDots));
+  page.heading(std::string(stage.title));
+  page.picture(file, std::string(stage.text) + std::string(outlined ? kOutlines : kDots));
   const std::string title =
-      model_.name + ": " + stage.name + ", " + fixed(stage.milliseconds, 1) + " ms";
+      model_.name + ": " + std::string(stage.name) + ", " + fixed(stage.milliseconds, 1) + " ms";
   return io::write_color_png(
       folder_ + "/" + file,
       draw::with_words(draw::poses(frame_.frame, model_, groups), title, legend));
@@ -244,24 +206,27 @@ Status ModelExplanation::write_best(HtmlPage& page) const {
 }
 
 void ModelExplanation::write_layer(HtmlPage& page) const {
-  const ScoreLayer& layer = frame_.layers.last_for(best_->components);
-  const ScoreFeatures features = score_features(best_->components);
+  const ScoreLayer& layer = frame_.layers.last_for(best_->values);
   std::vector<Row> rows;
-  for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
+  for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
+    const ComponentType& type = kScoreComponents[i];
     const ScoreLayer::Component& c = layer.components[i];
-    rows.push_back({score_feature_names()[i], fixed(features[i], 4),
-                    fixed(c.place.front(), 3) + " to " + fixed(c.place.back(), 3),
-                    fixed(c.at(features[i]), 3), HtmlPage::bar(c.at(features[i]))});
+    const double value = best_->values[i], part = c.at(value);
+    rows.push_back(
+        {std::string(type.name), fixed(value, 4), std::string(type.unit),
+         type.learned ? fixed(c.place.front(), 3) + " to " + fixed(c.place.back(), 3) : "",
+         type.learned ? fixed(part, 3) : "", type.learned ? HtmlPage::bar(part) : "",
+         std::string(type.meaning)});
   }
-  rows.push_back({"bias", "", "", fixed(layer.bias, 3), HtmlPage::bar(layer.bias)});
-  rows.push_back({"sum", "", "", fixed(best_->score, 3), HtmlPage::bar(best_->score)});
-  page.table({"read by the score layer", "value", "usual in training", "adds to the log odds", ""},
+  rows.push_back({"bias", "", "", "", fixed(layer.bias, 3), HtmlPage::bar(layer.bias), ""});
+  if (best_->prior != 0) {
+    rows.push_back({"prior", fixed(best_->prior, 3), "log odds", "", fixed(best_->prior, 3),
+                    HtmlPage::bar(best_->prior), "What the caller's priors add."});
+  }
+  rows.push_back({"sum", "", "", "", fixed(best_->score, 3), HtmlPage::bar(best_->score), ""});
+  page.table({"score component", "value", "unit", "usual in training", "adds to the log odds", "",
+              "meaning"},
              rows);
-  rows.clear();
-  for (const ScoreComponent& component : to_placement(*best_).components) {
-    rows.push_back({component.name, fixed(component.value, 4)});
-  }
-  page.table({"score component", "value"}, rows);
   page.paragraph("The score layer: " + layer.provenance + ".");
 }
 

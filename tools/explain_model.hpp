@@ -9,6 +9,7 @@
 #include "core/draw/html_page.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/pipeline/frame_trace.hpp"
+#include "core/score/score_layer.hpp"
 #include "core/result/interpretation.hpp"
 
 namespace bpa::cli {
@@ -43,7 +44,7 @@ class ModelExplanation {
  private:
   bool is_reported() const;
   std::string verdict() const;
-  std::size_t count_right(const ObjectTrace::Stage& stage) const;
+  std::size_t count_right(const TraceStage& stage) const;
   void write_table(draw::HtmlPage& page) const;
   Status write_stage(std::size_t index, draw::HtmlPage& page) const;
   Status write_best(draw::HtmlPage& page) const;

@@ -46,19 +46,21 @@ bool is_right(const Pose& pose, const ObjectModel& model,
 }
 
 // What round two has to order: right poses, and every fifth wrong one, none of which competes.
-ScoreFrame round_two_samples(const FrameTrace& trace, const std::vector<io::BopInstance>& truth) {
+ScoreFrame round_two_samples(const FrameTrace& trace, const DetectorOptions& options,
+                             const std::vector<io::BopInstance>& truth) {
   ScoreFrame out;
   int wrong = 0;
   for (std::size_t m = 0; m < trace.objects.size(); ++m) {
     const ObjectModel& model = *trace.models[m];
-    for (const ObjectTrace::Stage& stage : trace.objects[m].stages) {
-      if (std::string_view(stage.name) != "round_two") continue;
+    const FeaturePlaces places(model);
+    for (const TraceStage& stage : trace.objects[m].stages) {
+      if (stage.name != "round_two") continue;
       for (const FastPose& fast : stage.poses) {
         const Pose pose = to_pose(fast);
         const bool right = is_right(pose, model, truth);
         if (!right && wrong++ % 5 != 0) continue;
-        out.samples.push_back(
-            {score_features(score_placement(trace.scene.image, model, pose, kQuickPoints)), right});
+        Evidence evidence(trace.scene, places, pose, options.detect.score.quick_points);
+        out.samples.push_back({measure(evidence, Round::two), right});
       }
     }
   }
@@ -67,12 +69,13 @@ ScoreFrame round_two_samples(const FrameTrace& trace, const std::vector<io::BopI
 }
 
 // What interpretations choose from.
-ScoreFrame round_three_samples(const FrameTrace& trace, const std::vector<io::BopInstance>& truth) {
+ScoreFrame round_three_samples(const FrameTrace& trace, const DetectorOptions& options,
+                               const std::vector<io::BopInstance>& truth) {
   ScoreFrame out;
-  out.competition = competition_of(trace.candidates, find_overlaps(trace.candidates, kMaxShared));
+  out.competition =
+      competition_of(trace.candidates, find_overlaps(trace.candidates, options.scene.max_shared));
   for (const Candidate& candidate : trace.candidates) {
-    out.samples.push_back({score_features(candidate.components),
-                           is_right(candidate.pose(), *candidate.model, truth)});
+    out.samples.push_back({candidate.values, is_right(candidate.pose(), *candidate.model, truth)});
   }
   return out;
 }
@@ -98,8 +101,8 @@ Status collect(const TrainArguments& a, const Detector& detector,
     const auto add = [&](Samples& to, ScoreFrame scores) {
       (held_out ? to.held_out : to.training).push_back(std::move(scores));
     };
-    add(samples.round_two, round_two_samples(trace, frames[i].truth));
-    add(samples.round_three, round_three_samples(trace, frames[i].truth));
+    add(samples.round_two, round_two_samples(trace, detector.options(), frames[i].truth));
+    add(samples.round_three, round_three_samples(trace, detector.options(), frames[i].truth));
   }
   return {};
 }
@@ -160,9 +163,9 @@ std::string list(std::span<const double> values) {
 std::string initialiser(const ScoreLayer& layer) {
   std::string out = "      {{{\n";
   char line[256];
-  for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
+  for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
     const ScoreLayer::Component& c = layer.components[i];
-    out += std::string("          // ") + score_feature_names()[i] + "\n          {" +
+    out += std::string("          // ") + std::string(kScoreComponents[i].name) + "\n          {" +
            list(c.place) + ",\n           " + list(c.value) + "},\n";
   }
   std::snprintf(line, sizeof line, "      }}, %.9g,\n", layer.bias);
@@ -185,12 +188,9 @@ std::string as_source(const ScoreLayers& layers) {
 
 // The same samples of frames or models that have no colour.
 Samples without_color(Samples samples) {
-  const auto names = score_feature_names();
-  const auto color = static_cast<std::size_t>(
-      std::find(names.begin(), names.end(), std::string_view("color")) - names.begin());
   for (auto* frames : {&samples.training, &samples.held_out}) {
     for (ScoreFrame& frame : *frames) {
-      for (auto& sample : frame.samples) sample.features[color] = ScoreComponents::kNotKnown;
+      for (auto& sample : frame.samples) sample.values[component("color")] = kNotKnown;
     }
   }
   return samples;

@@ -2,24 +2,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <sstream>
 #include <string>
 #include <type_traits>
+#include <variant>
+#include <vector>
 
 #include "core/base/status.hpp"
 
-// Options are structs of defaults. Each one describes its fields once, in a
+// Options are trees of structs of defaults. A struct describes its fields once, and the structs
+// inside of it once, in
 //
 //   template <class Visitor> void visit_fields(Visitor&& visit) {
-//     visit("max_range_m", max_range_m, {0.1, 20.0, "Points further away than this are ignored."});
+//     visit("max_range_m", max_range_m, FieldRule{0.1, 20, "Surface further away is ignored."});
+//   }
+//   template <class Visitor> void visit_groups(Visitor&& visit) {
+//     visit("refinement", refinement, "Gradient-based alignment.");
 //   }
 //
-// member, and reading files, validation, help texts and run-time parameters all use that.
+// and reading files, checks, printing, help texts and run-time parameters all use that. Fields are
+// bool, int, double, std::uint64_t, std::string and std::vector<std::string>.
 
 namespace bpa {
 
-/// The rule and the meaning of one field. `min` and `max` are inclusive; bools and strings ignore
+/// The rule and the meaning of one field. `min` and `max` are inclusive; bools and texts ignore
 /// them.
 struct FieldRule {
   double min = -std::numeric_limits<double>::infinity();
@@ -34,25 +42,73 @@ constexpr FieldRule at_run_time(FieldRule rule) {
   return rule;
 }
 
-/// Checks every field of an options struct against its rule. The message names the first field that
-/// breaks it, its value and the rule.
+/// One entry of a tree of options: a group (no value) or a field of somebody's struct.
+struct Option {
+  using Value = std::variant<std::monostate, bool*, int*, double*, std::uint64_t*, std::string*,
+                             std::vector<std::string>*>;
+  std::string path;  ///< Such as "round_two.refinement.iterations".
+  FieldRule rule;    ///< Of a group: its description alone.
+  Value value;
+
+  bool is_group() const { return std::holds_alternative<std::monostate>(value); }
+};
+
+namespace detail {
+struct AnyVisitor {
+  template <class... Arguments>
+  void operator()(Arguments&&...) const {}
+};
+}  // namespace detail
+
+/// Every group and field of a tree, in the order of its declarations, each group before its fields.
+/// The values point into `options`.
+template <class Options>
+std::vector<Option> options_of(Options& options, const std::string& prefix = "") {
+  std::vector<Option> out;
+  if constexpr (requires { options.visit_fields(detail::AnyVisitor()); }) {
+    options.visit_fields([&](const char* name, auto& value, const FieldRule& rule) {
+      out.push_back({prefix + name, rule, &value});
+    });
+  }
+  if constexpr (requires { options.visit_groups(detail::AnyVisitor()); }) {
+    options.visit_groups([&](const char* name, auto& group, const char* description) {
+      FieldRule rule;
+      rule.description = description;
+      out.push_back({prefix + name, rule, std::monostate()});
+      for (Option& option : options_of(group, prefix + name + "."))
+        out.push_back(std::move(option));
+    });
+  }
+  return out;
+}
+
+/// Checks a number against its rule. The message names the field, its value and the rule.
+inline Status validate(const Option& option) {
+  return std::visit(
+      [&](const auto& value) -> Status {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, int*> || std::is_same_v<Value, double*> ||
+                      std::is_same_v<Value, std::uint64_t*>) {
+          const auto number = static_cast<double>(*value);
+          if (number >= option.rule.min && number <= option.rule.max) return {};
+          std::ostringstream text;
+          text << option.path << " is " << number << "; it must be between " << option.rule.min
+               << " and " << option.rule.max;
+          return invalid_argument(text.str());
+        }
+        return {};
+      },
+      option.value);
+}
+
+/// Checks every field of a tree; the first problem.
 template <class Options>
 Status validate(const Options& options) {
-  Status status;
   Options copy = options;
-  copy.visit_fields([&status](const char* name, auto& value, const FieldRule& rule) {
-    using Value = std::decay_t<decltype(value)>;
-    if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>) {
-      const double number = static_cast<double>(value);
-      if (status.ok() && !(number >= rule.min && number <= rule.max)) {
-        std::ostringstream text;
-        text << name << " is " << number << "; it must be between " << rule.min << " and "
-             << rule.max;
-        status = invalid_argument(text.str());
-      }
-    }
-  });
-  return status;
+  for (const Option& option : options_of(copy)) {
+    if (Status status = validate(option); !status.ok()) return status;
+  }
+  return {};
 }
 
 }  // namespace bpa

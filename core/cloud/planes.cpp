@@ -81,6 +81,7 @@ PlaneFit best_plane(const SurfaceMap& map, const std::vector<int>& candidates,
 }  // namespace
 
 std::vector<Plane> label_background_planes(SurfaceMap& map, const PlaneOptions& options) {
+  if (!options.label_planes) return {};
   std::vector<int> candidates;
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (map.searched[i] && map.normals[i].squaredNorm() > 0) {

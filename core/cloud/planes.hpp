@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/options.hpp"
 #include "core/cloud/surface_map.hpp"
 
 namespace bpa {
@@ -17,18 +18,31 @@ struct Plane {
 };
 
 struct PlaneOptions {
-  double min_extent_m = 0.35;  ///< Smaller planes may be faces of objects and stay.
-  double min_fraction = 0.04;  ///< Of the valid pixels, that a plane must hold.
+  bool label_planes = true;
+  double min_extent_m = 0.35;
+  double min_fraction = 0.04;
   int max_planes = 3;
-  int num_samples = 300;  ///< RANSAC draws per plane.
+  int num_samples = 300;
   std::uint64_t seed = 0;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("label_planes", label_planes,
+          FieldRule{0, 1, "Label large planes (table, wall) as background."});
+    visit("plane_min_extent_m", min_extent_m,
+          FieldRule{0.1, 10, "Smaller planes may be faces of objects and are kept, metres."});
+    visit("min_fraction", min_fraction,
+          FieldRule{0, 1, "Share of the valid pixels that a plane must hold."});
+    visit("max_planes", max_planes, FieldRule{0, 100, "Planes that are labelled at most."});
+    visit("num_samples", num_samples, FieldRule{1, 100000, "RANSAC samples for each plane."});
+  }
 };
 
 /// The large planes of the scene (table, wall, floor), largest first, by RANSAC with normals;
 /// their pixels are labelled background: map.searched becomes 0 there. A plane hides behind
 /// objects, so its extent is measured over all its pixels: the square root of the product of the
 /// two largest standard deviations, times the square root of 12 (the side of a square of that
-/// spread).
+/// spread). None where `label_planes` is off.
 std::vector<Plane> label_background_planes(SurfaceMap& map, const PlaneOptions& options);
 
 }  // namespace bpa

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/options.hpp"
 #include "core/cloud/frame.hpp"
 #include "core/geometry/camera.hpp"
 
@@ -30,10 +31,20 @@ struct SurfaceMap {
 };
 
 struct SurfaceMapOptions {
-  double normal_radius_m = 0.010;  ///< Of the window that a normal is fitted in.
   double max_range_m = 2.5;
-  int max_width = 400;  ///< Frames wider than this are reduced until they are not.
-  int num_threads = 0;
+  double normal_radius_m = 0.010;
+  int max_width = 400;
+  int num_threads = 0;  ///< 0: one per core. Does not change the result.
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("max_range_m", max_range_m,
+          FieldRule{0.2, 20, "Surface further away than this is ignored, metres."});
+    visit("normal_radius_m", normal_radius_m,
+          FieldRule{0.003, 0.05, "Radius of the window a surface normal is fitted in, metres."});
+    visit("max_width", max_width,
+          FieldRule{64, 8192, "Wider frames are halved until they are not wider, pixels."});
+  }
 };
 
 /// Standard deviation of a Kinect-class depth at distance z, metres (Nguyen, Izadi and Lovell,

@@ -45,8 +45,8 @@ constexpr double kBackgroundVolume = 1;  // m³
 constexpr double kMostPriorEvidence = 5;
 /// A placement counts as right within 2.5 cm and π/16, and is off by some of that; priors are
 /// widened by half of it as the standard deviation of a placement's position and rotation.
-constexpr double kPlacementSigma_m = 0.0125;
-constexpr double kPlacementSigma_rad = M_PI / 32;
+constexpr double kPlacementSigma_m = 0.5 * kPoseTolerance_m;
+constexpr double kPlacementSigma_rad = 0.5 * kPoseTolerance_rad;
 
 /// The priors of one model. Those of other models are ignored; each must be valid.
 class ModelPriors {

@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "core/detect/single_object.hpp"
+#include "core/detect/candidate.hpp"
 
 namespace bpa {
 namespace {
@@ -13,8 +13,9 @@ constexpr double kCorrelatedPoints = 12;
 
 Eigen::Matrix<double, 6, 6> pose_covariance(const Refinement& refinement) {
   Eigen::Matrix<double, 6, 6> information = refinement.information / kCorrelatedPoints;
-  const double position = 1 / (0.02 * 0.02);
-  const double angle = 1 / (0.5 * 0.5);
+  constexpr double kPositionSigma = 0.02, kAngleSigma = 0.5;  // m, rad: where nothing is known
+  const double position = 1 / (kPositionSigma * kPositionSigma);
+  const double angle = 1 / (kAngleSigma * kAngleSigma);
   information.diagonal().head<3>().array() += position;
   information.diagonal().tail<3>().array() += angle;
   const Eigen::Matrix<double, 6, 6> inverse = information.inverse();
@@ -33,33 +34,11 @@ Placement to_placement(const Candidate& candidate) {
                                             out.covariance.bottomRightCorner<3, 3>());
   out.score = candidate.score;
   out.probability = candidate.probability;
-  const ScoreComponents& c = candidate.components;
-  out.visible_fraction = c.visibility;
-  out.components = {{"range", c.range},
-                    {"normal", c.normal},
-                    {"visibility", c.visibility},
-                    {"edge", c.edge},
-                    {"edge_visibility", c.edge_visibility},
-                    {"edge_support", c.edge_support},
-                    {"shape", c.shape},
-                    {"free_space", c.free_space},
-                    {"agreeing", c.agreeing},
-                    {"explained_pixels", c.explained_pixels},
-                    {"expected_pixels", c.expected_pixels},
-                    {"explained_area", c.explained_area},
-                    {"relative_area", c.relative_area},
-                    {"unknown", c.unknown},
-                    {"background", c.background},
-                    {"edge_likelihood", c.edge_likelihood},
-                    {"occlusion_edge", c.occlusion_edge},
-                    {"random_walk", c.random_walk},
-                    {"segment", c.segment},
-                    {"segment_affinity", c.segment_affinity},
-                    {"fpfh", c.fpfh},
-                    {"color", c.color},
-                    {"rivals", c.rivals}};
-  std::erase_if(out.components,
-                [](const ScoreComponent& known) { return std::isnan(known.value); });
+  out.visible_fraction = candidate.values[component("visibility")];
+  for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
+    if (std::isnan(candidate.values[i])) continue;
+    out.components.push_back({std::string(kScoreComponents[i].name), candidate.values[i]});
+  }
   if (candidate.prior != 0) out.components.push_back({"prior", candidate.prior});
   return out;
 }

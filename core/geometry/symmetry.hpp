@@ -33,6 +33,11 @@ struct PoseError {
 
 PoseError pose_error(const Pose& a, const Pose& b);
 
+/// A pose this near the truth, modulo symmetry, is right (paper section VII). The paper clusters
+/// poses and assigns segments within the same angle (section V).
+constexpr double kPoseTolerance_m = 0.025;
+constexpr double kPoseTolerance_rad = 0.19634954084936207;  // pi / 16
+
 /// All discrete elements including the identity (the identity first).
 std::vector<Pose> discrete_elements(const SymmetryGroup& group);
 
@@ -44,6 +49,7 @@ Pose nearest_symmetric_pose(const Pose& pose, const Pose& reference, const Symme
 /// max(position / position_scale, angle / angle_scale) over the group (paper section VII, its
 /// footnote: poses count "with respect to the model's symmetry group").
 PoseError pose_error(const Pose& estimate, const Pose& truth, const SymmetryGroup& group,
-                     double position_scale = 0.025, double angle_scale = 0.19634954084936207);
+                     double position_scale = kPoseTolerance_m,
+                     double angle_scale = kPoseTolerance_rad);
 
 }  // namespace bpa

@@ -3,11 +3,12 @@
 #include "core/pipeline/detector.hpp"
 
 #include <algorithm>
+#include <atomic>
 
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/cloud/cielab.hpp"
-#include "core/detect/single_object.hpp"
+#include "core/detect/detect_object.hpp"
 #include "core/pipeline/frame_trace.hpp"
 #include "core/scene/interpretations.hpp"
 
@@ -57,41 +58,64 @@ Result<Models> chosen_models(const ModelLibrary& library, const DetectRequest& r
   return chosen;
 }
 
-SurfaceMapOptions surface_options(const DetectorOptions& options, int num_threads) {
-  SurfaceMapOptions out;
-  out.normal_radius_m = options.normal_radius_m;
-  out.max_range_m = options.max_range_m;
-  out.num_threads = num_threads;
-  return out;
+// What detection reads of the frame, with the time of each step.
+SceneFeatures observe(const Frame& frame, const DetectRequest& request, DetectorOptions options,
+                      std::vector<StageTiming>& timings) {
+  options.surface.num_threads = options.features.num_threads = request.num_threads;
+  options.planes.seed = options.features.seed = request.seed;
+  Stopwatch stage;
+  const auto finish_stage = [&](const char* name) {
+    timings.push_back({name, stage.lap_milliseconds()});
+  };
+  SurfaceMap map = surface_map(frame, options.surface);
+  finish_stage("surface");
+  std::vector<Plane> planes;
+  if (frame.background.empty()) planes = label_background_planes(map, options.planes);
+  finish_stage("planes");
+  Image<Eigen::Vector3f> rgb;
+  if (options.features.use_color) rgb = reduced_color(frame, map, request.num_threads);
+  SceneFeatures scene = scene_features(std::move(map), std::move(planes), options.features, rgb);
+  finish_stage("features");
+  return scene;
 }
 
-SingleObjectOptions object_options(const DetectorOptions& options, std::uint64_t seed) {
-  SingleObjectOptions out;
-  out.hypotheses.matches_per_keypoint = options.matches_per_keypoint;
-  out.hypotheses.draws_per_match = options.draws_per_match;
-  out.hypotheses.peaks_per_reference = options.peaks_per_reference;
-  out.hypotheses.use_edges = options.use_edges;
-  out.hypotheses.seed = seed;
-  out.max_clusters = options.max_clusters;
-  out.max_refined = options.max_refined;
-  if (!options.climb) out.max_climbed = 0;
-  out.use_orientation = options.use_orientation;
-  out.use_segments = options.use_segments;
-  out.use_edges = options.use_edges;
-  out.use_round_three = options.use_round_three;
-  out.seed = seed;
-  return out;
-}
+// The candidates of all models. Where there is a deadline, each model gets an equal part of the
+// time that is left when its turn comes.
+class ModelSearch {
+ public:
+  ModelSearch(const SceneFeatures& scene, const DetectorOptions& options, const ScoreLayers& layers,
+              const DetectRequest& request, Deadline deadline)
+      : scene_(scene), options_(options), layers_(layers), request_(request), deadline_(deadline) {}
 
-InterpretationOptions interpretation_options(const DetectorOptions& options, std::uint64_t seed) {
-  InterpretationOptions out;
-  out.min_probability = options.min_probability;
-  out.object_penalty = options.object_penalty;
-  out.explained_weight = options.explained_weight;
-  out.annealing_steps = options.annealing_steps;
-  out.seed = seed;
-  return out;
-}
+  /// `cut`: whether time ran out for some model.
+  Candidates run(const Models& models, std::vector<ObjectTrace>* traces, bool& cut) const {
+    std::vector<std::uint8_t> late(models.size(), 0);
+    std::vector<Candidates> found(models.size());
+    std::atomic<int> waiting{static_cast<int>(models.size())};
+    const int threads = std::min(resolve_num_threads(request_.num_threads), waiting.load());
+    if (traces) traces->resize(models.size());
+    parallel_for(static_cast<int>(models.size()), request_.num_threads, [&](int m) {
+      const auto i = static_cast<std::size_t>(m);
+      Search search(scene_, *models[i], options_.detect, layers_, request_.priors, request_.seed);
+      search.deadline = deadline_.part(std::min(1.0, static_cast<double>(threads) / waiting--));
+      search.cut = &late[i];
+      found[i] = detect_object(std::move(search), traces ? &(*traces)[i] : nullptr);
+    });
+    cut = std::find(late.begin(), late.end(), 1) != late.end();
+    Candidates all;
+    for (Candidates& of_model : found) {
+      std::move(of_model.begin(), of_model.end(), std::back_inserter(all));
+    }
+    return all;
+  }
+
+ private:
+  const SceneFeatures& scene_;
+  const DetectorOptions& options_;
+  const ScoreLayers& layers_;
+  const DetectRequest& request_;
+  Deadline deadline_;
+};
 
 // The first `count`, their probabilities scaled to sum to 1 again.
 void keep_best(std::vector<Interpretation>& interpretations, std::size_t count) {
@@ -116,66 +140,22 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   if (!models.ok()) return models.status();
   if (Status status = check_priors(*library_, request.priors); !status.ok()) return status;
 
-  Stopwatch total;
-  Stopwatch stage;
+  const Deadline deadline = Deadline::after(request.budget_ms);
+  const Stopwatch total;
   SceneInterpretations out;
   out.stamp_ns = frame.stamp_ns;
   out.frame_id = frame.frame_id;
   out.fused_frames = frame.fused;
-  const auto finish_stage = [&](const char* name) {
-    out.timings.push_back({name, stage.lap_milliseconds()});
-  };
+  SceneFeatures scene = observe(frame, request, options_, out.timings);
 
-  SurfaceMap map = surface_map(frame, surface_options(options_, request.num_threads));
-  finish_stage("surface");
+  Stopwatch stage;
+  Candidates candidates =
+      ModelSearch(scene, options_, layers_, request, deadline)
+          .run(*models, trace ? &trace->objects : nullptr, out.budget_exhausted);
+  out.timings.push_back({"objects", stage.lap_milliseconds()});
 
-  std::vector<Plane> planes;
-  if (options_.label_planes && frame.background.empty()) {
-    PlaneOptions plane_options;
-    plane_options.min_extent_m = options_.plane_min_extent_m;
-    plane_options.seed = request.seed;
-    planes = label_background_planes(map, plane_options);
-  }
-  finish_stage("planes");
-
-  SceneFeatureOptions feature_options;
-  feature_options.max_keypoints = options_.max_keypoints;
-  feature_options.max_references = options_.max_references;
-  feature_options.seed = request.seed;
-  feature_options.num_threads = request.num_threads;
-  Image<Eigen::Vector3f> rgb;
-  if (options_.use_color) rgb = reduced_color(frame, map, request.num_threads);
-  SceneFeatures scene = scene_features(std::move(map), std::move(planes), feature_options, rgb);
-  finish_stage("features");
-
-  // The budget is looked at between models: whoever is not begun in time is left out, and said so.
-  SingleObjectOptions single = object_options(options_, request.seed);
-  single.layers = layers_;
-  single.priors = request.priors;
-  std::vector<std::vector<Candidate>> found(models->size());
-  std::vector<std::uint8_t> late(models->size(), 0);
-  if (trace) trace->objects.resize(models->size());
-  parallel_for(static_cast<int>(models->size()), request.num_threads, [&](int m) {
-    const auto i = static_cast<std::size_t>(m);
-    late[i] = request.budget_ms > 0 && total.milliseconds() > request.budget_ms;
-    if (late[i]) return;
-    found[i] = detect_object(scene, (*models)[i], single, trace ? &trace->objects[i] : nullptr);
-  });
-  out.budget_exhausted = std::find(late.begin(), late.end(), 1) != late.end();
-  finish_stage("objects");
-
-  std::vector<Candidate> candidates;
-  for (auto& of_model : found) {
-    std::move(of_model.begin(), of_model.end(), std::back_inserter(candidates));
-  }
-  const std::vector<std::vector<Overlap>> overlaps = find_overlaps(candidates, kMaxShared);
-  let_compete(candidates, overlaps);
-  const auto searched = static_cast<int>(
-      std::count(scene.map.searched.begin(), scene.map.searched.end(), std::uint8_t{1}));
-  out.interpretations =
-      interpret(candidates, overlaps, searched, interpretation_options(options_, request.seed));
-  keep_best(out.interpretations, static_cast<std::size_t>(request.top_k));
-  finish_stage("interpretations");
+  out.interpretations = interpret_scene(scene, candidates, request);
+  out.timings.push_back({"interpretations", stage.lap_milliseconds()});
   out.total_milliseconds = total.milliseconds();
   if (trace) {
     trace->scene = std::move(scene);
@@ -183,6 +163,20 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
     trace->candidates = std::move(candidates);
   }
   return out;
+}
+
+std::vector<Interpretation> Detector::interpret_scene(const SceneFeatures& scene,
+                                                      Candidates& candidates,
+                                                      const DetectRequest& request) const {
+  InterpretationOptions options = options_.scene;
+  options.seed = request.seed;
+  const auto overlaps = find_overlaps(candidates, options.max_shared);
+  let_compete(candidates, overlaps);
+  const auto& searched = scene.map.searched;
+  const auto observed = static_cast<int>(std::count(searched.begin(), searched.end(), 1));
+  std::vector<Interpretation> ranked = interpret(candidates, overlaps, observed, options);
+  keep_best(ranked, static_cast<std::size_t>(request.top_k));
+  return ranked;
 }
 
 }  // namespace bpa

@@ -25,9 +25,12 @@ struct DetectRequest {
   std::vector<std::string> models;  ///< Names; empty means every model of the library.
   std::vector<PosePrior> priors;    ///< What is known beforehand, in the camera frame.
   int top_k = 20;                   ///< Number of interpretations to return, 1 to 100.
-  double budget_ms = 0;             ///< Return the best so far after this long; 0 = no limit.
-  std::uint64_t seed = 0;           ///< Same frame, library, options and seed: same answer.
-  int num_threads = 0;              ///< 0 = one per core. Does not change the answer.
+  /// Time for the search, milliseconds; 0: no limit. Every model gets an equal part of what is left
+  /// after the frame was prepared (about 0.2 s at 640 x 480, which is not cut), and the best found
+  /// by then is returned. With a budget, the answer depends on the machine's speed.
+  double budget_ms = 0;
+  std::uint64_t seed = 0;  ///< Same frame, library, options and seed: same answer.
+  int num_threads = 0;     ///< 0 = one per core. Does not change the answer.
 };
 
 /// Finds the objects of a library in RGB-D frames. Immutable after construction; detect() may be
@@ -49,6 +52,10 @@ class Detector {
   const ScoreLayers& score_layers() const { return layers_; }
 
  private:
+  /// Lets the candidates compete and explains the scene by them.
+  std::vector<Interpretation> interpret_scene(const SceneFeatures& scene, Candidates& candidates,
+                                              const DetectRequest& request) const;
+
   std::shared_ptr<const ModelLibrary> library_;
   DetectorOptions options_;
   ScoreLayers layers_;

@@ -5,7 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/detect/single_object.hpp"
+#include "core/detect/candidate.hpp"
+#include "core/detect/trace.hpp"
 
 namespace bpa {
 

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/pipeline/score_layer_file.hpp"
 
+#include <algorithm>
+#include <stdexcept>
+
 #include <nlohmann/json.hpp>
 
 #include "core/io/file_bytes.hpp"
@@ -17,9 +20,10 @@ Status corrupt(const std::string& path, const std::string& what) {
 
 nlohmann::ordered_json to_json(const ScoreLayer& layer) {
   nlohmann::ordered_json components;
-  for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
+  for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
+    if (!kScoreComponents[i].learned) continue;
     const ScoreLayer::Component& c = layer.components[i];
-    components[score_feature_names()[i]] = {{"place", c.place}, {"log_odds", c.value}};
+    components[kScoreComponents[i].name] = {{"place", c.place}, {"log_odds", c.value}};
   }
   return {{"provenance", layer.provenance}, {"bias", layer.bias}, {"components", components}};
 }
@@ -28,10 +32,14 @@ ScoreLayer from_json(const nlohmann::json& json) {
   ScoreLayer layer;
   layer.bias = json.at("bias").get<double>();
   layer.provenance = json.at("provenance").get<std::string>();
-  for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
-    const auto& entry = json.at("components").at(score_feature_names()[i]);
-    entry.at("place").get_to(layer.components[i].place);
-    entry.at("log_odds").get_to(layer.components[i].value);
+  for (const auto& [name, curve] : json.at("components").items()) {
+    const auto type = std::find_if(kScoreComponents.begin(), kScoreComponents.end(),
+                                   [&](const ComponentType& t) { return t.name == name; });
+    if (type == kScoreComponents.end()) throw std::runtime_error("unknown component " + name);
+    ScoreLayer::Component& component =
+        layer.components[static_cast<std::size_t>(type - kScoreComponents.begin())];
+    curve.at("place").get_to(component.place);
+    curve.at("log_odds").get_to(component.value);
   }
   return layer;
 }
@@ -64,7 +72,7 @@ Result<ScoreLayers> read_score_layers(const std::string& path) {
     }
     return ScoreLayers{from_json(json.at("round_two")), from_json(json.at("round_three")),
                        from_json(json.at("without_color"))};
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const std::exception& error) {
     return corrupt(path, std::string("does not have the expected content: ") + error.what());
   }
 }

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/detect/single_object.hpp"
+#include "core/detect/candidate.hpp"
 #include "core/score/competition.hpp"
 
 namespace bpa {

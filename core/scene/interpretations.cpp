@@ -146,7 +146,8 @@ void anneal(SubsetScore& state, const std::vector<std::size_t>& among,
   double current = state.total();
   for (int step = 0; step < options.annealing_steps; ++step) {
     const double temperature =
-        2.0 * (1 - static_cast<double>(step) / options.annealing_steps) + 0.05;
+        options.start_temperature * (1 - static_cast<double>(step) / options.annealing_steps) +
+        options.end_temperature;
     const std::size_t i =
         among[static_cast<std::size_t>(random.index(static_cast<int>(among.size())))];
     std::vector<std::size_t> removed;

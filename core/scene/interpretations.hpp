@@ -5,24 +5,51 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/detect/single_object.hpp"
+#include "core/base/options.hpp"
+#include "core/detect/candidate.hpp"
 #include "core/result/interpretation.hpp"
 #include "core/scene/overlaps.hpp"
 
 namespace bpa {
 
-/// Two placements may share this part of what the smaller one explains.
-constexpr double kMaxShared = 0.3;
-
 struct InterpretationOptions {
-  double object_penalty = 0.2;   ///< Log odds that each further object costs.
-  double explained_weight = 2;   ///< Of the ratio of explained to observed pixels.
-  double min_probability = 0.3;  ///< A placement less probable than this lowers the score.
+  double min_probability = 0.3;
+  double object_penalty = 0.2;
+  double explained_weight = 2;
+  double max_shared = 0.3;
   int annealing_steps = 20000;
-  double min_shown = 0.02;        ///< Less probable placements are in no interpretation.
-  int max_different = 20;         ///< Interpretations that show something new, the best included.
-  int max_interpretations = 100;  ///< Paper section VI: the 100 best are kept.
+  double start_temperature = 2;
+  double end_temperature = 0.05;
+  double min_shown = 0.02;
+  int max_different = 20;
+  int max_interpretations = 100;
   std::uint64_t seed = 0;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("min_probability", min_probability,
+          FieldRule{0, 1,
+                    "Placements less probable than this are not part of the best "
+                    "interpretation."});
+    visit("object_penalty", object_penalty,
+          FieldRule{0, 100, "Log odds that each further object of an interpretation costs."});
+    visit("explained_weight", explained_weight,
+          FieldRule{0, 1000, "Weight of the ratio of explained to observed surface."});
+    visit("max_shared", max_shared,
+          FieldRule{0, 1, "Share of the smaller one's pixels that two placements may share."});
+    visit("annealing_steps", annealing_steps,
+          FieldRule{0, 10000000, "Moves of simulated annealing (paper section VI)."});
+    visit("start_temperature", start_temperature,
+          FieldRule{0, 1000, "Temperature of the first move, in units of the score."});
+    visit("end_temperature", end_temperature,
+          FieldRule{1e-6, 1000, "What the temperature has fallen to at the last move."});
+    visit("min_shown", min_shown,
+          FieldRule{0, 1, "Less probable placements are in no interpretation."});
+    visit("max_different", max_different,
+          FieldRule{1, 100, "Interpretations that show something new, with the best."});
+    visit("max_interpretations", max_interpretations,
+          FieldRule{1, 100, "Best interpretations kept (paper section VI: 100)."});
+  }
 };
 
 /// Replaces the candidates' probabilities, which know nothing of one another, by those of right

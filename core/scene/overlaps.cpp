@@ -52,7 +52,9 @@ bool interpenetrate(const Candidate& a, const Candidate& b) {
 double same_pose(const Candidate& a, const Candidate& b) {
   if (a.model != b.model || (a.pose().translation - b.pose().translation).norm() > 0.1) return 0;
   const PoseError error = pose_error(a.pose(), b.pose(), a.model->symmetry);
-  return std::clamp(1.5 - std::max(error.position / 0.025, error.angle / (M_PI / 16)), 0.0, 1.0);
+  return std::clamp(
+      1.5 - std::max(error.position / kPoseTolerance_m, error.angle / kPoseTolerance_rad), 0.0,
+      1.0);
 }
 
 // How many pixels each two candidates share, row by row; counted through an index from pixels to

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/detect/single_object.hpp"
+#include "core/detect/candidate.hpp"
 #include "core/score/competition.hpp"
 
 namespace bpa {

@@ -36,7 +36,7 @@ double edge_likelihood_score(const CheckImage& image, const Image<float>& edges,
                              const ObjectModel& model, const Pose& camera_from_object) {
   if (!model.complete) return 0;
   const FastPose pose = to_fast(camera_from_object);
-  const ModelView& view = nearest_view(model.index->views, to_fast(camera_from_object));
+  const ModelView& view = nearest_view(model.index->views, pose);
   const std::size_t step = std::max<std::size_t>(1, view.edges.size() / kMaxEdgePoints);
   double sum = 0, weights = 0;
   for (std::size_t k = 0; k < view.edges.size(); k += step) {
@@ -44,7 +44,7 @@ double edge_likelihood_score(const CheckImage& image, const Image<float>& edges,
     const auto place = pixel_of(image, point);
     if (!place) continue;
     const double weight =
-        visibility_probability(observed_depth(image, place->u, place->v), point.z());
+        visibility_probability<double>(observed_depth(image, place->u, place->v), point.z());
     const Eigen::Vector3f reach = kEdgeReach * (pose.rotation * view.outward[k]);
     sum += weight * truncated_log(best_edge(image, edges, point, reach), kEdgeFloor);
     weights += weight;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/score/likelihood.hpp"
-#include "core/score/placement_score.hpp"
 
 namespace bpa {
 namespace {
@@ -62,7 +61,7 @@ float distance(const Window& window, float gain) {
 
 double color_score(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
                    std::span<const Eigen::Vector3f> surface, const PredictedSurface& predicted) {
-  if (observed.empty() || surface.empty()) return ScoreComponents::kNotKnown;
+  if (observed.empty() || surface.empty()) return kNotKnown;
   std::vector<Window> windows;
   float seen = 0, expected = 0;
   predicted.for_each([&](int u, int v, float, std::uint32_t) {
@@ -72,7 +71,7 @@ double color_score(const CheckImage& image, const Image<Eigen::Vector3f>& observ
     seen += brightness(window.observed);
     expected += brightness(window.predicted);
   });
-  if (windows.empty()) return ScoreComponents::kNotKnown;
+  if (windows.empty()) return kNotKnown;
   double sum = 0;
   for (const Window& window : windows) {
     sum +=

@@ -17,7 +17,7 @@ namespace bpa {
 /// deviation 12, in [-1, 0]. How much light falls on the object is not known: the model's colours
 /// are compared as they look under as much light as is seen at each place, and of lightness only
 /// how it varies over the placement counts, for a half. Both sides are averaged over 3x3 pixels.
-/// ScoreComponents::kNotKnown when nothing can be compared. `observed` is the frame's CIELAB at the
+/// kNotKnown when nothing can be compared. `observed` is the frame's CIELAB at the
 /// image's size, `surface` the model's (ModelIndex::cielab); either may be empty.
 double color_score(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
                    std::span<const Eigen::Vector3f> surface, const PredictedSurface& predicted);

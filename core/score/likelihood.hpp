@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 // The pieces that score components are made of.
 
 namespace bpa {
+
+/// The value of a score component that is not known.
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 /// The log-likelihood of an error under a normal distribution, relative to that of no error, cut
 /// off at three standard deviations and scaled to [-1, 0] (paper section V: truncated, so as not to
@@ -23,12 +27,13 @@ inline double truncated_log(double probability, double floor) {
 }
 
 /// The probability that a model point is visible: 1 where it is predicted in front of what was
-/// observed (or nothing was), else falling with sigma_vis = 1 cm (paper section V).
-inline double visibility_probability(double observed_depth, double predicted_depth) {
-  constexpr double kSigma = 0.01;
+/// observed (or nothing was), else falling with sigma_vis = 1 cm (paper section V, footnote).
+template <class Real>
+Real visibility_probability(Real observed_depth, Real predicted_depth) {
+  constexpr Real kSigma = static_cast<Real>(0.01);
   if (!(observed_depth > 0) || predicted_depth <= observed_depth) return 1;
-  const double z = (predicted_depth - observed_depth) / kSigma;
-  return std::exp(-0.5 * z * z);
+  const Real z = (predicted_depth - observed_depth) / kSigma;
+  return std::exp(static_cast<Real>(-0.5) * z * z);
 }
 
 }  // namespace bpa

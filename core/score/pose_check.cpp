@@ -62,31 +62,13 @@ __attribute__((target_clones("avx2", "default"))) void project_block(const Check
 
 }  // namespace
 
-CheckImage make_check_image(const SurfaceMap& map) {
-  CheckImage image;
-  image.width = map.width();
-  image.height = map.height();
-  image.fx = static_cast<float>(map.camera.fx);
-  image.fy = static_cast<float>(map.camera.fy);
-  image.cx = static_cast<float>(map.camera.cx);
-  image.cy = static_cast<float>(map.camera.cy);
-  image.pixels.resize(map.size());
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    CheckPixel& pixel = image.pixels[i];
-    pixel.depth = map.depth[i];
-    pixel.searched = map.searched[i];
-    for (int k = 0; k < 3; ++k) {
-      pixel.normal[k] = static_cast<std::int8_t>(std::lround(127 * map.normals[i][k]));
-    }
-  }
-  return image;
-}
-
 PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const FastPose& pose,
                      int count, const CheckTolerance& tolerance) {
   PoseCheck check;
   const int last = std::min(count, static_cast<int>(model.points.size()));
-  const float cosine_127 = 127 * tolerance.normal_cosine;
+  const auto depth = static_cast<float>(tolerance.depth_m);
+  const auto free_depth = static_cast<float>(tolerance.free_depth_m);
+  const float cosine_127 = 127 * static_cast<float>(tolerance.normal_cosine);
   const auto width = static_cast<float>(image.width);
   const auto height = static_cast<float>(image.height);
   Block block;
@@ -105,14 +87,14 @@ PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const Fa
           static_cast<int>(block.v[k]) * image.width + static_cast<int>(block.u[k]))];
       if (pixel.depth <= 0) continue;
       const float difference = pixel.depth - z;
-      if (difference < -tolerance.depth) continue;  // hidden behind something
+      if (difference < -depth) continue;  // hidden behind something
       ++check.seen;
-      if (difference <= tolerance.depth) {
+      if (difference <= depth) {
         const float cosine = block.normal[0][k] * pixel.normal[0] +
                              block.normal[1][k] * pixel.normal[1] +
                              block.normal[2][k] * pixel.normal[2];
         check.agreeing += pixel.searched && cosine > cosine_127;
-      } else if (difference > tolerance.free_depth) {
+      } else if (difference > free_depth) {
         ++check.free_space;
       }
     }

@@ -3,31 +3,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
-#include <vector>
 
-#include "core/cloud/surface_map.hpp"
+#include "core/base/options.hpp"
 #include "core/geometry/fast_pose.hpp"
 #include "core/model/model_index.hpp"
+#include "core/observation/check_image.hpp"
 
 namespace bpa {
-
-/// What a pose check reads of one pixel, packed so that a whole image stays in the cache.
-struct CheckPixel {
-  float depth = 0;                    ///< 0 where there is none.
-  std::int8_t normal[3] = {0, 0, 0};  ///< Times 127; zero where unknown.
-  std::uint8_t searched = 0;
-};
-
-/// The observed surface in the form that pose checks read.
-struct CheckImage {
-  int width = 0;
-  int height = 0;
-  float fx = 0, fy = 0, cx = 0, cy = 0;
-  std::vector<CheckPixel> pixels;
-};
-
-CheckImage make_check_image(const SurfaceMap& map);
 
 /// Counts over the model points that face the camera.
 struct PoseCheck {
@@ -38,21 +20,34 @@ struct PoseCheck {
 
   /// Larger is better: the agreeing share of what should be seen, with doubt where little is.
   float score() const {
-    return static_cast<float>(agreeing - free_space) / static_cast<float>(seen + 6) *
-           (static_cast<float>(seen) / static_cast<float>(facing + 1) + 0.5f);
+    constexpr int kDoubt = 6;             // points without which a share says little
+    constexpr float kHiddenWorth = 0.5f;  // what a pose keeps of its score when all is hidden
+    return static_cast<float>(agreeing - free_space) / static_cast<float>(seen + kDoubt) *
+           (static_cast<float>(seen) / static_cast<float>(facing + 1) + kHiddenWorth);
   }
 };
 
 /// Tolerances of a check.
 struct CheckTolerance {
-  float depth = 0.010f;      ///< Metres.
-  float free_depth = 0.05f;  ///< Deeper than this in front of the surface is free space
-                             ///< (paper section V: 5 cm).
-  float normal_cosine = 0.75f;
+  double depth_m = 0.010;
+  double free_depth_m = 0.030;
+  double normal_cosine = 0.75;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("depth_m", depth_m,
+          FieldRule{1e-4, 1, "Depth difference of a model point on the surface, metres."});
+    visit("free_depth_m", free_depth_m,
+          FieldRule{1e-4, 1,
+                    "A point this far in front of the surface is in free space, metres. The paper "
+                    "(section V) has 0.05."});
+    visit("normal_cosine", normal_cosine,
+          FieldRule{-1, 1, "Smallest cosine between the normals of model and surface."});
+  }
 };
 
-/// Checks up to `count` of the model's points; gives up early (returning few agreeing points) when
-/// the first points disagree badly.
+/// Checks up to `count` of the model's points. Stops early, with few agreeing points, when the
+/// first ones disagree badly.
 PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const FastPose& pose,
                      int count, const CheckTolerance& tolerance);
 

@@ -12,20 +12,7 @@
 namespace bpa {
 namespace {
 
-constexpr std::array<const char*, kNumScoreFeatures> kNames = {"range",          "normal",
-                                                               "agreeing",       "free_space",
-                                                               "visibility",     "edge",
-                                                               "edge_support",   "edge_visibility",
-                                                               "shape",          "relative_area",
-                                                               "unknown",        "explained",
-                                                               "evidence",       "range_evidence",
-                                                               "edge_evidence",  "background",
-                                                               "support",        "edge_likelihood",
-                                                               "occlusion_edge", "random_walk",
-                                                               "segment",        "segment_affinity",
-                                                               "fpfh",           "color",
-                                                               "rivals"};
-
+constexpr std::size_t kNumComponents = kScoreComponents.size();
 constexpr std::size_t kKnots = ScoreLayer::kKnots;
 using Places = std::array<double, kKnots>;
 
@@ -61,7 +48,7 @@ std::pair<std::size_t, double> position(const Places& places, double x) {
 }
 
 constexpr Eigen::Index kNumWeights =
-    static_cast<Eigen::Index>(kKnots) * static_cast<Eigen::Index>(kNumScoreFeatures) + 1;
+    static_cast<Eigen::Index>(kKnots) * static_cast<Eigen::Index>(kNumComponents) + 1;
 using Weights = Eigen::Matrix<double, kNumWeights, 1>;
 
 Eigen::Index weight_of(std::size_t feature, std::size_t knot) {
@@ -74,9 +61,9 @@ class FrameLikelihood {
   FrameLikelihood(const ScoreFrame& frame, std::span<const Places> places) : frame_(frame) {
     for (const ScoreFrame::Sample& sample : frame.samples) {
       Row& row = rows_.emplace_back();
-      for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
-        if (std::isnan(sample.features[f])) continue;
-        row.entries[f] = position(places[f], sample.features[f]);
+      for (std::size_t f = 0; f < kNumComponents; ++f) {
+        if (!kScoreComponents[f].learned || std::isnan(sample.values[f])) continue;
+        row.entries[f] = position(places[f], sample.values[f]);
         row.known[f] = true;
       }
     }
@@ -106,7 +93,7 @@ class FrameLikelihood {
     }
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       gradient[0] += by_score[i];
-      for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
+      for (std::size_t f = 0; f < kNumComponents; ++f) {
         if (!rows_[i].known[f]) continue;
         const auto [knot, along] = rows_[i].entries[f];
         gradient[weight_of(f, knot)] += (1 - along) * by_score[i];
@@ -117,13 +104,13 @@ class FrameLikelihood {
 
  private:
   struct Row {
-    std::array<std::pair<std::size_t, double>, kNumScoreFeatures> entries{};
-    std::array<bool, kNumScoreFeatures> known{};
+    std::array<std::pair<std::size_t, double>, kNumComponents> entries{};
+    std::array<bool, kNumComponents> known{};
   };
 
   static double score_of(const Row& row, const Weights& weights) {
     double sum = weights[0];
-    for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
+    for (std::size_t f = 0; f < kNumComponents; ++f) {
       if (!row.known[f]) continue;
       const auto [knot, along] = row.entries[f];
       sum += (1 - along) * weights[weight_of(f, knot)] + along * weights[weight_of(f, knot + 1)];
@@ -139,7 +126,7 @@ class FrameLikelihood {
 void add_penalty(const Weights& weights, Weights& gradient) {
   constexpr double kSize = 0.3, kRoughness = 2;
   gradient.tail(kNumWeights - 1) += kSize * weights.tail(kNumWeights - 1);
-  for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
+  for (std::size_t f = 0; f < kNumComponents; ++f) {
     for (std::size_t k = 1; k + 1 < kKnots; ++k) {
       const Eigen::Index i = weight_of(f, k);
       const double bend = kRoughness * (weights[i - 1] - 2 * weights[i] + weights[i + 1]);
@@ -171,62 +158,27 @@ Weights minimise(const std::vector<FrameLikelihood>& frames, double samples) {
 
 }  // namespace
 
-std::span<const char* const, kNumScoreFeatures> score_feature_names() { return kNames; }
-
-ScoreFeatures score_features(const ScoreComponents& c) {
-  // Evidence grows with the explained surface, not with how near the camera is; far away, fewer
-  // pixels say less.
-  constexpr double kPixelsPerArea = 7e4;  // of a square metre seen from one metre, at 320 x 240
-  const double support = std::min(c.explained_pixels, kPixelsPerArea * c.explained_area);
-  const double evidence = std::log(std::max(1.0, support));
-  return {c.range,
-          c.normal,
-          c.agreeing,
-          c.free_space,
-          c.visibility,
-          c.edge,
-          c.edge_support,
-          c.edge_visibility,
-          std::sqrt(std::max(0.0, c.shape)),
-          c.relative_area,
-          c.unknown,
-          c.explained_pixels / std::max(1.0, c.expected_pixels),
-          evidence,
-          c.range * evidence,
-          c.edge * evidence,
-          c.background,
-          std::sqrt(std::max(0.0, support)),
-          c.edge_likelihood,
-          c.occlusion_edge,
-          c.random_walk,
-          c.segment,
-          c.segment_affinity,
-          c.fpfh,
-          c.color,
-          c.rivals};
-}
-
 double ScoreLayer::Component::at(double x) const {
   if (std::isnan(x)) return 0;
   const auto [knot, along] = position(place, x);
   return (1 - along) * value[knot] + along * value[knot + 1];
 }
 
-double ScoreLayer::log_odds(const ScoreFeatures& features) const {
+double ScoreLayer::log_odds(const ScoreValues& values) const {
   double sum = bias;
-  for (std::size_t i = 0; i < kNumScoreFeatures; ++i) sum += components[i].at(features[i]);
+  for (std::size_t i = 0; i < kNumComponents; ++i) sum += components[i].at(values[i]);
   return sum;
 }
 
 Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames) {
-  std::array<std::vector<std::pair<double, bool>>, kNumScoreFeatures> values;
+  std::array<std::vector<std::pair<double, bool>>, kNumComponents> values;
   std::size_t right = 0, total = 0;
   for (const ScoreFrame& frame : frames) {
     for (const ScoreFrame::Sample& sample : frame.samples) {
       right += sample.right;
       ++total;
-      for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
-        values[f].push_back({sample.features[f], sample.right});
+      for (std::size_t f = 0; f < kNumComponents; ++f) {
+        values[f].push_back({sample.values[f], sample.right});
       }
     }
   }
@@ -235,14 +187,14 @@ Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames) {
                             std::to_string(total) +
                             "; it needs at least 10 right and 10 wrong ones");
   }
-  std::array<Places, kNumScoreFeatures> places;
-  for (std::size_t f = 0; f < kNumScoreFeatures; ++f) places[f] = choose_places(values[f]);
+  std::array<Places, kNumComponents> places;
+  for (std::size_t f = 0; f < kNumComponents; ++f) places[f] = choose_places(values[f]);
   std::vector<FrameLikelihood> likelihoods;
   for (const ScoreFrame& frame : frames) likelihoods.emplace_back(frame, places);
   const Weights weights = minimise(likelihoods, static_cast<double>(total));
   ScoreLayer layer;
   layer.bias = weights[0];
-  for (std::size_t f = 0; f < kNumScoreFeatures; ++f) {
+  for (std::size_t f = 0; f < kNumComponents; ++f) {
     layer.components[f].place = places[f];
     for (std::size_t k = 0; k < kKnots; ++k) {
       layer.components[f].value[k] = weights[weight_of(f, k)];
@@ -260,7 +212,7 @@ Reliability reliability(const ScoreLayer& layer, std::span<const ScoreFrame> fra
   Reliability out;
   for (const ScoreFrame& frame : frames) {
     std::vector<double> scores;
-    for (const auto& sample : frame.samples) scores.push_back(layer.log_odds(sample.features));
+    for (const auto& sample : frame.samples) scores.push_back(layer.log_odds(sample.values));
     const std::vector<double> probabilities = competing_probabilities(scores, frame.competition);
     for (std::size_t i = 0; i < scores.size(); ++i) {
       const double p = probabilities[i];

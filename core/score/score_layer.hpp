@@ -10,17 +10,9 @@
 
 #include "core/base/status.hpp"
 #include "core/score/competition.hpp"
-#include "core/score/placement_score.hpp"
+#include "core/score/components.hpp"
 
 namespace bpa {
-
-/// What the score layer reads of a placement, one number for each name of score_feature_names();
-/// not a number where it is not known.
-constexpr std::size_t kNumScoreFeatures = 25;
-using ScoreFeatures = std::array<double, kNumScoreFeatures>;
-
-std::span<const char* const, kNumScoreFeatures> score_feature_names();
-ScoreFeatures score_features(const ScoreComponents& components);
 
 /// The learned score (paper section V): for each score component the log odds that it contributes,
 /// a piecewise linear function, and their sum, the log odds of the placement against nothing being
@@ -34,46 +26,37 @@ struct ScoreLayer {
                                          ///< known contributes nothing.
     double at(double x) const;
   };
-  std::array<Component, kNumScoreFeatures> components;
+  std::array<Component, kScoreComponents.size()> components;  ///< In the order of the table.
   double bias = 0;
   std::string provenance;  ///< The command, data and seed that made it, for people.
 
-  double log_odds(const ScoreFeatures& features) const;
+  double log_odds(const ScoreValues& values) const;
 };
 
 /// The layers of a detector.
 struct ScoreLayers {
-  /// Orders what round two has aligned; the components of round three are not known to it.
+  /// Orders what round two has aligned. Components of round three are not known to it.
   ScoreLayer round_two;
   /// Of all components: what probabilities come from.
   ScoreLayer round_three;
   /// The same where colours are not known, which are then missed: shapes have to say more.
   ScoreLayer without_color;
 
-  const ScoreLayer& last_for(const ScoreComponents& components) const {
-    return std::isnan(components.color) ? without_color : round_three;
+  const ScoreLayer& last_for(const ScoreValues& values) const {
+    return std::isnan(values[component("color")]) ? without_color : round_three;
   }
 };
 
 /// The layers that `bpa train` made of simulated scenes; see ScoreLayer::provenance.
 const ScoreLayers& default_score_layers();
-inline const ScoreLayer& default_score_layer() { return default_score_layers().round_three; }
 
-/// The learned score of a placement: its log odds.
-inline double placement_score(const ScoreComponents& components,
-                              const ScoreLayer& layer = default_score_layer()) {
-  return layer.log_odds(score_features(components));
-}
-/// The probability of a placement without rivals.
-inline double placement_probability(const ScoreComponents& components,
-                                    const ScoreLayer& layer = default_score_layer()) {
-  return 1 / (1 + std::exp(-placement_score(components, layer)));
-}
+/// The probability of log odds.
+inline double probability_of(double log_odds) { return 1 / (1 + std::exp(-log_odds)); }
 
 /// The placements of a frame that training looks at.
 struct ScoreFrame {
   struct Sample {
-    ScoreFeatures features{};
+    ScoreValues values{};
     bool right = false;
   };
   std::vector<Sample> samples;

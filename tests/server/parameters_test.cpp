@@ -51,7 +51,7 @@ TEST(Parameters, EverySettingIsOneWithItsTypeAndValue) {
   EXPECT_LT(names.size(), lines);
   EXPECT_EQ(parameter(options, "network.peers").string_array_value, options.network.peers);
   EXPECT_EQ(parameter(options, "detection.top_k").integer_value, 20);
-  EXPECT_EQ(parameter(options, "detector.max_range_m").type, ParameterType::kDouble);
+  EXPECT_EQ(parameter(options, "detector.surface.max_range_m").type, ParameterType::kDouble);
   EXPECT_EQ(parameter(options, "nothing").type, ParameterType::kNotSet);
 }
 
@@ -67,7 +67,7 @@ TEST(Parameters, DescriptionsCarryRangesAndWhatIsReadOnly) {
   EXPECT_FALSE(tolerance.read_only);
   EXPECT_TRUE(describe_parameter("input.depth").read_only);
   EXPECT_TRUE(describe_parameter("network.domain").read_only);
-  EXPECT_FALSE(describe_parameter("detector.min_probability").read_only);
+  EXPECT_FALSE(describe_parameter("detector.scene.min_probability").read_only);
   EXPECT_EQ(describe_parameter("nothing").type, ParameterType::kNotSet);
 }
 
@@ -131,11 +131,11 @@ TEST(Parameters, ChangedOnesAreThoseThatDiffer) {
   ServerOptions before, after;
   EXPECT_TRUE(changed_parameters(before, after).empty());
   after.detection.continuous = false;
-  after.detector.max_keypoints += 1;
+  after.detector.features.max_keypoints += 1;
   const auto changed = changed_parameters(before, after);
   ASSERT_EQ(changed.size(), 2U);
   EXPECT_EQ(changed[0].name, "detection.continuous");
-  EXPECT_EQ(changed[1].name, "detector.max_keypoints");
+  EXPECT_EQ(changed[1].name, "detector.features.max_keypoints");
 }
 
 }  // namespace

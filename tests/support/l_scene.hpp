@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/detect/scene_features.hpp"
+#include "core/observation/scene_features.hpp"
 #include "tests/support/posed_models.hpp"
 
 namespace bpa::test {

@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
   recognition.annotate = annotate;
   recognition.models = stub_models;
   recognition.set_options = [](const bpa::DetectorOptions& detector) {
-    std::cerr << "max_keypoints is " << detector.max_keypoints << std::endl;
+    std::cerr << "max_keypoints is " << detector.features.max_keypoints << std::endl;
     return Status();
   };
   recognition.library = "stub";

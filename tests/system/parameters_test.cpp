@@ -90,7 +90,7 @@ TEST_F(ParametersOfAServer, ListGetDescribeSetAndEvents) {
   const auto results = call<rcl::SetParameters>(
       "set_parameters",
       {{integer("detection.top_k", 5), integer("detection.top_k", 0), integer("network.domain", 3),
-        integer("nothing", 1), integer("detector.max_keypoints", 321)}});
+        integer("nothing", 1), integer("detector.features.max_keypoints", 321)}});
   ASSERT_EQ(results.results.size(), 5U);
   EXPECT_TRUE(results.results[0].successful);
   EXPECT_NE(results.results[1].reason.find("between 1 and 100"), std::string::npos);
@@ -117,7 +117,7 @@ TEST_F(ParametersOfAServer, ListGetDescribeSetAndEvents) {
     return false;
   };
   EXPECT_TRUE(changed.wait_for(lock, seconds(10), [&] {
-    return told("detection.top_k", 5) && told("detector.max_keypoints", 321);
+    return told("detection.top_k", 5) && told("detector.features.max_keypoints", 321);
   }));
   EXPECT_FALSE(told("detection.top_k", 6));
 }

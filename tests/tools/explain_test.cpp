@@ -19,9 +19,9 @@ using cli::ExplainedFrame;
 using cli::ExplainFolder;
 
 constexpr const char* kModelPictures[] = {
-    "03_sampled.png", "04_free_space.png",   "05_clusters.png", "06_round_two.png",
-    "07_aligned.png", "08_climbed.png",      "09_turned.png",   "10_final.png",
-    "11_best.png",    "12_best_segments.png"};
+    "03_sampled.png", "04_free_space.png", "05_clusters.png",     "06_round_two.png",
+    "07_aligned.png", "08_climbed.png",    "09_turned.png",       "10_rivals.png",
+    "11_final.png",   "12_best.png",       "13_best_segments.png"};
 
 /// An L on a table, and a brick that is not there.
 class Explain : public ::testing::Test {
@@ -82,14 +82,15 @@ TEST_F(Explain, OneModelIsOneFolderWhosePageAgreesWithTheTrace) {
     expect_picture(std::string("out/") + picture);
     EXPECT_NE(text.find(std::string("src=\"") + picture), std::string::npos) << picture;
   }
-  for (const ObjectTrace::Stage& stage : trace_.objects.at(0).stages) {
-    EXPECT_NE(text.find(cell(stage.name) + cell(std::to_string(stage.poses.size()))),
+  for (const TraceStage& stage : trace_.objects.at(0).stages) {
+    EXPECT_NE(text.find(cell(std::string(stage.name)) + cell(std::to_string(stage.poses.size()))),
               std::string::npos)
         << stage.name;
-    for (const Dropped& dropped : stage.dropped) {
-      EXPECT_NE(text.find(std::to_string(dropped.poses.size()) + " " + dropped.reason),
-                std::string::npos)
-          << stage.name << ": " << dropped.reason;
+    for (const Rejected& rejected : stage.rejected) {
+      EXPECT_NE(
+          text.find(std::to_string(rejected.poses.size()) + " " + std::string(rejected.reason)),
+          std::string::npos)
+          << stage.name << ": " << rejected.reason;
     }
   }
   EXPECT_NE(text.find("It is truly there 1 time"), std::string::npos);
@@ -97,28 +98,24 @@ TEST_F(Explain, OneModelIsOneFolderWhosePageAgreesWithTheTrace) {
   // Every number that the score layer adds up is there, and they add up.
   ASSERT_FALSE(trace_.candidates.empty());
   const Candidate& best = trace_.candidates.front();
-  const ScoreFeatures features = score_features(best.components);
-  const ScoreLayer& layer = default_score_layers().last_for(best.components);
+  const ScoreLayer& layer = default_score_layers().last_for(best.values);
   double sum = layer.bias;
   const std::size_t table = text.find("adds to the log odds</th>");
   ASSERT_NE(table, std::string::npos);
-  for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
-    const double part = layer.components[i].at(features[i]);
+  for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
+    const std::string name(kScoreComponents[i].name);
+    const double part = layer.components[i].at(best.values[i]);
     sum += part;
-    const std::size_t row = text.find("<tr>" + cell(score_feature_names()[i]), table);
-    ASSERT_NE(row, std::string::npos) << score_feature_names()[i];
+    const std::size_t row = text.find("<tr>" + cell(name), table);
+    ASSERT_NE(row, std::string::npos) << name;
     const std::string line = text.substr(row, text.find("</tr>", row) - row);
-    EXPECT_NE(line.find(cell(draw::fixed(features[i], 4))), std::string::npos) << line;
+    EXPECT_NE(line.find(cell(draw::fixed(best.values[i], 4))), std::string::npos) << line;
+    if (!kScoreComponents[i].learned) continue;
     EXPECT_NE(line.find(cell(draw::fixed(part, 3))), std::string::npos) << line;
   }
   EXPECT_NEAR(sum, best.score, 1e-9);
-  EXPECT_NE(text.find(cell("sum") + cell("") + cell("") + cell(draw::fixed(best.score, 3))),
-            std::string::npos);
-  for (const ScoreComponent& component : to_placement(best).components) {
-    EXPECT_NE(text.find(cell(component.name) + cell(draw::fixed(component.value, 4))),
-              std::string::npos)
-        << component.name;
-  }
+  const std::string sum_row = "<tr>" + cell("sum") + cell("") + cell("") + cell("");
+  EXPECT_NE(text.find(sum_row + cell(draw::fixed(best.score, 3))), std::string::npos);
 }
 
 TEST_F(Explain, SeveralModelsHaveAFolderEach) {
@@ -130,7 +127,7 @@ TEST_F(Explain, SeveralModelsHaveAFolderEach) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/03_sampled.png"));
   const std::string text = page("out/index.html");
   for (const char* name : {"l", "brick"}) {
-    expect_picture(std::string("out/") + name + "/10_final.png");
+    expect_picture(std::string("out/") + name + "/11_final.png");
     EXPECT_NE(text.find("href=\"" + std::string(name) + "/index.html\""), std::string::npos);
     EXPECT_FALSE(page(std::string("out/") + name + "/index.html").empty());
   }

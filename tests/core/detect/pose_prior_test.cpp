@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/detect/single_object.hpp"
+#include "core/detect/detect_object.hpp"
 #include "tests/support/l_scene.hpp"
 
 namespace bpa {
@@ -216,22 +216,21 @@ TEST_F(PriorsOf, DecideBetweenPosesThatLookTheSame) {
   const SceneFeatures scene = features_of(everything());
   const auto brick = ambiguous_brick();
   const Pose turned_over = brick_truth_ * Pose{Eigen::Quaterniond(0, 0, 0, 1), {0, 0, 0}};
-  SingleObjectOptions options;
-  options.priors = {prior_at("brick", turned_over)};
-  const auto candidates = detect_object(scene, brick, options);
+  std::vector<PosePrior> given = {prior_at("brick", turned_over)};
+  const auto candidates = detect_object(Search(scene, *brick, {}, default_score_layers(), given));
   ASSERT_FALSE(candidates.empty());
   const PoseError error = pose_error(candidates[0].pose(), turned_over);
   EXPECT_LT(error.position, 0.005);
   EXPECT_LT(error.angle, 0.06);
   // Each score is the image's, which rivals are compared in, and what the prior adds.
-  const ModelPriors priors(options.priors, *brick);
-  const PlacementEvaluator evaluator(scene, brick, options.layers);
+  const ModelPriors priors(given, *brick);
+  const Search search(scene, *brick);
   for (const Candidate& c : candidates) {
     EXPECT_EQ(c.prior, priors.evidence(c.pose()));
-    Candidate alone = evaluator.evaluate(c.refinement);
-    alone.components.rivals = c.components.rivals;
-    const ScoreLayer& layer = options.layers.last_for(alone.components);
-    EXPECT_EQ(c.score, placement_score(alone.components, layer) + c.prior);
+    Candidate alone = search.scored(c.refinement, c.found_by);
+    alone.values[component("rivals")] = c.values[component("rivals")];
+    search.apply_layer(alone);
+    EXPECT_NEAR(c.score, alone.score + c.prior, 1e-9);
   }
   EXPECT_EQ(to_placement(candidates[0]).components.back().name, "prior");
   EXPECT_EQ(to_placement(candidates[0]).components.back().value, candidates[0].prior);
@@ -245,9 +244,8 @@ TEST_F(PriorsOf, WrongOnesDoNotHideAClearObject) {
   const SceneFeatures scene = features_of(everything(), 1);
   Pose elsewhere = l_truth_;
   elsewhere.translation.x() += 0.3;
-  SingleObjectOptions options;
-  options.priors = {prior_at("l", elsewhere, 0.02, 0.1)};
-  const auto candidates = detect_object(scene, l_, options);
+  std::vector<PosePrior> given = {prior_at("l", elsewhere, 0.02, 0.1)};
+  const auto candidates = detect_object(Search(scene, *l_, {}, default_score_layers(), given));
   ASSERT_FALSE(candidates.empty());
   const PoseError error = pose_error(candidates[0].pose(), l_truth_, l_->symmetry);
   EXPECT_LT(error.position, 0.005);
@@ -261,24 +259,25 @@ TEST_F(PriorsOf, FindWhatFeaturesDoNot) {
   scene.keypoints.clear();
   scene.fpfh.clear();
   scene.pairs = {};
-  ASSERT_TRUE(detect_object(scene, l_, {}).empty()) << "nothing suggests a pose";
+  ASSERT_TRUE(detect_object(Search(scene, *l_)).empty()) << "nothing suggests a pose";
   // Off by what a tracker is off by.
-  SingleObjectOptions options;
-  options.priors = {prior_at("l", test::disturbed(l_truth_, 0.02, 0.2, 5), 0.02, 0.2)};
-  const auto candidates = detect_object(scene, l_, options);
+  std::vector<PosePrior> given = {
+      prior_at("l", test::disturbed(l_truth_, 0.02, 0.2, 5), 0.02, 0.2)};
+  const auto candidates = detect_object(Search(scene, *l_, {}, default_score_layers(), given));
   ASSERT_FALSE(candidates.empty());
   const PoseError error = pose_error(candidates[0].pose(), l_truth_, l_->symmetry);
   EXPECT_LT(error.position, 0.005);
   EXPECT_LT(error.angle, 0.06);
 
   // The position alone, or the orientation alone.
-  PosePrior position = options.priors[0], orientation = options.priors[0];
+  PosePrior position = given[0], orientation = given[0];
   position.orientation = {};
   orientation.position.reset();
   for (const PosePrior& prior : {position, orientation}) {
-    options.priors = {prior};
-    options.draws_per_prior = 1000;
-    const auto found = detect_object(scene, l_, options);
+    given = {prior};
+    DetectOptions options;
+    options.sample.draws_per_prior = 1000;
+    const auto found = detect_object(Search(scene, *l_, options, default_score_layers(), given));
     EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const Candidate& c) {
       return pose_error(c.pose(), l_truth_, l_->symmetry).position < 0.01;
     })) << (prior.position ? "position" : "orientation");

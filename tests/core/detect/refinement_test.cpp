@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/detect/bpa_alignment.hpp"
 #include "core/model/model_index.hpp"
 #include "tests/support/l_scene.hpp"
 
@@ -17,6 +18,11 @@ constexpr double kDegree = M_PI / 180;
 
 class RefinementOf : public test::LScene {
  protected:
+  static DetectOptions with_pairs(int count) {
+    DetectOptions options;
+    options.round_two.max_pairs = count;
+    return options;
+  }
   static RefinementOptions long_run() {
     RefinementOptions options;
     options.iterations = 20;
@@ -68,7 +74,7 @@ TEST_F(RefinementOf, FarFromEverythingItStaysWhereItIs) {
   EXPECT_TRUE(is_valid(refined.camera_from_object));
   const Pose behind{start.rotation, {0, 0, -1}};
   EXPECT_EQ(refine_pose(scene, *l_, behind, {}).num_correspondences, 0);
-  const Pose aligned = align_to_surface(scene, *l_, behind, 0.03f, 12, 0);
+  const Pose aligned = align_to_surface(scene, *l_, behind, 0.03f, 0, with_pairs(12));
   EXPECT_EQ(aligned.translation, behind.translation);
 }
 
@@ -77,7 +83,7 @@ TEST_F(RefinementOf, AlignmentByBpaComesNearer) {
   double before = 0, after = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Pose start = test::disturbed(l_truth_, 0.015, 8 * kDegree, seed);
-    const Pose aligned = align_to_surface(scene, *l_, start, 0.03f, 30, seed);
+    const Pose aligned = align_to_surface(scene, *l_, start, 0.03f, seed, with_pairs(30));
     ASSERT_TRUE(is_valid(aligned));
     before += pose_error(start, l_truth_).angle;
     after += pose_error(aligned, l_truth_).angle;
@@ -88,14 +94,14 @@ TEST_F(RefinementOf, AlignmentByBpaComesNearer) {
 TEST_F(RefinementOf, WithoutSegmentsAllSurfaceIsAlignedTo) {
   SceneFeatures scene = features_of(everything());
   for (std::int32_t& label : scene.segmentation.labels.pixels) label = -1;  // no super-pixels
-  AlignmentCues all_surface;
-  all_surface.segments = false;
+  DetectOptions all_surface = with_pairs(30);
+  all_surface.align.use_segments = false;
   double before = 0, after = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Pose start = test::disturbed(l_truth_, 0.015, 8 * kDegree, seed);
-    const Pose sampled = align_to_surface(scene, *l_, start, 0.03f, 30, seed);
+    const Pose sampled = align_to_surface(scene, *l_, start, 0.03f, seed, with_pairs(30));
     EXPECT_EQ(sampled.translation, start.translation) << "nothing to align to";
-    const Pose aligned = align_to_surface(scene, *l_, start, 0.03f, 30, seed, all_surface);
+    const Pose aligned = align_to_surface(scene, *l_, start, 0.03f, seed, all_surface);
     before += pose_error(start, l_truth_).angle;
     after += pose_error(aligned, l_truth_).angle;
   }
@@ -110,14 +116,14 @@ TEST_F(RefinementOf, WithoutEdgesIsAsIfTheModelHadNone) {
   index->views = l_->index->views;
   for (ModelView& view : index->views) view.edges.clear();
   smooth.index = index;
-  AlignmentCues no_edges;
-  no_edges.edges = false;
+  DetectOptions no_edges;
+  no_edges.align.use_edges = false;
   int moved_by_edges = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Pose start = test::disturbed(l_truth_, 0.01, 5 * kDegree, seed);
-    const Pose all = align_to_surface(scene, *l_, start, 0.03f, 12, seed);
-    const Pose left_out = align_to_surface(scene, *l_, start, 0.03f, 12, seed, no_edges);
-    const Pose none_there = align_to_surface(scene, smooth, start, 0.03f, 12, seed);
+    const Pose all = align_to_surface(scene, *l_, start, 0.03f, seed);
+    const Pose left_out = align_to_surface(scene, *l_, start, 0.03f, seed, no_edges);
+    const Pose none_there = align_to_surface(scene, smooth, start, 0.03f, seed);
     EXPECT_EQ(left_out.translation, none_there.translation);
     EXPECT_EQ(left_out.rotation.coeffs(), none_there.rotation.coeffs());
     moved_by_edges += all.translation != left_out.translation;
@@ -128,8 +134,8 @@ TEST_F(RefinementOf, WithoutEdgesIsAsIfTheModelHadNone) {
 TEST_F(RefinementOf, SameStartSameEnd) {
   const SceneFeatures scene = features_of(everything(), 1);
   const Pose start = test::disturbed(l_truth_, 0.01, 5 * kDegree, 3);
-  const Pose first = align_to_surface(scene, *l_, start, 0.03f, 12, 7);
-  const Pose second = align_to_surface(scene, *l_, start, 0.03f, 12, 7);
+  const Pose first = align_to_surface(scene, *l_, start, 0.03f, 7);
+  const Pose second = align_to_surface(scene, *l_, start, 0.03f, 7);
   EXPECT_EQ(first.translation, second.translation);
   EXPECT_EQ(first.rotation.coeffs(), second.rotation.coeffs());
 }

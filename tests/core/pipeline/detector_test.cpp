@@ -63,9 +63,9 @@ class DetectorOf : public test::LScene {
 
   static DetectorOptions quick() {  // enough for two objects
     DetectorOptions options;
-    options.max_references = 200;
-    options.max_refined = 10;
-    options.annealing_steps = 3000;
+    options.features.max_references = 200;
+    options.detect.refine.max_refined = 10;
+    options.scene.annealing_steps = 3000;
     return options;
   }
   static Result<SceneInterpretations> detect(const DetectRequest& request,
@@ -232,11 +232,15 @@ TEST_F(DetectorOf, SearchesOnlyTheRegionOfInterest) {
 
 TEST_F(DetectorOf, WithAnyOneThingLeftOutItsAnswerIsValidAndHoldsBothObjects) {
   const double score_of_all = found({}).interpretations.at(0).score;
-  for (bool DetectorOptions::*part :
-       {&DetectorOptions::use_orientation, &DetectorOptions::use_segments,
-        &DetectorOptions::use_edges, &DetectorOptions::climb, &DetectorOptions::use_round_three}) {
+  using Change = void (*)(DetectOptions&);
+  for (const Change leave_out :
+       {Change([](DetectOptions& o) { o.align.use_orientation = false; }),
+        Change([](DetectOptions& o) { o.align.use_segments = false; }),
+        Change([](DetectOptions& o) { o.align.use_edges = false; }),
+        Change([](DetectOptions& o) { o.climb.max_climbed = 0; }),
+        Change([](DetectOptions& o) { o.score.use_round_three = false; })}) {
     DetectorOptions options = quick();
-    options.*part = false;
+    leave_out(options.detect);
     const auto result = Detector(library_, options).detect(frame_);
     ASSERT_TRUE(result.ok()) << result.status().message;
     ASSERT_FALSE(result->interpretations.empty());
@@ -268,7 +272,7 @@ TEST_F(DetectorOf, WithoutColoursItIsAsIfTheFrameHadNone) {
     std::fill_n(painted.color.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, light ? 220 : 40);
   }
   DetectorOptions options = quick();
-  options.use_color = false;
+  options.features.use_color = false;
   const auto ignored = Detector(library_, options).detect(painted);
   ASSERT_TRUE(ignored.ok()) << ignored.status().message;
   expect_same(*ignored, found({}));

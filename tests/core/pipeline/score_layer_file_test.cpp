@@ -36,7 +36,7 @@ TEST_F(ScoreLayerFile, IsReadAsItWasWritten) {
   EXPECT_EQ(read->round_two.bias, 7);
   EXPECT_EQ(read->round_three.bias, layer.bias);
   EXPECT_EQ(read->round_three.provenance, layer.provenance);
-  for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
+  for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
     EXPECT_EQ(read->round_two.components[i].value, layers.round_two.components[i].value);
     EXPECT_EQ(read->round_three.components[i].place, layer.components[i].place);
     EXPECT_EQ(read->round_three.components[i].value, layer.components[i].value);
@@ -46,7 +46,7 @@ TEST_F(ScoreLayerFile, IsReadAsItWasWritten) {
 TEST_F(ScoreLayerFile, ALibraryWithoutOneHasTheBuiltInOne) {
   const auto read = library_score_layers(folder_.path());
   ASSERT_TRUE(read.ok());
-  EXPECT_EQ(read->round_three.provenance, default_score_layer().provenance);
+  EXPECT_EQ(read->round_three.provenance, default_score_layers().round_three.provenance);
 }
 
 TEST_F(ScoreLayerFile, DamageIsRefusedWithAReason) {
@@ -61,7 +61,7 @@ TEST_F(ScoreLayerFile, DamageIsRefusedWithAReason) {
   other = good;
   other.replace(other.find("\"range\""), 7, "\"rannge\"");
   test::spill(path_, other);
-  EXPECT_NE(refusal().find("range"), std::string::npos);
+  EXPECT_NE(refusal().find("unknown component rannge"), std::string::npos);
 }
 
 }  // namespace

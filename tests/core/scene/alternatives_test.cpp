@@ -24,7 +24,7 @@ const std::shared_ptr<const ObjectModel> kMug = model(1), kBox = model(2);
 // Turned by `degrees` about its own place.
 Candidate turned(const std::shared_ptr<const ObjectModel>& which, double degrees, double odds) {
   Candidate out;
-  out.model = which;
+  out.model = which.get();
   out.refinement.camera_from_object = {
       Eigen::Quaterniond(Eigen::AngleAxisd(degrees * M_PI / 180, Eigen::Vector3d::UnitZ())),
       {0, 0, 1}};

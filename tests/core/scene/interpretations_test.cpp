@@ -27,12 +27,13 @@ std::vector<std::uint32_t> pixels(int first, int count) {
 
 // Candidates stand far apart; what they share is given by their pixels alone.
 Candidate candidate(int number, double probability, std::vector<std::uint32_t> explained) {
-  auto model = std::make_shared<ObjectModel>();
+  static std::vector<std::unique_ptr<ObjectModel>> models;  // candidates keep pointers to them
+  ObjectModel* model = models.emplace_back(std::make_unique<ObjectModel>()).get();
   model->name = "object" + std::to_string(number);
   model->number = number;
   model->diameter = 0.1;
   Candidate out;
-  out.model = std::move(model);
+  out.model = model;
   out.refinement.camera_from_object.translation = {0.3 * number, 0, 1};
   out.probability = probability;
   out.score = std::log(probability / (1 - probability));
@@ -50,7 +51,7 @@ Subset subset_of(const Interpretation& interpretation) {
 
 std::vector<Interpretation> interpret_all(const std::vector<Candidate>& candidates, int observed,
                                           const InterpretationOptions& options) {
-  return interpret(candidates, find_overlaps(candidates, kMaxShared), observed, options);
+  return interpret(candidates, find_overlaps(candidates, options.max_shared), observed, options);
 }
 
 // Ranked by score alone.

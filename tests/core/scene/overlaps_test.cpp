@@ -17,7 +17,7 @@ class OverlapsOf : public ::testing::Test {
   // A brick whose centre is at (x, y, 1) metres, explaining pixels of its own.
   static Candidate brick_at(double x, double y, std::uint32_t first_pixel) {
     Candidate out;
-    out.model = brick_;
+    out.model = brick_.get();
     out.refinement.camera_from_object.translation = {x, y, 1};
     for (std::uint32_t k = 0; k < 100; ++k) out.explained.push_back(first_pixel + k);
     return out;
@@ -46,14 +46,16 @@ TEST_F(OverlapsOf, AModelSeenFromOneSideHasNoInside) {
   open.complete = false;
   Candidate first = brick_at(0, 0, 0), second = brick_at(0.072, 0, 500);
   EXPECT_TRUE(conflict(first, second));
-  first.model = make_object_model(std::move(open)).value();
+  const auto model = make_object_model(std::move(open)).value();
+  first.model = model.get();
   EXPECT_FALSE(conflict(first, second));
 }
 
 TEST_F(OverlapsOf, AThingMayLieOnATray) {
   const float thickness = 0.010f;
   Candidate tray = brick_at(0, 0, 500);
-  tray.model = test::model_of(test::box_mesh({0.08f, 0.08f, thickness / 2}), "tray", 3);
+  const auto model = test::model_of(test::box_mesh({0.08f, 0.08f, thickness / 2}), "tray", 3);
+  tray.model = model.get();
   Candidate brick = brick_at(0, 0, 0);
   EXPECT_TRUE(conflict(tray, brick)) << "through the middle of the brick";
   tray.refinement.camera_from_object.translation.z() +=
@@ -61,7 +63,8 @@ TEST_F(OverlapsOf, AThingMayLieOnATray) {
   EXPECT_FALSE(conflict(tray, brick));
   ModelSource open = *tray.model;
   open.complete = false;
-  tray.model = make_object_model(std::move(open)).value();
+  const auto open_model = make_object_model(std::move(open)).value();
+  tray.model = open_model.get();
   EXPECT_TRUE(conflict(tray, brick)) << "of a model seen from one side only its place is known";
 }
 

@@ -99,7 +99,7 @@ TEST(Likelihood, KnownValues) {
   EXPECT_NEAR(truncated_log(0.1, 0.01), -0.5, 1e-12);
   EXPECT_EQ(truncated_log(0, 0.01), -1);
   EXPECT_EQ(visibility_probability(1.0, 0.9), 1);
-  EXPECT_EQ(visibility_probability(0, 0.9), 1);
+  EXPECT_EQ(visibility_probability(0.0, 0.9), 1);
   EXPECT_NEAR(visibility_probability(1.0, 1.01), std::exp(-0.5), 1e-9);
   EXPECT_LT(visibility_probability(1.0, 1.1), 1e-9);
 }

@@ -51,7 +51,7 @@ std::vector<ScoreFrame> drawn_frames(int count, std::uint64_t seed) {
     for (std::uint32_t i = 0; i < 20; i += 2) {
       double odds[2];
       for (std::uint32_t j = 0; j < 2; ++j) {
-        ScoreFeatures& x = frame.samples[i + j].features;
+        ScoreValues& x = frame.samples[i + j].values;
         x.fill(0.5);
         x[0] = random.uniform(-1, 0);
         x[2] = random.uniform(0, 1);
@@ -72,7 +72,7 @@ TEST(ScoreLayer, TrainingFindsTheLawThatDrewTheLabels) {
   ASSERT_TRUE(layer.ok()) << layer.status().message;
   RandomStream random(2);
   for (int k = 0; k < 50; ++k) {
-    ScoreFeatures x;
+    ScoreValues x;
     x.fill(0.5);
     x[0] = random.uniform(-0.95, -0.05);
     x[2] = random.uniform(0.05, 0.95);
@@ -104,7 +104,7 @@ TEST(ScoreLayer, ValuesOutsideTrainingCountAsTheNearestOnes) {
   layer.components[0] = {{1, 2, 3, 4, 5, 6, 7, 8}, {-3, 0, 1, 0, 0, 0, 0, 5}};
   layer.bias = 0.5;
   const auto at = [&layer](double value) {
-    ScoreFeatures x{};
+    ScoreValues x{};
     x[0] = value;
     return layer.log_odds(x);
   };
@@ -130,14 +130,14 @@ TEST(ScoreLayer, TrainingFindsAStep) {
   frame.samples.resize(8000);
   frame.competition.rivals.resize(8000);
   for (auto& sample : frame.samples) {
-    sample.features.fill(0);
+    sample.values.fill(0);
     const bool known = random.uniform() < 0.5;
-    sample.features[0] = known ? -random.uniform(0.5, 1) : 0;
+    sample.values[0] = known ? -random.uniform(0.5, 1) : 0;
     sample.right = random.uniform() < (known ? 0.2 : 0.8);
   }
   const auto layer = train_score_layer(std::vector<ScoreFrame>{frame});
   ASSERT_TRUE(layer.ok()) << layer.status().message;
-  ScoreFeatures x{};
+  ScoreValues x{};
   EXPECT_NEAR(sigmoid(layer->log_odds(x)), 0.8, 0.03);
   x[0] = -0.7;
   EXPECT_NEAR(sigmoid(layer->log_odds(x)), 0.2, 0.03);
@@ -155,7 +155,7 @@ TEST(ScoreLayer, NeedsBothKindsOfSamples) {
 }
 
 TEST(ScoreLayer, TheBuiltInOneSaysWhereItComesFrom) {
-  EXPECT_NE(default_score_layer().provenance.find("bpa train"), std::string::npos);
+  EXPECT_NE(default_score_layers().round_three.provenance.find("bpa train"), std::string::npos);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/detect/scene_features.hpp"
+#include "core/observation/scene_features.hpp"
 
 #include <numeric>
 
@@ -41,14 +41,14 @@ SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
                              const SceneFeatureOptions& options,
                              const Image<Eigen::Vector3f>& rgb) {
   SceneFeatures scene;
-  EdgeImageOptions edge_options;
+  EdgeImageOptions edge_options = options.edges;
   edge_options.num_threads = options.num_threads;
   scene.edges = scene_edges(map, rgb, edge_options);
-  SuperPixelOptions segment_options;
+  SuperPixelOptions segment_options = options.segments;
   segment_options.num_threads = options.num_threads;
-  constexpr double kColorBlur = 1.5;  // pixels
   if (!rgb.empty()) {
-    scene.cielab = cielab(blur(rgb, kColorBlur, options.num_threads), options.num_threads);
+    scene.cielab =
+        cielab(blur(rgb, options.color_blur_px, options.num_threads), options.num_threads);
   }
   scene.segmentation = super_pixels(map, scene.cielab, scene.edges.likelihood, segment_options);
   scene.image = make_check_image(map);

@@ -2,21 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "core/geometry/pose.hpp"
 #include "core/model/object_model.hpp"
-#include "core/score/pose_check.hpp"
+#include "core/observation/check_image.hpp"
 
 namespace bpa {
 
-/// The score components of a placement (paper section V, round two). Log-likelihoods are truncated
-/// averages in [-1, 0], 0 where observation and model agree exactly.
-struct ScoreComponents {
+/// How the surface and the edges that a placement predicts agree with the depth image (paper
+/// section V, round two). Log-likelihoods are truncated averages in [-1, 0]; 0 is exact agreement.
+struct SurfaceAgreement {
   double range = -1;            ///< Range differences, weighted by visibility probability.
-  double normal = -1;           ///< Normal differences, weighted likewise.
+  double normal = -1;           ///< Normal differences, weighted by visibility probability.
   double visibility = 0;        ///< Share of the facing model points that is not hidden, [0, 1].
   double edge = -1;             ///< Model range edges against the observed surface beyond them.
   double edge_visibility = 0;   ///< Share of the model's edge points that is not hidden.
@@ -31,24 +32,20 @@ struct ScoreComponents {
   double relative_area = 0;     ///< The same, in squares of the model's diameter.
   double unknown = 0;           ///< Share of the facing model points where no depth is known.
   double background = 0;        ///< Share of the agreeing points on labelled background.
-  // Round three; each in [-1, 0], 0 is best; not a number where it is not known. See the functions
-  // of the same names.
-  static constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
-  double edge_likelihood = kNotKnown;
-  double occlusion_edge = kNotKnown;
-  double random_walk = kNotKnown;
-  double segment = kNotKnown;
-  double segment_affinity = kNotKnown;
-  double fpfh = kNotKnown;
-  double color = kNotKnown;   ///< Not known where model or frame has no colour, either.
-  double rivals = kNotKnown;  ///< behind_best() of the object's poses in one place, [-500, 0];
-                              ///< not known where another is by far more probable.
+
+  /// Explained pixels, at most as many as the explained surface covers at one metre and 320 x 240:
+  /// evidence grows with the surface, not with how near the camera is.
+  double support() const {
+    constexpr double kPixelsPerArea = 7e4;  // per m²
+    return std::min(explained_pixels, kPixelsPerArea * explained_area);
+  }
+  double evidence() const { return std::log(std::max(1.0, support())); }
 };
 
-/// Scores `model` at `pose` from about `max_points` of the surface points that its nearest view
-/// shows (0: all of them). The components of round three are left not known.
-ScoreComponents score_placement(const CheckImage& image, const ObjectModel& model, const Pose& pose,
-                                int max_points = 0);
+/// Compares `model` at `pose` with the image at about `max_points` of the surface points that its
+/// nearest view shows (0: all of them).
+SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& model,
+                                 const Pose& pose, int max_points = 0);
 
 /// The sorted indices of the observed pixels that lie on the model.
 std::vector<std::uint32_t> explained_pixels(const CheckImage& image, const ObjectModel& model,

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/detect/single_object.hpp"
+#include "core/detect/detect_object.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -23,7 +23,7 @@ TEST_F(SingleObject, BestPlacementIsTheTruth) {
   for (const float noise : {0.0f, 1.0f}) {
     const SceneFeatures scene = features_of(everything(), noise);
     for (const auto& [model, truth] : {std::pair(l_, l_truth_), std::pair(brick_, brick_truth_)}) {
-      const auto candidates = detect_object(scene, model, {});
+      const auto candidates = detect_object(Search(scene, *model));
       ASSERT_FALSE(candidates.empty()) << model->name;
       const PoseError error = pose_error(candidates[0].pose(), truth, model->symmetry);
       EXPECT_LT(error.position, 0.004) << model->name;
@@ -34,15 +34,15 @@ TEST_F(SingleObject, BestPlacementIsTheTruth) {
 
 TEST_F(SingleObject, PlacementsAreRankedAndDistinct) {
   const SceneFeatures scene = features_of(everything(), 1);
-  SingleObjectOptions options;
-  options.min_score = -20;
-  const auto candidates = detect_object(scene, l_, options);
+  DetectOptions options;
+  options.select.min_score = -20;
+  const auto candidates = detect_object(Search(scene, *l_, options));
   ASSERT_GT(candidates.size(), 1u);
-  EXPECT_LE(candidates.size(), static_cast<std::size_t>(options.max_placements));
+  EXPECT_LE(candidates.size(), static_cast<std::size_t>(options.select.max_placements));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];
-    EXPECT_EQ(c.model, l_);
-    EXPECT_GE(c.score, options.min_score);
+    EXPECT_EQ(c.model, l_.get());
+    EXPECT_GE(c.score, options.select.min_score);
     EXPECT_LE(c.score, candidates[i > 0 ? i - 1 : 0].score);
     EXPECT_NEAR(c.probability, 1 / (1 + std::exp(-c.score)), 1e-9);
     EXPECT_TRUE(std::is_sorted(c.explained.begin(), c.explained.end()));
@@ -51,17 +51,17 @@ TEST_F(SingleObject, PlacementsAreRankedAndDistinct) {
       EXPECT_FALSE(error.position < 0.004 && error.angle < 0.05) << i << " repeats " << j;
     }
   }
-  options.max_placements = 1;
-  EXPECT_EQ(detect_object(scene, l_, options).size(), 1u);
-  options.min_score = 1e9;
-  EXPECT_TRUE(detect_object(scene, l_, options).empty());
+  options.select.max_placements = 1;
+  EXPECT_EQ(detect_object(Search(scene, *l_, options)).size(), 1u);
+  options.select.min_score = 1e9;
+  EXPECT_TRUE(detect_object(Search(scene, *l_, options)).empty());
 }
 
 TEST_F(SingleObject, SameSeedSameCandidates) {
   const SceneFeatures one = features_of(everything(), 1, 1);
   const SceneFeatures many = features_of(everything(), 1, 8);
-  const auto a = detect_object(one, l_, {});
-  const auto b = detect_object(many, l_, {});
+  const auto a = detect_object(Search(one, *l_));
+  const auto b = detect_object(Search(many, *l_));
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].pose().translation, b[i].pose().translation);
@@ -74,8 +74,8 @@ TEST_F(SingleObject, SameSeedSameCandidates) {
 TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
   const SceneFeatures scene = features_of(everything(), 1);
   ObjectTrace trace;
-  const auto traced = detect_object(scene, l_, {}, &trace);
-  const auto plain = detect_object(scene, l_, {});
+  const auto traced = detect_object(Search(scene, *l_), &trace);
+  const auto plain = detect_object(Search(scene, *l_));
   ASSERT_EQ(traced.size(), plain.size());
   for (std::size_t i = 0; i < plain.size(); ++i) {
     EXPECT_EQ(traced[i].pose().translation, plain[i].pose().translation);
@@ -83,11 +83,11 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
   }
   std::vector<std::string> names;
   for (std::size_t s = 0; s < trace.stages.size(); ++s) {
-    const ObjectTrace::Stage& stage = trace.stages[s];
+    const TraceStage& stage = trace.stages[s];
     names.emplace_back(stage.name);
     EXPECT_GE(stage.milliseconds, 0) << stage.name;
     std::size_t all = stage.poses.size();
-    for (const Dropped& dropped : stage.dropped) {
+    for (const Rejected& dropped : stage.rejected) {
       EXPECT_FALSE(dropped.poses.empty()) << stage.name << ": " << dropped.reason;
       all += dropped.poses.size();
     }
@@ -100,20 +100,20 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
     }
   }
   EXPECT_EQ(names, (std::vector<std::string>{"sampled", "free_space", "clusters", "round_two",
-                                             "aligned", "climbed", "turned", "final"}));
+                                             "aligned", "climbed", "turned", "rivals", "final"}));
   EXPECT_GT(trace.stages[0].poses.size(), 1000u);
-  EXPECT_TRUE(trace.stages[3].dropped.empty()) << "round two drops nothing";
+  EXPECT_TRUE(trace.stages[3].rejected.empty()) << "round two rejects nothing";
   ASSERT_EQ(trace.stages.back().poses.size(), plain.size());
   EXPECT_LT((trace.stages.back().poses[0].translation.cast<double>() - plain[0].pose().translation)
                 .norm(),
             1e-6);
   // What was dropped over free space does hang in it: seen again, with all points.
-  for (const Dropped& dropped : trace.stages[1].dropped) {
-    if (std::string(dropped.reason) != "over 20 % in free space") continue;
+  for (const Rejected& dropped : trace.stages[1].rejected) {
+    if (dropped.reason != "too much in free space") continue;
     int hanging = 0;
     for (const FastPose& pose : dropped.poses) {
       CheckTolerance tolerance;
-      tolerance.free_depth = 0.03f;
+      tolerance.free_depth_m = CheckOptions().free_depth_m;
       const PoseCheck check = check_pose(scene.image, l_->index->check, pose, 1024, tolerance);
       hanging += check.free_space > 0;
     }
@@ -123,23 +123,24 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
 
 TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
   const SceneFeatures scene = features_of(everything(), 1);
-  SingleObjectOptions options;
-  options.use_round_three = false;
-  const auto candidates = detect_object(scene, l_, options);
+  DetectOptions options;
+  options.score.use_round_three = false;
+  const auto candidates = detect_object(Search(scene, *l_, options));
   ASSERT_FALSE(candidates.empty());
   EXPECT_LT(pose_error(candidates[0].pose(), l_truth_, l_->symmetry).position, 0.01);
   const std::set<std::string> third = {
       "edge_likelihood",  "occlusion_edge", "random_walk", "segment",
       "segment_affinity", "fpfh",           "color",       "rivals"};
   for (const Candidate& candidate : candidates) {
-    const ScoreFeatures features = score_features(candidate.components);
-    double sum = options.layers.round_two.bias;
+    const ScoreLayer& layer = default_score_layers().round_two;
+    double sum = layer.bias;
     std::size_t left_out = 0;
-    for (std::size_t i = 0; i < kNumScoreFeatures; ++i) {
-      const bool skip = third.contains(score_feature_names()[i]);
-      EXPECT_EQ(std::isnan(features[i]), skip) << score_feature_names()[i];
+    for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
+      const std::string name(kScoreComponents[i].name);
+      const bool skip = third.contains(name);
+      EXPECT_EQ(std::isnan(candidate.values[i]), skip) << name;
       left_out += skip;
-      if (!skip) sum += options.layers.round_two.components[i].at(features[i]);
+      if (!skip) sum += layer.components[i].at(candidate.values[i]);
     }
     EXPECT_EQ(left_out, third.size());
     EXPECT_NEAR(candidate.score, sum, 1e-9);
@@ -151,33 +152,34 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
 
 TEST_F(SingleObject, OfPosesInOnePlaceTheBestIsBehindNone) {
   const SceneFeatures scene = features_of(everything(), 1);
-  const auto candidates = detect_object(scene, l_, {});
+  const auto candidates = detect_object(Search(scene, *l_));
   ASSERT_FALSE(candidates.empty());
   EXPECT_LT(pose_error(candidates[0].pose(), l_truth_, l_->symmetry).position, 0.01);
-  EXPECT_GT(candidates[0].components.rivals, -10);
+  EXPECT_GT(candidates[0].values[component("rivals")], -10);
   const PredictedSurface first = predict_whole_surface(scene.image, *l_, candidates[0].pose());
   int behind = 0;
   for (const Candidate& c : candidates) {
     const double distance = (c.pose().translation - candidates[0].pose().translation).norm();
-    if (distance > kSamePlace * l_->diameter || std::isnan(c.components.rivals)) continue;
-    EXPECT_LE(c.components.rivals, 0);
+    if (distance > kSamePlace * l_->diameter || std::isnan(c.values[component("rivals")])) continue;
+    EXPECT_LE(c.values[component("rivals")], 0);
     const double evidence =
         rival_evidence(scene.image, predict_whole_surface(scene.image, *l_, c.pose()), first);
     EXPECT_LE(evidence, 10) << "better than what is called the best";
-    behind += c.components.rivals < -30;
+    behind += c.values[component("rivals")] < -30;
   }
   EXPECT_GT(behind, 0);
 }
 
 TEST_F(SingleObject, EmptyTableHoldsNothingProbable) {
-  for (const Candidate& c : detect_object(features_of(table_only()), l_, {})) {
+  const SceneFeatures scene = features_of(table_only());
+  for (const Candidate& c : detect_object(Search(scene, *l_))) {
     EXPECT_LT(c.probability, 0.5);
   }
 }
 
 TEST_F(SingleObject, UncertaintyIsReportedInBothForms) {
   const SceneFeatures scene = features_of(everything(), 1);
-  const auto candidates = detect_object(scene, l_, {});
+  const auto candidates = detect_object(Search(scene, *l_));
   ASSERT_FALSE(candidates.empty());
   const Placement placement = to_placement(candidates[0]);
   EXPECT_EQ(placement.model, "l");

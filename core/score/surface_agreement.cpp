@@ -1,20 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/score/placement_score.hpp"
+#include "core/score/surface_agreement.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/model_index.hpp"
+#include "core/score/likelihood.hpp"
+
 namespace bpa {
 namespace {
 
-constexpr float kVisibilitySigma = 0.01f;  // paper section V, footnote: 1 cm
-constexpr float kNormalSigma = 0.15f;      // radians: what poses and models are off by
-constexpr float kLateralSigma = 0.003f;    // metres, beside a pixel: the same across the view
-constexpr float kTruncation = 4.5f;        // three standard deviations, squared and halved
-constexpr float kModelSigma = 0.0025f;     // metres: what models and their poses are off by
-constexpr float kOnSurface = 0.006f;       // metres, plus noise
+constexpr float kNormalSigma = 0.15f;    // radians: what poses and models are off by
+constexpr float kLateralSigma = 0.003f;  // metres, beside a pixel: the same across the view
+constexpr float kTruncation = 4.5f;      // three standard deviations, squared and halved
+constexpr float kModelSigma = 0.0025f;   // metres: what models and their poses are off by
+constexpr float kOnSurface = 0.006f;     // metres, plus noise
 
 struct Sums {
   double weight = 0, range = 0, normal = 0, free = 0, agreeing = 0;
@@ -22,12 +24,6 @@ struct Sums {
   int facing = 0, visible = 0, unknown = 0;
   Eigen::Matrix3f normals = Eigen::Matrix3f::Zero();  // of agreeing points, squared
 };
-
-float visibility_probability(float difference) {
-  if (difference >= 0) return 1;  // the model is in front of what was observed, or on it
-  const float z = difference / kVisibilitySigma;
-  return std::exp(-0.5f * z * z);
-}
 
 bool project(const CheckImage& image, const Eigen::Vector3f& point, int& u, int& v) {
   if (point.z() < 0.1f) return false;
@@ -72,7 +68,7 @@ bool add_point(const CheckPixel& pixel, const SeenPoint& seen, Sums& sums) {
   const Eigen::Vector3f& point = seen.point;
   const Eigen::Vector3f& normal = seen.normal;
   const float difference = pixel.depth - point.z();
-  const float visible = visibility_probability(difference);
+  const float visible = visibility_probability(pixel.depth, point.z());
   const float weight = visible * seen.noise.inside;
   sums.visible += visible > 0.5f;
   // Depth errors along the ray grow with the slant of the surface.
@@ -97,7 +93,7 @@ bool add_point(const CheckPixel& pixel, const SeenPoint& seen, Sums& sums) {
 // Beyond a range edge of the model the observed surface must not simply go on: it may be further
 // away, nearer (something in front), or turn (the object stands on it).
 void score_edges(const CheckImage& image, const ObjectModel& model, const ModelView& view,
-                 const FastPose& pose, std::size_t max_points, ScoreComponents& out) {
+                 const FastPose& pose, std::size_t max_points, SurfaceAgreement& out) {
   if (!model.complete) {  // has no edges to speak for or against it
     out.edge = 0;
     out.edge_support = 0.5;
@@ -130,10 +126,6 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const ModelV
   out.edge = visible > 0 ? -static_cast<double>(goes_on) / visible : -1;
 }
 
-}  // namespace
-
-namespace {
-
 // The k-th visible point of the view; false where it faces away or falls outside the image.
 bool see_point(const CheckImage& image, const ObjectModel& model, const ModelView& view,
                const FastPose& pose, std::size_t k, SeenPoint& out) {
@@ -160,8 +152,8 @@ bool see_point(const CheckImage& image, const ObjectModel& model, const ModelVie
 
 }  // namespace
 
-ScoreComponents score_placement(const CheckImage& image, const ObjectModel& model, const Pose& pose,
-                                int max_points) {
+SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& model,
+                                 const Pose& pose, int max_points) {
   const FastPose fast = to_fast(pose);
   const ModelView& view = nearest_view(model.index->views, fast);
   const std::size_t step =
@@ -171,7 +163,7 @@ ScoreComponents score_placement(const CheckImage& image, const ObjectModel& mode
   // Pixels that a point's surface covers, seen from the front at one metre.
   const double pixels_per_point = model.index->point_area * static_cast<double>(step) *
                                   static_cast<double>(image.fx) * image.fy;
-  ScoreComponents out;
+  SurfaceAgreement out;
   Sums sums;
   SeenPoint seen;
   for (std::size_t k = 0; k < view.visible.size(); k += step) {

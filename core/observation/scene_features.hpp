@@ -10,7 +10,7 @@
 #include "core/features/edge_image.hpp"
 #include "core/features/fpfh.hpp"
 #include "core/features/pair_voting.hpp"
-#include "core/score/pose_check.hpp"
+#include "core/observation/check_image.hpp"
 #include "core/segment/super_pixels.hpp"
 
 namespace bpa {
@@ -32,11 +32,34 @@ struct SceneFeatures {
 
 struct SceneFeatureOptions {
   int max_keypoints = 600;
+  int max_references = 800;
   double coarse_spacing_m = 0.010;
-  int max_references = 800;    ///< Points whose pairs vote for poses.
-  double pair_reach_m = 0.30;  ///< Longest pairs.
+  double pair_reach_m = 0.30;
+  bool use_color = true;
+  double color_blur_px = 1.5;
+  EdgeImageOptions edges;
+  SuperPixelOptions segments;
   std::uint64_t seed = 0;
-  int num_threads = 0;
+  int num_threads = 0;  ///< 0: one per core. Does not change the result.
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("max_keypoints", max_keypoints,
+          FieldRule{10, 100000, "Scene points whose features are matched with the models."});
+    visit("max_references", max_references,
+          FieldRule{0, 100000, "Scene points whose pairs with others vote for poses."});
+    visit("coarse_spacing_m", coarse_spacing_m,
+          FieldRule{0.002, 0.1, "Spacing of the points that make pairs, metres."});
+    visit("pair_reach_m", pair_reach_m, FieldRule{0.01, 5, "Length of the longest pairs, metres."});
+    visit("use_color", use_color, FieldRule{0, 1, "Use the frame's colours; false ignores them."});
+    visit("color_blur_px", color_blur_px,
+          FieldRule{0, 10, "Standard deviation of the blur of the colours, pixels."});
+  }
+  template <class Visitor>
+  void visit_groups(Visitor&& visit) {
+    visit("edges", edges, "The edge image.");
+    visit("segments", segments, "Super-pixels.");
+  }
 };
 
 /// `map` with its background labelled; `rgb` is the frame's reduced_color, empty without colour.

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/score/surface_agreement.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +18,7 @@ using test::Solid;
 
 const Pose kCameraFromWorld = test::look_at({0.1, -0.6, 0.5}, {0, 0, 0});
 
-class PlacementScore : public ::testing::Test {
+class SurfaceAgreementOf : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     l_ = test::l_model();
@@ -36,12 +38,21 @@ class PlacementScore : public ::testing::Test {
     return test::together({test::table(kCameraFromWorld)}, test::l_solids(truth_));
   }
 
+  // Of the surface alone.
+  static double log_odds(const CheckImage& image, const ObjectModel& model, const Pose& pose) {
+    SceneFeatures scene;
+    scene.image = image;
+    const FeaturePlaces places(model);
+    Evidence evidence(scene, places, pose);
+    return default_score_layers().round_three.log_odds(measure(evidence, Round::two));
+  }
+
   static inline std::shared_ptr<const ObjectModel> l_, brick_;
   static inline const Pose truth_ = kCameraFromWorld * test::standing_at(0, 0, 0.02, 0.7);
 };
 
-TEST_F(PlacementScore, ComponentsOfTheTruthAreNearlyPerfect) {
-  const ScoreComponents c = score_placement(image_of(l_on_table()), *l_, truth_);
+TEST_F(SurfaceAgreementOf, ComponentsOfTheTruthAreNearlyPerfect) {
+  const SurfaceAgreement c = measure_surface(image_of(l_on_table()), *l_, truth_);
   EXPECT_GT(c.range, -0.15);
   EXPECT_GT(c.normal, -0.2);
   EXPECT_GT(c.visibility, 0.9);
@@ -52,14 +63,13 @@ TEST_F(PlacementScore, ComponentsOfTheTruthAreNearlyPerfect) {
   EXPECT_GT(c.shape, 0.05) << "several faces are seen";
 }
 
-TEST_F(PlacementScore, TruthScoresHigherThanWhatIsBesideIt) {
+TEST_F(SurfaceAgreementOf, TruthScoresHigherThanWhatIsBesideIt) {
   for (const float noise : {0.0f, 1.0f}) {
     const CheckImage image = image_of(l_on_table(), noise);
-    const double best = placement_score(score_placement(image, *l_, truth_));
+    const double best = log_odds(image, *l_, truth_);
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
       const auto score = [&](double distance, double angle) {
-        return placement_score(
-            score_placement(image, *l_, test::disturbed(truth_, distance, angle, seed)));
+        return log_odds(image, *l_, test::disturbed(truth_, distance, angle, seed));
       };
       EXPECT_LT(score(0.03, 0), best);
       EXPECT_LT(score(0, 0.3), best);
@@ -68,14 +78,14 @@ TEST_F(PlacementScore, TruthScoresHigherThanWhatIsBesideIt) {
   }
 }
 
-TEST_F(PlacementScore, WhatHidesItDoesNotCountAgainstIt) {
+TEST_F(SurfaceAgreementOf, WhatHidesItDoesNotCountAgainstIt) {
   const Eigen::Vector3d middle = truth_ * Eigen::Vector3d(0, 0, 0.02);
   const Solid board{Solid::Kind::box,
                     {0.5, 0.5, 0.005},
                     {Eigen::Quaterniond::Identity(), 0.6 * middle + Eigen::Vector3d(0.5, 0, 0)}};
-  const ScoreComponents open = score_placement(image_of(l_on_table()), *l_, truth_);
+  const SurfaceAgreement open = measure_surface(image_of(l_on_table()), *l_, truth_);
   const CheckImage image = image_of(test::together(l_on_table(), {board}));
-  const ScoreComponents hidden = score_placement(image, *l_, truth_);
+  const SurfaceAgreement hidden = measure_surface(image, *l_, truth_);
   EXPECT_LT(hidden.visibility, open.visibility - 0.2);
   EXPECT_GT(hidden.range, open.range - 0.1);
   EXPECT_GT(hidden.normal, open.normal - 0.1);
@@ -86,50 +96,50 @@ TEST_F(PlacementScore, WhatHidesItDoesNotCountAgainstIt) {
 }
 
 // A pose that is off by less than a pixel's width is no evidence of free space.
-TEST_F(PlacementScore, WhatIsSeenBesideTheSilhouetteCountsForLittle) {
+TEST_F(SurfaceAgreementOf, WhatIsSeenBesideTheSilhouetteCountsForLittle) {
   const CheckImage image = image_of(l_on_table());
   for (const double x : {-0.003, 0.003}) {
     Pose beside = truth_;
     beside.translation.x() += x;
-    const ScoreComponents c = score_placement(image, *l_, beside);
+    const SurfaceAgreement c = measure_surface(image, *l_, beside);
     EXPECT_LT(c.free_space, 0.02);
     EXPECT_GT(c.range, -0.2);
   }
   Pose far = truth_;
   far.translation.x() += 0.03;
-  EXPECT_GT(score_placement(image, *l_, far).free_space, 0.08);
+  EXPECT_GT(measure_surface(image, *l_, far).free_space, 0.08);
 }
 
-TEST_F(PlacementScore, FreeSpaceCountsAgainstIt) {
+TEST_F(SurfaceAgreementOf, FreeSpaceCountsAgainstIt) {
   const CheckImage image = image_of({test::table(kCameraFromWorld)});
   const Pose above = kCameraFromWorld * test::standing_at(0, 0, 0.15, 0.7);
-  const ScoreComponents c = score_placement(image, *l_, above);
+  const SurfaceAgreement c = measure_surface(image, *l_, above);
   EXPECT_GT(c.free_space, 0.9);
   EXPECT_LT(c.agreeing, 0.1);
 }
 
-TEST_F(PlacementScore, AFaceInTheMiddleOfALargePlaneIsPenalised) {
+TEST_F(SurfaceAgreementOf, AFaceInTheMiddleOfALargePlaneIsPenalised) {
   // The brick sunk into the table: its top is where the table is, but nothing ends there.
   const Pose sunk =
       kCameraFromWorld * test::standing_at(0, 0, -static_cast<double>(test::kBrickHalf.z()), 0.3);
-  const ScoreComponents flush =
-      score_placement(image_of({test::table(kCameraFromWorld)}), *brick_, sunk);
+  const CheckImage table = image_of({test::table(kCameraFromWorld)});
+  const SurfaceAgreement flush = measure_surface(table, *brick_, sunk);
   const Pose on =
       kCameraFromWorld * test::standing_at(0, 0, static_cast<double>(test::kBrickHalf.z()), 0.3);
-  const ScoreComponents standing = score_placement(
-      image_of({test::table(kCameraFromWorld), test::brick_solid(on)}), *brick_, on);
+  const CheckImage both = image_of({test::table(kCameraFromWorld), test::brick_solid(on)});
+  const SurfaceAgreement standing = measure_surface(both, *brick_, on);
   EXPECT_LT(flush.edge, -0.4);
   EXPECT_GT(standing.edge, -0.25);
   EXPECT_LT(flush.edge_support, standing.edge_support - 0.3);
   EXPECT_LT(flush.shape, 0.02) << "one flat face";
-  EXPECT_GT(placement_score(standing), placement_score(flush) + 2);
+  EXPECT_GT(log_odds(both, *brick_, on), log_odds(table, *brick_, sunk) + 2);
 }
 
-TEST_F(PlacementScore, ExplainsThePixelsOfTheObject) {
+TEST_F(SurfaceAgreementOf, ExplainsThePixelsOfTheObject) {
   const auto rendered = test::render(l_on_table(), test::kinect_camera());
   const SurfaceMap map = surface_map(rendered.frame, {});
   const CheckImage image = make_check_image(map);
-  const ScoreComponents c = score_placement(image, *l_, truth_);
+  const SurfaceAgreement c = measure_surface(image, *l_, truth_);
   const std::vector<std::uint32_t> explained = explained_pixels(image, *l_, truth_);
   // The pixels counted one by one, and those that the surface points cover by their area.
   EXPECT_NEAR(c.explained_pixels, static_cast<double>(explained.size()),
@@ -145,33 +155,34 @@ TEST_F(PlacementScore, ExplainsThePixelsOfTheObject) {
   EXPECT_GT(on_object, 0.7 * seen);
 }
 
-TEST_F(PlacementScore, OutOfViewIsImprobable) {
+TEST_F(SurfaceAgreementOf, OutOfViewIsImprobable) {
   const CheckImage image = image_of(l_on_table());
   for (const Eigen::Vector3d& place : {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(9, 0, 1),
                                        Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, 0, 1e4)}) {
-    const ScoreComponents c = score_placement(image, *l_, {truth_.rotation, place});
+    const SurfaceAgreement c = measure_surface(image, *l_, {truth_.rotation, place});
     EXPECT_EQ(c.explained_pixels, 0);
-    EXPECT_LT(placement_score(c), placement_score(score_placement(image, *l_, truth_)) - 3);
-    EXPECT_TRUE(std::isfinite(placement_score(c)));
+    const double score = log_odds(image, *l_, {truth_.rotation, place});
+    EXPECT_LT(score, log_odds(image, *l_, truth_) - 3);
+    EXPECT_TRUE(std::isfinite(score));
   }
 }
 
-TEST_F(PlacementScore, NoDepthIsNeitherForNorAgainst) {
+TEST_F(SurfaceAgreementOf, NoDepthIsNeitherForNorAgainst) {
   auto rendered = test::render(l_on_table(), test::kinect_camera());
   for (std::size_t i = 0; i < rendered.frame.depth.size(); ++i) {
     if (rendered.solid[i] >= 1 && i % 640 < 320) rendered.frame.depth[i] = 0;
   }
-  const ScoreComponents c =
-      score_placement(make_check_image(surface_map(rendered.frame, {})), *l_, truth_);
+  const SurfaceAgreement c =
+      measure_surface(make_check_image(surface_map(rendered.frame, {})), *l_, truth_);
   EXPECT_GT(c.agreeing, 0.8);
   EXPECT_GT(c.range, -0.2);
   EXPECT_LT(c.free_space, 0.05);
 }
 
-TEST_F(PlacementScore, AFewPointsSayNearlyTheSameAsAll) {
+TEST_F(SurfaceAgreementOf, AFewPointsSayNearlyTheSameAsAll) {
   const CheckImage image = image_of(l_on_table(), 1);
-  const ScoreComponents all = score_placement(image, *l_, truth_);
-  const ScoreComponents few = score_placement(image, *l_, truth_, 200);
+  const SurfaceAgreement all = measure_surface(image, *l_, truth_);
+  const SurfaceAgreement few = measure_surface(image, *l_, truth_, 200);
   EXPECT_NEAR(few.range, all.range, 0.06);
   EXPECT_NEAR(few.normal, all.normal, 0.06);
   EXPECT_NEAR(few.agreeing, all.agreeing, 0.08);

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/detect/refinement.hpp"
+#include "core/model/object_model.hpp"
+#include "core/result/placement.hpp"
+#include "core/score/components.hpp"
+
+namespace bpa {
+
+/// What suggested a pose: an FPFH match, the votes of oriented point pairs, or the caller's prior.
+enum class Source : std::uint8_t { feature, pairs, prior };
+
+/// One model at one pose, from the first guess to the placement that is returned. Later stages fill
+/// the later fields.
+struct Candidate {
+  const ObjectModel* model = nullptr;  ///< Lives as long as the library.
+  /// The pose (camera_from_object) and what the last alignment knew of it.
+  Refinement refinement;
+  FastPose fast;  ///< The pose in single precision; up to stage cluster.
+  Source found_by = Source::feature;
+  int scene_point = -1;   ///< Of the correspondence: index into SceneFeatures::surface (feature) or
+                          ///< ::coarse (pairs); -1 for a prior.
+  int model_point = -1;   ///< Index into ModelIndex::features or ::coarse; -1 for a prior.
+  float check_score = 0;  ///< PoseCheck::score(); up to stage cluster.
+
+  ScoreValues values{};    ///< Since refine.
+  double prior = 0;        ///< Log odds that the caller's priors add; 0 without any.
+  double score = 0;        ///< Log odds by the learned layer, with `prior`; since round_two.
+  double probability = 0;  ///< Of that score, without rivals. Since refine.
+  std::vector<std::uint32_t> explained;  ///< Sorted pixels of the reduced image on the model.
+
+  const Pose& pose() const { return refinement.camera_from_object; }
+};
+using Candidates = std::vector<Candidate>;
+
+/// Two placements of one model that are nearer than this, in diameters, claim the same place.
+constexpr double kSamePlace = 0.4;
+
+/// The candidate as it is reported: with covariance, orientation uncertainty and named components.
+Placement to_placement(const Candidate& candidate);
+
+}  // namespace bpa

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "core/detect/stages.hpp"
+
+namespace bpa {
+namespace {
+
+// The best pose so far and its score.
+struct Best {
+  Pose pose;
+  double score = 0;
+
+  bool offer(const Pose& other, double other_score) {
+    if (other_score <= score) return false;
+    pose = other;
+    score = other_score;
+    return true;
+  }
+};
+
+Pose turned(const Pose& pose, const Eigen::Vector3d& rotation_vector) {
+  Pose out = pose;
+  out.rotation = (rotation_from_vector(rotation_vector) * out.rotation).normalized();
+  return out;
+}
+
+// Along each axis of the camera, there and back.
+Eigen::Vector3d direction(int move) {
+  return (move % 2 ? -1 : 1) * Eigen::Vector3d::Unit(move / 2 % 3);
+}
+
+// Alignments from six poses beside the start: from there, gradients may lead elsewhere.
+void align_from_beside(const Search& search, Best& best) {
+  const ClimbOptions& options = search.options.climb;
+  const Pose start = best.pose;
+  for (int turn = 0; turn < 6; ++turn) {
+    const Pose beside = turned(start, options.beside_rad * direction(turn));
+    const Pose refined = search.refine(beside, options.refinement).camera_from_object;
+    best.offer(refined, search.quick_score(refined));
+  }
+}
+
+// Small steps along and about each axis of the camera; smaller ones when none improves.
+void step_uphill(const Search& search, Best& best) {
+  double step = search.options.climb.step_m;
+  for (int round = 0; round < search.options.climb.rounds; ++round) {
+    const double angle = step / (0.5 * search.model.diameter);
+    bool improved = false;
+    for (int move = 0; move < 12; ++move) {
+      Pose pose = best.pose;
+      if (move < 6) {
+        pose.translation += step * direction(move);
+      } else {
+        pose = turned(pose, angle * direction(move));
+      }
+      improved |= best.offer(pose, search.quick_score(pose));
+    }
+    if (!improved) step *= 0.5;
+  }
+}
+
+}  // namespace
+
+Candidates climb(const Search& search, Candidates refined) {
+  RefinementOptions still = search.options.refine.refinement;  // only measures what is known
+  still.iterations = 0;
+  still.start_gate_m = still.end_gate_m;
+  const auto most = static_cast<std::size_t>(search.options.climb.max_climbed);
+  for (std::size_t i = 0; i < std::min(refined.size(), most); ++i) {
+    if (search.late()) break;
+    Best best{refined[i].pose(), search.quick_score(refined[i].pose())};
+    align_from_beside(search, best);
+    step_uphill(search, best);
+    Candidate moved = search.scored(search.refine(best.pose, still), refined[i].found_by);
+    if (moved.score > refined[i].score) refined[i] = std::move(moved);
+  }
+  return refined;
+}
+
+}  // namespace bpa

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "core/align/align.hpp"
+#include "core/detect/correspondence_pairs.hpp"
+#include "core/detect/ranking.hpp"
+#include "core/detect/stages.hpp"
+#include "core/model/model_index.hpp"
+
+namespace bpa {
+namespace {
+
+// Candidates near the first, which is the best.
+struct Cluster {
+  Pose pose;
+  std::vector<const Candidate*> members;
+};
+
+std::vector<Cluster> group(const Search& search, const Candidates& candidates) {
+  constexpr double kFar = 3 * kPoseTolerance_m;  // whatever the symmetry
+  std::vector<Cluster> clusters;
+  for (const Candidate& candidate : candidates) {
+    const Pose pose = to_pose(candidate.fast);
+    const auto found = std::find_if(clusters.begin(), clusters.end(), [&](const Cluster& c) {
+      if ((c.pose.translation - pose.translation).norm() > kFar) return false;
+      const PoseError error = pose_error(pose, c.pose, search.model.symmetry);
+      return error.position < kPoseTolerance_m && error.angle < kPoseTolerance_rad;
+    });
+    if (found != clusters.end()) {
+      found->members.push_back(&candidate);
+      search.reject("in the cluster of a better one", candidate.fast);
+    } else {
+      clusters.push_back({pose, {&candidate}});
+    }
+  }
+  return clusters;
+}
+
+// BPA from the cluster's correspondences, those of its best members first. The best member where
+// there are none, since priors suggested all.
+Pose aligned_pose(const Search& search, const Cluster& cluster) {
+  const auto most = static_cast<std::size_t>(search.options.cluster.max_correspondences);
+  std::vector<align::OrientedPair> pairs;
+  for (const Candidate* member : cluster.members) {
+    if (pairs.size() == most) break;
+    if (member->found_by != Source::prior) pairs.push_back(oriented_pair(search, *member));
+  }
+  if (pairs.empty()) return to_pose(cluster.members.front()->fast);
+  align::Correspondences data;
+  data.oriented = pairs;
+  return align::bpa_mode(data).camera_from_object;
+}
+
+// The best member, or the cluster aligned again where that scores better.
+Candidate best_of(const Search& search, const Cluster& cluster) {
+  const CheckOptions& options = search.options.check;
+  const CheckTolerance tolerance = check_tolerance(options, search.model);
+  const auto check_score = [&](const FastPose& pose) {
+    return check_pose(search.scene.image, search.model.index->check, pose, options.recheck_points,
+                      tolerance)
+        .score();
+  };
+  Candidate best = *cluster.members.front();
+  best.check_score = check_score(best.fast);
+  const FastPose aligned = to_fast(aligned_pose(search, cluster));
+  const float score = check_score(aligned);
+  if (score > best.check_score) {
+    best.fast = aligned;
+    best.check_score = score;
+  }
+  best.refinement.camera_from_object = to_pose(best.fast);
+  const bool suggested =
+      std::any_of(cluster.members.begin(), cluster.members.end(),
+                  [](const Candidate* member) { return member->found_by == Source::prior; });
+  if (suggested) best.found_by = Source::prior;
+  return best;
+}
+
+// The best; some places are kept for what priors suggested.
+void keep_clusters(const Search& search, Candidates& clusters) {
+  const ClusterOptions& options = search.options.cluster;
+  const auto most_suggested =
+      static_cast<std::size_t>(options.suggested_share * options.max_clusters);
+  sort_by_check_score(clusters);
+  Candidates suggested, others;
+  for (Candidate& cluster : clusters) {
+    const bool first = cluster.found_by == Source::prior && suggested.size() < most_suggested;
+    (first ? suggested : others).push_back(std::move(cluster));
+  }
+  keep_best_of_places(search, options.max_clusters - static_cast<int>(suggested.size()),
+                      options.rank_penalty, others);
+  clusters = std::move(suggested);
+  std::move(others.begin(), others.end(), std::back_inserter(clusters));
+  sort_by_check_score(clusters);
+}
+
+}  // namespace
+
+Candidates cluster(const Search& search, Candidates checked) {
+  const auto min_features = static_cast<std::size_t>(search.options.cluster.min_features);
+  Candidates out;
+  for (const Cluster& group_of_poses : group(search, checked)) {
+    const Candidate& first = *group_of_poses.members.front();
+    if (group_of_poses.members.size() < min_features && first.found_by == Source::feature) {
+      search.reject("too few feature matches", first.fast);
+    } else {
+      out.push_back(best_of(search, group_of_poses));
+    }
+  }
+  keep_clusters(search, out);
+  return out;
+}
+
+}  // namespace bpa

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/detect/ranking.hpp"
+#include "core/detect/stages.hpp"
+#include "core/score/rival_poses.hpp"
+
+namespace bpa {
+namespace {
+
+// The candidates after `best` that claim its place and are not far worse, itself included. Marks
+// all that claim the place as compared.
+std::vector<std::size_t> rivals_of(const Search& search, const Candidates& candidates,
+                                   std::size_t best, std::vector<bool>& compared) {
+  std::vector<std::size_t> rivals;
+  for (std::size_t i = best; i < candidates.size(); ++i) {
+    const double distance =
+        (candidates[i].pose().translation - candidates[best].pose().translation).norm();
+    if (compared[i] || distance > kSamePlace * search.model.diameter) continue;
+    compared[i] = true;
+    if (candidates[i].score < candidates[best].score - search.options.rivals.max_behind) continue;
+    rivals.push_back(i);
+  }
+  return rivals;
+}
+
+}  // namespace
+
+Candidates compare_rivals(const Search& search, Candidates candidates) {
+  if (!search.options.score.use_round_three) return candidates;
+  sort_by_score(candidates);
+  std::vector<bool> compared(candidates.size(), false);
+  for (std::size_t best = 0; best < candidates.size(); ++best) {
+    if (compared[best] || candidates[best].score < search.options.rivals.min_rival_score) continue;
+    if (search.late()) break;
+    const auto rivals = rivals_of(search, candidates, best, compared);
+    std::vector<Pose> poses;
+    for (const std::size_t i : rivals) poses.push_back(candidates[i].pose());
+    const std::vector<double> behind = behind_best(search.scene.image, search.model, poses);
+    for (std::size_t k = 0; k < rivals.size(); ++k) {
+      Candidate& rival = candidates[rivals[k]];
+      rival.values[component("rivals")] = behind[k];
+      search.apply_layer(rival);
+    }
+  }
+  return candidates;
+}
+
+}  // namespace bpa

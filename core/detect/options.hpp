@@ -1,0 +1,328 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/base/options.hpp"
+#include "core/score/pose_check.hpp"
+
+// The settings of the search for one object, a group for each stage (see README.md here). "V.3" is
+// the third paragraph of the paper's section V. A number without a source was chosen by hand on
+// simulated piles (tests/accuracy).
+
+namespace bpa {
+
+/// Gauss-Newton alignment of surface and edges; see refine_pose().
+struct RefinementOptions {
+  int iterations = 6;
+  int max_points = 200;
+  int max_edges = 60;
+  double start_gate_m = 0.030;
+  double end_gate_m = 0.010;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("iterations", iterations, FieldRule{0, 100, "Gauss-Newton steps."});
+    visit("max_points", max_points, FieldRule{1, 100000, "Surface points of the model used."});
+    visit("max_edges", max_edges,
+          FieldRule{0, 100000, "Edge points of the model used; 0: surface alone."});
+    visit("start_gate_m", start_gate_m,
+          FieldRule{1e-4, 1, "Largest distance of correspondences in the first step, metres."});
+    visit("end_gate_m", end_gate_m,
+          FieldRule{1e-4, 1, "Largest distance of correspondences in the last step, metres."});
+  }
+};
+
+/// What alignments use, in all stages.
+struct AlignOptions {
+  bool use_orientation = true;
+  bool use_segments = true;
+  bool use_edges = true;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("use_orientation", use_orientation,
+          FieldRule{0, 1,
+                    "Align with orientations (BPA); false: positions only (ICP, the paper's "
+                    "ablation)."});
+    visit("use_segments", use_segments,
+          FieldRule{0, 1, "Align to sampled super-pixels; false: to all surface."});
+    visit("use_edges", use_edges,
+          FieldRule{0, 1, "Align model edges with observed edges; false: surface alone."});
+  }
+};
+
+struct SampleOptions {
+  int matches_per_keypoint = 2;
+  int draws_per_match = 3;
+  int peaks_per_reference = 12;
+  int draws_per_prior = 300;
+  double feature_sigma_m = 0.004;
+  double pair_sigma_m = 0.008;
+  RefinementOptions prior_alignment{4, 100, 30, 0.050, 0.015};
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("matches_per_keypoint", matches_per_keypoint,
+          FieldRule{1, 20, "Nearest model features of each scene keypoint."});
+    visit("draws_per_match", draws_per_match,
+          FieldRule{1, 50, "Poses drawn by BPA from each correspondence."});
+    visit("peaks_per_reference", peaks_per_reference,
+          FieldRule{1, 100, "Voted poses of each scene reference point."});
+    visit("draws_per_prior", draws_per_prior, FieldRule{0, 100000, "Poses drawn from each prior."});
+    visit("feature_sigma_m", feature_sigma_m,
+          FieldRule{1e-4, 0.1,
+                    "Position error of a feature correspondence, metres: about the spacing of the "
+                    "features. Depth noise is added."});
+    visit("pair_sigma_m", pair_sigma_m,
+          FieldRule{1e-4, 0.1, "Position error of a point pair's correspondence, metres."});
+  }
+  template <class Visitor>
+  void visit_groups(Visitor&& visit) {
+    visit("prior_alignment", prior_alignment, "Alignment of poses drawn from priors.");
+  }
+};
+
+struct CheckOptions {
+  int points = 64;
+  int hidden_points = 512;
+  int few_seen = 20;
+  int min_seen = 6;
+  double max_free_space = 0.2;
+  double min_check_score = 0.15;
+  double depth_share = 0.05;
+  double min_depth_m = 0.006;
+  double max_depth_m = 0.015;
+  double free_depth_m = 0.030;
+  double normal_cosine = 0.7;
+  int recheck_points = 256;
+  int max_kept = 1500;
+  int max_kept_per_cell = 3;
+  int max_suggested = 60;
+  double rank_penalty = 0.02;
+  RefinementOptions correction{2, 64, 24, 0.020, 0.012};
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("points", points,
+          FieldRule{1, 100000, "Model points that a pose is checked with. The paper has 500."});
+    visit("hidden_points", hidden_points,
+          FieldRule{1, 100000, "Model points where fewer than few_seen are in sight."});
+    visit("few_seen", few_seen, FieldRule{0, 100000, "See hidden_points."});
+    visit("min_seen", min_seen,
+          FieldRule{0, 100000, "Poses with fewer points in sight are rejected."});
+    visit("max_free_space", max_free_space,
+          FieldRule{0, 1, "Poses with a larger share of points in free space are rejected (V.2)."});
+    visit("min_check_score", min_check_score,
+          FieldRule{-10, 10, "Poses with a lower check score are rejected."});
+    visit("depth_share", depth_share,
+          FieldRule{0, 1, "Depth tolerance as a share of the model's diameter."});
+    visit("min_depth_m", min_depth_m, FieldRule{1e-4, 1, "Smallest depth tolerance, metres."});
+    visit("max_depth_m", max_depth_m, FieldRule{1e-4, 1, "Largest depth tolerance, metres."});
+    visit("free_depth_m", free_depth_m,
+          FieldRule{1e-4, 1,
+                    "A point this far in front of the surface is in free space, metres. The paper "
+                    "has 0.05 (V.2)."});
+    visit("normal_cosine", normal_cosine,
+          FieldRule{-1, 1, "Smallest cosine between the normals of model and surface."});
+    visit("recheck_points", recheck_points,
+          FieldRule{1, 100000, "Model points of the second check, after the correction."});
+    visit("max_kept", max_kept, FieldRule{1, 1000000, "Poses that go on."});
+    visit("max_kept_per_cell", max_kept_per_cell,
+          FieldRule{1, 1000, "Poses that go on from one cell of 25 mm and 25 degrees."});
+    visit("max_suggested", max_suggested,
+          FieldRule{0, 100000, "Poses drawn from priors that go on besides."});
+    visit("rank_penalty", rank_penalty,
+          FieldRule{0, 10,
+                    "What each better pose within the same 5 cm costs of the check score, when the "
+                    "poses that go on are chosen."});
+  }
+  template <class Visitor>
+  void visit_groups(Visitor&& visit) {
+    visit("correction", correction, "First small alignment of what passed the check.");
+  }
+};
+
+struct ClusterOptions {
+  int min_features = 2;
+  int max_correspondences = 10;
+  int max_clusters = 200;
+  double suggested_share = 0.25;
+  double rank_penalty = 0.04;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("min_features", min_features,
+          FieldRule{1, 100,
+                    "Clusters with fewer feature correspondences are rejected (V.3). A voted pose "
+                    "stands for many pairs and is kept alone."});
+    visit("max_correspondences", max_correspondences,
+          FieldRule{1, 100, "Correspondences that a cluster is aligned with."});
+    visit("max_clusters", max_clusters, FieldRule{1, 10000, "Clusters that go on to round two."});
+    visit("suggested_share", suggested_share,
+          FieldRule{0, 1, "Share of max_clusters kept for poses drawn from priors."});
+    visit("rank_penalty", rank_penalty, FieldRule{0, 10, "As in check."});
+  }
+};
+
+struct RoundTwoOptions {
+  int bpa_steps = 3;
+  int max_pairs = 12;
+  int min_pairs = 4;
+  double segment_share = 0.7;
+  double start_gate_m = 0.030;
+  double gate_decay = 0.8;
+  int check_points = 300;
+  CheckTolerance tolerance{0.008, 0.020, 0.8};
+  RefinementOptions refinement{4, 160, 60, 0.025, 0.012};
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("bpa_steps", bpa_steps, FieldRule{0, 100, "Alignments by BPA that are proposed (V.5)."});
+    visit("max_pairs", max_pairs,
+          FieldRule{4, 1000, "Surface correspondences of one alignment; half as many of edges."});
+    visit("min_pairs", min_pairs, FieldRule{3, 1000, "Fewer correspondences align nothing."});
+    visit("segment_share", segment_share,
+          FieldRule{0, 1, "Share of the super-pixels that one alignment uses."});
+    visit("start_gate_m", start_gate_m,
+          FieldRule{1e-4, 1, "Largest distance of correspondences in the first step, metres."});
+    visit("gate_decay", gate_decay, FieldRule{0.01, 1, "What each step multiplies the gate by."});
+    visit("check_points", check_points,
+          FieldRule{1, 100000, "Model points that proposals are compared with."});
+  }
+  template <class Visitor>
+  void visit_groups(Visitor&& visit) {
+    visit("tolerance", tolerance, "How proposals are compared.");
+    visit("refinement", refinement, "The last proposal.");
+  }
+};
+
+struct RefineOptions {
+  int max_refined = 40;
+  RefinementOptions refinement{8, 500, 60, 0.015, 0.008};
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("max_refined", max_refined,
+          FieldRule{1, 10000, "Placements that are aligned to the end and scored in full."});
+  }
+  template <class Visitor>
+  void visit_groups(Visitor&& visit) {
+    visit("refinement", refinement, "Gradient-based alignment (V.7).");
+  }
+};
+
+struct ClimbOptions {
+  int max_climbed = 8;
+  int rounds = 4;
+  double step_m = 0.006;
+  double beside_rad = 0.17;
+  RefinementOptions refinement{6, 200, 60, 0.020, 0.008};
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("max_climbed", max_climbed,
+          FieldRule{0, 10000, "Best placements that climb the score; 0: none."});
+    visit("rounds", rounds, FieldRule{0, 100, "Rounds of twelve steps each."});
+    visit("step_m", step_m, FieldRule{1e-5, 0.1, "First step at the object's rim, metres."});
+    visit("beside_rad", beside_rad,
+          FieldRule{0, 3.2, "Turn of the six poses beside the start, radians."});
+  }
+  template <class Visitor>
+  void visit_groups(Visitor&& visit) {
+    visit("refinement", refinement, "Alignment from beside the start.");
+  }
+};
+
+struct TurnOptions {
+  int max_turned = 6;
+  int max_kept_turned = 12;
+  double min_turned_score = -5;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("max_turned", max_turned,
+          FieldRule{0, 10000, "Best placements that are tried in near-symmetric poses; 0: none."});
+    visit("max_kept_turned", max_kept_turned,
+          FieldRule{0, 10000, "Near-symmetric poses that are aligned to the end."});
+    visit("min_turned_score", min_turned_score,
+          FieldRule{-1000, 1000, "Placements of lower log odds are not turned."});
+  }
+};
+
+struct RivalOptions {
+  double max_behind = 6;
+  double min_rival_score = -5;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("max_behind", max_behind,
+          FieldRule{0, 1000, "Placements this far behind the best in log odds are no rivals."});
+    visit("min_rival_score", min_rival_score,
+          FieldRule{-1000, 1000, "Places whose best has lower log odds are not compared."});
+  }
+};
+
+struct SelectOptions {
+  double min_score = -12;
+  int max_placements = 50;
+  double duplicate_m = 0.008;
+  double duplicate_rad = 0.1;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("min_score", min_score,
+          FieldRule{-1e9, 1e9, "Placements of lower log odds are rejected."});
+    visit("max_placements", max_placements,
+          FieldRule{1, 10000, "Placements of one model that are returned (section VI)."});
+    visit("duplicate_m", duplicate_m,
+          FieldRule{0, 1, "Non-maximum suppression: largest distance of duplicates, metres, "});
+    visit("duplicate_rad", duplicate_rad, FieldRule{0, 3.2, "and largest turn, radians."});
+  }
+};
+
+struct ScoreOptions {
+  bool use_round_three = true;
+  int quick_points = 200;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("use_round_three", use_round_three,
+          FieldRule{0, 1,
+                    "Score with edges, random walks, segments, features, colours and rivals; false "
+                    "leaves these components unknown."});
+    visit("quick_points", quick_points,
+          FieldRule{1, 100000, "Surface points that round two scores a placement with."});
+  }
+};
+
+/// The search for one object.
+struct DetectOptions {
+  AlignOptions align;
+  ScoreOptions score;
+  SampleOptions sample;
+  CheckOptions check;
+  ClusterOptions cluster;
+  RoundTwoOptions round_two;
+  RefineOptions refine;
+  ClimbOptions climb;
+  TurnOptions turn;
+  RivalOptions rivals;
+  SelectOptions select;
+
+  template <class Visitor>
+  void visit_groups(Visitor&& visit) {
+    visit("align", align, "What alignments use.");
+    visit("score", score, "What placements are scored with.");
+    visit("sample", sample, "Poses from features, point pairs and priors.");
+    visit("check", check, "Free space.");
+    visit("cluster", cluster, "Groups of poses.");
+    visit("round_two", round_two, "Alignment to sampled segments.");
+    visit("refine", refine, "Alignment to the end.");
+    visit("climb", climb, "Hill climbing of the score.");
+    visit("turn", turn, "Near symmetries.");
+    visit("rivals", rivals, "Poses of one object in one place.");
+    visit("select", select, "What is returned.");
+  }
+};
+
+}  // namespace bpa

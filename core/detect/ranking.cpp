@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/detect/ranking.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace bpa {
+namespace {
+
+constexpr const char* kEnough = "better ones are enough";
+
+}  // namespace
+
+void sort_by_score(Candidates& candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+}
+
+void sort_by_check_score(Candidates& candidates) {
+  std::stable_sort(
+      candidates.begin(), candidates.end(),
+      [](const Candidate& a, const Candidate& b) { return a.check_score > b.check_score; });
+}
+
+bool duplicates(const Search& search, const Pose& a, const Pose& b) {
+  constexpr double kFar = 0.05;  // metres, whatever the symmetry
+  if ((a.translation - b.translation).norm() > kFar) return false;
+  const PoseError error = pose_error(a, b, search.model.symmetry);
+  const SelectOptions& options = search.options.select;
+  return error.position < options.duplicate_m && error.angle < options.duplicate_rad;
+}
+
+void suppress_duplicates(const Search& search, Candidates& candidates) {
+  sort_by_score(candidates);
+  Candidates kept;
+  for (Candidate& candidate : candidates) {
+    const bool seen = std::any_of(kept.begin(), kept.end(), [&](const Candidate& other) {
+      return duplicates(search, candidate.pose(), other.pose());
+    });
+    if (seen) {
+      search.reject("duplicate of a better one", candidate.pose());
+    } else {
+      kept.push_back(std::move(candidate));
+    }
+  }
+  candidates = std::move(kept);
+}
+
+void keep_first(const Search& search, int count, Candidates& candidates) {
+  const auto end = static_cast<std::size_t>(count);
+  for (std::size_t i = end; i < candidates.size(); ++i) {
+    search.reject(kEnough, candidates[i].pose());
+  }
+  if (candidates.size() > end) candidates.erase(candidates.begin() + count, candidates.end());
+}
+
+std::uint64_t position_cell(const Eigen::Vector3f& position, float per_metre) {
+  const Eigen::Vector3i cell = (position * per_metre).array().floor().cast<int>() + 512;
+  return static_cast<std::uint64_t>(cell.x() & 1023) << 20 |
+         static_cast<std::uint64_t>(cell.y() & 1023) << 10 |
+         static_cast<std::uint64_t>(cell.z() & 1023);
+}
+
+void keep_best_of_places(const Search& search, int count, double rank_penalty,
+                         Candidates& candidates) {
+  constexpr float kPlacesPerMetre = 20;
+  sort_by_check_score(candidates);
+  if (candidates.size() <= static_cast<std::size_t>(count)) return;
+  std::unordered_map<std::uint64_t, int> met;
+  std::vector<std::pair<float, std::size_t>> order;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const int rank = met[position_cell(candidates[i].fast.translation, kPlacesPerMetre)]++;
+    order.push_back(
+        {-candidates[i].check_score + static_cast<float>(rank_penalty) * static_cast<float>(rank),
+         i});
+  }
+  std::stable_sort(order.begin(), order.end());
+  for (auto o = order.begin() + count; o != order.end(); ++o) {
+    search.reject(kEnough, candidates[o->second].fast);
+  }
+  order.resize(static_cast<std::size_t>(count));
+  Candidates kept;
+  for (const auto& [penalised, i] : order) kept.push_back(std::move(candidates[i]));
+  sort_by_check_score(kept);
+  candidates = std::move(kept);
+}
+
+}  // namespace bpa

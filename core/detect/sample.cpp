@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Geometry>
+
+#include "core/align/align.hpp"
+#include "core/base/random.hpp"
+#include "core/detect/correspondence_pairs.hpp"
+#include "core/detect/stages.hpp"
+#include "core/features/pair_voting.hpp"
+#include "core/model/model_index.hpp"
+
+namespace bpa {
+namespace {
+
+constexpr std::uint64_t kPriorStream = 1ULL << 32U;  // apart from the other streams of the seed
+
+align::OrientedPoint oriented_point(const PointCloud& cloud, int index, bool with_curvature) {
+  const auto i = static_cast<std::size_t>(index);
+  align::OrientedPoint out;
+  out.point = cloud.points[i].cast<double>();
+  const Eigen::Vector3d normal = cloud.normals[i].cast<double>();
+  if (with_curvature) {
+    out.orientation =
+        align::feature_orientation(normal, cloud.principal_directions[i].cast<double>());
+    out.lambda3 = align::curvature_concentration(cloud.curvatures[i].x(), cloud.curvatures[i].y());
+  } else {
+    out.orientation = align::feature_orientation(normal);
+  }
+  return out;
+}
+
+Candidate candidate_of(const Search& search, Source found_by) {
+  Candidate out;
+  out.model = &search.model;
+  out.found_by = found_by;
+  return out;
+}
+
+void set_pose(const FastPose& pose, Candidate& candidate) {
+  candidate.fast = pose;
+  candidate.refinement.camera_from_object = to_pose(pose);
+}
+
+// One-correspondence poses by BPA from FPFH matches.
+void from_features(const Search& search, Candidates& out) {
+  const SampleOptions& options = search.options.sample;
+  const SceneFeatures& scene = search.scene;
+  RandomStream random(search.seed, static_cast<std::uint64_t>(search.model.number));
+  const auto matches =
+      search.model.index->feature_tree.nearest(scene.fpfh, options.matches_per_keypoint, 1);
+  for (std::size_t k = 0; k < matches.size(); ++k) {
+    if (matches[k].index < 0) continue;
+    if (search.late()) return;
+    Candidate candidate = candidate_of(search, Source::feature);
+    candidate.scene_point =
+        scene.keypoints[k / static_cast<std::size_t>(options.matches_per_keypoint)];
+    candidate.model_point = matches[k].index;
+    const align::OrientedPair pair = oriented_pair(search, candidate);
+    for (int draw = 0; draw < options.draws_per_match; ++draw) {
+      set_pose(to_fast(align::bpa_sample_one(pair, random)), candidate);
+      out.push_back(candidate);
+    }
+  }
+}
+
+// Poses voted for by oriented point pairs (Drost et al., CVPR 2010).
+void from_pairs(const Search& search, Candidates& out) {
+  const ModelIndex& index = *search.model.index;
+  std::vector<Eigen::Matrix3f> bases;
+  for (const Eigen::Vector3f& normal : index.coarse.normals) bases.push_back(basis_of(normal));
+  const PointCloud& coarse = search.scene.coarse;
+  for (const VotedPose& voted :
+       vote_poses(search.scene.pairs, index.pairs, static_cast<int>(index.coarse.size()),
+                  search.options.sample.peaks_per_reference)) {
+    const auto s = static_cast<std::size_t>(voted.reference);
+    const auto m = static_cast<std::size_t>(voted.model_point);
+    Candidate candidate = candidate_of(search, Source::pairs);
+    candidate.scene_point = voted.reference;
+    candidate.model_point = voted.model_point;
+    FastPose pose;
+    pose.rotation = basis_of(coarse.normals[s]) *
+                    Eigen::AngleAxisf(voted.turn, Eigen::Vector3f::UnitZ()) * bases[m].transpose();
+    pose.translation = coarse.points[s] - pose.rotation * index.coarse.points[m];
+    set_pose(pose, candidate);
+    out.push_back(candidate);
+  }
+}
+
+// A pose drawn from a prior is off by the prior's uncertainty: it is tried as drawn and aligned.
+void from_priors(const Search& search, Candidates& out) {
+  const SampleOptions& options = search.options.sample;
+  RandomStream random(search.seed, kPriorStream + static_cast<std::uint64_t>(search.model.number));
+  for (const Pose& pose :
+       search.priors.draw(search.scene.coarse, options.draws_per_prior, random)) {
+    if (search.late()) return;
+    Candidate candidate = candidate_of(search, Source::prior);
+    set_pose(to_fast(pose), candidate);
+    out.push_back(candidate);
+    set_pose(to_fast(search.refine(pose, options.prior_alignment).camera_from_object), candidate);
+    out.push_back(candidate);
+  }
+}
+
+}  // namespace
+
+align::OrientedPair oriented_pair(const Search& search, const Candidate& candidate) {
+  const bool feature = candidate.found_by == Source::feature;
+  const ModelIndex& model = *search.model.index;
+  const SampleOptions& options = search.options.sample;
+  align::OrientedPair pair;
+  pair.scene = oriented_point(feature ? search.scene.surface : search.scene.coarse,
+                              candidate.scene_point, feature);
+  pair.model =
+      oriented_point(feature ? model.features : model.coarse, candidate.model_point, feature);
+  pair.sigma = static_cast<double>(
+                   static_cast<float>(feature ? options.feature_sigma_m : options.pair_sigma_m)) +
+               static_cast<double>(depth_noise(static_cast<float>(pair.scene.point.z())));
+  return pair;
+}
+
+Candidates sample(const Search& search, Candidates) {
+  Candidates out;
+  from_priors(search, out);
+  from_features(search, out);
+  from_pairs(search, out);
+  return out;
+}
+
+}  // namespace bpa

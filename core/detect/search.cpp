@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/detect/search.hpp"
+
+#include <algorithm>
+
+namespace bpa {
+
+Search::Search(const SceneFeatures& s, const ObjectModel& m, const DetectOptions& o,
+               const ScoreLayers& l, std::span<const PosePrior> p, std::uint64_t random_seed)
+    : scene(s), model(m), options(o), layers(l), priors(p, m), seed(random_seed), places(m) {}
+
+bool Search::late() const {
+  const bool passed = deadline.passed();
+  if (passed && cut) *cut = 1;
+  return passed;
+}
+
+Refinement Search::refine(const Pose& start, RefinementOptions refinement) const {
+  if (!options.align.use_edges) refinement.max_edges = 0;
+  return refine_pose(scene, model, start, refinement);
+}
+
+double Search::quick_score(const Pose& pose) const {
+  Evidence evidence(scene, places, pose, options.score.quick_points);
+  return layers.round_two.log_odds(measure(evidence, Round::two)) + priors.evidence(pose);
+}
+
+Candidate Search::scored(Refinement refinement, Source found_by) const {
+  Candidate out;
+  out.model = &model;
+  out.found_by = found_by;
+  out.refinement = std::move(refinement);
+  Evidence evidence(scene, places, out.pose());
+  out.values = measure(evidence, options.score.use_round_three ? Round::three : Round::two);
+  out.explained = explained_pixels(scene.image, model, out.pose());
+  out.prior = priors.evidence(out.pose());
+  apply_layer(out);
+  return out;
+}
+
+void Search::apply_layer(Candidate& candidate) const {
+  const ScoreLayer& layer =
+      options.score.use_round_three ? layers.last_for(candidate.values) : layers.round_two;
+  candidate.score = layer.log_odds(candidate.values) + candidate.prior;
+  candidate.probability = probability_of(candidate.score);
+}
+
+void Search::reject(std::string_view reason, const FastPose& pose) const {
+  if (tracing) tracing->reject(reason, pose);
+}
+void Search::reject(std::string_view reason, const Pose& pose) const {
+  if (tracing) tracing->reject(reason, to_fast(pose));
+}
+
+CheckTolerance check_tolerance(const CheckOptions& options, const ObjectModel& model) {
+  const float depth =
+      std::clamp(static_cast<float>(options.depth_share) * static_cast<float>(model.diameter),
+                 static_cast<float>(options.min_depth_m), static_cast<float>(options.max_depth_m));
+  return {static_cast<double>(depth), options.free_depth_m, options.normal_cosine};
+}
+
+}  // namespace bpa

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "core/base/deadline.hpp"
+#include "core/detect/candidate.hpp"
+#include "core/detect/options.hpp"
+#include "core/detect/pose_prior.hpp"
+#include "core/detect/trace.hpp"
+#include "core/observation/scene_features.hpp"
+#include "core/score/feature_score.hpp"
+#include "core/score/score_layer.hpp"
+
+namespace bpa {
+
+/// The search for one model in one scene: what every stage reads. Keeps references to
+/// scene, model and layers.
+struct Search {
+  /// Priors of other models are ignored; each must be valid.
+  Search(const SceneFeatures& scene, const ObjectModel& model, const DetectOptions& options = {},
+         const ScoreLayers& layers = default_score_layers(), std::span<const PosePrior> priors = {},
+         std::uint64_t seed = 0);
+
+  const SceneFeatures& scene;
+  const ObjectModel& model;
+  const DetectOptions options;
+  const ScoreLayers& layers;
+  const ModelPriors priors;
+  const std::uint64_t seed;
+  const FeaturePlaces places;
+  Deadline deadline;              ///< Stages return what they have when it has passed.
+  std::uint8_t* cut = nullptr;    ///< Set to 1 when a stage stopped for that; may be null.
+  TraceStage* tracing = nullptr;  ///< Of the stage that runs; null unless traced.
+
+  /// Whether the deadline has passed; says so in `cut`.
+  bool late() const;
+  /// Gradient-based alignment, with edges unless AlignOptions leaves them out.
+  Refinement refine(const Pose& start, RefinementOptions refinement) const;
+  /// Log odds of round two, from a few points, with the caller's priors.
+  double quick_score(const Pose& pose) const;
+  /// Scores a candidate at `refinement` with all components.
+  Candidate scored(Refinement refinement, Source found_by) const;
+  /// Sets score and probability from values and prior.
+  void apply_layer(Candidate& candidate) const;
+  /// Notes a rejected pose in the trace.
+  void reject(std::string_view reason, const FastPose& pose) const;
+  void reject(std::string_view reason, const Pose& pose) const;
+};
+
+/// The depth tolerance follows the model's size.
+CheckTolerance check_tolerance(const CheckOptions& options, const ObjectModel& model);
+
+}  // namespace bpa

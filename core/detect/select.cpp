@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/detect/ranking.hpp"
+#include "core/detect/stages.hpp"
+
+namespace bpa {
+
+Candidates select(const Search& search, Candidates compared) {
+  const SelectOptions& options = search.options.select;
+  std::erase_if(compared, [&](const Candidate& candidate) {
+    const bool low = candidate.score < options.min_score;
+    if (low) search.reject("low score", candidate.pose());
+    return low;
+  });
+  suppress_duplicates(search, compared);
+  keep_first(search, options.max_placements, compared);
+  return compared;
+}
+
+}  // namespace bpa

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "core/detect/search.hpp"
+
+// The stages of the search for one object. Each one takes the candidates of the stage before and
+// returns its own. A stage is deterministic, for any number of threads, unless the deadline passes.
+
+namespace bpa {
+
+/// Poses drawn by BPA from feature matches (V.2), voted for by point pairs, and drawn from priors.
+/// Ignores `none`.
+Candidates sample(const Search& search, Candidates none);
+
+/// Rejects poses that hang in free space or find no surface (V.2); keeps the best of each place.
+Candidates check_free_space(const Search& search, Candidates sampled);
+
+/// Groups poses within the pose tolerance, modulo the model's symmetry, and aligns each group again
+/// with BPA (V.3). Rejects single feature matches; single voted poses stay.
+Candidates cluster(const Search& search, Candidates checked);
+
+/// Aligns each candidate with BPA to sampled segments and scores it (V.4, V.5). Rejects nothing.
+Candidates round_two(const Search& search, Candidates clusters);
+
+/// Non-maximum suppression (V.6); aligns the best by gradients (V.7) and scores them with all
+/// components (V.8).
+Candidates refine(const Search& search, Candidates aligned);
+
+/// Hill climbing of the score from and beside the best candidates. Rejects nothing.
+Candidates climb(const Search& search, Candidates refined);
+
+/// Adds the best candidates turned by the model's near symmetries.
+Candidates try_turned(const Search& search, Candidates climbed);
+
+/// Compares candidates that claim one place on the pixels where they disagree. Rejects nothing.
+Candidates compare_rivals(const Search& search, Candidates turned);
+
+/// Rejects low scores and duplicates; the best first (V.10).
+Candidates select(const Search& search, Candidates compared);
+
+struct Stage {
+  std::string_view name;
+  Candidates (*run)(const Search&, Candidates);
+  double time_share;       ///< Of the time left at its start, where there is a deadline.
+  std::string_view title;  ///< For people.
+  std::string_view text;
+};
+
+/// The stages in their order.
+std::span<const Stage> detection_stages();
+
+}  // namespace bpa

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "core/detect/ranking.hpp"
+#include "core/detect/stages.hpp"
+#include "core/model/model_index.hpp"
+
+namespace bpa {
+namespace {
+
+// The best candidates in near-symmetric poses, each with its quick score.
+Candidates near_symmetric(const Search& search, const Candidates& candidates) {
+  const TurnOptions& options = search.options.turn;
+  const auto most = std::min(candidates.size(), static_cast<std::size_t>(options.max_turned));
+  Candidates out;
+  for (std::size_t i = 0; i < most && candidates[i].score > options.min_turned_score; ++i) {
+    if (search.late()) break;
+    for (const Pose& motion : search.model.index->near_symmetries) {
+      Candidate& turned = out.emplace_back();
+      turned.model = &search.model;
+      turned.found_by = candidates[i].found_by;
+      turned.refinement.camera_from_object = candidates[i].pose() * motion;
+      turned.score = search.quick_score(turned.pose());
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Candidates try_turned(const Search& search, Candidates climbed) {
+  sort_by_score(climbed);
+  Candidates turned = near_symmetric(search, climbed);
+  suppress_duplicates(search, turned);
+  std::erase_if(turned, [&](const Candidate& t) {
+    const bool known = std::any_of(climbed.begin(), climbed.end(), [&](const Candidate& c) {
+      return duplicates(search, t.pose(), c.pose());
+    });
+    if (known) search.reject("there already", t.pose());
+    return known;
+  });
+  keep_first(search, search.options.turn.max_kept_turned, turned);
+  for (const Candidate& start : turned) {
+    if (search.late()) break;
+    climbed.push_back(search.scored(search.refine(start.pose(), search.options.refine.refinement),
+                                    start.found_by));
+  }
+  return climbed;
+}
+
+}  // namespace bpa

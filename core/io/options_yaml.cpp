@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/io/options_yaml.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iomanip>
+
+#include <yaml-cpp/yaml.h>
+
+namespace bpa::io {
+namespace {
+
+const char* kind_of(const Option::Value& value) {
+  constexpr const char* kKinds[] = {"a map of \"key: value\" lines",
+                                    "true or false",
+                                    "a whole number",
+                                    "a number",
+                                    "a whole number",
+                                    "a text",
+                                    "a list of texts, such as [a, b]"};
+  return kKinds[value.index()];
+}
+
+std::string one_line(const YAML::Node& node) {
+  YAML::Emitter text;
+  text << YAML::Flow << node;
+  return text.c_str();
+}
+
+Status at(const std::string& file, const YAML::Mark& mark, const std::string& problem) {
+  return invalid_argument(file + ":" + std::to_string(mark.line + 1) + ": " + problem);
+}
+
+bool starts_with(const std::string& text, const std::string& start) {
+  return text.compare(0, start.size(), start) == 0;
+}
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+std::string last_name(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+// The entries called `path`, or by a short name.
+std::vector<const Option*> find(const OptionsReading& reading, const std::string& path) {
+  std::vector<const Option*> exact, in_short;
+  const std::string& below = reading.short_names_below;
+  std::string end(1, '.');
+  end += path.substr(std::min(below.size(), path.size()));
+  for (const Option& option : reading.options) {
+    if (option.path == path) exact.push_back(&option);
+    const bool named = starts_with(path, below) && starts_with(option.path, below) &&
+                       ends_with(option.path, end) && !option.is_group();
+    if (named) in_short.push_back(&option);
+  }
+  return exact.empty() ? in_short : exact;
+}
+
+void append(const std::string& word, const char* separator, std::string& list) {
+  if (!list.empty()) list += separator;
+  list += word;
+}
+
+// What to say of a key that is none: where it is, or the keys that there are.
+std::string unknown(const OptionsReading& reading, const std::string& path) {
+  const std::string group = path.substr(0, path.rfind('.') + 1);
+  std::string beside, elsewhere;
+  for (const Option& option : reading.options) {
+    const bool here =
+        starts_with(option.path, group) && option.path.find('.', group.size()) == std::string::npos;
+    if (here) append(option.path.substr(group.size()), ", ", beside);
+    if (last_name(option.path) == last_name(path)) append(option.path, " or ", elsewhere);
+  }
+  if (!elsewhere.empty()) return "unknown key " + path + "; there is " + elsewhere;
+  if (!beside.empty()) return "unknown key " + path + "; the keys are " + beside;
+  return "unknown key " + path;
+}
+
+template <class T>
+bool convert(const YAML::Node& node, T& value) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    if (node.IsNull()) {  // `key:` with nothing after it
+      value.clear();
+      return true;
+    }
+    if (!node.IsScalar()) return false;
+  }
+  if constexpr (std::is_same_v<T, std::vector<std::string>>) {
+    if (node.IsNull()) {
+      value.clear();
+      return true;
+    }
+  }
+  return YAML::convert<T>::decode(node, value);
+}
+
+// Reads the value of one field; a value that breaks the rule is not kept.
+Status set_value(const Option& option, const YAML::Node& node) {
+  return std::visit(
+      [&](const auto& target) -> Status {
+        using Pointer = std::remove_cvref_t<decltype(target)>;
+        if constexpr (!std::is_same_v<Pointer, std::monostate>) {
+          std::remove_pointer_t<Pointer> value{};
+          if (convert(node, value)) {
+            std::swap(*target, value);
+            Status status = validate(option);
+            if (!status.ok()) std::swap(*target, value);
+            return status;
+          }
+        }
+        return invalid_argument(option.path + " is " + one_line(node) + "; it must be " +
+                                kind_of(option.value));
+      },
+      option.value);
+}
+
+Status set(const OptionsReading& reading, const std::string& path, const YAML::Node& node) {
+  const auto found = find(reading, path);
+  if (found.size() != 1) return invalid_argument(unknown(reading, path));
+  if (Status status = set_value(*found.front(), node); !status.ok()) return status;
+  return reading.check ? reading.check() : Status();
+}
+
+bool is_group(const OptionsReading& reading, const std::string& path) {
+  return std::any_of(reading.options.begin(), reading.options.end(),
+                     [&](const Option& o) { return o.is_group() && o.path == path; });
+}
+
+Status apply(const std::string& file, const OptionsReading& reading, const std::string& prefix,
+             const YAML::Node& map) {
+  if (map.IsNull()) return {};
+  const std::string what = prefix.empty() ? "the file" : prefix.substr(0, prefix.size() - 1);
+  if (!map.IsMap()) return at(file, map.Mark(), what + " must hold \"key: value\" lines");
+  for (const auto& entry : map) {
+    if (!entry.first.IsScalar()) {
+      return at(file, entry.first.Mark(), what + " must hold \"key: value\" lines");
+    }
+    const std::string path = prefix + entry.first.as<std::string>();
+    if (is_group(reading, path)) {
+      if (Status s = apply(file, reading, path + ".", entry.second); !s.ok()) return s;
+    } else if (Status s = set(reading, path, entry.second); !s.ok()) {
+      return at(file, entry.first.Mark(), s.message);
+    }
+  }
+  return {};
+}
+
+void write_value(std::ostream& out, const std::string& value) { out << '"' << value << '"'; }
+void write_value(std::ostream& out, const std::vector<std::string>& values) {
+  out << '[';
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) out << ", ";
+    write_value(out, values[i]);
+  }
+  out << ']';
+}
+template <class T>
+void write_value(std::ostream& out, const T& value) {
+  out << std::boolalpha << value;
+}
+
+// " 0.2 to 20." of numbers, and whether it may change.
+std::string rule_text(const Option& option) {
+  std::ostringstream out;
+  out << std::setprecision(12);
+  const std::size_t kind = option.value.index();
+  const bool number = kind >= 2 && kind <= 4;
+  if (number) out << " " << option.rule.min << " to " << option.rule.max << ".";
+  if (option.rule.runtime) out << " Also at run time.";
+  return out.str();
+}
+
+}  // namespace
+
+Status read_options(const std::string& path, const OptionsReading& reading) {
+  if (!std::filesystem::is_regular_file(path)) {
+    return Status(StatusCode::not_found, path + ": there is no such file");
+  }
+  try {
+    return apply(path, reading, "", YAML::LoadFile(path));
+  } catch (const YAML::Exception& error) {
+    return at(path, error.mark, "not YAML: " + error.msg);
+  }
+}
+
+Status set_option(const std::string& assignment, const OptionsReading& reading) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    return invalid_argument("\"" + assignment + "\" must read group.key=value");
+  }
+  try {
+    return set(reading, assignment.substr(0, equals), YAML::Load(assignment.substr(equals + 1)));
+  } catch (const YAML::Exception& error) {
+    return invalid_argument("\"" + assignment + "\" is not YAML: " + error.msg);
+  }
+}
+
+std::string options_yaml(const std::vector<Option>& options, bool hidden) {
+  std::ostringstream out;
+  out << std::setprecision(12);
+  for (const Option& option : options) {
+    const auto depth = std::count(option.path.begin(), option.path.end(), '.');
+    const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
+    if (option.is_group()) out << (depth == 0 ? "\n" : "");
+    out << indent << "# " << option.rule.description << rule_text(option) << '\n';
+    out << indent << (hidden && !option.is_group() ? "#" : "") << last_name(option.path) << ":";
+    std::visit(
+        [&](const auto& value) {
+          if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(value)>, std::monostate>) {
+            out << ' ';
+            write_value(out, *value);
+          }
+        },
+        option.value);
+    out << '\n';
+  }
+  return out.str();
+}
+
+}  // namespace bpa::io

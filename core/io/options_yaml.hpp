@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/base/options.hpp"
+
+// Trees of options as YAML files. Problems are named with file, line, key, value and rule; an
+// unknown key is one.
+
+namespace bpa::io {
+
+/// How options are read.
+struct OptionsReading {
+  std::vector<Option> options;  ///< Where the values go; see options_of().
+  /// Below this path, a field may be named without the groups it is in, if only one has the name.
+  std::string short_names_below = "-";
+  std::function<Status()> check;  ///< Run after each value that was set; may be empty.
+};
+
+/// Sets the fields that a YAML file names; the others keep their values. An empty file changes
+/// nothing. Fails with not_found, or with invalid_argument after setting some.
+Status read_options(const std::string& path, const OptionsReading& reading);
+
+/// Sets one field from text such as "queue.requests=4".
+Status set_option(const std::string& assignment, const OptionsReading& reading);
+
+/// The options as a YAML file, with the description and the rule of each in a comment. `hidden`
+/// puts a # in front of each value.
+std::string options_yaml(const std::vector<Option>& options, bool hidden = false);
+
+}  // namespace bpa::io

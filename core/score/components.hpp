@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include "core/model/model_index.hpp"
+#include "core/score/boundary_scores.hpp"
+#include "core/score/color_score.hpp"
+#include "core/score/evidence.hpp"
+#include "core/score/likelihood.hpp"
+#include "core/score/random_walk_score.hpp"
+
+// Every score component of a placement, declared once. Layers, files, results, training, the
+// explainer and the tests read this table: a new component is a function of the evidence and an
+// entry here. Layers that do not know it yet count it as nothing until they are trained again.
+
+namespace bpa {
+
+/// When a component becomes known: in round two, in round three, or when rivals are compared.
+enum class Round : std::uint8_t { two, three, rivals };
+
+struct ComponentType {
+  std::string_view name;
+  std::string_view unit;
+  double min, max;  ///< Values are in this range.
+  Round round;
+  bool learned;                  ///< False: reported, but no part of the score.
+  double (*measure)(Evidence&);  ///< kNotKnown where it cannot be told.
+  std::string_view meaning;
+};
+
+constexpr auto kScoreComponents = std::to_array<ComponentType>({
+    {"range", "log-likelihood", -1, 0, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().range; },
+     "Depth differences, weighted by visibility."},
+    {"normal", "log-likelihood", -1, 0, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().normal; },
+     "Differences of normals, weighted by visibility."},
+    {"agreeing", "share", 0, 1, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().agreeing; },
+     "Visible points on the observed surface."},
+    {"free_space", "share", 0, 1, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().free_space; },
+     "Visible points over 2 cm in front of the observed surface."},
+    {"visibility", "share", 0, 1, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().visibility; },
+     "Facing model points that are not hidden."},
+    {"edge", "log-likelihood", -1, 0, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().edge; },
+     "Observed surface that goes on beyond model edges."},
+    {"edge_support", "share", 0, 1, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().edge_support; },
+     "Model edge points where the observed surface ends."},
+    {"edge_visibility", "share", 0, 1, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().edge_visibility; },
+     "Model edge points that are not hidden."},
+    {"shape", "root of a share", 0, 0.71, Round::two, true,
+     [](Evidence& e) -> double { return std::sqrt(std::max(0.0, e.surface().shape)); },
+     "Spread of the normals of agreeing points; 0 for one flat face."},
+    {"relative_area", "squared diameters", 0, 4, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().relative_area; },
+     "Explained surface."},
+    {"unknown", "share", 0, 1, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().unknown; },
+     "Facing model points where no depth is known."},
+    {"explained", "ratio", 0, 10, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().explained_pixels / std::max(1.0, e.surface().expected_pixels); },
+     "Explained pixels, of those the whole model would cover."},
+    {"evidence", "log pixels", 0, 14, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().evidence(); },
+     "Logarithm of the support."},
+    {"range_evidence", "log-likelihood x log pixels", -14, 0, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().range * e.surface().evidence(); },
+     "Component range times evidence."},
+    {"edge_evidence", "log-likelihood x log pixels", -14, 0, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().edge * e.surface().evidence(); },
+     "Component edge times evidence."},
+    {"background", "share", 0, 1, Round::two, true,
+     [](Evidence& e) -> double { return e.surface().background; },
+     "Agreeing points on labelled background."},
+    {"support", "root of pixels", 0, 600, Round::two, true,
+     [](Evidence& e) -> double { return std::sqrt(std::max(0.0, e.surface().support())); },
+     "Root of the pixels that speak for the placement."},
+    {"edge_likelihood", "log-likelihood", -1, 0, Round::three, true,
+     [](Evidence& e) -> double { return edge_likelihood_score(e.scene().image, e.edges(), e.model(), e.pose()); },
+     "Predicted range edges in the edge image."},
+    {"occlusion_edge", "log-likelihood", -1, 0, Round::three, true,
+     [](Evidence& e) -> double { return occlusion_edge_score(e.scene().image, e.edges(), e.predicted()); },
+     "Edges where the placement begins to be hidden."},
+    {"random_walk", "log-likelihood", -1, 0, Round::three, true,
+     [](Evidence& e) -> double { return random_walk_score(e.scene().image, e.edges(), e.model(), e.pose(), e.predicted()); },
+     "Ends of random walks that do not cross edges."},
+    {"segment", "log-likelihood", -1, 0, Round::three, true,
+     [](Evidence& e) -> double { return segment_score(e.segments()); },
+     "Distance of the touched super-pixels from the model."},
+    {"segment_affinity", "log-likelihood", -1, 0, Round::three, true,
+     [](Evidence& e) -> double { return segment_affinity_score(e.scene().segmentation, e.segments()); },
+     "Super-pixels of one object should be explained together."},
+    {"fpfh", "log-likelihood", -1, 0, Round::three, true,
+     [](Evidence& e) -> double { return fpfh_score(e.scene().surface, e.scene().keypoints, e.scene().fpfh, e.places(), e.pose()); },
+     "FPFH features that lie on the model."},
+    {"color", "log-likelihood", -1, 0, Round::three, true,
+     [](Evidence& e) -> double { return color_score(e.scene().image, e.scene().cielab, e.model().index->cielab, e.predicted()); },
+     "Colours; not known where model or frame has none."},
+    {"rivals", "log-likelihood", -500, 0, Round::rivals, true,
+     [](Evidence&) -> double { return kNotKnown; },
+     "Log-likelihood behind the best pose in the same place; see behind_best()."},
+    {"explained_pixels", "pixels", 0, 77000, Round::two, false,
+     [](Evidence& e) -> double { return e.surface().explained_pixels; },
+     "Observed pixels on the model, reduced image."},
+    {"expected_pixels", "pixels", 0, 1e6, Round::two, false,
+     [](Evidence& e) -> double { return e.surface().expected_pixels; },
+     "Pixels the model would cover were nothing in front of it."},
+    {"explained_area", "m^2", 0, 9, Round::two, false,
+     [](Evidence& e) -> double { return e.surface().explained_area; },
+     "Explained surface."},
+});
+
+/// The values of a placement's components, in the order of the table; kNotKnown where unknown.
+using ScoreValues = std::array<double, kScoreComponents.size()>;
+
+/// The place of a component in the table, by a name that must be there.
+consteval std::size_t component(std::string_view name) {
+  std::size_t i = 0;
+  while (kScoreComponents[i].name != name) ++i;
+  return i;
+}
+
+/// The components that are known up to `last`; the others are kNotKnown.
+ScoreValues measure(Evidence& evidence, Round last);
+
+}  // namespace bpa

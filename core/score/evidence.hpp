@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/observation/scene_features.hpp"
+#include "core/score/feature_score.hpp"
+#include "core/score/predicted_surface.hpp"
+#include "core/score/segment_scores.hpp"
+#include "core/score/surface_agreement.hpp"
+
+namespace bpa {
+
+/// What the score components of one placement are computed from. Each part is computed once, when a
+/// component first asks for it. Keeps references.
+class Evidence {
+ public:
+  /// `max_points` as for measure_surface(). `pose` is camera_from_object.
+  Evidence(const SceneFeatures& scene, const FeaturePlaces& places, const Pose& pose,
+           int max_points = 0)
+      : scene_(scene), places_(places), pose_(pose), max_points_(max_points) {}
+
+  const SceneFeatures& scene() const { return scene_; }
+  const ObjectModel& model() const { return places_.model(); }
+  const FeaturePlaces& places() const { return places_; }
+  const Pose& pose() const { return pose_; }
+  /// The edge image (paper section V).
+  const Image<float>& edges() const { return scene_.edges.likelihood; }
+
+  const SurfaceAgreement& surface() {
+    if (!surface_) surface_ = measure_surface(scene_.image, model(), pose_, max_points_);
+    return *surface_;
+  }
+  const PredictedSurface& predicted() {
+    if (!predicted_) predicted_ = predict_surface(scene_.image, model(), pose_);
+    return *predicted_;
+  }
+  const std::vector<SegmentMatch>& segments() {
+    if (!segments_) {
+      segments_ = match_segments(scene_.segmentation, scene_.map, model(), pose_, predicted());
+    }
+    return *segments_;
+  }
+
+ private:
+  const SceneFeatures& scene_;
+  const FeaturePlaces& places_;
+  const Pose& pose_;
+  int max_points_;
+  std::optional<SurfaceAgreement> surface_;
+  std::optional<PredictedSurface> predicted_;
+  std::optional<std::vector<SegmentMatch>> segments_;
+};
+
+}  // namespace bpa

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/detect/stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/l_scene.hpp"
+
+namespace bpa {
+namespace {
+
+bool within_tolerance(const Candidate& hypothesis, const Pose& truth,
+                      const SymmetryGroup& symmetry) {
+  const PoseError error = pose_error(hypothesis.pose(), truth, symmetry);
+  return error.position < 0.025 && error.angle < M_PI / 16;
+}
+
+// The place of the first hypothesis that is right; the number of all where none is.
+std::size_t first_right(const Candidates& hypotheses, const Pose& truth,
+                        const SymmetryGroup& symmetry) {
+  const auto found = std::find_if(
+      hypotheses.begin(), hypotheses.end(),
+      [&](const Candidate& hypothesis) { return within_tolerance(hypothesis, truth, symmetry); });
+  return static_cast<std::size_t>(found - hypotheses.begin());
+}
+
+void expect_same(const Candidates& a, const Candidates& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].fast.rotation, b[i].fast.rotation);
+    ASSERT_EQ(a[i].fast.translation, b[i].fast.translation);
+    ASSERT_EQ(a[i].check_score, b[i].check_score);
+  }
+}
+
+void expect_best_first(const Candidates& hypotheses) {
+  EXPECT_TRUE(
+      std::is_sorted(hypotheses.begin(), hypotheses.end(),
+                     [](const auto& a, const auto& b) { return a.check_score > b.check_score; }));
+}
+
+// Sampled and checked.
+Candidates sampled_in(const SceneFeatures& scene, const ObjectModel& model,
+                      std::uint64_t seed = 0) {
+  const Search search(scene, model, {}, default_score_layers(), {}, seed);
+  return check_free_space(search, sample(search, {}));
+}
+
+Candidates clusters_of(const SceneFeatures& scene, const ObjectModel& model,
+                       const Candidates& checked, int most) {
+  DetectOptions options;
+  options.cluster.max_clusters = most;
+  return cluster(Search(scene, model, options), checked);
+}
+
+class Stages : public test::LScene {};
+
+TEST_F(Stages, SomeAreRightAndClustersBringThemForward) {
+  const SceneFeatures scene = features_of(everything());
+  for (std::uint64_t seed = 0; seed < 2; ++seed) {
+    const auto of_l = sampled_in(scene, *l_, seed);
+    expect_best_first(of_l);
+    EXPECT_LE(of_l.size(), static_cast<std::size_t>(CheckOptions().max_kept));
+    ASSERT_LT(first_right(of_l, l_truth_, l_->symmetry), of_l.size());
+    const auto clusters = clusters_of(scene, *l_, of_l, 50);
+    expect_best_first(clusters);
+    EXPECT_LE(clusters.size(), 50u);
+    EXPECT_LT(first_right(clusters, l_truth_, l_->symmetry), 5u);
+  }
+}
+
+TEST_F(Stages, SymmetryIsTakenIntoAccount) {
+  const SceneFeatures scene = features_of(everything());
+  const auto sampled = sampled_in(scene, *brick_);
+  const auto clusters = clusters_of(scene, *brick_, sampled, 50);
+  EXPECT_LT(first_right(clusters, brick_truth_, brick_->symmetry), 5u);
+  // As if the brick had none: each of the four ways it can lie makes a cluster of its own.
+  const auto plain = test::model_of(test::box_mesh(test::kBrickHalf), "plain", 2);
+  EXPECT_GT(clusters_of(scene, *plain, sampled, 1000).size(),
+            clusters_of(scene, *brick_, sampled, 1000).size());
+}
+
+TEST_F(Stages, NoiseDoesNotHideThem) {
+  const SceneFeatures scene = features_of(everything(), 1);
+  const auto clusters = clusters_of(scene, *l_, sampled_in(scene, *l_), 100);
+  EXPECT_LT(first_right(clusters, l_truth_, l_->symmetry), 20u);
+}
+
+TEST_F(Stages, EachSourceAloneFindsTheL) {
+  const SceneFeatures scene = features_of(everything());
+  SceneFeatures without_pairs = scene;
+  without_pairs.pairs = scene_pairs(scene.coarse, {}, 0.1f, 1);
+  const auto by_features = sampled_in(without_pairs, *l_);
+  for (const Candidate& hypothesis : by_features) {
+    ASSERT_EQ(hypothesis.found_by, Source::feature);
+  }
+  EXPECT_LT(first_right(by_features, l_truth_, l_->symmetry), by_features.size());
+  SceneFeatures without_keypoints = scene;
+  without_keypoints.keypoints.clear();
+  without_keypoints.fpfh.clear();
+  const auto by_pairs = sampled_in(without_keypoints, *l_);
+  for (const Candidate& hypothesis : by_pairs) {
+    ASSERT_EQ(hypothesis.found_by, Source::pairs);
+  }
+  EXPECT_LT(first_right(by_pairs, l_truth_, l_->symmetry), by_pairs.size());
+}
+
+TEST_F(Stages, SameSeedSameHypotheses) {
+  const SceneFeatures one = features_of(everything(), 1, 1);
+  const SceneFeatures many = features_of(everything(), 1, 8);
+  EXPECT_EQ(one.fpfh, many.fpfh);
+  EXPECT_EQ(one.keypoints, many.keypoints);
+  const auto first = sampled_in(one, *l_);
+  expect_same(first, sampled_in(many, *l_));
+  expect_same(clusters_of(one, *l_, first, 100), clusters_of(many, *l_, first, 100));
+}
+
+TEST_F(Stages, OfAnEmptyTableThereAreNone) {
+  const SceneFeatures scene = features_of(table_only());
+  const auto sampled = sampled_in(scene, *l_);
+  EXPECT_TRUE(clusters_of(scene, *l_, {}, 10).empty());
+  EXPECT_LT(sampled.size(), 50u);
+}
+
+}  // namespace
+}  // namespace bpa
