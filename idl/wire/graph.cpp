@@ -3,78 +3,54 @@
 #include "idl/wire/graph.hpp"
 
 #include <algorithm>
-
-#include "idl/wire/msg/rmw_dds_common.hpp"
+#include <array>
+#include <string>
 
 namespace bpa::wire::detail {
 namespace {
 
-/// The messages as Humble has them: the id padded to 24 bytes.
-struct HumbleGid {
-  std::array<std::uint8_t, 24> data{};
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor&& visit) {
-    visit("data", self.data);
-  }
-};
-
-struct HumbleNode {
+/// rmw_dds_common/msg/ParticipantEntitiesInfo of one node, as it is on the wire.
+template <std::size_t kIdBytes>
+struct State {
+  using Id = std::array<std::uint8_t, kIdBytes>;
+  Id participant;
+  std::uint32_t node_count;
   std::string node_namespace, node_name;
-  std::vector<HumbleGid> readers, writers;
+  std::vector<Id> readers, writers;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor&& visit) {
-    visit("node_namespace", self.node_namespace, Bound{256});
-    visit("node_name", self.node_name, Bound{256});
+    visit("gid", self.participant);
+    visit("node_entities_info_seq", self.node_count);
+    visit("node_namespace", self.node_namespace);
+    visit("node_name", self.node_name);
     visit("reader_gid_seq", self.readers);
     visit("writer_gid_seq", self.writers);
   }
-};
 
-struct HumbleInfo {
-  HumbleGid gid;
-  std::vector<HumbleNode> nodes;
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor&& visit) {
-    visit("gid", self.gid);
-    visit("node_entities_info_seq", self.nodes);
+  /// Padded with zeros.
+  static Id id(const Guid& guid) {
+    Id id{};
+    std::copy(guid.begin(), guid.end(), id.begin());
+    return id;
+  }
+  static std::vector<Id> ids(const std::set<Guid>& guids) {
+    std::vector<Id> ids;
+    for (const Guid& guid : guids) ids.push_back(id(guid));
+    return ids;
   }
 };
-
-template <class Gid>
-Gid to_gid(const Guid& guid) {
-  Gid gid;
-  std::copy(guid.begin(), guid.end(), gid.data.begin());
-  return gid;
-}
-
-template <class Gid>
-std::vector<Gid> to_gids(const std::set<Guid>& guids) {
-  std::vector<Gid> gids;
-  for (const Guid& guid : guids) gids.push_back(to_gid<Gid>(guid));
-  return gids;
-}
 
 }  // namespace
 
 std::vector<std::uint8_t> encode_graph(GraphLayout layout, const Guid& participant,
                                        const NodeName& node, const std::set<Guid>& readers,
                                        const std::set<Guid>& writers) {
-  if (layout == GraphLayout::humble24) {
-    HumbleInfo info;
-    info.gid = to_gid<HumbleGid>(participant);
-    info.nodes.push_back(
-        {node.node_namespace, node.name, to_gids<HumbleGid>(readers), to_gids<HumbleGid>(writers)});
-    return encode(info);
-  }
-  using rmw_dds_common::Gid;
-  rmw_dds_common::ParticipantEntitiesInfo info;
-  info.gid = to_gid<Gid>(participant);
-  info.node_entities_info_seq.push_back(
-      {node.node_namespace, node.name, to_gids<Gid>(readers), to_gids<Gid>(writers)});
-  return encode(info);
+  const auto encoded = [&](auto state) {
+    return encode(decltype(state){state.id(participant), 1, node.node_namespace, node.name,
+                                  state.ids(readers), state.ids(writers)});
+  };
+  return layout == GraphLayout::humble24 ? encoded(State<24>{}) : encoded(State<16>{});
 }
 
 void GraphLayoutGuess::discovered(const Guid& endpoint, std::string_view user_data) {
