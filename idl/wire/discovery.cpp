@@ -6,7 +6,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
-#include <string_view>
+#include <sstream>
 
 namespace bpa::wire {
 namespace {
@@ -26,16 +26,6 @@ Result<int> domain_id(const std::string& text) {
     return invalid_argument("ROS_DOMAIN_ID is '" + text + "'; it must be a number from 0 to 232");
   }
   return id;
-}
-
-std::vector<std::string> split(std::string_view text) {
-  std::vector<std::string> parts;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(';'), text.size());
-    if (end != 0) parts.emplace_back(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return parts;
 }
 
 }  // namespace
@@ -69,7 +59,10 @@ Result<Discovery> discovery_from_environment() {
     return invalid_argument("ROS_AUTOMATIC_DISCOVERY_RANGE is '" + range +
                             "'; it must be SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT");
   }
-  result.static_peers = split(variable("ROS_STATIC_PEERS"));
+  std::istringstream peers(variable("ROS_STATIC_PEERS"));
+  for (std::string peer; std::getline(peers, peer, ';');) {
+    if (!peer.empty()) result.static_peers.push_back(peer);
+  }
   return result;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 
 #include "idl/wire/msg/builtin_interfaces.hpp"
@@ -13,13 +14,10 @@ inline std::int64_t to_ns(const Time& time) { return time.sec * 1'000'000'000LL 
 
 /// The reverse. Times before 1970 round toward minus infinity.
 inline Time from_ns(std::int64_t ns) {
-  std::int64_t sec = ns / 1'000'000'000LL;
-  std::int64_t rest = ns % 1'000'000'000LL;
-  if (rest < 0) {
-    rest += 1'000'000'000LL;
-    --sec;
-  }
-  return {static_cast<std::int32_t>(sec), static_cast<std::uint32_t>(rest)};
+  const std::chrono::nanoseconds time(ns);
+  const auto whole = std::chrono::floor<std::chrono::seconds>(time);
+  return {static_cast<std::int32_t>(whole.count()),
+          static_cast<std::uint32_t>((time - whole).count())};
 }
 
 }  // namespace bpa::wire::builtin_interfaces
