@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -130,10 +131,11 @@ class CdrReader {
       : body_(body), size_(size), swap_(swap) {}
 
   bool ok() const { return error_ == nullptr; }
-  /// What was wrong; null if nothing was.
-  const char* error() const { return error_; }
-  /// The field in which it was wrong, such as "depth".
-  const char* field() const { return field_; }
+  /// `corrupt` with the type, the field and what is wrong with it; ok if nothing is.
+  Status status(const char* type) const {
+    if (ok()) return {};
+    return Status(StatusCode::corrupt, std::string(type) + " field " + field_ + ": " + error_);
+  }
   /// Bytes not read yet.
   std::size_t left() const { return size_ - position_; }
 
@@ -197,7 +199,7 @@ class CdrReader {
   static void swap_bytes(T& value) {
     std::uint8_t bytes[sizeof(T)];
     std::memcpy(bytes, &value, sizeof(T));
-    for (std::size_t i = 0; i < sizeof(T) / 2; ++i) std::swap(bytes[i], bytes[sizeof(T) - 1 - i]);
+    std::reverse(bytes, bytes + sizeof(T));
     std::memcpy(&value, bytes, sizeof(T));
   }
 
@@ -291,7 +293,11 @@ std::vector<std::uint8_t> encode(const T& message) {
 }
 
 /// Whether the header is one of plain CDR; sets whether the body is in the other byte order.
-bool read_cdr_header(const std::uint8_t* bytes, std::size_t size, bool* swap);
+inline bool read_cdr_header(const std::uint8_t* bytes, std::size_t size, bool* swap) {
+  if (size < kCdrHeaderSize || bytes[0] != 0 || bytes[1] > 1) return false;
+  *swap = bytes[1] == 0;  // this project runs on little-endian hosts
+  return true;
+}
 
 /// Reads a message with its header. Bytes after the last field are ignored (peers pad).
 /// `corrupt` names the message, the field and what is wrong; `message` is then half-filled.
@@ -303,9 +309,7 @@ Status decode(const std::uint8_t* bytes, std::size_t size, T& message) {
   }
   CdrReader reader(bytes + kCdrHeaderSize, size - kCdrHeaderSize, swap);
   reader.read(message);
-  if (reader.ok()) return {};
-  return Status(StatusCode::corrupt,
-                std::string(T::kType) + " field " + reader.field() + ": " + reader.error());
+  return reader.status(T::kType);
 }
 
 }  // namespace bpa::wire

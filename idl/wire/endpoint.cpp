@@ -17,4 +17,12 @@ MessageRef bytes_ref(const std::vector<std::uint8_t>& bytes) {
           }};
 }
 
+RawDecode copy_bytes(std::function<void(std::vector<std::uint8_t>&&, const SampleMeta&)> callback) {
+  return [callback = std::move(callback)](const std::uint8_t* bytes,
+                                          std::size_t size) -> Result<Deliver> {
+    auto copy = std::make_shared<std::vector<std::uint8_t>>(bytes, bytes + size);
+    return Deliver([&callback, copy](const SampleMeta& meta) { callback(std::move(*copy), meta); });
+  };
+}
+
 }  // namespace bpa::wire::detail

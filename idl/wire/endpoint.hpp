@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +12,7 @@
 
 #include "core/base/status.hpp"
 #include "idl/wire/cdr.hpp"
+#include "idl/wire/matches.hpp"
 #include "idl/wire/names.hpp"
 #include "idl/wire/participant.hpp"
 #include "idl/wire/qos.hpp"
@@ -22,10 +22,7 @@
 
 namespace bpa::wire {
 
-/// A DDS GUID: 12 bytes of participant prefix, 4 of entity id. All zero: unknown.
-using Guid = std::array<std::uint8_t, 16>;
-
-/// Which sample: who wrote it and the how-manieth of that writer it is.
+/// Identifies a sample: its writer, and its place in the order of that writer.
 struct SampleId {
   Guid writer{};
   std::int64_t sequence = 0;
@@ -34,12 +31,11 @@ struct SampleId {
 /// What comes with a sample.
 struct SampleMeta {
   SampleId id;
-  SampleId related;                  ///< Of a request or reply; zero when absent.
-  std::int64_t source_time_ns = 0;   ///< When it was written, by the writer's clock (UTC).
-  std::int64_t receive_time_ns = 0;  ///< When it arrived, by this machine's clock (UTC).
+  SampleId related;                 ///< Of a request or reply; zero when absent.
+  std::int64_t source_time_ns = 0;  ///< When it was written, by the writer's clock (UTC).
 };
 
-/// How many samples a subscriber or service has seen.
+/// How many samples a subscriber or service has got.
 struct ReaderStatistics {
   std::uint64_t received = 0;   ///< Delivered to the callback.
   std::uint64_t malformed = 0;  ///< Refused: not a legal encoding of the type.
@@ -48,15 +44,16 @@ struct ReaderStatistics {
 
 struct PublisherOptions {
   Qos qos = qos::results();
-  /// > 0: samples of up to so many bytes go through memory shared with subscribers of this project
-  /// on the same machine (others get them over UDP); larger ones are refused. 0: UDP only, as it is
-  /// when /dev/shm has less room than qos.depth + 1 such samples, which is logged.
+  /// Largest sample in bytes that goes through memory shared with subscribers of this project on
+  /// this machine; larger samples are refused. Other subscribers get them over UDP. 0: UDP only,
+  /// also used, with a warning, when /dev/shm has no room for qos.depth + 1 such samples.
   std::size_t shared_bytes = 0;
 };
 
 struct SubscriberOptions {
   Qos qos = qos::sensor_input();
-  /// > 0: takes part in data sharing; samples of more bytes are refused, over UDP as well.
+  /// Largest sample in bytes, over UDP as well, of a subscription that takes part in sharing
+  /// memory. 0: UDP only, without a limit.
   std::size_t shared_bytes = 0;
 };
 
@@ -99,31 +96,58 @@ EndpointSpec endpoint_spec(std::string dds_topic, const Qos& qos, std::size_t sh
           std::string("typehash=") + T::kTypeHash + ";", qos, shared_bytes};
 }
 
-class RawWriter {
+/// What writers and readers have in common. They leave their topic when destroyed.
+class RawEndpoint {
  public:
-  virtual ~RawWriter() = default;
-  /// `related` may be null; `written`, if not null, gets the sample's id.
-  virtual Status write(const MessageRef& message, const SampleId* related, SampleId* written) = 0;
-  virtual std::size_t matched_count() const = 0;
-  virtual bool wait_for_matched(std::size_t count, std::chrono::milliseconds timeout) const = 0;
+  virtual ~RawEndpoint() = default;
   virtual Guid guid() const = 0;
-  /// An entity id of zero stands for any reader of that participant.
-  virtual bool is_matched_with(const Guid& reader) const = 0;
+  const Matches& matches() const { return matches_; }
+
+ protected:
+  Matches matches_;
 };
 
-class RawReader {
+class RawWriter : public RawEndpoint {
  public:
-  virtual ~RawReader() = default;
-  virtual std::size_t matched_count() const = 0;
-  virtual bool wait_for_matched(std::size_t count, std::chrono::milliseconds timeout) const = 0;
-  virtual Guid guid() const = 0;
+  /// `related` may be null; `written`, if not null, gets the sample's id.
+  virtual Status write(const MessageRef& message, const SampleId* related, SampleId* written) = 0;
+};
+
+class RawReader : public RawEndpoint {
+ public:
   virtual ReaderStatistics statistics() const = 0;
 };
 
-/// Gets a sample's bytes where they lie and gives back what to do once DDS says that the sample was
-/// whole; a failure counts it as malformed. Both run on a DDS thread.
-using RawDecode =
-    std::function<Result<std::function<void(const SampleMeta&)>>(const std::uint8_t*, std::size_t)>;
+/// The end of a topic as users see it: what publishers and subscribers have in common.
+template <class Raw>
+class TopicEnd {
+ public:
+  /// The resolved name.
+  const std::string& topic() const { return topic_; }
+  /// Peers at present: subscribers of a publisher, publishers of a subscriber. A peer of Eclipse
+  /// Cyclone that has gone counts for up to 10 s more.
+  std::size_t matched_count() const { return raw_->matches().count(); }
+  /// Whether `count` or more peers were there before the time was over.
+  bool wait_for_matched(std::chrono::milliseconds timeout, std::size_t count = 1) const {
+    return raw_->matches().wait_for(count, timeout);
+  }
+
+ protected:
+  TopicEnd(std::string topic, std::unique_ptr<Raw> raw)
+      : topic_(std::move(topic)), raw_(std::move(raw)) {}
+
+  std::string topic_;
+  std::unique_ptr<Raw> raw_;
+};
+
+/// What to do with a sample that was decoded, once DDS says that it was whole.
+using Deliver = std::function<void(const SampleMeta&)>;
+/// Decodes a sample's bytes where they lie; a failure counts it as malformed. This and what it
+/// gives back run on a DDS thread.
+using RawDecode = std::function<Result<Deliver>(const std::uint8_t*, std::size_t)>;
+
+/// Copies the bytes, for samples that cannot be decoded before their SampleMeta is known.
+RawDecode copy_bytes(std::function<void(std::vector<std::uint8_t>&&, const SampleMeta&)> callback);
 
 class Worker;
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,7 +13,7 @@ namespace bpa::wire {
 
 /// Publishes messages of one type on one topic. Thread-safe. It leaves the topic when destroyed.
 template <class T>
-class Publisher {
+class Publisher : public detail::TopicEnd<detail::RawWriter> {
  public:
   /// `topic` is resolved by the participant's node name and remaps.
   static Result<Publisher> create(const Participant& participant, std::string_view topic,
@@ -34,24 +33,11 @@ class Publisher {
   template <class Message>
   Status publish(const Message& message) {
     static_assert(std::string_view(Message::kType) == T::kType, "another type than the topic's");
-    return writer_->write(detail::message_ref(message), nullptr, nullptr);
-  }
-
-  /// The resolved name.
-  const std::string& topic() const { return topic_; }
-  /// Subscribers at present. A peer of Eclipse Cyclone that has gone counts for up to 10 s more.
-  std::size_t matched_count() const { return writer_->matched_count(); }
-  /// Whether `count` or more subscribers were there before the time was over.
-  bool wait_for_matched(std::chrono::milliseconds timeout, std::size_t count = 1) const {
-    return writer_->wait_for_matched(count, timeout);
+    return raw_->write(detail::message_ref(message), nullptr, nullptr);
   }
 
  private:
-  Publisher(std::string topic, std::unique_ptr<detail::RawWriter> writer)
-      : topic_(std::move(topic)), writer_(std::move(writer)) {}
-
-  std::string topic_;
-  std::unique_ptr<detail::RawWriter> writer_;
+  using detail::TopicEnd<detail::RawWriter>::TopicEnd;
 };
 
 }  // namespace bpa::wire

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -23,32 +24,54 @@ namespace bpa::wire {
 
 namespace detail {
 
-class ServiceServerImpl;
-class ServiceClientImpl;
-
 /// One request that waits for its reply.
-class PendingReply {
- public:
-  virtual ~PendingReply() = default;
-  virtual Status reply(const MessageRef& response) = 0;
-  virtual Guid client() const = 0;
+struct PendingReply {
+  Guid client;  ///< The participant that asked; entity 0.
+  std::function<Status(const MessageRef&)> send;
+  std::atomic<bool> answered{false};
 };
 
-/// Decodes a request; gives back what hands it to the handler.
-using RequestDecode =
-    std::function<Result<std::function<void(std::shared_ptr<PendingReply>)>>(CdrReader& reader)>;
+/// Hands a decoded request to its handler.
+using Handle = std::function<void(std::shared_ptr<PendingReply>)>;
+using RequestDecode = std::function<Result<Handle>(CdrReader& reader)>;
 
-Result<std::shared_ptr<ServiceServerImpl>> make_server(const Participant& participant,
-                                                       EndpointSpec request, EndpointSpec reply,
-                                                       RequestDecode decode);
-ReaderStatistics server_statistics(const ServiceServerImpl& server);
-void stop_server(ServiceServerImpl& server);
+class RawServer {
+ public:
+  virtual ~RawServer() = default;
+  virtual ReaderStatistics statistics() const = 0;
+};
 
-Result<std::shared_ptr<ServiceClientImpl>> make_client(const Participant& participant,
-                                                       EndpointSpec request, EndpointSpec reply);
-bool client_wait(ServiceClientImpl& client, std::chrono::milliseconds timeout);
-Result<std::vector<std::uint8_t>> client_call(ServiceClientImpl& client, const MessageRef& request,
-                                              std::chrono::milliseconds timeout);
+class RawClient {
+ public:
+  virtual ~RawClient() = default;
+  /// Whether a server is there, or came before the time was over.
+  virtual bool wait(std::chrono::milliseconds timeout) const = 0;
+  /// The encoded reply.
+  virtual Result<std::vector<std::uint8_t>> call(const MessageRef& request,
+                                                 std::chrono::milliseconds timeout) = 0;
+};
+
+/// The ends of a service, in DDS's names.
+struct ServiceSpec {
+  std::string name;  ///< Resolved.
+  EndpointSpec request, reply;
+};
+
+template <class Service>
+Result<ServiceSpec> service_spec(const Participant& participant, std::string_view service,
+                                 const Qos& qos) {
+  Result<std::string> name = participant.resolve(service);
+  if (!name.ok()) return name.status();
+  return ServiceSpec{
+      *name, endpoint_spec<typename Service::Request>(dds_request_topic_name(*name), qos, 0),
+      endpoint_spec<typename Service::Response>(dds_reply_topic_name(*name), qos, 0)};
+}
+
+/// Withdraws the service when the last copy of the pointer goes, whoever still has a request.
+Result<std::shared_ptr<RawServer>> make_server(const Participant& participant,
+                                               const ServiceSpec& spec, RequestDecode decode);
+Result<std::unique_ptr<RawClient>> make_client(const Participant& participant,
+                                               const ServiceSpec& spec);
 
 }  // namespace detail
 
@@ -63,17 +86,20 @@ class ReplyToken {
   /// the server object is gone, `busy` when too many replies wait, `invalid_argument` on the second
   /// call.
   Status reply(const typename Service::Response& response) const {
-    return pending_->reply(detail::message_ref(response));
+    if (pending_->answered.exchange(true)) {
+      return invalid_argument("this request has been answered already");
+    }
+    return pending_->send(detail::message_ref(response));
   }
   /// The participant that asked: its entity id is zero.
-  Guid client() const { return pending_->client(); }
+  Guid client() const { return pending_->client; }
 
  private:
   std::shared_ptr<detail::PendingReply> pending_;
 };
 
-/// Offers a service. It is withdrawn when destroyed; after that the handler is not running and will
-/// not run.
+/// Offers a service, until its last copy is destroyed; after that the handler is not running and
+/// will not run.
 template <class Service>
 class ServiceServer {
  public:
@@ -85,49 +111,31 @@ class ServiceServer {
 
   static Result<ServiceServer> create(const Participant& participant, std::string_view service,
                                       Handler handler, const Qos& qos = qos::services()) {
-    Result<std::string> name = participant.resolve(service);
-    if (!name.ok()) return name.status();
-    auto decode = [handler = std::move(handler)](CdrReader& reader)
-        -> Result<std::function<void(std::shared_ptr<detail::PendingReply>)>> {
+    auto spec = detail::service_spec<Service>(participant, service, qos);
+    if (!spec.ok()) return spec.status();
+    auto decode = [handler = std::move(handler)](CdrReader& reader) -> Result<detail::Handle> {
       auto request = std::make_shared<Request>();
       reader.read(*request);
-      if (!reader.ok()) {
-        return Status(StatusCode::corrupt, std::string(Request::kType) + " field " +
-                                               reader.field() + ": " + reader.error());
-      }
-      return std::function<void(std::shared_ptr<detail::PendingReply>)>(
-          [&handler, request](std::shared_ptr<detail::PendingReply> pending) {
-            handler(std::move(*request), ReplyToken<Service>(std::move(pending)));
-          });
+      if (!reader.ok()) return reader.status(Request::kType);
+      return detail::Handle([&handler, request](std::shared_ptr<detail::PendingReply> pending) {
+        handler(std::move(*request), ReplyToken<Service>(std::move(pending)));
+      });
     };
-    auto impl = detail::make_server(
-        participant, detail::endpoint_spec<Request>(dds_request_topic_name(*name), qos, 0),
-        detail::endpoint_spec<Response>(dds_reply_topic_name(*name), qos, 0), std::move(decode));
+    auto impl = detail::make_server(participant, *spec, std::move(decode));
     if (!impl.ok()) return impl.status();
-    return ServiceServer(*std::move(name), std::move(impl).value());
-  }
-
-  ServiceServer(ServiceServer&&) = default;
-  ServiceServer& operator=(ServiceServer&& other) noexcept {
-    if (impl_) detail::stop_server(*impl_);
-    name_ = std::move(other.name_);
-    impl_ = std::move(other.impl_);
-    return *this;
-  }
-  ~ServiceServer() {
-    if (impl_) detail::stop_server(*impl_);
+    return ServiceServer(spec->name, std::move(impl).value());
   }
 
   /// The resolved name.
   const std::string& name() const { return name_; }
-  ReaderStatistics statistics() const { return detail::server_statistics(*impl_); }
+  ReaderStatistics statistics() const { return impl_->statistics(); }
 
  private:
-  ServiceServer(std::string name, std::shared_ptr<detail::ServiceServerImpl> impl)
+  ServiceServer(std::string name, std::shared_ptr<detail::RawServer> impl)
       : name_(std::move(name)), impl_(std::move(impl)) {}
 
   std::string name_;
-  std::shared_ptr<detail::ServiceServerImpl> impl_;
+  std::shared_ptr<detail::RawServer> impl_;
 };
 
 /// Calls a service. Thread-safe; several calls may wait at once. Servers may come and go.
@@ -139,24 +147,20 @@ class ServiceClient {
 
   static Result<ServiceClient> create(const Participant& participant, std::string_view service,
                                       const Qos& qos = qos::services()) {
-    Result<std::string> name = participant.resolve(service);
-    if (!name.ok()) return name.status();
-    auto impl = detail::make_client(
-        participant, detail::endpoint_spec<Request>(dds_request_topic_name(*name), qos, 0),
-        detail::endpoint_spec<Response>(dds_reply_topic_name(*name), qos, 0));
+    auto spec = detail::service_spec<Service>(participant, service, qos);
+    if (!spec.ok()) return spec.status();
+    auto impl = detail::make_client(participant, *spec);
     if (!impl.ok()) return impl.status();
-    return ServiceClient(*std::move(name), std::move(impl).value());
+    return ServiceClient(spec->name, std::move(impl).value());
   }
 
   /// Whether a server is there, or came before the time was over.
-  bool wait_for_service(std::chrono::milliseconds timeout) const {
-    return detail::client_wait(*impl_, timeout);
-  }
+  bool wait_for_service(std::chrono::milliseconds timeout) const { return impl_->wait(timeout); }
 
   /// Sends a request and waits for its reply. The time includes waiting for a server: `unavailable`
   /// when none came, `timeout` when no answer did, `corrupt` when the answer cannot be read.
   Result<Response> call(const Request& request, std::chrono::milliseconds timeout) const {
-    auto bytes = detail::client_call(*impl_, detail::message_ref(request), timeout);
+    auto bytes = impl_->call(detail::message_ref(request), timeout);
     if (!bytes.ok()) return bytes.status();
     Response response;
     Status status = decode(bytes->data(), bytes->size(), response);
@@ -168,11 +172,11 @@ class ServiceClient {
   const std::string& name() const { return name_; }
 
  private:
-  ServiceClient(std::string name, std::shared_ptr<detail::ServiceClientImpl> impl)
+  ServiceClient(std::string name, std::unique_ptr<detail::RawClient> impl)
       : name_(std::move(name)), impl_(std::move(impl)) {}
 
   std::string name_;
-  std::shared_ptr<detail::ServiceClientImpl> impl_;
+  std::unique_ptr<detail::RawClient> impl_;
 };
 
 }  // namespace bpa::wire

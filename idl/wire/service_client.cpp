@@ -8,26 +8,23 @@
 #include "idl/wire/service.hpp"
 
 namespace bpa::wire::detail {
+namespace {
 
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 using Bytes = std::vector<std::uint8_t>;
 
-class ServiceClientImpl {
+class Client : public RawClient {
  public:
-  Status open(const Participant& participant, EndpointSpec request, EndpointSpec reply) {
-    name_ = request.dds_topic;
+  Status open(const Participant& participant, const ServiceSpec& spec) {
+    name_ = spec.request.dds_topic;
     // The reader is a member: while it calls back, this exists.
-    auto take = [this](const std::uint8_t* data,
-                       std::size_t size) -> Result<std::function<void(const SampleMeta&)>> {
-      auto copy = std::make_shared<Bytes>(data, data + size);
-      return std::function<void(const SampleMeta&)>(
-          [this, copy](const SampleMeta& meta) { on_reply(std::move(*copy), meta); });
-    };
-    auto reader = make_reader(participant, std::move(reply), std::move(take));
+    auto take = copy_bytes(
+        [this](Bytes&& bytes, const SampleMeta& meta) { on_reply(std::move(bytes), meta); });
+    auto reader = make_reader(participant, spec.reply, std::move(take));
     if (!reader.ok()) return reader.status();
     replies_ = std::move(reader).value();
-    auto writer = make_writer(participant, std::move(request));
+    auto writer = make_writer(participant, spec.request);
     if (!writer.ok()) return writer.status();
     requests_ = std::move(writer).value();
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -35,12 +32,13 @@ class ServiceClientImpl {
     return {};
   }
 
-  bool wait(milliseconds timeout) const {
+  bool wait(milliseconds timeout) const override {
     const Clock::time_point deadline = Clock::now() + timeout;
-    return requests_->wait_for_matched(1, timeout) && replies_->wait_for_matched(1, left(deadline));
+    return requests_->matches().wait_for(1, timeout) &&
+           replies_->matches().wait_for(1, left(deadline));
   }
 
-  Result<Bytes> call(const MessageRef& request, milliseconds timeout) {
+  Result<Bytes> call(const MessageRef& request, milliseconds timeout) override {
     const Clock::time_point deadline = Clock::now() + timeout;
     if (!wait(timeout)) return Status(StatusCode::unavailable, "nobody serves " + name_);
     {
@@ -99,19 +97,14 @@ class ServiceClientImpl {
   std::unique_ptr<RawWriter> requests_;
 };
 
-Result<std::shared_ptr<ServiceClientImpl>> make_client(const Participant& participant,
-                                                       EndpointSpec request, EndpointSpec reply) {
-  auto client = std::make_shared<ServiceClientImpl>();
-  Status status = client->open(participant, std::move(request), std::move(reply));
+}  // namespace
+
+Result<std::unique_ptr<RawClient>> make_client(const Participant& participant,
+                                               const ServiceSpec& spec) {
+  auto client = std::make_unique<Client>();
+  Status status = client->open(participant, spec);
   if (!status.ok()) return status;
-  return client;
-}
-
-bool client_wait(ServiceClientImpl& client, milliseconds timeout) { return client.wait(timeout); }
-
-Result<Bytes> client_call(ServiceClientImpl& client, const MessageRef& request,
-                          milliseconds timeout) {
-  return client.call(request, timeout);
+  return std::unique_ptr<RawClient>(std::move(client));
 }
 
 }  // namespace bpa::wire::detail

@@ -13,6 +13,7 @@ namespace {
 
 using Clock = Worker::Clock;
 using std::chrono::milliseconds;
+using Bytes = std::vector<std::uint8_t>;
 
 /// A reply waits so long for its client's reader to be matched.
 constexpr milliseconds kClientPatience{2000};
@@ -25,31 +26,25 @@ constexpr int kMaxRepeated = 16;  ///< Replies to one new client that go out aga
 
 struct Reply {
   ReplyAddress address;
-  std::vector<std::uint8_t> bytes;
+  Bytes bytes;
   Clock::time_point deadline;
 };
 using ReplyPtr = std::shared_ptr<const Reply>;
 
-}  // namespace
-
-class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl> {
+class Server : public RawServer, public std::enable_shared_from_this<Server> {
  public:
-  ServiceServerImpl(const Participant& participant, std::string name, RequestDecode decode)
+  Server(const Participant& participant, std::string name, RequestDecode decode)
       : participant_(participant), name_(std::move(name)), decode_(std::move(decode)) {}
 
-  Status open(EndpointSpec request, EndpointSpec reply) {
-    auto writer = make_writer(participant_, std::move(reply));
+  Status open(const ServiceSpec& spec) {
+    auto writer = make_writer(participant_, spec.reply);
     if (!writer.ok()) return writer.status();
     replies_ = std::move(writer).value();
-    // The bytes are copied out: whose request it is, is known only once the sample has been taken.
+    // Copied out: whose request it is, is known only once the sample has been taken.
     // The reader is a member: while it calls back, this exists.
-    auto take = [this](const std::uint8_t* bytes,
-                       std::size_t size) -> Result<std::function<void(const SampleMeta&)>> {
-      auto copy = std::make_shared<std::vector<std::uint8_t>>(bytes, bytes + size);
-      return std::function<void(const SampleMeta&)>(
-          [this, copy](const SampleMeta& meta) { on_request(*copy, meta); });
-    };
-    auto reader = make_reader(participant_, std::move(request), std::move(take));
+    auto take =
+        copy_bytes([this](Bytes&& bytes, const SampleMeta& meta) { on_request(bytes, meta); });
+    auto reader = make_reader(participant_, spec.request, std::move(take));
     if (!reader.ok()) return reader.status();
     requests_ = std::move(reader).value();
     return {};
@@ -62,7 +57,7 @@ class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl>
     last.swap(replies_);
   }
 
-  ReaderStatistics statistics() const {
+  ReaderStatistics statistics() const override {
     ReaderStatistics result;
     result.received = received_;
     result.malformed = malformed_;
@@ -85,7 +80,37 @@ class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl>
   }
 
  private:
-  void on_request(const std::vector<std::uint8_t>& bytes, const SampleMeta& meta);
+  void on_request(const Bytes& bytes, const SampleMeta& meta) {
+    ReplyAddress address;
+    std::size_t offset = 0;
+    bool swap = false;
+    Status status = read_request_frame(bytes, meta, &address, &offset, &swap);
+    if (status.ok()) {
+      CdrReader reader(bytes.data() + offset, bytes.size() - offset, swap);
+      auto handle = decode_(reader);
+      if (handle.ok()) {
+        ++received_;
+        (*handle)(pending_reply(address));
+        return;
+      }
+      status = handle.status();
+    }
+    const std::uint64_t count = ++malformed_;
+    if (!is_power_of_two(count)) return;
+    log(participant_log(participant_), LogLevel::warning,
+        name_ + ": refused a request (" + std::to_string(count) + " so far): " + status.message);
+  }
+
+  std::shared_ptr<PendingReply> pending_reply(const ReplyAddress& address) {
+    auto pending = std::make_shared<PendingReply>();
+    pending->client = address.client;
+    pending->send = [weak = weak_from_this(), address](const MessageRef& response) {
+      const auto self = weak.lock();
+      return self ? self->send(address, response)
+                  : Status(StatusCode::unavailable, "the service has ended");
+    };
+    return pending;
+  }
 
   std::shared_ptr<RawWriter> writer() {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -98,13 +123,13 @@ class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl>
       stop_waiting(*reply);
       return Status(StatusCode::unavailable, "the service " + name_ + " has ended");
     }
-    if (!to->is_matched_with(reply->address.reader)) {
+    if (!to->matches().contains(reply->address.reader)) {
       if (Clock::now() > reply->deadline) {
         stop_waiting(*reply);
         log(participant_log(participant_), LogLevel::info,
             name_ + ": dropped a reply, its client does not listen any more");
       } else {
-        run_after(kRetryPeriod, [reply = std::move(reply)](ServiceServerImpl& self) {
+        run_after(kRetryPeriod, [reply = std::move(reply)](Server& self) {
           self.warn(self.send_when_matched(reply));
         });
       }
@@ -147,7 +172,7 @@ class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl>
       ++greeting.repeated;
     }
     for (const milliseconds after : kRepeatAfter) {
-      run_after(after, [reply](ServiceServerImpl& self) {
+      run_after(after, [reply](Server& self) {
         const auto to = self.writer();
         if (to) self.warn(write(*to, *reply));
       });
@@ -160,7 +185,7 @@ class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl>
   }
 
   /// Runs it later on the worker, if the server still exists.
-  void run_after(milliseconds time, std::function<void(ServiceServerImpl&)> task) {
+  void run_after(milliseconds time, std::function<void(Server&)> task) {
     participant_worker(participant_)
         .run_at(Clock::now() + time, [weak = weak_from_this(), task = std::move(task)] {
           if (const auto self = weak.lock()) task(*self);
@@ -187,62 +212,15 @@ class ServiceServerImpl : public std::enable_shared_from_this<ServiceServerImpl>
   std::atomic<std::uint64_t> received_{0}, malformed_{0};
 };
 
-namespace {
-
-class Pending : public PendingReply {
- public:
-  Pending(std::weak_ptr<ServiceServerImpl> server, const ReplyAddress& address)
-      : server_(std::move(server)), address_(address) {}
-
-  Status reply(const MessageRef& response) override {
-    if (answered_.exchange(true)) return invalid_argument("this request has been answered already");
-    const auto server = server_.lock();
-    if (!server) return Status(StatusCode::unavailable, "the service has ended");
-    return server->send(address_, response);
-  }
-  Guid client() const override { return address_.client; }
-
- private:
-  const std::weak_ptr<ServiceServerImpl> server_;
-  const ReplyAddress address_;
-  std::atomic<bool> answered_{false};
-};
-
 }  // namespace
 
-void ServiceServerImpl::on_request(const std::vector<std::uint8_t>& bytes, const SampleMeta& meta) {
-  ReplyAddress address;
-  std::size_t offset = 0;
-  bool swap = false;
-  Status status = read_request_frame(bytes, meta, &address, &offset, &swap);
-  if (status.ok()) {
-    CdrReader reader(bytes.data() + offset, bytes.size() - offset, swap);
-    auto handle = decode_(reader);
-    if (handle.ok()) {
-      ++received_;
-      (*handle)(std::make_shared<Pending>(weak_from_this(), address));
-      return;
-    }
-    status = handle.status();
-  }
-  const std::uint64_t count = ++malformed_;
-  if (!is_power_of_two(count)) return;
-  log(participant_log(participant_), LogLevel::warning,
-      name_ + ": refused a request (" + std::to_string(count) + " so far): " + status.message);
-}
-
-Result<std::shared_ptr<ServiceServerImpl>> make_server(const Participant& participant,
-                                                       EndpointSpec request, EndpointSpec reply,
-                                                       RequestDecode decode) {
-  auto server =
-      std::make_shared<ServiceServerImpl>(participant, request.dds_topic, std::move(decode));
-  Status status = server->open(std::move(request), std::move(reply));
+Result<std::shared_ptr<RawServer>> make_server(const Participant& participant,
+                                               const ServiceSpec& spec, RequestDecode decode) {
+  auto server = std::make_shared<Server>(participant, spec.request.dds_topic, std::move(decode));
+  Status status = server->open(spec);
   if (!status.ok()) return status;
-  return server;
+  // What waits on the worker may hold the server for longer than its owner does.
+  return std::shared_ptr<RawServer>(server.get(), [server](RawServer*) { server->stop(); });
 }
-
-ReaderStatistics server_statistics(const ServiceServerImpl& server) { return server.statistics(); }
-
-void stop_server(ServiceServerImpl& server) { server.stop(); }
 
 }  // namespace bpa::wire::detail

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
@@ -16,7 +15,7 @@ namespace bpa::wire {
 /// Receives messages of one type on one topic. It leaves the topic when destroyed; after that the
 /// callback is not running and will not run.
 template <class T>
-class Subscriber {
+class Subscriber : public detail::TopicEnd<detail::RawReader> {
  public:
   /// Runs on a DDS thread that other subscriptions share: move the message into a bounded queue and
   /// return. It must not throw, and not destroy this object. It may run before `create` returns.
@@ -27,13 +26,12 @@ class Subscriber {
                                    const SubscriberOptions& options, Callback callback) {
     Result<std::string> name = participant.resolve(topic);
     if (!name.ok()) return name.status();
-    auto decode = [callback = std::move(callback)](
-                      const std::uint8_t* bytes,
-                      std::size_t size) -> Result<std::function<void(const SampleMeta&)>> {
+    auto decode = [callback = std::move(callback)](const std::uint8_t* bytes,
+                                                   std::size_t size) -> Result<detail::Deliver> {
       auto message = std::make_shared<T>();
       Status status = wire::decode(bytes, size, *message);
       if (!status.ok()) return status;
-      return std::function<void(const SampleMeta&)>(
+      return detail::Deliver(
           [&callback, message](const SampleMeta& meta) { callback(std::move(*message), meta); });
     };
     auto reader = detail::make_reader(
@@ -44,22 +42,10 @@ class Subscriber {
     return Subscriber(*std::move(name), std::move(reader).value());
   }
 
-  /// The resolved name.
-  const std::string& topic() const { return topic_; }
-  ReaderStatistics statistics() const { return reader_->statistics(); }
-  /// Publishers at present. A peer of Eclipse Cyclone that has gone counts for up to 10 s more.
-  std::size_t matched_count() const { return reader_->matched_count(); }
-  /// Whether `count` or more publishers were there before the time was over.
-  bool wait_for_matched(std::chrono::milliseconds timeout, std::size_t count = 1) const {
-    return reader_->wait_for_matched(count, timeout);
-  }
+  ReaderStatistics statistics() const { return raw_->statistics(); }
 
  private:
-  Subscriber(std::string topic, std::unique_ptr<detail::RawReader> reader)
-      : topic_(std::move(topic)), reader_(std::move(reader)) {}
-
-  std::string topic_;
-  std::unique_ptr<detail::RawReader> reader_;
+  using detail::TopicEnd<detail::RawReader>::TopicEnd;
 };
 
 }  // namespace bpa::wire

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "idl/wire/fastdds/endpoint_qos.hpp"
-
 #include <algorithm>
 #include <fstream>
 
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "idl/wire/fastdds/dds_qos.hpp"
 
 namespace bpa::wire::detail {
 
@@ -60,6 +60,9 @@ void set_common(const EndpointSpec& spec, EndpointQos& qos) {
   } else {
     qos.data_sharing().off();
   }
+#if BPA_FASTDDS_MAJOR >= 3
+  qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION};
+#endif
 }
 
 }  // namespace
@@ -74,12 +77,15 @@ dds::DataWriterQos writer_qos(const EndpointSpec& spec, const dds::Publisher& pu
     qos.reliability().max_blocking_time = milliseconds(100);
     qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
     // With the default of 3 s, what is written while a peer is being matched comes seconds late.
-    heartbeat_period(qos) = milliseconds(100);
-    nack_response_delay(qos) = milliseconds(1);
-  }
+    auto& times = qos.reliable_writer_qos().times;
 #if BPA_FASTDDS_MAJOR >= 3
-  qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION};
+    times.heartbeat_period = milliseconds(100);
+    times.nack_response_delay = milliseconds(1);
+#else
+    times.heartbeatPeriod = milliseconds(100);
+    times.nackResponseDelay = milliseconds(1);
 #endif
+  }
   return qos;
 }
 
@@ -89,10 +95,14 @@ dds::DataReaderQos reader_qos(const EndpointSpec& spec, const dds::Subscriber& s
       succeeded(subscriber.get_datareader_qos_from_profile(spec.dds_topic, qos)) ||
       succeeded(subscriber.get_datareader_qos_from_profile("bpa_reader", qos));
   set_common(spec, qos);
-  if (!has_profile) heartbeat_response_delay(qos) = milliseconds(1);
+  if (!has_profile) {
+    auto& times = qos.reliable_reader_qos().times;
 #if BPA_FASTDDS_MAJOR >= 3
-  qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION};
+    times.heartbeat_response_delay = milliseconds(1);
+#else
+    times.heartbeatResponseDelay = milliseconds(1);
 #endif
+  }
   return qos;
 }
 

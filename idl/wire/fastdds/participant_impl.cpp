@@ -6,8 +6,8 @@
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 
+#include "idl/wire/fastdds/dds_qos.hpp"
 #include "idl/wire/fastdds/log_bridge.hpp"
-#include "idl/wire/fastdds/participant_qos.hpp"
 #include "idl/wire/msg/rmw_dds_common.hpp"
 
 #if BPA_FASTDDS_MAJOR < 3
@@ -103,6 +103,42 @@ ParticipantImpl::~ParticipantImpl() {
   dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
 }
 
+Status ParticipantImpl::open(const EndpointSpec& spec, bool is_reader,
+                             const std::function<Guid(dds::Topic*)>& make) {
+  const std::lock_guard<std::mutex> lock(endpoint_mutex_);
+  std::string error = "Fast DDS refused it";
+  dds::Topic* topic = acquire_topic(spec, &error);
+  const Guid guid = topic == nullptr ? Guid{} : make(topic);
+  if (guid == Guid{}) {
+    if (topic != nullptr) release_topic(spec.dds_topic);
+    return Status(StatusCode::internal, std::string("cannot ") +
+                                            (is_reader ? "subscribe to " : "publish on ") +
+                                            spec.dds_topic + ": " + error);
+  }
+  if (!spec.in_graph) return {};
+  {
+    const std::lock_guard<std::mutex> graph_lock(graph_mutex_);
+    (is_reader ? readers_ : writers_).insert(guid);
+  }
+  publish_graph();
+  return {};
+}
+
+void ParticipantImpl::close(const EndpointSpec& spec, const Guid& guid,
+                            const std::function<void()>& end) {
+  if (spec.in_graph) {
+    {
+      const std::lock_guard<std::mutex> graph_lock(graph_mutex_);
+      readers_.erase(guid);
+      writers_.erase(guid);
+    }
+    publish_graph();
+  }
+  const std::lock_guard<std::mutex> lock(endpoint_mutex_);
+  end();
+  release_topic(spec.dds_topic);
+}
+
 dds::Topic* ParticipantImpl::acquire_topic(const EndpointSpec& spec, std::string* error) {
   dds::TypeSupport& type = types_[spec.dds_type];
   if (type.empty()) {
@@ -148,23 +184,6 @@ GraphLayout ParticipantImpl::graph_layout() const {
   if (options_.graph_layout != GraphLayout::automatic) return options_.graph_layout;
   const std::lock_guard<std::mutex> lock(discovery_mutex_);
   return guess_.layout();
-}
-
-void ParticipantImpl::graph_add(const Guid& endpoint, bool is_reader) {
-  {
-    const std::lock_guard<std::mutex> lock(graph_mutex_);
-    (is_reader ? readers_ : writers_).insert(endpoint);
-  }
-  publish_graph();
-}
-
-void ParticipantImpl::graph_remove(const Guid& endpoint) {
-  {
-    const std::lock_guard<std::mutex> lock(graph_mutex_);
-    readers_.erase(endpoint);
-    writers_.erase(endpoint);
-  }
-  publish_graph();
 }
 
 void ParticipantImpl::publish_graph() {
@@ -218,56 +237,57 @@ void ParticipantImpl::on_peer(const Peer& peer) {
   check_type(peer, ours);
 }
 
+template <class Data, class DdsChange>
+void ParticipantImpl::on_peer_data(const Data& data, bool is_reader, DdsChange change,
+                                   DdsChange came, DdsChange changed) {
+  Peer peer;
+  peer.change = change == came      ? Peer::Change::came
+                : change == changed ? Peer::Change::changed
+                                    : Peer::Change::went;
+  peer.is_reader = is_reader;
+#if BPA_FASTDDS_MAJOR >= 3
+  peer.guid = to_guid(data.guid);
+  peer.topic = data.topic_name.to_string();
+  peer.type = data.type_name.to_string();
+  const auto& user_data = data.user_data.data_vec();
+#else
+  peer.guid = to_guid(data.guid());
+  peer.topic = data.topicName().to_string();
+  peer.type = data.typeName().to_string();
+  const auto& user_data = data.m_qos.m_userData.data_vec();
+#endif
+  peer.user_data.assign(user_data.begin(), user_data.end());
+  on_peer(peer);
+}
+
 #if BPA_FASTDDS_MAJOR >= 3
 
 void ParticipantImpl::on_data_writer_discovery(dds::DomainParticipant*,
                                                rtps::WriterDiscoveryStatus status,
                                                const dds::PublicationBuiltinTopicData& data,
                                                bool&) {
-  using Status = rtps::WriterDiscoveryStatus;
-  const auto& user_data = data.user_data.data_vec();
-  on_peer({status == Status::DISCOVERED_WRITER    ? Peer::Change::came
-           : status == Status::CHANGED_QOS_WRITER ? Peer::Change::changed
-                                                  : Peer::Change::went,
-           false, to_guid(data.guid), data.topic_name.to_string(), data.type_name.to_string(),
-           std::string(user_data.begin(), user_data.end())});
+  using Change = rtps::WriterDiscoveryStatus;
+  on_peer_data(data, false, status, Change::DISCOVERED_WRITER, Change::CHANGED_QOS_WRITER);
 }
 
 void ParticipantImpl::on_data_reader_discovery(dds::DomainParticipant*,
                                                rtps::ReaderDiscoveryStatus status,
                                                const dds::SubscriptionBuiltinTopicData& data,
                                                bool&) {
-  using Status = rtps::ReaderDiscoveryStatus;
-  const auto& user_data = data.user_data.data_vec();
-  on_peer({status == Status::DISCOVERED_READER    ? Peer::Change::came
-           : status == Status::CHANGED_QOS_READER ? Peer::Change::changed
-                                                  : Peer::Change::went,
-           true, to_guid(data.guid), data.topic_name.to_string(), data.type_name.to_string(),
-           std::string(user_data.begin(), user_data.end())});
+  using Change = rtps::ReaderDiscoveryStatus;
+  on_peer_data(data, true, status, Change::DISCOVERED_READER, Change::CHANGED_QOS_READER);
 }
 
 #else
 
 void ParticipantImpl::on_publisher_discovery(dds::DomainParticipant*,
                                              rtps::WriterDiscoveryInfo&& info) {
-  using Info = rtps::WriterDiscoveryInfo;
-  const auto& user_data = info.info.m_qos.m_userData.data_vec();
-  on_peer({info.status == Info::DISCOVERED_WRITER    ? Peer::Change::came
-           : info.status == Info::CHANGED_QOS_WRITER ? Peer::Change::changed
-                                                     : Peer::Change::went,
-           false, to_guid(info.info.guid()), info.info.topicName().to_string(),
-           info.info.typeName().to_string(), std::string(user_data.begin(), user_data.end())});
+  on_peer_data(info.info, false, info.status, info.DISCOVERED_WRITER, info.CHANGED_QOS_WRITER);
 }
 
 void ParticipantImpl::on_subscriber_discovery(dds::DomainParticipant*,
                                               rtps::ReaderDiscoveryInfo&& info) {
-  using Info = rtps::ReaderDiscoveryInfo;
-  const auto& user_data = info.info.m_qos.m_userData.data_vec();
-  on_peer({info.status == Info::DISCOVERED_READER    ? Peer::Change::came
-           : info.status == Info::CHANGED_QOS_READER ? Peer::Change::changed
-                                                     : Peer::Change::went,
-           true, to_guid(info.info.guid()), info.info.topicName().to_string(),
-           info.info.typeName().to_string(), std::string(user_data.begin(), user_data.end())});
+  on_peer_data(info.info, true, info.status, info.DISCOVERED_READER, info.CHANGED_QOS_READER);
 }
 
 #endif

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -29,7 +30,7 @@ Guid to_guid(const rtps::GUID_t& guid);
 Guid to_guid(const rtps::InstanceHandle_t& handle);
 rtps::GUID_t from_guid(const Guid& guid);
 
-/// Owns the DDS participant, its topics and types, and what the ROS 2 graph says of it.
+/// Owns the DDS participant, its topics and types, and its entry in the ROS 2 graph.
 class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
                         private dds::DomainParticipantListener {
  public:
@@ -46,16 +47,12 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
   dds::Subscriber* subscriber() { return subscriber_; }
   Worker& worker() { return worker_; }
 
-  /// Held while an endpoint is made or ended.
-  std::mutex& endpoint_mutex() { return endpoint_mutex_; }
-  /// The topic, made when it is the first of its name; null when another type has the name. The
-  /// caller of both holds endpoint_mutex.
-  dds::Topic* acquire_topic(const EndpointSpec& spec, std::string* error);
-  void release_topic(const std::string& dds_topic);
-
-  /// Lists an endpoint in the graph, or takes it off.
-  void graph_add(const Guid& endpoint, bool is_reader);
-  void graph_remove(const Guid& endpoint);
+  /// Makes an endpoint on its topic and lists it in the graph. `make` makes the DDS entity and
+  /// gives back its GUID, zero when Fast DDS refuses it. `internal` says what was refused and why.
+  Status open(const EndpointSpec& spec, bool is_reader,
+              const std::function<Guid(dds::Topic*)>& make);
+  /// The reverse; `end` deletes the DDS entity.
+  void close(const EndpointSpec& spec, const Guid& guid, const std::function<void()>& end);
 
  private:
   struct TopicEntry {
@@ -77,11 +74,19 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
 #endif
   /// An endpoint of a peer came, changed or went.
   struct Peer {
-    enum class Change { came, changed, went } change;
-    bool is_reader;
-    Guid guid;
+    enum class Change { came, changed, went } change = Change::went;
+    bool is_reader = false;
+    Guid guid{};
     std::string topic, type, user_data;
   };
+  /// The topic, made when it is the first of its name; null, with the reason, when Fast DDS refuses
+  /// it or another type has the name. The caller of both holds endpoint_mutex_.
+  dds::Topic* acquire_topic(const EndpointSpec& spec, std::string* error);
+  void release_topic(const std::string& dds_topic);
+  /// From Fast DDS's data of it; `came` and `changed` are what its `change` may be, else it went.
+  template <class Data, class DdsChange>
+  void on_peer_data(const Data& data, bool is_reader, DdsChange change, DdsChange came,
+                    DdsChange changed);
   void on_peer(const Peer& peer);
   /// Says so when a peer uses one of our topics with another type: DDS itself is silent.
   void check_type(const Peer& peer, const std::string& ours) const;
@@ -94,7 +99,7 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
   dds::Publisher* publisher_ = nullptr;
   dds::Subscriber* subscriber_ = nullptr;
 
-  std::mutex endpoint_mutex_;
+  std::mutex endpoint_mutex_;                      // held while an endpoint is made or ended
   std::map<std::string, TopicEntry> topics_;       // by DDS name
   std::map<std::string, dds::TypeSupport> types_;  // by DDS name
 

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "idl/wire/fastdds/participant_qos.hpp"
-
 #include <cstring>
 
+#include "idl/wire/fastdds/dds_qos.hpp"
 #include "idl/wire/fastdds/version.hpp"
 
 #if BPA_FASTDDS_MAJOR >= 3

@@ -20,7 +20,7 @@ namespace bpa::wire::detail {
 struct IncomingSample {
   const RawDecode* decode = nullptr;
   Status status;
-  std::function<void(const SampleMeta&)> deliver;  ///< Empty when status is not ok.
+  Deliver deliver;  ///< Empty when status is not ok.
 };
 
 /// A type that Fast DDS knows by its name only: samples are MessageRef when written and

@@ -7,8 +7,7 @@
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
-#include "idl/wire/fastdds/endpoint_qos.hpp"
-#include "idl/wire/fastdds/matches.hpp"
+#include "idl/wire/fastdds/dds_qos.hpp"
 #include "idl/wire/fastdds/participant_impl.hpp"
 
 namespace bpa::wire::detail {
@@ -29,7 +28,6 @@ SampleMeta to_meta(const dds::SampleInfo& info) {
   meta.id = to_id(info.sample_identity);
   meta.related = to_id(info.related_sample_identity);
   meta.source_time_ns = info.source_timestamp.to_ns();
-  meta.receive_time_ns = info.reception_timestamp.to_ns();
   return meta;
 }
 
@@ -39,19 +37,12 @@ class Reader : public RawReader, private dds::DataReaderListener {
       : participant_(participant.impl()), spec_(std::move(spec)), decode_(std::move(decode)) {}
 
   Status open() {
-    const std::lock_guard<std::mutex> lock(participant_->endpoint_mutex());
-    std::string error = "Fast DDS refused the reader";
-    dds::Topic* topic = participant_->acquire_topic(spec_, &error);
-    if (topic == nullptr) return fail(error);
-    reader_ = participant_->subscriber()->create_datareader(
-        topic, reader_qos(spec_, *participant_->subscriber()), this);
-    if (reader_ == nullptr) {
-      participant_->release_topic(spec_.dds_topic);
-      return fail(error);
-    }
-    guid_ = to_guid(reader_->guid());
-    if (spec_.in_graph) participant_->graph_add(guid_, true);
-    return {};
+    return participant_->open(spec_, true, [this](dds::Topic* topic) {
+      dds::Subscriber& subscriber = *participant_->subscriber();
+      reader_ = subscriber.create_datareader(topic, reader_qos(spec_, subscriber), this);
+      if (reader_ != nullptr) guid_ = to_guid(reader_->guid());
+      return guid_;
+    });
   }
 
   ~Reader() override {
@@ -60,25 +51,16 @@ class Reader : public RawReader, private dds::DataReaderListener {
       const std::lock_guard<std::mutex> lock(callback_mutex_);
       closed_ = true;
     }
-    if (spec_.in_graph) participant_->graph_remove(guid_);
-    const std::lock_guard<std::mutex> lock(participant_->endpoint_mutex());
-    reader_->set_listener(nullptr);
-    participant_->subscriber()->delete_datareader(reader_);
-    participant_->release_topic(spec_.dds_topic);
+    participant_->close(spec_, guid_, [this] {
+      reader_->set_listener(nullptr);
+      participant_->subscriber()->delete_datareader(reader_);
+    });
   }
 
-  std::size_t matched_count() const override { return matches_.count(); }
-  bool wait_for_matched(std::size_t count, std::chrono::milliseconds timeout) const override {
-    return matches_.wait_for(count, timeout);
-  }
   Guid guid() const override { return guid_; }
   ReaderStatistics statistics() const override { return {received_, malformed_, lost_}; }
 
  private:
-  Status fail(const std::string& why) const {
-    return Status(StatusCode::internal, "cannot subscribe to " + spec_.dds_topic + ": " + why);
-  }
-
   // Samples come over UDP on one thread and through shared memory on another; one at a time.
   void on_data_available(dds::DataReader* reader) override {
     const std::lock_guard<std::mutex> lock(callback_mutex_);
@@ -106,9 +88,7 @@ class Reader : public RawReader, private dds::DataReaderListener {
 
   void on_subscription_matched(dds::DataReader*,
                                const dds::SubscriptionMatchedStatus& status) override {
-    const Guid writer = to_guid(status.last_publication_handle);
-    if (status.current_count_change > 0) matches_.add(writer);
-    if (status.current_count_change < 0) matches_.remove(writer);
+    matches_.update(to_guid(status.last_publication_handle), status.current_count_change);
   }
 
   void on_requested_incompatible_qos(dds::DataReader*,
@@ -128,7 +108,6 @@ class Reader : public RawReader, private dds::DataReaderListener {
   const std::shared_ptr<ParticipantImpl> participant_;
   const EndpointSpec spec_;
   const RawDecode decode_;
-  Matches matches_;
   Guid guid_{};
   std::atomic<std::uint64_t> received_{0}, malformed_{0}, lost_{0};
   std::mutex callback_mutex_;

@@ -33,16 +33,6 @@ using rtps::IPLocator;
 
 inline bool succeeded(dds::ReturnCode_t code) { return code == dds::RETCODE_OK; }
 
-inline Duration& heartbeat_period(dds::DataWriterQos& qos) {
-  return qos.reliable_writer_qos().times.heartbeat_period;
-}
-inline Duration& nack_response_delay(dds::DataWriterQos& qos) {
-  return qos.reliable_writer_qos().times.nack_response_delay;
-}
-inline Duration& heartbeat_response_delay(dds::DataReaderQos& qos) {
-  return qos.reliable_reader_qos().times.heartbeat_response_delay;
-}
-
 #else
 
 namespace rtps = eprosima::fastrtps::rtps;
@@ -53,16 +43,6 @@ using rtps::IPLocator;
 inline bool succeeded(bool written) { return written; }
 inline bool succeeded(const eprosima::fastrtps::types::ReturnCode_t& code) {
   return code == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
-}
-
-inline Duration& heartbeat_period(dds::DataWriterQos& qos) {
-  return qos.reliable_writer_qos().times.heartbeatPeriod;
-}
-inline Duration& nack_response_delay(dds::DataWriterQos& qos) {
-  return qos.reliable_writer_qos().times.nackResponseDelay;
-}
-inline Duration& heartbeat_response_delay(dds::DataReaderQos& qos) {
-  return qos.reliable_reader_qos().times.heartbeatResponseDelay;
 }
 
 #endif

@@ -6,8 +6,7 @@
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <sys/statvfs.h>
 
-#include "idl/wire/fastdds/endpoint_qos.hpp"
-#include "idl/wire/fastdds/matches.hpp"
+#include "idl/wire/fastdds/dds_qos.hpp"
 #include "idl/wire/fastdds/participant_impl.hpp"
 
 namespace bpa::wire::detail {
@@ -47,27 +46,19 @@ class Writer : public RawWriter, private dds::DataWriterListener {
       : participant_(participant), keep_(std::move(keep)), spec_(std::move(spec)) {}
 
   Status open() {
-    const std::lock_guard<std::mutex> lock(participant_.endpoint_mutex());
-    std::string error = "Fast DDS refused the writer";
-    dds::Topic* topic = participant_.acquire_topic(spec_, &error);
-    if (topic == nullptr) return fail(error);
-    writer_ = participant_.publisher()->create_datawriter(
-        topic, writer_qos(spec_, *participant_.publisher()), this);
-    if (writer_ == nullptr) {
-      participant_.release_topic(spec_.dds_topic);
-      return fail(error);
-    }
-    if (spec_.in_graph) participant_.graph_add(guid(), false);
-    return {};
+    return participant_.open(spec_, false, [this](dds::Topic* topic) {
+      dds::Publisher& publisher = *participant_.publisher();
+      writer_ = publisher.create_datawriter(topic, writer_qos(spec_, publisher), this);
+      return writer_ == nullptr ? Guid{} : guid();
+    });
   }
 
   ~Writer() override {
     if (writer_ == nullptr) return;
-    if (spec_.in_graph) participant_.graph_remove(guid());
-    const std::lock_guard<std::mutex> lock(participant_.endpoint_mutex());
-    writer_->set_listener(nullptr);
-    participant_.publisher()->delete_datawriter(writer_);
-    participant_.release_topic(spec_.dds_topic);
+    participant_.close(spec_, guid(), [this] {
+      writer_->set_listener(nullptr);
+      participant_.publisher()->delete_datawriter(writer_);
+    });
   }
 
   Status write(const MessageRef& message, const SampleId* related, SampleId* written) override {
@@ -95,23 +86,12 @@ class Writer : public RawWriter, private dds::DataWriterListener {
     return {};
   }
 
-  std::size_t matched_count() const override { return matches_.count(); }
-  bool wait_for_matched(std::size_t count, std::chrono::milliseconds timeout) const override {
-    return matches_.wait_for(count, timeout);
-  }
   Guid guid() const override { return to_guid(writer_->guid()); }
-  bool is_matched_with(const Guid& reader) const override { return matches_.contains(reader); }
 
  private:
-  Status fail(const std::string& why) const {
-    return Status(StatusCode::internal, "cannot publish on " + spec_.dds_topic + ": " + why);
-  }
-
   void on_publication_matched(dds::DataWriter*,
                               const dds::PublicationMatchedStatus& status) override {
-    const Guid reader = to_guid(status.last_subscription_handle);
-    if (status.current_count_change > 0) matches_.add(reader);
-    if (status.current_count_change < 0) matches_.remove(reader);
+    matches_.update(to_guid(status.last_subscription_handle), status.current_count_change);
   }
 
   void on_offered_incompatible_qos(dds::DataWriter*,
@@ -123,7 +103,6 @@ class Writer : public RawWriter, private dds::DataWriterListener {
   ParticipantImpl& participant_;
   const std::shared_ptr<ParticipantImpl> keep_;
   const EndpointSpec spec_;
-  Matches matches_;
   dds::DataWriter* writer_ = nullptr;
 };
 

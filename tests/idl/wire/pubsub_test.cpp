@@ -283,7 +283,7 @@ TEST(PubSub, MalformedSamplesAreCountedAndTheNextIsRead) {
       *two, "image", options,
       [&heights](sensor_msgs::Image&& image, const SampleMeta&) { heights.put(image.height); });
   ASSERT_TRUE(subscriber.ok());
-  ASSERT_TRUE(writer.value()->wait_for_matched(1, seconds(5)));
+  ASSERT_TRUE(writer.value()->matches().wait_for(1, seconds(5)));
   sensor_msgs::Image image;
   image.height = 5;
   std::vector<std::uint8_t> bytes = encode(image);

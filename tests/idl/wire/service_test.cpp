@@ -134,7 +134,7 @@ TEST(Service, MalformedRequestsAreCountedAndTheNextIsServed) {
       *two, detail::endpoint_spec<Unload::Request>("rq/strictRequest", qos::services(), 0));
   ASSERT_TRUE(writer.ok());
   ASSERT_TRUE(client->wait_for_service(seconds(5)));
-  ASSERT_TRUE(writer.value()->wait_for_matched(1, seconds(5)));
+  ASSERT_TRUE(writer.value()->matches().wait_for(1, seconds(5)));
   const SampleId client_id{{1, 2, 3}, 0};
   const std::vector<std::uint8_t> long_name = {0, 1, 0, 0, 0xff, 0xff, 0xff, 0xff, 'a', 0};
   const std::vector<std::uint8_t> no_header = {0, 1, 0, 0, 2, 0, 0, 0, 'a', 0};

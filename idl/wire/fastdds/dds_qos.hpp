@@ -5,15 +5,26 @@
 #include <string>
 
 #include <fastdds/dds/core/policy/QosPolicies.hpp>
+#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 
+#include "core/base/status.hpp"
+#include "idl/wire/discovery.hpp"
 #include "idl/wire/endpoint.hpp"
 #include "idl/wire/fastdds/version.hpp"
 
 // Private to idl/wire/fastdds, the only folder that includes Fast DDS.
 
 namespace bpa::wire::detail {
+
+/// UDP over IPv4 alone, with large buffers; discovery as rmw_fastrtps sets it up; the user data by
+/// which ROS 2 knows one of its own. `base` is the participant profile of the user, which then says
+/// which transports and time-outs there are; null: none. `invalid_argument` when a static peer's
+/// name is unknown.
+Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
+                                                  int socket_buffer_bytes,
+                                                  const dds::DomainParticipantQos* base);
 
 /// The QoS of an endpoint; what spec.qos does not say may come from the user's XML profiles, those
 /// of the topic's DDS name or "bpa_writer" and "bpa_reader".

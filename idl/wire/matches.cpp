@@ -1,23 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "idl/wire/fastdds/matches.hpp"
+#include "idl/wire/matches.hpp"
 
 #include <algorithm>
 
 namespace bpa::wire::detail {
 
-void Matches::add(const Guid& peer) {
+void Matches::update(const Guid& peer, int change) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    peers_.insert(peer);
-  }
-  changed_.notify_all();
-}
-
-void Matches::remove(const Guid& peer) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    peers_.erase(peer);
+    if (change > 0) peers_.insert(peer);
+    if (change < 0) peers_.erase(peer);
   }
   changed_.notify_all();
 }
