@@ -32,7 +32,7 @@ void catch_interrupts() {
 
 bool interrupted() { return interrupt_count > 0; }
 
-Result<Client> Common::connect() const {
+void Common::run(const std::function<Status(Client)>& body) {
   ClientOptions all = options;
   all.timeout = std::chrono::milliseconds(static_cast<long>(1000 * timeout_s));
   if (localhost) {
@@ -40,10 +40,9 @@ Result<Client> Common::connect() const {
     all.range = DiscoveryRange::localhost;
   }
   all.log = [](const std::string& text) { std::cerr << "bpa-client: " << text << '\n'; };
-  return Client::connect(all);
-}
-
-void Common::fail(const Status& status) {
+  auto client = Client::connect(all);
+  const Status status = client.ok() ? body(std::move(client).value()) : client.status();
+  if (status.ok()) return;
   std::cerr << "bpa-client: " << status.message << '\n';
   exit_code = 1;
 }

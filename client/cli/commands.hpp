@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -20,11 +21,13 @@ struct Common {
   double timeout_s = 5;
   int exit_code = 0;
 
-  /// Connects with these options.
-  Result<Client> connect() const;
-  /// Prints the one line and remembers the exit code.
-  void fail(const Status& status);
+  /// Connects and runs body(); prints the failure of either and remembers the exit code. A body
+  /// that subscribes ends the client, by close(), before what its callbacks refer to.
+  void run(const std::function<Status(Client)>& body);
 };
+
+/// Ends the connection: no callback runs any more.
+inline void close(Client) {}
 
 /// The options that every subcommand has.
 void add_common(CLI::App& program, Common& common);

@@ -32,7 +32,10 @@ Status report(const Result<DetectionSet>& found, const DetectCommand& command,
   return {};
 }
 
-Status detect(Client& client, const DetectCommand& command) {
+Status detect(Client client, DetectCommand& command) {
+  auto priors = read_priors(command.priors);
+  if (!priors.ok()) return priors.status();
+  command.query.priors = std::move(priors).value();
   const std::chrono::milliseconds wait(static_cast<long>(1000 * command.wait_s));
   std::vector<DetectionSet> sets;
   if (command.files.empty()) {
@@ -74,18 +77,12 @@ void add_detect(CLI::App& program, Common& common) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   sub->callback([command, &common] {
-    Status status = check_frame_options(command->files, false);
+    const Status status = check_frame_options(command->files, false);
     if (!status.ok()) throw CLI::ValidationError("detect", status.message);
     if (!command->restriction.empty() && command->files.empty()) {
       throw CLI::ValidationError("detect", "--roi and --mask need frames from disk");
     }
-    auto priors = read_priors(command->priors);
-    if (!priors.ok()) return common.fail(priors.status());
-    command->query.priors = std::move(priors).value();
-    auto client = common.connect();
-    if (!client.ok()) return common.fail(client.status());
-    status = detect(*client, *command);
-    if (!status.ok()) common.fail(status);
+    common.run([&](Client client) { return detect(std::move(client), *command); });
   });
 }
 

@@ -30,12 +30,13 @@ struct LoadCommand {
 void add_models(CLI::App& program, Common& common) {
   program.add_subcommand("models", "list the models that the server looks for")
       ->callback([&common] {
-        auto client = common.connect();
-        if (!client.ok()) return common.fail(client.status());
-        const auto models = client->models();
-        if (!models.ok()) return common.fail(models.status());
-        for (const KnownModel& model : *models) print(model);
-        std::printf("%zu models\n", models->size());
+        common.run([](Client client) -> Status {
+          const auto models = client.models();
+          if (!models.ok()) return models.status();
+          for (const KnownModel& model : *models) print(model);
+          std::printf("%zu models\n", models->size());
+          return {};
+        });
       });
 
   auto load = std::make_shared<LoadCommand>();
@@ -43,20 +44,14 @@ void add_models(CLI::App& program, Common& common) {
   loader->add_option("source", load->source, "name in the server's library")->required();
   loader->add_option("--name", load->name, "name that it gets; default its own");
   loader->callback([load, &common] {
-    auto client = common.connect();
-    if (!client.ok()) return common.fail(client.status());
-    const Status status = client->load_model(load->source, load->name);
-    if (!status.ok()) common.fail(status);
+    common.run([&](Client client) { return client.load_model(load->source, load->name); });
   });
 
   auto unload = std::make_shared<LoadCommand>();
   CLI::App* unloader = program.add_subcommand("unload", "have the server forget a model");
   unloader->add_option("name", unload->name, "name of the model")->required();
   unloader->callback([unload, &common] {
-    auto client = common.connect();
-    if (!client.ok()) return common.fail(client.status());
-    const Status status = client->unload_model(unload->name);
-    if (!status.ok()) common.fail(status);
+    common.run([&](Client client) { return client.unload_model(unload->name); });
   });
 }
 

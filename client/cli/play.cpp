@@ -100,12 +100,12 @@ void add_play(CLI::App& program, Common& common) {
       ->capture_default_str();
   command->add_option("--json", options->json, "write the results to this file");
   command->callback([options, &common] {
-    auto client = common.connect();
-    if (!client.ok()) return common.fail(client.status());
-    Answers answers;
-    const Status status = play(*client, *options, answers);
-    client = Status(StatusCode::unavailable, "closed");  // before what its callbacks refer to
-    if (!status.ok()) common.fail(status);
+    common.run([&](Client client) {
+      Answers answers;
+      const Status status = play(client, *options, answers);
+      close(std::move(client));
+      return status;
+    });
   });
 }
 

@@ -24,11 +24,11 @@ struct RecordOptions {
   double seconds = 0;  ///< 0: until interrupted.
 };
 
-Result<Recording> record(Client& client, const RecordOptions& options) {
+Status record(Client& client, const RecordOptions& options) {
   const double seconds = options.seconds > 0 ? options.seconds : kLongest;
   const std::string path = std::filesystem::absolute(options.oni).lexically_normal().string();
   auto started = client.start_recording(path, seconds);
-  if (!started.ok()) return started;
+  if (!started.ok()) return started.status();
   std::printf("recording to %s%s\n", path.c_str(),
               options.seconds > 0 ? "" : "; ends with Ctrl-C or after an hour");
   std::fflush(stdout);
@@ -36,11 +36,14 @@ Result<Recording> record(Client& client, const RecordOptions& options) {
   while (!interrupted() && std::chrono::steady_clock::now() < end) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  return client.stop_recording();
+  const auto recording = client.stop_recording();
+  if (!recording.ok()) return recording.status();
+  std::printf("%d frames, %.1f MB in %s\n", recording->frames,
+              1e-6 * static_cast<double>(recording->bytes), recording->path.c_str());
+  return {};
 }
 
-Status record_here(Client& client, const RecordOptions& options) {
-  Recorder recorder(options.folder);
+Status record_here(Client& client, const RecordOptions& options, Recorder& recorder) {
   if (Status status = recorder.start(client); !status.ok()) return status;
   std::printf("recording to %s\n", options.folder.c_str());
   std::fflush(stdout);
@@ -73,17 +76,13 @@ void add_record(CLI::App& program, Common& common) {
     if (options->oni.empty() == options->folder.empty()) {
       throw CLI::ValidationError("record", "give either --oni FILE or --to FOLDER");
     }
-    auto client = common.connect();
-    if (!client.ok()) return common.fail(client.status());
-    if (!options->folder.empty()) {
-      const Status status = record_here(*client, *options);
-      if (!status.ok()) common.fail(status);
-      return;
-    }
-    const auto recording = record(*client, *options);
-    if (!recording.ok()) return common.fail(recording.status());
-    std::printf("%d frames, %.1f MB in %s\n", recording->frames,
-                1e-6 * static_cast<double>(recording->bytes), recording->path.c_str());
+    common.run([&](Client client) {
+      if (options->folder.empty()) return record(client, *options);
+      Recorder recorder(options->folder);
+      const Status status = record_here(client, *options, recorder);
+      close(std::move(client));
+      return status;
+    });
   });
 }
 

@@ -27,9 +27,8 @@ struct SendOptions {
   FrameFiles files;
   Restriction restriction;
   Sinks sinks;
-  std::string priors_file;
-  std::vector<ExpectedPose> priors;  ///< Of each frame.
-  double rate_hz = 0;                ///< 0: the next frame when the last one is answered.
+  std::string priors;  ///< File; empty: none.
+  double rate_hz = 0;  ///< 0: the next frame when the last one is answered.
   double wait_s = 120;
   int repeat = 1;
 };
@@ -93,7 +92,8 @@ std::int64_t now_ns() {
 /// One run of the subcommand.
 class Sender {
  public:
-  Sender(Client& client, const SendOptions& options) : client_(client), options_(options) {}
+  Sender(Client client, const SendOptions& options)
+      : options_(options), client_(std::move(client)) {}
 
   Status run();
 
@@ -102,13 +102,14 @@ class Sender {
   Status send(const io::BopFrame& entry);
   Status collect(std::int64_t stamp_ns);
 
-  Client& client_;
   const SendOptions& options_;
+  std::vector<ExpectedPose> priors_;  ///< Of each frame.
   Inbox inbox_;
   std::vector<std::int64_t> sent_;
   std::vector<DetectionSet> results_;
   int missing_ = 0;
   int refused_ = 0;
+  Client client_;  // the last one: its callbacks use the others
 };
 
 Status Sender::subscribe() {
@@ -120,7 +121,7 @@ Status Sender::subscribe() {
 Status Sender::send(const io::BopFrame& entry) {
   const auto frame = load_frame(entry, options_.restriction, now_ns());
   if (!frame.ok()) return frame.status();
-  Status status = client_.publish_frame(view_of(*frame), options_.priors);
+  Status status = client_.publish_frame(view_of(*frame), priors_);
   if (!status.ok()) return status;
   sent_.push_back(frame->stamp_ns);
   if (options_.rate_hz > 0) {
@@ -150,6 +151,9 @@ Status Sender::collect(std::int64_t stamp_ns) {
 }
 
 Status Sender::run() {
+  auto priors = read_priors(options_.priors);
+  if (!priors.ok()) return priors.status();
+  priors_ = std::move(priors).value();
   const auto entries = list_frames(options_.files);
   if (!entries.ok()) return entries.status();
   if (Status status = subscribe(); !status.ok()) return status;
@@ -192,22 +196,16 @@ void add_send(CLI::App& program, Common& common) {
       ->add_option("--rate", options->rate_hz,
                    "frames a second; default: each one when the last is answered")
       ->check(CLI::PositiveNumber);
-  add_priors_option(*command, options->priors_file);
+  add_priors_option(*command, options->priors);
   command->add_option("--wait", options->wait_s, "seconds to wait for the answer to a frame")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_option("--repeat", options->repeat, "send all frames so many times")
       ->check(CLI::PositiveNumber);
   command->callback([options, &common] {
-    Status status = check_frame_options(options->files, true);
+    const Status status = check_frame_options(options->files, true);
     if (!status.ok()) throw CLI::ValidationError("send", status.message);
-    auto priors = read_priors(options->priors_file);
-    if (!priors.ok()) return common.fail(priors.status());
-    options->priors = std::move(priors).value();
-    auto client = common.connect();
-    if (!client.ok()) return common.fail(client.status());
-    status = Sender(*client, *options).run();
-    if (!status.ok()) common.fail(status);
+    common.run([&](Client client) { return Sender(std::move(client), *options).run(); });
   });
 }
 

@@ -33,11 +33,11 @@ void add_status(CLI::App& program, Common& common) {
       .add_subcommand("status",
                       "how the server is doing; with --timeout S, waits until it is there")
       ->callback([&common] {
-        auto client = common.connect();
-        if (!client.ok()) return common.fail(client.status());
-        const auto status = client->status();
-        if (!status.ok()) return common.fail(status.status());
-        print(*status);
+        common.run([](Client client) {
+          const auto status = client.status();
+          if (status.ok()) print(*status);
+          return status.status();
+        });
       });
 }
 

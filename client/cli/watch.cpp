@@ -39,7 +39,7 @@ class Rate {
   std::deque<std::chrono::steady_clock::time_point> times_;
 };
 
-Status watch(Client& client, const WatchOptions& options) {
+Status watch(Client client, const WatchOptions& options) {
   std::atomic<int> seen{0};
   Rate rate;
   Status status = client.subscribe([&](const DetectionSet& set) {
@@ -62,11 +62,11 @@ Status watch(Client& client, const WatchOptions& options) {
       if (!written.ok()) std::cerr << "bpa-client: " << written.message << '\n';
     });
   }
-  if (!status.ok()) return status;
-  while (!interrupted() && (options.count == 0 || seen < options.count)) {
+  while (status.ok() && !interrupted() && (options.count == 0 || seen < options.count)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  return {};
+  close(std::move(client));
+  return status;
 }
 
 }  // namespace
@@ -83,12 +83,7 @@ void add_watch(CLI::App& program, Common& common) {
       ->capture_default_str();
   command->add_option("--count", options->count, "stop after so many frames");
   command->callback([options, &common] {
-    auto client = common.connect();
-    if (!client.ok()) return common.fail(client.status());
-    const Status status = watch(*client, *options);
-    // The client goes before what its callbacks refer to.
-    client = Status(StatusCode::unavailable, "closed");
-    if (!status.ok()) common.fail(status);
+    common.run([&](Client client) { return watch(std::move(client), *options); });
   });
 }
 

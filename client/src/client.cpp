@@ -88,12 +88,13 @@ struct Client::Impl {
 
   ClientOptions options;
   wire::Participant participant;
-  Caller<msgs::Detect> detect;
-  Caller<msgs::ListModels> list_models;
-  Caller<msgs::LoadModel> load_model;
-  Caller<msgs::UnloadModel> unload_model;
-  Caller<msgs::GetStatus> get_status;
-  Caller<msgs::Record> record;
+  // There is a value in each once create() is done.
+  std::optional<Caller<msgs::Detect>> detect = {};
+  std::optional<Caller<msgs::ListModels>> list_models = {};
+  std::optional<Caller<msgs::LoadModel>> load_model = {};
+  std::optional<Caller<msgs::UnloadModel>> unload_model = {};
+  std::optional<Caller<msgs::GetStatus>> get_status = {};
+  std::optional<Caller<msgs::Record>> record = {};
 
   struct Made {  ///< On first use.
     std::mutex mutex;
@@ -112,6 +113,11 @@ struct Client::Impl {
 
   Result<DetectionSet> search(msgs::Detect_Request request, const DetectQuery& query,
                               Milliseconds asked) const;
+  /// Has call() run on the callback thread with convert(message) for each message of the topic.
+  /// Replaces the subscription in `slot`. Waits for a publisher if `wait`.
+  template <class Message, class Convert, class Call>
+  Status subscribe(std::optional<wire::Subscriber<Message>>& slot, const char* topic,
+                   const wire::Qos& qos, bool wait, Convert convert, Call call);
   Result<wire::Publisher<msgs::RgbdFrame>*> frame_publisher();
   Status wait_for_listener(const wire::Publisher<msgs::RgbdFrame>& frames);
 };
@@ -119,22 +125,43 @@ struct Client::Impl {
 Result<std::unique_ptr<Client::Impl>> Client::Impl::create(const ClientOptions& options) {
   auto participant = join(options);
   if (!participant.ok()) return participant.status();
-  auto detect = Caller<msgs::Detect>::create(*participant, "detect");
-  if (!detect.ok()) return detect.status();
-  auto list_models = Caller<msgs::ListModels>::create(*participant, "list_models");
-  if (!list_models.ok()) return list_models.status();
-  auto load_model = Caller<msgs::LoadModel>::create(*participant, "load_model");
-  if (!load_model.ok()) return load_model.status();
-  auto unload_model = Caller<msgs::UnloadModel>::create(*participant, "unload_model");
-  if (!unload_model.ok()) return unload_model.status();
-  auto get_status = Caller<msgs::GetStatus>::create(*participant, "get_status");
-  if (!get_status.ok()) return get_status.status();
-  auto record = Caller<msgs::Record>::create(*participant, "record");
-  if (!record.ok()) return record.status();
-  return std::unique_ptr<Impl>(new Impl{
-      options, std::move(participant).value(), std::move(detect).value(),
-      std::move(list_models).value(), std::move(load_model).value(),
-      std::move(unload_model).value(), std::move(get_status).value(), std::move(record).value()});
+  std::unique_ptr<Impl> impl(new Impl{options, std::move(participant).value()});
+  Status status;
+  const auto make = [&](auto& caller, const char* service) {
+    if (!status.ok()) return;
+    auto created = std::decay_t<decltype(*caller)>::create(impl->participant, service);
+    status = created.status();
+    if (created.ok()) caller.emplace(std::move(created).value());
+  };
+  make(impl->detect, "detect");
+  make(impl->list_models, "list_models");
+  make(impl->load_model, "load_model");
+  make(impl->unload_model, "unload_model");
+  make(impl->get_status, "get_status");
+  make(impl->record, "record");
+  if (!status.ok()) return status;
+  return impl;
+}
+
+template <class Message, class Convert, class Call>
+Status Client::Impl::subscribe(std::optional<wire::Subscriber<Message>>& slot, const char* topic,
+                               const wire::Qos& qos, bool wait, Convert convert, Call call) {
+  const std::lock_guard<std::mutex> lock(made->mutex);
+  slot.reset();
+  wire::SubscriberOptions subscription;
+  subscription.qos = qos;
+  auto subscriber = wire::Subscriber<Message>::create(
+      participant, topic, subscription,
+      [&callbacks = made->callbacks, convert, call = std::move(call)](Message&& message,
+                                                                      const wire::SampleMeta&) {
+        using Value = std::decay_t<decltype(convert(std::move(message)))>;
+        auto value = std::make_shared<const Value>(convert(std::move(message)));
+        callbacks.post([call, value] { call(*value); });
+      });
+  if (!subscriber.ok()) return subscriber.status();
+  slot.emplace(std::move(subscriber).value());
+  if (wait) slot->wait_for_matched(options.timeout);
+  return {};
 }
 
 Result<DetectionSet> Client::Impl::search(msgs::Detect_Request request, const DetectQuery& query,
@@ -154,7 +181,7 @@ Result<DetectionSet> Client::Impl::search(msgs::Detect_Request request, const De
   // The server gives up earlier than we do, so that it can say why.
   const auto total_ms = static_cast<double>(timeout.count());
   request.timeout_ms = std::max(1.0, total_ms - std::clamp(0.25 * total_ms, 50.0, 1000.0));
-  const auto response = detect.call(request, timeout);
+  const auto response = detect->call(request, timeout);
   if (Status status = outcome(response); !status.ok()) return status;
   DetectionSet found = sdk::to_detections(response->result);
   found.queue_position = static_cast<int>(response->queue_position);
@@ -190,7 +217,7 @@ Status Client::Impl::wait_for_listener(const wire::Publisher<msgs::RgbdFrame>& f
   if (!frames.wait_for_matched(options.timeout)) return nobody;
   while (std::chrono::steady_clock::now() < end) {
     std::this_thread::sleep_for(Milliseconds(50));
-    const auto response = get_status.call({}, options.timeout);
+    const auto response = get_status->call({}, options.timeout);
     if (Status status = outcome(response); !status.ok()) return status;
     for (const auto& detail : response->details) {
       if (detail.key != "publishers of frames" || detail.value == "0") continue;
@@ -212,9 +239,9 @@ Result<Client> Client::connect(const ClientOptions& options) {
   return guarded([&]() -> Result<Client> {
     auto impl = Impl::create(options);
     if (!impl.ok()) return impl.status();
-    if (!(*impl)->get_status.wait_for_service(options.timeout)) {
+    if (!(*impl)->get_status->wait_for_service(options.timeout)) {
       return Status(StatusCode::unavailable,
-                    "no bpa-server answers as " + (*impl)->get_status.name() + " in domain " +
+                    "no bpa-server answers as " + (*impl)->get_status->name() + " in domain " +
                         std::to_string((*impl)->participant.domain_id()) + " within " +
                         std::to_string(options.timeout.count()) +
                         " ms; is it running, with this namespace, domain and discovery range?");
@@ -225,7 +252,7 @@ Result<Client> Client::connect(const ClientOptions& options) {
 
 Result<std::vector<KnownModel>> Client::models() {
   return guarded([&]() -> Result<std::vector<KnownModel>> {
-    const auto response = impl_->list_models.call({}, impl_->options.timeout);
+    const auto response = impl_->list_models->call({}, impl_->options.timeout);
     if (Status status = outcome(response); !status.ok()) return status;
     std::vector<KnownModel> models;
     for (const auto& model : response->models) models.push_back(sdk::to_model(model));
@@ -264,73 +291,37 @@ Status Client::publish_frame(const FrameView& frame, const std::vector<ExpectedP
 }
 
 Status Client::subscribe(std::function<void(const DetectionSet&)> on_result) {
-  return guarded([&]() -> Status {
-    const std::lock_guard<std::mutex> lock(impl_->made->mutex);
-    Impl::Made& made = *impl_->made;
-    made.results.reset();
-    wire::SubscriberOptions subscription;
-    subscription.qos = wire::qos::results();
-    auto subscriber = wire::Subscriber<msgs::SceneInterpretations>::create(
-        impl_->participant, "interpretations", subscription,
-        [&made, on_result = std::move(on_result)](msgs::SceneInterpretations&& message,
-                                                  const wire::SampleMeta&) {
-          made.callbacks.post([on_result, set = sdk::to_detections(message)] { on_result(set); });
-        });
-    if (!subscriber.ok()) return subscriber.status();
-    made.results.emplace(std::move(subscriber).value());
-    made.results->wait_for_matched(impl_->options.timeout);
-    return {};
+  const auto convert = [](const msgs::SceneInterpretations& m) { return sdk::to_detections(m); };
+  return guarded([&] {
+    return impl_->subscribe(impl_->made->results, "interpretations", wire::qos::results(), true,
+                            convert, std::move(on_result));
   });
 }
 
 Status Client::subscribe_frames(std::function<void(const FrameView&)> on_frame) {
-  return guarded([&]() -> Status {
-    const std::lock_guard<std::mutex> lock(impl_->made->mutex);
-    Impl::Made& made = *impl_->made;
-    made.others_frames.reset();
-    wire::SubscriberOptions subscription;
-    subscription.qos = wire::qos::frames();  // over UDP: a second reader of shared memory gets
-                                             // nothing from Fast DDS 2.9.1
-    auto subscriber = wire::Subscriber<msgs::RgbdFrame>::create(
-        impl_->participant, "frames", subscription,
-        [&made, on_frame = std::move(on_frame)](msgs::RgbdFrame&& message,
-                                                const wire::SampleMeta&) {
-          auto frame = std::make_shared<const msgs::RgbdFrame>(std::move(message));
-          made.callbacks.post([on_frame, frame] {
-            const auto view = sdk::to_view(*frame);
-            if (view.ok()) on_frame(*view);
-          });
-        });
-    if (!subscriber.ok()) return subscriber.status();
-    made.others_frames.emplace(std::move(subscriber).value());
-    return {};
+  const auto convert = [](msgs::RgbdFrame&& message) { return std::move(message); };
+  const auto call = [on_frame = std::move(on_frame)](const msgs::RgbdFrame& frame) {
+    const auto view = sdk::to_view(frame);
+    if (view.ok()) on_frame(*view);
+  };
+  // Over UDP: a second reader of shared memory gets nothing from Fast DDS 2.9.1.
+  return guarded([&] {
+    return impl_->subscribe(impl_->made->others_frames, "frames", wire::qos::frames(), false,
+                            convert, call);
   });
 }
 
 Status Client::subscribe_annotated(std::function<void(const AnnotatedImage&)> on_image) {
-  return guarded([&]() -> Status {
-    const std::lock_guard<std::mutex> lock(impl_->made->mutex);
-    Impl::Made& made = *impl_->made;
-    made.images.reset();
-    wire::SubscriberOptions subscription;
-    subscription.qos = wire::qos::results();
-    auto subscriber = wire::Subscriber<wire::sensor_msgs::Image>::create(
-        impl_->participant, "annotated", subscription,
-        [&made, on_image = std::move(on_image)](wire::sensor_msgs::Image&& message,
-                                                const wire::SampleMeta&) {
-          auto image = std::make_shared<AnnotatedImage>(sdk::to_image(std::move(message)));
-          made.callbacks.post([on_image, image] { on_image(*image); });
-        });
-    if (!subscriber.ok()) return subscriber.status();
-    made.images.emplace(std::move(subscriber).value());
-    made.images->wait_for_matched(impl_->options.timeout);
-    return {};
+  const auto convert = [](wire::sensor_msgs::Image&& m) { return sdk::to_image(std::move(m)); };
+  return guarded([&] {
+    return impl_->subscribe(impl_->made->images, "annotated", wire::qos::results(), true, convert,
+                            std::move(on_image));
   });
 }
 
 Result<ServerStatus> Client::status() {
   return guarded([&]() -> Result<ServerStatus> {
-    const auto response = impl_->get_status.call({}, impl_->options.timeout);
+    const auto response = impl_->get_status->call({}, impl_->options.timeout);
     if (Status status = outcome(response); !status.ok()) return status;
     return sdk::to_server_status(*response);
   });
@@ -341,7 +332,7 @@ Status Client::load_model(const std::string& source, const std::string& name) {
     msgs::LoadModel_Request request;
     request.source = source;
     request.name = name;
-    return outcome(impl_->load_model.call(request, impl_->options.detect_timeout));
+    return outcome(impl_->load_model->call(request, impl_->options.detect_timeout));
   });
 }
 
@@ -349,12 +340,12 @@ Status Client::unload_model(const std::string& name) {
   return guarded([&]() -> Status {
     msgs::UnloadModel_Request request;
     request.name = name;
-    return outcome(impl_->unload_model.call(request, impl_->options.detect_timeout));
+    return outcome(impl_->unload_model->call(request, impl_->options.detect_timeout));
   });
 }
 
 Result<Recording> Client::Impl::call_record(const msgs::Record_Request& request) const {
-  const auto reply = record.call(request, options.timeout);
+  const auto reply = record->call(request, options.timeout);
   if (reply.status().code == StatusCode::unavailable) {
     return Status(StatusCode::unavailable,
                   "the server records nothing: it has no camera of its own (capture.source)");
