@@ -19,7 +19,8 @@ void add_common(CLI::App& program, Common& common) {
   program.add_option("--namespace", common.options.server_namespace, "ROS namespace of the server")
       ->capture_default_str();
   program.add_flag("--localhost", common.localhost, "look for servers on this machine only");
-  program.add_option("--peer", common.options.peers, "host to look at besides (repeatable)");
+  program.add_option("--peer", common.options.peers,
+                     "another host to look for servers on (repeatable)");
   program.add_option("--timeout", common.timeout_s, "seconds to wait for the server")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

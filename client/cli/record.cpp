@@ -9,7 +9,7 @@
 #include "client/cli/commands.hpp"
 #include "client/cli/recorder.hpp"
 
-// Two things can be recorded. The server's own sensor: the server records every frame as it left
+// Two sources can be recorded. The server's own sensor: the server records every frame as it left
 // the driver, with nothing lost on the network; this program asks it to (--oni). And what clients
 // publish to the server, with what it finds: that is taken down here (--to).
 

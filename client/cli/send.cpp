@@ -200,7 +200,7 @@ void add_send(CLI::App& program, Common& common) {
   command->add_option("--wait", options->wait_s, "seconds to wait for the answer to a frame")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option("--repeat", options->repeat, "send all frames so many times")
+  command->add_option("--repeat", options->repeat, "how often to send all frames; default 1")
       ->check(CLI::PositiveNumber);
   command->callback([options, &common] {
     const Status status = check_frame_options(options->files, true);

@@ -21,7 +21,7 @@ struct WatchOptions {
   bool table = false;
   std::string annotated;
   int top = 5;
-  int count = 0;  ///< Stop after so many results; 0: never.
+  int count = 0;  ///< Results after which to stop; 0: never stop.
 };
 
 /// How many results came in each of the last seconds.
@@ -81,7 +81,7 @@ void add_watch(CLI::App& program, Common& common) {
   command->add_option("--annotated", options->annotated, "write annotated images to this folder");
   command->add_option("--top", options->top, "interpretations to print for each frame")
       ->capture_default_str();
-  command->add_option("--count", options->count, "stop after so many frames");
+  command->add_option("--count", options->count, "frames after which to stop; default never");
   command->callback([options, &common] {
     common.run([&](Client client) { return watch(std::move(client), *options); });
   });

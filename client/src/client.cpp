@@ -211,10 +211,10 @@ Status Client::Impl::wait_for_listener(const wire::Publisher<msgs::RgbdFrame>& f
     if (made->listened && frames.matched_count() > 0) return {};
     made->listened = false;
   }
-  const Status nobody(StatusCode::unavailable, "no server listens to " + frames.topic() +
-                                                   " within " +
-                                                   std::to_string(options.timeout.count()) + " ms");
-  if (!frames.wait_for_matched(options.timeout)) return nobody;
+  const Status silence(StatusCode::unavailable,
+                       "no server listens to " + frames.topic() + " within " +
+                           std::to_string(options.timeout.count()) + " ms");
+  if (!frames.wait_for_matched(options.timeout)) return silence;
   while (std::chrono::steady_clock::now() < end) {
     std::this_thread::sleep_for(Milliseconds(50));
     const auto response = get_status->call({}, options.timeout);
@@ -227,7 +227,7 @@ Status Client::Impl::wait_for_listener(const wire::Publisher<msgs::RgbdFrame>& f
       return {};
     }
   }
-  return nobody;
+  return silence;
 }
 
 Client::Client(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

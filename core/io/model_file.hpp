@@ -27,9 +27,9 @@ constexpr int kModelFileVersion = 3;
 /// to make a model of; unavailable when it cannot be written.
 Status save_model(const std::string& library, const ModelSource& model, int num_threads = 0);
 
-/// Reads LIBRARY/NAME but for the occupancy grid, whose file is only checked; `prepared` is the
-/// stored index. Fails with not_found, or with corrupt saying
-/// whether the file is truncated, altered (its checksum differs), or of another version.
+/// Reads LIBRARY/NAME without the occupancy grid, whose file is only checked. `prepared` is the
+/// stored index. Fails with not_found, or with corrupt saying whether the file is truncated,
+/// altered (its checksum differs), or of another version.
 Result<ModelSource> load_model(const std::string& library, const std::string& name);
 
 /// The occupancy grid of LIBRARY/NAME, exact to 1/65535 of a cell; null when the model was made
