@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/align/moments.hpp"
 #include "core/bingham/eigen4.hpp"
 
 namespace bpa::align {
@@ -24,18 +25,12 @@ struct PositionTerm {
   Vector3d model;
   Vector3d scene;
   Matrix3d precision;
-  double isotropic_precision;
-  double log_determinants;  // log det of the precision over the isotropic one's.
 };
 
 PositionTerm make_term(const Vector3d& model, const Vector3d& scene, double variance,
                        const Matrix3d* covariance) {
-  PositionTerm term{model, scene, Matrix3d::Identity() / variance, 1 / variance, 0};
-  if (covariance != nullptr) {
-    term.precision = covariance->inverse();
-    term.log_determinants = 3 * std::log(variance) - std::log(covariance->determinant());
-  }
-  return term;
+  if (covariance != nullptr) return {model, scene, covariance->inverse()};
+  return {model, scene, Matrix3d::Identity() / variance};
 }
 
 std::vector<PositionTerm> position_terms(const Correspondences& data,
@@ -157,12 +152,6 @@ Matrix4d orientation_exponent(const Correspondences& data, const Quaterniond& q)
   return exponent;
 }
 
-Matrix3d cross_matrix(const Vector3d& v) {
-  Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 // Columns (0, axis i) ∘ q: twice the derivative of exp(ω) ∘ q by ω.
 Eigen::Matrix<double, 4, 3> tangent_basis(const Quaterniond& q) {
   return right_product(q).rightCols<3>();
@@ -268,6 +257,16 @@ BinghamMixture orientation_proposal(const Correspondences& data, const Posterior
   return mixture;
 }
 
+// (Σ w)² / Σ w²: how many equally weighted draws the samples are worth.
+double effective_sample_size(const std::vector<WeightedPose>& samples) {
+  double sum = 0, squares = 0;
+  for (const WeightedPose& s : samples) {
+    sum += s.weight;
+    squares += s.weight * s.weight;
+  }
+  return squares > 0 ? sum * sum / squares : 0;
+}
+
 // Turns log weights, kept in `weight`, into weights that sum to 1.
 void normalize_log_weights(SampledPosterior& result) {
   double largest = -INFINITY, sum = 0;
@@ -278,17 +277,6 @@ void normalize_log_weights(SampledPosterior& result) {
 }
 
 }  // namespace
-
-double log_anisotropic_weight(const Correspondences& data, const Anisotropy& anisotropy,
-                              const Pose& camera_from_object) {
-  double sum = 0;
-  for (const PositionTerm& t : position_terms(data, anisotropy)) {
-    const Vector3d r = camera_from_object * t.model - t.scene;
-    sum += 0.5 *
-           (t.log_determinants + t.isotropic_precision * r.squaredNorm() - r.dot(t.precision * r));
-  }
-  return sum;
-}
 
 RefinedPose refine(const Correspondences& data, const Anisotropy& anisotropy, const Pose& start,
                    int max_iterations) {
@@ -312,34 +300,6 @@ SampledPosterior sample_posterior(const Correspondences& data, const Anisotropy&
     pose.translation = positions.draw(t.mean, random);
     s.weight = t.log_likelihood + log_orientation_likelihood(data, pose.rotation) -
                proposal.log_density(pose.rotation);
-  }
-  normalize_log_weights(result);
-  return result;
-}
-
-SampledPosterior sample_translation_first(const Correspondences& correspondences, int count,
-                                          RandomStream& random) {
-  Correspondences data = correspondences;
-  data.curvature_sign_known = true;
-  const Posterior isotropic = posterior(data);
-  const Vector3d centre = isotropic.map.camera_from_object.translation;
-  // A little wider than the posterior, so that no weight grows large.
-  const Matrix3d covariance = 1.5 * isotropic.covariance().topLeftCorner<3, 3>();
-  const Eigen::LLT<Matrix3d> factor(covariance);
-  SampledPosterior result;
-  result.samples.resize(static_cast<std::size_t>(std::max(0, count)));
-  for (WeightedPose& s : result.samples) {
-    Pose& pose = s.camera_from_object;
-    Vector3d z;
-    for (int i = 0; i < 3; ++i) z[i] = random.normal();
-    pose.translation = centre + factor.matrixL() * z;
-    const Bingham conditional = conditional_orientation(data, pose.translation);
-    pose.rotation = conditional.sample(random);
-    double target = log_orientation_likelihood(data, pose.rotation);
-    for (const PositionTerm& t : position_terms(data, {})) {
-      target -= 0.5 * t.isotropic_precision * (pose * t.model - t.scene).squaredNorm();
-    }
-    s.weight = target + 0.5 * z.squaredNorm() - conditional.log_density(pose.rotation);
   }
   normalize_log_weights(result);
   return result;

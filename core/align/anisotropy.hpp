@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/align/posterior.hpp"
-#include "core/align/samples.hpp"
 
 // What the isotropic derivation leaves out. Claims 1 and 2 need Σi = σi² I: then |R x + t - y|²
 // depends on R through xᵀRᵀy only, which is linear in R and so quadratic in q. A general Σi leaves
@@ -26,11 +25,6 @@ struct Anisotropy {
   std::span<const Eigen::Matrix3d> positions = {};
 };
 
-/// The correction itself: log of the true likelihood of the positions (and the position prior) over
-/// the isotropic one that bpa_mode and posterior use, at a pose.
-double log_anisotropic_weight(const Correspondences& data, const Anisotropy& anisotropy,
-                              const Pose& camera_from_object);
-
 /// The best pose under the true covariances near `start` and the Gaussian there.
 struct RefinedPose {
   Pose camera_from_object;
@@ -43,10 +37,17 @@ struct RefinedPose {
 RefinedPose refine(const Correspondences& data, const Anisotropy& anisotropy, const Pose& start,
                    int max_iterations = 30);
 
+/// A draw of camera_from_object with its importance weight.
+struct WeightedPose {
+  Pose camera_from_object;
+  double weight = 1;
+};
+
 /// Draws from the joint posterior p(q, t | Z) with importance weights against it.
 struct SampledPosterior {
   std::vector<WeightedPose> samples;  ///< Weights sum to 1.
-  double effective_sample_size = 0;   ///< At most the number of samples.
+  /// (Σ w)² / Σ w²: how many equally weighted draws these are worth, at most their number.
+  double effective_sample_size = 0;
 };
 
 /// Orientations from the Bingham mixture of the isotropic model and, where the true one is not
@@ -56,11 +57,5 @@ struct SampledPosterior {
 SampledPosterior sample_posterior(const Correspondences& data, const Anisotropy& anisotropy,
                                   int count, RandomStream& random,
                                   const PosteriorOptions& options = {});
-
-/// The sampler as the paper words it: t from a Gaussian about the least-squares translation, q from
-/// the Bingham p(q | t, Z), weights p(q, t | Z) over both. Isotropic, curvature signs as given.
-/// Kept to compare with: sample_posterior does the same with less loss.
-SampledPosterior sample_translation_first(const Correspondences& data, int count,
-                                          RandomStream& random);
 
 }  // namespace bpa::align

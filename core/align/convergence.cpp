@@ -31,7 +31,8 @@ OrientedPoint oriented_point(const PointCloud& cloud, std::size_t i, bool curvat
 class Matcher {
  public:
   Matcher(const TruePlacement& placement, const ConvergenceOptions& options)
-      : model_(*placement.model),
+      : placement_(placement),
+        model_(*placement.model),
         scene_(*placement.scene),
         options_(options),
         model_grid_(placement.model->points, static_cast<float>(options.gate_m)),
@@ -53,6 +54,8 @@ class Matcher {
     }
     make_patches(near, indices);
   }
+
+  const TruePlacement& placement() const { return placement_; }
 
   void find(const Pose& pose, bool curvature, RandomStream& random, Matches& matches) const {
     const FastPose object_from_camera = to_fast(pose.inverse());
@@ -131,6 +134,7 @@ class Matcher {
            model_.normals[static_cast<std::size_t>(nearest)].dot(n) > fitting_cosine_;
   }
 
+  const TruePlacement& placement_;
   const PointCloud& model_;
   const PointCloud& scene_;
   const ConvergenceOptions& options_;
@@ -149,9 +153,9 @@ Pose disturb(const Pose& truth, const ConvergenceOptions& options, RandomStream&
 }
 
 // The least errors so far, after each step of one trial.
-ConvergenceCurve run_trial(const TruePlacement& placement, const Matcher& matcher,
-                           const Pose& start, Method method, bool curvature, RandomStream random,
-                           int iterations) {
+ConvergenceCurve run_trial(const Matcher& matcher, const Pose& start, Method method, bool curvature,
+                           RandomStream random, int iterations) {
+  const TruePlacement& placement = matcher.placement();
   IterationOptions iteration;
   iteration.method = method;
   iteration.max_iterations = iterations;
@@ -203,8 +207,7 @@ ConvergenceResult run_convergence(const std::vector<TruePlacement>& placements,
     RandomStream random(options.seed, t);
     const Pose start = disturb(placements[p].camera_from_object, options, random);
     const auto run = [&](Method method, bool curvature) {
-      return run_trial(placements[p], *matchers[p], start, method, curvature, random,
-                       options.iterations);
+      return run_trial(*matchers[p], start, method, curvature, random, options.iterations);
     };
     bpa[t] = run(Method::bpa, true);
     normals[t] = run(Method::bpa, false);

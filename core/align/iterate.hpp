@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/align/align.hpp"
-#include "core/base/options.hpp"
 
 namespace bpa::align {
 
@@ -30,14 +29,6 @@ struct IterationOptions {
   int min_matches = 3;        ///< With fewer a step leaves the pose as it is.
   double position_tol_m = 0;  ///< Ends when a step is smaller than this and
   double angle_tol_rad = 0;   ///< than this. 0: never, as with correspondences drawn at random.
-
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
-    visit("max_iterations", max_iterations, FieldRule{0, 10000, "Alignment steps."});
-    visit("min_matches", min_matches, FieldRule{1, 1000, "Fewest matches to align with."});
-    visit("position_tol_m", position_tol_m, FieldRule{0, 1, "Smallest step that goes on, metres."});
-    visit("angle_tol_rad", angle_tol_rad, FieldRule{0, 4, "Smallest step that goes on, radians."});
-  }
 };
 
 struct IterationResult {

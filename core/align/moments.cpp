@@ -116,6 +116,12 @@ CurvatureTerm curvature_term(const OrientedPair& pair) {
   return terms.strongest();
 }
 
+Matrix3d cross_matrix(const Vector3d& v) {
+  Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
 Matrix4d horn_matrix(const Matrix3d& s) {
   Matrix4d n;
   n(0, 0) = s(0, 0) + s(1, 1) + s(2, 2);

@@ -71,6 +71,9 @@ Moments accumulate_positions(const Correspondences& data);
 /// The curvature term of one pair.
 CurvatureTerm curvature_term(const OrientedPair& pair);
 
+/// [v]×: the matrix of the cross product with v.
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v);
+
 /// The exponent whose value at q is trace(R(q) attitude): Horn's matrix (1987).
 Eigen::Matrix4d horn_matrix(const Eigen::Matrix3d& attitude);
 

@@ -65,12 +65,6 @@ BinghamMixture to_mixture(const std::vector<Hypothesis>& hypotheses) {
   return mixture;
 }
 
-Matrix3d cross_matrix(const Vector3d& v) {
-  Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 }  // namespace
 
 Posterior posterior(const Correspondences& data, const PosteriorOptions& options) {
@@ -122,36 +116,6 @@ Matrix6d Posterior::covariance() const {
   result.topLeftCorner<3, 3>() = lever * turn * lever.transpose();
   if (weight > 0) result.topLeftCorner<3, 3>() += Matrix3d::Identity() / weight;
   return result;
-}
-
-Bingham conditional_orientation(const Correspondences& data, const Vector3d& translation) {
-  // About the object's origin, which is at `translation`: the pairs turn x to y - t.
-  Matrix3d attitude = Matrix3d::Zero();
-  const auto add = [&](const Vector3d& model, const Vector3d& scene, double sigma) {
-    attitude += (model / (sigma * sigma)) * (scene - translation).transpose();
-  };
-  for (const OrientedPair& pair : data.oriented) {
-    add(pair.model.point, pair.scene.point, pair.sigma);
-  }
-  for (const PositionPair& pair : data.positions) add(pair.model, pair.scene, pair.sigma);
-  Matrix4d exponent = horn_matrix(attitude);
-  for (const OrientedPair& pair : data.oriented) {
-    const FeatureConcentration c = compose(pair.model, pair.scene);
-    exponent += Bingham::about(pair.scene.orientation, {c.lambda3, c.kappa, c.kappa})
-                    .rotated_right(pair.model.orientation.conjugate())
-                    .exponent();
-  }
-  if (data.orientation_prior != nullptr) exponent += data.orientation_prior->exponent();
-  return Bingham::from_exponent(exponent);
-}
-
-Bingham position_bingham(const Vector3d& model, const Vector3d& scene, double sigma) {
-  const Quaterniond s = Quaterniond::FromTwoVectors(model, Vector3d::UnitX());
-  const Quaterniond s_prime = Quaterniond::FromTwoVectors(Vector3d::UnitX(), scene);
-  const double lambda = -2 * model.norm() * scene.norm() / (sigma * sigma);
-  return Bingham::about(Quaterniond::Identity(), {0, lambda, lambda})
-      .rotated_left(s_prime)
-      .rotated_right(s);
 }
 
 }  // namespace bpa::align

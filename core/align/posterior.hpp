@@ -6,23 +6,13 @@
 #include <vector>
 
 #include "core/align/align.hpp"
-#include "core/align/samples.hpp"
-#include "core/base/options.hpp"
 #include "core/bingham/mixture.hpp"
 
 namespace bpa::align {
 
 struct PosteriorOptions {
-  int max_hypotheses = 16;        ///< Of the signs of curvature directions, kept side by side.
-  double smallest_weight = 1e-6;  ///< Hypotheses of a smaller share are left out.
-
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
-    visit("max_hypotheses", max_hypotheses,
-          {1, 4096, "Most hypotheses about curvature signs that are kept side by side."});
-    visit("smallest_weight", smallest_weight,
-          {0, 0.1, "Sign hypotheses of a smaller share of the probability are left out."});
-  }
+  int max_hypotheses = 16;        ///< Sign hypotheses kept side by side, 1 or more.
+  double smallest_weight = 1e-6;  ///< Hypotheses of a smaller share are rejected, [0, 1).
 };
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -52,14 +42,5 @@ struct Posterior {
 };
 
 Posterior posterior(const Correspondences& data, const PosteriorOptions& options = {});
-
-/// p(q | t, Z) for a given translation of camera_from_object: claims 1 and 2 of the paper, with the
-/// signs of curvature directions as given. The product of one Bingham per pair.
-Bingham conditional_orientation(const Correspondences& data, const Eigen::Vector3d& translation);
-
-/// Claim 2: the Bingham with Λ = (-2ab/σ², -2ab/σ², 0), V = s' ∘ W ∘ s, that one position pair
-/// leaves when `model` (of length a, about the centre of rotation) turns towards `scene` (of length
-/// b).
-Bingham position_bingham(const Eigen::Vector3d& model, const Eigen::Vector3d& scene, double sigma);
 
 }  // namespace bpa::align

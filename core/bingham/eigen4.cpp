@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/bingham/eigen4.hpp"
 
-#include <algorithm>
+#include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
 
@@ -11,36 +11,6 @@ namespace {
 
 using Eigen::Matrix4d;
 using Eigen::Vector4d;
-
-double off_diagonal_squared(const Matrix4d& a) {
-  double sum = 0;
-  for (int p = 0; p < 3; ++p) {
-    for (int q = p + 1; q < 4; ++q) sum += a(p, q) * a(p, q);
-  }
-  return sum;
-}
-
-// One rotation in the plane (p, q) that makes a(p, q) zero.
-void jacobi_rotate(int p, int q, Matrix4d& a, Matrix4d& v) {
-  if (a(p, q) == 0) return;
-  const double theta = (a(q, q) - a(p, p)) / (2 * a(p, q));
-  const double t = std::copysign(1 / (std::abs(theta) + std::sqrt(theta * theta + 1)), theta);
-  const double c = 1 / std::sqrt(t * t + 1);
-  const double s = t * c;
-  a(p, p) -= t * a(p, q);
-  a(q, q) += t * a(p, q);
-  a(p, q) = a(q, p) = 0;
-  for (int k = 0; k < 4; ++k) {
-    if (k != p && k != q) {
-      const double kp = a(k, p), kq = a(k, q);
-      a(k, p) = a(p, k) = c * kp - s * kq;
-      a(k, q) = a(q, k) = s * kp + c * kq;
-    }
-    const double vp = v(k, p), vq = v(k, q);
-    v(k, p) = c * vp - s * vq;
-    v(k, q) = s * vp + c * vq;
-  }
-}
 
 // The largest root of x^4 + c2 x^2 + c1 x + c0, all of whose roots are real and at most `bound`,
 // from above. Convex there, so Newton's steps never pass it but by rounding.
@@ -121,24 +91,8 @@ bool dominant_by_inverse_iteration(const Matrix4d& matrix, Vector4d& answer) {
 }  // namespace
 
 SymmetricEigen4 symmetric_eigen(const Matrix4d& matrix) {
-  const double scale = matrix.cwiseAbs().maxCoeff();
-  const double unit = scale > 0 ? scale : 1;  // Squares of tiny or huge entries would not fit.
-  Matrix4d a = (0.5 / unit) * (matrix + matrix.transpose());
-  Matrix4d v = Matrix4d::Identity();
-  for (int sweep = 0; sweep < 20; ++sweep) {
-    if (off_diagonal_squared(a) <= 1e-36) break;
-    for (int p = 0; p < 3; ++p) {
-      for (int q = p + 1; q < 4; ++q) jacobi_rotate(p, q, a, v);
-    }
-  }
-  std::array<int, 4> order = {0, 1, 2, 3};
-  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return a(i, i) > a(j, j); });
-  SymmetricEigen4 result;
-  for (int i = 0; i < 4; ++i) {
-    result.values[i] = unit * a(order[i], order[i]);
-    result.vectors.col(i) = v.col(order[i]);
-  }
-  return result;
+  const Eigen::SelfAdjointEigenSolver<Matrix4d> solver(0.5 * (matrix + matrix.transpose()));
+  return {solver.eigenvalues().reverse(), solver.eigenvectors().rowwise().reverse()};
 }
 
 Vector4d dominant_eigenvector(const Matrix4d& matrix) {

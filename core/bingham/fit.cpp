@@ -78,17 +78,4 @@ Bingham fit_bingham(std::span<const Quaterniond> samples, std::span<const double
   return total > 0 ? fit_bingham(Matrix4d(scatter / total)) : Bingham();
 }
 
-Bingham compose(const Bingham& a, const Bingham& b) {
-  // E[(a ∘ b)(a ∘ b)ᵀ] is quadratic in a, so a's scatter, axis by axis, is all that matters.
-  const Vector4d tau = bingham_normalizer(a.concentrations()).gradient;
-  const Matrix4d inner = b.scatter();
-  Matrix4d scatter = Matrix4d::Zero();
-  for (int i = 0; i < 4; ++i) {
-    const Vector4d v = a.axes().col(i);
-    const Matrix4d left = left_product(Quaterniond(v[0], v[1], v[2], v[3]));
-    scatter += tau[i] * left * inner * left.transpose();
-  }
-  return fit_bingham(scatter);
-}
-
 }  // namespace bpa

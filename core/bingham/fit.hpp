@@ -19,8 +19,4 @@ Bingham fit_bingham(const Eigen::Matrix4d& scatter);
 Bingham fit_bingham(std::span<const Eigen::Quaterniond> samples,
                     std::span<const double> weights = {});
 
-/// The Bingham nearest in Kullback-Leibler divergence to the distribution of a ∘ b for independent
-/// a and b, which is not itself a Bingham: its exact second moments, fitted.
-Bingham compose(const Bingham& a, const Bingham& b);
-
 }  // namespace bpa

@@ -141,10 +141,6 @@ double credible_energy(const Bingham& bingham, double probability) {
                           [&](double energy) { return credible_mass(bingham, energy); });
 }
 
-bool in_credible_region(const Bingham& bingham, const Quaterniond& q, double probability) {
-  return credible_mass(bingham, -bingham.log_ratio_to_mode(q)) <= probability;
-}
-
 double angle_mass(const Bingham& bingham, double angle) {
   const Vector3d lambda = bingham.concentrations().tail<3>();
   const double log_f = bingham.log_normalizer();

@@ -18,9 +18,6 @@ double credible_mass(const Bingham& bingham, double energy);
 /// [0, 1).
 double credible_energy(const Bingham& bingham, double probability);
 
-/// True when q is in the highest density region of the given probability.
-bool in_credible_region(const Bingham& bingham, const Eigen::Quaterniond& q, double probability);
-
 /// The probability that the rotation from the mode is by at most `angle` radians, in [0, π].
 double angle_mass(const Bingham& bingham, double angle);
 

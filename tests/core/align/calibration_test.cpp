@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -83,10 +84,37 @@ Problem draw_problem(int count, RandomStream& random) {
   return problem;
 }
 
-// The probability of the smallest of position_region's ellipsoids that holds the truth: the share
-// of the samples behind the radius that are nearer.
+// An ellipsoid about the weighted mean of every other sample, shaped by their weighted covariance.
+struct PositionRegion {
+  Vector3d centre = Vector3d::Zero();
+  Matrix3d covariance = Matrix3d::Zero();
+
+  double squared_distance(const Vector3d& position) const {
+    const Vector3d difference = position - centre;
+    return difference.dot(covariance.ldlt().solve(difference));
+  }
+};
+
+PositionRegion position_region(const std::vector<WeightedPose>& samples) {
+  PositionRegion region;
+  double total = 0;
+  for (std::size_t i = 0; i < samples.size(); i += 2) {
+    total += samples[i].weight;
+    region.centre += samples[i].weight * samples[i].camera_from_object.translation;
+  }
+  if (!(total > 0)) return region;
+  region.centre /= total;
+  for (std::size_t i = 0; i < samples.size(); i += 2) {
+    const Vector3d d = samples[i].camera_from_object.translation - region.centre;
+    region.covariance += (samples[i].weight / total) * d * d.transpose();
+  }
+  return region;
+}
+
+// The probability of the smallest such ellipsoid that holds the truth: the share of the other
+// samples that are nearer. The samples that made the shape would say a little less.
 double position_level(const std::vector<WeightedPose>& samples, const Vector3d& truth) {
-  const PositionRegion region = position_region(samples, 0.5);
+  const PositionRegion region = position_region(samples);
   const double distance = region.squared_distance(truth);
   double nearer = 0, total = 0;
   for (std::size_t i = 1; i < samples.size(); i += 2) {

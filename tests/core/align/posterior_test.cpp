@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/core/align/align_problems.hpp"
+#include "tests/core/align/paper_forms.hpp"
 
 namespace bpa::align {
 namespace {

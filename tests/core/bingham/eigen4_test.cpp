@@ -24,7 +24,7 @@ const Eigen::Vector4d kSpectra[] = {
     {0, -1, -2, -3},     {0, -1e-9, -1, -2},    {1e9, 1e9 - 1, 0, -1e9}, {1e-200, 0, 0, -1e-200},
     {0, -1, -1e6, -1e6}, {0, -1e6, -1e6, -1e6}, {1e140, 0, -1, -2},      {5, 5, 5, -15}};
 
-TEST(Eigen4, JacobiDiagonalises) {
+TEST(Eigen4, SpectrumDiagonalises) {
   RandomStream random(1);
   for (const Eigen::Vector4d& spectrum : kSpectra) {
     for (int i = 0; i < 50; ++i) {

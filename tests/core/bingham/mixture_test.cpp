@@ -53,52 +53,5 @@ TEST(BinghamMixture, SamplesHaveItsScatter) {
   EXPECT_LT((scatter - mixture.scatter()).cwiseAbs().maxCoeff(), 4.5 * 0.5 / std::sqrt(count));
 }
 
-TEST(BinghamMixture, ProductIsTheProductOfDensities) {
-  RandomStream random(3);
-  const BinghamMixture a = random_mixture(3, 10, random), b = random_mixture(2, 15, random);
-  const BinghamMixture c = product(a, b);
-  EXPECT_EQ(c.components.size(), 6U);
-  const auto sum = [&](const Quaterniond& q) { return a.log_density(q) + b.log_density(q); };
-  const Quaterniond reference = Bingham().sample(random);
-  for (int i = 0; i < 100; ++i) {
-    const Quaterniond q = Bingham().sample(random);
-    EXPECT_NEAR(c.log_density(q) - c.log_density(reference), sum(q) - sum(reference), 1e-9);
-  }
-}
-
-TEST(BinghamMixture, ModeIsTheHighestPointFound) {
-  RandomStream random(4);
-  for (int i = 0; i < 20; ++i) {
-    const BinghamMixture mixture = random_mixture(4, 30, random);
-    const double height = mixture.log_density(mixture.mode());
-    for (int k = 0; k < 2000; ++k) {
-      EXPECT_LE(mixture.log_density(mixture.sample(random)), height + 1e-9);
-    }
-  }
-}
-
-TEST(BinghamMixture, ReductionKeepsTheScatterAndMergesWhatIsAlike) {
-  RandomStream random(5);
-  // Two clusters, each of three nearly equal components.
-  BinghamMixture mixture;
-  const Quaterniond centres[] = {Quaterniond::Identity(), Quaterniond(0, 1, 0, 0)};
-  for (const Quaterniond& centre : centres) {
-    for (int i = 0; i < 3; ++i) {
-      const Quaterniond q = Bingham::about(centre, {-2e4, -2e4, -2e4}).sample(random);
-      mixture.components.push_back({1.0 / 6, Bingham::about(q, {-100, -100, -100})});
-    }
-  }
-  const BinghamMixture two = reduce(mixture, 2);
-  ASSERT_EQ(two.components.size(), 2U);
-  EXPECT_NEAR(two.components[0].weight, 0.5, 1e-12);
-  EXPECT_LT((two.scatter() - mixture.scatter()).norm(), 1e-9);
-  EXPECT_NEAR(std::abs(two.components[0].bingham.mode().dot(centres[0])), 1, 1e-3);
-  EXPECT_NEAR(std::abs(two.components[1].bingham.mode().dot(centres[1])), 1, 1e-3);
-  const BinghamMixture one = reduce(mixture, 1);
-  ASSERT_EQ(one.components.size(), 1U);
-  EXPECT_LT((one.scatter() - mixture.scatter()).norm(), 1e-9);
-  EXPECT_EQ(reduce(mixture, 10).components.size(), 6U);
-}
-
 }  // namespace
 }  // namespace bpa
