@@ -74,9 +74,8 @@ ModelExplanation::ModelExplanation(const ExplainedFrame& frame, std::size_t inde
 }
 
 Status ModelExplanation::write(HtmlPage& page) const {
-  if (trace_.stages.empty()) {
-    page.paragraph("The time budget was exhausted before this model was looked for.");
-    return {};
+  if (frame_.result.budget_exhausted) {
+    page.paragraph("The time budget was exhausted: the search stopped with what it had.");
   }
   page.paragraph(verdict());
   write_table(page);

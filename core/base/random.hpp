@@ -8,6 +8,15 @@
 
 namespace bpa {
 
+/// What the detector draws random numbers for: no two purposes share a stream of the same seed.
+enum class Stream : std::uint64_t {
+  keypoints = 1,
+  feature_draws,
+  prior_draws,
+  segments,
+  annealing
+};
+
 /// A small, fast stream of random numbers (xoshiro256++ by Blackman and Vigna, seeded by
 /// splitmix64). Give every work item its own stream, named by (seed, item), and results do not
 /// depend on which thread does which item. The numbers are the same on every platform; the
@@ -17,6 +26,10 @@ class RandomStream {
  public:
   using result_type = std::uint64_t;
 
+  /// The stream of one purpose, and of one item of it.
+  RandomStream(std::uint64_t seed, Stream purpose, int item = 0)
+      : RandomStream(seed, (static_cast<std::uint64_t>(purpose) << 32U) +
+                               static_cast<std::uint64_t>(item)) {}
   explicit RandomStream(std::uint64_t seed = 0, std::uint64_t stream = 0) {
     std::uint64_t state = seed ^ (0x9e3779b97f4a7c15ULL * (stream + 1));
     for (std::uint64_t& word : words_) word = splitmix(state);

@@ -70,7 +70,7 @@ std::vector<align::PositionPair> edge_pairs(const SceneFeatures& scene, const Ob
 
 Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
                       float gate, std::uint64_t seed, const DetectOptions& options) {
-  RandomStream random(seed, 17);
+  RandomStream random(seed, Stream::segments);
   const FastPose pose = to_fast(start);
   const auto oriented = surface_pairs(scene, model, pose, gate, options, random);
   if (oriented.size() < static_cast<std::size_t>(options.round_two.min_pairs)) return start;

@@ -21,7 +21,6 @@ struct Candidate {
   const ObjectModel* model = nullptr;  ///< Lives as long as the library.
   /// The pose (camera_from_object) and what the last alignment knew of it.
   Refinement refinement;
-  FastPose fast;  ///< The pose in single precision; up to stage cluster.
   Source found_by = Source::feature;
   int scene_point = -1;   ///< Of the correspondence: index into SceneFeatures::surface (feature) or
                           ///< ::coarse (pairs); -1 for a prior.

@@ -10,19 +10,19 @@
 namespace bpa {
 namespace {
 
-PoseCheck check(const Search& search, const FastPose& pose, int points) {
-  return check_pose(search.scene.image, search.model.index->check, pose, points,
+PoseCheck check(const Search& search, const Pose& pose, int points) {
+  return check_pose(search.scene.image, search.model.index->check, to_fast(pose), points,
                     check_tolerance(search.options.check, search.model));
 }
 
 // Sets the check score; the reason to reject the pose, or null.
 const char* reason_to_reject(const Search& search, Candidate& candidate) {
   const CheckOptions& options = search.options.check;
-  PoseCheck result = check(search, candidate.fast, options.points);
+  PoseCheck result = check(search, candidate.pose(), options.points);
   // Where most of the object is hidden, the few points in sight are too few to judge by.
   if (result.seen < options.few_seen && result.agreeing > 0 &&
       2 * result.free_space <= result.seen) {
-    result = check(search, candidate.fast, options.hidden_points);
+    result = check(search, candidate.pose(), options.hidden_points);
   }
   candidate.check_score = result.score();
   if (result.free_space > 0 &&
@@ -59,7 +59,7 @@ class PoseCells {
   explicit PoseCells(const Search& search) : search_(search) {}
 
   void add(Candidate candidate) {
-    Candidates& cell = cells_[pose_cell(search_.model.symmetry, candidate.fast)];
+    Candidates& cell = cells_[pose_cell(search_.model.symmetry, to_fast(candidate.pose()))];
     if (cell.size() < static_cast<std::size_t>(search_.options.check.max_kept_per_cell)) {
       cell.push_back(std::move(candidate));
       return;
@@ -68,7 +68,7 @@ class PoseCells {
         cell.begin(), cell.end(),
         [](const Candidate& a, const Candidate& b) { return a.check_score < b.check_score; });
     if (candidate.check_score > worst.check_score) std::swap(worst, candidate);
-    search_.reject("better ones beside it", candidate.fast);
+    search_.reject("better ones beside it", candidate.pose());
   }
 
   // Ordered by cell.
@@ -92,13 +92,11 @@ class PoseCells {
 // A sampled pose is off by as much as the sampling of both surfaces is coarse.
 void correct(const Search& search, Candidate& candidate) {
   const CheckOptions& options = search.options.check;
-  const FastPose corrected =
-      to_fast(search.refine(to_pose(candidate.fast), options.correction).camera_from_object);
-  candidate.check_score = check(search, candidate.fast, options.recheck_points).score();
+  const Pose corrected = search.refine(candidate.pose(), options.correction).camera_from_object;
+  candidate.check_score = check(search, candidate.pose(), options.recheck_points).score();
   const float score = check(search, corrected, options.recheck_points).score();
   if (score <= candidate.check_score) return;
-  candidate.fast = corrected;
-  candidate.refinement.camera_from_object = to_pose(corrected);
+  candidate.refinement.camera_from_object = corrected;
   candidate.check_score = score;
 }
 
@@ -118,7 +116,7 @@ Candidates check_free_space(const Search& search, Candidates sampled) {
   for (Candidate& candidate : sampled) {
     if (search.late()) break;
     if (const char* reason = reason_to_reject(search, candidate)) {
-      search.reject(reason, candidate.fast);
+      search.reject(reason, candidate.pose());
     } else if (candidate.found_by == Source::prior) {
       suggested.push_back(std::move(candidate));
     } else {

@@ -21,7 +21,7 @@ std::vector<Cluster> group(const Search& search, const Candidates& candidates) {
   constexpr double kFar = 3 * kPoseTolerance_m;  // whatever the symmetry
   std::vector<Cluster> clusters;
   for (const Candidate& candidate : candidates) {
-    const Pose pose = to_pose(candidate.fast);
+    const Pose& pose = candidate.pose();
     const auto found = std::find_if(clusters.begin(), clusters.end(), [&](const Cluster& c) {
       if ((c.pose.translation - pose.translation).norm() > kFar) return false;
       const PoseError error = pose_error(pose, c.pose, search.model.symmetry);
@@ -29,7 +29,7 @@ std::vector<Cluster> group(const Search& search, const Candidates& candidates) {
     });
     if (found != clusters.end()) {
       found->members.push_back(&candidate);
-      search.reject("in the cluster of a better one", candidate.fast);
+      search.reject("in the cluster of a better one", candidate.pose());
     } else {
       clusters.push_back({pose, {&candidate}});
     }
@@ -46,7 +46,7 @@ Pose aligned_pose(const Search& search, const Cluster& cluster) {
     if (pairs.size() == most) break;
     if (member->found_by != Source::prior) pairs.push_back(oriented_pair(search, *member));
   }
-  if (pairs.empty()) return to_pose(cluster.members.front()->fast);
+  if (pairs.empty()) return cluster.members.front()->pose();
   align::Correspondences data;
   data.oriented = pairs;
   return align::bpa_mode(data).camera_from_object;
@@ -56,20 +56,19 @@ Pose aligned_pose(const Search& search, const Cluster& cluster) {
 Candidate best_of(const Search& search, const Cluster& cluster) {
   const CheckOptions& options = search.options.check;
   const CheckTolerance tolerance = check_tolerance(options, search.model);
-  const auto check_score = [&](const FastPose& pose) {
-    return check_pose(search.scene.image, search.model.index->check, pose, options.recheck_points,
-                      tolerance)
+  const auto check_score = [&](const Pose& pose) {
+    return check_pose(search.scene.image, search.model.index->check, to_fast(pose),
+                      options.recheck_points, tolerance)
         .score();
   };
   Candidate best = *cluster.members.front();
-  best.check_score = check_score(best.fast);
-  const FastPose aligned = to_fast(aligned_pose(search, cluster));
+  best.check_score = check_score(best.pose());
+  const Pose aligned = aligned_pose(search, cluster);
   const float score = check_score(aligned);
   if (score > best.check_score) {
-    best.fast = aligned;
+    best.refinement.camera_from_object = aligned;
     best.check_score = score;
   }
-  best.refinement.camera_from_object = to_pose(best.fast);
   const bool suggested =
       std::any_of(cluster.members.begin(), cluster.members.end(),
                   [](const Candidate* member) { return member->found_by == Source::prior; });
@@ -103,7 +102,7 @@ Candidates cluster(const Search& search, Candidates checked) {
   for (const Cluster& group_of_poses : group(search, checked)) {
     const Candidate& first = *group_of_poses.members.front();
     if (group_of_poses.members.size() < min_features && first.found_by == Source::feature) {
-      search.reject("too few feature matches", first.fast);
+      search.reject("too few feature matches", first.pose());
     } else {
       out.push_back(best_of(search, group_of_poses));
     }

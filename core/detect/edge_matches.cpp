@@ -51,7 +51,7 @@ EdgePoint edge_point(const ObjectModel& model, const ModelView& view, const Fast
 
 std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, float reach) {
   const Eigen::Vector3f& p = edge.point;
-  if (p.z() < 0.1f) return std::nullopt;
+  if (!(p.z() > kNearest_m)) return std::nullopt;
   // The image direction of `outward`, and how far along it a pixel goes.
   const float inverse_z = 1 / p.z();
   const float x = p.x() * inverse_z, y = p.y() * inverse_z;
@@ -60,8 +60,8 @@ std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, 
   const float pixels_per_metre = std::hypot(du, dv);
   if (!(pixels_per_metre > 1)) return std::nullopt;
   const float step = 1 / pixels_per_metre;
-  const Walk walk(image, image.fx * x + image.cx + 0.5f, image.fy * y + image.cy + 0.5f, du * step,
-                  dv * step);
+  const Eigen::Vector2f at = image.project(p);
+  const Walk walk(image, at.x() + 0.5f, at.y() + 0.5f, du * step, dv * step);
   const int steps = std::max(1, static_cast<int>(reach * pixels_per_metre));
   const float jump = kJump + 2 * depth_noise(p.z());
   int k = -steps;

@@ -70,14 +70,15 @@ void keep_best_of_places(const Search& search, int count, double rank_penalty,
   std::unordered_map<std::uint64_t, int> met;
   std::vector<std::pair<float, std::size_t>> order;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const int rank = met[position_cell(candidates[i].fast.translation, kPlacesPerMetre)]++;
+    const int rank =
+        met[position_cell(candidates[i].pose().translation.cast<float>(), kPlacesPerMetre)]++;
     order.push_back(
         {-candidates[i].check_score + static_cast<float>(rank_penalty) * static_cast<float>(rank),
          i});
   }
   std::stable_sort(order.begin(), order.end());
   for (auto o = order.begin() + count; o != order.end(); ++o) {
-    search.reject(kEnough, candidates[o->second].fast);
+    search.reject(kEnough, candidates[o->second].pose());
   }
   order.resize(static_cast<std::size_t>(count));
   Candidates kept;

@@ -12,8 +12,6 @@
 namespace bpa {
 namespace {
 
-constexpr std::uint64_t kPriorStream = 1ULL << 32U;  // apart from the other streams of the seed
-
 align::OrientedPoint oriented_point(const PointCloud& cloud, int index, bool with_curvature) {
   const auto i = static_cast<std::size_t>(index);
   align::OrientedPoint out;
@@ -36,16 +34,11 @@ Candidate candidate_of(const Search& search, Source found_by) {
   return out;
 }
 
-void set_pose(const FastPose& pose, Candidate& candidate) {
-  candidate.fast = pose;
-  candidate.refinement.camera_from_object = to_pose(pose);
-}
-
 // One-correspondence poses by BPA from FPFH matches.
 void from_features(const Search& search, Candidates& out) {
   const SampleOptions& options = search.options.sample;
   const SceneFeatures& scene = search.scene;
-  RandomStream random(search.seed, static_cast<std::uint64_t>(search.model.number));
+  RandomStream random(search.seed, Stream::feature_draws, search.model.number);
   const auto matches =
       search.model.index->feature_tree.nearest(scene.fpfh, options.matches_per_keypoint, 1);
   for (std::size_t k = 0; k < matches.size(); ++k) {
@@ -57,7 +50,7 @@ void from_features(const Search& search, Candidates& out) {
     candidate.model_point = matches[k].index;
     const align::OrientedPair pair = oriented_pair(search, candidate);
     for (int draw = 0; draw < options.draws_per_match; ++draw) {
-      set_pose(to_fast(align::bpa_sample_one(pair, random)), candidate);
+      candidate.refinement.camera_from_object = align::bpa_sample_one(pair, random);
       out.push_back(candidate);
     }
   }
@@ -81,7 +74,7 @@ void from_pairs(const Search& search, Candidates& out) {
     pose.rotation = basis_of(coarse.normals[s]) *
                     Eigen::AngleAxisf(voted.turn, Eigen::Vector3f::UnitZ()) * bases[m].transpose();
     pose.translation = coarse.points[s] - pose.rotation * index.coarse.points[m];
-    set_pose(pose, candidate);
+    candidate.refinement.camera_from_object = to_pose(pose);
     out.push_back(candidate);
   }
 }
@@ -89,14 +82,14 @@ void from_pairs(const Search& search, Candidates& out) {
 // A pose drawn from a prior is off by the prior's uncertainty: it is tried as drawn and aligned.
 void from_priors(const Search& search, Candidates& out) {
   const SampleOptions& options = search.options.sample;
-  RandomStream random(search.seed, kPriorStream + static_cast<std::uint64_t>(search.model.number));
+  RandomStream random(search.seed, Stream::prior_draws, search.model.number);
   for (const Pose& pose :
        search.priors.draw(search.scene.coarse, options.draws_per_prior, random)) {
     if (search.late()) return;
     Candidate candidate = candidate_of(search, Source::prior);
-    set_pose(to_fast(pose), candidate);
+    candidate.refinement.camera_from_object = pose;
     out.push_back(candidate);
-    set_pose(to_fast(search.refine(pose, options.prior_alignment).camera_from_object), candidate);
+    candidate.refinement = search.refine(pose, options.prior_alignment);
     out.push_back(candidate);
   }
 }
@@ -112,8 +105,7 @@ align::OrientedPair oriented_pair(const Search& search, const Candidate& candida
                               candidate.scene_point, feature);
   pair.model =
       oriented_point(feature ? model.features : model.coarse, candidate.model_point, feature);
-  pair.sigma = static_cast<double>(
-                   static_cast<float>(feature ? options.feature_sigma_m : options.pair_sigma_m)) +
+  pair.sigma = (feature ? options.feature_sigma_m : options.pair_sigma_m) +
                static_cast<double>(depth_noise(static_cast<float>(pair.scene.point.z())));
   return pair;
 }

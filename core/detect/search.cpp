@@ -46,18 +46,14 @@ void Search::apply_layer(Candidate& candidate) const {
   candidate.probability = probability_of(candidate.score);
 }
 
-void Search::reject(std::string_view reason, const FastPose& pose) const {
-  if (tracing) tracing->reject(reason, pose);
-}
 void Search::reject(std::string_view reason, const Pose& pose) const {
   if (tracing) tracing->reject(reason, to_fast(pose));
 }
 
 CheckTolerance check_tolerance(const CheckOptions& options, const ObjectModel& model) {
-  const float depth =
-      std::clamp(static_cast<float>(options.depth_share) * static_cast<float>(model.diameter),
-                 static_cast<float>(options.min_depth_m), static_cast<float>(options.max_depth_m));
-  return {static_cast<double>(depth), options.free_depth_m, options.normal_cosine};
+  const double depth =
+      std::clamp(options.depth_share * model.diameter, options.min_depth_m, options.max_depth_m);
+  return {depth, options.free_depth_m, options.normal_cosine};
 }
 
 }  // namespace bpa

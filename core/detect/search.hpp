@@ -47,7 +47,6 @@ struct Search {
   /// Sets score and probability from values and prior.
   void apply_layer(Candidate& candidate) const;
   /// Notes a rejected pose in the trace.
-  void reject(std::string_view reason, const FastPose& pose) const;
   void reject(std::string_view reason, const Pose& pose) const;
 };
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -16,12 +18,30 @@ struct CheckPixel {
   std::uint8_t searched = 0;
 };
 
-/// The observed surface in the form that pose checks read.
+/// Model points nearer to the camera than this are out of sight, metres: no depth camera sees them.
+constexpr float kNearest_m = 0.1f;
+
+/// The observed surface in the form that pose checks read. Pixel (0, 0) is the centre of the top
+/// left pixel.
 struct CheckImage {
   int width = 0;
   int height = 0;
   float fx = 0, fy = 0, cx = 0, cy = 0;
-  std::vector<CheckPixel> pixels;
+  std::vector<CheckPixel> pixels;  ///< Row by row.
+
+  /// The image point of a point of the camera frame with z > 0.
+  Eigen::Vector2f project(const Eigen::Vector3f& point) const {
+    return {fx * point.x() / point.z() + cx, fy * point.y() / point.z() + cy};
+  }
+  /// The index of the pixel that shows a point of the camera frame; -1 where none does.
+  int pixel_of(const Eigen::Vector3f& point) const {
+    if (!(point.z() > kNearest_m)) return -1;
+    const Eigen::Vector2f at = project(point);
+    const float u = std::floor(at.x() + 0.5f), v = std::floor(at.y() + 0.5f);
+    const bool inside =
+        u >= 0 && v >= 0 && u < static_cast<float>(width) && v < static_cast<float>(height);
+    return inside ? static_cast<int>(v) * width + static_cast<int>(u) : -1;
+  }
 };
 
 CheckImage make_check_image(const SurfaceMap& map);

@@ -27,7 +27,7 @@ PointCloud searched_points(const SurfaceMap& map) {
 std::vector<int> choose(std::size_t available, int wanted, std::uint64_t seed) {
   std::vector<int> all(available);
   std::iota(all.begin(), all.end(), 0);
-  RandomStream random(seed, 11);
+  RandomStream random(seed, Stream::keypoints);
   for (std::size_t i = all.size(); i > 1; --i) {
     std::swap(all[i - 1], all[static_cast<std::size_t>(random.index(static_cast<int>(i)))]);
   }

@@ -142,7 +142,7 @@ void greedy(SubsetScore& state, const std::vector<std::size_t>& among, BestSubse
 // One random move: toggles a placement; what it conflicts with gives way. Undone if not accepted.
 void anneal(SubsetScore& state, const std::vector<std::size_t>& among,
             const InterpretationOptions& options, BestSubsets& best) {
-  RandomStream random(options.seed, 23);
+  RandomStream random(options.seed, Stream::annealing);
   double current = state.total();
   for (int step = 0; step < options.annealing_steps; ++step) {
     const double temperature =

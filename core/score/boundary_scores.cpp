@@ -20,8 +20,8 @@ double best_edge(const CheckImage& image, const Image<float>& edges, const Eigen
                  const Eigen::Vector3f& reach) {
   float best = 0;
   for (const float part : {0.0f, 0.5f, 1.0f}) {
-    const auto place = pixel_of(image, point + part * reach);
-    if (place) best = std::max(best, edges.at(place->u, place->v));
+    const int pixel = image.pixel_of(point + part * reach);
+    if (pixel >= 0) best = std::max(best, edges[static_cast<std::size_t>(pixel)]);
   }
   return static_cast<double>(best);
 }
@@ -41,10 +41,10 @@ double edge_likelihood_score(const CheckImage& image, const Image<float>& edges,
   double sum = 0, weights = 0;
   for (std::size_t k = 0; k < view.edges.size(); k += step) {
     const Eigen::Vector3f point = pose * model.surface.points[view.edges[k]];
-    const auto place = pixel_of(image, point);
-    if (!place) continue;
-    const double weight =
-        visibility_probability<double>(observed_depth(image, place->u, place->v), point.z());
+    const int pixel = image.pixel_of(point);
+    if (pixel < 0) continue;
+    const float observed = image.pixels[static_cast<std::size_t>(pixel)].depth;
+    const double weight = visibility_probability<double>(observed, point.z());
     const Eigen::Vector3f reach = kEdgeReach * (pose.rotation * view.outward[k]);
     sum += weight * truncated_log(best_edge(image, edges, point, reach), kEdgeFloor);
     weights += weight;

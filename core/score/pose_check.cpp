@@ -76,7 +76,7 @@ PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const Fa
     project_block(image, model, pose, first, block);
     for (int k = 0; k < std::min(kCheckBlock, last - first); ++k) {
       const float z = block.z[k];
-      if (block.facing[k] > 0 || z < 0.1f) continue;
+      if (block.facing[k] > 0 || !(z > kNearest_m)) continue;
       if (!(block.u[k] >= 0 && block.v[k] >= 0 && block.u[k] < width && block.v[k] < height)) {
         continue;
       }

@@ -9,9 +9,9 @@
 namespace bpa {
 namespace {
 
-constexpr float kNearest = 0.1f;         // metres; what is nearer is out of sight
 constexpr float kMinCosine = 0.05f;      // between normal and line of sight
 constexpr float kPointRadius = 0.0019f;  // metres; 0.75 of the usual spacing of surface points
+constexpr float kMaxRadius = 4;          // pixels
 constexpr float kPlaneReach = 0.01f;     // metres in depth
 
 struct DrawnPoint {
@@ -37,13 +37,13 @@ std::vector<DrawnPoint> facing_points(const CheckImage& image, const ObjectModel
   drawn.reserve(indices.size());
   for (const std::uint32_t i : indices) {
     const Eigen::Vector3f p = pose * model.surface.points[i];
-    if (!(p.z() > kNearest)) continue;
+    if (!(p.z() > kNearest_m)) continue;
     const Eigen::Vector3f normal = pose.rotation * model.surface.normals[i];
     const float offset = normal.dot(p);
     if (offset > -kMinCosine * p.norm()) continue;
-    const float scale = 1 / p.z();
-    const float u = image.fx * p.x() * scale + image.cx, v = image.fy * p.y() * scale + image.cy;
-    const float radius = std::min(4.0f, kPointRadius * image.fx * scale);
+    const Eigen::Vector2f at = image.project(p);
+    const float u = at.x(), v = at.y();
+    const float radius = std::min(kMaxRadius, kPointRadius * image.fx / p.z());
     if (!(u > -1 && v > -1 && u < static_cast<float>(image.width) &&
           v < static_cast<float>(image.height))) {
       continue;
@@ -92,17 +92,6 @@ PredictedSurface draw(const CheckImage& image, const std::vector<DrawnPoint>& dr
 }
 
 }  // namespace
-
-std::optional<PixelPlace> pixel_of(const CheckImage& image, const Eigen::Vector3f& point) {
-  if (!(point.z() > kNearest)) return std::nullopt;
-  const float u = std::floor(image.fx * point.x() / point.z() + image.cx + 0.5f);
-  const float v = std::floor(image.fy * point.y() / point.z() + image.cy + 0.5f);
-  if (!(u >= 0 && v >= 0 && u < static_cast<float>(image.width) &&
-        v < static_cast<float>(image.height))) {
-    return std::nullopt;
-  }
-  return PixelPlace{static_cast<int>(u), static_cast<int>(v)};
-}
 
 PredictedSurface predict_surface(const CheckImage& image, const ObjectModel& model,
                                  const Pose& camera_from_object) {

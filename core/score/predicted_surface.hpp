@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <optional>
 
 #include "core/cloud/image.hpp"
 #include "core/geometry/pose.hpp"
@@ -45,13 +44,6 @@ PredictedSurface predict_surface(const CheckImage& image, const ObjectModel& mod
 /// The same from all points, hidden by one another as they are at just this pose; slower.
 PredictedSurface predict_whole_surface(const CheckImage& image, const ObjectModel& model,
                                        const Pose& camera_from_object);
-
-/// The pixel that a point of the camera's frame is seen at.
-struct PixelPlace {
-  int u = 0;
-  int v = 0;
-};
-std::optional<PixelPlace> pixel_of(const CheckImage& image, const Eigen::Vector3f& point);
 
 /// The observed point at a pixel, in the camera's frame.
 inline Eigen::Vector3f observed_point(const CheckImage& image, int u, int v) {

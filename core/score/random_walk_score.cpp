@@ -12,6 +12,10 @@
 namespace bpa {
 namespace {
 
+struct PixelPlace {
+  int u = 0, v = 0;
+};
+
 constexpr float kExplained = 0.01f;      // metres between prediction and observation
 constexpr double kDistanceSigma = 0.01;  // metres
 constexpr int kSteps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/cloud/surface_map.hpp"
-#include "core/geometry/pose.hpp"
+#include "core/geometry/symmetry.hpp"
 #include "core/model/object_model.hpp"
 #include "core/score/predicted_surface.hpp"
 #include "core/segment/super_pixels.hpp"
@@ -25,8 +25,8 @@ struct SegmentMatch {
 };
 
 struct SegmentMatchOptions {
-  int points = 30;                     ///< Of a segment that are looked at, evenly spread.
-  double max_angle = 3.14159265 / 16;  ///< Radians, between normals (paper section V).
+  int points = 30;                        ///< Of a segment that are looked at, evenly spread.
+  double max_angle = kPoseTolerance_rad;  ///< Radians, between normals (paper section V).
 };
 
 /// The super-pixels with a pixel that the placement explains, by index. This is step 1 of the

@@ -17,6 +17,10 @@ constexpr float kLateralSigma = 0.003f;  // metres, beside a pixel: the same acr
 constexpr float kTruncation = 4.5f;      // three standard deviations, squared and halved
 constexpr float kModelSigma = 0.0025f;   // metres: what models and their poses are off by
 constexpr float kOnSurface = 0.006f;     // metres, plus noise
+constexpr float kMinSlant = 0.3f;        // cosine; the sensor sees little of steeper surface
+// Beside model edges: metres in front that hide, metres beyond the edge that are looked at, metres
+// and cosine up to which surface goes on.
+constexpr float kHiding = 0.015f, kBeyond = 0.012f, kGoesOn = 0.012f, kTurned = 0.8f;
 
 struct Sums {
   double weight = 0, range = 0, normal = 0, free = 0, agreeing = 0;
@@ -24,18 +28,6 @@ struct Sums {
   int facing = 0, visible = 0, unknown = 0;
   Eigen::Matrix3f normals = Eigen::Matrix3f::Zero();  // of agreeing points, squared
 };
-
-bool project(const CheckImage& image, const Eigen::Vector3f& point, int& u, int& v) {
-  if (point.z() < 0.1f) return false;
-  const float inverse_z = 1 / point.z();
-  u = static_cast<int>(std::floor(image.fx * point.x() * inverse_z + image.cx + 0.5f));
-  v = static_cast<int>(std::floor(image.fy * point.y() * inverse_z + image.cy + 0.5f));
-  return u >= 0 && v >= 0 && u < image.width && v < image.height;
-}
-
-const CheckPixel& pixel_at(const CheckImage& image, int u, int v) {
-  return image.pixels[static_cast<std::size_t>(v * image.width + u)];
-}
 
 Eigen::Vector3f normal_of(const CheckPixel& pixel) {
   return Eigen::Vector3f(pixel.normal[0], pixel.normal[1], pixel.normal[2]) / 127.0f;
@@ -106,19 +98,20 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const ModelV
     const Eigen::Vector3f point = pose * model.surface.points[i];
     const Eigen::Vector3f normal = pose.rotation * model.surface.normals[i];
     const Eigen::Vector3f outward = pose.rotation * view.outward[k];
-    int u = 0, v = 0;
-    if (!project(image, point, u, v)) continue;
+    const int at = image.pixel_of(point);
+    if (at < 0) continue;
     ++total;
-    const CheckPixel& inside = pixel_at(image, u, v);
-    if (inside.depth > 0 && inside.depth < point.z() - 0.015f) continue;  // hidden
+    const CheckPixel& inside = image.pixels[static_cast<std::size_t>(at)];
+    if (inside.depth > 0 && inside.depth < point.z() - kHiding) continue;
     ++visible;
-    int beyond_u = 0, beyond_v = 0;
-    if (!project(image, point + 0.012f * outward, beyond_u, beyond_v)) continue;
-    const CheckPixel& beyond = pixel_at(image, beyond_u, beyond_v);
+    const int at_beyond = image.pixel_of(point + kBeyond * outward);
+    if (at_beyond < 0) continue;
+    const CheckPixel& beyond = image.pixels[static_cast<std::size_t>(at_beyond)];
     if (beyond.depth <= 0) continue;  // no depth: an edge shadow, neither for nor against
     // Where the model's tangent plane would be if the surface went on.
-    const bool continues = std::abs(beyond.depth - point.z()) < 0.012f + 2 * depth_noise(point.z());
-    const bool turns = normal_of(beyond).dot(normal) < 0.8f;
+    const bool continues =
+        std::abs(beyond.depth - point.z()) < kGoesOn + 2 * depth_noise(point.z());
+    const bool turns = normal_of(beyond).dot(normal) < kTurned;
     (continues && !turns ? goes_on : ends) += 1;
   }
   out.edge_visibility = total > 0 ? static_cast<double>(visible) / total : 0;
@@ -133,9 +126,10 @@ bool see_point(const CheckImage& image, const ObjectModel& model, const ModelVie
   out.point = pose * model.surface.points[i];
   out.normal = pose.rotation * model.surface.normals[i];
   out.slant = -out.normal.dot(out.point) / out.point.norm();
-  int u = 0, v = 0;
-  if (out.slant < 0.3f || !project(image, out.point, u, v)) return false;
-  out.pixel = static_cast<std::size_t>(v * image.width + u);
+  if (out.slant < kMinSlant) return false;
+  const int pixel = image.pixel_of(out.point);
+  if (pixel < 0) return false;
+  out.pixel = static_cast<std::size_t>(pixel);
   out.soft_normal = pose.rotation * model.index->soft_normals[i];
   const float edge_distance = view.edge_distance[k];
   const NoiseTable& noise = model.index->noise;

@@ -30,8 +30,8 @@ std::size_t first_right(const Candidates& hypotheses, const Pose& truth,
 void expect_same(const Candidates& a, const Candidates& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
-    ASSERT_EQ(a[i].fast.rotation, b[i].fast.rotation);
-    ASSERT_EQ(a[i].fast.translation, b[i].fast.translation);
+    ASSERT_EQ(a[i].pose().rotation.coeffs(), b[i].pose().rotation.coeffs());
+    ASSERT_EQ(a[i].pose().translation, b[i].pose().translation);
     ASSERT_EQ(a[i].check_score, b[i].check_score);
   }
 }

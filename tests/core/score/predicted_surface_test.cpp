@@ -80,15 +80,14 @@ TEST(PixelOf, IsTheCamerasProjection) {
   image.fx = image.fy = 262.5f, image.cx = 159.5f, image.cy = 119.5f;
   const Camera camera{320, 240, 262.5, 262.5, 159.5, 119.5};
   for (const auto& [u, v] : {std::pair(0, 0), {319, 239}, {17, 200}}) {
-    const auto place = pixel_of(image, camera.unproject(u + 0.4, v - 0.4, 1.3).cast<float>());
-    ASSERT_TRUE(place);
-    EXPECT_EQ(place->u, u);
-    EXPECT_EQ(place->v, v);
+    const Eigen::Vector3f point = camera.unproject(u + 0.4, v - 0.4, 1.3).cast<float>();
+    EXPECT_EQ(image.pixel_of(point), 320 * v + u);
+    EXPECT_LT((image.project(point) - Eigen::Vector2f(u + 0.4f, v - 0.4f)).norm(), 1e-4f);
   }
-  EXPECT_FALSE(pixel_of(image, camera.unproject(-0.6, 5, 1).cast<float>()));
-  EXPECT_FALSE(pixel_of(image, camera.unproject(319.6, 5, 1).cast<float>()));
-  EXPECT_FALSE(pixel_of(image, {0, 0, -1}));
-  EXPECT_FALSE(pixel_of(image, {0, 0, std::nanf("")}));
+  EXPECT_EQ(image.pixel_of(camera.unproject(-0.6, 5, 1).cast<float>()), -1);
+  EXPECT_EQ(image.pixel_of(camera.unproject(319.6, 5, 1).cast<float>()), -1);
+  EXPECT_EQ(image.pixel_of({0, 0, -1}), -1);
+  EXPECT_EQ(image.pixel_of({0, 0, std::nanf("")}), -1);
 }
 
 TEST(Likelihood, KnownValues) {
