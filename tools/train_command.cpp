@@ -24,7 +24,7 @@ namespace {
 
 struct TrainArguments {
   CommonOptions common;
-  std::string library, split = "test", config, source;
+  std::string library, split = "test", config, output, made_by = "bpa train";
   std::vector<std::string> bop;
   std::vector<int> scenes;
   int held_out = 5;
@@ -131,7 +131,7 @@ std::string provenance(const TrainArguments& a, std::size_t frames) {
   for (const std::string& folder : a.bop) {
     sets += (sets.empty() ? "" : " and ") + folder.substr(folder.find_last_of('/') + 1);
   }
-  return "bpa train, split " + a.split + " of " + sets + ", " + std::to_string(frames) +
+  return a.made_by + ": split " + a.split + " of " + sets + ", " + std::to_string(frames) +
          " frames, seed " + std::to_string(a.common.seed);
 }
 
@@ -147,43 +147,6 @@ void print_reliability(const char* name, const ScoreLayer& layer,
       std::printf("  %9.2f  %5.2f  %10d\n", bin.predicted, bin.right, bin.count);
     }
   }
-}
-
-std::string list(std::span<const double> values) {
-  std::string out;
-  char number[32];
-  for (double value : values) {
-    std::snprintf(number, sizeof number, "%s%.6g", out.empty() ? "{" : ", ", value);
-    out += number;
-  }
-  return out + "}";
-}
-
-// One layer, as C++ initialises it.
-std::string initialiser(const ScoreLayer& layer) {
-  std::string out = "      {{{\n";
-  char line[256];
-  for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
-    const ScoreLayer::Component& c = layer.components[i];
-    out += std::string("          // ") + std::string(kScoreComponents[i].name) + "\n          {" +
-           list(c.place) + ",\n           " + list(c.value) + "},\n";
-  }
-  std::snprintf(line, sizeof line, "      }}, %.9g,\n", layer.bias);
-  return out + line + "      \"" + layer.provenance + "\"}";
-}
-
-// A C++ source that defines default_score_layers().
-std::string as_source(const ScoreLayers& layers) {
-  return "// SPDX-FileCopyrightText: 2026 The bpa authors\n"
-         "// SPDX-License-Identifier: Apache-2.0\n"
-         "// Written by 'bpa train --source' (tests/accuracy/train.sh); see the provenance below.\n"
-         "#include \"core/score/score_layer.hpp\"\n\nnamespace bpa {\n\n"
-         "// clang-format off\nconst ScoreLayers& default_score_layers() {\n"
-         "  static const ScoreLayers layers = {\n      // round two\n" +
-         initialiser(layers.round_two) + ",\n      // round three\n" +
-         initialiser(layers.round_three) + ",\n      // without colours\n" +
-         initialiser(layers.without_color) +
-         "};\n  return layers;\n}\n// clang-format on\n\n}  // namespace bpa\n";
 }
 
 // The same samples of frames or models that have no colour.
@@ -221,8 +184,7 @@ Status train(const TrainArguments& a) {
                            Task{"without colours", uncolored, layers.without_color}}) {
     if (Status status = learn(task.name, task.from, task.layer); !status.ok()) return status;
   }
-  if (!a.source.empty()) return io::write_file(a.source, as_source(layers));
-  const std::string path = score_layer_path(a.library);
+  const std::string path = a.output.empty() ? score_layer_path(a.library) : a.output;
   if (Status status = write_score_layers(path, layers); !status.ok()) return status;
   std::printf("wrote %s\n", path.c_str());
   return {};
@@ -253,9 +215,12 @@ void add_train_command(CLI::App& program, Action& action) {
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   command
-      .add_option("--source", a->source,
-                  "Write the layers as the C++ source of the built-in ones, not to the library")
+      .add_option("--output", a->output,
+                  "Write the layers to this file instead of the library's score_layer.json")
       ->type_name("FILE");
+  command.add_option("--made-by", a->made_by, "Command that the file's provenance names")
+      ->type_name("TEXT")
+      ->capture_default_str();
   add_common_options(command, a->common);
   command.callback([&action, a] { action = [a] { return train(*a); }; });
 }

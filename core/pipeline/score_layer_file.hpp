@@ -13,9 +13,7 @@ namespace bpa {
 std::string score_layer_path(const std::string& library_folder);
 
 Status write_score_layers(const std::string& path, const ScoreLayers& layers);
-/// Fails with not_found, or with corrupt (naming the file and what is wrong) on a file that is not
-/// JSON, is of another version, lacks a layer or names an unknown score component. A component that
-/// a layer lacks adds nothing to its log odds.
+/// Fails with not_found, or as score_layers_from_json().
 Result<ScoreLayers> read_score_layers(const std::string& path);
 /// The layers of the library, or default_score_layers() where the library has none of its own.
 Result<ScoreLayers> library_score_layers(const std::string& library_folder);

@@ -47,7 +47,8 @@ struct ScoreLayers {
   }
 };
 
-/// The layers that `bpa train` made of simulated scenes; see ScoreLayer::provenance.
+/// The layers of config/score_layers.json, which tests/accuracy/train.sh made of simulated scenes.
+/// A library may have layers of its own (`bpa train`).
 const ScoreLayers& default_score_layers();
 
 /// The probability of log odds.
