@@ -18,20 +18,21 @@ struct Interpretation {
   std::vector<Placement> placements;  ///< By falling probability. Empty: nothing known is there.
 };
 
+/// Time that one stage of the detector took.
 struct StageTiming {
-  std::string stage;
+  std::string stage;  ///< Its name.
   double milliseconds = 0;
 };
 
-/// What one frame was found to hold.
+/// The result of one search.
 struct SceneInterpretations {
-  std::int64_t stamp_ns = 0;                    ///< The frame's.
-  std::string frame_id;                         ///< The frame's.
-  std::vector<Interpretation> interpretations;  ///< Ranked; at least one (perhaps of no objects).
+  std::int64_t stamp_ns = 0;                    ///< Exposure time of the frame, UTC.
+  std::string frame_id;                         ///< Name of the frame's optical frame.
+  std::vector<Interpretation> interpretations;  ///< Ranked; at least one, which may be empty.
   std::vector<StageTiming> timings;             ///< In the order the stages ran.
-  double total_milliseconds = 0;
-  bool budget_exhausted = false;  ///< The time budget ended the search: this is the best so far.
-  int fused_frames = 1;           ///< How many frames the depth that was searched is made of.
+  double total_milliseconds = 0;                ///< Of the whole search.
+  bool budget_exhausted = false;                ///< True: the time budget ended the search.
+  int fused_frames = 1;  ///< Number of frames combined into the searched depth.
 };
 
 }  // namespace bpa

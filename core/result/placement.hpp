@@ -18,7 +18,7 @@ struct ScoreComponent {
 
 /// Another pose that explains the view nearly as well.
 struct PoseAlternative {
-  Pose camera_from_object;
+  Pose camera_from_object;  ///< Optical frame of the camera, metres.
   double weight = 0;  ///< In (0, 1]; the weights of a placement and its alternatives sum to 1.
 };
 
@@ -29,8 +29,8 @@ struct OrientationUncertainty {
   Eigen::Vector3d concentrations = Eigen::Vector3d::Zero();  ///< Not positive; 0 is uniform.
 };
 
-/// That of an orientation with small Gaussian errors: rotation vectors about the camera's axes of
-/// this covariance, rad².
+/// The uncertainty of an orientation with small Gaussian errors. `covariance` is of rotation
+/// vectors about the camera's axes, rad²; positive definite.
 OrientationUncertainty orientation_uncertainty(const Eigen::Quaterniond& rotation,
                                                const Eigen::Matrix3d& covariance);
 
@@ -43,11 +43,11 @@ struct Placement {
   /// camera frame (the order and meaning of geometry_msgs/PoseWithCovariance).
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   OrientationUncertainty orientation;
-  double score = 0;             ///< Weighted sum of the components; larger is better.
-  double probability = 0;       ///< That the object is there, within 2.5 cm and π/16; in [0, 1].
+  double score = 0;        ///< Log odds from the components; larger is better.
+  double probability = 0;  ///< That the pose is within 2.5 cm and π/16 of the truth; in [0, 1].
   double visible_fraction = 0;  ///< Of the model surface that faces the camera, in [0, 1].
-  std::vector<ScoreComponent> components;
-  std::vector<PoseAlternative> alternatives;  ///< Empty when the view decides.
+  std::vector<ScoreComponent> components;     ///< What the score is made of.
+  std::vector<PoseAlternative> alternatives;  ///< Empty: the view leaves no other pose.
 };
 
 /// The placement in frame a, from one in frame b: poses, covariance and orientation. To the last

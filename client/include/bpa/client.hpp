@@ -35,14 +35,14 @@ struct ClientOptions {
   std::chrono::milliseconds timeout{5000};
   /// The longest that a detect or load_model call waits which names no time of its own.
   std::chrono::milliseconds detect_timeout{60000};
-  /// Frames of up to so many MB go to a server on this machine through shared memory; larger ones
+  /// Largest frame, MB, that goes to a server on this machine through shared memory; larger ones
   /// are refused. 0: always over UDP.
   std::size_t shared_frame_mb = 24;
   /// Where connect() and the calls look for servers; the environment (ROS_LOCALHOST_ONLY,
   /// ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS) decides where this is not set.
   bool range_from_environment = true;
   DiscoveryRange range = DiscoveryRange::subnet;
-  std::vector<std::string> peers;  ///< Host names or addresses to look at besides.
+  std::vector<std::string> peers;  ///< More host names or addresses to look at.
   /// Receives what the SDK has to say (such as a type or QoS that does not match), from any thread.
   std::function<void(const std::string&)> log;
 };
@@ -81,7 +81,7 @@ class Client {
   /// The same for the frames that clients publish to the server's stream, as they were sent; the
   /// pixels are there while the function runs. A ROS 2 camera's images are not among them.
   Status subscribe_frames(std::function<void(const FrameView&)> on_frame);
-  /// The same for the annotated images, which the server draws only while somebody subscribes.
+  /// The same for the annotated images, which the server draws only for subscribers.
   Status subscribe_annotated(std::function<void(const AnnotatedImage&)> on_image);
 
   Result<ServerStatus> status();

@@ -54,7 +54,7 @@ struct Detection {
   std::array<double, 36> covariance{};
   OrientationSpread orientation_spread;
   double score = 0;             ///< Larger is better; comparable within one model only.
-  double probability = 0;       ///< That the detection is right, in [0, 1].
+  double probability = 0;       ///< That it is within 2.5 cm and pi/16 of the truth, in [0, 1].
   double visible_fraction = 0;  ///< Of the surface that faces the camera, in [0, 1].
   std::vector<ScorePart> score_parts;
   std::vector<AlternativePose> alternatives;  ///< Empty when the view decides.
@@ -118,15 +118,15 @@ struct FrameView {
 };
 
 /// What you know beforehand of where an object is, in the camera frame: from tracking, from touch,
-/// from where a robot put it down. The server looks there besides, and weighs what it finds by it.
+/// from where a robot put it down. The server samples poses there too and weighs them by the prior.
 struct ExpectedPose {
   std::string model;
-  /// The most probable pose. Its orientation does not count where orientation_spread is uniform,
-  /// its position where position_covariance is zero.
+  /// The most probable pose. Its orientation is ignored where orientation_spread is uniform, its
+  /// position where position_covariance is zero.
   ObjectPose camera_from_object;
   std::array<double, 9> position_covariance{};  ///< m^2, row by row; all zero: position unknown.
   OrientationSpread orientation_spread;         ///< As Detection has it; uniform: unknown.
-  double weight = 0.95;  ///< Probability that there is an object so at all, in (0, 1].
+  double weight = 0.95;                         ///< Probability that this prior applies, in (0, 1].
 };
 
 /// The spread of an orientation (x, y, z, w) known up to a turn of standard deviation `sigma_rad`
@@ -182,7 +182,7 @@ struct ServerStatus {
 struct Recording {
   std::string path;         ///< On the server's machine.
   int frames = 0;           ///< Once it has ended.
-  std::uint64_t bytes = 0;  ///< Likewise.
+  std::uint64_t bytes = 0;  ///< Once it has ended.
 };
 
 /// The server's drawing of what it found.
