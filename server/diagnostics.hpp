@@ -11,7 +11,7 @@
 
 #include "idl/wire/msg/bpa_msgs.hpp"
 #include "idl/wire/msg/diagnostic_msgs.hpp"
-#include "server/capture/frame_source.hpp"
+#include "server/sources/frame_source.hpp"
 #include "server/statistics.hpp"
 
 // What /diagnostics says, from what the server counts.

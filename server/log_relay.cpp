@@ -3,12 +3,12 @@
 #include "server/log_relay.hpp"
 
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
 #include <utility>
 
+#include "core/base/clock.hpp"
 #include "idl/wire/time.hpp"
 
 namespace bpa::server {
@@ -30,11 +30,6 @@ std::uint8_t ros_level(LogLevel level) {
       break;
   }
   return Log::kError;
-}
-
-std::int64_t now_ns() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
 }
 
 /// "/bpa/server" -> "bpa.server".
@@ -59,7 +54,7 @@ struct LogRelay::State {
     if (level < least) return;
     log(sink, level, text);
     Log message;
-    message.stamp = wire::builtin_interfaces::from_ns(now_ns());
+    message.stamp = wire::builtin_interfaces::from_ns(unix_time_ns());
     message.level = ros_level(level);
     message.msg = text;
     {

@@ -7,8 +7,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "camera/openni2_list.hpp"
 #include "core/pipeline/detector_options.hpp"
-#include "server/capture/openni2_list.hpp"
 #include "server/library_detector.hpp"
 #include "server/options.hpp"
 #include "server/ros_arguments.hpp"
@@ -162,7 +162,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   if (line.list_devices) {
-    const auto devices = bpa::server::list_devices();
+    const auto devices = bpa::camera::list_devices();
     if (devices.ok()) std::cout << *devices;
     if (!devices.ok()) std::cerr << "bpa-server: " << devices.status().message << '\n';
     return devices.ok() ? 0 : 1;

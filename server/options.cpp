@@ -40,7 +40,7 @@ Status validate(const ServerOptions& options) {
   status = check_choice("input.depth_transport", options.input.depth_transport,
                         {"raw", "compressed", "compressedDepth"});
   if (!status.ok()) return status;
-  if (status = check_capture(options.capture); !status.ok()) return status;
+  if (status = camera::check(options.capture); !status.ok()) return status;
   return check_choice("log.level", options.log.level, {"debug", "info", "warning", "error"});
 }
 

@@ -10,7 +10,7 @@
 #include "core/base/options.hpp"
 #include "core/base/status.hpp"
 #include "core/pipeline/detector_options.hpp"
-#include "server/capture/capture_options.hpp"
+#include "server/sources/capture_options.hpp"
 
 // Every setting of the server, in groups. Each field describes itself once; reading server.yaml,
 // --set, --print-config, the ROS 2 parameters and the checks all use that. config/server.yaml shows

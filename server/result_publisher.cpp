@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/result_publisher.hpp"
 
-#include <chrono>
 #include <utility>
 
+#include "core/base/clock.hpp"
 #include "server/convert/results.hpp"
 
 namespace bpa::server {
@@ -89,9 +89,7 @@ void ResultPublisher::publish_annotated(const Frame& frame, const SceneInterpret
 void ResultPublisher::publish_vision_info() {
   if (!vision_info_) return;
   wire::vision_msgs::VisionInfo info;
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  info.header.stamp = wire::builtin_interfaces::from_ns(
-      std::chrono::duration_cast<std::chrono::nanoseconds>(now).count());
+  info.header.stamp = wire::builtin_interfaces::from_ns(unix_time_ns());
   info.method = "Bingham Procrustean Alignment";
   info.database_location = recognition_->library;
   info.database_version = recognition_->version ? recognition_->version() : 1;

@@ -7,8 +7,9 @@
 #include <sstream>
 #include <utility>
 
-#include "server/capture/camera_source.hpp"
+#include "core/base/clock.hpp"
 #include "server/parameters.hpp"
+#include "server/sources/camera_source.hpp"
 
 #ifndef BPA_VERSION
 #define BPA_VERSION "0"
@@ -302,11 +303,9 @@ void Server::report() {
   while (!stop_report_.wait_for(lock, kReportPeriod, [this] { return stopping_; })) {
     rates_.add(Clock::now(), statistics_.counts());
     if (publisher_->diagnostics_wanted()) {
-      const auto now = std::chrono::system_clock::now().time_since_epoch();
-      publisher_->publish(
-          diagnostics_message({participant_->node().full(), status(), rates_.rates(), drops(),
-                               source_reports(), fusion()},
-                              std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()));
+      publisher_->publish(diagnostics_message({participant_->node().full(), status(),
+                                               rates_.rates(), drops(), source_reports(), fusion()},
+                                              unix_time_ns()));
     }
     report_losses();
   }

@@ -14,8 +14,6 @@
 #include "core/base/log.hpp"
 #include "core/base/status.hpp"
 #include "idl/wire/participant.hpp"
-#include "server/capture/frame_source.hpp"
-#include "server/capture/topic_source.hpp"
 #include "server/diagnostics.hpp"
 #include "server/log_relay.hpp"
 #include "server/options.hpp"
@@ -24,6 +22,8 @@
 #include "server/services/parameter_services.hpp"
 #include "server/services/services.hpp"
 #include "server/settings.hpp"
+#include "server/sources/frame_source.hpp"
+#include "server/sources/topic_source.hpp"
 #include "server/statistics.hpp"
 #include "server/worker.hpp"
 

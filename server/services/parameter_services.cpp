@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/services/parameter_services.hpp"
 
-#include <chrono>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/base/clock.hpp"
 #include "idl/wire/publisher.hpp"
 #include "idl/wire/service.hpp"
 #include "idl/wire/time.hpp"
@@ -17,11 +17,6 @@ namespace bpa::server {
 namespace {
 
 namespace rcl = wire::rcl_interfaces;
-
-std::int64_t now_ns() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
-}
 
 rcl::SetParametersResult to_result(const Status& status) { return {status.ok(), status.message}; }
 
@@ -154,7 +149,7 @@ class Services : public ParameterServices {
 
   rcl::ParameterEvent new_event() const {
     rcl::ParameterEvent event;
-    event.stamp = wire::builtin_interfaces::from_ns(now_ns());
+    event.stamp = wire::builtin_interfaces::from_ns(unix_time_ns());
     event.node = node_;
     return event;
   }

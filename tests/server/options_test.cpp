@@ -104,5 +104,22 @@ TEST(Config, ServerYamlShowsEveryKeyWithItsDefault) {
       << "make config/server.yaml from bpa-server --print-config";
 }
 
+TEST(CaptureOptions, RulesNameTheField) {
+  ServerOptions options;
+  for (const char* good : {"openni2", "openni2:1d27/0601@1/5", "a/b.oni", "bop:set", ""}) {
+    EXPECT_TRUE(set_option("capture.source=" + std::string(good), options).ok()) << good;
+  }
+  for (const auto& [setting, word] :
+       {std::pair("capture.source=kinect", "capture.source"),
+        std::pair("capture.depth_mode=vga", "capture.depth_mode"),
+        std::pair("capture.registration=perhaps", "auto, device, software, off"),
+        std::pair("capture.speed=0", "speed")}) {
+    ServerOptions changed;
+    const Status status = set_option(setting, changed);
+    EXPECT_EQ(status.code, StatusCode::invalid_argument) << setting;
+    EXPECT_NE(status.message.find(word), std::string::npos) << status.message;
+  }
+}
+
 }  // namespace
 }  // namespace bpa::server

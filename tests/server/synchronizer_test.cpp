@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/capture/synchronizer.hpp"
+#include "server/sources/synchronizer.hpp"
 
 #include <algorithm>
 

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "core/base/options.hpp"
+#include "core/base/status.hpp"
+
+namespace bpa::camera {
+
+/// A sensor on this machine, a recording or a data set.
+struct CameraOptions {
+  std::string source;
+  std::string depth_mode = "640x480@30";
+  std::string color_mode = "640x480@30";
+  bool color = true;
+  std::string registration = "auto";
+  double baseline_mm = 25;
+  std::string calibration;
+  std::string depth_calibration;
+  bool auto_exposure = true;
+  bool auto_white_balance = true;
+  int exposure = 0;
+  int gain = 0;
+  double speed = 1;
+  bool loop = false;
+  int start_frame = 0;
+  bool every_frame = false;
+  double timeout_ms = 3000;
+  double retry_ms = 1000;
+
+  template <class Visitor>
+  void visit_fields(Visitor&& visit) {
+    visit("source", source,
+          FieldRule{0, 0,
+                    "openni2 (the first sensor), openni2:URI, a recording FILE.oni, or a data set "
+                    "bop:FOLDER; empty: none. Camera topics are not subscribed to then."});
+    visit("depth_mode", depth_mode, FieldRule{0, 0, "WIDTHxHEIGHT@RATE of a sensor's depth."});
+    visit("color_mode", color_mode, FieldRule{0, 0, "WIDTHxHEIGHT@RATE of a sensor's colour."});
+    visit("color", color, FieldRule{0, 0, "Take colour images, too."});
+    visit("registration", registration,
+          FieldRule{0, 0,
+                    "Who registers depth to colour: auto (the device, and if it does not, the "
+                    "server), device, software, off."});
+    visit("baseline_mm", baseline_mm,
+          FieldRule{0, 200,
+                    "How far right of the depth camera the colour camera is, where the device does "
+                    "not say; for software registration."});
+    visit("calibration", calibration,
+          FieldRule{0, 0,
+                    "ROS camera_info YAML of the colour camera; empty: from the device's field of "
+                    "view."});
+    visit("depth_calibration", depth_calibration,
+          FieldRule{0, 0, "The same of the depth camera; for software registration."});
+    visit("auto_exposure", auto_exposure, FieldRule{0, 0, "The sensor sets its exposure."});
+    visit("auto_white_balance", auto_white_balance,
+          FieldRule{0, 0, "The sensor sets its white balance."});
+    visit("exposure", exposure,
+          FieldRule{0, 1e6, "In the sensor's unit, without auto_exposure; 0: leave it as it is."});
+    visit("gain", gain,
+          FieldRule{0, 1e6, "In the sensor's unit, without auto_exposure; 0: leave it as it is."});
+    visit("speed", speed,
+          FieldRule{0.01, 100, "Of recordings and data sets; 1: as recorded (data sets: 30 Hz)."});
+    visit("loop", loop, FieldRule{0, 0, "Begin recordings and data sets again at their end."});
+    visit("start_frame", start_frame,
+          FieldRule{0, 1e9, "First frame of a recording or data set to show; they count from 1."});
+    visit("every_frame", every_frame,
+          FieldRule{0, 0,
+                    "Recordings and data sets wait until a frame has been taken up by the search "
+                    "before they show the next."});
+    visit("timeout_ms", timeout_ms,
+          FieldRule{100, 60000,
+                    "A sensor without frames for so long is opened again; a driver that does not "
+                    "return for so long is reported."});
+    visit("retry_ms", retry_ms,
+          FieldRule{10, 60000, "Between attempts to open a sensor that is not there."});
+  }
+};
+
+/// The rules that visit_fields cannot say: the words of source, modes and registration. Messages
+/// name the field as the server does, "capture.source".
+Status check(const CameraOptions& options);
+
+}  // namespace bpa::camera

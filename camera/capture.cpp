@@ -1,0 +1,372 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/capture.hpp"
+
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace bpa::camera {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kWait = std::chrono::milliseconds(100);
+constexpr auto kReadyPoll = std::chrono::milliseconds(2);
+constexpr auto kWatchPeriod = std::chrono::milliseconds(50);
+/// A driver that works closes a device in less.
+constexpr auto kPatienceAtEnd = std::chrono::seconds(2);
+
+}  // namespace
+
+class Capture::Impl {
+ public:
+  Impl(OpenCamera open, const CaptureTimes& times, std::function<void(SensorImages&&)> on_images,
+       std::function<bool()> ready, LogHook hook)
+      : times_(times),
+        log_(std::move(hook)),
+        on_images_(std::move(on_images)),
+        ready_(std::move(ready)),
+        open_(std::move(open)) {}
+
+  void run();
+  void watch();
+  /// Whether the capture thread came to its end in time; it calls nobody from now on either way.
+  bool stop();
+
+  /// Something to do with the open camera, on the capture thread; nullptr when none is open.
+  struct Task {
+    std::function<Result<RecordingSummary>(CameraDevice*)> work;
+    Recorded done;
+  };
+  void post(Task task);
+  Result<RecordingSummary> begin_recording(CameraDevice* camera, const std::string& path,
+                                           std::chrono::milliseconds limit);
+  Result<RecordingSummary> end_recording(CameraDevice* camera);
+
+  CaptureStatus status() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return status_;
+  }
+
+ private:
+  /// Names the call into the driver that runs while it lives, for the watchdog.
+  class Call {
+   public:
+    Call(Impl& impl, const char* name) : impl_(impl) {
+      const std::lock_guard<std::mutex> lock(impl_.mutex_);
+      impl_.call_ = name;
+      impl_.call_began_ = Clock::now();
+    }
+    ~Call() {
+      const std::lock_guard<std::mutex> lock(impl_.mutex_);
+      impl_.call_ = nullptr;
+    }
+
+   private:
+    Impl& impl_;
+  };
+
+  std::unique_ptr<CameraDevice> open();
+  bool stream(CameraDevice& camera);
+  void deliver(SensorImages&& images);
+  void work_on_tasks(CameraDevice* camera);
+  void refuse_tasks(const Status& status);
+  void set_state(LogLevel level, const std::string& text);
+  bool stopping() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return stopping_;
+  }
+  /// Waits for a time, a task or the end.
+  void sleep(std::chrono::milliseconds time) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    wake_.wait_for(lock, time, [this] { return stopping_ || !tasks_.empty(); });
+  }
+
+  const CaptureTimes times_;
+  const LogHook log_;
+
+  std::mutex deliver_mutex_;  ///< Held while the owner's functions run; they may be taken away.
+  std::function<void(SensorImages&&)> on_images_;
+  std::function<bool()> ready_;
+
+  // Of the capture thread alone.
+  OpenCamera open_;
+  std::optional<Clock::time_point> recording_until_;
+  std::optional<RecordingSummary> recorded_;  ///< Of a recording that ended by itself.
+
+  mutable std::mutex mutex_;  ///< Guards what follows.
+  std::condition_variable wake_;
+  bool stopping_ = false;
+  bool finished_ = false;
+  bool reported_ = false;       ///< Whether any state was logged yet.
+  const char* call_ = nullptr;  ///< The call into the driver that runs now.
+  Clock::time_point call_began_;
+  CaptureStatus status_;
+  std::vector<Task> tasks_;
+};
+
+void Capture::Impl::set_state(LogLevel level, const std::string& text) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (reported_ && status_.level == level && status_.text == text) return;
+    reported_ = true;
+    status_.level = level;
+    status_.text = text;
+    if (stopping_) return;
+  }
+  log(log_, level, "capture: " + text);
+}
+
+void Capture::Impl::run() {
+  bool ended = false;
+  while (!stopping() && !ended) {
+    std::unique_ptr<CameraDevice> camera = open();
+    if (camera) {
+      ended = stream(*camera);
+      if (recording_until_) (void)end_recording(camera.get());
+      const Call call(*this, "closing the device");
+      camera.reset();
+    }
+    work_on_tasks(nullptr);
+    if (!stopping() && !ended) sleep(times_.retry);
+  }
+  while (!stopping()) {
+    sleep(times_.retry);
+    work_on_tasks(nullptr);
+  }
+  {
+    const Call call(*this, "shutting the driver down");
+    open_ = nullptr;
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  finished_ = true;
+  wake_.notify_all();
+}
+
+std::unique_ptr<CameraDevice> Capture::Impl::open() {
+  Result<std::unique_ptr<CameraDevice>> camera = [this] {
+    const Call call(*this, "opening the device");
+    return open_();
+  }();
+  bool lost = false;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_.last_attempt = camera.status().message;
+    lost = reported_ && status_.level == LogLevel::error;
+    if (camera.ok()) {
+      status_.device = (*camera)->name();
+      ++status_.opened;
+    }
+  }
+  if (camera.ok()) return std::move(camera).value();
+  // A camera that is gone is not there: that was said when it went.
+  if (!lost || camera.status().code != StatusCode::unavailable) {
+    set_state(LogLevel::error, camera.status().message);
+  }
+  return nullptr;
+}
+
+/// Until the camera is lost or the server stops; true when a recording came to its end.
+bool Capture::Impl::stream(CameraDevice& camera) {
+  auto last_frame = Clock::now();
+  while (!stopping()) {
+    work_on_tasks(&camera);
+    if (recording_until_ && Clock::now() >= *recording_until_) (void)end_recording(&camera);
+    bool wanted = true;
+    {
+      const std::lock_guard<std::mutex> lock(deliver_mutex_);
+      if (ready_) wanted = ready_();
+    }
+    if (!wanted) {
+      last_frame = Clock::now();
+      sleep(kReadyPoll);
+      continue;
+    }
+    Result<DeviceOutput> output = [&] {
+      const Call call(*this, "waiting for a frame");
+      return camera.next(kWait);
+    }();
+    if (!output.ok()) {
+      set_state(LogLevel::error, camera.name() + " " + output.status().message);
+      return false;
+    }
+    if (output->ended) {
+      set_state(LogLevel::info, camera.name() + " has come to its end");
+      return true;
+    }
+    if (output->images) {
+      last_frame = Clock::now();
+      const std::string complaint = camera.complaint();
+      set_state(complaint.empty() ? LogLevel::info : LogLevel::warning,
+                complaint.empty() ? "images come from " + camera.name()
+                                  : camera.name() + ": " + complaint);
+      deliver(*std::move(output->images));
+    } else if (output->busy) {
+      last_frame = Clock::now();
+    } else if (Clock::now() - last_frame > times_.timeout) {
+      set_state(LogLevel::error, camera.name() + " delivers no frames any more (none for " +
+                                     std::to_string(times_.timeout.count()) +
+                                     " ms); it is opened again until it does");
+      return false;
+    }
+  }
+  return false;
+}
+
+void Capture::Impl::deliver(SensorImages&& images) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++status_.frames;
+  }
+  const std::lock_guard<std::mutex> lock(deliver_mutex_);
+  if (on_images_) on_images_(std::move(images));
+}
+
+void Capture::Impl::post(Task task) {
+  std::optional<Status> refused;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (stopping_) refused = Status(StatusCode::unavailable, "the server is stopping");
+    if (call_ != nullptr && Clock::now() - call_began_ > times_.timeout) {
+      refused = Status(StatusCode::unavailable, status_.text);
+    }
+    if (!refused) tasks_.push_back(std::move(task));
+  }
+  if (refused) {
+    task.done(*refused);
+  } else {
+    wake_.notify_all();
+  }
+}
+
+void Capture::Impl::work_on_tasks(CameraDevice* camera) {
+  std::vector<Task> tasks;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    tasks.swap(tasks_);
+  }
+  for (const Task& task : tasks) task.done(task.work(camera));
+}
+
+void Capture::Impl::refuse_tasks(const Status& status) {
+  std::vector<Task> tasks;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    tasks.swap(tasks_);
+  }
+  for (const Task& task : tasks) task.done(status);
+}
+
+Result<RecordingSummary> Capture::Impl::begin_recording(CameraDevice* camera,
+                                                        const std::string& path,
+                                                        std::chrono::milliseconds limit) {
+  if (camera == nullptr) {
+    return Status(StatusCode::unavailable, "there is no camera to record: " + status().text);
+  }
+  if (recording_until_) {
+    return Status(StatusCode::busy, status().recording + " is being recorded; stop that first");
+  }
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) {
+    return invalid_argument(path + " is there already; recordings replace no file");
+  }
+  if (Status s = camera->start_recording(path); !s.ok()) return s;
+  recording_until_ = Clock::now() + limit;
+  recorded_.reset();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_.recording = path;
+  }
+  log(log_, LogLevel::info, "capture: recording to " + path);
+  return RecordingSummary{path, 0, 0};
+}
+
+Result<RecordingSummary> Capture::Impl::end_recording(CameraDevice* camera) {
+  if (recording_until_ && camera != nullptr) {
+    recording_until_.reset();
+    Result<RecordingSummary> summary = camera->stop_recording();
+    std::string path;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      path.swap(status_.recording);
+    }
+    if (!summary.ok()) {
+      log(log_, LogLevel::error,
+          "capture: recording to " + path + " failed: " + summary.status().message);
+      return summary;
+    }
+    log(log_, LogLevel::info,
+        "capture: recorded " + std::to_string(summary->frames) + " frames to " + summary->path);
+    recorded_ = *summary;
+  }
+  if (!recorded_) return Status(StatusCode::not_found, "nothing is being recorded");
+  return *recorded_;
+}
+
+void Capture::Impl::watch() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!stopping_) {
+    wake_.wait_for(lock, kWatchPeriod, [this] { return stopping_; });
+    if (stopping_ || call_ == nullptr || Clock::now() - call_began_ <= times_.timeout) continue;
+    const std::string text = std::string("the driver does not return from ") + call_ + " (" +
+                             std::to_string(times_.timeout.count()) + " ms so far)";
+    lock.unlock();
+    set_state(LogLevel::error, text);
+    refuse_tasks(Status(StatusCode::unavailable, text));
+    lock.lock();
+  }
+}
+
+bool Capture::Impl::stop() {
+  bool in_time = false;
+  {
+    std::unique_lock<std::mutex> lock(mutex_);
+    stopping_ = true;
+    wake_.notify_all();
+    in_time = wake_.wait_for(lock, kPatienceAtEnd, [this] { return finished_; });
+  }
+  {
+    const std::lock_guard<std::mutex> lock(deliver_mutex_);
+    on_images_ = nullptr;
+    ready_ = nullptr;
+  }
+  refuse_tasks(Status(StatusCode::unavailable, "the server is stopping"));
+  if (!in_time) {
+    log(log_, LogLevel::error, "capture: the driver does not return; it is left behind");
+  }
+  return in_time;
+}
+
+Capture::Capture(OpenCamera open, const CaptureTimes& times,
+                 std::function<void(SensorImages&&)> on_images, std::function<bool()> ready,
+                 LogHook log)
+    : impl_(std::make_shared<Impl>(std::move(open), times, std::move(on_images), std::move(ready),
+                                   std::move(log))) {
+  // Detached: a thread that hangs in a driver cannot be joined. stop() waits for those that do not.
+  std::thread([impl = impl_] { impl->run(); }).detach();
+  std::thread([impl = impl_] { impl->watch(); }).detach();
+}
+
+Capture::~Capture() { (void)impl_->stop(); }
+
+CaptureStatus Capture::status() const { return impl_->status(); }
+
+void Capture::start_recording(const std::string& path, std::chrono::milliseconds limit,
+                              Recorded done) {
+  impl_->post({[impl = impl_.get(), path, limit](CameraDevice* camera) {
+                 return impl->begin_recording(camera, path, limit);
+               },
+               std::move(done)});
+}
+
+void Capture::stop_recording(Recorded done) {
+  impl_->post({[impl = impl_.get()](CameraDevice* camera) { return impl->end_recording(camera); },
+               std::move(done)});
+}
+
+}  // namespace bpa::camera

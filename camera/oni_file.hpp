@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "core/base/status.hpp"
+
+// The .oni files of OpenNI2: what is needed to check one and to write one. Playing them is left to
+// OpenNI2, which trusts them: a damaged file makes its driver spin or crash, so nothing is given to
+// it unseen.
+//
+// A file is a header of 24 bytes and records: a header of 28 bytes, fields and a payload, all
+// little-endian without padding (OpenNI2: Source/Core/OniDataRecords.h). A stream is a node: its
+// NODE_ADDED record, its properties, STATE_READY, DATA_BEGIN, one NEW_DATA for each frame, REMOVED
+// and a table of where its frames lie. The file ends with END.
+
+namespace bpa::camera {
+
+/// One stream of a recording.
+struct OniStreamInfo {
+  std::uint32_t node = 0;
+  enum class Kind : std::uint32_t { depth = 2, color = 3, infrared = 5 } kind = Kind::depth;
+  std::uint32_t frames = 0;
+  std::uint32_t width = 0, height = 0, fps = 0;
+};
+
+struct OniFileInfo {
+  std::vector<OniStreamInfo> streams;
+  /// Whether the depth frames are registered to colour; only our own recordings say.
+  enum class Registered { unknown, no, yes } registered = Registered::unknown;
+
+  const OniStreamInfo* find(OniStreamInfo::Kind kind) const;
+};
+
+/// Walks over a whole recording without reading its frames. `not_found`; `corrupt` when it is no
+/// recording, is truncated or has a record that cannot be (naming the place); `unsupported` when it
+/// is older than OpenNI 1.5's.
+Result<OniFileInfo> inspect_oni_file(const std::string& path);
+
+/// What a stream's frames are, for writing.
+struct OniStreamFormat {
+  OniStreamInfo::Kind kind = OniStreamInfo::Kind::depth;
+  std::uint32_t width = 0, height = 0, fps = 0;
+  std::uint32_t pixel_format = 0;  ///< OniPixelFormat.
+  std::uint32_t frame_bytes = 0;
+  std::uint32_t max_depth = 0;  ///< In units of depth; for depth only.
+  double horizontal_fov = 0;    ///< Radians.
+  double vertical_fov = 0;
+  bool mirrored = false;
+  double baseline_cm = 0;  ///< Depth to colour camera, where the device says; else 0.
+};
+
+/// Writes a recording, uncompressed.
+///
+/// OpenNI2 has a recorder of its own. It counts the time of each stream from that stream's first
+/// frame, so that depth and colour of one moment get different stamps; it loses depths of the
+/// device's maximum; and its thread takes a whole core. This one keeps stamps that belong together
+/// together, and every bit.
+class OniWriter {
+ public:
+  /// Starts a file with these streams; `unavailable` when it cannot be written.
+  static Result<OniWriter> create(const std::string& path,
+                                  const std::vector<OniStreamFormat>& streams, bool registered);
+
+  /// Adds a frame to stream `index`. Stamps of one stream grow; the first of all counts as 0.
+  Status add(std::size_t index, std::int64_t stamp_us, const void* data, std::size_t size);
+  /// Completes the file. A writer that is destroyed before leaves one that inspect_oni_file
+  /// refuses.
+  Status finish();
+
+  const std::string& path() const { return path_; }
+  std::uint64_t bytes() const { return position_; }
+  std::uint32_t frames(std::size_t index) const;
+
+ private:
+  struct FrameEntry {
+    std::uint64_t stamp_us;
+    std::uint64_t position;
+  };
+  struct Stream {
+    OniStreamFormat format;
+    std::uint64_t added_position = 0;
+    std::vector<FrameEntry> frames;
+  };
+
+  OniWriter(std::string path, std::ofstream file)
+      : path_(std::move(path)), file_(std::move(file)) {}
+  std::string node_added(std::size_t index, std::uint64_t table_position) const;
+  void write_properties(std::size_t index, bool registered);
+  void append(const std::string& bytes);
+  Status state() const;
+
+  std::string path_;
+  std::ofstream file_;
+  std::uint64_t position_ = 0;
+  std::int64_t first_us_ = -1;
+  std::vector<Stream> streams_;
+};
+
+}  // namespace bpa::camera

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <vector>
+
+#include <openni2/Driver/OniDriverAPI.h>
+
+#include "camera/openni2_sim/sim_config.hpp"
+#include "camera/openni2_sim/sim_frames.hpp"
+
+namespace bpa::sim_driver {
+
+/// The modes of one sensor: the size of the frames and half of it, at 30 and 15 Hz; `fine_depth`
+/// leaves out those with depth in millimetres.
+std::vector<OniVideoMode> modes_of(OniSensorType sensor, const Camera& camera, bool fine_depth);
+
+/// The depth or the colour stream. OpenNI2's threads set properties and start and stop it while the
+/// device's thread shows frames.
+class SimStream : public oni::driver::StreamBase {
+ public:
+  /// `registering` is the device's switch.
+  SimStream(OniSensorType sensor, const SimFrames& frames, const SimConfig& config,
+            const std::atomic<bool>& registering);
+  ~SimStream() override;
+
+  OniStatus setProperty(int id, const void* data, int size) override;
+  OniStatus getProperty(int id, void* data, int* size) override;
+  OniBool isPropertySupported(int id) override;
+  void notifyAllProperties() override;
+  OniStatus start() override;
+  void stop() override;
+
+  /// Delivers the tick's frame if the stream runs and its rate wants it. Ticks come at 30 Hz.
+  void show(std::uint64_t tick, std::uint64_t timestamp_us);
+
+ private:
+  void fill(const SimFrame& scene, OniFrame& frame) const;
+  void fill_depth(const SimFrame& scene, OniFrame& frame) const;
+  void fill_color(const SimFrame& scene, OniFrame& frame) const;
+  bool shows_registered() const;
+  OniStatus set_mode(const OniVideoMode& mode);
+
+  const OniSensorType sensor_;
+  const SimFrames& frames_;
+  const SimConfig& config_;
+  const std::atomic<bool>& registering_;
+  std::mutex mutex_;  ///< Guards what follows.
+  OniVideoMode mode_{};
+  OniBool mirrored_ = TRUE;  ///< As real devices start.
+  OniBool auto_exposure_ = TRUE;
+  OniBool auto_white_balance_ = TRUE;
+  int exposure_ = 100;  ///< Per cent of what the scene was rendered with.
+  int gain_ = 100;
+  bool running_ = false;
+};
+
+}  // namespace bpa::sim_driver

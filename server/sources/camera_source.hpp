@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "camera/capture.hpp"
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/participant.hpp"
+#include "idl/wire/service.hpp"
+#include "server/sources/camera_publisher.hpp"
+#include "server/sources/capture_options.hpp"
+#include "server/sources/frame_source.hpp"
+#include "server/worker.hpp"
+
+namespace bpa::server {
+
+/// The server's own camera: its frames go to the search and to camera topics, it can be recorded by
+/// a service, and diagnostics say how it is.
+class CameraSource : public FrameSource {
+ public:
+  /// `on_frame` and `idle` (whether no frame waits for the search) are called on the capture
+  /// thread.
+  static Result<std::unique_ptr<CameraSource>> create(const wire::Participant& participant,
+                                                      const CaptureOptions& options,
+                                                      std::function<void(IncomingFrame&&)> on_frame,
+                                                      std::function<bool()> idle, LogHook log);
+
+  std::vector<SourceReport> reports() const override;
+
+ private:
+  CameraSource() = default;
+  Status offer_record(const wire::Participant& participant, LogHook log);
+
+  // Destroyed from the last to the first: nothing calls into what is gone.
+  std::unique_ptr<CameraPublisher> publisher_;
+  std::unique_ptr<camera::Capture> capture_;
+  std::optional<wire::ServiceServer<wire::bpa_msgs::Record>> record_;
+};
+
+}  // namespace bpa::server
