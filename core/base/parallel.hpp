@@ -10,10 +10,10 @@ namespace bpa {
 int resolve_num_threads(int num_threads);
 
 /// Calls `body(first, last, thread)` for consecutive pieces of [0, count), each of at most `grain`
-/// items, on up to `num_threads` threads (0 = one per core), the caller's among them. Pieces are
-/// handed out as threads become free, so which thread does which piece is not determined: write
-/// results by index and reduce in index order, and the answer does not depend on `num_threads`.
-/// `thread` is in [0, num_threads) for scratch memory. `body` must not throw.
+/// items, on up to `num_threads` threads (0 = one per core), the caller's among them. Which
+/// `thread` in [0, num_threads) takes a piece is not determined: write results by index and reduce
+/// in index order, and the answer does not depend on `num_threads`. When `body` throws, no further
+/// piece begins, and the caller gets the exception of the lowest index.
 void parallel_for_pieces(int count, int grain, int num_threads,
                          const std::function<void(int first, int last, int thread)>& body);
 
