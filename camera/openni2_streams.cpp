@@ -30,7 +30,8 @@ VideoMode plain(const openni::VideoMode& mode) {
 }
 
 /// The rows of a frame without padding, its pixels in reverse order in each if `mirror`.
-void copy_rows(const openni::VideoFrameRef& frame, std::size_t bytes, bool mirror, void* to) {
+void copy_rows(const openni::VideoFrameRef& frame, bool mirror, void* to) {
+  const std::size_t bytes = pixel_bytes(frame.getVideoMode().getPixelFormat());
   const auto width = static_cast<std::size_t>(frame.getWidth());
   const auto* from = static_cast<const std::uint8_t*>(frame.getData());
   auto* out = static_cast<std::uint8_t*>(to);
@@ -157,24 +158,24 @@ double baseline_of(openni::VideoStream& depth) {
   return usable ? centimetres / 100 : 0;
 }
 
-std::vector<std::uint16_t> depth_pixels(const openni::VideoFrameRef& frame, bool mirror,
-                                        int max_value) {
+std::vector<std::uint16_t> depth_pixels(const openni::VideoFrameRef& frame,
+                                        const StreamFormat& format) {
   std::vector<std::uint16_t> pixels(static_cast<std::size_t>(frame.getWidth()) *
                                     static_cast<std::size_t>(frame.getHeight()));
-  copy_rows(frame, 2, mirror, pixels.data());
-  if (max_value <= 0 || max_value >= 65535) return pixels;
+  copy_rows(frame, format.mirrored, pixels.data());
+  if (format.max_value <= 0) return pixels;
   for (std::uint16_t& z : pixels) {
-    if (z > max_value) z = 0;
+    if (z > format.max_value) z = 0;
   }
   return pixels;
 }
 
-std::vector<std::uint8_t> color_pixels(const openni::VideoFrameRef& frame, bool mirror) {
-  const std::size_t bytes = pixel_bytes(frame.getVideoMode().getPixelFormat());
-  std::vector<std::uint8_t> pixels(bytes * static_cast<std::size_t>(frame.getWidth()) *
-                                   static_cast<std::size_t>(frame.getHeight()));
-  copy_rows(frame, bytes, mirror, pixels.data());
-  return pixels;
+std::vector<std::uint8_t> pixel_bytes_of(const openni::VideoFrameRef& frame, bool mirror) {
+  std::vector<std::uint8_t> bytes(pixel_bytes(frame.getVideoMode().getPixelFormat()) *
+                                  static_cast<std::size_t>(frame.getWidth()) *
+                                  static_cast<std::size_t>(frame.getHeight()));
+  copy_rows(frame, mirror, bytes.data());
+  return bytes;
 }
 
 OniStreamFormat recorded_format(openni::VideoStream& stream, OniStreamInfo::Kind kind) {
@@ -198,12 +199,9 @@ OniStreamFormat recorded_format(openni::VideoStream& stream, OniStreamInfo::Kind
 }
 
 Status record_frame(OniWriter& writer, std::size_t index, const openni::VideoFrameRef& frame) {
-  const std::size_t bytes = pixel_bytes(frame.getVideoMode().getPixelFormat());
-  std::vector<std::uint8_t> rows(bytes * static_cast<std::size_t>(frame.getWidth()) *
-                                 static_cast<std::size_t>(frame.getHeight()));
-  copy_rows(frame, bytes, false, rows.data());
-  return writer.add(index, static_cast<std::int64_t>(frame.getTimestamp()), rows.data(),
-                    rows.size());
+  const std::vector<std::uint8_t> bytes = pixel_bytes_of(frame, false);
+  return writer.add(index, static_cast<std::int64_t>(frame.getTimestamp()), bytes.data(),
+                    bytes.size());
 }
 
 }  // namespace bpa::camera

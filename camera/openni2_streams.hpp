@@ -26,6 +26,12 @@ Status choose_mode(openni::VideoStream& stream, const openni::SensorInfo& sensor
 /// Whether pixels of this format can be read: depth in 1 or 0.1 mm, colour as rgb or grey.
 bool readable(openni::PixelFormat format);
 
+/// How the frames of a stream that was set up are to be read.
+struct StreamFormat {
+  bool mirrored = false;  ///< Rows come in reverse although mirroring was switched off.
+  int max_value = 0;      ///< Larger depths are none, in the stream's unit; 0: all are good.
+};
+
 /// Switches mirroring off; true when the stream is mirrored all the same.
 bool still_mirrored(openni::VideoStream& stream);
 /// Exposure, gain and white balance; says what the device cannot do.
@@ -41,12 +47,11 @@ Result<Intrinsics> intrinsics_of(openni::VideoStream& stream, const std::string&
 /// Metres from the depth to the colour camera, where the device says; else 0.
 double baseline_of(openni::VideoStream& depth);
 
-/// Rows without padding, mirrored back if asked; values above `max_value` (if that is not 0) become
-/// 0.
-std::vector<std::uint16_t> depth_pixels(const openni::VideoFrameRef& frame, bool mirror,
-                                        int max_value);
-/// 1 or 3 bytes a pixel, likewise.
-std::vector<std::uint8_t> color_pixels(const openni::VideoFrameRef& frame, bool mirror);
+/// Row-major depth without padding, in the stream's unit; 0 where there is none.
+std::vector<std::uint16_t> depth_pixels(const openni::VideoFrameRef& frame,
+                                        const StreamFormat& format);
+/// Row-major bytes of a frame of any readable format without padding, mirrored if asked.
+std::vector<std::uint8_t> pixel_bytes_of(const openni::VideoFrameRef& frame, bool mirror);
 
 /// The stream's format for a recording.
 OniStreamFormat recorded_format(openni::VideoStream& stream, OniStreamInfo::Kind kind);
