@@ -22,9 +22,11 @@ Status add_model(ModelSource source, int num_threads, ModelLibrary& library) {
 
 LibraryDetector::LibraryDetector(std::string folder, const DetectorOptions& options,
                                  int num_threads, ScoreLayers layers)
-    : folder_(std::move(folder)), num_threads_(num_threads), layers_(std::move(layers)) {
-  replace(std::make_shared<const ModelLibrary>(), options);
-}
+    : folder_(std::move(folder)),
+      num_threads_(num_threads),
+      layers_(std::move(layers)),
+      detector_(std::make_shared<const Detector>(std::make_shared<const ModelLibrary>(), options,
+                                                 layers_)) {}
 
 Result<std::shared_ptr<LibraryDetector>> LibraryDetector::create(const std::string& folder,
                                                                  const DetectorOptions& options,
@@ -47,10 +49,10 @@ Result<std::shared_ptr<LibraryDetector>> LibraryDetector::create(const std::stri
   }
   auto contents = io::read_library(folder, num_threads);
   if (!contents.ok()) return contents.status();
-  auto library = std::make_shared<ModelLibrary>();
+  ModelLibrary library;
   for (ModelSource& source : contents->models) {
     const std::string name = source.name;
-    Status s = add_model(std::move(source), num_threads, *library);
+    Status s = add_model(std::move(source), num_threads, library);
     if (!s.ok()) contents->broken.push_back({name, std::move(s)});
   }
   if (const Status s = io::explain_broken(folder, contents->broken); !s.ok()) {
@@ -58,8 +60,8 @@ Result<std::shared_ptr<LibraryDetector>> LibraryDetector::create(const std::stri
   }
   self->broken_ = std::move(contents->broken);
   log(hook, LogLevel::info,
-      "library " + folder + ": " + std::to_string(library->size()) + " models");
-  self->replace(std::move(library), options);
+      "library " + folder + ": " + std::to_string(library.size()) + " models");
+  self->change(std::move(library));
   return self;
 }
 
@@ -73,28 +75,39 @@ int LibraryDetector::version() const {
   return version_;
 }
 
-std::shared_ptr<const ModelLibrary> LibraryDetector::library() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return library_;
-}
+Models LibraryDetector::models() const { return current()->library().models(); }
 
 std::vector<io::BrokenModel> LibraryDetector::broken() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return broken_;
 }
 
-void LibraryDetector::replace(std::shared_ptr<const ModelLibrary> library,
-                              const DetectorOptions& options) {
-  auto detector = std::make_shared<const Detector>(library, options, layers_);
+Result<SceneInterpretations> LibraryDetector::detect(const Frame& frame,
+                                                     const DetectRequest& request) const {
+  return current()->detect(frame, request);
+}
+
+std::vector<std::uint8_t> LibraryDetector::annotate(const Frame& frame,
+                                                    const Interpretation& interpretation) const {
+  return draw::annotate(frame, interpretation, current()->library()).pixels;
+}
+
+void LibraryDetector::replace(ModelLibrary library, const DetectorOptions& options) {
+  auto detector = std::make_shared<const Detector>(
+      std::make_shared<const ModelLibrary>(std::move(library)), options, layers_);
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (library_ != library) ++version_;
-  library_.swap(library);
   detector_.swap(detector);
+}
+
+void LibraryDetector::change(ModelLibrary library) {
+  replace(std::move(library), current()->options());
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++version_;
 }
 
 Status LibraryDetector::set_options(const DetectorOptions& options) {
   const std::lock_guard<std::mutex> lock(change_mutex_);
-  replace(library(), options);
+  replace(current()->library(), options);
   return {};
 }
 
@@ -123,7 +136,7 @@ Result<std::shared_ptr<const ObjectModel>> LibraryDetector::load(const std::stri
   }
   if (Status s = add_model(std::move(read).value(), num_threads_, library); !s.ok()) return s;
   auto model = library.find(wanted);
-  replace(std::make_shared<const ModelLibrary>(std::move(library)), current()->options());
+  change(std::move(library));
   if (!is_path) {  // it has been mended
     const std::lock_guard<std::mutex> mended(mutex_);
     std::erase_if(broken_, [&](const io::BrokenModel& other) { return other.name == source; });
@@ -135,32 +148,8 @@ Status LibraryDetector::unload(const std::string& name) {
   const std::lock_guard<std::mutex> lock(change_mutex_);
   ModelLibrary library = current()->library();
   if (Status s = library.remove(name); !s.ok()) return s;
-  replace(std::make_shared<const ModelLibrary>(std::move(library)), current()->options());
+  change(std::move(library));
   return {};
-}
-
-Recognition LibraryDetector::recognition(std::shared_ptr<LibraryDetector> self) {
-  Recognition recognition;
-  recognition.detect = [self](const Frame& frame, const DetectRequest& request) {
-    return self->current()->detect(frame, request);
-  };
-  recognition.annotate =
-      [self](const Frame& frame,
-             const Interpretation& interpretation) -> Result<std::vector<std::uint8_t>> {
-    return draw::annotate(frame, interpretation, self->current()->library()).pixels;
-  };
-  recognition.models = [self] { return self->current()->library().models(); };
-  recognition.broken = [self] { return self->broken(); };
-  recognition.load = [self](const std::string& source, const std::string& name) {
-    return self->load(source, name);
-  };
-  recognition.unload = [self](const std::string& name) { return self->unload(name); };
-  recognition.set_options = [self](const DetectorOptions& options) {
-    return self->set_options(options);
-  };
-  recognition.version = [self] { return self->version(); };
-  recognition.library = self->folder_;
-  return recognition;
 }
 
 }  // namespace bpa::server

@@ -15,9 +15,9 @@
 
 namespace bpa::server {
 
-/// The real detector with a library from disk whose models may come and go while it serves. A
-/// search that runs keeps the library it began with.
-class LibraryDetector {
+/// The detector with a library from disk whose models may come and go while it serves. A search
+/// that runs keeps the library it began with.
+class LibraryDetector : public Recognition {
  public:
   /// Reads the library. A folder without models is no failure (searches fail until one is loaded),
   /// and a broken model is left out and told to `log`; a folder that is not there is a failure.
@@ -25,31 +25,34 @@ class LibraryDetector {
                                                          const DetectorOptions& options,
                                                          int num_threads, const LogHook& log);
 
-  /// The functions that the server calls; they share the ownership.
-  static Recognition recognition(std::shared_ptr<LibraryDetector> self);
+  Result<SceneInterpretations> detect(const Frame& frame,
+                                      const DetectRequest& request) const override;
+  std::vector<std::uint8_t> annotate(const Frame& frame,
+                                     const Interpretation& interpretation) const override;
+  std::string library() const override { return folder_; }
+  int version() const override;
+  Models models() const override;
+  std::vector<io::BrokenModel> broken() const override;
+  Result<std::shared_ptr<const ObjectModel>> load(const std::string& source,
+                                                  const std::string& name) override;
+  Status unload(const std::string& name) override;
+  Status set_options(const DetectorOptions& options) override;
 
  private:
   LibraryDetector(std::string folder, const DetectorOptions& options, int num_threads,
                   ScoreLayers layers);
   std::shared_ptr<const Detector> current() const;
-  Result<std::shared_ptr<const ObjectModel>> load(const std::string& source,
-                                                  const std::string& name);
-  Status unload(const std::string& name);
-  Status set_options(const DetectorOptions& options);
-  void replace(std::shared_ptr<const ModelLibrary> library, const DetectorOptions& options);
-  std::shared_ptr<const ModelLibrary> library() const;
-  int version() const;
-  std::vector<io::BrokenModel> broken() const;
+  void replace(ModelLibrary library, const DetectorOptions& options);
+  void change(ModelLibrary library);  // with the same options, and counts it
 
   const std::string folder_;
   const int num_threads_;
   const ScoreLayers layers_;  ///< The library's own, or the built-in ones.
   std::mutex change_mutex_;   ///< Held while a change is being made.
   mutable std::mutex mutex_;  ///< Guards what follows, never held for long.
-  std::shared_ptr<const ModelLibrary> library_;
-  std::shared_ptr<const Detector> detector_;  ///< Of that library.
-  std::vector<io::BrokenModel> broken_;       ///< Of the folder.
-  int version_ = 0;
+  std::shared_ptr<const Detector> detector_;
+  std::vector<io::BrokenModel> broken_;  ///< Of the folder.
+  int version_ = 1;
 };
 
 }  // namespace bpa::server

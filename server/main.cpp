@@ -111,8 +111,7 @@ Status serve(const ServerOptions& options, const bpa::LogHook& hook, const sigse
   auto library = bpa::server::LibraryDetector::create(options.detection.library, options.detector,
                                                       options.detection.threads, hook);
   if (!library.ok()) return library.status();
-  auto server = bpa::server::Server::create(
-      options, bpa::server::LibraryDetector::recognition(*library), hook);
+  auto server = bpa::server::Server::create(options, *library, hook);
   if (!server.ok()) return server.status();
   bpa::log(hook, LogLevel::info, "ready in namespace " + options.node.ros_namespace);
   int signal = 0;

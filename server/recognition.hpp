@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,26 +16,37 @@
 
 namespace bpa::server {
 
-/// What the server serves: the detector with its library, or a stand-in. Each function may be
-/// called from any thread.
-struct Recognition {
-  /// Must be set.
-  std::function<Result<SceneInterpretations>(const Frame&, const DetectRequest&)> detect;
-  /// An rgb image as large as the frame; empty: no annotated images.
-  std::function<Result<std::vector<std::uint8_t>>(const Frame&, const Interpretation&)> annotate;
-  /// The models now, by number; empty: none.
-  std::function<Models()> models;
-  /// The models of the library's folder that cannot be read; empty: none.
-  std::function<std::vector<io::BrokenModel>()> broken;
-  /// Takes a model up, by its name in the library's folder or by file; empty: not supported.
-  std::function<Result<std::shared_ptr<const ObjectModel>>(const std::string& source,
-                                                           const std::string& name)>
-      load;
-  std::function<Status(const std::string& name)> unload;  ///< Empty: not supported.
-  /// Searches that begin from now on have these settings; empty: not supported.
-  std::function<Status(const DetectorOptions&)> set_options;
-  std::function<int()> version;  ///< Grows with every load and unload; empty: always 1.
-  std::string library;           ///< Where it lies, for people.
+/// What the server serves: the detector with its library (LibraryDetector), or the tests' stub.
+/// Every function may be called from any thread.
+class Recognition {
+ public:
+  virtual ~Recognition() = default;
+
+  /// Finds the models that the request names in a frame.
+  virtual Result<SceneInterpretations> detect(const Frame& frame,
+                                              const DetectRequest& request) const = 0;
+  /// The frame's image with the placements drawn on it: row-major rgb, 3 bytes a pixel.
+  virtual std::vector<std::uint8_t> annotate(const Frame& frame,
+                                             const Interpretation& interpretation) const = 0;
+
+  /// Where the library lies, for people.
+  virtual std::string library() const = 0;
+  /// Grows with every load and unload; starts at 1.
+  virtual int version() const = 0;
+  /// The models that searches use now, by number.
+  virtual Models models() const = 0;
+  /// The models of the library's folder that cannot be read.
+  virtual std::vector<io::BrokenModel> broken() const = 0;
+
+  /// Takes up the model `source`, a name in the library's folder or the path of a model's folder,
+  /// as `name` (empty: its own), in place of one of that name. `unsupported` where the library is
+  /// fixed, as for the next two.
+  virtual Result<std::shared_ptr<const ObjectModel>> load(const std::string& source,
+                                                          const std::string& name) = 0;
+  /// Forgets a model; `not_found` without one of that name.
+  virtual Status unload(const std::string& name) = 0;
+  /// Searches that begin from now on have these settings.
+  virtual Status set_options(const DetectorOptions& options) = 0;
 };
 
 }  // namespace bpa::server

@@ -61,28 +61,23 @@ void ResultPublisher::publish(const Frame* frame, const Result<SceneInterpretati
                               const ResultContext& context) {
   if (interpretations_) send(interpretations_, interpretations_message(result, context), log_);
   if (frame == nullptr || !result.ok()) return;
-  Models models;
-  if (recognition_->models) models = recognition_->models();
+  const Models models = recognition_->models();
   if (wanted(detections_)) send(detections_, detections_message(*result, models), log_);
   if (wanted(markers_)) {
     const double lifetime_s = settings_.get()->output.marker_lifetime_s;
     send(markers_, markers_message(*result, models, lifetime_s), log_);
   }
   if (wanted(tf_)) send(tf_, transforms_message(*result, tf_prefix_), log_);
-  if (wanted(annotated_) && recognition_->annotate) publish_annotated(*frame, *result);
+  if (wanted(annotated_)) publish_annotated(*frame, *result);
 }
 
 void ResultPublisher::publish_annotated(const Frame& frame, const SceneInterpretations& result) {
   const Interpretation none;
   const Interpretation& best =
       result.interpretations.empty() ? none : result.interpretations.front();
-  auto rgb = recognition_->annotate(frame, best);
-  if (!rgb.ok()) {
-    log(log_, LogLevel::warning, "no annotated image: " + rgb.status().message);
-    return;
-  }
   send(annotated_,
-       image_message(result, frame.camera.width, frame.camera.height, std::move(rgb).value()),
+       image_message(result, frame.camera.width, frame.camera.height,
+                     recognition_->annotate(frame, best)),
        log_);
 }
 
@@ -91,8 +86,8 @@ void ResultPublisher::publish_vision_info() {
   wire::vision_msgs::VisionInfo info;
   info.header.stamp = wire::builtin_interfaces::from_ns(unix_time_ns());
   info.method = "Bingham Procrustean Alignment";
-  info.database_location = recognition_->library;
-  info.database_version = recognition_->version ? recognition_->version() : 1;
+  info.database_location = recognition_->library();
+  info.database_version = recognition_->version();
   send(vision_info_, info, log_);
 }
 

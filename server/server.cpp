@@ -72,14 +72,15 @@ Status keep(Result<Service> service, std::optional<Service>& place) {
 
 }  // namespace
 
-Server::Server(const ServerOptions& options, Recognition recognition, LogHook log)
+Server::Server(const ServerOptions& options, std::shared_ptr<Recognition> recognition, LogHook log)
     : settings_(options),
-      recognition_(std::make_shared<const Recognition>(std::move(recognition))),
+      recognition_(std::move(recognition)),
       relay_(std::move(log), log_level(options.log.level)),
       log_(relay_.hook()) {}
 
 Result<std::unique_ptr<Server>> Server::create(const ServerOptions& options,
-                                               Recognition recognition, LogHook log) {
+                                               std::shared_ptr<Recognition> recognition,
+                                               LogHook log) {
   if (Status status = validate(options); !status.ok()) return status;
   std::unique_ptr<Server> server(new Server(options, std::move(recognition), std::move(log)));
   if (Status status = server->start(); !status.ok()) return status;
@@ -162,14 +163,11 @@ Status Server::start_sources(const ServerOptions& options) {
 }
 
 Status Server::apply(const ServerOptions& before, const ServerOptions& after) {
-  std::vector<std::string> detector;
-  for (const auto& changed : changed_parameters(before, after)) {
-    if (changed.name.rfind("detector.", 0) == 0) detector.push_back(changed.name);
-  }
-  if (!detector.empty()) {
-    if (!recognition_->set_options) {
-      return Status(StatusCode::unsupported, detector.front() + " cannot change in this server");
-    }
+  const auto changed = changed_parameters(before, after);
+  const bool detector_changed =
+      std::any_of(changed.begin(), changed.end(),
+                  [](const auto& parameter) { return parameter.name.starts_with("detector."); });
+  if (detector_changed) {
     if (Status status = recognition_->set_options(after.detector); !status.ok()) return status;
     statistics_.forget_timings();
   }
@@ -200,7 +198,7 @@ Status Server::offer_services() {
 
 void Server::on_result(const IncomingFrame& incoming, const Frame* frame,
                        const Result<SceneInterpretations>& result) {
-  const int models = recognition_->models ? static_cast<int>(recognition_->models().size()) : 0;
+  const int models = static_cast<int>(recognition_->models().size());
   publisher_->publish(
       frame, result,
       {incoming.stamp_ns, incoming.frame_id, models, settings_.get()->detection.seed});
@@ -247,11 +245,9 @@ msgs::GetStatus_Response Server::status() const {
   response.queue_length = static_cast<std::uint32_t>(worker_->queue_length());
   response.queue_capacity =
       static_cast<std::uint32_t>(frame_capacity(*options) + options->queue.requests);
-  if (recognition_->models) {
-    response.model_count = static_cast<std::uint32_t>(recognition_->models().size());
-  }
-  response.library = recognition_->library;
-  response.database_version = recognition_->version ? recognition_->version() : 1;
+  response.model_count = static_cast<std::uint32_t>(recognition_->models().size());
+  response.library = recognition_->library();
+  response.database_version = recognition_->version();
   response.memory_bytes = resident_bytes();
   for (const StageTiming& timing : statistics_.median_timings()) {
     response.stage_timings.push_back({timing.stage, timing.milliseconds});

@@ -37,14 +37,15 @@ class Server {
   /// Fails with `invalid_argument` on options that break a rule, `unavailable` when DDS cannot
   /// start.
   static Result<std::unique_ptr<Server>> create(const ServerOptions& options,
-                                                Recognition recognition, LogHook log);
+                                                std::shared_ptr<Recognition> recognition,
+                                                LogHook log);
   ~Server();
 
   Counts counts() const { return statistics_.counts(); }
   SyncCounts sync_counts() const { return topics_->sync_counts(); }
 
  private:
-  Server(const ServerOptions& options, Recognition recognition, LogHook log);
+  Server(const ServerOptions& options, std::shared_ptr<Recognition> recognition, LogHook log);
   Status start();
   Status join();
   Status start_sources(const ServerOptions& options);
@@ -62,7 +63,7 @@ class Server {
   void report_losses();
 
   Settings settings_;
-  const std::shared_ptr<const Recognition> recognition_;
+  const std::shared_ptr<Recognition> recognition_;
   LogRelay relay_;
   const LogHook log_;
   const Clock::time_point started_ = Clock::now();

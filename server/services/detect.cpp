@@ -56,7 +56,7 @@ Result<DetectRequest> search_of(const msgs::Detect_Request& request,
 
 int models_searched(const Recognition& recognition, const DetectRequest& search) {
   if (!search.models.empty()) return static_cast<int>(search.models.size());
-  return recognition.models ? static_cast<int>(recognition.models().size()) : 0;
+  return static_cast<int>(recognition.models().size());
 }
 
 /// Makes the job of a request whose fields are legal.

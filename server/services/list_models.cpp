@@ -13,10 +13,10 @@ namespace msgs = wire::bpa_msgs;
 msgs::ListModels_Response list(const Recognition& recognition,
                                const std::vector<std::string>& names) {
   msgs::ListModels_Response response;
-  response.library = recognition.library;
-  response.database_version = recognition.version ? recognition.version() : 1;
-  const Models models = recognition.models ? recognition.models() : Models();
-  const auto broken = recognition.broken ? recognition.broken() : std::vector<io::BrokenModel>();
+  response.library = recognition.library();
+  response.database_version = recognition.version();
+  const Models models = recognition.models();
+  const auto broken = recognition.broken();
   for (const std::string& name : names) {
     const bool known = std::any_of(models.begin(), models.end(),
                                    [&](const auto& model) { return model->name == name; });
@@ -35,7 +35,7 @@ msgs::ListModels_Response list(const Recognition& recognition,
     if (wanted) response.models.push_back(model_message(*model));
   }
   response.success = true;
-  if (names.empty()) response.status = to_message(io::explain_broken(recognition.library, broken));
+  if (names.empty()) response.status = to_message(io::explain_broken(response.library, broken));
   return response;
 }
 

@@ -12,17 +12,13 @@ namespace {
 
 namespace msgs = wire::bpa_msgs;
 
-Status fixed_library() {
-  return Status(StatusCode::unsupported, "this server's library cannot be changed");
-}
-
 /// Fills in what both responses have, logs, tells the others and replies.
 template <class Service>
 void finish(const ServiceContext& context, const char* what, const Status& status,
             typename Service::Response& response, const wire::ReplyToken<Service>& token) {
   response.success = status.ok();
   response.status = to_message(status);
-  response.database_version = context.recognition->version ? context.recognition->version() : 1;
+  response.database_version = context.recognition->version();
   log(context.log, LogLevel::info,
       std::string(what) + (status.ok() ? ": done" : " failed: " + status.message));
   if (status.ok()) context.library_changed();
@@ -33,21 +29,15 @@ void finish(const ServiceContext& context, const char* what, const Status& statu
 void load(const ServiceContext& context, const msgs::LoadModel_Request& request,
           const wire::ReplyToken<msgs::LoadModel>& token) {
   msgs::LoadModel_Response response;
-  const Recognition& recognition = *context.recognition;
-  Status status = fixed_library();
-  if (recognition.load) {
-    const auto model = recognition.load(request.source, request.name);
-    status = model.status();
-    if (model.ok()) response.model = model_message(**model);
-  }
-  finish(context, "load_model", status, response, token);
+  const auto model = context.recognition->load(request.source, request.name);
+  if (model.ok()) response.model = model_message(**model);
+  finish(context, "load_model", model.status(), response, token);
 }
 
 void unload(const ServiceContext& context, const msgs::UnloadModel_Request& request,
             const wire::ReplyToken<msgs::UnloadModel>& token) {
   msgs::UnloadModel_Response response;
-  const Recognition& recognition = *context.recognition;
-  const Status status = recognition.unload ? recognition.unload(request.name) : fixed_library();
+  const Status status = context.recognition->unload(request.name);
   finish(context, "unload_model", status, response, token);
 }
 

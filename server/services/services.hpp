@@ -25,7 +25,7 @@ namespace bpa::server {
 struct ServiceContext {
   const wire::Participant& participant;
   const Settings& settings;
-  std::shared_ptr<const Recognition> recognition;
+  std::shared_ptr<Recognition> recognition;
   Worker& worker;
   Statistics& statistics;
   /// Fills in what the server knows: uptime, queue, causes of drops.

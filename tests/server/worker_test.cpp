@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "server/convert/frames.hpp"
+#include "tests/support/stub_recognition.hpp"
 #include "tests/support/wall_messages.hpp"
 
 namespace bpa::server {
@@ -69,6 +70,19 @@ class Gate {
   bool open_ = false;
 };
 
+/// Searches by the gate.
+class GatedRecognition : public support::StubRecognition {
+ public:
+  explicit GatedRecognition(Gate& gate) : gate_(gate) {}
+  Result<SceneInterpretations> detect(const Frame& frame,
+                                      const DetectRequest& request) const override {
+    return gate_.detect(frame, request);
+  }
+
+ private:
+  Gate& gate_;
+};
+
 /// Collects answers and lets the test wait for them.
 class Answers {
  public:
@@ -108,12 +122,8 @@ class Answers {
 class WorkerTest : public testing::Test {
  protected:
   std::unique_ptr<Worker> make(WorkerOptions options = {}) {
-    auto recognition = std::make_shared<Recognition>();
-    recognition->detect = [this](const Frame& frame, const DetectRequest& request) {
-      return gate.detect(frame, request);
-    };
     return std::make_unique<Worker>(
-        recognition, options, statistics,
+        std::make_shared<GatedRecognition>(gate), options, statistics,
         [collect = streamed.collector()](const IncomingFrame&, const Frame* frame,
                                          const Result<SceneInterpretations>& result) {
           collect({}, frame, result);

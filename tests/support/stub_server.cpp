@@ -11,6 +11,7 @@
 
 #include "server/ros_arguments.hpp"
 #include "server/server.hpp"
+#include "tests/support/stub_recognition.hpp"
 
 namespace {
 
@@ -50,10 +51,22 @@ bpa::Result<bpa::SceneInterpretations> detect(const bpa::Frame& frame,
   return result;
 }
 
-bpa::Result<std::vector<std::uint8_t>> annotate(const bpa::Frame& frame,
-                                                const bpa::Interpretation&) {
-  return std::vector<std::uint8_t>(3 * frame.depth.size(), 200);
-}
+class Stub : public bpa::support::StubRecognition {
+ public:
+  explicit Stub(int delay_ms) : delay_ms_(delay_ms) {}
+  bpa::Result<bpa::SceneInterpretations> detect(const bpa::Frame& frame,
+                                                const bpa::DetectRequest& request) const override {
+    return ::detect(frame, request, delay_ms_);
+  }
+  bpa::server::Models models() const override { return stub_models(); }
+  Status set_options(const bpa::DetectorOptions& detector) override {
+    std::cerr << "max_keypoints is " << detector.features.max_keypoints << std::endl;
+    return {};
+  }
+
+ private:
+  const int delay_ms_;
+};
 
 }  // namespace
 
@@ -85,19 +98,8 @@ int main(int argc, char** argv) {
   if (Status s = bpa::server::apply(*ros, options); !s.ok()) {
     return std::cerr << s.message << '\n', 2;
   }
-  bpa::server::Recognition recognition;
-  recognition.detect = [delay_ms](const bpa::Frame& frame, const bpa::DetectRequest& request) {
-    return detect(frame, request, delay_ms);
-  };
-  recognition.annotate = annotate;
-  recognition.models = stub_models;
-  recognition.set_options = [](const bpa::DetectorOptions& detector) {
-    std::cerr << "max_keypoints is " << detector.features.max_keypoints << std::endl;
-    return Status();
-  };
-  recognition.library = "stub";
   const auto server = bpa::server::Server::create(
-      options, recognition,
+      options, std::make_shared<Stub>(delay_ms),
       [](bpa::LogLevel, std::string_view text) { std::cerr << text << std::endl; });
   if (!server.ok()) return std::cerr << server.status().message << '\n', 1;
   int signal = 0;
