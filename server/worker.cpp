@@ -199,15 +199,15 @@ void Worker::run_one(std::unique_lock<std::mutex>& lock) {
     task();
   } else if (take_frame) {
     frame_was_last_ = true;
-    const std::vector<IncomingFrame> taken = take_frames(options);
+    std::vector<IncomingFrame> taken = take_frames(options);
     std::vector<DetectJob> waiting = std::exchange(awaiting_frame_, {});
     lock.unlock();
-    work_on_frames(options, taken, std::move(waiting));
+    work_on_frames(options, std::move(taken), std::move(waiting));
   } else {
     frame_was_last_ = false;
-    const DetectJob job = *requests_.pop();
+    DetectJob job = *requests_.pop();
     lock.unlock();
-    work_on_request(job);
+    work_on_request(std::move(job));
   }
   lock.lock();
   busy_since_.reset();
@@ -238,13 +238,13 @@ void Worker::note_restart(const std::string& reason) {
   if (last_fused_ > 1) log(log_, LogLevel::info, "frames are combined anew: " + reason);
 }
 
-void Worker::work_on_frames(const WorkerOptions& options, const std::vector<IncomingFrame>& taken,
+void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFrame> taken,
                             std::vector<DetectJob> waiting) {
   fusion_.set_max_frames(options.fuse_frames);
   std::optional<Frame> frame;  // the newest that can be used
   const IncomingFrame* newest = nullptr;
-  for (const IncomingFrame& incoming : taken) {
-    Result<Frame> decoded = incoming.decode();
+  for (IncomingFrame& incoming : taken) {
+    Result<Frame> decoded = std::move(incoming.decode)();
     if (!decoded.ok()) {
       statistics_.add_rejection(decoded.status().message);
       on_result_(incoming, nullptr, decoded.status());
@@ -300,13 +300,13 @@ void Worker::answer_next_frame(const WorkerOptions& options, const IncomingFrame
   job.done(job, &narrowed, result);
 }
 
-void Worker::work_on_request(const DetectJob& job) {
+void Worker::work_on_request(DetectJob job) {
   if (Clock::now() >= job.deadline) {
     statistics_.add(&Counts::requests_refused);
     job.done(job, nullptr, Status(StatusCode::timeout, "its turn came after its time-out"));
     return;
   }
-  const Result<Frame> frame = job.decode();
+  const Result<Frame> frame = std::move(job.decode)();
   if (!frame.ok()) {
     statistics_.add(&Counts::requests_refused);
     job.done(job, nullptr, frame.status());

@@ -18,6 +18,7 @@
 #include "idl/wire/endpoint.hpp"
 #include "server/fair_queue.hpp"
 #include "server/newest_queue.hpp"
+#include "server/once.hpp"
 #include "server/recognition.hpp"
 #include "server/statistics.hpp"
 
@@ -28,9 +29,9 @@ namespace bpa::server {
 
 using Clock = std::chrono::steady_clock;
 
-/// A frame as it came in. Turning it into a Frame is work, so the worker does it, once.
+/// A frame as it came in. Turning it into a Frame is work, so it is left to the worker.
 struct IncomingFrame {
-  std::function<Result<Frame>()> decode;
+  Once<Result<Frame>> decode;
   std::int64_t stamp_ns = 0;
   std::string frame_id;
   std::vector<PosePrior> priors = {};  ///< What whoever sent it knows of its objects.
@@ -38,8 +39,8 @@ struct IncomingFrame {
 
 /// One detect request that waits for its answer.
 struct DetectJob {
-  /// Empty: search the next frame that comes in.
-  std::function<Result<Frame>()> decode;
+  /// Makes the frame that the request carries; empty: search the next frame that comes in.
+  Once<Result<Frame>> decode;
   /// Narrows the next frame down (region, mask); may be empty.
   std::function<Status(Frame&)> restrict_frame;
   DetectRequest request;
@@ -101,10 +102,10 @@ class Worker {
   void expire(std::vector<DetectJob> jobs);
   void run_one(std::unique_lock<std::mutex>& lock);
   std::vector<IncomingFrame> take_frames(const WorkerOptions& options);
-  void work_on_frames(const WorkerOptions& options, const std::vector<IncomingFrame>& taken,
+  void work_on_frames(const WorkerOptions& options, std::vector<IncomingFrame> taken,
                       std::vector<DetectJob> waiting);
   void note_restart(const std::string& reason);
-  void work_on_request(const DetectJob& job);
+  void work_on_request(DetectJob job);
   void answer_next_frame(const WorkerOptions& options, const IncomingFrame& incoming,
                          const Frame& frame, const DetectJob& job,
                          const Result<SceneInterpretations>* shared);

@@ -42,8 +42,9 @@ Status subscribe_to(const wire::Participant& participant, const std::string& top
 template <class Message, class Convert>
 IncomingFrame incoming(Message message, Convert convert) {
   IncomingFrame frame{{}, to_ns(message.header.stamp), message.header.frame_id};
-  const auto shared = std::make_shared<Message>(std::move(message));
-  frame.decode = [shared, convert] { return convert(std::move(*shared)); };
+  frame.decode = [message = std::move(message), convert]() mutable {
+    return convert(std::move(message));
+  };
   return frame;
 }
 

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cassert>
+#include <concepts>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+namespace bpa::server {
+
+/// Work that is done once at most, since it consumes what it holds. Move-only; only an rvalue can
+/// be called, std::move(work)(), and it is empty afterwards.
+template <class T>
+class Once {
+ public:
+  Once() = default;
+  template <class F>
+  requires(!std::same_as<std::remove_cvref_t<F>, Once> && std::is_invocable_r_v<T, F>)
+      Once(F work)  // NOLINT: implicit on purpose
+      : work_(std::make_unique<Holder<F>>(std::move(work))) {}
+
+  explicit operator bool() const { return work_ != nullptr; }
+  /// Calling an empty one is a caller's bug.
+  T operator()() && {
+    assert(work_);
+    return std::exchange(work_, nullptr)->run();
+  }
+
+ private:
+  struct Work {
+    virtual ~Work() = default;
+    virtual T run() = 0;
+  };
+  template <class F>
+  struct Holder : Work {
+    explicit Holder(F f) : function(std::move(f)) {}
+    T run() override { return std::move(function)(); }
+    F function;
+  };
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace bpa::server
