@@ -11,7 +11,6 @@ namespace bpa::server {
 namespace {
 
 constexpr std::size_t kRemembered = 50;
-constexpr std::size_t kMaxReasons = 32;  ///< Bounds what a hostile publisher can make us remember.
 
 void remember(std::deque<double>& values, double value) {
   values.push_back(value);
@@ -45,14 +44,10 @@ std::optional<double> Statistics::seconds_since_frame() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - *last_frame_).count();
 }
 
-void Statistics::add_rejection(const std::string& reason) {
-  // "frame depth has 12 values; ..." and "frame depth has 13 values; ..." are one cause.
-  std::string cause = reason.substr(0, reason.find_first_of("0123456789;"));
-  while (!cause.empty() && cause.back() == ' ') cause.pop_back();
+void Statistics::add_rejection(RejectionCause cause) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++counts_.frames_rejected;
-  if (rejections_.size() >= kMaxReasons && rejections_.count(cause) == 0) cause = "other";
-  ++rejections_[cause];
+  ++rejections_[static_cast<std::size_t>(cause)];
 }
 
 void Statistics::add_timings(const SceneInterpretations& result) {
@@ -84,7 +79,11 @@ Counts Statistics::counts() const {
 
 std::vector<std::pair<std::string, std::uint64_t>> Statistics::rejections() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return {rejections_.begin(), rejections_.end()};
+  std::vector<std::pair<std::string, std::uint64_t>> counts;
+  for (std::size_t i = 0; i < rejections_.size(); ++i) {
+    if (rejections_[i] > 0) counts.emplace_back(kRejectionCauses[i], rejections_[i]);
+  }
+  return counts;
 }
 
 std::vector<StageTiming> Statistics::median_timings() const {

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <deque>
-#include <map>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "core/result/interpretation.hpp"
+#include "server/convert/decoded_frame.hpp"
 
 namespace bpa::server {
 
@@ -38,8 +40,8 @@ class Statistics {
   void add_frame();
   /// Since the last frame came in; nothing before the first.
   std::optional<double> seconds_since_frame() const;
-  /// Counts a rejected frame under its message's first words.
-  void add_rejection(const std::string& reason);
+  /// Counts a rejected frame.
+  void add_rejection(RejectionCause cause);
   void add_timings(const SceneInterpretations& result);
   /// Counts it, and remembers why.
   void add_fusion_restart(const std::string& reason);
@@ -47,7 +49,7 @@ class Statistics {
   Counts counts() const;
   /// The last reason; empty before the first.
   std::string fusion_restart() const;
-  /// Reason and count of every rejection.
+  /// The causes of rejection that occurred, with their counts.
   std::vector<std::pair<std::string, std::uint64_t>> rejections() const;
   /// Medians over the last 50 frames, in the order of the stages, "total" last.
   std::vector<StageTiming> median_timings() const;
@@ -62,7 +64,7 @@ class Statistics {
   mutable std::mutex mutex_;
   Counts counts_;
   std::optional<std::chrono::steady_clock::time_point> last_frame_;
-  std::map<std::string, std::uint64_t> rejections_;
+  std::array<std::uint64_t, std::size(kRejectionCauses)> rejections_{};
   std::string fusion_restart_;
   std::vector<std::pair<std::string, std::deque<double>>> stages_;
   std::deque<double> totals_;

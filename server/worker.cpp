@@ -244,9 +244,9 @@ void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFr
   std::optional<Frame> frame;  // the newest that can be used
   const IncomingFrame* newest = nullptr;
   for (IncomingFrame& incoming : taken) {
-    Result<Frame> decoded = std::move(incoming.decode)();
+    DecodedFrame decoded = std::move(incoming.decode)();
     if (!decoded.ok()) {
-      statistics_.add_rejection(decoded.status().message);
+      statistics_.add_rejection(decoded.cause());
       on_result_(incoming, nullptr, decoded.status());
       continue;
     }

@@ -16,6 +16,7 @@
 #include "core/base/status.hpp"
 #include "core/cloud/frame_fusion.hpp"
 #include "idl/wire/endpoint.hpp"
+#include "server/convert/decoded_frame.hpp"
 #include "server/fair_queue.hpp"
 #include "server/newest_queue.hpp"
 #include "server/once.hpp"
@@ -31,7 +32,7 @@ using Clock = std::chrono::steady_clock;
 
 /// A frame as it came in. Turning it into a Frame is work, so it is left to the worker.
 struct IncomingFrame {
-  Once<Result<Frame>> decode;
+  Once<DecodedFrame> decode;
   std::int64_t stamp_ns = 0;
   std::string frame_id;
   std::vector<PosePrior> priors = {};  ///< What whoever sent it knows of its objects.
@@ -40,7 +41,7 @@ struct IncomingFrame {
 /// One detect request that waits for its answer.
 struct DetectJob {
   /// Makes the frame that the request carries; empty: search the next frame that comes in.
-  Once<Result<Frame>> decode;
+  Once<DecodedFrame> decode;
   /// Narrows the next frame down (region, mask); may be empty.
   std::function<Status(Frame&)> restrict_frame;
   DetectRequest request;

@@ -95,21 +95,21 @@ Result<io::PcdCloud> points_of(const PointCloud2& cloud) {
 
 }  // namespace
 
-Result<Frame> frame_from_cloud(const PointCloud2& cloud) {
+DecodedFrame frame_from_cloud(const PointCloud2& cloud) {
   const auto points = points_of(cloud);
-  if (!points.ok()) return points.status();
+  if (!points.ok()) return {RejectionCause::cloud, points.status()};
   auto organised = io::frame_from_organised_cloud(*points);
-  if (!organised.ok()) return organised.status();
+  if (!organised.ok()) return {RejectionCause::cloud, organised.status()};
   if (!organised->cloud_from_camera.rotation.isApprox(Eigen::Quaterniond::Identity())) {
-    return invalid_argument(
-        "cloud has y up and z toward the viewer; it must be in an optical frame (x right, y down, "
-        "z forward)");
+    return {RejectionCause::cloud,
+            invalid_argument("cloud has y up and z toward the viewer; it must be in an optical "
+                             "frame (x right, y down, z forward)")};
   }
   Frame frame = std::move(organised->frame);
   frame.stamp_ns = to_ns(cloud.header.stamp);
   frame.frame_id = cloud.header.frame_id;
   clean_depth(frame);
-  if (Status status = validate(frame); !status.ok()) return status;
+  if (Status status = validate(frame); !status.ok()) return {RejectionCause::frame, status};
   return frame;
 }
 

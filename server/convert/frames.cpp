@@ -66,9 +66,9 @@ RegionOfInterest roi_of(const sensor::RegionOfInterest& roi) {
           static_cast<int>(std::min(roi.height, kTooLarge))};
 }
 
-Result<Frame> checked(Frame frame) {
+DecodedFrame checked(Frame frame) {
   clean_depth(frame);
-  if (Status status = validate(frame); !status.ok()) return status;
+  if (Status status = validate(frame); !status.ok()) return {RejectionCause::frame, status};
   return frame;
 }
 
@@ -118,20 +118,24 @@ Result<std::vector<std::uint8_t>> take_color(msgs::RgbdFrame& message) {
 
 }  // namespace
 
-Result<Frame> frame_from_message(msgs::RgbdFrame message) {
+DecodedFrame frame_from_message(msgs::RgbdFrame message) {
   Frame frame;
   frame.stamp_ns = to_ns(message.header.stamp);
   frame.frame_id = message.header.frame_id;
   frame.camera = camera_of(message.width, message.height, message.k.data(), 3);
-  if (Status status = validate(frame.camera); !status.ok()) return status;
-  if (Status status = check_distortion(message.d); !status.ok()) return status;
+  if (Status status = validate(frame.camera); !status.ok()) {
+    return {RejectionCause::camera, status};
+  }
+  if (Status status = check_distortion(message.d); !status.ok()) {
+    return {RejectionCause::distortion, status};
+  }
   auto depth = depth_from_image({"depth", message.depth_encoding, message.width, message.height, 0,
                                  false, message.depth.data(), message.depth.size()});
-  if (!depth.ok()) return depth.status();
+  if (!depth.ok()) return {RejectionCause::depth, depth.status()};
   frame.depth = std::move(depth).value();
   if (!message.color_encoding.empty() || !message.color.empty()) {
     auto color = take_color(message);
-    if (!color.ok()) return color.status();
+    if (!color.ok()) return {RejectionCause::color, color.status()};
     frame.color = std::move(color).value();
   }
   undistort({message.d}, frame);
@@ -155,7 +159,7 @@ Status restrict_frame(const msgs::RgbdFrame& message, Frame& frame) {
   return validate(frame);
 }
 
-Result<Frame> frame_from_images(const CameraImages& images, bool rectified) {
+DecodedFrame frame_from_images(const CameraImages& images, bool rectified) {
   const sensor::CameraInfo& info = *images.info;
   Frame frame;
   frame.stamp_ns = to_ns(header_of(*images.depth).stamp);
@@ -163,19 +167,23 @@ Result<Frame> frame_from_images(const CameraImages& images, bool rectified) {
   const bool use_projection = rectified && info.p[0] > 0;
   frame.camera = use_projection ? camera_of(info.width, info.height, info.p.data(), 4)
                                 : camera_of(info.width, info.height, info.k.data(), 3);
-  if (Status status = validate(frame.camera); !status.ok()) return status;
+  if (Status status = validate(frame.camera); !status.ok()) {
+    return {RejectionCause::camera, status};
+  }
   auto depth = pixels_of<std::vector<float>>("depth", *images.depth, frame.camera, depth_from_image,
                                              decode_depth);
-  if (!depth.ok()) return depth.status();
+  if (!depth.ok()) return {RejectionCause::depth, depth.status()};
   frame.depth = std::move(depth).value();
   if (images.color) {
     auto color = pixels_of<std::vector<std::uint8_t>>("color", *images.color, frame.camera,
                                                       color_from_image, decode_color);
-    if (!color.ok()) return color.status();
+    if (!color.ok()) return {RejectionCause::color, color.status()};
     frame.color = std::move(color).value();
   }
   if (!rectified) {
-    if (Status status = check_distortion(info.d); !status.ok()) return status;
+    if (Status status = check_distortion(info.d); !status.ok()) {
+      return {RejectionCause::distortion, status};
+    }
     undistort({info.d}, frame);
   }
   return checked(std::move(frame));

@@ -9,6 +9,7 @@
 #include "core/cloud/frame.hpp"
 #include "idl/wire/msg/bpa_msgs.hpp"
 #include "idl/wire/msg/sensor_msgs.hpp"
+#include "server/convert/decoded_frame.hpp"
 
 // Messages -> frames that are fit for the detector: sizes, camera and depth are checked here, once,
 // and everything behind may rely on them. Failures name the field, its value and the rule.
@@ -17,7 +18,7 @@ namespace bpa::server {
 
 /// A frame of bpa_msgs/RgbdFrame but for its priors (priors.hpp). Lens distortion is taken out
 /// (nearest pixel). Move the message in: pixels that are as a Frame has them are not copied then.
-Result<Frame> frame_from_message(wire::bpa_msgs::RgbdFrame message);
+DecodedFrame frame_from_message(wire::bpa_msgs::RgbdFrame message);
 
 /// Puts the region of interest and the mask of a message on a frame that has been checked; a
 /// message without them changes nothing. Fails where it has priors in another frame_id than the
@@ -45,11 +46,11 @@ struct CameraImages {
 /// A frame of a colour image, the depth image registered to it and their camera. `rectified` says
 /// that the images have no distortion any more, so that the projection matrix p of the camera info
 /// holds; otherwise k and d do. Stamp and frame_id are the depth image's.
-Result<Frame> frame_from_images(const CameraImages& images, bool rectified);
+DecodedFrame frame_from_images(const CameraImages& images, bool rectified);
 
 /// A frame of an organised cloud in its camera's optical frame: float32 fields x, y, z, and rgb or
 /// rgba if there. The camera is the pinhole that fits the points best. `invalid_argument` for a
 /// cloud that no such camera sees, or that is not organised.
-Result<Frame> frame_from_cloud(const wire::sensor_msgs::PointCloud2& cloud);
+DecodedFrame frame_from_cloud(const wire::sensor_msgs::PointCloud2& cloud);
 
 }  // namespace bpa::server

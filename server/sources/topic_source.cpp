@@ -54,7 +54,9 @@ IncomingFrame incoming(RgbdFrame message) {
   if (priors.ok()) {
     frame.priors = std::move(priors).value();
   } else {
-    frame.decode = [status = priors.status()]() -> Result<Frame> { return status; };
+    frame.decode = [status = priors.status()] {
+      return DecodedFrame(RejectionCause::priors, status);
+    };
   }
   return frame;
 }

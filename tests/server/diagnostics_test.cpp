@@ -88,9 +88,9 @@ TEST_F(Diagnostics, RatesTimesAndMemory) {
 }
 
 TEST_F(Diagnostics, DropsByCauseWarnWhileFramesAreBad) {
-  health.drops = {{"rejected: frame depth has", 7}};
+  health.drops = {{"rejected: depth", 7}};
   EXPECT_EQ(status("drops").level, DiagnosticStatus::kOk);  // that was long ago
-  EXPECT_EQ(values("drops").at("rejected: frame depth has"), "7");
+  EXPECT_EQ(values("drops").at("rejected: depth"), "7");
   health.rates.frames_bad = 0.5;
   EXPECT_EQ(status("drops").level, DiagnosticStatus::kWarn);
 }

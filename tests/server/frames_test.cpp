@@ -99,6 +99,24 @@ const BadFrame kBadFrames[] = {
 INSTANTIATE_TEST_SUITE_P(All, BadFrames, testing::ValuesIn(kBadFrames),
                          [](const auto& test) { return test.param.name; });
 
+TEST(RejectionCause, NamesThePartOfTheMessage) {
+  const auto cause_of = [](void (*spoil)(RgbdFrame&)) {
+    RgbdFrame message = support::wall_frame();
+    spoil(message);
+    const DecodedFrame frame = frame_from_message(message);
+    EXPECT_FALSE(frame.ok());
+    return frame.cause();
+  };
+  EXPECT_EQ(cause_of([](RgbdFrame& f) { f.k[0] = 0; }), RejectionCause::camera);
+  EXPECT_EQ(cause_of([](RgbdFrame& f) { f.d.resize(14); }), RejectionCause::distortion);
+  EXPECT_EQ(cause_of([](RgbdFrame& f) { f.depth.resize(100); }), RejectionCause::depth);
+  EXPECT_EQ(cause_of([](RgbdFrame& f) { f.depth_encoding = ""; }), RejectionCause::depth);
+  EXPECT_EQ(cause_of([](RgbdFrame& f) { f.color.resize(7); }), RejectionCause::color);
+  EXPECT_EQ(cause_of([](RgbdFrame& f) { f.mask.resize(3); }), RejectionCause::frame);
+  EXPECT_EQ(frame_from_cloud({}).cause(), RejectionCause::cloud);
+  EXPECT_STREQ(kRejectionCauses[static_cast<std::size_t>(RejectionCause::frame)], "frame");
+}
+
 CameraImages wall_images() {
   return {std::make_shared<AnyImage>(support::wall_color_image(5)),
           std::make_shared<AnyImage>(support::wall_depth_image(7)),

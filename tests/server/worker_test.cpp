@@ -134,7 +134,8 @@ class WorkerTest : public testing::Test {
     return {[stamp] { return frame_from_message(support::wall_frame(stamp)); }, stamp, "c"};
   }
   static IncomingFrame bad_frame() {
-    return {[]() -> Result<Frame> { return invalid_argument("frame depth has 3 values"); }, 0, "c"};
+    return {[] { return DecodedFrame(RejectionCause::depth, invalid_argument("too short")); }, 0,
+            "c"};
   }
   DetectJob job(bool with_frame, milliseconds time = milliseconds(5000), std::uint8_t client = 0,
                 std::int64_t stamp = 77) {
@@ -267,7 +268,8 @@ TEST_F(WorkerTest, NextFrameRequestsShareTheStreamsSearch) {
   ASSERT_TRUE(answers.wait_for(2));
   EXPECT_EQ(gate.stamps(), std::vector<std::int64_t>{5});
   EXPECT_EQ(statistics.counts().frames_rejected, 1U);
-  EXPECT_EQ(statistics.rejections().front().first, "frame depth has");
+  ASSERT_EQ(statistics.rejections().size(), 1U);
+  EXPECT_EQ(statistics.rejections().front(), std::pair(std::string("depth"), std::uint64_t{1}));
 }
 
 TEST_F(WorkerTest, FramesBringTheirPriors) {
