@@ -253,6 +253,7 @@ msgs::GetStatus_Response Server::status() const {
     response.stage_timings.push_back({timing.stage, timing.milliseconds});
   }
   response.details = details();
+  response.frame_publishers = static_cast<std::uint32_t>(topics_->frame_publishers());
   return response;
 }
 

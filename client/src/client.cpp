@@ -219,13 +219,11 @@ Status Client::Impl::wait_for_listener(const wire::Publisher<msgs::RgbdFrame>& f
     std::this_thread::sleep_for(Milliseconds(50));
     const auto response = get_status->call({}, options.timeout);
     if (Status status = outcome(response); !status.ok()) return status;
-    for (const auto& detail : response->details) {
-      if (detail.key != "publishers of frames" || detail.value == "0") continue;
-      std::this_thread::sleep_for(Milliseconds(100));
-      const std::lock_guard<std::mutex> lock(made->mutex);
-      made->listened = true;
-      return {};
-    }
+    if (response->frame_publishers == 0) continue;
+    std::this_thread::sleep_for(Milliseconds(100));
+    const std::lock_guard<std::mutex> lock(made->mutex);
+    made->listened = true;
+    return {};
   }
   return silence;
 }

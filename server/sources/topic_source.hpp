@@ -39,6 +39,8 @@ class TopicSource : public FrameSource {
   void set_options(const InputOptions& options);
 
   std::vector<SourceReport> reports() const override;
+  /// Publishers of the topic of whole frames that are matched now; 0 without that topic.
+  std::size_t frame_publishers() const { return frames_ ? frames_->matched_count() : 0; }
   /// What became of the camera's messages.
   SyncCounts sync_counts() const;
 
