@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/capture.hpp"
 
+#include <algorithm>
 #include <condition_variable>
 #include <filesystem>
 #include <mutex>
@@ -13,11 +14,10 @@
 namespace bpa::camera {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using TimePoint = WaitableClock::TimePoint;
 
-constexpr auto kWait = std::chrono::milliseconds(100);
+constexpr auto kWait = std::chrono::milliseconds(100);  // less where the time-out is short
 constexpr auto kReadyPoll = std::chrono::milliseconds(2);
-constexpr auto kWatchPeriod = std::chrono::milliseconds(50);
 /// A driver that works closes a device in less.
 constexpr auto kPatienceAtEnd = std::chrono::seconds(2);
 
@@ -26,8 +26,9 @@ constexpr auto kPatienceAtEnd = std::chrono::seconds(2);
 class Capture::Impl {
  public:
   Impl(OpenCamera open, const CaptureTimes& times, std::function<void(SensorImages&&)> on_images,
-       std::function<bool()> ready, LogHook hook)
-      : times_(times),
+       std::function<bool()> ready, LogHook hook, std::shared_ptr<WaitableClock> clock)
+      : clock_(std::move(clock)),
+        times_(times),
         log_(std::move(hook)),
         on_images_(std::move(on_images)),
         ready_(std::move(ready)),
@@ -35,8 +36,8 @@ class Capture::Impl {
 
   void run();
   void watch();
-  /// Whether the capture thread came to its end in time; it calls nobody from now on either way.
-  bool stop();
+  /// Waits for the capture thread's end, but not for ever; it calls nobody from then on.
+  void stop();
 
   /// Something to do with the open camera, on the capture thread; nullptr when none is open.
   struct Task {
@@ -60,7 +61,7 @@ class Capture::Impl {
     Call(Impl& impl, const char* name) : impl_(impl) {
       const std::lock_guard<std::mutex> lock(impl_.mutex_);
       impl_.call_ = name;
-      impl_.call_began_ = Clock::now();
+      impl_.call_began_ = impl_.clock_->now();
     }
     ~Call() {
       const std::lock_guard<std::mutex> lock(impl_.mutex_);
@@ -74,19 +75,27 @@ class Capture::Impl {
   std::unique_ptr<CameraDevice> open();
   bool stream(CameraDevice& camera);
   void deliver(SensorImages&& images);
+  std::vector<Task> take_tasks();
   void work_on_tasks(CameraDevice* camera);
   void refuse_tasks(const Status& status);
+  std::string hang_text() const;
   void set_state(LogLevel level, const std::string& text);
   bool stopping() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return stopping_;
   }
+  /// Whether the call into the driver that runs now has taken too long; `mutex_` is held.
+  bool hangs() const { return call_ != nullptr && clock_->now() - call_began_ >= times_.timeout; }
   /// Waits for a time, a task or the end.
   void sleep(std::chrono::milliseconds time) {
+    const TimePoint until = clock_->now() + time;
     std::unique_lock<std::mutex> lock(mutex_);
-    wake_.wait_for(lock, time, [this] { return stopping_ || !tasks_.empty(); });
+    while (!stopping_ && tasks_.empty() && clock_->now() < until) {
+      clock_->wait_until(wake_, lock, until);
+    }
   }
 
+  const std::shared_ptr<WaitableClock> clock_;
   const CaptureTimes times_;
   const LogHook log_;
 
@@ -96,7 +105,7 @@ class Capture::Impl {
 
   // Of the capture thread alone.
   OpenCamera open_;
-  std::optional<Clock::time_point> recording_until_;
+  std::optional<TimePoint> recording_until_;
   std::optional<RecordingSummary> recorded_;  ///< Of a recording that ended by itself.
 
   mutable std::mutex mutex_;  ///< Guards what follows.
@@ -105,7 +114,7 @@ class Capture::Impl {
   bool finished_ = false;
   bool reported_ = false;       ///< Whether any state was logged yet.
   const char* call_ = nullptr;  ///< The call into the driver that runs now.
-  Clock::time_point call_began_;
+  TimePoint call_began_;
   CaptureStatus status_;
   std::vector<Task> tasks_;
 };
@@ -173,23 +182,23 @@ std::unique_ptr<CameraDevice> Capture::Impl::open() {
 
 /// Until the camera is lost or the server stops; true when a recording came to its end.
 bool Capture::Impl::stream(CameraDevice& camera) {
-  auto last_frame = Clock::now();
+  auto last_frame = clock_->now();
   while (!stopping()) {
     work_on_tasks(&camera);
-    if (recording_until_ && Clock::now() >= *recording_until_) (void)end_recording(&camera);
+    if (recording_until_ && clock_->now() >= *recording_until_) (void)end_recording(&camera);
     bool wanted = true;
     {
       const std::lock_guard<std::mutex> lock(deliver_mutex_);
       if (ready_) wanted = ready_();
     }
     if (!wanted) {
-      last_frame = Clock::now();
+      last_frame = clock_->now();
       sleep(kReadyPoll);
       continue;
     }
     Result<DeviceOutput> output = [&] {
       const Call call(*this, "waiting for a frame");
-      return camera.next(kWait);
+      return camera.next(std::min(kWait, times_.timeout / 2));
     }();
     if (!output.ok()) {
       set_state(LogLevel::error, camera.name() + " " + output.status().message);
@@ -200,15 +209,15 @@ bool Capture::Impl::stream(CameraDevice& camera) {
       return true;
     }
     if (output->images) {
-      last_frame = Clock::now();
+      last_frame = clock_->now();
       const std::string complaint = camera.complaint();
       set_state(complaint.empty() ? LogLevel::info : LogLevel::warning,
                 complaint.empty() ? "images come from " + camera.name()
                                   : camera.name() + ": " + complaint);
       deliver(*std::move(output->images));
     } else if (output->busy) {
-      last_frame = Clock::now();
-    } else if (Clock::now() - last_frame > times_.timeout) {
+      last_frame = clock_->now();
+    } else if (clock_->now() - last_frame > times_.timeout) {
       set_state(LogLevel::error, camera.name() + " delivers no frames any more (none for " +
                                      std::to_string(times_.timeout.count()) +
                                      " ms); it is opened again until it does");
@@ -232,9 +241,7 @@ void Capture::Impl::post(Task task) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (stopping_) refused = Status(StatusCode::unavailable, "the server is stopping");
-    if (call_ != nullptr && Clock::now() - call_began_ > times_.timeout) {
-      refused = Status(StatusCode::unavailable, status_.text);
-    }
+    if (hangs()) refused = Status(StatusCode::unavailable, hang_text());
     if (!refused) tasks_.push_back(std::move(task));
   }
   if (refused) {
@@ -244,22 +251,17 @@ void Capture::Impl::post(Task task) {
   }
 }
 
+std::vector<Capture::Impl::Task> Capture::Impl::take_tasks() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::exchange(tasks_, {});
+}
+
 void Capture::Impl::work_on_tasks(CameraDevice* camera) {
-  std::vector<Task> tasks;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    tasks.swap(tasks_);
-  }
-  for (const Task& task : tasks) task.done(task.work(camera));
+  for (const Task& task : take_tasks()) task.done(task.work(camera));
 }
 
 void Capture::Impl::refuse_tasks(const Status& status) {
-  std::vector<Task> tasks;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    tasks.swap(tasks_);
-  }
-  for (const Task& task : tasks) task.done(status);
+  for (const Task& task : take_tasks()) task.done(status);
 }
 
 Result<RecordingSummary> Capture::Impl::begin_recording(CameraDevice* camera,
@@ -276,7 +278,7 @@ Result<RecordingSummary> Capture::Impl::begin_recording(CameraDevice* camera,
     return invalid_argument(path + " is there already; recordings replace no file");
   }
   if (Status s = camera->start_recording(path); !s.ok()) return s;
-  recording_until_ = Clock::now() + limit;
+  recording_until_ = clock_->now() + limit;
   recorded_.reset();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -308,27 +310,37 @@ Result<RecordingSummary> Capture::Impl::end_recording(CameraDevice* camera) {
   return *recorded_;
 }
 
+std::string Capture::Impl::hang_text() const {
+  return std::string("the driver does not return from ") + call_ + " (" +
+         std::to_string(times_.timeout.count()) + " ms so far)";
+}
+
 void Capture::Impl::watch() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopping_) {
-    wake_.wait_for(lock, kWatchPeriod, [this] { return stopping_; });
-    if (stopping_ || call_ == nullptr || Clock::now() - call_began_ <= times_.timeout) continue;
-    const std::string text = std::string("the driver does not return from ") + call_ + " (" +
-                             std::to_string(times_.timeout.count()) + " ms so far)";
-    lock.unlock();
-    set_state(LogLevel::error, text);
-    refuse_tasks(Status(StatusCode::unavailable, text));
-    lock.lock();
+    const bool reported = hangs();
+    if (reported) {
+      const std::string text = hang_text();
+      lock.unlock();
+      set_state(LogLevel::error, text);
+      refuse_tasks(Status(StatusCode::unavailable, text));
+      lock.lock();
+    }
+    // A call that has not begun yet hangs no earlier than this.
+    const TimePoint since = call_ != nullptr && !reported ? call_began_ : clock_->now();
+    if (!stopping_) clock_->wait_until(wake_, lock, since + times_.timeout);
   }
 }
 
-bool Capture::Impl::stop() {
+void Capture::Impl::stop() {
   bool in_time = false;
   {
     std::unique_lock<std::mutex> lock(mutex_);
     stopping_ = true;
     wake_.notify_all();
-    in_time = wake_.wait_for(lock, kPatienceAtEnd, [this] { return finished_; });
+    const TimePoint until = clock_->now() + kPatienceAtEnd;
+    while (!finished_ && clock_->now() < until) clock_->wait_until(wake_, lock, until);
+    in_time = finished_;
   }
   {
     const std::lock_guard<std::mutex> lock(deliver_mutex_);
@@ -339,20 +351,22 @@ bool Capture::Impl::stop() {
   if (!in_time) {
     log(log_, LogLevel::error, "capture: the driver does not return; it is left behind");
   }
-  return in_time;
 }
 
 Capture::Capture(OpenCamera open, const CaptureTimes& times,
                  std::function<void(SensorImages&&)> on_images, std::function<bool()> ready,
-                 LogHook log)
+                 LogHook log, std::shared_ptr<WaitableClock> clock)
     : impl_(std::make_shared<Impl>(std::move(open), times, std::move(on_images), std::move(ready),
-                                   std::move(log))) {
-  // Detached: a thread that hangs in a driver cannot be joined. stop() waits for those that do not.
+                                   std::move(log), std::move(clock))),
+      watchdog_([impl = impl_.get()] { impl->watch(); }) {
+  // Detached: a thread that hangs in a driver cannot be joined. stop() waits for one that does not.
   std::thread([impl = impl_] { impl->run(); }).detach();
-  std::thread([impl = impl_] { impl->watch(); }).detach();
 }
 
-Capture::~Capture() { (void)impl_->stop(); }
+Capture::~Capture() {
+  impl_->stop();
+  watchdog_.join();
+}
 
 CaptureStatus Capture::status() const { return impl_->status(); }
 

@@ -7,8 +7,10 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include "camera/camera_device.hpp"
+#include "core/base/clock.hpp"
 #include "core/base/log.hpp"
 #include "core/base/status.hpp"
 
@@ -26,8 +28,10 @@ struct CaptureStatus {
 };
 
 struct CaptureTimes {
-  std::chrono::milliseconds timeout{3000};  ///< Without frames, or within one call of the driver.
-  std::chrono::milliseconds retry{1000};    ///< Between attempts to open.
+  /// A camera without frames for this long is opened again; a call into the driver that takes as
+  /// long is reported.
+  std::chrono::milliseconds timeout{3000};
+  std::chrono::milliseconds retry{1000};  ///< Between attempts to open.
 };
 
 /// Keeps a camera open and hands its images on, on a thread of its own. A camera that is not there,
@@ -39,7 +43,8 @@ class Capture {
   /// `on_images` and `ready` are called on the capture thread, never after the destructor. While
   /// `ready` (which may be empty) says false, the camera is not asked for images.
   Capture(OpenCamera open, const CaptureTimes& times, std::function<void(SensorImages&&)> on_images,
-          std::function<bool()> ready, LogHook log);
+          std::function<bool()> ready, LogHook log,
+          std::shared_ptr<WaitableClock> clock = steady_clock());
   ~Capture();
   Capture(const Capture&) = delete;
   Capture& operator=(const Capture&) = delete;
@@ -57,6 +62,7 @@ class Capture {
  private:
   class Impl;
   std::shared_ptr<Impl> impl_;  ///< A thread that is left behind keeps it alive.
+  std::thread watchdog_;
 };
 
 }  // namespace bpa::camera

@@ -107,7 +107,8 @@ Status start_streams(Openni2Connection& c) {
   return {};
 }
 
-/// The depth image that comes after so many others; empty when none comes within `timeout_ms`.
+/// The depth image after skipping `frames` others; empty when none comes within half of
+/// `timeout_ms`, so that a sensor without frames does not look like a driver that hangs.
 std::vector<std::uint16_t> depth_after(int frames, Openni2Connection& c, const StreamFormat& format,
                                        double timeout_ms) {
   openni::VideoFrameRef frame;
@@ -115,7 +116,7 @@ std::vector<std::uint16_t> depth_after(int frames, Openni2Connection& c, const S
   for (int i = 0; i <= frames; ++i) {
     int ready = 0;
     const auto waited =
-        openni::OpenNI::waitForAnyStream(streams, 1, &ready, static_cast<int>(timeout_ms));
+        openni::OpenNI::waitForAnyStream(streams, 1, &ready, static_cast<int>(timeout_ms / 2));
     if (waited != openni::STATUS_OK || c.depth.readFrame(&frame) != openni::STATUS_OK) return {};
   }
   return depth_pixels(frame, format);

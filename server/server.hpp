@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -28,6 +29,8 @@
 #include "server/worker.hpp"
 
 namespace bpa::server {
+
+using Clock = std::chrono::steady_clock;
 
 /// The daemon without its main(): takes frames from topics, has them searched, publishes what was
 /// found and answers services, from create() until it is destroyed. A frame or request that breaks

@@ -23,11 +23,13 @@ DetectRequest with_priors(DetectRequest request, const std::vector<PosePrior>& p
 }  // namespace
 
 Worker::Worker(std::shared_ptr<const Recognition> recognition, const WorkerOptions& options,
-               Statistics& statistics, OnResult on_result, LogHook log)
+               Statistics& statistics, OnResult on_result, LogHook log,
+               std::shared_ptr<WaitableClock> clock)
     : recognition_(std::move(recognition)),
       statistics_(statistics),
       on_result_(std::move(on_result)),
       log_(std::move(log)),
+      clock_(std::move(clock)),
       options_(options),
       frames_(options.frame_capacity),
       thread_([this] { run(); }) {}
@@ -73,7 +75,7 @@ double Worker::wait_ms(const DetectJob& job) const {
   const double search_ms = statistics_.median_total_ms();
   double wait = 0;
   if (busy_since_) {
-    const std::chrono::duration<double, std::milli> so_far = Clock::now() - *busy_since_;
+    const std::chrono::duration<double, std::milli> so_far = clock_->now() - *busy_since_;
     wait += std::max(0.0, search_ms - so_far.count());
   }
   if (job.decode) wait += search_ms * static_cast<double>(job.position);
@@ -100,8 +102,9 @@ Status Worker::push(DetectJob job) {
     } else {
       job.position = awaiting_frame_.size();
     }
+    job.deadline = clock_->now() + job.timeout;
     const double wait = wait_ms(job);
-    if (Clock::now() + std::chrono::duration<double, std::milli>(wait) > job.deadline) {
+    if (std::chrono::duration<double, std::milli>(wait) > job.timeout) {
       return Status(StatusCode::timeout,
                     "its answer would come in about " + std::to_string(static_cast<long>(wait)) +
                         " ms, after its time-out; allow more time or try again later");
@@ -140,8 +143,8 @@ bool Worker::has_work() const {
   return !tasks_.empty() || !requests_.empty() || (!frames_.empty() && frame_wanted);
 }
 
-std::optional<Clock::time_point> Worker::first_deadline() const {
-  std::optional<Clock::time_point> first;
+std::optional<WaitableClock::TimePoint> Worker::first_deadline() const {
+  std::optional<WaitableClock::TimePoint> first;
   for (const DetectJob& job : awaiting_frame_) {
     if (!first || job.deadline < *first) first = job.deadline;
   }
@@ -150,7 +153,7 @@ std::optional<Clock::time_point> Worker::first_deadline() const {
 
 std::vector<DetectJob> Worker::take_expired() {
   std::vector<DetectJob> expired;
-  const auto now = Clock::now();
+  const auto now = clock_->now();
   for (auto job = awaiting_frame_.begin(); job != awaiting_frame_.end();) {
     if (job->deadline <= now) {
       expired.push_back(std::move(*job));
@@ -175,7 +178,7 @@ void Worker::run() {
     if (!has_work()) {
       const auto deadline = first_deadline();
       if (deadline) {
-        wake_.wait_until(lock, *deadline);
+        clock_->wait_until(wake_, lock, *deadline);
       } else {
         wake_.wait(lock);
       }
@@ -191,7 +194,7 @@ void Worker::run_one(std::unique_lock<std::mutex>& lock) {
   const bool frame_wanted = options.continuous || !awaiting_frame_.empty();
   const bool take_frame =
       !frames_.empty() && frame_wanted && (requests_.empty() || !frame_was_last_);
-  busy_since_ = Clock::now();
+  busy_since_ = clock_->now();
   if (!tasks_.empty()) {
     const std::function<void()> task = std::move(tasks_.front());
     tasks_.pop_front();
@@ -301,7 +304,7 @@ void Worker::answer_next_frame(const WorkerOptions& options, const IncomingFrame
 }
 
 void Worker::work_on_request(DetectJob job) {
-  if (Clock::now() >= job.deadline) {
+  if (clock_->now() >= job.deadline) {
     statistics_.add(&Counts::requests_refused);
     job.done(job, nullptr, Status(StatusCode::timeout, "its turn came after its time-out"));
     return;

@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/base/clock.hpp"
 #include "core/base/log.hpp"
 #include "core/base/status.hpp"
 #include "core/cloud/frame_fusion.hpp"
@@ -28,8 +29,6 @@
 
 namespace bpa::server {
 
-using Clock = std::chrono::steady_clock;
-
 /// A frame as it came in. Turning it into a Frame is work, so it is left to the worker.
 struct IncomingFrame {
   Once<DecodedFrame> decode;
@@ -45,9 +44,11 @@ struct DetectJob {
   /// Narrows the next frame down (region, mask); may be empty.
   std::function<Status(Frame&)> restrict_frame;
   DetectRequest request;
-  Clock::time_point deadline;  ///< No answer is wanted after this.
-  wire::Guid client{};         ///< Who asks; clients take turns.
-  std::size_t position = 0;    ///< Searches ahead of it when it was accepted; set by the worker.
+  std::chrono::nanoseconds timeout{};  ///< No answer is wanted this long after push().
+  wire::Guid client{};                 ///< Who asks; clients take turns.
+  // Set by the worker when it accepts the job.
+  std::size_t position = 0;  ///< Searches ahead of it.
+  WaitableClock::TimePoint deadline{};
   /// Called once: with the answer, or with why there is none. `frame` is null when there is none.
   std::function<void(const DetectJob& job, const Frame* frame,
                      const Result<SceneInterpretations>& result)>
@@ -70,7 +71,8 @@ class Worker {
                                       const Result<SceneInterpretations>& result)>;
 
   Worker(std::shared_ptr<const Recognition> recognition, const WorkerOptions& options,
-         Statistics& statistics, OnResult on_result, LogHook log);
+         Statistics& statistics, OnResult on_result, LogHook log,
+         std::shared_ptr<WaitableClock> clock = steady_clock());
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -98,7 +100,7 @@ class Worker {
   void run();
   bool has_work() const;
   double wait_ms(const DetectJob& job) const;
-  std::optional<Clock::time_point> first_deadline() const;
+  std::optional<WaitableClock::TimePoint> first_deadline() const;
   std::vector<DetectJob> take_expired();
   void expire(std::vector<DetectJob> jobs);
   void run_one(std::unique_lock<std::mutex>& lock);
@@ -116,8 +118,10 @@ class Worker {
   Statistics& statistics_;
   const OnResult on_result_;
   const LogHook log_;
-  FrameFusion fusion_;  ///< The worker's own thread's.
-  int last_fused_ = 1;  ///< Likewise: how many frames the last one was made of.
+  const std::shared_ptr<WaitableClock> clock_;
+  // Of the worker's thread alone.
+  FrameFusion fusion_;
+  int last_fused_ = 1;  ///< How many frames the last one was made of.
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;
@@ -127,7 +131,7 @@ class Worker {
   std::vector<DetectJob> awaiting_frame_;      ///< For the next frame.
   std::deque<std::function<void()>> tasks_;
   bool frame_was_last_ = false;  ///< Whose turn it is when both wait.
-  std::optional<Clock::time_point> busy_since_;
+  std::optional<WaitableClock::TimePoint> busy_since_;
   bool stopping_ = false;
   std::thread thread_;  ///< Last: starts when all else is there.
 };

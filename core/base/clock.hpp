@@ -3,7 +3,10 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 
 namespace bpa {
 
@@ -12,5 +15,21 @@ inline std::int64_t unix_time_ns() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
 }
+
+/// A monotonic clock that threads can wait on. Tests pass one that they move by hand.
+class WaitableClock {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+  virtual ~WaitableClock() = default;
+
+  virtual TimePoint now() const = 0;
+  /// Waits until `wake` is notified or `until` is reached; may return earlier, so call it in a loop
+  /// that checks its condition. `lock` is held.
+  virtual void wait_until(std::condition_variable& wake, std::unique_lock<std::mutex>& lock,
+                          TimePoint until) = 0;
+};
+
+/// std::chrono::steady_clock.
+std::shared_ptr<WaitableClock> steady_clock();
 
 }  // namespace bpa

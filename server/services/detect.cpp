@@ -66,8 +66,8 @@ DetectJob job_of(std::shared_ptr<msgs::Detect_Request> request, const DetectRequ
   job.request = search;
   const double timeout_ms =
       request->timeout_ms > 0 ? request->timeout_ms : options.request_timeout_ms;
-  job.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                    std::chrono::duration<double, std::milli>(timeout_ms));
+  job.timeout = std::chrono::duration_cast<std::chrono::nanoseconds>(
+      std::chrono::duration<double, std::milli>(timeout_ms));
   if (request->has_frame) {
     job.decode = [request] { return frame_from_message(std::move(request->frame)); };
   } else if (request->frame.roi.width > 0 || !request->frame.mask.empty() ||

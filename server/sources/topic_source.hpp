@@ -53,7 +53,9 @@ class TopicSource : public FrameSource {
     std::optional<double> silence() const;
 
    private:
-    static std::int64_t now() { return Clock::now().time_since_epoch().count(); }
+    static std::int64_t now() {
+      return std::chrono::steady_clock::now().time_since_epoch().count();
+    }
     std::atomic<std::int64_t> last_ns_{0};
   };
 

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "server/convert/frames.hpp"
+#include "tests/support/manual_clock.hpp"
 #include "tests/support/stub_recognition.hpp"
 #include "tests/support/wall_messages.hpp"
 
@@ -128,7 +129,7 @@ class WorkerTest : public testing::Test {
                                          const Result<SceneInterpretations>& result) {
           collect({}, frame, result);
         },
-        LogHook());
+        LogHook(), clock);
   }
   static IncomingFrame frame(std::int64_t stamp) {
     return {[stamp] { return frame_from_message(support::wall_frame(stamp)); }, stamp, "c"};
@@ -144,11 +145,12 @@ class WorkerTest : public testing::Test {
       job.decode = [stamp] { return frame_from_message(support::wall_frame(stamp)); };
     }
     job.client[0] = client;
-    job.deadline = Clock::now() + time;
+    job.timeout = time;
     job.done = answers.collector();
     return job;
   }
 
+  std::shared_ptr<support::ManualClock> clock = std::make_shared<support::ManualClock>();
   Gate gate;
   Statistics statistics;
   Answers streamed;
@@ -342,8 +344,25 @@ TEST_F(WorkerTest, ABrokenFrameDoesNotCostThoseItIsCombinedWith) {
 TEST_F(WorkerTest, NextFrameRequestsWithoutAFrameTimeOut) {
   auto worker = make();
   ASSERT_TRUE(worker->push(job(false, milliseconds(30))).ok());
+  ASSERT_TRUE(clock->wait_for_sleeper(milliseconds(30)));
+  clock->advance(milliseconds(29));
+  ASSERT_TRUE(clock->wait_for_sleeper(milliseconds(1)));
+  EXPECT_EQ(answers.size(), 0U);
+  clock->advance(milliseconds(1));
   ASSERT_TRUE(answers.wait_for(1));
   EXPECT_EQ(answers.code(0), StatusCode::timeout);
+}
+
+TEST_F(WorkerTest, ARequestWhoseTurnComesTooLateIsNotSearched) {
+  auto worker = make();
+  worker->push(frame(0));
+  ASSERT_TRUE(gate.wait_for_started(1));
+  ASSERT_TRUE(worker->push(job(true, milliseconds(30))).ok());
+  clock->advance(milliseconds(30));
+  gate.open();
+  ASSERT_TRUE(answers.wait_for(1));
+  EXPECT_EQ(answers.code(0), StatusCode::timeout);
+  EXPECT_EQ(gate.stamps(), std::vector<std::int64_t>{0});
 }
 
 TEST_F(WorkerTest, OnDemandSearchesNothingUnasked) {
