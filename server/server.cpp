@@ -63,13 +63,6 @@ wire::GraphLayout graph_layout_of(const std::string& word) {
   return word == "iron" ? wire::GraphLayout::iron16 : wire::GraphLayout::automatic;
 }
 
-template <class Service>
-Status keep(Result<Service> service, std::optional<Service>& place) {
-  if (!service.ok()) return service.status();
-  place.emplace(std::move(service).value());
-  return {};
-}
-
 }  // namespace
 
 Server::Server(const ServerOptions& options, std::shared_ptr<Recognition> recognition, LogHook log)
@@ -178,22 +171,20 @@ Status Server::apply(const ServerOptions& before, const ServerOptions& after) {
 }
 
 Status Server::offer_services() {
-  const ServiceContext context{*participant_,
-                               settings_,
+  const ServiceContext context{settings_,
                                recognition_,
                                *worker_,
                                statistics_,
-                               [this] { return status(); },
                                [this] {
                                  statistics_.forget_timings();
                                  publisher_->publish_vision_info();
                                },
                                log_};
-  if (Status s = keep(offer_detect(context), detect_); !s.ok()) return s;
-  if (Status s = keep(offer_list_models(context), list_models_); !s.ok()) return s;
-  if (Status s = keep(offer_load_model(context), load_model_); !s.ok()) return s;
-  if (Status s = keep(offer_unload_model(context), unload_model_); !s.ok()) return s;
-  return keep(offer_get_status(context), get_status_);
+  services_.emplace(*participant_, log_);
+  if (Status s = add_detect(context, *services_); !s.ok()) return s;
+  if (Status s = add_library_services(context, *services_); !s.ok()) return s;
+  return services_->add_quick<msgs::GetStatus>(
+      "get_status", [this](const msgs::GetStatus_Request&) { return status(); });
 }
 
 void Server::on_result(const IncomingFrame& incoming, const Frame* frame,

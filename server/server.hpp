@@ -83,11 +83,7 @@ class Server {
   std::unique_ptr<Worker> worker_;
   std::vector<std::unique_ptr<FrameSource>> sources_;
   TopicSource* topics_ = nullptr;  ///< One of them.
-  std::optional<DetectServer> detect_;
-  std::optional<ListModelsServer> list_models_;
-  std::optional<LoadModelServer> load_model_;
-  std::optional<UnloadModelServer> unload_model_;
-  std::optional<GetStatusServer> get_status_;
+  std::optional<ServiceSet> services_;
   std::unique_ptr<ParameterServices> parameters_;
 
   std::mutex report_mutex_;

@@ -13,13 +13,6 @@ namespace bpa::server {
 namespace {
 
 namespace msgs = wire::bpa_msgs;
-using Token = wire::ReplyToken<msgs::Detect>;
-
-void reply(const Token& token, const msgs::Detect_Response& response, const LogHook& hook) {
-  const Status status = token.reply(response);
-  if (!status.ok()) log(hook, LogLevel::info, "detect: reply not delivered: " + status.message);
-}
-
 msgs::Detect_Response refusal(const Status& status) {
   msgs::Detect_Response response;
   response.status = to_message(status);
@@ -79,38 +72,37 @@ DetectJob job_of(std::shared_ptr<msgs::Detect_Request> request, const DetectRequ
 
 }  // namespace
 
-Result<DetectServer> offer_detect(const ServiceContext& context) {
-  const auto handle = [recognition = context.recognition, &worker = context.worker,
-                       &statistics = context.statistics, &settings = context.settings,
-                       hook = context.log](msgs::Detect_Request&& message, Token token) {
-    const auto refuse = [&](const Status& status) {
-      statistics.add(&Counts::requests_refused);
-      log(hook, LogLevel::info, "detect refused: " + status.message);
-      reply(token, refusal(status), hook);
-    };
-    const Settings::Snapshot options = settings.get();
-    auto request = std::make_shared<msgs::Detect_Request>(std::move(message));
-    const Result<DetectRequest> search = search_of(*request, options->detection);
-    if (!search.ok()) return refuse(search.status());
-    DetectJob job = job_of(request, *search, options->detection);
-    job.client = token.client();
-    job.done = [recognition, token, hook](const DetectJob& done, const Frame* frame,
-                                          const Result<SceneInterpretations>& result) {
-      msgs::Detect_Response response = refusal(result.status());
-      response.success = result.ok();
-      response.queue_position = static_cast<std::uint32_t>(done.position);
-      if (frame != nullptr) {
-        response.result = interpretations_message(
-            result, {frame->stamp_ns, frame->frame_id, models_searched(*recognition, done.request),
-                     done.request.seed});
-      }
-      if (!result.ok()) log(hook, LogLevel::info, "detect failed: " + result.status().message);
-      reply(token, response, hook);
-    };
-    const Status accepted = worker.push(std::move(job));
-    if (!accepted.ok()) refuse(accepted);
-  };
-  return DetectServer::create(context.participant, "detect", handle);
+Status add_detect(const ServiceContext& context, ServiceSet& services) {
+  return services.add<msgs::Detect>(
+      "detect", [context](msgs::Detect_Request&& message, const Reply<msgs::Detect>& reply) {
+        const auto refuse = [&](const Status& status) {
+          context.statistics.add(&Counts::requests_refused);
+          log(context.log, LogLevel::info, "detect refused: " + status.message);
+          reply.send(refusal(status));
+        };
+        const Settings::Snapshot options = context.settings.get();
+        auto request = std::make_shared<msgs::Detect_Request>(std::move(message));
+        const Result<DetectRequest> search = search_of(*request, options->detection);
+        if (!search.ok()) return refuse(search.status());
+        DetectJob job = job_of(std::move(request), *search, options->detection);
+        job.client = reply.client();
+        job.done = [recognition = context.recognition, reply, hook = context.log](
+                       const DetectJob& done, const Frame* frame,
+                       const Result<SceneInterpretations>& result) {
+          msgs::Detect_Response response = refusal(result.status());
+          response.success = result.ok();
+          response.queue_position = static_cast<std::uint32_t>(done.position);
+          if (frame != nullptr) {
+            response.result = interpretations_message(
+                result, {frame->stamp_ns, frame->frame_id,
+                         models_searched(*recognition, done.request), done.request.seed});
+          }
+          if (!result.ok()) log(hook, LogLevel::info, "detect failed: " + result.status().message);
+          reply.send(response);
+        };
+        const Status accepted = context.worker.push(std::move(job));
+        if (!accepted.ok()) refuse(accepted);
+      });
 }
 
 }  // namespace bpa::server

@@ -50,19 +50,17 @@ Status check_record(const Record::Request& request) {
                           "; it must be more than 0 and at most 3600");
 }
 
-void handle(camera::Capture& capture, const Record::Request& request,
-            const wire::ReplyToken<Record>& token, const LogHook& hook) {
-  const auto reply = [token, hook](const Result<RecordingSummary>& result) {
-    const Status sent = token.reply(response_of(result));
-    if (!sent.ok()) log(hook, LogLevel::info, "record: " + sent.message);
+void handle(camera::Capture& capture, const Record::Request& request, const Reply<Record>& reply) {
+  const auto answer = [reply](const Result<RecordingSummary>& result) {
+    reply.send(response_of(result));
   };
   if (request.stop) {
-    capture.stop_recording(reply);
+    capture.stop_recording(answer);
   } else if (const Status status = check_record(request); !status.ok()) {
-    reply(status);
+    answer(status);
   } else {
     const auto limit = std::chrono::milliseconds(std::llround(1000 * request.seconds));
-    capture.start_recording(request.path, limit, reply);
+    capture.start_recording(request.path, limit, answer);
   }
 }
 
@@ -95,20 +93,14 @@ Result<std::unique_ptr<CameraSource>> CameraSource::create(
         if (search) on_frame(incoming(messages));
       },
       std::move(idle), log);
-  if (Status status = self->offer_record(participant, log); !status.ok()) return status;
-  return self;
-}
-
-Status CameraSource::offer_record(const wire::Participant& participant, LogHook log) {
-  auto server = wire::ServiceServer<Record>::create(
-      participant, "record",
-      [capture = capture_.get(), log = std::move(log)](Record::Request&& request,
-                                                       wire::ReplyToken<Record> token) {
-        handle(*capture, request, token, log);
+  self->services_.emplace(participant, std::move(log));
+  const Status offered = self->services_->add<Record>(
+      "record",
+      [capture = self->capture_.get()](const Record::Request& request, const Reply<Record>& reply) {
+        handle(*capture, request, reply);
       });
-  if (!server.ok()) return server.status();
-  record_.emplace(std::move(server).value());
-  return {};
+  if (!offered.ok()) return offered;
+  return self;
 }
 
 std::vector<SourceReport> CameraSource::reports() const {

@@ -13,7 +13,7 @@
 #include "core/base/status.hpp"
 #include "idl/wire/messages.hpp"
 #include "idl/wire/participant.hpp"
-#include "idl/wire/service.hpp"
+#include "server/services/service_set.hpp"
 #include "server/sources/camera_publisher.hpp"
 #include "server/sources/capture_options.hpp"
 #include "server/sources/frame_source.hpp"
@@ -36,12 +36,11 @@ class CameraSource : public FrameSource {
 
  private:
   CameraSource() = default;
-  Status offer_record(const wire::Participant& participant, LogHook log);
 
   // Destroyed from the last to the first: nothing calls into what is gone.
   std::unique_ptr<CameraPublisher> publisher_;
   std::unique_ptr<camera::Capture> capture_;
-  std::optional<wire::ServiceServer<wire::bpa_msgs::Record>> record_;
+  std::optional<ServiceSet> services_;
 };
 
 }  // namespace bpa::server

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <utility>
+
+#include "server/convert/results.hpp"
+#include "server/services/services.hpp"
+
+namespace bpa::server {
+namespace {
+
+namespace msgs = wire::bpa_msgs;
+
+/// The model of this name, or the end.
+template <class Container, class Name>
+auto find_named(const Container& models, const std::string& wanted, Name name_of) {
+  return std::find_if(models.begin(), models.end(),
+                      [&](const auto& model) { return name_of(model) == wanted; });
+}
+
+msgs::ListModels_Response list(const Recognition& recognition,
+                               const std::vector<std::string>& names) {
+  msgs::ListModels_Response response;
+  response.library = recognition.library();
+  response.database_version = recognition.version();
+  const Models models = recognition.models();
+  const auto broken = recognition.broken();
+  const auto name_of = [](const auto& model) { return model->name; };
+  for (const std::string& name : names) {
+    if (find_named(models, name, name_of) != models.end()) continue;
+    const auto damaged = find_named(broken, name, [](const auto& model) { return model.name; });
+    response.status =
+        to_message(damaged != broken.end()
+                       ? damaged->reason
+                       : Status(StatusCode::not_found, "there is no model named \"" + name + "\""));
+    return response;
+  }
+  for (const auto& model : models) {
+    const bool wanted =
+        names.empty() || std::find(names.begin(), names.end(), model->name) != names.end();
+    if (wanted) response.models.push_back(model_message(*model));
+  }
+  response.success = true;
+  if (names.empty()) response.status = to_message(io::explain_broken(response.library, broken));
+  return response;
+}
+
+/// Fills in what both responses have, logs, tells the others and replies.
+template <class Service>
+void finish(const ServiceContext& context, const char* what, const Status& status,
+            typename Service::Response& response, const Reply<Service>& reply) {
+  response.success = status.ok();
+  response.status = to_message(status);
+  response.database_version = context.recognition->version();
+  log(context.log, LogLevel::info,
+      std::string(what) + (status.ok() ? ": done" : " failed: " + status.message));
+  if (status.ok()) context.library_changed();
+  reply.send(response);
+}
+
+/// A service that changes the library: `change(request, response)`. Loading takes seconds, so it
+/// waits for its turn on the worker.
+template <class Service, class Change>
+Status add_change(const ServiceContext& context, const char* name, Change change,
+                  ServiceSet& services) {
+  return services.add<Service>(name, [context, name, change](typename Service::Request&& request,
+                                                             const Reply<Service>& reply) {
+    const Status queued =
+        context.worker.run_later([context, name, change, reply, request = std::move(request)] {
+          typename Service::Response response;
+          const Status status = change(request, response);
+          finish(context, name, status, response, reply);
+        });
+    if (queued.ok()) return;
+    typename Service::Response response;
+    finish(context, name, queued, response, reply);
+  });
+}
+
+}  // namespace
+
+Status add_library_services(const ServiceContext& context, ServiceSet& services) {
+  const std::shared_ptr<Recognition> recognition = context.recognition;
+  Status status = services.add_quick<msgs::ListModels>(
+      "list_models", [recognition](const msgs::ListModels_Request& request) {
+        return list(*recognition, request.names);
+      });
+  if (!status.ok()) return status;
+  status = add_change<msgs::LoadModel>(
+      context, "load_model",
+      [recognition](const msgs::LoadModel_Request& request, msgs::LoadModel_Response& response) {
+        const auto model = recognition->load(request.source, request.name);
+        if (model.ok()) response.model = model_message(**model);
+        return model.status();
+      },
+      services);
+  if (!status.ok()) return status;
+  return add_change<msgs::UnloadModel>(
+      context, "unload_model",
+      [recognition](const msgs::UnloadModel_Request& request, msgs::UnloadModel_Response&) {
+        return recognition->unload(request.name);
+      },
+      services);
+}
+
+}  // namespace bpa::server
