@@ -58,7 +58,7 @@ Line detection_line(const Health& health) {
   line.add("frames received", health.status.frames_received);
   line.add("frames searched", health.status.frames_processed);
   line.add("requests served", health.status.requests_served);
-  for (const auto& [key, value] : health.fusion) line.add(key, value);
+  for (const auto& pair : health.fusion) line.add(pair.key, pair.value);
   for (const auto& timing : health.status.stage_timings) {
     line.add("median ms of " + timing.name, number(timing.duration_ms, "%.3f"));
   }
@@ -102,17 +102,6 @@ Line models_line(const Health& health) {
   return line;
 }
 
-Line source_line(const Health& health, const SourceReport& source) {
-  Line line(health, source.name);
-  line.say(source.level == SourceReport::Level::ok        ? DiagnosticStatus::kOk
-           : source.level == SourceReport::Level::warning ? DiagnosticStatus::kWarn
-                                                          : DiagnosticStatus::kError,
-           source.message);
-  line.status().hardware_id = source.hardware_id;
-  for (const auto& [key, value] : source.values) line.add(key, value);
-  return line;
-}
-
 }  // namespace
 
 void RateMeter::add(TimePoint now, const Counts& counts) {
@@ -150,8 +139,9 @@ wire::diagnostic_msgs::DiagnosticArray diagnostics_message(const Health& health,
        {detection_line(health), drops_line(health), queue_line(health), models_line(health)}) {
     array.status.push_back(std::move(line.status()));
   }
-  for (const SourceReport& source : health.sources) {
-    array.status.push_back(std::move(source_line(health, source).status()));
+  for (SourceReport source : health.sources) {
+    source.name = health.node + ": " + source.name;
+    array.status.push_back(std::move(source));
   }
   return array;
 }

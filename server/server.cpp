@@ -281,7 +281,7 @@ std::vector<KeyValue> Server::details() const {
   std::vector<KeyValue> details = fusion();
   for (const auto& [cause, count] : drops()) details.push_back({cause, std::to_string(count)});
   for (const SourceReport& report : source_reports()) {
-    for (const auto& [key, value] : report.values) details.push_back({key, value});
+    details.insert(details.end(), report.values.begin(), report.values.end());
   }
   return details;
 }

@@ -31,7 +31,6 @@ Worker::Worker(std::shared_ptr<const Recognition> recognition, const WorkerOptio
       log_(std::move(log)),
       clock_(std::move(clock)),
       options_(options),
-      frames_(options.frame_capacity),
       thread_([this] { run(); }) {}
 
 Worker::~Worker() { stop(); }
@@ -53,7 +52,11 @@ void Worker::push(IncomingFrame frame) {
   statistics_.add_frame();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    displaced = frames_.push(std::move(frame));
+    if (!frames_.empty() && frames_.size() >= options_.frame_capacity) {
+      displaced = std::move(frames_.front());
+      frames_.pop_front();
+    }
+    frames_.push_back(std::move(frame));
   }
   if (displaced) statistics_.add(&Counts::frames_dropped);
   wake_.notify_one();
@@ -63,7 +66,6 @@ void Worker::set_options(const WorkerOptions& options) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     options_ = options;
-    frames_.set_capacity(options.frame_capacity);
   }
   wake_.notify_one();
 }
@@ -230,7 +232,8 @@ void Worker::expire(std::vector<DetectJob> jobs) {
 std::vector<IncomingFrame> Worker::take_frames(const WorkerOptions& options) {
   std::vector<IncomingFrame> taken;
   do {
-    taken.push_back(*frames_.pop());
+    taken.push_back(std::move(frames_.front()));
+    frames_.pop_front();
   } while (options.fuse_frames > 1 && !frames_.empty());
   return taken;
 }

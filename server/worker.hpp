@@ -19,7 +19,6 @@
 #include "idl/wire/endpoint.hpp"
 #include "server/convert/decoded_frame.hpp"
 #include "server/fair_queue.hpp"
-#include "server/newest_queue.hpp"
 #include "server/once.hpp"
 #include "server/recognition.hpp"
 #include "server/statistics.hpp"
@@ -126,7 +125,7 @@ class Worker {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   WorkerOptions options_;
-  NewestQueue<IncomingFrame> frames_;
+  std::deque<IncomingFrame> frames_;           ///< At most options_.frame_capacity.
   FairQueue<wire::Guid, DetectJob> requests_;  ///< With frames of their own.
   std::vector<DetectJob> awaiting_frame_;      ///< For the next frame.
   std::deque<std::function<void()>> tasks_;

@@ -64,9 +64,9 @@ void handle(camera::Capture& capture, const Record::Request& request, const Repl
   }
 }
 
-SourceReport::Level level_of(LogLevel level) {
-  if (level == LogLevel::error) return SourceReport::Level::error;
-  return level == LogLevel::warning ? SourceReport::Level::warning : SourceReport::Level::ok;
+std::byte level_of(LogLevel level) {
+  if (level == LogLevel::error) return SourceReport::kError;
+  return level == LogLevel::warning ? SourceReport::kWarn : SourceReport::kOk;
 }
 
 }  // namespace

@@ -2,25 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-#include <utility>
 #include <vector>
+
+#include "idl/wire/msg/diagnostic_msgs.hpp"
 
 namespace bpa::server {
 
-/// How one source of frames is doing: a line of diagnostics.
-struct SourceReport {
-  enum class Level { ok, warning, error };
+/// How one source of frames is doing. `name` is unique in the server ("camera"), `message` one
+/// sentence for people, `hardware_id` the device or the topic.
+using SourceReport = wire::diagnostic_msgs::DiagnosticStatus;
 
-  std::string name;         ///< What it is, such as "camera topics"; unique in the server.
-  std::string hardware_id;  ///< Of the device, or the topic.
-  Level level = Level::ok;
-  std::string message;  ///< One sentence for people.
-  std::vector<std::pair<std::string, std::string>> values;
-};
-
-/// Where frames come from. It starts when it is made and hands frames to whoever made it, on
-/// threads of its own, until it is destroyed.
+/// Where frames come from. It starts when it is made and hands frames to its owner, on threads
+/// of its own, until it is destroyed.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;

@@ -10,10 +10,10 @@
 namespace bpa::server {
 namespace {
 
-using Values = std::vector<std::pair<std::string, std::string>>;
+using Values = std::vector<wire::diagnostic_msgs::KeyValue>;
 
 void add(Values& values, const std::string& key, std::uint64_t value) {
-  values.emplace_back(key, std::to_string(value));
+  values.push_back({key, std::to_string(value)});
 }
 
 std::string seconds(double value) {
@@ -37,39 +37,31 @@ double TopicSource::longest_silence() const {
 
 std::vector<SourceReport> TopicSource::reports() const {
   std::vector<SourceReport> reports;
-  if (frames_) {
-    reports.push_back(whole_report("frames", frames_->topic(), frames_->matched_count(),
-                                   frames_->statistics(), frames_pulse_));
-  }
-  if (cloud_) {
-    reports.push_back(whole_report("clouds", cloud_->topic(), cloud_->matched_count(),
-                                   cloud_->statistics(), cloud_pulse_));
-  }
+  if (frames_.open()) reports.push_back(whole_report("frames", frames_));
+  if (cloud_.open()) reports.push_back(whole_report("clouds", cloud_));
   if (depth_.open()) reports.push_back(camera_report());
   return reports;
 }
 
-SourceReport TopicSource::whole_report(const char* name, const std::string& topic,
-                                       std::size_t publishers,
-                                       const wire::ReaderStatistics& statistics,
-                                       const Pulse& pulse) const {
+SourceReport TopicSource::whole_report(const std::string& what, const Topic& topic) const {
   SourceReport report;
-  report.name = name;
-  report.hardware_id = topic;
-  const auto silence = pulse.silence();
+  report.name = what;
+  report.hardware_id = topic.name;
+  const std::size_t publishers = topic.publishers();
+  const auto silence = topic.pulse.silence();
   if (!silence) {
     report.message = publishers > 0 ? "a publisher is there and has sent nothing yet" : "unused";
   } else if (*silence > longest_silence()) {
-    report.level = SourceReport::Level::warning;
+    report.level = SourceReport::kWarn;
     report.message = "nothing has come for " + seconds(*silence);
   } else {
     report.message = "they come";
   }
-  const std::string what = std::string(" of ") + name;
-  add(report.values, "publishers" + what, publishers);
-  add(report.values, "messages" + what, statistics.received);
-  add(report.values, "messages malformed" + what, statistics.malformed);
-  add(report.values, "messages lost by DDS" + what, statistics.lost);
+  const wire::ReaderStatistics statistics = topic.statistics();
+  add(report.values, "publishers of " + what, publishers);
+  add(report.values, "messages of " + what, statistics.received);
+  add(report.values, "messages malformed of " + what, statistics.malformed);
+  add(report.values, "messages lost by DDS of " + what, statistics.lost);
   return report;
 }
 
@@ -78,21 +70,21 @@ std::string TopicSource::camera_trouble() const {
   const double limit = longest_silence();
   std::string trouble;
   bool alive = false, seen = false;
-  const auto judge = [&](const char* what, const std::string& topic, std::size_t publishers,
-                         const Pulse& pulse) {
-    const auto silence = pulse.silence();
+  const auto judge = [&](const char* what, const Topic& topic) {
+    if (!topic.open()) return;
+    const auto silence = topic.pulse.silence();
     seen = seen || silence;
     if (silence && *silence <= limit) {
       alive = true;
       return;
     }
-    trouble += (trouble.empty() ? "no " : "; no ") + std::string(what) + " on " + topic +
+    trouble += (trouble.empty() ? "no " : "; no ") + std::string(what) + " on " + topic.name +
                (silence ? " for " + seconds(*silence) : " so far") +
-               (publishers == 0 ? ", nobody publishes it" : "");
+               (topic.publishers() == 0 ? ", nobody publishes it" : "");
   };
-  if (color_.open()) judge("colour image", color_.topic(), color_.publishers(), color_.pulse);
-  judge("depth image", depth_.topic(), depth_.publishers(), depth_.pulse);
-  judge("camera info", info_->topic(), info_->matched_count(), info_pulse_);
+  judge("colour image", color_);
+  judge("depth image", depth_);
+  judge("camera info", info_);
   if (!seen) return "";
   return alive || trouble.empty() ? trouble : "the camera is gone: " + trouble;
 }
@@ -100,27 +92,29 @@ std::string TopicSource::camera_trouble() const {
 SourceReport TopicSource::camera_report() const {
   SourceReport report;
   report.name = "camera";
-  report.hardware_id = depth_.topic();
+  report.hardware_id = depth_.name;
   const std::string trouble = camera_trouble();
   if (!trouble.empty()) {
-    report.level = SourceReport::Level::error;
+    report.level = SourceReport::kError;
     report.message = trouble;
   } else {
     report.message = depth_.pulse.silence() ? "images come" : "unused";
   }
   const SyncCounts sync = sync_counts();
   Values& values = report.values;
-  add(values, "publishers of colour images", color_.publishers());
+  add(values, "publishers of colour images", color_.open() ? color_.publishers() : 0);
   add(values, "publishers of depth images", depth_.publishers());
-  add(values, "publishers of camera infos", info_->matched_count());
+  add(values, "publishers of camera infos", info_.publishers());
   add(values, "camera sets with equal stamps", sync.exact);
   add(values, "camera sets with near stamps", sync.approximate);
   add(values, "depth images without a colour image", sync.depth_without_color);
   add(values, "depth images without a camera info", sync.depth_without_info);
   add(values, "colour images unused", sync.color_unused);
   add(values, "camera clock restarts", sync.restarts);
-  wire::ReaderStatistics sum = color_.statistics();
-  for (const auto& one : {depth_.statistics(), info_->statistics()}) {
+  wire::ReaderStatistics sum;
+  for (const Topic* topic : {&color_, &depth_, &info_}) {
+    if (!topic->open()) continue;
+    const wire::ReaderStatistics one = topic->statistics();
     sum.received += one.received;
     sum.malformed += one.malformed;
     sum.lost += one.lost;

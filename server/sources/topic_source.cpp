@@ -26,18 +26,6 @@ SynchronizerOptions synchronizer_options(const InputOptions& options) {
   return sync;
 }
 
-/// Creates a subscription in `place`.
-template <class T>
-Status subscribe_to(const wire::Participant& participant, const std::string& topic,
-                    const wire::SubscriberOptions& options,
-                    typename Subscriber<T>::Callback callback,
-                    std::optional<Subscriber<T>>& place) {
-  auto subscriber = Subscriber<T>::create(participant, topic, options, std::move(callback));
-  if (!subscriber.ok()) return subscriber.status();
-  place.emplace(std::move(subscriber).value());
-  return {};
-}
-
 /// A whole frame; `convert` runs on the worker.
 template <class Message, class Convert>
 IncomingFrame incoming(Message message, Convert convert) {
@@ -72,12 +60,22 @@ IncomingFrame incoming(CameraImages images, bool rectified) {
 
 }  // namespace
 
-std::size_t TopicSource::ImageTopic::publishers() const {
-  return raw ? raw->matched_count() : compressed ? compressed->matched_count() : 0;
-}
-
-wire::ReaderStatistics TopicSource::ImageTopic::statistics() const {
-  return raw ? raw->statistics() : compressed ? compressed->statistics() : wire::ReaderStatistics();
+template <class T, class OnMessage>
+Status TopicSource::subscribe_to(const wire::Participant& participant, const std::string& topic,
+                                 const wire::SubscriberOptions& options, OnMessage on_message,
+                                 Topic& place) {
+  auto made = Subscriber<T>::create(participant, topic, options,
+                                    [&place, on_message](T&& message, const SampleMeta&) {
+                                      place.pulse.beat();
+                                      on_message(std::move(message));
+                                    });
+  if (!made.ok()) return made.status();
+  const auto subscriber = std::make_shared<Subscriber<T>>(std::move(made).value());
+  place.name = subscriber->topic();
+  place.publishers = [raw = subscriber.get()] { return raw->matched_count(); };
+  place.statistics = [raw = subscriber.get()] { return raw->statistics(); };
+  place.subscriber = subscriber;
+  return {};
 }
 
 TopicSource::TopicSource(const InputOptions& options, OnFrame on_frame, LogHook log)
@@ -123,24 +121,17 @@ Status TopicSource::subscribe_frames(const wire::Participant& participant,
   subscription.shared_bytes = shared_bytes;
   Status status = subscribe_to<RgbdFrame>(
       participant, options_.frames, subscription,
-      [this](RgbdFrame&& message, const SampleMeta&) {
-        frames_pulse_.beat();
-        on_frame_(incoming(std::move(message)));
-      },
-      frames_);
-  if (status.ok()) log(log_, LogLevel::info, "frames are taken from " + frames_->topic());
+      [this](RgbdFrame&& message) { on_frame_(incoming(std::move(message))); }, frames_);
+  if (status.ok()) log(log_, LogLevel::info, "frames are taken from " + frames_.name);
   return status;
 }
 
 Status TopicSource::subscribe_cloud(const wire::Participant& participant) {
   Status status = subscribe_to<PointCloud2>(
       participant, options_.cloud, camera_subscription(),
-      [this](PointCloud2&& message, const SampleMeta&) {
-        cloud_pulse_.beat();
-        on_frame_(incoming(std::move(message), frame_from_cloud));
-      },
+      [this](PointCloud2&& message) { on_frame_(incoming(std::move(message), frame_from_cloud)); },
       cloud_);
-  if (status.ok()) log(log_, LogLevel::info, "clouds are taken from " + cloud_->topic());
+  if (status.ok()) log(log_, LogLevel::info, "clouds are taken from " + cloud_.name);
   return status;
 }
 
@@ -152,21 +143,20 @@ wire::SubscriberOptions TopicSource::camera_subscription() const {
 
 Status TopicSource::subscribe_images(const wire::Participant& participant, const std::string& topic,
                                      const std::string& transport,
-                                     void (Synchronizer::*add)(AnyImage&&), ImageTopic& place) {
-  const auto take = [this, add, &place](auto&& image, const SampleMeta&) {
-    place.pulse.beat();
+                                     void (Synchronizer::*add)(AnyImage&&), Topic& place) {
+  const auto take = [this, add](auto&& image) {
     std::unique_lock<std::mutex> lock(mutex_);
     (synchronizer_.*add)(AnyImage(std::move(image)));
     deliver_complete(std::move(lock));
   };
   if (transport == "raw") {
-    return subscribe_to<Image>(participant, topic, camera_subscription(), take, place.raw);
+    return subscribe_to<Image>(participant, topic, camera_subscription(), take, place);
   }
   // As image_transport does it, the base topic is remapped first.
   const Result<std::string> base = participant.resolve(topic);
   if (!base.ok()) return base.status();
   return subscribe_to<CompressedImage>(participant, *base + "/" + transport, camera_subscription(),
-                                       take, place.compressed);
+                                       take, place);
 }
 
 Status TopicSource::subscribe_camera(const wire::Participant& participant) {
@@ -180,8 +170,7 @@ Status TopicSource::subscribe_camera(const wire::Participant& participant) {
   if (!status.ok()) return status;
   status = subscribe_to<CameraInfo>(
       participant, options_.camera_info, camera_subscription(),
-      [this](CameraInfo&& info, const SampleMeta&) {
-        info_pulse_.beat();
+      [this](CameraInfo&& info) {
         std::unique_lock<std::mutex> lock(mutex_);
         synchronizer_.add_info(std::move(info));
         deliver_complete(std::move(lock));
@@ -189,8 +178,8 @@ Status TopicSource::subscribe_camera(const wire::Participant& participant) {
       info_);
   if (!status.ok()) return status;
   log(log_, LogLevel::info,
-      "camera images are taken from " + depth_.topic() +
-          (color_.open() ? ", " + color_.topic() : " (without colour)") + " and " + info_->topic());
+      "camera images are taken from " + depth_.name +
+          (color_.open() ? ", " + color_.name : " (without colour)") + " and " + info_.name);
   return {};
 }
 

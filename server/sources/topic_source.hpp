@@ -40,7 +40,7 @@ class TopicSource : public FrameSource {
 
   std::vector<SourceReport> reports() const override;
   /// Publishers of the topic of whole frames that are matched now; 0 without that topic.
-  std::size_t frame_publishers() const { return frames_ ? frames_->matched_count() : 0; }
+  std::size_t frame_publishers() const { return frames_.open() ? frames_.publishers() : 0; }
   /// What became of the camera's messages.
   SyncCounts sync_counts() const;
 
@@ -59,16 +59,15 @@ class TopicSource : public FrameSource {
     std::atomic<std::int64_t> last_ns_{0};
   };
 
-  /// A subscription to images, raw or compressed.
-  struct ImageTopic {
-    std::optional<wire::Subscriber<wire::sensor_msgs::Image>> raw;
-    std::optional<wire::Subscriber<wire::sensor_msgs::CompressedImage>> compressed;
+  /// A subscription to messages of any type, and when the last one came.
+  struct Topic {
+    std::string name;  ///< Resolved.
     Pulse pulse;
+    std::function<std::size_t()> publishers;
+    std::function<wire::ReaderStatistics()> statistics;
+    std::shared_ptr<void> subscriber;
 
-    bool open() const { return raw || compressed; }
-    const std::string& topic() const { return raw ? raw->topic() : compressed->topic(); }
-    std::size_t publishers() const;
-    wire::ReaderStatistics statistics() const;
+    bool open() const { return subscriber != nullptr; }
   };
 
   TopicSource(const InputOptions& options, OnFrame on_frame, LogHook log);
@@ -78,11 +77,14 @@ class TopicSource : public FrameSource {
   Status subscribe_camera(const wire::Participant& participant);
   Status subscribe_images(const wire::Participant& participant, const std::string& topic,
                           const std::string& transport, void (Synchronizer::*add)(AnyImage&&),
-                          ImageTopic& place);
+                          Topic& place);
+  template <class T, class OnMessage>
+  static Status subscribe_to(const wire::Participant& participant, const std::string& topic,
+                             const wire::SubscriberOptions& options, OnMessage on_message,
+                             Topic& place);
   wire::SubscriberOptions camera_subscription() const;
   void deliver_complete(std::unique_lock<std::mutex> lock);
-  SourceReport whole_report(const char* name, const std::string& topic, std::size_t publishers,
-                            const wire::ReaderStatistics& statistics, const Pulse& pulse) const;
+  SourceReport whole_report(const std::string& what, const Topic& topic) const;
   SourceReport camera_report() const;
   std::string camera_trouble() const;
   double longest_silence() const;
@@ -92,12 +94,8 @@ class TopicSource : public FrameSource {
   mutable std::mutex mutex_;  ///< Guards the options and the synchronizer.
   InputOptions options_;
   Synchronizer synchronizer_;
-  Pulse frames_pulse_, cloud_pulse_, info_pulse_;
   // Last: they call into the members above until they are destroyed.
-  std::optional<wire::Subscriber<wire::bpa_msgs::RgbdFrame>> frames_;
-  std::optional<wire::Subscriber<wire::sensor_msgs::PointCloud2>> cloud_;
-  ImageTopic color_, depth_;
-  std::optional<wire::Subscriber<wire::sensor_msgs::CameraInfo>> info_;
+  Topic frames_, cloud_, color_, depth_, info_;
 };
 
 }  // namespace bpa::server

@@ -109,7 +109,7 @@ TEST_F(Diagnostics, EverySourceHasALine) {
   SourceReport report;
   report.name = "kinect";
   report.hardware_id = "A00361";
-  report.level = SourceReport::Level::error;
+  report.level = DiagnosticStatus::kError;
   report.message = "the device is gone";
   report.values = {{"frames", "12"}};
   health.sources = {report};
