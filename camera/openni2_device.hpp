@@ -22,4 +22,9 @@ struct Openni2Target {
 /// there, `invalid_argument` when a setting does not fit it, `corrupt` for a damaged recording.
 OpenCamera openni2_camera(const Openni2Target& target, const CameraOptions& options, LogHook log);
 
+/// The OpenNI2 devices with their modes and what is wrong with each, and the depth sensors on USB
+/// that OpenNI2 does not serve, as text for people. Opens each device for a moment. Fails when
+/// OpenNI2 has no drivers.
+Result<std::string> list_devices();
+
 }  // namespace bpa::camera

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/openni2_list.hpp"
-
 #include <sstream>
 
 #include <openni2/OpenNI.h>
 
+#include "camera/openni2_device.hpp"
 #include "camera/openni2_library.hpp"
 #include "camera/openni2_streams.hpp"
 #include "camera/usb_sensors.hpp"

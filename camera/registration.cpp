@@ -6,26 +6,17 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/geometry/distortion.hpp"
+
 namespace bpa::camera {
 namespace {
-
-/// Where the colour camera sees a point at (x, y) of its normalised image plane, with its lens.
-Eigen::Vector2d distorted(const std::vector<double>& coefficients, double x, double y) {
-  double k[8] = {};
-  std::copy_n(coefficients.begin(), std::min<std::size_t>(8, coefficients.size()), k);
-  const double r2 = x * x + y * y;
-  const double radial =
-      (1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) / (1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])));
-  return {x * radial + 2 * k[2] * x * y + k[3] * (r2 + 2 * x * x),
-          y * radial + k[2] * (r2 + 2 * y * y) + 2 * k[3] * x * y};
-}
 
 /// A corner of a depth pixel's square as a pixel of the colour image.
 Eigen::Vector2d carried(const DeviceGeometry& g, double u, double v, double z) {
   double x = (u - g.depth.cx) / g.depth.fx - g.baseline / z;
   double y = (v - g.depth.cy) / g.depth.fy;
   if (!g.color_distortion.empty()) {
-    const Eigen::Vector2d bent = distorted(g.color_distortion, x, y);
+    const Eigen::Vector2d bent = distort(g.color_distortion, x, y);
     x = bent.x();
     y = bent.y();
   }

@@ -7,7 +7,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "camera/openni2_list.hpp"
+#include "camera/openni2_device.hpp"
 #include "core/pipeline/detector_options.hpp"
 #include "server/library_detector.hpp"
 #include "server/options.hpp"

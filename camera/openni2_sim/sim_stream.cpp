@@ -98,40 +98,39 @@ OniStatus SimStream::set_mode(const OniVideoMode& mode) {
   return ONI_STATUS_NOT_SUPPORTED;
 }
 
+int* SimStream::setting(int id) {
+  if (id == ONI_STREAM_PROPERTY_MIRRORING) return &mirrored_;
+  if (sensor_ != ONI_SENSOR_COLOR) return nullptr;
+  switch (id) {
+    case ONI_STREAM_PROPERTY_AUTO_EXPOSURE:
+      return &auto_exposure_;
+    case ONI_STREAM_PROPERTY_AUTO_WHITE_BALANCE:
+      return &auto_white_balance_;
+    case ONI_STREAM_PROPERTY_EXPOSURE:
+      return &exposure_;
+    case ONI_STREAM_PROPERTY_GAIN:
+      return &gain_;
+    default:
+      return nullptr;
+  }
+}
+
 OniStatus SimStream::setProperty(int id, const void* data, int size) {
   config_.pass();
   const std::lock_guard<std::mutex> lock(mutex_);
-  switch (id) {
-    case ONI_STREAM_PROPERTY_VIDEO_MODE: {
-      OniVideoMode mode{};
-      const OniStatus status = take(data, size, mode);
-      return status == ONI_STATUS_OK ? set_mode(mode) : status;
-    }
-    case ONI_STREAM_PROPERTY_MIRRORING:
-      return take(data, size, mirrored_);
-    default:
-      break;
-  }
-  if (sensor_ != ONI_SENSOR_COLOR) return ONI_STATUS_NOT_SUPPORTED;
-  switch (id) {
-    case ONI_STREAM_PROPERTY_AUTO_EXPOSURE:
-      return take(data, size, auto_exposure_);
-    case ONI_STREAM_PROPERTY_AUTO_WHITE_BALANCE:
-      return take(data, size, auto_white_balance_);
-    case ONI_STREAM_PROPERTY_EXPOSURE:
-      return take(data, size, exposure_);
-    case ONI_STREAM_PROPERTY_GAIN:
-      return take(data, size, gain_);
-    default:
-      return ONI_STATUS_NOT_SUPPORTED;
-  }
+  if (int* value = setting(id)) return take(data, size, *value);
+  if (id != ONI_STREAM_PROPERTY_VIDEO_MODE) return ONI_STATUS_NOT_SUPPORTED;
+  OniVideoMode mode{};
+  const OniStatus status = take(data, size, mode);
+  return status == ONI_STATUS_OK ? set_mode(mode) : status;
 }
 
 OniStatus SimStream::getProperty(int id, void* data, int* size) {
   config_.pass();
   const std::lock_guard<std::mutex> lock(mutex_);
-  const Camera& camera =
-      sensor_ == ONI_SENSOR_COLOR || shows_registered() ? frames_.color : frames_.depth;
+  if (const int* value = setting(id)) return give(*value, data, size);
+  const bool depth = sensor_ == ONI_SENSOR_DEPTH;
+  const Camera& camera = !depth || shows_registered() ? frames_.color : frames_.depth;
   switch (id) {
     case ONI_STREAM_PROPERTY_VIDEO_MODE:
       return give(mode_, data, size);
@@ -141,32 +140,17 @@ OniStatus SimStream::getProperty(int id, void* data, int* size) {
       return give(static_cast<float>(2 * std::atan(camera.height / (2 * camera.fy))), data, size);
     case ONI_STREAM_PROPERTY_STRIDE:
       return give(mode_.resolutionX * pixel_bytes(mode_), data, size);
-    case ONI_STREAM_PROPERTY_MIRRORING:
-      return give(mirrored_, data, size);
     case ONI_STREAM_PROPERTY_CROPPING:  // never; but players show no stream that does not say so
       return give(OniCropping{}, data, size);
     default:
       break;
   }
-  if (sensor_ == ONI_SENSOR_DEPTH) {
-    const int units = mode_.pixelFormat == ONI_PIXEL_FORMAT_DEPTH_1_MM ? 1 : 10;
-    if (id == ONI_STREAM_PROPERTY_MAX_VALUE) return give(kMaxDepthMm * units, data, size);
-    if (id == ONI_STREAM_PROPERTY_MIN_VALUE) return give(0, data, size);
-    if (id == XN_STREAM_PROPERTY_DCMOS_RCMOS_DISTANCE) return give(kBaseline * 100, data, size);
-    return ONI_STATUS_NOT_SUPPORTED;
-  }
-  switch (id) {
-    case ONI_STREAM_PROPERTY_AUTO_EXPOSURE:
-      return give(auto_exposure_, data, size);
-    case ONI_STREAM_PROPERTY_AUTO_WHITE_BALANCE:
-      return give(auto_white_balance_, data, size);
-    case ONI_STREAM_PROPERTY_EXPOSURE:
-      return give(exposure_, data, size);
-    case ONI_STREAM_PROPERTY_GAIN:
-      return give(gain_, data, size);
-    default:
-      return ONI_STATUS_NOT_SUPPORTED;
-  }
+  if (!depth) return ONI_STATUS_NOT_SUPPORTED;
+  const int units = mode_.pixelFormat == ONI_PIXEL_FORMAT_DEPTH_1_MM ? 1 : 10;
+  if (id == ONI_STREAM_PROPERTY_MAX_VALUE) return give(kMaxDepthMm * units, data, size);
+  if (id == ONI_STREAM_PROPERTY_MIN_VALUE) return give(0, data, size);
+  if (id == XN_STREAM_PROPERTY_DCMOS_RCMOS_DISTANCE) return give(kBaseline * 100, data, size);
+  return ONI_STATUS_NOT_SUPPORTED;
 }
 
 OniBool SimStream::isPropertySupported(int id) {

@@ -42,6 +42,8 @@ class SimStream : public oni::driver::StreamBase {
   void fill_color(const SimFrame& scene, OniFrame& frame) const;
   bool shows_registered() const;
   OniStatus set_mode(const OniVideoMode& mode);
+  /// The field of a property that can be set freely; nullptr for any other.
+  int* setting(int id);
 
   const OniSensorType sensor_;
   const SimFrames& frames_;
@@ -49,9 +51,9 @@ class SimStream : public oni::driver::StreamBase {
   const std::atomic<bool>& registering_;
   std::mutex mutex_;  ///< Guards what follows.
   OniVideoMode mode_{};
-  OniBool mirrored_ = TRUE;  ///< As real devices start.
-  OniBool auto_exposure_ = TRUE;
-  OniBool auto_white_balance_ = TRUE;
+  int mirrored_ = TRUE;  ///< As real devices start.
+  int auto_exposure_ = TRUE;
+  int auto_white_balance_ = TRUE;
   int exposure_ = 100;  ///< Per cent of what the scene was rendered with.
   int gain_ = 100;
   bool running_ = false;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/convert/frames.hpp"
 
+#include <algorithm>
 #include <array>
 #include <sstream>
 #include <utility>
@@ -50,8 +51,8 @@ void remap(const std::vector<std::int32_t>& map, std::vector<Pixel>& pixels) {
   pixels = std::move(out);
 }
 
-void undistort(const Distortion& distortion, Frame& frame) {
-  if (distortion.none()) return;
+void undistort(const std::vector<double>& distortion, Frame& frame) {
+  if (std::all_of(distortion.begin(), distortion.end(), [](double c) { return c == 0; })) return;
   const std::vector<std::int32_t> map = undistortion_map(frame.camera, distortion);
   remap<float, 1>(map, frame.depth);
   remap<std::uint8_t, 3>(map, frame.color);
@@ -138,7 +139,7 @@ DecodedFrame frame_from_message(msgs::RgbdFrame message) {
     if (!color.ok()) return {RejectionCause::color, color.status()};
     frame.color = std::move(color).value();
   }
-  undistort({message.d}, frame);
+  undistort(message.d, frame);
   frame.roi = roi_of(message.roi);
   frame.mask = std::move(message.mask);
   return checked(std::move(frame));
@@ -184,7 +185,7 @@ DecodedFrame frame_from_images(const CameraImages& images, bool rectified) {
     if (Status status = check_distortion(info.d); !status.ok()) {
       return {RejectionCause::distortion, status};
     }
-    undistort({info.d}, frame);
+    undistort(info.d, frame);
   }
   return checked(std::move(frame));
 }

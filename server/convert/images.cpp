@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/cloud/frame.hpp"
+#include "core/geometry/distortion.hpp"
 
 namespace bpa::server {
 namespace {
@@ -134,31 +135,16 @@ Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image) {
                                              "\"; it must be rgb8, bgr8, rgba8, bgra8 or mono8");
 }
 
-bool Distortion::none() const {
-  for (const double c : coefficients) {
-    if (c != 0) return false;
-  }
-  return true;
-}
-
-std::vector<std::int32_t> undistortion_map(const Camera& camera, const Distortion& distortion) {
-  double k[8] = {};
-  for (std::size_t i = 0; i < distortion.coefficients.size() && i < 8; ++i) {
-    k[i] = distortion.coefficients[i];
-  }
+std::vector<std::int32_t> undistortion_map(const Camera& camera,
+                                           const std::vector<double>& distortion) {
   std::vector<std::int32_t> map;
   map.reserve(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
-      const double x = (u - camera.cx) / camera.fx;
-      const double y = (v - camera.cy) / camera.fy;
-      const double r2 = x * x + y * y;
-      const double radial =
-          (1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) / (1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])));
-      const double xd = x * radial + 2 * k[2] * x * y + k[3] * (r2 + 2 * x * x);
-      const double yd = y * radial + k[2] * (r2 + 2 * y * y) + 2 * k[3] * x * y;
-      const double ud = std::round(xd * camera.fx + camera.cx);
-      const double vd = std::round(yd * camera.fy + camera.cy);
+      const Eigen::Vector2d bent =
+          distort(distortion, (u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy);
+      const double ud = std::round(bent.x() * camera.fx + camera.cx);
+      const double vd = std::round(bent.y() * camera.fy + camera.cy);
       const bool inside = ud >= 0 && vd >= 0 && ud < camera.width && vd < camera.height;
       map.push_back(inside ? static_cast<std::int32_t>(vd) * camera.width +
                                  static_cast<std::int32_t>(ud)

@@ -36,16 +36,9 @@ Result<std::vector<float>> depth_from_image(const ImageView& image);
 /// for other encodings.
 Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image);
 
-/// How a lens bends: the coefficients k1 k2 p1 p2 k3 k4 k5 k6 of OpenCV's and ROS's "plumb_bob" and
-/// "rational_polynomial".
-struct Distortion {
-  std::vector<double> coefficients;  ///< Empty or at most 8.
-
-  bool none() const;
-};
-
 /// For every pixel of the image without distortion, the index of the nearest pixel of the distorted
-/// image, or -1 outside. The camera matrix stays the same.
-std::vector<std::int32_t> undistortion_map(const Camera& camera, const Distortion& distortion);
+/// image, or -1 outside. The camera matrix stays the same. `distortion` as distort() takes it.
+std::vector<std::int32_t> undistortion_map(const Camera& camera,
+                                           const std::vector<double>& distortion);
 
 }  // namespace bpa::server

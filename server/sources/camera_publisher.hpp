@@ -14,7 +14,7 @@
 #include "idl/wire/participant.hpp"
 #include "idl/wire/publisher.hpp"
 #include "server/convert/frames.hpp"
-#include "server/sources/capture_options.hpp"
+#include "server/options.hpp"
 
 namespace bpa::server {
 

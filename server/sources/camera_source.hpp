@@ -13,9 +13,9 @@
 #include "core/base/status.hpp"
 #include "idl/wire/messages.hpp"
 #include "idl/wire/participant.hpp"
+#include "server/options.hpp"
 #include "server/services/service_set.hpp"
 #include "server/sources/camera_publisher.hpp"
-#include "server/sources/capture_options.hpp"
 #include "server/sources/frame_source.hpp"
 #include "server/worker.hpp"
 
