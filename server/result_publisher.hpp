@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "core/base/log.hpp"
@@ -12,7 +11,7 @@
 #include "core/cloud/frame.hpp"
 #include "idl/wire/messages.hpp"
 #include "idl/wire/participant.hpp"
-#include "idl/wire/publisher.hpp"
+#include "server/output.hpp"
 #include "server/recognition.hpp"
 #include "server/settings.hpp"
 
@@ -40,9 +39,6 @@ class ResultPublisher {
                   LogHook log)
       : settings_(settings), recognition_(std::move(recognition)), log_(std::move(log)) {}
   void publish_annotated(const Frame& frame, const SceneInterpretations& result);
-
-  template <class T>
-  using Output = std::optional<wire::Publisher<T>>;
 
   const Settings& settings_;
   const std::shared_ptr<const Recognition> recognition_;

@@ -9,34 +9,6 @@
 #include "idl/wire/time.hpp"
 
 namespace bpa::server {
-namespace {
-
-template <class T>
-Status open(const wire::Participant& participant, const std::string& topic,
-            std::optional<wire::Publisher<T>>& place) {
-  if (topic.empty()) return {};
-  wire::PublisherOptions options;
-  options.qos = wire::qos::frames();
-  auto publisher = wire::Publisher<T>::create(participant, topic, options);
-  if (!publisher.ok()) return publisher.status();
-  place.emplace(std::move(publisher).value());
-  return {};
-}
-
-template <class T>
-bool wanted(const std::optional<wire::Publisher<T>>& output) {
-  return output && output->matched_count() > 0;
-}
-
-template <class T>
-void send_to(std::optional<wire::Publisher<T>>& output, const T& message, const LogHook& hook) {
-  if (!wanted(output)) return;
-  const Status status = output->publish(message);
-  if (!status.ok()) log(hook, LogLevel::debug, output->topic() + ": " + status.message);
-}
-
-}  // namespace
-
 wire::sensor_msgs::PointCloud2 cloud_message(const Frame& frame) {
   using wire::sensor_msgs::PointField;
   constexpr std::uint32_t kStep = 16;
@@ -74,11 +46,12 @@ wire::sensor_msgs::PointCloud2 cloud_message(const Frame& frame) {
 Result<std::unique_ptr<CameraPublisher>> CameraPublisher::create(
     const wire::Participant& participant, const CaptureOptions& options, LogHook log) {
   std::unique_ptr<CameraPublisher> self(new CameraPublisher(std::move(log)));
-  for (const Status& status : {open(participant, options.color_topic, self->color_),
-                               open(participant, options.depth_topic, self->depth_),
-                               open(participant, options.color_info_topic, self->color_info_),
-                               open(participant, options.depth_info_topic, self->depth_info_),
-                               open(participant, options.points_topic, self->points_)}) {
+  const wire::Qos qos = wire::qos::frames();
+  for (const Status& status : {self->color_.open(participant, options.color_topic, qos),
+                               self->depth_.open(participant, options.depth_topic, qos),
+                               self->color_info_.open(participant, options.color_info_topic, qos),
+                               self->depth_info_.open(participant, options.depth_info_topic, qos),
+                               self->points_.open(participant, options.points_topic, qos)}) {
     if (!status.ok()) return status;
   }
   self->thread_ = std::thread([raw = self.get()] { raw->run(); });
@@ -95,8 +68,8 @@ CameraPublisher::~CameraPublisher() {
 }
 
 void CameraPublisher::publish(const CameraImages& images) {
-  if (!wanted(color_) && !wanted(depth_) && !wanted(color_info_) && !wanted(depth_info_) &&
-      !wanted(points_)) {
+  if (!color_.wanted() && !depth_.wanted() && !color_info_.wanted() && !depth_info_.wanted() &&
+      !points_.wanted()) {
     return;
   }
   {
@@ -125,17 +98,18 @@ void CameraPublisher::run() {
 }
 
 void CameraPublisher::send(const CameraImages& images) {
-  send_to(color_info_, *images.info, log_);
-  send_to(depth_info_, *images.info, log_);
   using wire::sensor_msgs::Image;
-  if (const auto* depth = std::get_if<Image>(images.depth.get())) send_to(depth_, *depth, log_);
-  if (const auto* color = std::get_if<Image>(images.color.get())) send_to(color_, *color, log_);
-  if (wanted(points_)) send_points(images);
-}
-
-void CameraPublisher::send_points(const CameraImages& images) {
+  if (color_info_.wanted()) color_info_.send(*images.info, log_, LogLevel::debug);
+  if (depth_info_.wanted()) depth_info_.send(*images.info, log_, LogLevel::debug);
+  const auto send_image = [this](Output<Image>& output, const AnyImage* image) {
+    const auto* raw = std::get_if<Image>(image);
+    if (raw != nullptr && output.wanted()) output.send(*raw, log_, LogLevel::debug);
+  };
+  send_image(depth_, images.depth.get());
+  send_image(color_, images.color.get());
+  if (!points_.wanted()) return;
   const auto frame = frame_from_images(images, false);
-  if (frame.ok()) send_to(points_, cloud_message(*frame), log_);
+  if (frame.ok()) points_.send(cloud_message(*frame), log_, LogLevel::debug);
 }
 
 }  // namespace bpa::server

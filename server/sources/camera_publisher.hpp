@@ -12,9 +12,9 @@
 #include "core/base/status.hpp"
 #include "core/cloud/frame.hpp"
 #include "idl/wire/participant.hpp"
-#include "idl/wire/publisher.hpp"
 #include "server/convert/frames.hpp"
 #include "server/options.hpp"
+#include "server/output.hpp"
 
 namespace bpa::server {
 
@@ -40,12 +40,11 @@ class CameraPublisher {
   explicit CameraPublisher(LogHook log) : log_(std::move(log)) {}
   void run();
   void send(const CameraImages& images);
-  void send_points(const CameraImages& images);
 
   const LogHook log_;
-  std::optional<wire::Publisher<wire::sensor_msgs::Image>> color_, depth_;
-  std::optional<wire::Publisher<wire::sensor_msgs::CameraInfo>> color_info_, depth_info_;
-  std::optional<wire::Publisher<wire::sensor_msgs::PointCloud2>> points_;
+  Output<wire::sensor_msgs::Image> color_, depth_;
+  Output<wire::sensor_msgs::CameraInfo> color_info_, depth_info_;
+  Output<wire::sensor_msgs::PointCloud2> points_;
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
+#include "idl/wire/participant.hpp"
+#include "idl/wire/publisher.hpp"
+
+namespace bpa::server {
+
+/// A topic of the server's own that settings may switch off.
+template <class T>
+class Output {
+ public:
+  /// An empty topic leaves it switched off.
+  Status open(const wire::Participant& participant, const std::string& topic,
+              const wire::Qos& qos) {
+    if (topic.empty()) return {};
+    wire::PublisherOptions options;
+    options.qos = qos;
+    auto publisher = wire::Publisher<T>::create(participant, topic, options);
+    if (!publisher.ok()) return publisher.status();
+    publisher_.emplace(std::move(publisher).value());
+    return {};
+  }
+  bool is_open() const { return publisher_.has_value(); }
+  /// Whether a subscriber is matched: what nobody wants need not be made.
+  bool wanted() const { return publisher_ && publisher_->matched_count() > 0; }
+  /// Does nothing when it is switched off; a failure is logged with this severity.
+  void send(const T& message, const LogHook& hook, LogLevel severity = LogLevel::warning) {
+    if (!publisher_) return;
+    const Status status = publisher_->publish(message);
+    if (!status.ok()) log(hook, severity, publisher_->topic() + ": " + status.message);
+  }
+
+ private:
+  std::optional<wire::Publisher<T>> publisher_;
+};
+
+}  // namespace bpa::server
