@@ -38,31 +38,35 @@ struct CameraOptions {
                     "bop:FOLDER; empty: none. Camera topics are not subscribed to then."});
     visit("depth_mode", depth_mode, FieldRule{0, 0, "WIDTHxHEIGHT@RATE of a sensor's depth."});
     visit("color_mode", color_mode, FieldRule{0, 0, "WIDTHxHEIGHT@RATE of a sensor's colour."});
-    visit("color", color, FieldRule{0, 0, "Take colour images, too."});
+    visit("color", color, FieldRule{0, 0, "Take colour images beside depth."});
     visit("registration", registration,
           FieldRule{0, 0,
                     "Who registers depth to colour: auto (the device, and if it does not, the "
                     "server), device, software, off."});
     visit("baseline_mm", baseline_mm,
           FieldRule{0, 200,
-                    "How far right of the depth camera the colour camera is, where the device does "
-                    "not say; for software registration."});
+                    "Distance in mm from the depth camera to the colour camera on its right, where "
+                    "the device does not tell it; for software registration."});
     visit("calibration", calibration,
           FieldRule{0, 0,
                     "ROS camera_info YAML of the colour camera; empty: from the device's field of "
                     "view."});
     visit("depth_calibration", depth_calibration,
-          FieldRule{0, 0, "The same of the depth camera; for software registration."});
+          FieldRule{0, 0,
+                    "ROS camera_info YAML of the depth camera, for software registration; empty: "
+                    "from the device's field of view."});
     visit("auto_exposure", auto_exposure, FieldRule{0, 0, "The sensor sets its exposure."});
     visit("auto_white_balance", auto_white_balance,
           FieldRule{0, 0, "The sensor sets its white balance."});
     visit("exposure", exposure,
-          FieldRule{0, 1e6, "In the sensor's unit, without auto_exposure; 0: leave it as it is."});
+          FieldRule{0, 1e6, "In the sensor's unit, without auto_exposure; 0: unchanged."});
     visit("gain", gain,
-          FieldRule{0, 1e6, "In the sensor's unit, without auto_exposure; 0: leave it as it is."});
-    visit("speed", speed,
-          FieldRule{0.01, 100, "Of recordings and data sets; 1: as recorded (data sets: 30 Hz)."});
-    visit("loop", loop, FieldRule{0, 0, "Begin recordings and data sets again at their end."});
+          FieldRule{0, 1e6, "In the sensor's unit, without auto_exposure; 0: unchanged."});
+    visit(
+        "speed", speed,
+        FieldRule{0.01, 100,
+                  "Playback rate of recordings and data sets; 1: as recorded (data sets: 30 Hz)."});
+    visit("loop", loop, FieldRule{0, 0, "Repeat recordings and data sets at their end."});
     visit("start_frame", start_frame,
           FieldRule{0, 1e9, "First frame of a recording or data set to show; they count from 1."});
     visit("every_frame", every_frame,
@@ -71,10 +75,11 @@ struct CameraOptions {
                     "before they show the next."});
     visit("timeout_ms", timeout_ms,
           FieldRule{100, 60000,
-                    "A sensor without frames for so long is opened again; a driver that does not "
-                    "return for so long is reported."});
-    visit("retry_ms", retry_ms,
-          FieldRule{10, 60000, "Between attempts to open a sensor that is not there."});
+                    "Milliseconds without frames after which a sensor is opened again; a call into "
+                    "the driver that takes as long is reported."});
+    visit(
+        "retry_ms", retry_ms,
+        FieldRule{10, 60000, "Milliseconds between attempts to open a sensor that is not there."});
   }
 };
 

@@ -36,7 +36,7 @@ class Capture::Impl {
 
   void run();
   void watch();
-  /// Waits for the capture thread's end, but not for ever; it calls nobody from then on.
+  /// Waits kPatienceAtEnd for the capture thread's end; the owner's functions are not called after.
   void stop();
 
   /// Something to do with the open camera, on the capture thread; nullptr when none is open.

@@ -8,7 +8,7 @@
 namespace bpa::camera {
 namespace {
 
-constexpr float kManualSpeed = -1;  // OpenNI2: a frame comes when somebody waits for one
+constexpr float kManualSpeed = -1;  // OpenNI2: a frame comes only when it is waited for
 
 Status failed(const std::string& what) {
   return Status(StatusCode::unavailable, what + ": " + openni2_error());

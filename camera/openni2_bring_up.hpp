@@ -13,7 +13,7 @@
 namespace bpa::camera {
 
 /// Who registers depth to colour.
-enum class Registrar { nobody, device, server };
+enum class Registrar { none, device, server };
 
 /// What must be known of a device to make images of its frames.
 struct Openni2Setup {
@@ -21,7 +21,7 @@ struct Openni2Setup {
   StreamFormat color;       ///< Of no meaning without colour.
   DeviceGeometry geometry;  ///< Of the two cameras, without registration.
   Intrinsics output;        ///< Of the images that go out.
-  Registrar registrar = Registrar::nobody;
+  Registrar registrar = Registrar::none;
   std::string complaint;  ///< Why there is no colour although it was asked for; empty: nothing.
 };
 

@@ -9,7 +9,7 @@
 
 namespace bpa::camera {
 
-/// OpenNI2 with its drivers, as long as somebody holds it.
+/// OpenNI2 with its drivers loaded, while this lives.
 class Openni2Library {
  public:
   /// Fails when no driver can be loaded.

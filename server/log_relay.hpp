@@ -26,7 +26,7 @@ class LogRelay {
   LogRelay(const LogRelay&) = delete;
   LogRelay& operator=(const LogRelay&) = delete;
 
-  /// May be called as long as anybody likes, also after the relay has gone.
+  /// May be called at any time, even after the relay was destroyed.
   LogHook hook() const;
   void set_level(LogLevel least);
 

@@ -48,10 +48,10 @@ struct NetworkOptions {
                     "How far to look for others: environment (as ROS_AUTOMATIC_DISCOVERY_RANGE and "
                     "ROS_LOCALHOST_ONLY say), subnet, localhost, humble_localhost (as Humble's "
                     "ROS_LOCALHOST_ONLY does it), off."});
-    visit("peers", peers, FieldRule{0, 0, "Host names or addresses to look at besides."});
+    visit("peers", peers, FieldRule{0, 0, "More hosts to discover: names or addresses."});
     visit("shared_frame_mb", shared_frame_mb,
           FieldRule{0, 256,
-                    "Frames of up to so many MB come through shared memory from clients on this "
+                    "Largest frame in MB that comes through shared memory from clients on this "
                     "machine; larger ones are refused. 0: always over UDP."});
     visit("graph_layout", graph_layout,
           FieldRule{0, 0,
@@ -83,7 +83,7 @@ struct InputOptions {
   void visit_fields(Visitor&& visit) {
     visit("frames", frames, FieldRule{0, 0, "Topic of bpa_msgs/RgbdFrame; empty: none."});
     visit("frames_reliable", frames_reliable,
-          FieldRule{0, 0, "Lose none of them; best-effort publishers then do not match."});
+          FieldRule{0, 0, "Ask for reliable delivery; best-effort publishers then do not match."});
     visit("color", color, FieldRule{0, 0, "Topic of colour images; empty: depth alone."});
     visit("color_transport", color_transport,
           FieldRule{0, 0, "raw, or compressed: then TOPIC/compressed is taken."});
@@ -114,8 +114,8 @@ struct InputOptions {
     visit("sync_queue", sync_queue,
           at_run_time(FieldRule{2, 100, "Images of one topic that may wait."}));
     visit("silence_s", silence_s,
-          at_run_time(FieldRule{0.1, 3600,
-                                "A camera that sends nothing for so long is reported as lost."}));
+          at_run_time(FieldRule{
+              0.1, 3600, "Seconds without a message after which a camera is reported as lost."}));
   }
 };
 
@@ -132,7 +132,7 @@ struct CaptureOptions : camera::CameraOptions {
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
     CameraOptions::visit_fields(visit);
-    visit("frame_id", frame_id, FieldRule{0, 0, "Of everything that comes from this camera."});
+    visit("frame_id", frame_id, FieldRule{0, 0, "Frame id of this camera's messages."});
     visit("search", search, FieldRule{0, 0, "Search its frames; false: only publish them."});
     visit("color_topic", color_topic, FieldRule{0, 0, "sensor_msgs/Image, rgb8; empty: none."});
     visit("color_info_topic", color_info_topic,
@@ -143,7 +143,7 @@ struct CaptureOptions : camera::CameraOptions {
           FieldRule{0, 0, "sensor_msgs/CameraInfo beside it; empty: none."});
     visit("points_topic", points_topic,
           FieldRule{0, 0,
-                    "sensor_msgs/PointCloud2, xyz and rgb, made only while somebody subscribes; "
+                    "sensor_msgs/PointCloud2, xyz and rgb, made only while it has a subscriber; "
                     "empty: none."});
   }
 };
@@ -181,7 +181,7 @@ struct OutputOptions {
     visit("detections", detections,
           FieldRule{0, 0, "vision_msgs/Detection3DArray: the best interpretation."});
     visit("annotated", annotated,
-          FieldRule{0, 0, "sensor_msgs/Image, drawn only while somebody subscribes."});
+          FieldRule{0, 0, "sensor_msgs/Image, drawn only while it has a subscriber."});
     visit("markers", markers, FieldRule{0, 0, "visualization_msgs/MarkerArray for RViz."});
     visit("vision_info", vision_info, FieldRule{0, 0, "vision_msgs/VisionInfo, latched."});
     visit("tf", tf, FieldRule{0, 0, "tf2_msgs/TFMessage: a transform per object; empty: none."});
@@ -189,10 +189,10 @@ struct OutputOptions {
           FieldRule{0, 0, "diagnostic_msgs/DiagnosticArray, once a second; empty: none."});
     visit("rosout", rosout,
           FieldRule{0, 0, "rcl_interfaces/Log: what is said on the terminal; empty: none."});
-    visit("marker_lifetime_s", marker_lifetime_s,
-          at_run_time(FieldRule{0, 3600,
-                                "RViz takes markers away after so long; 0: when the next frame's "
-                                "come."}));
+    visit(
+        "marker_lifetime_s", marker_lifetime_s,
+        at_run_time(FieldRule{
+            0, 3600, "Seconds after which RViz removes markers; 0: when the next frame's come."}));
   }
 };
 
@@ -218,10 +218,11 @@ struct DetectionOptions {
     visit("top_k", top_k, at_run_time(FieldRule{1, 100, "Interpretations to report."}));
     visit("budget_ms", budget_ms,
           at_run_time(FieldRule{0, 1e6, "Report the best so far after this long; 0: no limit."}));
-    visit("fuse_frames", fuse_frames,
-          at_run_time(FieldRule{1, 30,
-                                "Search the last so many frames of the stream combined, for a "
-                                "camera and a scene that stand still; 1: each by itself."}));
+    visit(
+        "fuse_frames", fuse_frames,
+        at_run_time(FieldRule{1, 30,
+                              "Number of latest frames that are combined before the search, for a "
+                              "camera and a scene that stand still; 1: each frame by itself."}));
     visit("seed", seed,
           at_run_time(FieldRule{0, 9.0e15, "Same frame, library and seed: same answer."}));
     visit("threads", threads,

@@ -28,7 +28,7 @@ class Output {
     return {};
   }
   bool is_open() const { return publisher_.has_value(); }
-  /// Whether a subscriber is matched: what nobody wants need not be made.
+  /// Whether a subscriber is matched: otherwise the message need not be made.
   bool wanted() const { return publisher_ && publisher_->matched_count() > 0; }
   /// Does nothing when it is switched off; a failure is logged with this severity.
   void send(const T& message, const LogHook& hook, LogLevel severity = LogLevel::warning) {

@@ -17,8 +17,7 @@
 
 namespace bpa::server {
 
-/// Publishes what was found. Everything but the interpretations is made only while somebody
-/// subscribes to it.
+/// Publishes results. All but the interpretations are made only while they have a subscriber.
 class ResultPublisher {
  public:
   /// `settings` outlives it.

@@ -190,7 +190,7 @@ void Worker::run() {
   }
 }
 
-/// Takes one thing out and does it with no lock held.
+/// Takes one task, frame or request out and works on it with no lock held.
 void Worker::run_one(std::unique_lock<std::mutex>& lock) {
   const WorkerOptions options = options_;
   const bool frame_wanted = options.continuous || !awaiting_frame_.empty();

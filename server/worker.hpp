@@ -33,7 +33,7 @@ struct IncomingFrame {
   Once<DecodedFrame> decode;
   std::int64_t stamp_ns = 0;
   std::string frame_id;
-  std::vector<PosePrior> priors = {};  ///< What whoever sent it knows of its objects.
+  std::vector<PosePrior> priors = {};  ///< Of the sender, about its objects.
 };
 
 /// One detect request that waits for its answer.
@@ -57,7 +57,7 @@ struct DetectJob {
 struct WorkerOptions {
   std::size_t frame_capacity = 1;
   std::size_t request_capacity = 8;
-  bool continuous = true;  ///< Search frames that nobody requested.
+  bool continuous = true;  ///< Search every frame, not only when requested.
   int fuse_frames = 1;     ///< Above 1, all frames that wait are taken at once and combined.
   DetectRequest request;   ///< For those.
 };

@@ -25,7 +25,7 @@ namespace bpa::server {
 
 /// Takes frames from topics: whole ones (bpa_msgs/RgbdFrame), organised clouds, and the images of a
 /// ROS 2 camera, put together by their stamps. DDS threads only sort messages; decoding them is
-/// left to whoever takes the IncomingFrame.
+/// left to the worker.
 class TopicSource : public FrameSource {
  public:
   using OnFrame = std::function<void(IncomingFrame&&)>;
