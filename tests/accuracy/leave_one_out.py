@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What leave_one_out.sh needs beside the program:
 
+    leave_one_out.py parts            prints the names of the parts that settings leave out
+    leave_one_out.py settings PART    prints the settings (YAML) without this part
     leave_one_out.py layer FILE       writes a score layer that has learned nothing
     leave_one_out.py table FOLDER     prints the Markdown table of FOLDER/*.json
 
@@ -12,16 +14,19 @@ import json
 import sys
 from pathlib import Path
 
-ROWS = [
-    ("all", "everything"),
-    ("use_orientation", "orientations (ICP instead of BPA)"),
-    ("use_segments", "sampled segments"),
-    ("use_edges", "edge correspondences"),
-    ("climb", "climbing the score"),
-    ("use_round_three", "components of round three"),
-    ("use_color", "colours"),
-    ("layer", "the learned layer (all components weigh the same)"),
-]
+# Each part, what the table calls it, and the settings that leave it out (config/detector.yaml).
+PARTS = {
+    "use_orientation": ("orientations (ICP instead of BPA)", "align: {use_orientation: false}"),
+    "use_segments": ("sampled segments", "align: {use_segments: false}"),
+    "use_edges": ("edge correspondences", "align: {use_edges: false}"),
+    "climb": ("climbing the score", "climb: {max_climbed: 0}"),
+    "use_round_three": ("components of round three", "score: {use_round_three: false}"),
+    "use_color": ("colours", "features: {use_color: false}"),
+}
+ROWS = [("all", "nothing"), *((name, title) for name, (title, _) in PARTS.items()),
+        ("layer", "the learned layer (all components weigh the same)")]
+
+BUILT_IN_LAYERS = Path(__file__).resolve().parents[2] / "config/score_layers.json"
 
 # What the score layer reads, from its worst to its best value.
 RANGES = {
@@ -48,15 +53,19 @@ def line(worst, best):
     }
 
 
-def write_layer(path):
+def unlearned_layers():
+    """Layers of the form of the built-in ones, whose components all weigh the same."""
+    built_in = json.loads(BUILT_IN_LAYERS.read_text(encoding="utf-8"))
+    names = set(built_in["round_three"]["components"])
+    if names != set(RANGES):
+        sys.exit(f"leave_one_out.py: RANGES and {BUILT_IN_LAYERS.name} differ in "
+                 + ", ".join(sorted(names ^ set(RANGES))))
     layer = {
         "provenance": "nothing: each component weighs the same",
         "bias": 0,
         "components": {name: line(*ends) for name, ends in RANGES.items()},
     }
-    layers = {"score_layer_version": 3, "round_two": layer, "round_three": layer,
-              "without_color": layer}
-    path.write_text(json.dumps(layers, indent=2) + "\n")
+    return {name: layer if isinstance(old, dict) else old for name, old in built_in.items()}
 
 
 def share(hits, total):
@@ -75,9 +84,21 @@ def print_table(folder):
         alive = run["alive"]
         cells = [share(alive[stage], alive["instances"]) for stage in ("final", "best 20", "best")]
         cells.append(share(run["right"], run["reported"]))
-        print(f"| {'nothing' if name == 'all' else title} | " + " | ".join(cells) + " |")
+        print(f"| {title} | " + " | ".join(cells) + " |")
+
+
+def main(command, where=""):
+    if command == "parts":
+        print(" ".join(PARTS))
+    elif command == "settings":
+        print(PARTS[where][1])
+    elif command == "layer":
+        Path(where).write_text(json.dumps(unlearned_layers(), indent=2) + "\n", encoding="utf-8")
+    elif command == "table":
+        print_table(Path(where))
+    else:
+        sys.exit(__doc__)
 
 
 if __name__ == "__main__":
-    command, where = sys.argv[1], Path(sys.argv[2])
-    write_layer(where) if command == "layer" else print_table(where)
+    main(*sys.argv[1:])

@@ -26,8 +26,8 @@ run() {
 }
 
 run all "$library" "$@"
-for part in use_orientation use_segments use_edges climb use_round_three use_color; do
-  printf '%s: false\n' "$part" >"$output/$part.yaml"
+for part in $(/usr/bin/python3 "$tools/leave_one_out.py" parts); do
+  /usr/bin/python3 "$tools/leave_one_out.py" settings "$part" >"$output/$part.yaml"
   run "$part" "$library" --config "$output/$part.yaml" "$@"
 done
 
