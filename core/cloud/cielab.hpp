@@ -12,6 +12,9 @@
 
 namespace bpa {
 
+// OpenCV's cvtColor picks its rounding by the processor's instruction set; this gives the same bits
+// on every machine.
+
 /// Turns sRGB into CIELAB (CIE 1976, white point D65): L in [0, 100], a and b about [-100, 100].
 /// Distances of 2.3 are just noticeable. Two tables, within 0.05 of the formulas; make one for many
 /// colours.

@@ -11,6 +11,8 @@
 namespace bpa {
 namespace {
 
+constexpr float kMinCosine = -0.17f;  // of 100 degrees: beyond it is the far side of a thin wall
+
 struct TangentCovariance {
   float uu = 0, uv = 0, vv = 0;
   int count = 0;
@@ -43,7 +45,7 @@ void estimate_curvature(PointCloud& cloud, float radius, int num_threads) {
         TangentCovariance covariance;
         grid.for_each_neighbor(cloud.points[i], [&](int j, float) {
           const Eigen::Vector3f& other = cloud.normals[static_cast<std::size_t>(j)];
-          if (other.dot(normal) < -0.17f) return;
+          if (other.dot(normal) < kMinCosine) return;
           const float a = other.dot(u);
           const float b = other.dot(v);
           covariance.uu += a * a, covariance.uv += a * b, covariance.vv += b * b;

@@ -13,7 +13,7 @@
 // combined, pixel by pixel, so that what noise is new in every frame shrinks with the root of their
 // number and a pixel without depth takes that of the frames which have it. What a sensor always
 // gets wrong stays (its calibration, its steps of disparity where there is less noise than steps,
-// surfaces that it never sees). What moves is taken from the newest frame.
+// surfaces that it never sees). An object that moves is seen as the newest frame shows it.
 
 namespace bpa {
 

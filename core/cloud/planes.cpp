@@ -11,9 +11,17 @@
 namespace bpa {
 namespace {
 
-constexpr float kMinNormalCosine = 0.95f;
+// Chosen by hand, as all numbers of this file.
+constexpr float kMinNormalCosine = 0.95f;       // of an inlier
+constexpr float kMinBackgroundCosine = 0.8f;    // of a pixel that is labelled background
+constexpr float kToleranceFloor = 0.004f;       // metres
+constexpr float kToleranceSigmas = 2.5f;        // standard deviations of depth
+constexpr std::size_t kCountedPixels = 1500;    // about as many are tested for each draw
+constexpr std::size_t kMinCandidates = 100;     // pixels; with fewer the search ends
+constexpr int kMinInliers = 10;
+constexpr int kFits = 3;
 
-float plane_tolerance(float z) { return 0.004f + 2.5f * depth_noise(z); }
+float plane_tolerance(float z) { return kToleranceFloor + kToleranceSigmas * depth_noise(z); }
 
 bool on_plane(const SurfaceMap& map, std::size_t i, const Plane& plane) {
   const float distance = std::abs(plane.normal.dot(map.points[i]) - plane.offset);
@@ -38,7 +46,7 @@ PlaneFit fit(const SurfaceMap& map, const std::vector<int>& candidates, const Pl
     squares += p * p.transpose();
     ++result.count;
   }
-  if (result.count < 10) return result;
+  if (result.count < kMinInliers) return result;
   const Eigen::Vector3d mean = sum / result.count;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares / result.count -
                                                               mean * mean.transpose());
@@ -54,7 +62,7 @@ PlaneFit best_plane(const SurfaceMap& map, const std::vector<int>& candidates,
   RandomStream random(options.seed, stream);
   Plane best;
   int best_count = -1;
-  const std::size_t step = std::max<std::size_t>(1, candidates.size() / 1500);
+  const std::size_t step = std::max<std::size_t>(1, candidates.size() / kCountedPixels);
   for (int draw = 0; draw < options.num_samples; ++draw) {
     const auto i = static_cast<std::size_t>(
         candidates[static_cast<std::size_t>(random.index(static_cast<int>(candidates.size())))]);
@@ -71,9 +79,9 @@ PlaneFit best_plane(const SurfaceMap& map, const std::vector<int>& candidates,
   }
   PlaneFit result;
   result.plane = best;
-  for (int iteration = 0; iteration < 3; ++iteration) {
+  for (int iteration = 0; iteration < kFits; ++iteration) {
     result = fit(map, candidates, result.plane);
-    if (result.count < 10) break;
+    if (result.count < kMinInliers) break;
   }
   return result;
 }
@@ -90,14 +98,14 @@ std::vector<Plane> label_background_planes(SurfaceMap& map, const PlaneOptions& 
   }
   const double min_count = options.min_fraction * static_cast<double>(candidates.size());
   std::vector<Plane> planes;
-  for (int k = 0; k < options.max_planes && candidates.size() > 100; ++k) {
+  for (int k = 0; k < options.max_planes && candidates.size() > kMinCandidates; ++k) {
     const PlaneFit found = best_plane(map, candidates, options, static_cast<std::uint64_t>(k));
     if (found.count < min_count || found.extent < options.min_extent_m) break;
     planes.push_back(found.plane);
     for (std::size_t i = 0; i < map.size(); ++i) {
       // Pixels on the plane whose normal says otherwise belong to something standing on it.
       const bool agrees =
-          map.normals[i].squaredNorm() == 0 || map.normals[i].dot(found.plane.normal) > 0.8f;
+          map.normals[i].squaredNorm() == 0 || map.normals[i].dot(found.plane.normal) > kMinBackgroundCosine;
       if (map.searched[i] && agrees && on_plane(map, i, found.plane)) map.searched[i] = 0;
     }
     std::erase_if(candidates, [&](int i) { return !map.searched[static_cast<std::size_t>(i)]; });

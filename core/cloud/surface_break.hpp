@@ -10,7 +10,11 @@
 namespace bpa {
 
 /// The step in depth, at depth z and of a surface seen from the front, that is no noise, metres.
-inline float break_step(float z) { return 0.006f + 3 * depth_noise(z); }
+/// A floor and standard deviations of depth, chosen by hand.
+inline float break_step(float z) {
+  constexpr float kFloor = 0.006f, kSigmas = 3;  // metres; times depth_noise()
+  return kFloor + kSigmas * depth_noise(z);
+}
 
 namespace detail {
 
@@ -20,7 +24,8 @@ inline bool plane_reaches(const SurfaceMap& map, std::size_t from, std::size_t t
   const Eigen::Vector3f& normal = map.normals[from];
   const Eigen::Vector3f& target = map.points[to];
   const float along = normal.dot(target);
-  if (!(along < -0.15f * target.norm())) return false;
+  constexpr float kGrazing = 0.15f;  // cosine of 81 degrees
+  if (!(along < -kGrazing * target.norm())) return false;
   const float scale = normal.dot(map.points[from]) / along;  // of the target, to lie on the plane
   return std::abs(scale - 1) * target.z() < step;
 }

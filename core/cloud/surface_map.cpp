@@ -11,9 +11,18 @@
 namespace bpa {
 namespace {
 
+// Chosen by hand, as all numbers of this file.
+constexpr float kGateFloor = 0.008f;     // metres
+constexpr float kGateSigmas = 4;         // standard deviations of depth
+constexpr float kGatePerPixel = 0.004f;  // what a slope adds to the gate, metres per pixel
+constexpr int kMinWindow = 2, kMaxWindow = 8;  // radius of the normal's window, pixels
+constexpr int kDenseWindow = 4;                // larger windows take every second pixel
+constexpr int kMinNormalPoints = 6;
+constexpr int kMaxReduction = 8;
+
 // Depths of one surface differ by less than this within a few pixels, unless it is seen at a
-// grazing angle.
-float same_surface_gate(float z) { return 0.008f + 4 * depth_noise(z); }
+// grazing angle. Metres.
+float same_surface_gate(float z) { return kGateFloor + kGateSigmas * depth_noise(z); }
 
 Camera reduced_camera(const Camera& camera, int reduction) {
   const double scale = 1.0 / reduction;
@@ -24,7 +33,7 @@ Camera reduced_camera(const Camera& camera, int reduction) {
 
 // The mean of the block's depths near its median, 0 when less than half of the block has a depth.
 float block_depth(const Frame& frame, int u0, int v0, int reduction) {
-  float values[64];
+  float values[kMaxReduction * kMaxReduction];
   int count = 0;
   for (int v = v0; v < v0 + reduction; ++v) {
     for (int u = u0; u < u0 + reduction; ++u) {
@@ -73,13 +82,13 @@ bool block_searched(const Frame& frame, int u0, int v0, int reduction, float dep
 }
 
 // The normal of the plane fitted to the neighbours that lie on the same surface; zero when fewer
-// than six do.
+// than kMinNormalPoints do.
 Eigen::Vector3f fit_normal(const SurfaceMap& map, int u, int v, int radius) {
   const int width = map.width();
   const float z0 = map.depth[static_cast<std::size_t>(v * width + u)];
   const Eigen::Vector3f centre = map.points[static_cast<std::size_t>(v * width + u)];
-  const float gate = same_surface_gate(z0) + 0.004f * static_cast<float>(radius);
-  const int step = radius > 4 ? 2 : 1;
+  const float gate = same_surface_gate(z0) + kGatePerPixel * static_cast<float>(radius);
+  const int step = radius > kDenseWindow ? 2 : 1;
   float sx = 0, sy = 0, sz = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
   int count = 0;
   for (int y = std::max(0, v - radius); y <= std::min(map.height() - 1, v + radius); y += step) {
@@ -93,7 +102,7 @@ Eigen::Vector3f fit_normal(const SurfaceMap& map, int u, int v, int radius) {
       ++count;
     }
   }
-  if (count < 6) return Eigen::Vector3f::Zero();
+  if (count < kMinNormalPoints) return Eigen::Vector3f::Zero();
   const float n = 1.0f / static_cast<float>(count);
   Eigen::Matrix3f scatter;
   scatter << xx - sx * sx * n, xy - sx * sy * n, xz - sx * sz * n,  //
@@ -112,7 +121,7 @@ Eigen::Vector3f fit_normal(const SurfaceMap& map, int u, int v, int radius) {
 SurfaceMap surface_map(const Frame& frame, const SurfaceMapOptions& options) {
   SurfaceMap map;
   map.reduction = 1;
-  while (frame.camera.width / map.reduction > options.max_width && map.reduction < 8) {
+  while (frame.camera.width / map.reduction > options.max_width && map.reduction < kMaxReduction) {
     ++map.reduction;
   }
   map.camera = reduced_camera(frame.camera, map.reduction);
@@ -143,7 +152,7 @@ SurfaceMap surface_map(const Frame& frame, const SurfaceMapOptions& options) {
           const auto index = static_cast<std::size_t>(v * width + u);
           if (map.depth[index] <= 0) continue;
           const double pixels = options.normal_radius_m * map.camera.fx / map.depth[index];
-          const int radius = std::clamp(static_cast<int>(std::lround(pixels)), 2, 8);
+          const int radius = std::clamp(static_cast<int>(std::lround(pixels)), kMinWindow, kMaxWindow);
           map.normals[index] = fit_normal(map, u, v, radius);
         }
       },

@@ -10,17 +10,21 @@
 
 namespace bpa {
 
+/// The defaults are chosen by hand.
 struct CurvatureEdgeOptions {
-  double baseline_m = 0.010;  ///< Distance to either side at which normals are compared.
-  double min_concavity = 30;  ///< Of an edge, per metre (1 / radius of the hollow).
+  double baseline_m = 0.010;
+  double min_concavity = 30;
   double max_baseline_px = 8;
-  int num_threads = 0;
+  int num_threads = 0;  ///< 0: one for each core.
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit("baseline_m", baseline_m, FieldRule{0.001, 0.1, "Distance of the normals compared."});
-    visit("min_concavity", min_concavity, FieldRule{0, 1000, "Of a curvature edge, per metre."});
-    visit("max_baseline_px", max_baseline_px, FieldRule{1, 50, "Largest baseline in the image."});
+    visit("baseline_m", baseline_m,
+          FieldRule{0.001, 0.1, "Normals this far to either side are compared, metres."});
+    visit("min_concavity", min_concavity,
+          FieldRule{0, 1000, "Least concavity of an edge, 1 / radius of the hollow, per metre."});
+    visit("max_baseline_px", max_baseline_px,
+          FieldRule{1, 50, "Largest baseline in the image, pixels."});
   }
 };
 
@@ -35,7 +39,7 @@ struct HollowMap {
 constexpr int kHollowDirections[4][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}};
 HollowMap hollow_map(const SurfaceMap& map, const CurvatureEdgeOptions& options = {});
 
-/// High negative curvature (paper section V), where things touch: 1 along the bottom of a hollow,
+/// High negative curvature (paper section V), where objects touch: 1 along the bottom of a hollow,
 /// which is where the lowest curvature is lower than on either side, else 0.
 Image<std::uint8_t> curvature_edges(const SurfaceMap& map,
                                     const CurvatureEdgeOptions& options = {});

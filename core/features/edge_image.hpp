@@ -14,9 +14,10 @@
 
 namespace bpa {
 
+/// The defaults are chosen by hand; the paper gives no numbers.
 struct EdgeImageOptions {
-  double blur_px = 1.0;       ///< Standard deviation of the spatial blur.
-  double range_weight = 1.0;  ///< Relative weights of the three kinds of edges.
+  double blur_px = 1.0;
+  double range_weight = 1.0;
   double curvature_weight = 0.6;
   double image_weight = 0.3;
   RangeEdgeOptions range;
@@ -26,7 +27,7 @@ struct EdgeImageOptions {
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit("edge_blur_px", blur_px, FieldRule{0, 10, "Blur of the edge image, pixels."});
+    visit("edge_blur_px", blur_px, FieldRule{0, 10, "Standard deviation of the edge image's blur, pixels."});
     visit("range_weight", range_weight, FieldRule{0, 10, "Weight of range edges."});
     visit("curvature_weight", curvature_weight, FieldRule{0, 10, "Weight of curvature edges."});
     visit("image_weight", image_weight, FieldRule{0, 10, "Weight of image edges."});

@@ -10,17 +10,18 @@
 
 namespace bpa {
 
+/// The defaults are chosen by hand.
 struct ImageEdgeOptions {
-  double blur_px = 0.8;  ///< Standard deviation of the blur before gradients are taken.
-  double low = 10;       ///< Steps of luminance (of 255) that go on an edge,
-  double high = 25;      ///< and that begin one.
-  int num_threads = 0;
+  double blur_px = 0.8;
+  double low = 10;
+  double high = 25;
+  int num_threads = 0;  ///< 0: one for each core.
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit("blur_px", blur_px, FieldRule{0, 10, "Blur before intensity gradients, pixels."});
-    visit("low", low, FieldRule{0, 255, "Step of luminance that continues an image edge."});
-    visit("high", high, FieldRule{0, 255, "Step of luminance that begins an image edge."});
+    visit("blur_px", blur_px, FieldRule{0, 10, "Standard deviation of the blur before gradients, pixels."});
+    visit("low", low, FieldRule{0, 255, "Step of luminance (of 255) that continues an image edge."});
+    visit("high", high, FieldRule{0, 255, "Step of luminance (of 255) that begins an image edge."});
   }
 };
 

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kTurnBins = 32;
 constexpr int kStepsPerBin = kTurnSteps / kTurnBins;
+constexpr int kMinVotes = 3;  // of a voted pose; chosen by hand
 
 // The best turn of one model point: votes in a bin and the one after it.
 struct Peak {
@@ -91,7 +92,7 @@ std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable&
     best.clear();
     for (int i = 0; i < num_model_points; ++i) {
       const Peak peak = best_turn(&votes[static_cast<std::size_t>(i * kTurnBins)], i);
-      if (peak.votes > 2) best.push_back(peak);
+      if (peak.votes >= kMinVotes) best.push_back(peak);
     }
     const auto keep = std::min(best.size(), static_cast<std::size_t>(peaks));
     std::partial_sort(best.begin(), best.begin() + static_cast<std::ptrdiff_t>(keep), best.end(),

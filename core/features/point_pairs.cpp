@@ -11,6 +11,8 @@ namespace {
 
 constexpr float kPi = 3.14159265f;
 constexpr float kAngleStep = kPi / kPairAngleBins;
+constexpr float kFixingAngle = 0.35f;  // radians, 20 degrees; chosen by hand
+constexpr float kOuterPart = 0.25f;    // of a bin, from which the next bin is searched too
 
 float safe_acos(float cosine) { return std::acos(std::clamp(cosine, -1.0f, 1.0f)); }
 
@@ -22,8 +24,8 @@ struct Bins {
 Bins bins_of(float scaled, int count) {
   const int own = std::min(static_cast<int>(scaled), count - 1);
   const float inside = scaled - static_cast<float>(own);
-  return {inside < 0.25f ? std::max(0, own - 1) : own,
-          inside > 0.75f ? std::min(count - 1, own + 1) : own};
+  return {inside < kOuterPart ? std::max(0, own - 1) : own,
+          inside > 1 - kOuterPart ? std::min(count - 1, own + 1) : own};
 }
 
 // Calls visit(key) for every cell that the feature is found in.
@@ -57,7 +59,8 @@ PointPairFeature point_pair_feature(const Eigen::Vector3f& p, const Eigen::Vecto
 }
 
 bool fixes_pose(const PointPairFeature& f) {
-  return f.angle_normals > 0.35f || std::abs(f.angle_first - 0.5f * kPi) > 0.35f;
+  return f.angle_normals > kFixingAngle ||
+         std::abs(f.angle_first - 0.5f * kPi) > kFixingAngle;
 }
 
 Eigen::Matrix3f basis_of(const Eigen::Vector3f& normal) {

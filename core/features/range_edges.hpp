@@ -18,8 +18,8 @@ enum class RangeEdge : std::uint8_t {
 };
 
 struct RangeEdgeOptions {
-  int max_gap_px = 20;  ///< Pixels without depth that a discontinuity may be hidden in.
-  int num_threads = 0;
+  int max_gap_px = 20;  ///< Chosen by hand.
+  int num_threads = 0;  ///< 0: one for each core.
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {

@@ -11,6 +11,8 @@ namespace bpa::detail {
 namespace {
 
 constexpr int kRowsPerPiece = 8;
+// What half a spacing off the cell's middle costs a first centre, in edge likelihood; by hand.
+constexpr float kOffCentreCost = 0.5f;
 
 struct Centre {
   PixelFeature mean;  ///< Not valid() for a centre without pixels.
@@ -59,7 +61,7 @@ class KMeans {
         if (!features_[i].valid()) continue;
         const float off = std::hypot(static_cast<float>(u) - middle_u,  //
                                      static_cast<float>(v) - middle_v);
-        const float cost = edges_[i] + 0.5f * off / static_cast<float>(spacing_);
+        const float cost = edges_[i] + kOffCentreCost * off / static_cast<float>(spacing_);
         if (cost >= best) continue;
         best = cost;
         set(centres_[static_cast<std::size_t>(k)], features_[i], u, v);

@@ -11,7 +11,8 @@
 namespace bpa {
 namespace {
 
-constexpr float kEdgeScale = 0.4f;
+// Standard deviations of what two segments of one object differ by; chosen by hand.
+constexpr float kEdgeScale = 0.4f;  // edge likelihood
 constexpr float kHollowAngle = 40 * static_cast<float>(M_PI) / 180;
 constexpr float kBulgeAngle = 2 * kHollowAngle;
 
