@@ -12,6 +12,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
+#include "core/geometry/sphere_directions.hpp"
 #include "core/sim/kinect.hpp"
 #include "core/sim/scenery.hpp"
 
@@ -121,15 +122,12 @@ std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::
   std::vector<PosedView> views(static_cast<std::size_t>(count));
   std::mutex mutex;
   int done = 0;
-  const double golden_angle = M_PI * (3 - std::sqrt(5.0));
   parallel_for(count, num_threads, [&](int k) {
-    const double z = 1 - (2 * k + 1.0) / count;
-    const double r = std::sqrt(1 - z * z);
-    const Eigen::Vector3d direction(r * std::cos(golden_angle * k), r * std::sin(golden_angle * k),
-                                    z);
-    const Pose object_from_camera = look_from(direction, distance, box.center().cast<double>());
-    const Frame frame = sim::simulate_depth(scene, camera, object_from_camera, shading, kinect,
-                                            RandomStream(seed, static_cast<std::uint64_t>(k))(), 1);
+    const Pose object_from_camera =
+        look_from(sphere_direction(k, count), distance, box.center().cast<double>());
+    const Frame frame =
+        sim::simulate_depth({scene, shading, camera, object_from_camera}, kinect,
+                            RandomStream(seed, static_cast<std::uint64_t>(k))(), 0, 1);
     PosedView& view = views[static_cast<std::size_t>(k)];
     view =
         make_posed_view(frame, near(frame, object_from_camera, box), object_from_camera.inverse());

@@ -46,7 +46,7 @@ KinectImage see_plate(const TriangleMesh& mesh, double depth, double angle,
   const RayScene scene(meshes, {{0, pose}});
   Shading shading;
   shading.materials.assign(1, {0.7, 0});
-  return simulate_kinect(scene, camera, Pose{}, shading, options, seed, num_threads);
+  return simulate_kinect({scene, shading, camera, Pose{}}, options, seed, 0, num_threads);
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ double extruded(double planar_distance, double height, double half_height, doubl
 
 /// Union with the crease filled over about `blend`.
 double smooth_union(double a, double b, double blend);
-/// `a` without `b`, the crease filled likewise.
+/// `a` without `b`, the crease filled over about `blend`.
 double smooth_difference(double a, double b, double blend);
 
 /// The surface of the field inside the box [low, high] as a closed mesh with outward normals: dual

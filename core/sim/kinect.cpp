@@ -9,6 +9,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
+#include "core/geometry/fast_pose.hpp"
 #include "core/sim/noise_field.hpp"
 
 namespace bpa::sim {
@@ -34,16 +35,16 @@ float smooth_step(float low, float high, float x) {
   return t * t * (3 - 2 * t);
 }
 
-// Steps 1 and 3 for the pixels of one row.
-void see_row(const RayScene& scene, const Pose& world_from_infrared, const Shading& shading,
-             const KinectOptions& options, int y, Measurement& m) {
-  const Eigen::Matrix3f rotation = world_from_infrared.matrix().cast<float>();
-  const Eigen::Vector3f origin = world_from_infrared.translation.cast<float>();
+// Steps 1 and 3 for the pixels of one row of the infrared camera.
+void see_row(const KinectView& infrared, const KinectOptions& options, int y, Measurement& m) {
+  const FastPose world_from_camera = to_fast(infrared.world_from_camera);
+  const Eigen::Matrix3f& rotation = world_from_camera.rotation;
+  const Eigen::Vector3f& origin = world_from_camera.translation;
   const Eigen::Vector3f projector = origin + static_cast<float>(options.baseline) * rotation.col(0);
   for (int x = 0; x < m.camera.width; ++x) {
     const std::size_t i = static_cast<std::size_t>(y) * m.camera.width + x;
     const Eigen::Vector3f direction = rotation * m.camera.unproject(x, y, 1).cast<float>();
-    const std::optional<RayHit> hit = scene.cast(origin, direction);
+    const std::optional<RayHit> hit = infrared.scene.cast(origin, direction);
     if (!hit || hit->distance < options.min_range || hit->distance > options.max_range) continue;
     const Eigen::Vector3f point = origin + hit->distance * direction;
     const Eigen::Vector3f to_camera = -direction.normalized();
@@ -52,12 +53,10 @@ void see_row(const RayScene& scene, const Pose& world_from_infrared, const Shadi
     m.depth[i] = hit->distance;
     m.angle[i] = std::acos(std::clamp(hit->normal.dot(to_camera), 0.0f, 1.0f));
     if (options.shadows &&
-        (lit <= 0 || scene.blocked(point + 3e-4f * hit->face_normal, projector))) {
+        (lit <= 0 || infrared.scene.blocked(point + 3e-4f * hit->face_normal, projector))) {
       continue;
     }
-    const auto index = static_cast<std::size_t>(hit->instance);
-    const Material material =
-        index < shading.materials.size() ? shading.materials[index] : Material{};
+    const Material material = infrared.shading.material(hit->instance, Material{});
     const float brightness = hit->color.sum() / 3;
     const auto shine = static_cast<float>(material.shine);
     const float away = 1 - 0.6f * shine * m.angle[i] / (std::numbers::pi_v<float> / 2);
@@ -70,17 +69,15 @@ void see_row(const RayScene& scene, const Pose& world_from_infrared, const Shadi
   }
 }
 
-Measurement see(const RayScene& scene, const Camera& camera, const Pose& world_from_infrared,
-                const Shading& shading, const KinectOptions& options, int num_threads) {
-  const std::size_t count = static_cast<std::size_t>(camera.width) * camera.height;
+Measurement see(const KinectView& infrared, const KinectOptions& options, int num_threads) {
   Measurement m;
-  m.camera = camera;
+  m.camera = infrared.camera;
+  const std::size_t count = static_cast<std::size_t>(m.camera.width) * m.camera.height;
   for (std::vector<float>* image : {&m.depth, &m.disparity, &m.angle, &m.signal, &m.glare}) {
     image->assign(count, 0);
   }
   parallel_for(
-      camera.height, num_threads,
-      [&](int y) { see_row(scene, world_from_infrared, shading, options, y, m); }, 8);
+      m.camera.height, num_threads, [&](int y) { see_row(infrared, options, y, m); }, 8);
   return m;
 }
 
@@ -122,35 +119,42 @@ struct Noise {
   }
 };
 
-// Steps 2 to 5 for one pixel: its depth, or 0.
-float measure(const Measurement& m, const Noise& noise, const KinectOptions& options, int x,
-              int y) {
+// Which pixel's surface answers at (x, y): edges are ragged.
+std::size_t answering_pixel(const Measurement& m, const Noise& noise, double lateral_noise, int x,
+                            int y) {
   const int width = m.camera.width;
   const std::size_t i = static_cast<std::size_t>(y) * width + x;
-  // Which surface answers: edges are ragged.
   const double bend =
       std::min(m.angle[i], 1.5f) / (std::numbers::pi / 2 - std::min(m.angle[i], 1.5f));
-  const double lateral = options.lateral_noise * (0.8 + 0.035 * bend);
+  const double lateral = lateral_noise * (0.8 + 0.035 * bend);
   const int u =
       std::clamp(x + static_cast<int>(std::lround(lateral * noise.lateral_x[i])), 0, width - 1);
   const int v = std::clamp(y + static_cast<int>(std::lround(lateral * noise.lateral_y[i])), 0,
                            m.camera.height - 1);
   const std::size_t j = static_cast<std::size_t>(v) * width + u;
-  const bool other_surface = std::abs(m.disparity[j] - m.disparity[i]) > kSameDisparity;
-  const std::size_t source = other_surface ? j : i;
+  return std::abs(m.disparity[j] - m.disparity[i]) > kSameDisparity ? j : i;
+}
+
+// Whether matching fails at (x, y), where the surface of pixel `source` answers.
+bool drops_out(const Measurement& m, const Noise& noise, float dropouts, int x, int y,
+               std::size_t source) {
+  if (dropouts <= 0) return false;
+  const std::size_t i = static_cast<std::size_t>(y) * m.camera.width + x;
+  const float enough = source != i ? kEnoughOfOther : kEnoughOfWindow;
+  if (window_agreement(m, x, y, m.disparity[source]) < enough + 0.06f * noise.match[i]) return true;
+  constexpr float kWeakSignal = 0.032f;
+  const float faint = 1 / (1 + std::pow(m.signal[source] / kWeakSignal, 6.0f));
+  const float chance = dropouts * (0.0001f + faint + 0.9f * m.glare[source]);
+  return 0.5f * std::erfc(-noise.drop[i] / std::numbers::sqrt2_v<float>) < chance;
+}
+
+// Steps 2 to 5 for one pixel: its depth, or 0.
+float measure(const Measurement& m, const Noise& noise, const KinectOptions& options, int x,
+              int y) {
+  const std::size_t i = static_cast<std::size_t>(y) * m.camera.width + x;
+  const std::size_t source = answering_pixel(m, noise, options.lateral_noise, x, y);
   if (m.disparity[source] <= 0) return 0;
-
-  const auto dropouts = static_cast<float>(options.dropouts);
-  if (dropouts > 0) {
-    const float agreement = window_agreement(m, x, y, m.disparity[source]);
-    const float enough = other_surface ? kEnoughOfOther : kEnoughOfWindow;
-    if (agreement < enough + 0.06f * noise.match[i]) return 0;
-    constexpr float kWeakSignal = 0.032f;
-    const float faint = 1 / (1 + std::pow(m.signal[source] / kWeakSignal, 6.0f));
-    const float chance = dropouts * (0.0001f + faint + 0.9f * m.glare[source]);
-    if (0.5f * std::erfc(-noise.drop[i] / std::numbers::sqrt2_v<float>) < chance) return 0;
-  }
-
+  if (drops_out(m, noise, static_cast<float>(options.dropouts), x, y, source)) return 0;
   const double depth = m.depth[source];
   const double pixels_per_metre = m.disparity[source] / depth;
   const double wanted =
@@ -291,58 +295,55 @@ double published_axial_noise(double depth, double angle) {
   return sigma;
 }
 
-Frame simulate_depth(const RayScene& scene, const Camera& camera, const Pose& world_from_camera,
-                     const Shading& shading, const KinectOptions& options, std::uint64_t seed,
-                     int num_threads, int shot) {
-  Camera infrared = camera;
-  Pose camera_from_infrared;
+Frame simulate_depth(const KinectView& view, const KinectOptions& options, std::uint64_t seed,
+                     int shot, int num_threads) {
+  KinectView infrared = view;
   if (options.registered) {
-    infrared = {640, 480, options.infrared_focal, options.infrared_focal, 319.5, 239.5};
-    camera_from_infrared.translation.x() = -options.color_baseline;
+    infrared.camera = {640, 480, options.infrared_focal, options.infrared_focal, 319.5, 239.5};
+    const Pose camera_from_infrared{Eigen::Quaterniond::Identity(),
+                                    {-options.color_baseline, 0, 0}};
+    infrared.world_from_camera = view.world_from_camera * camera_from_infrared;
   }
-  const Measurement m =
-      see(scene, infrared, world_from_camera * camera_from_infrared, shading, options, num_threads);
-  const Noise noise(infrared, options.calibration_error > 0, seed, shot, num_threads);
+  const Measurement m = see(infrared, options, num_threads);
+  const Noise noise(m.camera, options.calibration_error > 0, seed, shot, num_threads);
   std::vector<float> depth(m.depth.size(), 0);
   parallel_for(
-      infrared.height, num_threads,
+      m.camera.height, num_threads,
       [&](int y) {
-        for (int x = 0; x < infrared.width; ++x) {
-          depth[static_cast<std::size_t>(y) * infrared.width + x] =
+        for (int x = 0; x < m.camera.width; ++x) {
+          depth[static_cast<std::size_t>(y) * m.camera.width + x] =
               measure(m, noise, options, x, y);
         }
       },
       8);
-  const double pixels_per_inverse = infrared.fx * std::max(options.baseline, 1e-3);
-  depth = without_specks(depth, infrared, pixels_per_inverse);
+  const double pixels_per_inverse = m.camera.fx * std::max(options.baseline, 1e-3);
+  depth = without_specks(depth, m.camera, pixels_per_inverse);
   Frame frame;
-  frame.camera = camera;
-  frame.depth = options.registered ? carried_over(depth, infrared, camera, options.color_baseline,
-                                                  pixels_per_inverse)
+  frame.camera = view.camera;
+  frame.depth = options.registered ? carried_over(depth, m.camera, view.camera,
+                                                  options.color_baseline, pixels_per_inverse)
                                    : std::move(depth);
   return frame;
 }
 
-KinectImage simulate_kinect(const RayScene& scene, const Camera& camera,
-                            const Pose& world_from_camera, const Shading& shading,
-                            const KinectOptions& options, std::uint64_t seed, int num_threads,
-                            int shot) {
+KinectImage simulate_kinect(const KinectView& view, const KinectOptions& options,
+                            std::uint64_t seed, int shot, int num_threads) {
+  const auto render_by = [&](const Camera& camera) {
+    return render(view.scene, camera, view.world_from_camera, view.shading, num_threads);
+  };
   KinectImage image;
-  image.frame =
-      simulate_depth(scene, camera, world_from_camera, shading, options, seed, num_threads, shot);
-  image.ideal = render(scene, camera, world_from_camera, shading, num_threads);
-  const std::vector<std::uint8_t>* color = &image.ideal.color;
-  RenderedImage shifted;
+  image.frame = simulate_depth(view, options, seed, shot, num_threads);
+  image.ideal = render_by(view.camera);
   RandomStream random(seed, 100);
+  Camera moved = view.camera;
   if (options.misregistration > 0) {
     const double direction = random.uniform(0, 2 * std::numbers::pi);
-    Camera moved = camera;
     moved.cx += options.misregistration * std::cos(direction);
     moved.cy += options.misregistration * std::sin(direction);
-    shifted = render(scene, moved, world_from_camera, shading, num_threads);
-    color = &shifted.color;
   }
-  image.frame.color = photograph(*color, camera, options, random(), shot, num_threads);
+  const std::vector<std::uint8_t> color =
+      options.misregistration > 0 ? render_by(moved).color : image.ideal.color;
+  image.frame.color = photograph(color, view.camera, options, random(), shot, num_threads);
   return image;
 }
 

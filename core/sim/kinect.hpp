@@ -90,19 +90,21 @@ struct KinectImage {
   RenderedImage ideal;  ///< The same view without any error.
 };
 
-/// What the camera measures. Another `shot` of the same seed has other noise: the same camera, a
-/// moment later. `camera` is the colour camera (also the depth camera if not
-/// `registered`); `shading` holds the materials of the posed meshes. The same options and seed give
-/// the same image for any number of threads.
-KinectImage simulate_kinect(const RayScene& scene, const Camera& camera,
-                            const Pose& world_from_camera, const Shading& shading,
-                            const KinectOptions& options, std::uint64_t seed, int num_threads = 0,
-                            int shot = 0);
+/// A scene with its light, and the camera that looks at it.
+struct KinectView {
+  const RayScene& scene;
+  const Shading& shading;  ///< Holds the materials of the posed meshes.
+  Camera camera;           ///< Of the colour image; of the depth image too, if not `registered`.
+  Pose world_from_camera;
+};
 
-/// The depth of simulate_kinect() without its colours, in the fraction of the time; the frame has
-/// no colour.
-Frame simulate_depth(const RayScene& scene, const Camera& camera, const Pose& world_from_camera,
-                     const Shading& shading, const KinectOptions& options, std::uint64_t seed,
-                     int num_threads = 0, int shot = 0);
+/// What the camera measures. Another `shot` (from 0) of one seed is the same camera a moment later:
+/// it has other noise. The same options and seed give the same image for any number of threads.
+KinectImage simulate_kinect(const KinectView& view, const KinectOptions& options,
+                            std::uint64_t seed, int shot = 0, int num_threads = 0);
+
+/// The depth of simulate_kinect() in a fraction of the time; the frame has no colour.
+Frame simulate_depth(const KinectView& view, const KinectOptions& options, std::uint64_t seed,
+                     int shot = 0, int num_threads = 0);
 
 }  // namespace bpa::sim

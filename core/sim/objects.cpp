@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
+#include "core/geometry/sphere_directions.hpp"
 #include "core/sim/private/shapes.hpp"
 
 namespace bpa::sim {
@@ -55,6 +56,18 @@ SimulatedObject build_object(const Shape& shape) {
 
 namespace {
 
+// The points that are farthest along each of `count` directions; none for no points.
+std::vector<Eigen::Vector3f> outermost(const std::vector<Eigen::Vector3f>& points, int count) {
+  std::vector<Eigen::Vector3f> out;
+  for (int i = 0; i < count && !points.empty(); ++i) {
+    const Eigen::Vector3f direction = sphere_direction(i, count).cast<float>();
+    out.push_back(*std::max_element(
+        points.begin(), points.end(),
+        [&](const auto& a, const auto& b) { return a.dot(direction) < b.dot(direction); }));
+  }
+  return out;
+}
+
 std::vector<SimulatedObject> build_all(const std::vector<Shape>& shapes, int num_threads) {
   std::vector<SimulatedObject> objects(shapes.size());
   parallel_for(static_cast<int>(shapes.size()), num_threads,
@@ -87,18 +100,7 @@ SimulatedObject object_from_mesh(std::string name, TriangleMesh mesh,
   object.symmetry = symmetry;
   object.mesh = std::move(mesh);
   // The outermost vertices along many directions are enough of the hull to collide.
-  ConvexPart hull;
-  constexpr int kDirections = 120;
-  for (int i = 0; i < kDirections; ++i) {
-    const float z = 1 - (2 * static_cast<float>(i) + 1) / kDirections;
-    const float angle = 2.39996323f * static_cast<float>(i);  // the golden angle
-    const float r = std::sqrt(1 - z * z);
-    const Eigen::Vector3f direction(r * std::cos(angle), r * std::sin(angle), z);
-    hull.push_back(*std::max_element(
-        object.mesh.vertices.begin(), object.mesh.vertices.end(),
-        [&](const auto& a, const auto& b) { return a.dot(direction) < b.dot(direction); }));
-  }
-  object.parts = {hull};
+  object.parts = {outermost(object.mesh.vertices, 120)};
   return object;
 }
 
@@ -116,24 +118,7 @@ SimulatedObject made_inexactly(SimulatedObject object, double error, std::uint64
 
 double diameter(const TriangleMesh& mesh) {
   // The farthest pair lies among the vertices that are outermost along some direction.
-  std::vector<Eigen::Vector3f> outer;
-  constexpr int kDirections = 2000;
-  for (int i = 0; i < kDirections && !mesh.vertices.empty(); ++i) {
-    const float z = 1 - (2 * static_cast<float>(i) + 1) / kDirections;
-    const float angle = 2.39996323f * static_cast<float>(i);
-    const float r = std::sqrt(1 - z * z);
-    const Eigen::Vector3f direction(r * std::cos(angle), r * std::sin(angle), z);
-    std::size_t best = 0;
-    float best_dot = -1e9f;
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-      const float dot = mesh.vertices[v].dot(direction);
-      if (dot > best_dot) {
-        best_dot = dot;
-        best = v;
-      }
-    }
-    outer.push_back(mesh.vertices[best]);
-  }
+  const std::vector<Eigen::Vector3f> outer = outermost(mesh.vertices, 2000);
   float squared = 0;
   for (const Eigen::Vector3f& a : outer) {
     for (const Eigen::Vector3f& b : outer) squared = std::max(squared, (a - b).squaredNorm());

@@ -18,13 +18,12 @@ struct Material {
   double shine = 0.1;     ///< Mirror-like part, in [0, 1]; above 0.5 is shiny.
 
   bool dark() const { return infrared < 0.2; }
-  bool shiny() const { return shine > 0.5; }
 };
 
 /// The corners of a convex body; its hull is what collides.
 using ConvexPart = std::vector<Eigen::Vector3f>;
 
-/// A thing that can lie in a simulated scene.
+/// An object that can lie in a simulated scene.
 struct SimulatedObject {
   std::string name;
   TriangleMesh mesh;  ///< Closed, coloured; metres.

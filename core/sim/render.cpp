@@ -16,9 +16,7 @@ Eigen::Vector3f shade(const RayScene& scene, const Shading& shading, const Eigen
   const Eigen::Vector3f lifted = point + 3e-4f * hit.face_normal;
   const Eigen::Vector3f reflected =
       (direction - 2 * direction.dot(hit.normal) * hit.normal).normalized();
-  const auto index = static_cast<std::size_t>(hit.instance);
-  const Material material =
-      index < shading.materials.size() ? shading.materials[index] : Material{0.7, 0};
+  const Material material = shading.material(hit.instance, {0.7, 0});
   // The sky is brighter than the ground.
   float diffuse = static_cast<float>(shading.ambient) * (0.75f + 0.25f * hit.normal.z());
   float highlight = 0;

@@ -97,6 +97,12 @@ struct Shading {
   double ambient = 0.4;
   std::vector<Material> materials;  ///< By posed mesh; those beyond its end are matt.
   Eigen::Vector3d background{0.05, 0.05, 0.05};
+
+  /// The material of a posed mesh, or `other` beyond the end of `materials`.
+  const Material& material(int instance, const Material& other) const {
+    const auto index = static_cast<std::size_t>(instance);
+    return index < materials.size() ? materials[index] : other;
+  }
 };
 
 /// One ray through every pixel centre. The same for any number of threads.

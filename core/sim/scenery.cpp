@@ -38,9 +38,14 @@ Color plaster(const Eigen::Vector3d& p) {
   return mix(Color(0.72, 0.71, 0.68), Color(0.78, 0.77, 0.75), smooth_noise(p, 0.3));
 }
 
-// Adds a rectangle spanned by u and v from `corner` as a grid of `steps` x `steps_v` cells.
-void add_sheet(const Eigen::Vector3d& corner, const Eigen::Vector3d& u, const Eigen::Vector3d& v,
-               int steps_u, int steps_v, Texture texture, TriangleMesh& mesh) {
+// A rectangle spanned by u and v from a corner, as a grid of steps_u x steps_v cells.
+struct Sheet {
+  Eigen::Vector3d corner, u, v;
+  int steps_u = 1, steps_v = 1;
+};
+
+void add_sheet(const Sheet& sheet, Texture texture, TriangleMesh& mesh) {
+  const auto& [corner, u, v, steps_u, steps_v] = sheet;
   const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
   const Eigen::Vector3f normal = u.cross(v).normalized().cast<float>();
   for (int j = 0; j <= steps_v; ++j) {
@@ -54,8 +59,9 @@ void add_sheet(const Eigen::Vector3d& corner, const Eigen::Vector3d& u, const Ei
       mesh.colors.push_back(rgb);
     }
   }
-  const auto at = [&](int i, int j) {
-    return base + static_cast<std::uint32_t>(j * (steps_u + 1) + i);
+  const int row = steps_u + 1;
+  const auto at = [base, row](int i, int j) {
+    return base + static_cast<std::uint32_t>(j * row + i);
   };
   for (int j = 0; j < steps_v; ++j) {
     for (int i = 0; i < steps_u; ++i) {
@@ -72,50 +78,72 @@ SimulatedObject make_table(Texture texture, const Material& material) {
   SimulatedObject table;
   table.name = "table";
   table.material = material;
-  add_sheet(corner, x, y, 240, 180, texture, table.mesh);
-  add_sheet(corner, down, x, 1, 60, texture, table.mesh);
-  add_sheet(corner + y, x, down, 60, 1, texture, table.mesh);
-  add_sheet(corner, y, down, 60, 1, texture, table.mesh);
-  add_sheet(corner + x, down, y, 1, 60, texture, table.mesh);
-  add_sheet(corner + down, y, x, 1, 1, texture, table.mesh);
+  add_sheet({corner, x, y, 240, 180}, texture, table.mesh);
+  add_sheet({corner, down, x, 1, 60}, texture, table.mesh);
+  add_sheet({corner + y, x, down, 60, 1}, texture, table.mesh);
+  add_sheet({corner, y, down, 60, 1}, texture, table.mesh);
+  add_sheet({corner + x, down, y, 1, 60}, texture, table.mesh);
+  add_sheet({corner + down, y, x, 1, 1}, texture, table.mesh);
   return table;
 }
 
-// A random solid: two rounded boxes, drums or eggs that have grown together.
-Shape distractor(std::uint64_t index) {
-  RandomStream random(0xd157, index);
-  struct Lump {
-    int kind;
-    Eigen::Vector3d center, half_size;
-  };
+// A rounded box, a drum or an egg.
+struct Lump {
+  enum Kind { box, drum, egg } kind = box;
+  Eigen::Vector3d center, half_size;
+
+  double distance(const Eigen::Vector3d& p) const {
+    const Eigen::Vector3d q = p - center;
+    if (kind == box) return box_distance(q, half_size, 0.004);
+    if (kind == drum) return cylinder_distance(q, half_size.x(), half_size.z(), 0.003);
+    const double k = q.cwiseQuotient(half_size).norm();
+    const double g = q.cwiseQuotient(half_size.cwiseAbs2()).norm();
+    return g > 1e-9 ? k * (k - 1) / g : -half_size.minCoeff();
+  }
+
+  ConvexPart part() const {
+    if (kind == box) return box_part(center, half_size);
+    constexpr int kTurns = 16;
+    ConvexPart corners;
+    for (int ring = -2; ring <= 2; ++ring) {
+      const double z = kind == drum ? ring / 2.0 : std::sin(0.75 * ring);
+      const double r = kind == drum ? 1 : std::cos(0.75 * ring);
+      for (int i = 0; i < kTurns; ++i) {
+        const double a = 6.283185307179586 * i / kTurns;
+        const Eigen::Vector3d unit(r * std::cos(a), r * std::sin(a), z);
+        corners.push_back((center + half_size.cwiseProduct(unit)).cast<float>());
+      }
+    }
+    return corners;
+  }
+};
+
+// Two of them, the second about somewhere in the first.
+std::vector<Lump> draw_lumps(RandomStream& random) {
   std::vector<Lump> lumps;
   for (int i = 0; i < 2; ++i) {
     Lump lump;
-    lump.kind = random.index(3);
+    lump.kind = static_cast<Lump::Kind>(random.index(3));
     for (int a = 0; a < 3; ++a) lump.half_size[a] = random.uniform(0.014, 0.055);
-    if (lump.kind == 1) lump.half_size.y() = lump.half_size.x();
+    if (lump.kind == Lump::drum) lump.half_size.y() = lump.half_size.x();
     lump.center.setZero();
     if (i == 1) {
       for (int a = 0; a < 3; ++a) lump.center[a] = random.uniform(-1, 1) * lumps[0].half_size[a];
     }
     lumps.push_back(lump);
   }
+  return lumps;
+}
+
+// A random solid: two lumps that have grown together.
+Shape distractor(std::uint64_t index) {
+  RandomStream random(0xd157, index);
+  const std::vector<Lump> lumps = draw_lumps(random);
   Shape shape;
   shape.name = "distractor_" + std::to_string(index);
   shape.field = [lumps](const Eigen::Vector3d& p) {
     double d = 1e9;
-    for (const Lump& lump : lumps) {
-      const Eigen::Vector3d q = p - lump.center;
-      double one = 0;
-      if (lump.kind == 0) one = box_distance(q, lump.half_size, 0.004);
-      if (lump.kind == 1) one = cylinder_distance(q, lump.half_size.x(), lump.half_size.z(), 0.003);
-      if (lump.kind == 2) {
-        const double k = q.cwiseQuotient(lump.half_size).norm();
-        const double g = q.cwiseQuotient(lump.half_size.cwiseAbs2()).norm();
-        one = g > 1e-9 ? k * (k - 1) / g : -lump.half_size.minCoeff();
-      }
-      d = smooth_union(d, one, 0.006);
-    }
+    for (const Lump& lump : lumps) d = smooth_union(d, lump.distance(p), 0.006);
     return d;
   };
   shape.low = Eigen::Vector3d::Constant(-0.115);
@@ -127,21 +155,7 @@ Shape distractor(std::uint64_t index) {
     return mix(base, second, smooth_noise(p, 0.03) > 0.5 ? 1 : 0);
   };
   shape.material = {random.uniform(0.25, 0.8), random.uniform(0, 0.4)};
-  for (const Lump& lump : lumps) {
-    ConvexPart part;
-    if (lump.kind == 0) part = box_part(lump.center, lump.half_size);
-    constexpr int kTurns = 16;
-    for (int ring = -2; ring <= 2 && lump.kind != 0; ++ring) {
-      const double z = lump.kind == 1 ? ring / 2.0 : std::sin(0.75 * ring);
-      const double r = lump.kind == 1 ? 1 : std::cos(0.75 * ring);
-      for (int i = 0; i < kTurns; ++i) {
-        const double a = 6.283185307179586 * i / kTurns;
-        const Eigen::Vector3d unit(r * std::cos(a), r * std::sin(a), z);
-        part.push_back((lump.center + lump.half_size.cwiseProduct(unit)).cast<float>());
-      }
-    }
-    shape.parts.push_back(part);
-  }
+  for (const Lump& lump : lumps) shape.parts.push_back(lump.part());
   return shape;
 }
 
@@ -159,11 +173,11 @@ SimulatedObject make_room() {
   SimulatedObject room;
   room.name = "room";
   room.material = {0.55, 0};
-  add_sheet(corner, x, y, 200, 200, carpet, room.mesh);
-  add_sheet(corner, up, x, 10, 20, plaster, room.mesh);
-  add_sheet(corner + y, x, up, 20, 10, plaster, room.mesh);
-  add_sheet(corner, y, up, 20, 10, plaster, room.mesh);
-  add_sheet(corner + x, up, y, 10, 20, plaster, room.mesh);
+  add_sheet({corner, x, y, 200, 200}, carpet, room.mesh);
+  add_sheet({corner, up, x, 10, 20}, plaster, room.mesh);
+  add_sheet({corner + y, x, up, 20, 10}, plaster, room.mesh);
+  add_sheet({corner, y, up, 20, 10}, plaster, room.mesh);
+  add_sheet({corner + x, up, y, 10, 20}, plaster, room.mesh);
   return room;
 }
 
@@ -179,8 +193,8 @@ SimulatedObject make_bin() {
       const Eigen::Vector3d n = half[axis] * Eigen::Vector3d::Unit(axis);
       const Eigen::Vector3d u = 2 * half[(axis + 1) % 3] * Eigen::Vector3d::Unit((axis + 1) % 3);
       const Eigen::Vector3d v = 2 * half[(axis + 2) % 3] * Eigen::Vector3d::Unit((axis + 2) % 3);
-      add_sheet(center + n - u / 2 - v / 2, u, v, 1, 1, gray, bin.mesh);
-      add_sheet(center - n - u / 2 - v / 2, v, u, 1, 1, gray, bin.mesh);
+      add_sheet({center + n - u / 2 - v / 2, u, v, 1, 1}, gray, bin.mesh);
+      add_sheet({center - n - u / 2 - v / 2, v, u, 1, 1}, gray, bin.mesh);
     }
   };
   add_box({0, 0, kWall / 2}, {kBinHalfX, kBinHalfY, kWall / 2});

@@ -25,7 +25,7 @@ SimulatedObject make_room();
 SimulatedObject make_bin();
 /// A round plate for turning objects, its top at z = 0.
 SimulatedObject make_turntable_plate(double radius, double height);
-/// Things that are not among the household objects.
+/// Objects that are not among the household objects.
 std::vector<SimulatedObject> make_distractors(int num_threads);
 
 }  // namespace bpa::sim

@@ -23,7 +23,7 @@ Eigen::Quaterniond random_rotation(RandomStream& random) {
   return {a * std::sin(v), a * std::cos(v), b * std::sin(w), b * std::cos(w)};
 }
 
-// Some household things are put down, the others tumble.
+// Some household objects are put down, the others tumble.
 Eigen::Quaterniond start_rotation(RandomStream& random) {
   constexpr double kUpright = 0.3;
   if (random.uniform() < kUpright) {
@@ -70,19 +70,17 @@ SceneKind draw_kind(const SceneOptions& options, RandomStream& random) {
   return SceneKind::pile;
 }
 
-// A thing of a scene: a household object, or a distractor (object -1).
-struct Thing {
+// A mesh of a scene: a household object, or a distractor (object -1).
+struct Item {
   int mesh = 0;
   int object = -1;
   Material material;
   Pose world_from_object;
 };
 
-// Chooses what falls where, and lets it fall.
-std::vector<Thing> make_pile(const Stage::Impl& stage, const SceneOptions& options, SceneKind kind,
-                             RandomStream& random) {
-  std::vector<Thing> things;
-  if (kind == SceneKind::empty_table) return things;
+// The household objects of a pile, then its distractors; not placed yet.
+std::vector<Item> choose_items(const Stage::Impl& stage, const SceneOptions& options,
+                               SceneKind kind, RandomStream& random) {
   const int span = std::max(options.max_objects - options.min_objects, 0) + 1;
   int wanted = options.min_objects + random.index(span);
   if (kind == SceneKind::border) wanted = std::max(wanted, 1);
@@ -91,44 +89,50 @@ std::vector<Thing> make_pile(const Stage::Impl& stage, const SceneOptions& optio
     others = std::max(3, wanted);
     wanted = 0;
   }
-  std::vector<const SimulatedObject*> sources;
+  std::vector<Item> items;
   for (const int i :
        chosen_without_repetition(wanted, static_cast<int>(stage.objects.size()), random)) {
-    things.push_back({i, i, stage.objects[i].material, {}});
-    sources.push_back(&stage.objects[i]);
+    items.push_back({i, i, stage.objects[i].material, {}});
   }
   for (const int i :
        chosen_without_repetition(others, static_cast<int>(stage.distractors.size()), random)) {
-    things.push_back({stage.first_distractor + i, -1, stage.distractors[i].material, {}});
-    sources.push_back(&stage.distractors[i]);
+    items.push_back({stage.first_distractor + i, -1, stage.distractors[i].material, {}});
   }
+  return items;
+}
+
+// Chooses what falls where, and lets it fall.
+std::vector<Item> make_pile(const Stage::Impl& stage, const SceneOptions& options, SceneKind kind,
+                            RandomStream& random) {
+  if (kind == SceneKind::empty_table) return {};
+  const std::vector<Item> items = choose_items(stage, options, kind, random);
   // Heaps are the harder and the commoner case.
   const double clutter = options.min_clutter +
                          (options.max_clutter - options.min_clutter) * std::sqrt(random.uniform());
-  const double share = std::sqrt(static_cast<double>(things.size()) / 14);
+  const double share = std::sqrt(static_cast<double>(items.size()) / 14);
   const double radius = share * (0.36 + clutter * (0.08 - 0.36)) + 0.02;
   const bool in_bin = random.uniform() < options.bin_share * clutter;
   std::vector<Eigen::Vector2d> taken;
   std::vector<FallingBody> bodies;
-  for (const SimulatedObject* source : sources) {
+  for (const Item& item : items) {
+    const SimulatedObject& body = item.object >= 0
+                                      ? stage.objects[item.object]
+                                      : stage.distractors[item.mesh - stage.first_distractor];
     taken.push_back(start_point(radius, clutter, taken, random));
     const Eigen::Vector3d start(taken.back().x(), taken.back().y(), 0.05);
-    bodies.push_back({source, {start_rotation(random), start}});
+    bodies.push_back({&body, {start_rotation(random), start}});
   }
   DropOptions drop_options;
   drop_options.table_half_x = kTableHalfX;
   drop_options.table_half_y = kTableHalfY;
-  drop_options.fence_radius = std::max(radius + 0.07, 0.13);
-  if (in_bin) {
-    drop_options.fence_radius = kBinHalfY;
-    drop_options.fixture = &stage.bin;
-  }
+  drop_options.fence_radius = in_bin ? kBinHalfY : std::max(radius + 0.07, 0.13);
+  if (in_bin) drop_options.fixture = &stage.bin;
   const std::vector<RestingBody> resting = drop(bodies, drop_options);
-  std::vector<Thing> kept;
-  for (std::size_t i = 0; i < things.size(); ++i) {
+  std::vector<Item> kept;
+  for (std::size_t i = 0; i < items.size(); ++i) {
     if (!resting[i].on_table) continue;
-    things[i].world_from_object = resting[i].world_from_object;
-    kept.push_back(things[i]);
+    kept.push_back(items[i]);
+    kept.back().world_from_object = resting[i].world_from_object;
   }
   if (in_bin) kept.push_back({stage.bin_mesh, -1, stage.bin.material, {}});
   return kept;
@@ -159,11 +163,11 @@ Pose aimed_past(const Pose& world_from_camera, const Eigen::Vector3d& object, co
   return world_from_camera * turn;
 }
 
-Pose draw_camera(const std::vector<Thing>& things, const SceneOptions& options, SceneKind kind,
+Pose draw_camera(const std::vector<Item>& items, const SceneOptions& options, SceneKind kind,
                  double azimuth, RandomStream& random) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const Thing& thing : things) {
-    middle += thing.world_from_object.translation / static_cast<double>(things.size());
+  for (const Item& item : items) {
+    middle += item.world_from_object.translation / static_cast<double>(items.size());
   }
   const Eigen::Vector3d target(middle.x() + 0.03 * random.normal(),
                                middle.y() + 0.03 * random.normal(), middle.z());
@@ -174,14 +178,14 @@ Pose draw_camera(const std::vector<Thing>& things, const SceneOptions& options, 
   if (kind != SceneKind::border) return pose;
   // The outermost object on one side, so that the others stay in view.
   const bool left = random.uniform() < 0.5;
-  const Thing* outermost = nullptr;
+  const Item* outermost = nullptr;
   double farthest = -std::numeric_limits<double>::infinity();
-  for (const Thing& thing : things) {
+  for (const Item& item : items) {
     const double u =
-        options.camera.project(pose.inverse() * thing.world_from_object.translation).x();
-    if (thing.object < 0 || (left ? -u : u) < farthest) continue;
+        options.camera.project(pose.inverse() * item.world_from_object.translation).x();
+    if (item.object < 0 || (left ? -u : u) < farthest) continue;
     farthest = left ? -u : u;
-    outermost = &thing;
+    outermost = &item;
   }
   if (outermost == nullptr) return pose;
   return aimed_past(pose, outermost->world_from_object.translation, options.camera, left);
@@ -210,23 +214,23 @@ SimulatedScene simulate_scene(const Stage& stage, const SceneOptions& options, s
   RandomStream random(seed, 0);
   SimulatedScene result;
   result.kind = draw_kind(options, random);
-  const std::vector<Thing> things = make_pile(stage.impl(), options, result.kind, random);
+  const std::vector<Item> items = make_pile(stage.impl(), options, result.kind, random);
 
   // Objects first, so that posed meshes and instances agree.
   std::vector<PosedMesh> posed;
   Shading shading = draw_shading(random);
   std::vector<int> objects;
-  const auto place = [&](const Thing& thing) {
-    posed.push_back({thing.mesh, thing.world_from_object});
-    shading.materials.push_back(thing.material);
+  const auto place = [&](const Item& item) {
+    posed.push_back({item.mesh, item.world_from_object});
+    shading.materials.push_back(item.material);
   };
-  for (const Thing& thing : things) {
-    if (thing.object < 0) continue;
-    objects.push_back(thing.object);
-    place(thing);
+  for (const Item& item : items) {
+    if (item.object < 0) continue;
+    objects.push_back(item.object);
+    place(item);
   }
-  for (const Thing& thing : things) {
-    if (thing.object < 0) place(thing);
+  for (const Item& item : items) {
+    if (item.object < 0) place(item);
   }
   const int table = random.index(static_cast<int>(stage.impl().tables.size()));
   place({stage.impl().first_table + table, -1, stage.impl().tables[table].material, {}});
@@ -237,11 +241,11 @@ SimulatedScene simulate_scene(const Stage& stage, const SceneOptions& options, s
   for (int view = 0; view < options.views; ++view) {
     RandomStream view_random(seed, 1 + static_cast<std::uint64_t>(view));
     const double azimuth = first_azimuth + 2 * kPi * view / options.views;
-    const Pose world_from_camera = draw_camera(things, options, result.kind, azimuth, view_random);
+    const Pose world_from_camera = draw_camera(items, options, result.kind, azimuth, view_random);
     const std::uint64_t view_seed = view_random();
     for (int shot = 0; shot < options.shots; ++shot) {
-      result.frames.push_back(capture(scene, objects, options.camera, world_from_camera, shading,
-                                      options.kinect, view_seed, num_threads, shot));
+      result.frames.push_back(capture({scene, shading, options.camera, world_from_camera}, objects,
+                                      options.kinect, view_seed, shot, num_threads));
     }
   }
   return result;

@@ -18,7 +18,7 @@ namespace bpa::sim {
 enum class SceneKind {
   pile,         ///< Objects, from apart on the table to a heap, and perhaps a few distractors.
   empty_table,  ///< Nothing on the table.
-  distractors,  ///< Only things that are no objects of the set.
+  distractors,  ///< Distractors only.
   border,       ///< A pile of which one object is cut by the image's border.
 };
 

@@ -33,20 +33,19 @@ Stage& Stage::operator=(Stage&&) noexcept = default;
 
 const std::vector<SimulatedObject>& Stage::objects() const { return impl_->objects; }
 
-SimulatedFrame capture(const RayScene& scene, const std::vector<int>& objects, const Camera& camera,
-                       const Pose& world_from_camera, const Shading& shading,
-                       const KinectOptions& kinect, std::uint64_t seed, int num_threads, int shot) {
-  KinectImage image =
-      simulate_kinect(scene, camera, world_from_camera, shading, kinect, seed, num_threads, shot);
+SimulatedFrame capture(const KinectView& view, const std::vector<int>& objects,
+                       const KinectOptions& options, std::uint64_t seed, int shot,
+                       int num_threads) {
+  KinectImage image = simulate_kinect(view, options, seed, shot, num_threads);
   SimulatedFrame frame;
   frame.frame = std::move(image.frame);
-  frame.camera_from_world = world_from_camera.inverse();
+  frame.camera_from_world = view.world_from_camera.inverse();
   const int count = static_cast<int>(objects.size());
   const std::vector<InstanceVisibility> seen =
-      visibility(scene, image.ideal, camera, world_from_camera, count, num_threads);
+      visibility(view.scene, image.ideal, view.camera, view.world_from_camera, count, num_threads);
   for (int i = 0; i < count; ++i) {
     frame.instances.push_back(
-        {objects[i], frame.camera_from_world * scene.instances()[i].world_from_mesh, seen[i]});
+        {objects[i], frame.camera_from_world * view.scene.instances()[i].world_from_mesh, seen[i]});
   }
   frame.instance_image.reserve(image.ideal.instance.size());
   for (const std::int32_t instance : image.ideal.instance) {

@@ -30,9 +30,7 @@ struct Stage::Impl {
 
 /// One frame with its truth; the first posed meshes of the scene are the instances, of which
 /// `objects` says what they are.
-SimulatedFrame capture(const RayScene& scene, const std::vector<int>& objects, const Camera& camera,
-                       const Pose& world_from_camera, const Shading& shading,
-                       const KinectOptions& kinect, std::uint64_t seed, int num_threads,
-                       int shot = 0);
+SimulatedFrame capture(const KinectView& view, const std::vector<int>& objects,
+                       const KinectOptions& options, std::uint64_t seed, int shot, int num_threads);
 
 }  // namespace bpa::sim

@@ -43,8 +43,8 @@ KinectImage see_plane(double depth, double angle, const Material& material,
       meshes,
       {{0,
         {Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY())), {0, 0, depth}}}});
-  return simulate_kinect(scene, kCamera, Pose{}, with_material(material), options, 5, num_threads,
-                         shot);
+  return simulate_kinect({scene, with_material(material), kCamera, Pose{}}, options, 5, shot,
+                         num_threads);
 }
 
 // The standard deviation of the measured depth where the plane is `depth` away within 3 %.
@@ -114,7 +114,7 @@ TEST(Kinect, ShadowIsAsWideAsTheParallax) {
   const Eigen::Quaterniond straight = Eigen::Quaterniond::Identity();
   const RayScene scene(meshes, {{0, {straight, {0, 0, 1.0}}}, {1, {straight, {0, 0, 0.6}}}});
   const KinectImage image =
-      simulate_kinect(scene, kCamera, Pose{}, with_material({}), at_depth_camera(), 1);
+      simulate_kinect({scene, with_material({}), kCamera, Pose{}}, at_depth_camera(), 1);
   const double expected = 570.3 * 0.075 * (1 / 0.6 - 1 / 1.0);
   double left = 0, right = 0;
   int rows = 0;
