@@ -235,7 +235,7 @@ Status measure(const std::string& folder, int number, const ModelsArguments& a) 
   const Stopwatch watch;
   auto scan = read_scan(folder, a.split, a.common.threads);
   if (!scan.ok()) return scan.status();
-  TurntableOptions options;
+  ScanOptions options;
   options.step_deg = a.step_deg;
   options.seed = a.common.seed;
   options.num_threads = a.common.threads;

@@ -207,7 +207,7 @@ Result<std::vector<PosedView>> posed_views(const ModelArguments& a,
   }
   auto scan = read_scan(a.input, a.split, a.common.threads);
   if (!scan.ok()) return scan.status();
-  TurntableOptions options;
+  ScanOptions options;
   options.step_deg = a.step_deg;
   options.seed = a.common.seed;
   options.num_threads = a.common.threads;

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/fast_pose.hpp"
+
 namespace bpa {
 namespace {
 
@@ -15,7 +17,8 @@ constexpr std::size_t kMostMotions = 40;
 constexpr double kShare = 0.6;      // of the points that have to lie on the surface
 constexpr double kHopeless = 0.35;  // the same before the motion is moved to its best fit
 constexpr float kFacing = 0.7f;     // cosine
-constexpr double kSameAngle = 10 * M_PI / 180, kSamePlace = 0.01;  // of one motion as another
+constexpr double kSameMotionAngle = 10 * M_PI / 180;  // radians
+constexpr double kSameMotionDistance = 0.01;          // metres
 
 class SelfFit {
  public:
@@ -73,11 +76,10 @@ class SelfFit {
   // sample that the motion brings within `gate` metres of the surface.
   template <class Visit>
   void for_each_match(const Pose& motion, double gate, const Visit& visit) const {
-    const Eigen::Matrix3f r = motion.matrix().cast<float>();
-    const Eigen::Vector3f t = motion.translation.cast<float>();
+    const FastPose fast = to_fast(motion);
     for (const std::uint32_t i : surface_.sample) {
-      const Eigen::Vector3f p = r * surface_.points[i] + t;
-      const Eigen::Vector3f n = r * surface_.normals[i];
+      const Eigen::Vector3f p = fast * surface_.points[i];
+      const Eigen::Vector3f n = fast.rotation * surface_.normals[i];
       const int found = nearest(p, n);
       if (found < 0) continue;
       const auto j = static_cast<std::size_t>(found);
@@ -124,8 +126,8 @@ std::vector<Pose> near_symmetries(const SelfSurface& surface, const SymmetryGrou
   }
   const double tolerance = 0.03 * surface.diameter;
   const auto same = [&](const Pose& a, const Pose& b) {
-    const PoseError error = pose_error(a, b, exact, kSamePlace, kSameAngle);
-    return error.position < kSamePlace && error.angle < kSameAngle;
+    const PoseError error = pose_error(a, b, exact, kSameMotionDistance, kSameMotionAngle);
+    return error.position < kSameMotionDistance && error.angle < kSameMotionAngle;
   };
   std::vector<std::pair<double, Pose>> found;
   for (const Eigen::Vector3d& axis : axes) {

@@ -25,10 +25,6 @@ double NoiseModel::range_sigma(double edge_distance, double angle, double depth_
   return range(edge_distance, angle) * sensor(depth_m) / sensor(depth);
 }
 
-double NoiseModel::normal_sigma(double edge_distance, double angle) const {
-  return normal(edge_distance, angle);
-}
-
 NoiseTable::NoiseTable(const NoiseModel& noise) {
   for (int e = 0; e < kEdgeCells; ++e) {
     for (int a = 0; a < kAngleCells; ++a) {

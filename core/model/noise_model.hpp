@@ -7,7 +7,7 @@
 #include <cstddef>
 
 // What a sensor's measurements of an object are off by (paper section III): the standard deviation
-// of range and of normals as sigmoids of two things that both follow from the viewpoint,
+// of range and of normals as sigmoids of two numbers that follow from the viewpoint,
 //
 //  - the edge distance: how far, across the line of sight, a surface point is from the nearest
 //    range edge of the view (ModelView::edge_distance), and
@@ -41,8 +41,6 @@ struct NoiseModel {
 
   /// Standard deviation of range at another depth, metres: grows as a Kinect's (depth_noise()).
   double range_sigma(double edge_distance, double angle, double depth_m) const;
-  /// Standard deviation of the angle between predicted and observed normal, radians.
-  double normal_sigma(double edge_distance, double angle) const;
 };
 
 /// The curves of a NoiseModel at a few hundred places, for inner loops.

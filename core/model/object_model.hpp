@@ -18,7 +18,7 @@ struct OccupancyGrid;  // see occupancy_grid.hpp
 
 /// Where a model's symmetries come from.
 enum class SymmetryOrigin {
-  none,      ///< Nobody has looked.
+  none,      ///< Not searched for yet.
   declared,  ///< By the data set or the user, or found and then confirmed by the user.
   found,     ///< In the surface; not confirmed yet.
 };

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/base/parallel.hpp"
+#include "core/geometry/sphere_directions.hpp"
 #include "core/model/distance_transform.hpp"
 
 namespace bpa {
@@ -204,13 +205,8 @@ ModelView render_from(const PointCloud& surface, const Eigen::Vector3f& camera, 
 
 std::array<Eigen::Vector3f, kNumViews> view_directions() {
   std::array<Eigen::Vector3f, kNumViews> directions;
-  const double golden_angle = M_PI * (3 - std::sqrt(5.0));
   for (int i = 0; i < kNumViews; ++i) {
-    const double z = 1 - (2 * i + 1.0) / kNumViews;
-    const double r = std::sqrt(1 - z * z);
-    directions[static_cast<std::size_t>(i)] =
-        Eigen::Vector3d(r * std::cos(golden_angle * i), r * std::sin(golden_angle * i), z)
-            .cast<float>();
+    directions[static_cast<std::size_t>(i)] = sphere_direction(i, kNumViews).cast<float>();
   }
   return directions;
 }

@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "core/base/parallel.hpp"
+#include "core/geometry/sphere_directions.hpp"
 
 namespace bpa {
 namespace {
@@ -113,13 +114,8 @@ class TriangleImage {
 
 std::vector<Eigen::Matrix3f> view_frames() {
   std::vector<Eigen::Matrix3f> frames;
-  const double golden_angle = M_PI * (3 - std::sqrt(5.0));
   for (int i = 0; i < kNumSeenFrom; ++i) {
-    const double z = 1 - (2 * i + 1.0) / kNumSeenFrom;
-    const double r = std::sqrt(1 - z * z);
-    const Eigen::Vector3f d =
-        Eigen::Vector3d(r * std::cos(golden_angle * i), r * std::sin(golden_angle * i), z)
-            .cast<float>();
+    const Eigen::Vector3f d = sphere_direction(i, kNumSeenFrom).cast<float>();
     Eigen::Matrix3f frame;
     frame.row(2) = d;
     frame.row(0) = d.unitOrthogonal();

@@ -34,7 +34,8 @@ Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::
 Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std::string& name,
                                              int number, const ModelOptions& options = {});
 
-/// The largest distance of two of the points, metres.
+/// The largest distance of two of the points, metres: exact over the extreme points of 200
+/// directions. `points` must not be empty.
 double largest_distance(const std::vector<Eigen::Vector3f>& points);
 
 /// Fails with invalid_argument, with a hint about units, for a diameter under 5 mm or over 3 m.

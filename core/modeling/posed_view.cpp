@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "core/base/parallel.hpp"
+#include "core/geometry/fast_pose.hpp"
 #include "core/model/view_sphere.hpp"
 
 namespace bpa {
@@ -60,13 +61,13 @@ struct Comparison {
 std::vector<Comparison> compare(const PointCloud& surface, const PosedView& view, float spacing) {
   std::vector<Comparison> comparisons;
   const SurfaceMap& map = view.map;
-  const Eigen::Matrix3f rotation = view.camera_from_object.matrix().cast<float>();
-  const Eigen::Vector3f translation = view.camera_from_object.translation.cast<float>();
-  const ModelView expected = render_from(surface, -(rotation.transpose() * translation), spacing);
+  const FastPose pose = to_fast(view.camera_from_object);
+  const ModelView expected =
+      render_from(surface, -(pose.rotation.transpose() * pose.translation), spacing);
   for (std::size_t k = 0; k < expected.visible.size(); ++k) {
     const std::uint32_t i = expected.visible[k];
-    const Eigen::Vector3f p = rotation * surface.points[i] + translation;
-    const Eigen::Vector3f n = rotation * surface.normals[i];
+    const Eigen::Vector3f p = pose * surface.points[i];
+    const Eigen::Vector3f n = pose.rotation * surface.normals[i];
     const Eigen::Vector2d pixel = map.camera.project(p.cast<double>());
     const auto u = static_cast<int>(std::lround(pixel.x()));
     const auto v = static_cast<int>(std::lround(pixel.y()));

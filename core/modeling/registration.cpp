@@ -11,19 +11,15 @@
 #include "core/base/random.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/features/point_pairs.hpp"
+#include "core/geometry/fast_pose.hpp"
 #include "core/geometry/symmetry.hpp"
 #include "core/model/distance_transform.hpp"
 
 namespace bpa {
 namespace {
 
-struct Motion {
-  Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();
-  Eigen::Vector3f translation = Eigen::Vector3f::Zero();
-};
-
 struct Candidate {
-  Motion motion;
+  FastPose motion;
   float score = 0;
 };
 
@@ -60,39 +56,32 @@ PointCloud sample_of(const PointCloud& cloud, std::size_t count, std::uint64_t s
 }
 
 // The share of the sample that lies on the target; gives up where the first points do not.
-float check(const PointCloud& sample, const Target& target, const Motion& motion, float tolerance) {
+float check(const PointCloud& sample, const Target& target, const FastPose& motion,
+            float tolerance) {
   constexpr std::size_t kFirstLook = 20;
   int on = 0;
   for (std::size_t i = 0; i < sample.size(); ++i) {
     if (i == kFirstLook && on < 5) return 0;
-    on += target.partner(motion.rotation * sample.points[i] + motion.translation,
-                         motion.rotation * sample.normals[i], tolerance) >= 0;
+    on += target.partner(motion * sample.points[i], motion.rotation * sample.normals[i],
+                         tolerance) >= 0;
   }
   return static_cast<float>(on) / static_cast<float>(sample.size());
 }
 
-Pose to_pose(const Motion& m) {
-  return Pose::from_matrix(m.rotation.cast<double>(), m.translation.cast<double>());
-}
-
-Motion to_motion(const Pose& pose) {
-  return {pose.matrix().cast<float>(), pose.translation.cast<float>()};
-}
-
 // Point-to-plane ICP: each round solves for a small rotation about the middle and a translation.
-Registration refine(const PointCloud& source, const Target& target, const Motion& start,
+Registration refine(const PointCloud& source, const Target& target, const FastPose& start,
                     float tolerance) {
   constexpr int kRounds = 25;
   Pose pose = to_pose(start);
   Registration out;
   for (int round = 0; round <= kRounds; ++round) {
     const float reach = round < 8 ? 2 * tolerance : tolerance;
-    const Motion m = to_motion(pose);
+    const FastPose m = to_fast(pose);
     Eigen::Matrix<double, 6, 6> hessian = 1e-9 * Eigen::Matrix<double, 6, 6>::Identity();
     Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
     double squares = 0, count = 0;
     for (std::size_t i = 0; i < source.size(); ++i) {
-      const Eigen::Vector3f p = m.rotation * source.points[i] + m.translation;
+      const Eigen::Vector3f p = m * source.points[i];
       const int j = target.partner(p, m.rotation * source.normals[i], reach);
       if (j < 0) continue;
       const Eigen::Vector3d n = target.cloud.normals[static_cast<std::size_t>(j)].cast<double>();
@@ -121,7 +110,7 @@ bool alike(const Pose& a, const Pose& b, double angle, double distance) {
 }
 
 // From candidates by falling score, the best few of each way to turn: of a box laid onto itself the
-// checks accept so many poses that worse ways, which may show its other faces, would find no room.
+// checks accept many poses: worse ones, which may show its other faces, would find no room.
 std::vector<Candidate> best_of_each_kind(const std::vector<Candidate>& candidates, double size) {
   constexpr std::size_t kMost = 1000;
   constexpr int kEachTurn = 6;
@@ -142,33 +131,109 @@ std::vector<Candidate> best_of_each_kind(const std::vector<Candidate>& candidate
   return kept;
 }
 
-// The poses that one random pair of the source's points suggests.
-void try_pair(const PointCloud& source, const PointCloud& target, const PointPairTable& table,
-              const PointCloud& sample, const Target& surface, float tolerance,
-              RandomStream& random, std::vector<Candidate>& found) {
-  constexpr std::size_t kMostEntries = 60;
-  const int n = static_cast<int>(source.size());
-  const auto i = static_cast<std::size_t>(random.index(n));
-  const auto j = static_cast<std::size_t>(random.index(n));
-  const PointPairFeature f =
-      point_pair_feature(source.points[i], source.normals[i], source.points[j], source.normals[j]);
-  if (f.distance < 0.01f || !fixes_pose(f)) return;
-  const auto entries = table.lookup(f.distance, pair_angle_key(f));
-  const Eigen::Matrix3f own = basis_of(source.normals[i]);
-  const std::uint8_t turn = turn_of(own, source.points[j] - source.points[i]);
-  const std::size_t stride = entries.size() / kMostEntries + 1;
-  for (std::size_t e = 0; e < entries.size(); e += stride) {
-    const float angle = static_cast<float>(static_cast<int>(entries[e].turn) - turn) *
-                        (2 * 3.14159265f / kTurnSteps);
-    const Eigen::Matrix3f basis = basis_of(target.normals[entries[e].point]);
-    Candidate c;
-    c.motion.rotation = basis *
-                        Eigen::AngleAxisf(angle, Eigen::Vector3f::UnitZ()).toRotationMatrix() *
-                        own.transpose();
-    c.motion.translation = target.points[entries[e].point] - c.motion.rotation * source.points[i];
-    c.score = check(sample, surface, c.motion, tolerance);
-    if (c.score > 0) found.push_back(c);
+// What source and target are compared by: thinned, hashed and sampled.
+class PairSearch {
+ public:
+  PairSearch(const PointCloud& source, const PointCloud& target, const Target& surface,
+             const RegistrationOptions& options)
+      : surface_(surface),
+        target_(target),
+        size_(size_of(target)),
+        spacing_(thin(size_, target_)),
+        source_(downsample(source, spacing_)),
+        sample_(sample_of(source, kSampled, options.seed)),
+        table_(target_, std::max(0.006f, 0.04f * static_cast<float>(size_))),
+        tolerance_(static_cast<float>(std::max(2 * options.tolerance_m, 0.03 * size_))) {}
+
+  double size() const { return size_; }  // of the target's box, metres
+  const PointCloud& thinned_source() const { return source_; }
+
+  // Adds the poses that one random pair of the source's points suggests.
+  void try_pair(RandomStream& random, std::vector<Candidate>& found) const {
+    const int n = static_cast<int>(source_.size());
+    const auto i = static_cast<std::size_t>(random.index(n));
+    const auto j = static_cast<std::size_t>(random.index(n));
+    const Eigen::Vector3f &p = source_.points[i], &normal = source_.normals[i];
+    const PointPairFeature f = point_pair_feature(p, normal, source_.points[j], source_.normals[j]);
+    if (f.distance < kShortest || !fixes_pose(f)) return;
+    const auto entries = table_.lookup(f.distance, pair_angle_key(f));
+    const Eigen::Matrix3f own = basis_of(normal);
+    const std::uint8_t turn = turn_of(own, source_.points[j] - p);
+    const std::size_t stride = entries.size() / kMostEntries + 1;
+    for (std::size_t e = 0; e < entries.size(); e += stride) {
+      const std::size_t k = entries[e].point;
+      const float angle = static_cast<float>(static_cast<int>(entries[e].turn) - turn) *
+                          (2 * 3.14159265f / kTurnSteps);
+      Candidate c;
+      c.motion.rotation = basis_of(target_.normals[k]) *
+                          Eigen::AngleAxisf(angle, Eigen::Vector3f::UnitZ()).toRotationMatrix() *
+                          own.transpose();
+      c.motion.translation = target_.points[k] - c.motion.rotation * p;
+      c.score = check(sample_, surface_, c.motion, tolerance_);
+      if (c.score > 0) found.push_back(c);
+    }
   }
+
+ private:
+  static constexpr std::size_t kSampled = 120;     // points that a pose is checked on
+  static constexpr std::size_t kMostEntries = 60;  // of the table, tried for one pair
+  static constexpr std::size_t kMostPoints = 450;  // of the thinned target
+  static constexpr float kShortest = 0.01f;        // of a pair, metres
+
+  static double size_of(const PointCloud& target) {
+    Eigen::AlignedBox3f box;
+    for (const Eigen::Vector3f& p : target.points) box.extend(p);
+    return static_cast<double>(box.diagonal().norm());
+  }
+  // Leaves at most kMostPoints of the cloud; returns the spacing that does.
+  static float thin(double size, PointCloud& cloud) {
+    float spacing = std::max(0.006f, 0.05f * static_cast<float>(size));
+    PointCloud few = downsample(cloud, spacing);
+    for (; few.size() > kMostPoints; few = downsample(cloud, spacing)) spacing *= 1.15f;
+    cloud = std::move(few);
+    return spacing;
+  }
+
+  const Target& surface_;
+  PointCloud target_;  // thinned
+  double size_;
+  float spacing_;
+  PointCloud source_;  // thinned
+  PointCloud sample_;
+  PointPairTable table_;
+  float tolerance_;
+};
+
+// Poses of random pairs, best score first. The same for any number of threads.
+std::vector<Candidate> candidates_of(const PairSearch& search, const RegistrationOptions& options) {
+  constexpr int kPieces = 64;
+  std::vector<std::vector<Candidate>> found(kPieces);
+  parallel_for(kPieces, options.num_threads, [&](int piece) {
+    RandomStream random(options.seed, static_cast<std::uint64_t>(piece) + 1);
+    for (int k = piece; k < options.draws; k += kPieces) {
+      search.try_pair(random, found[static_cast<std::size_t>(piece)]);
+    }
+  });
+  std::vector<Candidate> candidates;
+  for (const auto& f : found) candidates.insert(candidates.end(), f.begin(), f.end());
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  return candidates;
+}
+
+// ICP of the source from each of the poses; best overlap first.
+std::vector<Registration> refine_all(const PointCloud& source, const Target& target,
+                                     const std::vector<FastPose>& starts,
+                                     const RegistrationOptions& options) {
+  std::vector<Registration> refined(starts.size());
+  parallel_for(static_cast<int>(starts.size()), options.num_threads, [&](int k) {
+    const auto i = static_cast<std::size_t>(k);
+    refined[i] = refine(source, target, starts[i], static_cast<float>(options.tolerance_m));
+  });
+  std::stable_sort(
+      refined.begin(), refined.end(),
+      [](const Registration& a, const Registration& b) { return a.overlap > b.overlap; });
+  return refined;
 }
 
 }  // namespace
@@ -176,59 +241,24 @@ void try_pair(const PointCloud& source, const PointCloud& target, const PointPai
 std::vector<Registration> register_surfaces(const PointCloud& source, const PointCloud& target,
                                             const RegistrationOptions& options) {
   if (source.size() < 30 || target.size() < 30) return {};
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& p : target.points) box.extend(p);
-  const double size = static_cast<double>(box.diagonal().norm());
-  float spacing = std::max(0.006f, 0.05f * static_cast<float>(size));
-  PointCloud few = downsample(target, spacing);
-  for (; few.size() > 450; few = downsample(target, spacing)) spacing *= 1.15f;
-  const PointPairTable table(few, std::max(0.006f, 0.04f * static_cast<float>(size)));
   const Target surface(target);
-  const PointCloud from = downsample(source, spacing);
-  const PointCloud sample = sample_of(source, 120, options.seed);
-  const auto rough = static_cast<float>(std::max(2 * options.tolerance_m, 0.03 * size));
-
-  constexpr int kPieces = 64;
-  std::vector<std::vector<Candidate>> found(kPieces);
-  parallel_for(kPieces, options.num_threads, [&](int piece) {
-    RandomStream random(options.seed, static_cast<std::uint64_t>(piece) + 1);
-    auto& own = found[static_cast<std::size_t>(piece)];
-    for (int k = piece; k < options.draws; k += kPieces) {
-      try_pair(from, few, table, sample, surface, rough, random, own);
-    }
-  });
-  std::vector<Candidate> candidates;
-  for (const auto& f : found) candidates.insert(candidates.end(), f.begin(), f.end());
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-  const std::vector<Candidate> kept = best_of_each_kind(candidates, size);
-  std::vector<Registration> refined(kept.size());
-  parallel_for(static_cast<int>(kept.size()), options.num_threads, [&](int k) {
-    const auto i = static_cast<std::size_t>(k);
-    refined[i] = refine(from, surface, kept[i].motion, static_cast<float>(options.tolerance_m));
-  });
-  std::stable_sort(
-      refined.begin(), refined.end(),
-      [](const Registration& a, const Registration& b) { return a.overlap > b.overlap; });
-  // Many came to the same end.
-  std::vector<Registration> ends;
-  for (const Registration& r : refined) {
-    if (static_cast<int>(ends.size()) >= options.kept) break;
-    const bool known = std::any_of(ends.begin(), ends.end(), [&](const Registration& e) {
-      return alike(e.target_from_source, r.target_from_source, 0.09, 0.015 * size);
-    });
-    if (!known) ends.push_back(r);
+  const PairSearch search(source, target, surface, options);
+  std::vector<FastPose> starts;
+  for (const Candidate& c : best_of_each_kind(candidates_of(search, options), search.size())) {
+    starts.push_back(c.motion);
   }
-  refined = std::move(ends);
-  parallel_for(static_cast<int>(refined.size()), options.num_threads, [&](int k) {
-    Registration& r = refined[static_cast<std::size_t>(k)];
-    r = refine(source, surface, to_motion(r.target_from_source),
-               static_cast<float>(options.tolerance_m));
-  });
-  std::stable_sort(
-      refined.begin(), refined.end(),
-      [](const Registration& a, const Registration& b) { return a.overlap > b.overlap; });
-  return refined;
+  // Many come to the same end; the best of each go on with all points.
+  std::vector<Pose> ends;
+  for (const Registration& r : refine_all(search.thinned_source(), surface, starts, options)) {
+    if (static_cast<int>(ends.size()) >= options.kept) break;
+    const bool known = std::any_of(ends.begin(), ends.end(), [&](const Pose& end) {
+      return alike(end, r.target_from_source, 0.09, 0.015 * search.size());
+    });
+    if (!known) ends.push_back(r.target_from_source);
+  }
+  starts.clear();
+  for (const Pose& end : ends) starts.push_back(to_fast(end));
+  return refine_all(source, surface, starts, options);
 }
 
 }  // namespace bpa

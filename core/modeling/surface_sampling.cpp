@@ -10,6 +10,7 @@
 #include "core/base/random.hpp"
 #include "core/cloud/curvature.hpp"
 #include "core/cloud/neighbor_grid.hpp"
+#include "core/geometry/sphere_directions.hpp"
 #include "core/modeling/mesh_visibility.hpp"
 #include "core/modeling/model_source.hpp"
 
@@ -171,16 +172,11 @@ ModelSource make_source(PointCloud surface, const std::string& name, int number,
 
 }  // namespace
 
-// Exact over the extreme points of 200 directions.
 double largest_distance(const std::vector<Eigen::Vector3f>& points) {
+  constexpr int kDirections = 200;
   std::vector<Eigen::Vector3f> extremes;
-  const double golden_angle = M_PI * (3 - std::sqrt(5.0));
-  for (int i = 0; i < 200; ++i) {
-    const double z = 1 - (2 * i + 1.0) / 200;
-    const double r = std::sqrt(1 - z * z);
-    const Eigen::Vector3f direction(static_cast<float>(r * std::cos(golden_angle * i)),
-                                    static_cast<float>(r * std::sin(golden_angle * i)),
-                                    static_cast<float>(z));
+  for (int i = 0; i < kDirections; ++i) {
+    const Eigen::Vector3f direction = sphere_direction(i, kDirections).cast<float>();
     extremes.push_back(*std::max_element(points.begin(), points.end(), [&](auto& a, auto& b) {
       return a.dot(direction) < b.dot(direction);
     }));

@@ -12,6 +12,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
+#include "core/geometry/sphere_directions.hpp"
 #include "core/model/distance_transform.hpp"
 
 namespace bpa {
@@ -201,14 +202,10 @@ std::vector<Axis> axes_of(const SelfMatch& match, const std::vector<double>& ang
                           int num_threads) {
   constexpr int kDirections = 900, kTried = 24;
   std::vector<std::pair<double, Axis>> tried(kDirections);
-  const double golden_angle = M_PI * (3 - std::sqrt(5.0));
   parallel_for(
       kDirections, num_threads,
       [&](int i) {
-        const double z = 1 - (i + 0.5) / kDirections;  // half the sphere
-        const double r = std::sqrt(1 - z * z);
-        const Axis axis{{r * std::cos(golden_angle * i), r * std::sin(golden_angle * i), z},
-                        match.mean()};
+        const Axis axis{sphere_direction(i, 2 * kDirections), match.mean()};  // half the sphere
         tried[static_cast<std::size_t>(i)] = {match.share(axis, angles.front(), 150), axis};
       },
       16);

@@ -184,8 +184,7 @@ void count_passing(const PosedView& view, const Lookup& lookup, const std::vecto
   }
 }
 
-// Draws points along their normals to the sheet that they and their neighbours scatter about, and
-// averages normals likewise.
+// Draws points along their normals to the sheet that they and their neighbours scatter about.
 void draw_together(GridSurface& surface, const std::vector<float>& weight, float radius,
                    int num_threads) {
   constexpr float kSameSheet = 0.8f;  // cosine between normals
@@ -214,6 +213,41 @@ void draw_together(GridSurface& surface, const std::vector<float>& weight, float
         64);
     cloud.points = std::move(moved);
   }
+}
+
+// The occupied buckets as one cloud, and how many rays each stands for.
+struct OccupiedBuckets {
+  GridSurface surface;
+  std::vector<float> rays;
+};
+
+OccupiedBuckets occupied_buckets(const OccupancyGrid& grid) {
+  OccupiedBuckets all;
+  for (const OccupancyCell& cell : grid.cells) {
+    for (const ViewBucket& bucket : cell.buckets) {
+      if (!occupied(bucket)) continue;
+      all.surface.points.points.push_back(bucket.position);
+      all.surface.points.normals.push_back(bucket.normal);
+      all.surface.normal_variance.push_back(bucket.normal_variance);
+      all.rays.push_back(static_cast<float>(bucket.rays));
+    }
+  }
+  return all;
+}
+
+// The points that some view angle sees; the others are inside.
+PointCloud seen_from_outside(const PointCloud& cloud, float spacing, int num_threads) {
+  std::vector<std::uint8_t> outside(cloud.size(), 0);
+  for (const ModelView& view : render_views(cloud, spacing, num_threads)) {
+    for (const std::uint32_t i : view.visible) outside[i] = 1;
+  }
+  PointCloud seen;
+  for (std::size_t i = 0; i < outside.size(); ++i) {
+    if (!outside[i]) continue;
+    seen.points.push_back(cloud.points[i]);
+    seen.normals.push_back(cloud.normals[i]);
+  }
+  return seen;
 }
 
 }  // namespace
@@ -257,45 +291,25 @@ OccupancyGrid trace_occupancy(const std::vector<PosedView>& views, float cell, i
 }
 
 GridSurface surface_of(const OccupancyGrid& grid, float spacing, int num_threads) {
-  GridSurface all;
-  std::vector<float> weight;
-  for (const OccupancyCell& cell : grid.cells) {
-    for (const ViewBucket& bucket : cell.buckets) {
-      if (!occupied(bucket)) continue;
-      all.points.points.push_back(bucket.position);
-      all.points.normals.push_back(bucket.normal);
-      all.normal_variance.push_back(bucket.normal_variance);
-      weight.push_back(static_cast<float>(bucket.rays));
-    }
-  }
-  if (all.points.empty()) return all;
-  draw_together(all, weight, std::max(0.006f, 2.2f * grid.cell), num_threads);
-  // Cells that no view angle sees are inside.
-  std::vector<std::uint8_t> outside(all.points.size(), 0);
-  for (const ModelView& view :
-       render_views(all.points, std::max(0.003f, 1.2f * grid.cell), num_threads)) {
-    for (const std::uint32_t i : view.visible) outside[i] = 1;
-  }
-  PointCloud seen;
-  for (std::size_t i = 0; i < outside.size(); ++i) {
-    if (!outside[i]) continue;
-    seen.points.push_back(all.points.points[i]);
-    seen.normals.push_back(all.points.normals[i]);
-  }
+  OccupiedBuckets all = occupied_buckets(grid);
+  if (all.rays.empty()) return all.surface;
+  draw_together(all.surface, all.rays, std::max(0.006f, 2.2f * grid.cell), num_threads);
+  const PointCloud& cloud = all.surface.points;
   GridSurface out;
-  out.points = downsample(seen, spacing);
+  out.points = downsample(seen_from_outside(cloud, std::max(0.003f, 1.2f * grid.cell), num_threads),
+                          spacing);
   // About the normal of a point: the mean of those it was made of, about theirs, and what lies
   // between the two.
-  const NeighborGrid neighbors(all.points.points, spacing);
+  const NeighborGrid neighbors(cloud.points, spacing);
   for (std::size_t i = 0; i < out.points.size(); ++i) {
     float sum = 0, total = 0;
     neighbors.for_each_neighbor(out.points.points[i], [&](int neighbor, float) {
       const auto j = static_cast<std::size_t>(neighbor);
-      const float cosine = all.points.normals[j].dot(out.points.normals[i]);
+      const float cosine = cloud.normals[j].dot(out.points.normals[i]);
       if (cosine < 0.5f) return;
       const float bias = std::acos(std::min(1.0f, cosine));
-      sum += weight[j] * (all.normal_variance[j] + bias * bias);
-      total += weight[j];
+      sum += all.rays[j] * (all.surface.normal_variance[j] + bias * bias);
+      total += all.rays[j];
     });
     out.normal_variance.push_back(total > 0 ? sum / total : 0);
   }

@@ -21,7 +21,7 @@ struct ScanView {
   int step = 0;  ///< How many steps the table has turned since the first image.
 };
 
-struct TurntableOptions {
+struct ScanOptions {
   double step_deg = 10;       ///< Either way round; may be wrong by a few per cent.
   double max_height_m = 0.6;  ///< Of the object.
   std::uint64_t seed = 0;
@@ -45,25 +45,25 @@ struct RestingPosition {
 
 /// Marks the object's pixels in the views: what stands on the turntable. Returns the table's plane.
 /// Fails with not_found when there is no plane or nothing on it.
-Result<Plane> segment_object(std::vector<ScanView>& views, const TurntableOptions& options);
+Result<Plane> segment_object(std::vector<ScanView>& views, const ScanOptions& options);
 
 /// Finds plane, object and centre of rotation of one resting position. Fails with not_found when
 /// there is no turntable, nothing on it, or fewer than 3 views that show the object.
 Result<RestingPosition> align_resting_position(std::vector<ScanView> views,
-                                               const TurntableOptions& options);
+                                               const ScanOptions& options);
 
 /// Finds step, centre and axis, and with them the poses of the views, from the plane and the views.
 /// `sense` is 1 when the table turns counter-clockwise, -1 clockwise, 0 when that is to be found
 /// out as well, which cannot be done where an object looks alike from all sides and stands in the
 /// middle.
-void find_axis(RestingPosition& position, int sense, const TurntableOptions& options);
+void find_axis(RestingPosition& position, int sense, const ScanOptions& options);
 
 /// Finds, for every resting position but the first, the rigid motion that brings its object onto
 /// that of the first, and applies it to the poses of its views. Where several motions fit, one that
 /// puts another side down is likelier. Returns one line for each position
 /// whose fit is poor (its views are left out).
 std::vector<std::string> merge_resting_positions(std::vector<RestingPosition>& positions,
-                                                 const TurntableOptions& options);
+                                                 const ScanOptions& options);
 
 /// Shifts a pose that lays the surface of one resting position onto that of another until the face
 /// that the object stands on in each of them, where the other one shows it, lies on its table
@@ -79,6 +79,6 @@ struct AlignedScan {
   std::vector<std::string> warnings;
 };
 Result<AlignedScan> align_scan(std::vector<std::vector<ScanView>> positions,
-                               const TurntableOptions& options);
+                               const ScanOptions& options);
 
 }  // namespace bpa

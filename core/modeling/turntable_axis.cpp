@@ -14,6 +14,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
+#include "core/geometry/fast_pose.hpp"
 #include "core/modeling/turntable.hpp"
 
 namespace bpa {
@@ -86,12 +87,10 @@ struct Merged {
 
   Merged(const std::vector<Scan>& scans, const Turn& turn) {
     for (std::size_t s = 0; s < scans.size(); ++s) {
-      const Pose pose = turn.first_from_view(scans[s].step);
-      const Eigen::Matrix3f r = pose.matrix().cast<float>();
-      const Eigen::Vector3f t = pose.translation.cast<float>();
+      const FastPose pose = to_fast(turn.first_from_view(scans[s].step));
       for (std::size_t i = 0; i < scans[s].points.size(); ++i) {
-        points.emplace_back(r * scans[s].points[i] + t);
-        normals.emplace_back(r * scans[s].normals[i]);
+        points.push_back(pose * scans[s].points[i]);
+        normals.emplace_back(pose.rotation * scans[s].normals[i]);
         scan.push_back(static_cast<std::uint16_t>(s));
       }
     }
@@ -135,15 +134,21 @@ struct Trial {
   double cost = 0;
 };
 
+// Centres that are tried: a square lattice, metres.
+struct Lattice {
+  Eigen::Vector2d middle;
+  double reach, spacing;
+};
+
 // The best of a lattice of centres.
-Trial search(const std::vector<Scan>& scans, double step, const Eigen::Vector2d& middle,
-             double reach, double spacing, float radius, int num_threads) {
+Trial search(const std::vector<Scan>& scans, double step, const Lattice& lattice, float radius,
+             int num_threads) {
   std::vector<Trial> trials;
-  const int n = static_cast<int>(std::ceil(reach / spacing));
+  const int n = static_cast<int>(std::ceil(lattice.reach / lattice.spacing));
   for (int y = -n; y <= n; ++y) {
     for (int x = -n; x <= n; ++x) {
       Trial trial;
-      trial.turn.centre = middle + spacing * Eigen::Vector2d(x, y);
+      trial.turn.centre = lattice.middle + lattice.spacing * Eigen::Vector2d(x, y);
       trial.turn.step = step;
       trials.push_back(trial);
     }
@@ -176,10 +181,16 @@ std::vector<std::array<Slope, 5>> slopes_of(const std::vector<Scan>& scans, cons
   return slopes;
 }
 
-// One Gauss-Newton step of all parameters; returns its length in metres of centre.
-double refine(const std::vector<Scan>& scans, float radius, const Turn& start, bool step_known,
-              Turn& turn) {
-  constexpr double kHuber = 0.002, kSigma = 0.002;  // metres
+// The normal equations of a Gauss-Newton step.
+struct StepEquations {
+  Eigen::Matrix<double, 5, 5> hessian = Eigen::Matrix<double, 5, 5>::Zero();
+  Parameters gradient = Parameters::Zero();
+  double pairs = 0;
+};
+
+// Of the distances of each point to the tangent planes of the nearest points in the other scans.
+StepEquations pair_equations(const std::vector<Scan>& scans, float radius, const Turn& turn) {
+  constexpr double kHuber = 0.002;  // metres
   const Merged all(scans, turn);
   const NeighborGrid grid(all.points, radius);
   const auto slopes = slopes_of(scans, turn);
@@ -187,14 +198,12 @@ double refine(const std::vector<Scan>& scans, float radius, const Turn& start, b
   for (const Scan& scan : scans) {
     measured.insert(measured.end(), scan.points.begin(), scan.points.end());
   }
-  Eigen::Matrix<double, 5, 5> hessian = Eigen::Matrix<double, 5, 5>::Zero();
-  Parameters gradient = Parameters::Zero();
-  Nearest nearest(scans.size());
   const auto slope_at = [&](std::size_t i, int k) -> Eigen::Vector3d {
     const Slope& s = slopes[all.scan[i]][static_cast<std::size_t>(k)];
     return s.rotation * measured[i].cast<double>() + s.translation;
   };
-  double pairs = 0;
+  StepEquations out;
+  Nearest nearest(scans.size());
   for (std::size_t i = 0; i < all.points.size(); ++i) {
     nearest.search(all, grid, i, radius);
     for (const int found : nearest.index) {
@@ -205,21 +214,32 @@ double refine(const std::vector<Scan>& scans, float radius, const Turn& start, b
       const double weight = std::abs(r) < kHuber ? 1 : kHuber / std::abs(r);
       Parameters slope;
       for (int k = 0; k < 5; ++k) slope[k] = n.dot(slope_at(i, k) - slope_at(j, k));
-      hessian += weight * slope * slope.transpose();
-      gradient += weight * r * slope;
-      ++pairs;
+      out.hessian += weight * slope * slope.transpose();
+      out.gradient += weight * r * slope;
+      ++out.pairs;
     }
   }
-  if (pairs < 50) return 0;
+  return out;
+}
+
+// One Gauss-Newton step of all parameters; returns its length in metres of centre.
+double refine(const std::vector<Scan>& scans, float radius, const Turn& start, bool step_known,
+              Turn& turn) {
+  constexpr double kLeastPairs = 50;
+  constexpr double kSigma = 0.002;  // of a distance, metres
   // Neighbouring pixels share their errors: a scan is worth some 30 independent pairs with each
-  // other one, not thousands. What is known beforehand: the step within 3 %, the axis within 0.15
-  // degrees of the plane's normal.
+  // other one, not thousands.
+  constexpr double kIndependent = 30;
+  // What is known beforehand: the step within 3 %, the axis within 0.15 degrees of the normal.
+  constexpr double kStepSigma = 0.03, kTiltSigma = 0.15 * kDegree;
+  auto [hessian, gradient, pairs] = pair_equations(scans, radius, turn);
+  if (pairs < kLeastPairs) return 0;
   const double worth =
-      30 * static_cast<double>(scans.size() * scans.size()) / pairs / (kSigma * kSigma);
+      kIndependent * static_cast<double>(scans.size() * scans.size()) / pairs / (kSigma * kSigma);
   hessian *= worth;
   gradient *= worth;
-  const double step_prior = step_known ? 1e12 : 1 / (0.03 * 0.03);
-  const double tilt_prior = 1 / std::pow(0.15 * kDegree, 2);
+  const double step_prior = step_known ? 1e12 : 1 / (kStepSigma * kStepSigma);
+  const double tilt_prior = 1 / std::pow(kTiltSigma, 2);
   hessian(2, 2) += step_prior;
   gradient[2] += step_prior * std::log(turn.step / start.step);
   hessian(3, 3) += tilt_prior, hessian(4, 4) += tilt_prior;
@@ -231,7 +251,7 @@ double refine(const std::vector<Scan>& scans, float radius, const Turn& start, b
 }
 
 // Either way round: the best turn and what it costs.
-std::array<Trial, 2> find_turns(const std::vector<Scan>& scans, const TurntableOptions& options) {
+std::array<Trial, 2> find_turns(const std::vector<Scan>& scans, const ScanOptions& options) {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   float reach = 0;
   for (const Scan& scan : scans) {
@@ -249,8 +269,8 @@ std::array<Trial, 2> find_turns(const std::vector<Scan>& scans, const TurntableO
   std::array<Trial, 2> best;
   for (std::size_t k = 0; k < 2; ++k) {
     const double step = (k == 0 ? 1 : -1) * options.step_deg * kDegree;
-    best[k] = search(few, step, middle, window, 0.012, 0.03f, options.num_threads);
-    best[k] = search(more, step, best[k].turn.centre, 0.010, 0.004, 0.015f, options.num_threads);
+    best[k] = search(few, step, {middle, window, 0.012}, 0.03f, options.num_threads);
+    best[k] = search(more, step, {best[k].turn.centre, 0.010, 0.004}, 0.015f, options.num_threads);
   }
   return best;
 }
@@ -278,16 +298,15 @@ bool well_seen(const PosedView& view, std::size_t i) {
 // What the views show of the object, on the table.
 std::vector<Scan> scans_of(const std::vector<PosedView>& views, const std::vector<int>& steps,
                            const Pose& table_from_camera) {
-  const Eigen::Matrix3f r = table_from_camera.matrix().cast<float>();
-  const Eigen::Vector3f t = table_from_camera.translation.cast<float>();
+  const FastPose pose = to_fast(table_from_camera);
   std::vector<Scan> scans;
   for (std::size_t v = 0; v < views.size(); ++v) {
     const PosedView& view = views[v];
     Scan scan{steps[v], {}, {}};
     for (std::size_t i = 0; i < view.map.size(); ++i) {
       if (!well_seen(view, i)) continue;
-      scan.points.emplace_back(r * view.map.points[i] + t);
-      scan.normals.emplace_back(r * view.map.normals[i]);
+      scan.points.push_back(pose * view.map.points[i]);
+      scan.normals.emplace_back(pose.rotation * view.map.normals[i]);
     }
     scans.push_back(std::move(scan));
   }
@@ -296,7 +315,7 @@ std::vector<Scan> scans_of(const std::vector<PosedView>& views, const std::vecto
 
 }  // namespace
 
-void find_axis(RestingPosition& position, int sense, const TurntableOptions& options) {
+void find_axis(RestingPosition& position, int sense, const ScanOptions& options) {
   const Pose camera_from = camera_from_table(position.plane);
   const std::vector<Scan> scans = scans_of(position.views, position.steps, camera_from.inverse());
   const std::array<Trial, 2> trials = find_turns(scans, options);
@@ -315,7 +334,7 @@ void find_axis(RestingPosition& position, int sense, const TurntableOptions& opt
 }
 
 Result<RestingPosition> align_resting_position(std::vector<ScanView> views,
-                                               const TurntableOptions& options) {
+                                               const ScanOptions& options) {
   constexpr std::size_t kLeastPixels = 60, kLeastViews = 3;
   if (views.empty()) return Status(StatusCode::not_found, "there are no views");
   RestingPosition out;

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/cloud/neighbor_grid.hpp"
+#include "core/geometry/fast_pose.hpp"
 #include "core/modeling/turntable.hpp"
 
 namespace bpa {
@@ -57,11 +58,10 @@ ShiftSums overlap_sums(const PointCloud& source, const PointCloud& target, const
                        const Pose& pose) {
   constexpr float kSameSide = 0.7f;  // cosine between normals
   ShiftSums sums;
-  const Eigen::Matrix3f rotation = pose.matrix().cast<float>();
-  const Eigen::Vector3f translation = pose.translation.cast<float>();
+  const FastPose fast = to_fast(pose);
   for (std::size_t i = 0; i < source.size(); ++i) {
-    const Eigen::Vector3f p = rotation * source.points[i] + translation;
-    const Eigen::Vector3f n = rotation * source.normals[i];
+    const Eigen::Vector3f p = fast * source.points[i];
+    const Eigen::Vector3f n = fast.rotation * source.normals[i];
     float best = kReach * kReach;
     int found = -1;
     near.for_each_neighbor(p, [&](int j, float squared) {

@@ -120,7 +120,7 @@ Choice best_way(const PointCloud& source, const RestingPosition& source_position
 }  // namespace
 
 std::vector<std::string> merge_resting_positions(std::vector<RestingPosition>& positions,
-                                                 const TurntableOptions& options) {
+                                                 const ScanOptions& options) {
   constexpr double kLeastOverlap = 0.35, kMostFree = 0.12;
   std::vector<std::string> problems;
   if (positions.size() < 2) return problems;
@@ -152,7 +152,7 @@ std::vector<std::string> merge_resting_positions(std::vector<RestingPosition>& p
 }
 
 Result<AlignedScan> align_scan(std::vector<std::vector<ScanView>> positions,
-                               const TurntableOptions& options) {
+                               const ScanOptions& options) {
   AlignedScan out;
   std::vector<RestingPosition> aligned;
   Status last(StatusCode::not_found, "the scan has no views");

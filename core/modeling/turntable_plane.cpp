@@ -284,7 +284,7 @@ class Footprint {
 
 }  // namespace
 
-Result<Plane> segment_object(std::vector<ScanView>& views, const TurntableOptions& options) {
+Result<Plane> segment_object(std::vector<ScanView>& views, const ScanOptions& options) {
   constexpr std::size_t kEnough = 300;  // pixels over all views
   const Background background = look_behind(views);
   const std::vector<Plane> planes = find_planes(background, options.seed);

@@ -66,7 +66,7 @@ TEST(ModelFile, SurvivesToTheLastBit) {
   EXPECT_EQ(back->symmetry_origin, SymmetryOrigin::declared);
   EXPECT_EQ(back->normal_variance, model.normal_variance);
   EXPECT_EQ(back->noise.range_sigma(0.003, 1.1, 1.3), model.noise.range_sigma(0.003, 1.1, 1.3));
-  EXPECT_EQ(back->noise.normal_sigma(0.003, 1.1), model.noise.normal_sigma(0.003, 1.1));
+  EXPECT_EQ(back->noise.normal(0.003, 1.1), model.noise.normal(0.003, 1.1));
   EXPECT_TRUE(back->noise.fitted);
   EXPECT_EQ(back->warnings, model.warnings);
 }

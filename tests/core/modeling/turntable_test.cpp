@@ -124,7 +124,7 @@ double centre_error(const RestingPosition& found, const Stage& stage) {
 TEST(Turntable, CentreOfRotationIsFound) {
   Stage stage;
   stage.plate_from_object.translation = {0.01, 0.015, 0};
-  TurntableOptions options;
+  ScanOptions options;
   const auto found = align_resting_position(scan(stage, 36, 1), options);
   ASSERT_TRUE(found.ok()) << found.status().message;
   EXPECT_LT(centre_error(*found, stage), 0.001);
