@@ -12,12 +12,12 @@ namespace bpa {
 namespace {
 
 // Chosen by hand, as all numbers of this file.
-constexpr float kMinNormalCosine = 0.95f;       // of an inlier
-constexpr float kMinBackgroundCosine = 0.8f;    // of a pixel that is labelled background
-constexpr float kToleranceFloor = 0.004f;       // metres
-constexpr float kToleranceSigmas = 2.5f;        // standard deviations of depth
-constexpr std::size_t kCountedPixels = 1500;    // about as many are tested for each draw
-constexpr std::size_t kMinCandidates = 100;     // pixels; with fewer the search ends
+constexpr float kMinNormalCosine = 0.95f;     // of an inlier
+constexpr float kMinBackgroundCosine = 0.8f;  // of a pixel that is labelled background
+constexpr float kToleranceFloor = 0.004f;     // metres
+constexpr float kToleranceSigmas = 2.5f;      // standard deviations of depth
+constexpr std::size_t kCountedPixels = 1500;  // about as many are tested for each draw
+constexpr std::size_t kMinCandidates = 100;   // pixels; with fewer the search ends
 constexpr int kMinInliers = 10;
 constexpr int kFits = 3;
 
@@ -104,8 +104,8 @@ std::vector<Plane> label_background_planes(SurfaceMap& map, const PlaneOptions& 
     planes.push_back(found.plane);
     for (std::size_t i = 0; i < map.size(); ++i) {
       // Pixels on the plane whose normal says otherwise belong to something standing on it.
-      const bool agrees =
-          map.normals[i].squaredNorm() == 0 || map.normals[i].dot(found.plane.normal) > kMinBackgroundCosine;
+      const bool agrees = map.normals[i].squaredNorm() == 0 ||
+                          map.normals[i].dot(found.plane.normal) > kMinBackgroundCosine;
       if (map.searched[i] && agrees && on_plane(map, i, found.plane)) map.searched[i] = 0;
     }
     std::erase_if(candidates, [&](int i) { return !map.searched[static_cast<std::size_t>(i)]; });

@@ -12,9 +12,9 @@ namespace bpa {
 namespace {
 
 // Chosen by hand, as all numbers of this file.
-constexpr float kGateFloor = 0.008f;     // metres
-constexpr float kGateSigmas = 4;         // standard deviations of depth
-constexpr float kGatePerPixel = 0.004f;  // what a slope adds to the gate, metres per pixel
+constexpr float kGateFloor = 0.008f;           // metres
+constexpr float kGateSigmas = 4;               // standard deviations of depth
+constexpr float kGatePerPixel = 0.004f;        // what a slope adds to the gate, metres per pixel
 constexpr int kMinWindow = 2, kMaxWindow = 8;  // radius of the normal's window, pixels
 constexpr int kDenseWindow = 4;                // larger windows take every second pixel
 constexpr int kMinNormalPoints = 6;
@@ -152,7 +152,8 @@ SurfaceMap surface_map(const Frame& frame, const SurfaceMapOptions& options) {
           const auto index = static_cast<std::size_t>(v * width + u);
           if (map.depth[index] <= 0) continue;
           const double pixels = options.normal_radius_m * map.camera.fx / map.depth[index];
-          const int radius = std::clamp(static_cast<int>(std::lround(pixels)), kMinWindow, kMaxWindow);
+          const int radius =
+              std::clamp(static_cast<int>(std::lround(pixels)), kMinWindow, kMaxWindow);
           map.normals[index] = fit_normal(map, u, v, radius);
         }
       },

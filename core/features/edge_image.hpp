@@ -27,7 +27,8 @@ struct EdgeImageOptions {
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit("edge_blur_px", blur_px, FieldRule{0, 10, "Standard deviation of the edge image's blur, pixels."});
+    visit("edge_blur_px", blur_px,
+          FieldRule{0, 10, "Standard deviation of the edge image's blur, pixels."});
     visit("range_weight", range_weight, FieldRule{0, 10, "Weight of range edges."});
     visit("curvature_weight", curvature_weight, FieldRule{0, 10, "Weight of curvature edges."});
     visit("image_weight", image_weight, FieldRule{0, 10, "Weight of image edges."});

@@ -19,8 +19,10 @@ struct ImageEdgeOptions {
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit("blur_px", blur_px, FieldRule{0, 10, "Standard deviation of the blur before gradients, pixels."});
-    visit("low", low, FieldRule{0, 255, "Step of luminance (of 255) that continues an image edge."});
+    visit("blur_px", blur_px,
+          FieldRule{0, 10, "Standard deviation of the blur before gradients, pixels."});
+    visit("low", low,
+          FieldRule{0, 255, "Step of luminance (of 255) that continues an image edge."});
     visit("high", high, FieldRule{0, 255, "Step of luminance (of 255) that begins an image edge."});
   }
 };

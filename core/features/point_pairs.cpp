@@ -59,8 +59,7 @@ PointPairFeature point_pair_feature(const Eigen::Vector3f& p, const Eigen::Vecto
 }
 
 bool fixes_pose(const PointPairFeature& f) {
-  return f.angle_normals > kFixingAngle ||
-         std::abs(f.angle_first - 0.5f * kPi) > kFixingAngle;
+  return f.angle_normals > kFixingAngle || std::abs(f.angle_first - 0.5f * kPi) > kFixingAngle;
 }
 
 Eigen::Matrix3f basis_of(const Eigen::Vector3f& normal) {

@@ -26,13 +26,17 @@ struct SuperPixelOptions {
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit("spacing_px", spacing_px, FieldRule{3, 64, "Spacing of the first centres: the size of a super-pixel, pixels."});
+    visit("spacing_px", spacing_px,
+          FieldRule{3, 64, "Spacing of the first centres: the size of a super-pixel, pixels."});
     visit("iterations", iterations, FieldRule{1, 50, "Iterations of k-means."});
-    visit("min_pixels", min_pixels, FieldRule{1, 1000, "Smaller super-pixels join a neighbour if no edge is between."});
-    visit("angle_deg", angle_deg, FieldRule{1, 360, "Angle of normals that counts as one spacing, degrees."});
+    visit("min_pixels", min_pixels,
+          FieldRule{1, 1000, "Smaller super-pixels join a neighbour if no edge is between."});
+    visit("angle_deg", angle_deg,
+          FieldRule{1, 360, "Angle of normals that counts as one spacing, degrees."});
     visit("color", color, FieldRule{0.1, 1000, "CIELAB distance that counts as one spacing."});
     visit("edge", edge, FieldRule{0.01, 100, "Edge likelihood that counts as one spacing."});
-    visit("strong_edge", strong_edge, FieldRule{0.01, 1, "Edge likelihood that no super-pixel crosses."});
+    visit("strong_edge", strong_edge,
+          FieldRule{0.01, 1, "Edge likelihood that no super-pixel crosses."});
   }
 };
 
