@@ -20,8 +20,8 @@ namespace bpa::eval {
 /// When a placement counts as right (paper section VII: 2.5 cm and π/16 "with respect to the
 /// model's symmetry group" on Clutter, RMSE 1 cm on Kinect), and what counts at all.
 struct EvaluationOptions {
-  double position_m = kRightPosition;
-  double angle_rad = kRightAngle;
+  double position_m = kPoseTolerance_m;
+  double angle_rad = kPoseTolerance_rad;
   double rmse_m = 0.01;
   double min_visible_fraction = 0.1;
   bool bop_errors = true;

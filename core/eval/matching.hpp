@@ -15,7 +15,7 @@ constexpr double kNoMatch = std::numeric_limits<double>::infinity();
 /// The larger of position error / position_m and orientation error / angle_rad, modulo the symmetry
 /// (paper section VII): 0 to 1, and kNoMatch above 1.
 double right_cost(const Pose& estimate, const Pose& truth, const SymmetryGroup& symmetry,
-                  double position_m = kRightPosition, double angle_rad = kRightAngle);
+                  double position_m = kPoseTolerance_m, double angle_rad = kPoseTolerance_rad);
 
 /// Greedy one-to-one matching, as BOP does it: estimates by falling score (by index where equal)
 /// each take the free truth of the smallest cost. costs[e][t] is kNoMatch where the estimate is not

@@ -48,8 +48,8 @@ Eigen::Matrix2Xd projected(const Eigen::Matrix3Xd& points, const Camera& camera)
 bool is_right(const Pose& estimate, const Pose& truth, const SymmetryGroup& symmetry) {
   constexpr double kNowhereNear = 0.2;
   if ((estimate.translation - truth.translation).norm() > kNowhereNear) return false;
-  const PoseError error = pose_error(estimate, truth, symmetry, kRightPosition, kRightAngle);
-  return error.position < kRightPosition && error.angle < kRightAngle;
+  const PoseError error = pose_error(estimate, truth, symmetry);
+  return error.position < kPoseTolerance_m && error.angle < kPoseTolerance_rad;
 }
 
 std::vector<Pose> discretised_symmetries(const SymmetryGroup& group, double max_step) {

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <numbers>
 #include <vector>
 
 #include "core/geometry/camera.hpp"
@@ -17,10 +16,6 @@
 namespace bpa::eval {
 
 using Points = std::vector<Eigen::Vector3f>;
-
-/// A pose within these is right (paper section VII), metres and radians.
-inline constexpr double kRightPosition = 0.025;
-inline constexpr double kRightAngle = std::numbers::pi / 16;
 
 /// Whether an estimate is within the paper's tolerance of the truth, modulo the symmetry. Cheap for
 /// estimates that are nowhere near: symmetries are taken to move the object's origin by less than
