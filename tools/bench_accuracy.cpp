@@ -9,23 +9,19 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/eval/pose_errors.hpp"
-#include "core/io/bop_dataset.hpp"
+#include "core/eval/matching.hpp"
 #include "core/io/file_bytes.hpp"
-#include "core/pipeline/detector.hpp"
-#include "core/pipeline/frame_trace.hpp"
-#include "core/pipeline/score_layer_file.hpp"
 #include "tools/bench.hpp"
-#include "tools/detection_files.hpp"
-#include "tools/progress.hpp"
+#include "tools/search.hpp"
 
 namespace bpa::cli {
 namespace {
 
 struct AccuracyArguments {
   CommonOptions common;
-  std::string library, bop, split = "test", config, json;
-  std::vector<int> scenes;
+  DatasetOptions dataset;
+  DetectorArguments detector;
+  std::string json;
   double min_visible = 0.1;
 };
 
@@ -55,13 +51,11 @@ struct Tally {
   }
 };
 
-const ObjectTrace* trace_of(const FrameTrace& trace, int number, SymmetryGroup& symmetry) {
-  for (std::size_t m = 0; m < trace.models.size(); ++m) {
-    if (trace.models[m]->number != number) continue;
-    symmetry = trace.models[m]->symmetry;
-    return &trace.objects[m];
-  }
-  return nullptr;
+// The index of a model in the trace, or -1.
+std::ptrdiff_t index_of(const FrameTrace& trace, int number) {
+  const auto found = std::find_if(trace.models.begin(), trace.models.end(),
+                                  [&](const auto& model) { return model->number == number; });
+  return found == trace.models.end() ? -1 : found - trace.models.begin();
 }
 
 bool holds(const Interpretation& interpretation, const io::BopInstance& truth,
@@ -75,12 +69,13 @@ bool holds(const Interpretation& interpretation, const io::BopInstance& truth,
 
 void add_instance(const io::BopInstance& truth, const FrameTrace& trace,
                   const SceneInterpretations& result, Tally& tally) {
-  SymmetryGroup symmetry;
-  const ObjectTrace* object = trace_of(trace, truth.obj_id, symmetry);
-  if (!object) return;
+  const std::ptrdiff_t index = index_of(trace, truth.obj_id);
+  if (index < 0) return;
+  const auto m = static_cast<std::size_t>(index);
+  const SymmetryGroup& symmetry = trace.models[m]->symmetry;
   tally.stages.clear();
   std::vector<bool> alive;
-  for (const TraceStage& stage : object->stages) {
+  for (const TraceStage& stage : trace.objects[m].stages) {
     tally.stages.emplace_back(stage.name);
     alive.push_back(std::any_of(stage.poses.begin(), stage.poses.end(), [&](const FastPose& pose) {
       return eval::is_right(to_pose(pose), truth.camera_from_object, symmetry);
@@ -98,13 +93,9 @@ void add_instance(const io::BopInstance& truth, const FrameTrace& trace,
 void add_reported(const std::vector<io::BopInstance>& truth, const FrameTrace& trace,
                   const Interpretation& best, Tally& tally) {
   for (const Placement& placement : best.placements) {
+    const auto m = static_cast<std::size_t>(index_of(trace, placement.model_number));
     ++tally.reported;
-    tally.right += std::any_of(truth.begin(), truth.end(), [&](const io::BopInstance& instance) {
-      SymmetryGroup symmetry;
-      return instance.obj_id == placement.model_number &&
-             trace_of(trace, instance.obj_id, symmetry) &&
-             eval::is_right(placement.camera_from_object, instance.camera_from_object, symmetry);
-    });
+    tally.right += eval::is_right_about_any(placement.camera_from_object, *trace.models[m], truth);
   }
 }
 
@@ -161,40 +152,20 @@ nlohmann::json to_json(const Tally& tally) {
 }
 
 Status bench_accuracy(const AccuracyArguments& a) {
-  DetectorOptions options;
-  if (!a.config.empty()) {
-    const Result<DetectorOptions> loaded = load_detector_options(a.config);
-    if (!loaded.ok()) return loaded.status();
-    options = *loaded;
-  }
-  const auto library = load_detection_library(a.library, {}, a.common.threads);
-  if (!library.ok()) return library.status();
-  const auto frames = io::read_bop_frames(a.bop, a.split, a.scenes);
-  if (!frames.ok()) return frames.status();
-  Result<ScoreLayers> layers = library_score_layers(a.library);
-  if (!layers.ok()) return layers.status();
-  const Detector detector(*library, options, std::move(*layers));
-  DetectRequest request;
-  request.seed = a.common.seed;
-  request.num_threads = a.common.threads;
+  const Result<Detector> detector = open_detector(a.detector, a.common.threads);
+  if (!detector.ok()) return detector.status();
   Tally tally;
-  Progress progress("frames", static_cast<int>(frames->size()));
-  for (const io::BopFrame& entry : *frames) {
-    progress.show(tally.frames++);
-    Result<Frame> frame = io::load_bop_frame(entry);
-    if (!frame.ok()) return frame.status();
-    clean_depth(*frame);
-    FrameTrace trace;
-    const Result<SceneInterpretations> result = detector.detect(*frame, request, &trace);
-    if (!result.ok()) return result.status();
-    for (const io::BopInstance& instance : entry.truth) {
-      if (instance.visible_fraction < a.min_visible) continue;
-      add_instance(instance, trace, *result, tally);
-    }
-    add_reported(entry.truth, trace, result->interpretations.front(), tally);
-    add_times(trace, *result, tally);
-  }
-  progress.clear();
+  const Status status =
+      search_frames(*detector, a.dataset, a.common, [&](const SearchedFrame& frame) {
+        ++tally.frames;
+        for (const io::BopInstance& instance : frame.truth) {
+          if (instance.visible_fraction < a.min_visible) continue;
+          add_instance(instance, frame.trace, frame.result, tally);
+        }
+        add_reported(frame.truth, frame.trace, frame.result.interpretations.front(), tally);
+        add_times(frame.trace, frame.result, tally);
+      });
+  if (!status.ok()) return status;
   print_tally(tally);
   return a.json.empty() ? Status() : io::write_file(a.json, to_json(tally).dump(2) + "\n");
 }
@@ -203,24 +174,11 @@ Status bench_accuracy(const AccuracyArguments& a) {
 
 void add_bench_accuracy(CLI::App& bench, Action& action) {
   CLI::App& command = *bench.add_subcommand(
-      "accuracy", "Where on its way through the detector a true placement is lost");
+      "accuracy", "The stages of the detector that lose true placements, by object");
   const auto a = std::make_shared<AccuracyArguments>();
-  command.add_option("--bop", a->bop, "Folder of a BOP data set with truth")
-      ->required()
-      ->type_name("DIR");
-  command.add_option("--library", a->library, "Folder of the model library")
-      ->required()
-      ->type_name("DIR");
-  command.add_option("--split", a->split, "Split of the data set")
-      ->type_name("NAME")
-      ->capture_default_str();
-  command.add_option("--scenes", a->scenes, "Scenes of the split, such as 1,4; all if not given")
-      ->delimiter(',')
-      ->type_name("LIST");
-  command.add_option("--config", a->config, "Detector options as YAML")->type_name("FILE");
-  command.add_option("--min-visible", a->min_visible, "Leave out instances less visible")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
+  add_dataset_options(command, a->dataset);
+  add_detector_options(command, a->detector);
+  add_min_visible_option(command, a->min_visible);
   command.add_option("--json", a->json, "Write the table as JSON")->type_name("FILE");
   add_common_options(command, a->common);
   command.callback([&action, a] { action = [a] { return bench_accuracy(*a); }; });

@@ -20,6 +20,7 @@
 #include "core/io/model_file.hpp"
 #include "core/model/model_index.hpp"
 #include "tools/bench.hpp"
+#include "tools/option_fields.hpp"
 #include "tools/progress.hpp"
 
 namespace bpa::cli {
@@ -30,8 +31,8 @@ constexpr double kDegrees = 180 / M_PI;
 
 struct AlignmentArguments {
   CommonOptions common;
-  std::string bop, split = "test", library, plots, json;
-  std::vector<int> scenes;
+  DatasetOptions dataset;
+  std::string library, plots, json;
   double min_visible = 0.1;
   align::ConvergenceOptions options;
 };
@@ -72,9 +73,9 @@ PointCloud scene_cloud(const Frame& frame, const AlignmentArguments& a) {
 }
 
 Status load_placements(const AlignmentArguments& a, Experiment& experiment) {
-  const auto frames = io::read_bop_frames(a.bop, a.split, a.scenes);
+  const auto frames = io::read_bop_frames(a.dataset.folder, a.dataset.split, a.dataset.scenes);
   if (!frames.ok()) return frames.status();
-  const auto infos = io::read_bop_models(a.bop);
+  const auto infos = io::read_bop_models(a.dataset.folder);
   if (!infos.ok()) return infos.status();
   std::map<int, SymmetryGroup> symmetries;
   for (const io::BopModel& info : *infos) symmetries[info.obj_id] = info.symmetry;
@@ -94,7 +95,7 @@ Status load_placements(const AlignmentArguments& a, Experiment& experiment) {
     }
   }
   if (experiment.placements.empty()) {
-    return Status(StatusCode::not_found, "split " + a.split + " of " + a.bop +
+    return Status(StatusCode::not_found, "split " + a.dataset.split + " of " + a.dataset.folder +
                                              " has no true placement of a model in " + a.library);
   }
   return {};
@@ -203,37 +204,23 @@ Status bench_alignment(AlignmentArguments a) {
 }  // namespace
 
 void add_bench_alignment(CLI::App& bench, Action& action) {
-  CLI::App& command = *bench.add_subcommand("alignment", "BPA against ICP from noisy starts");
+  CLI::App& command = *bench.add_subcommand("alignment", "Compare BPA with ICP from noisy starts");
   const auto a = std::make_shared<AlignmentArguments>();
-  command.add_option("--bop", a->bop, "Folder of a BOP data set with truth")
-      ->required()
-      ->type_name("DIR");
-  command.add_option("--library", a->library, "Folder of the model library")
-      ->required()
-      ->type_name("DIR");
-  command.add_option("--split", a->split, "Split of the data set")
-      ->type_name("NAME")
-      ->capture_default_str();
-  command.add_option("--scenes", a->scenes, "Scenes of the split, such as 1,4; all if not given")
-      ->delimiter(',')
-      ->type_name("LIST");
+  add_dataset_options(command, a->dataset);
+  add_library_option(command, a->library);
   command.add_option("--plots", a->plots, "Write plots as PNG and alignment.json")
       ->type_name("DIR");
   command.add_option("--json", a->json, "Write the curves as JSON")->type_name("FILE");
-  command.add_option("--min-visible", a->min_visible, "Leave out instances less visible")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  const auto add = [&](const char* name, auto& value, const char* text) {
-    command.add_option(name, value, text)->capture_default_str();
-  };
-  add("--starts", a->options.starts, "Noisy starts for each placement");
-  add("--iterations", a->options.iterations, "Alignment steps from each");
-  add("--points", a->options.points, "Scene points matched in a step");
-  add("--start-position", a->options.start_position_m, "Noise of a start per axis, metres");
-  add("--start-angle", a->options.start_angle_deg, "Noise of a start per axis, degrees");
-  add("--assign", a->options.assign_m, "Distance at which a scene point fits the model, metres");
-  add("--assign-angle", a->options.assign_deg, "Angle between normals at which it fits, degrees");
-  add("--sigma", a->options.sigma_m, "Standard deviation of a match for BPA, metres");
+  add_min_visible_option(command, a->min_visible);
+  add_options(command, a->options,
+              {{"--starts", "starts"},
+               {"--iterations", "iterations"},
+               {"--points", "points"},
+               {"--start-position", "start_position_m"},
+               {"--start-angle", "start_angle_deg"},
+               {"--assign", "assign_m"},
+               {"--assign-angle", "assign_deg"},
+               {"--sigma", "sigma_m"}});
   add_common_options(command, a->common);
   command.callback([&action, a] { action = [a] { return bench_alignment(*a); }; });
 }

@@ -281,12 +281,11 @@ Status bench_models(const ModelsArguments& a) {
 void add_bench_models(CLI::App& bench, Action& action) {
   const auto a = std::make_shared<ModelsArguments>();
   CLI::App& command =
-      *bench.add_subcommand("models", "Models from simulated scans against the true meshes");
+      *bench.add_subcommand("models", "Compare models from simulated scans with the true meshes");
   command.add_option("scans", a->scans, "Folders that `bpa simulate turntable` wrote")->required();
-  command.add_option("--split", a->split, "Split to read")
-      ->type_name("NAME")
-      ->capture_default_str();
-  command.add_option("--step-deg", a->step_deg, "What to believe the table turns, degrees")
+  add_split_option(command, a->split);
+  command
+      .add_option("--step-deg", a->step_deg, "Assumed turn of the table between images, degrees")
       ->capture_default_str();
   command.add_option("--plots", a->plots, "Write plots of the noise here")->type_name("DIR");
   command

@@ -228,14 +228,12 @@ Status bench_sensor(const SensorArguments& a) {
 
 void add_bench_sensor(CLI::App& bench, Action& action) {
   CLI::App& command = *bench.add_subcommand(
-      "sensor", "The simulated Kinect against published figures and real frames");
+      "sensor", "Compare the simulated Kinect with published noise and real frames");
   const auto a = std::make_shared<SensorArguments>();
   command.add_option("--bop", a->bop, "Real frames: folder of a BOP data set")->type_name("DIR");
-  command.add_option("--split", a->split, "Split of the data set")
-      ->type_name("NAME")
-      ->capture_default_str();
+  add_split_option(command, a->split);
   command.add_option("--pcd", a->pcd, "Real frames: organised PCD clouds")->type_name("FILE...");
-  command.add_option("--frames", a->frames, "Most real frames to compare, evenly over all")
+  command.add_option("--frames", a->frames, "Largest number of real frames, taken evenly from all")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command

@@ -28,6 +28,23 @@ struct CommonOptions {
 /// Adds --threads and --seed.
 void add_common_options(CLI::App& command, CommonOptions& options);
 
+/// A split of a data set in the BOP layout.
+struct DatasetOptions {
+  std::string folder, split = "test";
+  std::vector<int> scenes;  ///< Empty: all.
+};
+
+/// Adds --split.
+void add_split_option(CLI::App& command, std::string& split);
+/// Adds --split and --scenes.
+void add_split_options(CLI::App& command, DatasetOptions& options);
+/// Adds --bop, --split and --scenes for frames with truth.
+void add_dataset_options(CLI::App& command, DatasetOptions& options);
+/// Adds --library, which is required.
+void add_library_option(CLI::App& command, std::string& folder);
+/// Adds --min-visible.
+void add_min_visible_option(CLI::App& command, double& fraction);
+
 /// A command declares itself and its options on the program and sets `action` when it is chosen;
 /// see the list in main.cpp. Wrong usage is a CLI::ParseError.
 void add_model_command(CLI::App& program, Action& action);

@@ -14,10 +14,6 @@
 #include "core/draw/sheet.hpp"
 #include "core/draw/truth.hpp"
 #include "core/io/file_bytes.hpp"
-#include "core/pipeline/detector.hpp"
-#include "core/pipeline/frame_trace.hpp"
-#include "core/pipeline/score_layer_file.hpp"
-#include "tools/command.hpp"
 #include "tools/detect_inputs.hpp"
 #include "tools/detection_files.hpp"
 #include "tools/explain_folder.hpp"
@@ -56,7 +52,7 @@ class DetectRun {
             std::size_t num_frames)
       : a_(arguments), detector_(detector), given_(given), fusion_(arguments.fuse) {
     if (!a_.explain.empty()) explain_.emplace(a_.explain, num_frames > 1);
-    request_.models = split_commas(a_.models);
+    request_.models = a_.detector.models;
     request_.top_k = a_.top;
     request_.budget_ms = a_.budget_ms;
     request_.seed = a_.common.seed;
@@ -167,13 +163,7 @@ class DetectRun {
 };
 
 Status detect(const DetectArguments& a) {
-  DetectorOptions options;
-  if (!a.config.empty()) {
-    const Result<DetectorOptions> loaded = load_detector_options(a.config);
-    if (!loaded.ok()) return loaded.status();
-    options = *loaded;
-  }
-  // A bad frame or folder is said before the library is loaded, which takes longer.
+  // Frames are checked before the library is loaded, which takes longer.
   const Result<Inputs> inputs = Inputs::open(a);
   if (!inputs.ok()) return inputs.status();
   Result<Input> input = inputs->size() > 0 ? inputs->read(0) : Input{};
@@ -183,12 +173,9 @@ Status detect(const DetectArguments& a) {
   if (!a.explain.empty()) {
     if (Status s = io::make_folder(a.explain); !s.ok()) return s;
   }
-  const auto library = load_detection_library(a.library, split_commas(a.models), a.common.threads);
-  if (!library.ok()) return library.status();
-  Result<ScoreLayers> layers = library_score_layers(a.library);
-  if (!layers.ok()) return layers.status();
-  const Detector detector(*library, options, std::move(*layers));
-  DetectRun run(a, detector, *given, inputs->size());
+  const Result<Detector> detector = open_detector(a.detector, a.common.threads);
+  if (!detector.ok()) return detector.status();
+  DetectRun run(a, *detector, *given, inputs->size());
   Progress progress("frames", static_cast<int>(inputs->size()));
   for (std::size_t i = 0; i < inputs->size(); ++i) {
     progress.show(static_cast<int>(i));
@@ -200,53 +187,48 @@ Status detect(const DetectArguments& a) {
   return run.finish();
 }
 
-/// Usage: exactly one source of frames, and what belongs to it.
+/// What CLI11 cannot say: exactly one source of frames, and one colour image for each depth image.
 void check_usage(const DetectArguments& a) {
-  const int sources = !a.pcd.empty() + !a.depth.empty() + !a.bop.empty();
+  const int sources = !a.pcd.empty() + !a.depth.empty() + !a.dataset.folder.empty();
   if (sources != 1) {
     throw CLI::ValidationError("frames", "give one of --pcd, --depth (with --camera) and --bop");
-  }
-  if (!a.depth.empty() && a.camera.empty()) {
-    throw CLI::ValidationError("--depth", "needs --camera FILE");
-  }
-  if (a.depth.empty() && !a.color.empty()) {
-    throw CLI::ValidationError("--color", "needs --depth FILE");
   }
   if (!a.color.empty() && a.color.size() != a.depth.size()) {
     throw CLI::ValidationError("--color", "needs as many files as --depth");
   }
-  if (!a.bop.empty() && !a.camera.empty()) {
-    throw CLI::ValidationError("--camera", "is not for --bop: the data set has its cameras");
-  }
-  if (a.bop.empty() && !a.scenes.empty()) throw CLI::ValidationError("--scenes", "needs --bop");
 }
 
 void add_inputs(CLI::App& command, DetectArguments& a) {
-  command.add_option("--library", a.library, "Folder of the model library")
-      ->required()
-      ->type_name("DIR");
   command.add_option("--pcd", a.pcd, "Organised PCD clouds; the camera is estimated from them")
       ->type_name("FILE...");
-  command.add_option("--depth", a.depth, "16-bit depth PNGs, registered to colour")
-      ->type_name("FILE...");
+  auto* const camera =
+      command.add_option("--camera", a.camera, "BOP camera.json or ROS camera_info YAML");
+  camera->type_name("FILE");
+  auto* const depth =
+      command.add_option("--depth", a.depth, "16-bit depth PNGs, registered to colour");
+  depth->needs(camera)->type_name("FILE...");
   command.add_option("--color", a.color, "8-bit colour PNGs of the same size")
+      ->needs(depth)
       ->type_name("FILE...");
-  command.add_option("--camera", a.camera, "BOP camera.json or ROS camera_info YAML")
-      ->type_name("FILE");
-  command.add_option("--bop", a.bop, "Folder of a BOP data set")->type_name("DIR");
-  command.add_option("--split", a.split, "Split of the data set")
-      ->type_name("NAME")
-      ->capture_default_str();
-  command.add_option("--scenes", a.scenes, "Scenes of the split, such as 1,4; all if not given")
-      ->type_name("LIST");
+  auto* const bop = command.add_option("--bop", a.dataset.folder, "Folder of a BOP data set");
+  bop->excludes(camera)->type_name("DIR");
+  add_split_options(command, a.dataset);
+  command.get_option("--scenes")->needs(bop);
   command
-      .add_option("--fuse", a.fuse,
-                  "Combine the depth of so many frames that follow one another in one scene, and "
-                  "search them once; for a camera and a scene that stand still")
+      .add_option(
+          "--fuse", a.fuse,
+          "Combine the depth of N consecutive frames of a scene and search them once; camera "
+          "and scene must stand still")
       ->check(CLI::Range(1, 30))
       ->type_name("N")
       ->capture_default_str();
-  command.add_option("--models", a.models, "Names of models to look for; all if not given")
+}
+
+void add_question(CLI::App& command, DetectArguments& a) {
+  add_detector_options(command, a.detector);
+  command
+      .add_option("--models", a.detector.models, "Names of models to look for; all if not given")
+      ->delimiter(',')
       ->type_name("LIST");
   command
       .add_option("--roi", a.roi, "Part of each frame that is searched: X Y WIDTH HEIGHT, pixels")
@@ -257,13 +239,18 @@ void add_inputs(CLI::App& command, DetectArguments& a) {
       ->type_name("FILE");
   command
       .add_option("--priors", a.priors,
-                  "What is known beforehand of the objects' poses, in the frame that they are "
-                  "reported in: JSON, {\"priors\": [{\"model\": NAME, \"pose\": "
+                  "Prior poses of objects, in the frame that poses are reported in: JSON, "
+                  "{\"priors\": [{\"model\": NAME, \"pose\": "
                   "{\"rotation_wxyz\": [4], \"translation_m\": [3]}, \"position_sigma_m\": S, "
                   "\"rotation_sigma_deg\": S, \"weight\": W}]}")
       ->type_name("FILE");
-  command.add_option("--config", a.config, "Settings of the detector (detector.yaml)")
-      ->type_name("FILE");
+  command.add_option("--top", a.top, "Number of interpretations")
+      ->check(CLI::Range(1, 100))
+      ->type_name("K")
+      ->capture_default_str();
+  command.add_option("--budget-ms", a.budget_ms, "Time for a frame; 0 = no limit")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("T");
 }
 
 }  // namespace
@@ -272,13 +259,7 @@ void add_detect_command(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand("detect", "Find objects in RGB-D frames");
   const auto a = std::make_shared<DetectArguments>();
   add_inputs(command, *a);
-  command.add_option("--top", a->top, "Number of interpretations")
-      ->check(CLI::Range(1, 100))
-      ->type_name("K")
-      ->capture_default_str();
-  command.add_option("--budget-ms", a->budget_ms, "Time for a frame; 0 = no limit")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("T");
+  add_question(command, *a);
   command.add_option("--csv", a->csv, "Write the best interpretation as BOP CSV")
       ->type_name("FILE");
   command.add_option("--json", a->json, "Write all interpretations as JSON")->type_name("FILE");

@@ -13,17 +13,6 @@
 namespace bpa::cli {
 namespace {
 
-Result<std::vector<int>> parse_scenes(const std::string& list) {
-  std::vector<int> scenes;
-  for (const std::string& part : split_commas(list)) {
-    if (part.size() > 6 || part.find_first_not_of("0123456789") != std::string::npos) {
-      return invalid_argument("--scenes has \"" + part + "\"; it must be numbers and commas");
-    }
-    scenes.push_back(std::stoi(part));
-  }
-  return scenes;
-}
-
 Result<Input> read_bop(const io::BopFrame& entry) {
   Result<Frame> frame = io::load_bop_frame(entry);
   if (!frame.ok()) return frame.status();
@@ -48,30 +37,29 @@ std::string file_name(const Input& input) {
 
 Result<Inputs> Inputs::open(const DetectArguments& arguments) {
   Inputs inputs(arguments);
-  if (arguments.bop.empty()) return inputs;
-  const Result<std::vector<int>> scenes = parse_scenes(arguments.scenes);
-  if (!scenes.ok()) return scenes.status();
+  const DatasetOptions& dataset = arguments.dataset;
+  if (dataset.folder.empty()) return inputs;
   Result<std::vector<io::BopFrame>> frames =
-      io::read_bop_frames(arguments.bop, arguments.split, *scenes);
+      io::read_bop_frames(dataset.folder, dataset.split, dataset.scenes);
   if (!frames.ok()) return frames.status();
   inputs.bop_ = std::move(*frames);
   return inputs;
 }
 
 std::size_t Inputs::size() const {
-  if (!a_->bop.empty()) return bop_.size();
+  if (!a_->dataset.folder.empty()) return bop_.size();
   return a_->pcd.empty() ? a_->depth.size() : a_->pcd.size();
 }
 
 bool Inputs::ends_scene(std::size_t index) const {
   if (index + 1 == size()) return true;
-  return !a_->bop.empty() && bop_[index].scene_id != bop_[index + 1].scene_id;
+  return !a_->dataset.folder.empty() && bop_[index].scene_id != bop_[index + 1].scene_id;
 }
 
 Result<Input> Inputs::read(std::size_t index) const {
-  Result<Input> input = !a_->bop.empty()  ? read_bop(bop_[index])
-                        : a_->pcd.empty() ? read_png(index)
-                                          : read_pcd(index);
+  Result<Input> input = !a_->dataset.folder.empty() ? read_bop(bop_[index])
+                        : a_->pcd.empty()           ? read_png(index)
+                                                    : read_pcd(index);
   if (input.ok()) clean_depth(input->frame);
   return input;
 }

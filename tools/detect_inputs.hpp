@@ -9,20 +9,19 @@
 #include "core/cloud/frame.hpp"
 #include "core/detect/pose_prior.hpp"
 #include "core/io/bop_dataset.hpp"
-#include "tools/command.hpp"
+#include "tools/search.hpp"
 
-// What bpa detect is asked and what it reads.
+// The arguments of bpa detect and the frames that they name.
 
 namespace bpa::cli {
 
 struct DetectArguments {
   CommonOptions common;
-  std::string library, config;
+  DetectorArguments detector;
   std::vector<std::string> pcd, depth, color;
-  std::string camera, bop;
-  std::string split = "test";
-  std::string scenes, models, priors;
-  std::string mask;
+  std::string camera;
+  DatasetOptions dataset;
+  std::string priors, mask;
   std::vector<int> roi;
   int fuse = 1;
   int top = 20;
@@ -30,7 +29,7 @@ struct DetectArguments {
   std::string csv, json, annotate, explain;
 };
 
-/// A frame and where its poses are to be reported.
+/// A frame, and the frame of reference that its poses are reported in.
 struct Input {
   std::string name;  ///< For people.
   Frame frame;       ///< Its depth is clean.
@@ -47,7 +46,7 @@ std::string file_name(const Input& input);
 /// The frames that the arguments name, one after another.
 class Inputs {
  public:
-  /// Looks what there is; `arguments` must outlive it.
+  /// Lists the frames; `arguments` must outlive it.
   static Result<Inputs> open(const DetectArguments& arguments);
 
   std::size_t size() const;

@@ -18,9 +18,7 @@ namespace {
 
 struct EvaluateArguments {
   CommonOptions common;
-  std::string bop;
-  std::string split = "test";
-  std::vector<int> scenes;
+  DatasetOptions dataset;
   std::string csv, json, json_out, plots;
   bool nothing_there = false;
   eval::EvaluationOptions options;
@@ -38,11 +36,11 @@ Result<eval::EvaluationReport> report_on(const EvaluateArguments& a) {
     if (!results.ok()) return results.status();
     return eval::evaluate_nothing_there(*results, options);
   }
-  const auto frames = io::read_bop_frames(a.bop, a.split, a.scenes);
+  const auto frames = io::read_bop_frames(a.dataset.folder, a.dataset.split, a.dataset.scenes);
   if (!frames.ok()) return frames.status();
   const auto results = read_results(a);
   if (!results.ok()) return results.status();
-  const auto objects = eval::load_eval_objects(a.bop);
+  const auto objects = eval::load_eval_objects(a.dataset.folder);
   if (!objects.ok()) return objects.status();
   Progress progress("evaluate", static_cast<int>(frames->size()));
   progress.show(0);
@@ -65,31 +63,23 @@ Status evaluate(const EvaluateArguments& a) {
 void add_evaluate_command(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand("evaluate", "Compare results with the truth");
   const auto a = std::make_shared<EvaluateArguments>();
-  command.add_option("--bop", a->bop, "Folder of a BOP data set with truth")->type_name("DIR");
+  auto* bop = command.add_option("--bop", a->dataset.folder, "Folder of a BOP data set with truth");
+  bop->type_name("DIR");
   command.add_flag("--nothing-there", a->nothing_there,
-                   "Instead of --bop: the frames hold none of the models, all reports are false");
-  command.add_option("--split", a->split, "Split of the data set")
-      ->type_name("NAME")
-      ->capture_default_str();
-  command.add_option("--scenes", a->scenes, "Scenes of the split, such as 1,4; all if not given")
-      ->delimiter(',')
-      ->type_name("LIST");
+                   "Instead of --bop: the frames hold no known object, all placements are false");
+  add_split_options(command, a->dataset);
   auto* csv = command.add_option("--csv", a->csv, "Results as BOP CSV")->type_name("FILE");
   auto* json = command.add_option("--json", a->json, "Results as JSON")->type_name("FILE");
   csv->excludes(json);
   command.add_option("--json-out", a->json_out, "Write the report as JSON")->type_name("FILE");
   command.add_option("--plots", a->plots, "Write plots as PNG")->type_name("DIR");
-  command
-      .add_option("--min-visible", a->options.min_visible_fraction,
-                  "Instances less visible are neither required nor false")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
+  add_min_visible_option(command, a->options.min_visible_fraction);
   add_common_options(command, a->common);
   command.callback([&action, a] {
     if (a->csv.empty() == a->json.empty()) {
       throw CLI::ValidationError("results", "give one of --csv and --json");
     }
-    if (a->bop.empty() != a->nothing_there) {
+    if (a->dataset.folder.empty() != a->nothing_there) {
       throw CLI::ValidationError("truth", "give one of --bop and --nothing-there");
     }
     action = [a] { return evaluate(*a); };

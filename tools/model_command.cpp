@@ -19,6 +19,7 @@
 #include "core/modeling/registration.hpp"
 #include "core/modeling/symmetry_search.hpp"
 #include "tools/command.hpp"
+#include "tools/option_fields.hpp"
 #include "tools/progress.hpp"
 #include "tools/scan_files.hpp"
 #include "tools/simulated_views.hpp"
@@ -103,7 +104,7 @@ void warn_of_twins(ModelSource& source, const ModelArguments& a) {
 }
 
 /// `bpa model symmetry`: the user's answer.
-Status set_symmetry(const ModelArguments& a) {
+Status set_symmetry(ModelArguments a) {
   Result<ModelSource> model = io::load_model(a.library, a.name);
   if (!model.ok()) return model.status();
   if (a.symmetry == "none") model->symmetry = {};
@@ -155,23 +156,30 @@ Result<ModelSource> source_from_file(const ModelArguments& a) {
   return source;
 }
 
+/// Prefixes a failure with the input, unless it is named already.
+Status about(const std::string& input, Status status) {
+  if (status.message.find(input) == std::string::npos) {
+    status.message = input + ": " + status.message;
+  }
+  return status;
+}
+
+/// Completes a new model and adds it to the library.
+Status add_to_library(ModelSource source, const ModelArguments& a) {
+  source.source = std::filesystem::path(a.input).filename().string();
+  if (source.complete) add_symmetries(source, a);
+  warn_of_twins(source, a);
+  if (Status s = io::save_model(a.library, source, a.common.threads); !s.ok()) return s;
+  print_saved(source, a.library);
+  return {};
+}
+
 Status from_mesh(ModelArguments a) {
   if (a.number == 0) a.number = choose_number(a.library, a.name);
   a.options.num_threads = a.common.threads;
   Result<ModelSource> source = source_from_file(a);
-  if (!source.ok()) {
-    Status status = source.status();
-    if (status.message.find(a.input) == std::string::npos) {
-      status.message = a.input + ": " + status.message;
-    }
-    return status;
-  }
-  source->source = std::filesystem::path(a.input).filename().string();
-  if (source->complete) add_symmetries(*source, a);
-  warn_of_twins(*source, a);
-  if (Status s = io::save_model(a.library, *source, a.common.threads); !s.ok()) return s;
-  print_saved(*source, a.library);
-  return {};
+  if (!source.ok()) return about(a.input, source.status());
+  return add_to_library(std::move(*source), a);
 }
 
 Status from_bop(ModelArguments a) {
@@ -233,21 +241,12 @@ Status from_scans(ModelArguments a) {
   a.options.num_threads = a.common.threads;
   std::vector<std::string> warnings;
   Result<std::vector<PosedView>> views = posed_views(a, warnings);
-  if (!views.ok()) {
-    const Status& s = views.status();
-    const bool named = s.message.find(a.input) != std::string::npos;
-    return Status(s.code, named ? s.message : a.input + ": " + s.message);
-  }
+  if (!views.ok()) return about(a.input, views.status());
   Result<ModelSource> source =
       model_source_from_views(std::move(*views), a.name, a.number, a.options);
   if (!source.ok()) return source.status();
-  source->source = std::filesystem::path(a.input).filename().string();
   source->warnings.insert(source->warnings.begin(), warnings.begin(), warnings.end());
-  add_symmetries(*source, a);
-  warn_of_twins(*source, a);
-  if (Status s = io::save_model(a.library, *source, a.common.threads); !s.ok()) return s;
-  print_saved(*source, a.library);
-  return {};
+  return add_to_library(std::move(*source), a);
 }
 
 void print_occupancy(const OccupancyGrid* grid) {
@@ -265,7 +264,7 @@ void print_occupancy(const OccupancyGrid* grid) {
               static_cast<double>(1000 * grid->cell), walls);
 }
 
-Status info(const ModelArguments& a) {
+Status info(ModelArguments a) {
   const Result<ModelSource> model = io::load_model(a.library, a.name);
   if (!model.ok()) return model.status();
   Eigen::AlignedBox3f box;
@@ -297,7 +296,7 @@ Status info(const ModelArguments& a) {
   return io::write_color_png(a.render, draw::model_sheet(**made));
 }
 
-Status list(const ModelArguments& a) {
+Status list(ModelArguments a) {
   const Result<io::LibraryContents> found = io::read_library(a.library, a.common.threads);
   if (!found.ok()) return found.status();
   if (found->models.empty() && found->broken.empty()) {
@@ -313,41 +312,102 @@ Status list(const ModelArguments& a) {
   return io::explain_broken(a.library, found->broken);
 }
 
-Status remove(const ModelArguments& a) {
+Status remove(ModelArguments a) {
   if (Status s = io::remove_model(a.library, a.name); !s.ok()) return s;
   std::printf("removed %s from %s\n", a.name.c_str(), a.library.c_str());
   return {};
 }
 
+using Arguments = std::shared_ptr<ModelArguments>;
+
 /// A subcommand of `bpa model` with the options that all of them have.
-CLI::App& add(CLI::App& model, const char* name, const char* description,
-              const std::shared_ptr<ModelArguments>& a, Action& action,
-              Status (*run)(ModelArguments)) {
+CLI::App& add(CLI::App& model, const char* name, const char* description, const Arguments& a,
+              Action& action, Status (*run)(ModelArguments)) {
   CLI::App& command = *model.add_subcommand(name, description);
   add_common_options(command, a->common);
-  command.add_option("--library", a->library, "Folder of the model library")
-      ->required()
-      ->type_name("DIR");
+  add_library_option(command, a->library);
   command.callback([&action, a, run] { action = [a, run] { return run(*a); }; });
   return command;
 }
 
+void add_name(CLI::App& command, const char* option, ModelArguments& a) {
+  command.add_option(option, a.name, "Name of the model")->required();
+}
+
 void add_views_option(CLI::App& command, ModelArguments& a) {
   command
-      .add_option("--views", a.views,
-                  "Simulated views: what none of them measures is left out, and noise is learned "
-                  "from them; 0 = keep all that is not inside, take the usual noise")
+      .add_option(
+          "--views", a.views,
+          "Simulated views: surface that no view measures is left out, and noise is learned "
+          "from them; 0 = keep all outer surface, with default noise")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
 }
 
-void add_symmetry_option(CLI::App& command, ModelArguments& a) {
+/// The options of one object that becomes a model.
+void add_new_model_options(CLI::App& command, ModelArguments& a) {
+  add_name(command, "--name", a);
+  command
+      .add_option("--number", a.number,
+                  "Number of the model (obj_id); the next free one if not given")
+      ->check(CLI::PositiveNumber);
   command
       .add_option("--symmetry", a.symmetry,
                   "find: look for symmetries and use them; confirm: and take them as confirmed; "
                   "none: the object has none")
       ->check(CLI::IsMember({"find", "confirm", "none"}))
       ->capture_default_str();
+  add_options(command, a.options, {{"--spacing", "spacing_m"}});
+}
+
+void add_from_mesh(CLI::App& model, const Arguments& a, Action& action) {
+  CLI::App& command =
+      add(model, "from-mesh", "One mesh or point cloud to a model", a, action, from_mesh);
+  command.add_option("mesh", a->input, "PLY, OBJ or STL mesh; PLY or PCD point cloud")->required();
+  command.add_option("--scale", a->scale, "Metres of one unit of the file; 0.001 for millimetres")
+      ->check(CLI::PositiveNumber);
+  add_new_model_options(command, *a);
+  add_views_option(command, *a);
+}
+
+void add_from_bop(CLI::App& model, const Arguments& a, Action& action) {
+  CLI::App& command = add(model, "from-bop", "Every model of a BOP data set", a, action, from_bop);
+  command.add_option("dataset", a->input, "Folder of the data set")->required();
+  add_options(command, a->options, {{"--spacing", "spacing_m"}});
+  add_views_option(command, *a);
+}
+
+void add_from_scans(CLI::App& model, const Arguments& a, Action& action) {
+  CLI::App& command = add(model, "from-scans", "RGB-D views of an object on a turntable to a model",
+                          a, action, from_scans);
+  command
+      .add_option("scans", a->input,
+                  "Folder in the BOP layout: each scene is a resting position, image k was taken "
+                  "after k steps")
+      ->required();
+  add_split_option(command, a->split);
+  command.add_option("--step-deg", a->step_deg, "Turn of the table between images, degrees")
+      ->check(CLI::Range(0.5, 120.0))
+      ->capture_default_str();
+  command
+      .add_option("--known-poses", a->known_object,
+                  "Take the poses of this object (obj_id) from scene_gt.json instead: any views, "
+                  "no turntable")
+      ->check(CLI::PositiveNumber)
+      ->type_name("OBJ_ID");
+  add_new_model_options(command, *a);
+}
+
+void add_symmetry(CLI::App& model, const Arguments& a, Action& action) {
+  CLI::App& command = add(model, "symmetry", "Show, confirm or drop the symmetries of a model", a,
+                          action, set_symmetry);
+  add_name(command, "name", *a);
+  auto* confirm = command.add_flag_callback(
+      "--confirm", [a] { a->symmetry = "confirm"; }, "The symmetries found are right");
+  command
+      .add_flag_callback(
+          "--none", [a] { a->symmetry = "none"; }, "The object has none")
+      ->excludes(confirm);
 }
 
 }  // namespace
@@ -356,78 +416,17 @@ void add_model_command(CLI::App& program, Action& action) {
   CLI::App& model = *program.add_subcommand("model", "Make, list and remove object models");
   model.require_subcommand(1);
   const auto a = std::make_shared<ModelArguments>();
-
-  CLI::App& mesh = add(model, "from-mesh", "One mesh or point cloud to a model", a, action,
-                       [](ModelArguments m) { return from_mesh(std::move(m)); });
-  mesh.add_option("mesh", a->input, "PLY, OBJ or STL mesh; PLY or PCD point cloud")->required();
-  mesh.add_option("--name", a->name, "Name of the model")->required();
-  mesh.add_option("--scale", a->scale, "Metres of one unit of the file; 0.001 for millimetres")
-      ->check(CLI::PositiveNumber);
-  mesh.add_option("--number", a->number,
-                  "Number of the model (obj_id); the next free one if not given")
-      ->check(CLI::PositiveNumber);
-  mesh.add_option("--spacing", a->options.spacing_m, "Distance of surface points, metres")
-      ->check(CLI::PositiveNumber);
-
-  add_views_option(mesh, *a);
-
-  CLI::App& bop = add(model, "from-bop", "Every model of a BOP data set", a, action,
-                      [](ModelArguments m) { return from_bop(std::move(m)); });
-  bop.add_option("dataset", a->input, "Folder of the data set")->required();
-  bop.add_option("--spacing", a->options.spacing_m, "Distance of surface points, metres")
-      ->check(CLI::PositiveNumber);
-
-  add_views_option(bop, *a);
-
-  CLI::App& scans = add(model, "from-scans", "RGB-D views of an object on a turntable to a model",
-                        a, action, [](ModelArguments m) { return from_scans(std::move(m)); });
-  scans
-      .add_option("scans", a->input,
-                  "Folder in the BOP layout: each scene is a resting position, image k was taken "
-                  "after k steps")
-      ->required();
-  scans.add_option("--name", a->name, "Name of the model")->required();
-  scans.add_option("--split", a->split, "Split to read")->type_name("NAME")->capture_default_str();
-  scans.add_option("--step-deg", a->step_deg, "Turn of the table between images, degrees")
-      ->check(CLI::Range(0.5, 120.0))
-      ->capture_default_str();
-  scans
-      .add_option("--known-poses", a->known_object,
-                  "Take the poses of this object (obj_id) from scene_gt.json instead: any views, "
-                  "no turntable")
-      ->check(CLI::PositiveNumber)
-      ->type_name("OBJ_ID");
-  scans
-      .add_option("--number", a->number,
-                  "Number of the model (obj_id); the next free one if not given")
-      ->check(CLI::PositiveNumber);
-  scans.add_option("--spacing", a->options.spacing_m, "Distance of surface points, metres")
-      ->check(CLI::PositiveNumber);
-
-  add_symmetry_option(mesh, *a);
-  add_symmetry_option(scans, *a);
-
-  CLI::App& about =
-      add(model, "info", "What a model is", a, action, [](ModelArguments m) { return info(m); });
-  about.add_option("name", a->name, "Name of the model")->required();
-  about.add_option("--render", a->render, "Write a picture of the model: sides, edges, noise")
+  add_from_mesh(model, a, action);
+  add_from_bop(model, a, action);
+  add_from_scans(model, a, action);
+  CLI::App& about_one = add(model, "info", "What a library holds of a model", a, action, info);
+  add_name(about_one, "name", *a);
+  about_one.add_option("--render", a->render, "Write a picture of the model: sides, edges, noise")
       ->type_name("F.png");
-  CLI::App& symmetry = add(model, "symmetry", "Show, confirm or drop the symmetries of a model", a,
-                           action, [](ModelArguments m) { return set_symmetry(m); });
-  symmetry.add_option("name", a->name, "Name of the model")->required();
-  auto* confirm = symmetry.add_flag_callback(
-      "--confirm", [a] { a->symmetry = "confirm"; }, "The symmetries found are right");
-  symmetry
-      .add_flag_callback(
-          "--none", [a] { a->symmetry = "none"; }, "The object has none")
-      ->excludes(confirm);
-  add(model, "list",
-      "The models of a library; exits with 1, after the list, when one of them cannot be read", a,
-      action, [](ModelArguments m) { return list(m); });
-  add(model, "remove", "Take a model out of a library", a, action,
-      [](ModelArguments m) { return remove(m); })
-      .add_option("name", a->name, "Name of the model")
-      ->required();
+  add_symmetry(model, a, action);
+  add(model, "list", "The models of a library; exits with 1 if one of them cannot be read", a,
+      action, list);
+  add_name(add(model, "remove", "Remove a model from a library", a, action, remove), "name", *a);
 }
 
 }  // namespace bpa::cli

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
+
+#include "core/base/status.hpp"
 
 namespace bpa::cli {
 
-/// A progress bar on stderr; draws nothing when that is not a terminal. Gone when destroyed.
+/// A progress bar on stderr, if that is a terminal. The destructor removes it.
 class Progress {
  public:
   Progress(std::string title, int total);
@@ -14,7 +17,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `done` of the total are done; `item` is what is being worked on.
+  /// Shows that `done` of the total are done, and the current item.
   void show(int done, const std::string& item = {});
   /// Removes the bar, so that something else can be printed; the next show() draws it again.
   void clear();
@@ -25,5 +28,10 @@ class Progress {
   bool terminal_;
   bool drawn_ = false;
 };
+
+/// Runs work(0) to work(count - 1) in parallel under a progress bar. Returns the first failure, by
+/// index.
+Status run_all(const std::string& title, int count, int num_threads,
+               const std::function<Status(int)>& work);
 
 }  // namespace bpa::cli

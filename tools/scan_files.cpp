@@ -4,9 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <mutex>
 
-#include "core/base/parallel.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/image_file.hpp"
 #include "tools/progress.hpp"
@@ -14,24 +12,6 @@
 namespace bpa::cli {
 namespace fs = std::filesystem;
 namespace {
-
-/// Runs load(i) for all i in parallel under a progress bar; the first failure, if any.
-template <class Load>
-Status load_all(int count, int num_threads, const Load& load) {
-  Progress progress("images", count);
-  std::vector<Status> status(static_cast<std::size_t>(count));
-  std::mutex mutex;
-  int done = 0;
-  parallel_for(count, num_threads, [&](int i) {
-    status[static_cast<std::size_t>(i)] = load(static_cast<std::size_t>(i));
-    const std::lock_guard lock(mutex);
-    progress.show(++done);
-  });
-  for (const Status& s : status) {
-    if (!s.ok()) return s;
-  }
-  return {};
-}
 
 /// Where the instance's pixels are marked: SCENE/mask_visib/IMAGE_INSTANCE.png beside SCENE/depth.
 std::string mask_path(const io::BopFrame& frame, std::size_t instance) {
@@ -50,7 +30,8 @@ Result<std::vector<std::vector<ScanView>>> read_scan(const std::string& dataset,
   if (!frames.ok()) return frames.status();
   std::vector<ScanView> views(frames->size());
   const Status status =
-      load_all(static_cast<int>(frames->size()), num_threads, [&](std::size_t i) -> Status {
+      run_all("images", static_cast<int>(frames->size()), num_threads, [&](int k) -> Status {
+        const auto i = static_cast<std::size_t>(k);
         const Result<Frame> frame = io::load_bop_frame((*frames)[i]);
         if (!frame.ok()) return frame.status();
         views[i].view = make_posed_view(*frame, {}, Pose{});
@@ -88,7 +69,8 @@ Result<std::vector<PosedView>> read_posed_views(const std::string& dataset,
   }
   std::vector<PosedView> views(wanted.size());
   const Status status =
-      load_all(static_cast<int>(wanted.size()), num_threads, [&](std::size_t i) -> Status {
+      run_all("images", static_cast<int>(wanted.size()), num_threads, [&](int k) -> Status {
+        const auto i = static_cast<std::size_t>(k);
         const Wanted& w = wanted[i];
         const Result<Frame> frame = io::load_bop_frame(*w.frame);
         if (!frame.ok()) return frame.status();

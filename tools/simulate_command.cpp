@@ -5,17 +5,16 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 
 #include <CLI/CLI.hpp>
 
-#include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/io/bop_writer.hpp"
 #include "core/io/mesh_file.hpp"
 #include "core/sim/scenes.hpp"
 #include "core/sim/turntable.hpp"
 #include "tools/command.hpp"
+#include "tools/option_fields.hpp"
 #include "tools/progress.hpp"
 
 namespace bpa::cli {
@@ -33,8 +32,6 @@ struct SimulateArguments {
   double scale = 1;
   double model_error = 0;
   int look_alikes = 0;
-  std::vector<int> objects;
-  std::vector<double> clutter;
   sim::SceneOptions scene;
   sim::TurntableOptions turntable;
 };
@@ -141,7 +138,7 @@ void print_visible_fractions(std::vector<double> fractions) {
   std::printf("\n");
 }
 
-// Two of each object, so much longer or shorter that they are other things.
+// Two of each object, with lengths that differ so much that they are other objects.
 std::vector<sim::SimulatedObject> make_look_alikes(const std::vector<sim::SimulatedObject>& objects,
                                                    std::uint64_t seed) {
   constexpr double kDifference = 0.12;
@@ -153,14 +150,6 @@ std::vector<sim::SimulatedObject> make_look_alikes(const std::vector<sim::Simula
 }
 
 Status simulate_scenes(SimulateArguments a) {
-  const auto range = [](const auto& given, auto& low, auto& high) {
-    if (given.size() == 2) {
-      low = given[0];
-      high = given[1];
-    }
-  };
-  range(a.objects, a.scene.min_objects, a.scene.max_objects);
-  range(a.clutter, a.scene.min_clutter, a.scene.max_clutter);
   if (Status s = validate(a.scene); !s.ok()) return s;
   if (a.scene.min_objects > a.scene.max_objects) {
     return invalid_argument("--objects MIN,MAX: MIN must not be greater than MAX");
@@ -179,21 +168,10 @@ Status simulate_scenes(SimulateArguments a) {
   }
   const sim::Stage stage(std::move(objects).value(), a.common.threads, std::move(look_alikes));
 
-  Progress progress("simulate", a.scenes);
-  progress.show(0);
-  std::vector<Status> status(a.scenes);
   std::vector<std::vector<double>> fractions(a.scenes);
-  std::mutex mutex;
-  int done = 0;
-  parallel_for(a.scenes, a.common.threads, [&](int i) {
-    status[i] = write_scene(a, stage, i, fractions[i]);
-    const std::lock_guard lock(mutex);
-    progress.show(++done, "scene " + std::to_string(i + 1));
-  });
-  progress.clear();
-  for (const Status& s : status) {
-    if (!s.ok()) return s;
-  }
+  const Status written = run_all("scenes", a.scenes, a.common.threads,
+                                 [&](int i) { return write_scene(a, stage, i, fractions[i]); });
+  if (!written.ok()) return written;
   std::vector<double> all;
   for (const auto& f : fractions) all.insert(all.end(), f.begin(), f.end());
   std::printf("%d scenes in %s/%s, %zu models\n", a.scenes, a.out.c_str(), a.split.c_str(),
@@ -247,12 +225,84 @@ void add_output_options(CLI::App& command, SimulateArguments& a) {
   command.add_option("--out", a.out, "Folder of the data set to write")
       ->required()
       ->type_name("DIR");
-  command.add_option("--split", a.split, "Split to write")
-      ->type_name("NAME")
-      ->capture_default_str();
+  add_split_option(command, a.split);
   command.add_option("--scale", a.scale, "Metres of one unit of the meshes' files")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  add_common_options(command, a.common);
+}
+
+template <class Value>
+void add_range(CLI::App& command, const char* name, Value& low, Value& high, const char* text) {
+  const auto set = [&low, &high](const std::vector<Value>& range) {
+    low = range[0];
+    high = range[1];
+  };
+  command.add_option_function<std::vector<Value>>(name, set, text)
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("MIN,MAX");
+}
+
+void add_object_options(CLI::App& command, SimulateArguments& a) {
+  auto* meshes =
+      command.add_option("--meshes", a.meshes, "Folder of PLY, OBJ or STL meshes instead of ours");
+  meshes->type_name("DIR");
+  command.add_option("--models", a.models, "Only these of the household objects")
+      ->excludes(meshes)
+      ->type_name("LIST");
+  command
+      .add_option("--model-error", a.model_error,
+                  "Largest change of an object's length along each axis against its model, "
+                  "as a fraction")
+      ->check(CLI::Range(0.0, 0.2))
+      ->capture_default_str();
+  command
+      .add_option("--look-alikes", a.look_alikes,
+                  "Most distractors of a scene with an object's shape and other measures, "
+                  "which are not in the truth")
+      ->check(CLI::Range(0, 20))
+      ->capture_default_str();
+}
+
+void add_scenes(CLI::App& simulate, const std::shared_ptr<SimulateArguments>& a, Action& action) {
+  CLI::App& command = *simulate.add_subcommand("scenes", "Piles of objects on a table");
+  add_output_options(command, *a);
+  command.add_option("--scenes", a->scenes, "Number of scenes")
+      ->check(CLI::Range(1, 999999))
+      ->capture_default_str();
+  add_range(command, "--objects", a->scene.min_objects, a->scene.max_objects,
+            "Fewest and most objects of a scene; 10,14 if not given");
+  add_range(command, "--clutter", a->scene.min_clutter, a->scene.max_clutter,
+            "Range of clutter, 0.6,1 if not given; 0 = apart on the table, 1 = heap");
+  add_object_options(command, *a);
+  add_options(command, a->scene,
+              {{"--views", "views"},
+               {"--shots", "shots"},
+               {"--empty", "empty_share"},
+               {"--distractors", "distractor_share"},
+               {"--border", "border_share"},
+               {"--misregistration", "misregistration"},
+               {"--calibration-error", "calibration_error"}});
+  command.callback([&action, a] { action = [a] { return simulate_scenes(*a); }; });
+}
+
+void add_turntable(CLI::App& simulate, const std::shared_ptr<SimulateArguments>& a,
+                   Action& action) {
+  CLI::App& command = *simulate.add_subcommand("turntable", "An object turned before a camera");
+  add_output_options(command, *a);
+  auto* mesh = command.add_option("--mesh", a->mesh, "PLY, OBJ or STL mesh")->type_name("FILE");
+  command.add_option("--object", a->object, "One of the household objects instead")
+      ->excludes(mesh)
+      ->type_name("NAME");
+  add_options(command, a->turntable,
+              {{"--step-deg", "step_deg"}, {"--positions", "resting_positions"}});
+  command.callback([&action, a] {
+    if (a->mesh.empty() == a->object.empty()) {
+      throw CLI::ValidationError("object", "give one of --mesh and --object");
+    }
+    action = [a] { return simulate_turntable(*a); };
+  });
 }
 
 }  // namespace
@@ -261,82 +311,8 @@ void add_simulate_command(CLI::App& program, Action& action) {
   CLI::App& simulate = *program.add_subcommand("simulate", "RGB-D frames with truth, as BOP sets");
   simulate.require_subcommand(1);
   const auto a = std::make_shared<SimulateArguments>();
-
-  CLI::App& scenes = *simulate.add_subcommand("scenes", "Piles of objects on a table");
-  add_output_options(scenes, *a);
-  scenes.add_option("--scenes", a->scenes, "Number of scenes")
-      ->check(CLI::Range(1, 999999))
-      ->capture_default_str();
-  scenes
-      .add_option("--objects", a->objects, "Fewest and most objects of a scene; 10,14 if not given")
-      ->delimiter(',')
-      ->expected(2)
-      ->type_name("MIN,MAX");
-  scenes
-      .add_option("--clutter", a->clutter,
-                  "Range of clutter, 0.6,1 if not given; 0 = apart on the table, 1 = heap")
-      ->delimiter(',')
-      ->expected(2)
-      ->type_name("MIN,MAX");
-  auto* meshes = scenes.add_option("--meshes", a->meshes, "Meshes of your own instead of ours");
-  meshes->type_name("DIR");
-  scenes.add_option("--models", a->models, "Only these of the household objects")
-      ->excludes(meshes)
-      ->type_name("LIST");
-  scenes.add_option("--views", a->scene.views, "Places that each scene is seen from")
-      ->capture_default_str();
-  scenes.add_option("--shots", a->scene.shots, "Frames from each place, with other noise")
-      ->capture_default_str();
-  scenes.add_option("--empty", a->scene.empty_share, "Share of scenes with an empty table")
-      ->capture_default_str();
-  scenes
-      .add_option("--distractors", a->scene.distractor_share,
-                  "Share of scenes with nothing but other things")
-      ->capture_default_str();
-  scenes
-      .add_option("--border", a->scene.border_share,
-                  "Share of scenes with an object cut by the image's border")
-      ->capture_default_str();
-  scenes.add_option("--misregistration", a->scene.kinect.misregistration,
-                    "Shift of colour against depth, pixels");
-  scenes
-      .add_option(
-          "--model-error", a->model_error,
-          "What objects are longer or shorter than their models along each axis, as a share")
-      ->check(CLI::Range(0.0, 0.2))
-      ->capture_default_str();
-  scenes
-      .add_option(
-          "--look-alikes", a->look_alikes,
-          "Most things of a scene that look like the objects but have other measures, and are "
-          "not in the truth")
-      ->check(CLI::Range(0, 20))
-      ->capture_default_str();
-  scenes
-      .add_option("--calibration-error", a->scene.kinect.calibration_error,
-                  "Smooth error of the sensor's disparity, pixels; 0.4 is 1 cm at 1 m")
-      ->capture_default_str();
-  add_common_options(scenes, a->common);
-  scenes.callback([&action, a] { action = [a] { return simulate_scenes(*a); }; });
-
-  CLI::App& turntable = *simulate.add_subcommand("turntable", "An object turned before a camera");
-  add_output_options(turntable, *a);
-  auto* mesh = turntable.add_option("--mesh", a->mesh, "PLY, OBJ or STL mesh")->type_name("FILE");
-  turntable.add_option("--object", a->object, "One of the household objects instead")
-      ->excludes(mesh)
-      ->type_name("NAME");
-  turntable.add_option("--step-deg", a->turntable.step_deg, "Turn between two views, degrees")
-      ->capture_default_str();
-  turntable
-      .add_option("--positions", a->turntable.resting_positions, "Ways the object is put down")
-      ->capture_default_str();
-  add_common_options(turntable, a->common);
-  turntable.callback([&action, a] {
-    if (a->mesh.empty() == a->object.empty()) {
-      throw CLI::ValidationError("object", "give one of --mesh and --object");
-    }
-    action = [a] { return simulate_turntable(*a); };
-  });
+  add_scenes(simulate, a, action);
+  add_turntable(simulate, a, action);
 }
 
 }  // namespace bpa::cli

@@ -7,26 +7,23 @@
 
 #include <CLI/CLI.hpp>
 
-#include "core/eval/pose_errors.hpp"
-#include "core/io/bop_dataset.hpp"
+#include "core/eval/matching.hpp"
 #include "core/io/file_bytes.hpp"
-#include "core/pipeline/detector.hpp"
-#include "core/pipeline/frame_trace.hpp"
 #include "core/pipeline/score_layer_file.hpp"
 #include "core/scene/interpretations.hpp"
 #include "core/scene/overlaps.hpp"
 #include "tools/command.hpp"
-#include "tools/detection_files.hpp"
-#include "tools/progress.hpp"
+#include "tools/search.hpp"
 
 namespace bpa::cli {
 namespace {
 
 struct TrainArguments {
   CommonOptions common;
-  std::string library, split = "test", config, output, made_by = "bpa train";
-  std::vector<std::string> bop;
-  std::vector<int> scenes;
+  DetectorArguments detector;
+  DatasetOptions dataset;        // without its folder
+  std::vector<std::string> bop;  // folders
+  std::string output, made_by = "bpa train";
   int held_out = 5;
 };
 
@@ -36,14 +33,6 @@ struct Samples {
 struct AllSamples {
   Samples round_two, round_three;
 };
-
-bool is_right(const Pose& pose, const ObjectModel& model,
-              const std::vector<io::BopInstance>& truth) {
-  return std::any_of(truth.begin(), truth.end(), [&](const io::BopInstance& instance) {
-    return instance.obj_id == model.number &&
-           eval::is_right(pose, instance.camera_from_object, model.symmetry);
-  });
-}
 
 // What round two has to order: right poses, and every fifth wrong one, none of which competes.
 ScoreFrame round_two_samples(const FrameTrace& trace, const DetectorOptions& options,
@@ -57,7 +46,7 @@ ScoreFrame round_two_samples(const FrameTrace& trace, const DetectorOptions& opt
       if (stage.name != "round_two") continue;
       for (const FastPose& fast : stage.poses) {
         const Pose pose = to_pose(fast);
-        const bool right = is_right(pose, model, truth);
+        const bool right = eval::is_right_about_any(pose, model, truth);
         if (!right && wrong++ % 5 != 0) continue;
         Evidence evidence(trace.scene, places, pose, options.detect.score.quick_points);
         out.samples.push_back({measure(evidence, Round::two), right});
@@ -75,52 +64,33 @@ ScoreFrame round_three_samples(const FrameTrace& trace, const DetectorOptions& o
   out.competition =
       competition_of(trace.candidates, find_overlaps(trace.candidates, options.scene.max_shared));
   for (const Candidate& candidate : trace.candidates) {
-    out.samples.push_back({candidate.values, is_right(candidate.pose(), *candidate.model, truth)});
+    out.samples.push_back(
+        {candidate.values, eval::is_right_about_any(candidate.pose(), *candidate.model, truth)});
   }
   return out;
 }
 
-// What the detector would choose from: the right placements, the right object in a wrong pose, and
-// wrong objects aligned as well as they can be (paper section V).
-Status collect(const TrainArguments& a, const Detector& detector,
-               const std::vector<io::BopFrame>& frames, AllSamples& samples) {
-  DetectRequest request;
-  request.seed = a.common.seed;
-  request.num_threads = a.common.threads;
-  Progress progress("frames", static_cast<int>(frames.size()));
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    progress.show(static_cast<int>(i));
-    if (!frames[i].has_truth) continue;
-    Result<Frame> frame = io::load_bop_frame(frames[i]);
-    if (!frame.ok()) return frame.status();
-    clean_depth(*frame);
-    FrameTrace trace;
-    const auto result = detector.detect(*frame, request, &trace);
-    if (!result.ok()) return result.status();
-    const bool held_out = a.held_out > 0 && static_cast<int>(i) % a.held_out == a.held_out - 1;
+// The placements of every frame as the detector chooses from them: right ones, the right object in
+// a wrong pose, and wrong objects, each aligned as well as possible (paper section V).
+Status collect(const TrainArguments& a, AllSamples& samples) {
+  DetectorArguments built_in = a.detector;
+  built_in.built_in_layers = true;
+  const Result<Detector> detector = open_detector(built_in, a.common.threads);
+  if (!detector.ok()) return detector.status();
+  const auto use = [&](const SearchedFrame& frame) {
+    const int index = static_cast<int>(frame.index);
+    const bool held_out = a.held_out > 0 && index % a.held_out == a.held_out - 1;
     const auto add = [&](Samples& to, ScoreFrame scores) {
       (held_out ? to.held_out : to.training).push_back(std::move(scores));
     };
-    add(samples.round_two, round_two_samples(trace, detector.options(), frames[i].truth));
-    add(samples.round_three, round_three_samples(trace, detector.options(), frames[i].truth));
-  }
-  return {};
-}
-
-Status collect_all(const TrainArguments& a, AllSamples& samples) {
-  DetectorOptions options;
-  if (!a.config.empty()) {
-    const Result<DetectorOptions> loaded = load_detector_options(a.config);
-    if (!loaded.ok()) return loaded.status();
-    options = *loaded;
-  }
-  const auto library = load_detection_library(a.library, {}, a.common.threads);
-  if (!library.ok()) return library.status();
-  const Detector detector(*library, options);
+    add(samples.round_two, round_two_samples(frame.trace, detector->options(), frame.truth));
+    add(samples.round_three, round_three_samples(frame.trace, detector->options(), frame.truth));
+  };
   for (const std::string& folder : a.bop) {
-    const auto frames = io::read_bop_frames(folder, a.split, a.scenes);
-    if (!frames.ok()) return frames.status();
-    if (Status status = collect(a, detector, *frames, samples); !status.ok()) return status;
+    DatasetOptions dataset = a.dataset;
+    dataset.folder = folder;
+    const Status status = search_frames(*detector, dataset, a.common, use);
+    if (!status.ok()) return status;
   }
   return {};
 }
@@ -131,7 +101,7 @@ std::string provenance(const TrainArguments& a, std::size_t frames) {
   for (const std::string& folder : a.bop) {
     sets += (sets.empty() ? "" : " and ") + folder.substr(folder.find_last_of('/') + 1);
   }
-  return a.made_by + ": split " + a.split + " of " + sets + ", " + std::to_string(frames) +
+  return a.made_by + ": split " + a.dataset.split + " of " + sets + ", " + std::to_string(frames) +
          " frames, seed " + std::to_string(a.common.seed);
 }
 
@@ -161,7 +131,7 @@ Samples without_color(Samples samples) {
 
 Status train(const TrainArguments& a) {
   AllSamples samples;
-  if (Status status = collect_all(a, samples); !status.ok()) return status;
+  if (Status status = collect(a, samples); !status.ok()) return status;
   ScoreLayers layers;
   const auto learn = [&](const char* name, const Samples& from, ScoreLayer& layer) {
     Result<ScoreLayer> learned = train_score_layer(from.training);
@@ -184,7 +154,7 @@ Status train(const TrainArguments& a) {
                            Task{"without colours", uncolored, layers.without_color}}) {
     if (Status status = learn(task.name, task.from, task.layer); !status.ok()) return status;
   }
-  const std::string path = a.output.empty() ? score_layer_path(a.library) : a.output;
+  const std::string path = a.output.empty() ? score_layer_path(a.detector.library) : a.output;
   if (Status status = write_score_layers(path, layers); !status.ok()) return status;
   std::printf("wrote %s\n", path.c_str());
   return {};
@@ -194,24 +164,16 @@ Status train(const TrainArguments& a) {
 
 void add_train_command(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand(
-      "train", "Learn from frames with truth how sure a placement is, for a model library");
+      "train", "Learn the probability of a placement from frames with truth");
   const auto a = std::make_shared<TrainArguments>();
-  command.add_option("--library", a->library, "Folder of the model library")
-      ->required()
-      ->type_name("DIR");
+  add_detector_options(command, a->detector);
   command.add_option("--bop", a->bop, "Folder of a BOP data set with truth; may be repeated")
       ->required()
       ->type_name("DIR");
-  command.add_option("--split", a->split, "Split of the data set")
-      ->type_name("NAME")
-      ->capture_default_str();
-  command.add_option("--scenes", a->scenes, "Scenes of the split, such as 1,4; all if not given")
-      ->delimiter(',')
-      ->type_name("LIST");
-  command.add_option("--config", a->config, "Detector options as YAML")->type_name("FILE");
+  add_split_options(command, a->dataset);
   command
       .add_option("--held-out", a->held_out,
-                  "Every so many frames one is kept out of training to judge by; 0 = none")
+                  "Keep every N-th frame out of training, to judge the layers by; 0 = none")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   command

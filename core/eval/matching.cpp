@@ -14,6 +14,14 @@ double right_cost(const Pose& estimate, const Pose& truth, const SymmetryGroup& 
   return cost <= 1 ? cost : kNoMatch;
 }
 
+bool is_right_about_any(const Pose& estimate, const ObjectModel& model,
+                        const std::vector<io::BopInstance>& truth) {
+  return std::any_of(truth.begin(), truth.end(), [&](const io::BopInstance& instance) {
+    return instance.obj_id == model.number &&
+           is_right(estimate, instance.camera_from_object, model.symmetry);
+  });
+}
+
 std::vector<int> match_greedily(const std::vector<double>& scores,
                                 const std::vector<std::vector<double>>& costs) {
   std::vector<int> order(scores.size());

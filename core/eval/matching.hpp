@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "core/eval/pose_errors.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/model/object_model.hpp"
 
 namespace bpa::eval {
 
@@ -16,6 +18,10 @@ constexpr double kNoMatch = std::numeric_limits<double>::infinity();
 /// (paper section VII): 0 to 1, and kNoMatch above 1.
 double right_cost(const Pose& estimate, const Pose& truth, const SymmetryGroup& symmetry,
                   double position_m = kPoseTolerance_m, double angle_rad = kPoseTolerance_rad);
+
+/// Whether a pose of a model (camera_from_object) is_right() about one of these instances.
+bool is_right_about_any(const Pose& estimate, const ObjectModel& model,
+                        const std::vector<io::BopInstance>& truth);
 
 /// Greedy one-to-one matching, as BOP does it: estimates by falling score (by index where equal)
 /// each take the free truth of the smallest cost. costs[e][t] is kNoMatch where the estimate is not

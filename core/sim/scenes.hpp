@@ -49,16 +49,17 @@ struct SceneOptions {
     visit("min_clutter", min_clutter, {0, 1, "0 = apart on the table, 1 = a heap."});
     visit("max_clutter", max_clutter, {0, 1, "0 = apart on the table, 1 = a heap."});
     visit("bin_share", bin_share, {0, 1, "Chance that a heap lies in an open bin."});
-    visit("max_distractors", max_distractors, {0, 20, "Most other things in a pile."});
+    visit("max_distractors", max_distractors, {0, 20, "Most distractors in a pile."});
     visit("min_distance", min_distance, {0.3, 4, "Camera to the middle of the pile, metres."});
     visit("max_distance", max_distance, {0.3, 4, "Camera to the middle of the pile, metres."});
     visit("min_elevation_deg", min_elevation_deg, {5, 89, "Camera above the table, degrees."});
     visit("max_elevation_deg", max_elevation_deg, {5, 89, "Camera above the table, degrees."});
-    visit("views", views, {1, 1000, "Places that each scene is seen from, all around."});
-    visit("shots", shots, {1, 100, "Frames from each place, with other noise."});
+    visit("views", views, {1, 1000, "Viewpoints of each scene, all around."});
+    visit("shots", shots, {1, 100, "Frames from each viewpoint, which differ in noise."});
     visit("empty_share", empty_share, {0, 1, "Share of scenes with an empty table."});
-    visit("distractor_share", distractor_share, {0, 1, "Share of scenes without any object."});
-    visit("border_share", border_share, {0, 1, "Share of scenes with an object at the border."});
+    visit("distractor_share", distractor_share, {0, 1, "Share of scenes with distractors only."});
+    visit("border_share", border_share,
+          {0, 1, "Share of scenes with an object cut by the image's border."});
     kinect.visit_fields(visit);
   }
 };
