@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
+#include <string>
 #include <thread>
 
 #include "idl/wire/messages.hpp"
@@ -16,16 +17,21 @@ namespace wire = bpa::wire;
 using wire::sensor_msgs::CameraInfo;
 using wire::sensor_msgs::Image;
 
+int fail(const std::string& message) {
+  std::cerr << message << '\n';
+  return 1;
+}
+
 int main(int argc, char** argv) {
   const long frames = argc > 1 ? std::atol(argv[1]) : 0;
   wire::ParticipantOptions options;  // domain and range from ROS_DOMAIN_ID and so on
   options.node = {"/camera", "driver"};
   const auto node = wire::Participant::create(options);
-  if (!node.ok()) return std::cerr << node.status().message << '\n', 1;
+  if (!node.ok()) return fail(node.status().message);
   auto color = wire::Publisher<Image>::create(*node, "color/image_raw");
   auto depth = wire::Publisher<Image>::create(*node, "aligned_depth_to_color/image_raw");
   auto info = wire::Publisher<CameraInfo>::create(*node, "color/camera_info");
-  if (!color.ok() || !depth.ok() || !info.ok()) return std::cerr << "cannot publish\n", 1;
+  if (!color.ok() || !depth.ok() || !info.ok()) return fail("cannot publish");
 
   Image rgb, millimetres;
   CameraInfo camera;
@@ -62,4 +68,5 @@ int main(int argc, char** argv) {
   }
 }
 
-// Expected output: publishing on /camera/color/image_raw
+// Expected output:
+//   publishing on /camera/color/image_raw
