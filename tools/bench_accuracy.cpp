@@ -11,7 +11,7 @@
 
 #include "core/eval/matching.hpp"
 #include "core/io/file_bytes.hpp"
-#include "tools/bench.hpp"
+#include "tools/command.hpp"
 #include "tools/search.hpp"
 
 namespace bpa::cli {

@@ -19,7 +19,7 @@
 #include "core/io/file_bytes.hpp"
 #include "core/io/model_file.hpp"
 #include "core/model/model_index.hpp"
-#include "tools/bench.hpp"
+#include "tools/command.hpp"
 #include "tools/option_fields.hpp"
 #include "tools/progress.hpp"
 
@@ -134,24 +134,15 @@ constexpr Quantity kPosition = {"position", "mm", 1e3, &align::ConvergenceCurve:
 constexpr Quantity kOrientation = {"orientation", "degrees", kDegrees,
                                    &align::ConvergenceCurve::angle_rad};
 
-// A round number not below `value` that is easily divided by five.
-double round_up(double value) {
-  double size = 5 * std::pow(10, std::floor(std::log10(value / 5)));
-  for (const double step : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.5, 10.0}) {
-    if (step * size >= value) return step * size;
-  }
-  return value;
-}
-
 Status write_plot(const std::string& folder, const Quantity& quantity,
                   const align::ConvergenceResult& result) {
-  draw::PlotAxes axes;
-  axes.title = std::string("Mean of the least error so far: ") + quantity.name;
-  axes.x_name = "iteration";
-  axes.y_name = quantity.unit;
-  const std::vector<double>& first = result.bpa.*quantity.values;
-  axes.x_max = static_cast<double>(first.size() - 1);
-  axes.y_max = first[0] > 0 ? round_up(quantity.scale * first[0]) : 1;
+  const draw::PlotAxes axes{std::string("Mean of the least error so far: ") + quantity.name,
+                            "iteration",
+                            quantity.unit,
+                            0,
+                            static_cast<double>(result.bpa.position_m.size() - 1),
+                            0,
+                            0};
   std::vector<draw::Series> all;
   const auto add = [&](const char* name, const align::ConvergenceCurve& curve) {
     draw::Series series{name, {}, {}};

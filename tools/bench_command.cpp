@@ -3,7 +3,6 @@
 // bpa bench: experiments. Each is its own file and its line here.
 #include <CLI/CLI.hpp>
 
-#include "tools/bench.hpp"
 #include "tools/command.hpp"
 
 namespace bpa::cli {

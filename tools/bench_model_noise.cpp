@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 
 #include "core/draw/plot.hpp"
 #include "core/io/image_file.hpp"
@@ -25,6 +26,8 @@ struct Kind {
   double unit;
   const NoiseCurve& fitted;
   std::vector<NoiseBin> held_out;  // those that count
+
+  double predicted(const NoiseBin& bin) const { return fitted(bin.edge_distance, bin.angle); }
 };
 
 std::vector<NoiseBin> well_filled(const std::vector<NoiseBin>& bins) {
@@ -38,22 +41,25 @@ std::vector<NoiseBin> well_filled(const std::vector<NoiseBin>& bins) {
 double factor_off(const Kind& kind) {
   double squares = 0, count = 0;
   for (const NoiseBin& bin : kind.held_out) {
-    const double ratio = kind.fitted(bin.edge_distance, bin.angle) / bin.sigma;
-    squares += bin.count * std::pow(std::log(ratio), 2);
+    squares += bin.count * std::pow(std::log(kind.predicted(bin) / bin.sigma), 2);
     count += bin.count;
   }
   return std::exp(std::sqrt(squares / std::max(1.0, count)));
 }
 
-/// Observed errors of what was predicted alike: bins by rising prediction, in about ten groups of
-/// as many errors.
+using Value = std::function<double(const NoiseBin&)>;
+
+std::vector<NoiseBin> sorted(std::vector<NoiseBin> bins, const Value& by) {
+  std::stable_sort(bins.begin(), bins.end(),
+                   [&](const NoiseBin& a, const NoiseBin& b) { return by(a) < by(b); });
+  return bins;
+}
+
+/// Observed over predicted errors: bins by rising prediction, in about ten groups of equally many
+/// errors.
 draw::Series observed_over_predicted(const Kind& kind) {
-  std::vector<NoiseBin> bins = kind.held_out;
-  const auto predicted = [&kind](const NoiseBin& bin) {
-    return kind.fitted(bin.edge_distance, bin.angle);
-  };
-  std::sort(bins.begin(), bins.end(),
-            [&](const NoiseBin& a, const NoiseBin& b) { return predicted(a) < predicted(b); });
+  const auto predicted = [&kind](const NoiseBin& bin) { return kind.predicted(bin); };
+  const std::vector<NoiseBin> bins = sorted(kind.held_out, predicted);
   double all = 0;
   for (const NoiseBin& bin : bins) all += bin.count;
   draw::Series series{"held-out views", {}, {}};
@@ -70,80 +76,53 @@ draw::Series observed_over_predicted(const Kind& kind) {
   return series;
 }
 
-/// Of the bins between two edge distances (metres): what `value` is of each, over its angle.
-template <class Value>
-draw::Series over_angle(const Kind& kind, const std::string& name, double nearest, double farthest,
-                        const Value& value) {
+/// y over x of the bins that are `kept`, by rising x.
+draw::Series series_of(const Kind& kind, const std::string& name, bool (*kept)(const NoiseBin&),
+                       const Value& x, const Value& y) {
   draw::Series series{name, {}, {}};
-  for (const NoiseBin& bin : kind.held_out) {
-    if (bin.edge_distance < nearest || bin.edge_distance > farthest) continue;
-    series.x.push_back(kDegrees * bin.angle);
-    series.y.push_back(kind.unit * value(bin));
+  for (const NoiseBin& bin : sorted(kind.held_out, x)) {
+    if (!kept(bin)) continue;
+    series.x.push_back(x(bin));
+    series.y.push_back(kind.unit * y(bin));
   }
   return series;
 }
 
-/// The same over edge distance, between two angles (radians).
-template <class Value>
-draw::Series over_edge_distance(const Kind& kind, const std::string& name, double least,
-                                double most, const Value& value) {
-  draw::Series series{name, {}, {}};
-  std::vector<NoiseBin> bins;
-  for (const NoiseBin& bin : kind.held_out) {
-    if (bin.angle >= least && bin.angle < most) bins.push_back(bin);
-  }
-  std::sort(bins.begin(), bins.end(),
-            [](const NoiseBin& a, const NoiseBin& b) { return a.edge_distance < b.edge_distance; });
-  for (const NoiseBin& bin : bins) {
-    series.x.push_back(kMillimetres * bin.edge_distance);
-    series.y.push_back(kind.unit * value(bin));
-  }
-  return series;
+bool far_from_edges(const NoiseBin& bin) {
+  return bin.edge_distance >= 0.015 && bin.edge_distance <= 0.025;
 }
-
-double highest(const std::vector<draw::Series>& series) {
-  double top = 0;
-  for (const draw::Series& s : series) {
-    for (const double y : s.y) top = std::max(top, y);
-  }
-  return std::max(1e-9, 1.1 * top);
+bool somewhat_slanted(const NoiseBin& bin) {
+  return bin.angle >= 30 / kDegrees && bin.angle < 37.5 / kDegrees;
 }
-
-Status save(const std::string& path, draw::PlotAxes axes, const std::vector<draw::Series>& series) {
-  axes.y_max = highest(series);
-  if (axes.diagonal) {
-    for (const double x : series.front().x) axes.y_max = std::max(axes.y_max, 1.1 * x);
-    axes.x_max = axes.y_max;
-  }
-  return io::write_color_png(path, draw::line_plot(axes, series));
-}
+double degrees(const NoiseBin& bin) { return kDegrees * bin.angle; }
+double millimetres(const NoiseBin& bin) { return kMillimetres * bin.edge_distance; }
 
 Status save_plots(const Kind& kind, const draw::Series& law, const std::string& start,
                   const std::string& model) {
-  const auto observed = [](const NoiseBin& bin) { return bin.sigma; };
-  const auto fitted = [&kind](const NoiseBin& bin) {
-    return kind.fitted(bin.edge_distance, bin.angle);
+  const Value observed = [](const NoiseBin& bin) { return bin.sigma; };
+  const Value fitted = [&kind](const NoiseBin& bin) { return kind.predicted(bin); };
+  const auto curves = [&](bool (*kept)(const NoiseBin&), const Value& x) {
+    return std::vector<draw::Series>{series_of(kind, "held-out views", kept, x, observed),
+                                     series_of(kind, "fitted sigmoids", kept, x, fitted)};
   };
-  const std::string title = model + ": " + kind.name;
-  std::vector<draw::Series> curves = {over_angle(kind, "held-out views", 0.015, 0.025, observed),
-                                      over_angle(kind, "fitted sigmoids", 0.015, 0.025, fitted)};
-  if (!law.x.empty()) curves.push_back(law);
-  Status status = save(
-      start + "angle.png",
-      {title + ", 15 to 25 mm from edges", "surface angle, degrees", kind.unit_name, 0, 90, 0, 1},
-      curves);
-  if (!status.ok()) return status;
-  const double least = 30 / kDegrees, most = 37.5 / kDegrees;
-  status = save(start + "edge_distance.png",
-                {title + ", surface angle 30 to 37 degrees", "edge distance, mm", kind.unit_name, 0,
-                 25, 0, 1},
-                {over_edge_distance(kind, "held-out views", least, most, observed),
-                 over_edge_distance(kind, "fitted sigmoids", least, most, fitted)});
-  if (!status.ok()) return status;
-  return save(start + "predicted.png",
-              {title + " of held-out views", std::string("predicted, ") + kind.unit_name,
-               std::string("observed, ") + kind.unit_name, 0, 1, 0, 1, true},
-              {observed_over_predicted(kind)});
+  const std::string title = model + ": " + kind.name, unit = kind.unit_name;
+  std::vector<draw::Series> over_angle = curves(far_from_edges, degrees);
+  if (!law.x.empty()) over_angle.push_back(law);
+  const std::pair<const char*, io::ColorImage> plots[] = {
+      {"angle", draw::line_plot({title + ", 15 to 25 mm from edges", "surface angle, degrees", unit,
+                                 0, 90, 0, 0},
+                                over_angle)},
+      {"edge_distance", draw::line_plot({title + ", surface angle 30 to 37 degrees",
+                                         "edge distance, mm", unit, 0, 25, 0, 0},
+                                        curves(somewhat_slanted, millimetres))},
+      {"predicted", draw::line_plot({title + " of held-out views", "predicted, " + unit,
+                                     "observed, " + unit, 0, 0, 0, 0, true},
+                                    {observed_over_predicted(kind)})}};
+  for (const auto& [name, plot] : plots) {
+    const Status status = io::write_color_png(start + name + ".png", plot);
+    if (!status.ok()) return status;
+  }
+  return {};
 }
 
 }  // namespace
@@ -160,19 +139,16 @@ Status measure_noise(const ModelSource& model, const std::vector<PosedView>& vie
                    well_filled(seen.range_bins)};
   const Kind normals{"noise of normals", "degrees", kDegrees, learned.noise.normal,
                      well_filled(seen.normal_bins)};
-  const auto published = [&seen](const NoiseBin& bin) {
-    return sim::published_axial_noise(seen.depth, bin.angle);
-  };
-  const draw::Series law = over_angle(range, "simulator's law", 0.015, 0.025, published);
+  const draw::Series law = series_of(
+      range, "simulator's law", far_from_edges, degrees,
+      [&seen](const NoiseBin& bin) { return sim::published_axial_noise(seen.depth, bin.angle); });
   std::printf(
       "  range noise 15 to 25 mm from edges, mm: angle, fitted, held-out views, simulator's law\n");
-  std::size_t row = 0;
   for (const NoiseBin& bin : range.held_out) {
-    if (bin.edge_distance < 0.015 || bin.edge_distance > 0.025) continue;
-    std::printf("    %4.0f degrees  %.2f  %.2f  %.2f\n", law.x[row],
-                kMillimetres * range.fitted(bin.edge_distance, bin.angle), kMillimetres * bin.sigma,
-                law.y[row]);
-    ++row;
+    if (!far_from_edges(bin)) continue;
+    std::printf("    %4.0f degrees  %.2f  %.2f  %.2f\n", degrees(bin),
+                kMillimetres * range.predicted(bin), kMillimetres * bin.sigma,
+                kMillimetres * sim::published_axial_noise(seen.depth, bin.angle));
   }
   std::printf(
       "  predicted noise of held-out views is off by a factor of %.2f (range), %.2f (normals)\n",

@@ -18,7 +18,6 @@
 #include "core/model/view_sphere.hpp"
 #include "core/modeling/model_source.hpp"
 #include "core/modeling/symmetry_search.hpp"
-#include "tools/bench.hpp"
 #include "tools/bench_model_noise.hpp"
 #include "tools/command.hpp"
 #include "tools/scan_files.hpp"
@@ -165,39 +164,8 @@ double share_within(const std::vector<float>& distances, float most) {
          static_cast<double>(std::max<std::size_t>(1, distances.size()));
 }
 
-/// The points of walls: those with a point that faces the other way right behind them, and how far
-/// behind it is.
-struct Walls {
-  PointCloud points;
-  std::vector<float> thickness;
-};
-
-Walls walls_of(const PointCloud& surface, float thickest) {
-  constexpr float kAside = 0.002f;
-  const NeighborGrid grid(surface.points, thickest + kAside);
-  Walls out;
-  for (std::size_t i = 0; i < surface.size(); ++i) {
-    const Eigen::Vector3f &p = surface.points[i], &n = surface.normals[i];
-    float nearest = kAside * kAside, thickness = -1;
-    grid.for_each_neighbor(p, [&](int k, float) {
-      const auto j = static_cast<std::size_t>(k);
-      const Eigen::Vector3f to = surface.points[j] - p;
-      const float behind = -n.dot(to), aside = (to + behind * n).squaredNorm();
-      if (behind <= 0 || behind > thickest || aside >= nearest) return;
-      if (surface.normals[j].dot(n) > -0.8f) return;
-      nearest = aside;
-      thickness = behind;
-    });
-    if (thickness < 0) continue;
-    out.points.points.push_back(p);
-    out.points.normals.push_back(n);
-    out.thickness.push_back(thickness);
-  }
-  return out;
-}
-
 void print_surface(const PointCloud& surface, const Truth& truth) {
-  constexpr float kThickest = 0.008f, kNear = 0.004f;
+  constexpr float kNear = 0.004f;
   const std::vector<float> off = distances(surface, truth.surface);
   const PointCloud shown = in_sight(truth.surface, truth.frames);
   std::printf(
@@ -205,14 +173,6 @@ void print_surface(const PointCloud& surface, const Truth& truth) {
       "mm: %.1f %%\n",
       1000 * quantile(off, 0.5), 1000 * quantile(off, 0.95),
       100 * share_within(distances(shown, surface), kNear));
-  const Walls walls = walls_of(shown, kThickest);
-  if (walls.thickness.size() < shown.size() / 20) return;
-  const Walls kept = walls_of(surface, kThickest);
-  std::printf(
-      "  walls under 8 mm, each side for itself: %.1f %% within 4 mm; %.1f mm thick, in the model "
-      "%.1f mm (medians)\n",
-      100 * share_within(distances(walls.points, surface), kNear),
-      1000 * quantile(walls.thickness, 0.5), 1000 * quantile(kept.thickness, 0.5));
 }
 
 /// Writes the model, in the frame of the mesh, into the library.

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // bpa bench sensor: the simulated depth camera against published figures and against real frames.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 
@@ -12,13 +12,11 @@
 #include <nlohmann/json.hpp>
 
 #include "core/draw/sheet.hpp"
-#include "core/io/bop_dataset.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/image_file.hpp"
-#include "core/io/pcd_file.hpp"
 #include "core/sim/depth_statistics.hpp"
 #include "core/sim/scenes.hpp"
-#include "tools/bench.hpp"
+#include "tools/detect_inputs.hpp"
 #include "tools/progress.hpp"
 
 namespace bpa::cli {
@@ -29,7 +27,7 @@ using sim::DepthStatistics;
 
 struct SensorArguments {
   CommonOptions common;
-  std::string bop, split = "test";
+  DatasetOptions dataset;
   std::vector<std::string> pcd;
   std::string sheet, json;
   int frames = 8;
@@ -87,32 +85,20 @@ struct NamedFrame {
 };
 
 Result<std::vector<NamedFrame>> read_real_frames(const SensorArguments& a) {
+  DetectArguments of_set, of_clouds;
+  of_set.dataset = a.dataset;
+  of_clouds.pcd = a.pcd;
   std::vector<NamedFrame> frames;
-  if (!a.bop.empty()) {
-    const auto entries = io::read_bop_frames(a.bop, a.split);
-    if (!entries.ok()) return entries.status();
-    for (const io::BopFrame& entry : *entries) {
-      Result<Frame> frame = io::load_bop_frame(entry);
-      if (!frame.ok()) return frame.status();
-      frames.push_back({"real " + frame->frame_id, std::move(*frame)});
+  for (const DetectArguments& source : {of_set, of_clouds}) {
+    const Result<Inputs> inputs = Inputs::open(source);
+    if (!inputs.ok()) return inputs.status();
+    for (std::size_t i = 0; i < inputs->size(); ++i) {
+      Result<Input> input = inputs->read(i);
+      if (!input.ok()) return input.status();
+      frames.push_back({"real " + std::filesystem::path(input->name).filename().string(),
+                        std::move(input->frame)});
     }
   }
-  for (const std::string& path : a.pcd) {
-    const Result<io::PcdCloud> cloud = io::read_pcd(path);
-    if (!cloud.ok()) return cloud.status();
-    if (!cloud->organised()) {
-      std::printf("%s is left out: it is not organised\n", path.c_str());
-      continue;
-    }
-    Result<io::OrganisedFrame> organised = io::frame_from_organised_cloud(*cloud);
-    if (!organised.ok()) {
-      return Status(organised.status().code, path + ": " + organised.status().message);
-    }
-    const std::size_t slash = path.find_last_of('/');
-    frames.push_back({"real " + path.substr(slash == std::string::npos ? 0 : slash + 1),
-                      std::move(organised->frame)});
-  }
-  for (NamedFrame& frame : frames) clean_depth(frame.frame);
   return frames;
 }
 
@@ -144,33 +130,38 @@ NamedFrame simulated_beside(const sim::Stage& stage, const Frame& real, std::uin
   return {"simulated", std::move(scene.frames.front().frame)};
 }
 
-constexpr int kStatistics = 7;
-using Row = std::array<double, kStatistics>;
-constexpr const char* kStatisticNames[kStatistics] = {
-    "missing",   "small_holes",      "left_gap_px",    "right_gap_px",
-    "roughness", "near_correlation", "far_correlation"};
+constexpr struct {
+  const char* name;
+  double DepthStatistics::*value;
+  double scale;       // of the printed value
+  int width, digits;  // of the column
+} kStatistics[] = {{"missing", &DepthStatistics::missing, 100, 6, 1},
+                   {"small_holes", &DepthStatistics::small_holes, 1, 9, 1},
+                   {"left_gap_px", &DepthStatistics::left_gap, 1, 8, 1},
+                   {"right_gap_px", &DepthStatistics::right_gap, 1, 7, 1},
+                   {"roughness", &DepthStatistics::roughness, 1, 10, 3},
+                   {"near_correlation", &DepthStatistics::near_correlation, 1, 8, 2},
+                   {"far_correlation", &DepthStatistics::far_correlation, 1, 6, 2}};
 
-Row row_of(const DepthStatistics& s) {
-  return {s.missing,   s.small_holes,      s.left_gap,       s.right_gap,
-          s.roughness, s.near_correlation, s.far_correlation};
+void print_row(const std::string& name, const DepthStatistics& row) {
+  std::printf("%-24s", name.substr(0, 24).c_str());
+  for (const auto& s : kStatistics) {
+    std::printf(" %*.*f", s.width, s.digits, s.scale * row.*s.value);
+  }
+  std::printf("\n");
 }
 
-void print_row(const std::string& name, const Row& r) {
-  std::printf("%-24s %6.1f %9.1f %8.1f %7.1f %10.3f %8.2f %6.2f\n", name.substr(0, 24).c_str(),
-              100 * r[0], r[1], r[2], r[3], r[4], r[5], r[6]);
-}
-
-Json to_json(const Row& row) {
+Json to_json(const DepthStatistics& row) {
   Json json;
-  for (int i = 0; i < kStatistics; ++i) json[kStatisticNames[i]] = row[static_cast<std::size_t>(i)];
+  for (const auto& s : kStatistics) json[s.name] = row.*s.value;
   return json;
 }
 
-Row mean_of(const std::vector<Row>& rows) {
-  Row mean{};
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      mean[i] += row[i] / static_cast<double>(rows.size());
+DepthStatistics mean_of(const std::vector<DepthStatistics>& rows) {
+  DepthStatistics mean;
+  for (const auto& s : kStatistics) {
+    for (const DepthStatistics& row : rows) {
+      mean.*s.value += row.*s.value / static_cast<double>(rows.size());
     }
   }
   return mean;
@@ -185,7 +176,7 @@ Result<Json> bench_frames(const SensorArguments& a) {
       "\nframes                    no     small    gap left  right  roughness  correlation of\n"
       "                       depth %%     holes   of edges, px      px disp.   1.5 px   5 px\n");
   std::vector<io::ColorImage> cells;
-  std::vector<Row> real_rows, simulated_rows;
+  std::vector<DepthStatistics> real_rows, simulated_rows;
   const int count = std::min(static_cast<int>(real->size()), a.frames);
   Progress progress("frames", count);
   for (int k = 0; k < count; ++k) {
@@ -196,12 +187,13 @@ Result<Json> bench_frames(const SensorArguments& a) {
     const NamedFrame beside =
         simulated_beside(stage, frame.frame, sim::scene_seed(a.common.seed, k), a.common.threads);
     progress.clear();
-    real_rows.push_back(row_of(sim::depth_statistics(frame.frame)));
-    simulated_rows.push_back(row_of(sim::depth_statistics(beside.frame)));
+    real_rows.push_back(sim::depth_statistics(frame.frame));
+    simulated_rows.push_back(sim::depth_statistics(beside.frame));
     print_row(frame.name, real_rows.back());
     print_row("  simulated", simulated_rows.back());
-    for (const NamedFrame* one : {&frame, &beside})
+    for (const NamedFrame* one : {&frame, &beside}) {
       cells.push_back(draw::color_beside_depth(one->frame, one->name));
+    }
   }
   print_row("mean of the real ones", mean_of(real_rows));
   print_row("mean of the simulated", mean_of(simulated_rows));
@@ -216,7 +208,7 @@ Result<Json> bench_frames(const SensorArguments& a) {
 
 Status bench_sensor(const SensorArguments& a) {
   Json json = {{"format", "bpa sensor bench"}, {"version", 1}, {"planes", bench_planes(a)}};
-  if (!a.bop.empty() || !a.pcd.empty()) {
+  if (!a.dataset.folder.empty() || !a.pcd.empty()) {
     const Result<Json> frames = bench_frames(a);
     if (!frames.ok()) return frames.status();
     json["frames"] = *frames;
@@ -230,8 +222,9 @@ void add_bench_sensor(CLI::App& bench, Action& action) {
   CLI::App& command = *bench.add_subcommand(
       "sensor", "Compare the simulated Kinect with published noise and real frames");
   const auto a = std::make_shared<SensorArguments>();
-  command.add_option("--bop", a->bop, "Real frames: folder of a BOP data set")->type_name("DIR");
-  add_split_option(command, a->split);
+  command.add_option("--bop", a->dataset.folder, "Real frames: folder of a BOP data set")
+      ->type_name("DIR");
+  add_split_options(command, a->dataset);
   command.add_option("--pcd", a->pcd, "Real frames: organised PCD clouds")->type_name("FILE...");
   command.add_option("--frames", a->frames, "Largest number of real frames, taken evenly from all")
       ->check(CLI::Range(1, 1000))
@@ -243,7 +236,7 @@ void add_bench_sensor(CLI::App& bench, Action& action) {
   command.add_option("--json", a->json, "Write the figures as JSON")->type_name("FILE");
   add_common_options(command, a->common);
   command.callback([&action, a] {
-    if (!a->sheet.empty() && a->bop.empty() && a->pcd.empty()) {
+    if (!a->sheet.empty() && a->dataset.folder.empty() && a->pcd.empty()) {
       throw CLI::ValidationError("--sheet", "needs real frames: --bop or --pcd");
     }
     action = [a] { return bench_sensor(*a); };

@@ -54,6 +54,12 @@ void add_train_command(CLI::App& program, Action& action);
 void add_simulate_command(CLI::App& program, Action& action);
 void add_bench_command(CLI::App& program, Action& action);
 
+/// The experiments of `bpa bench`.
+void add_bench_alignment(CLI::App& bench, Action& action);
+void add_bench_accuracy(CLI::App& bench, Action& action);
+void add_bench_models(CLI::App& bench, Action& action);
+void add_bench_sensor(CLI::App& bench, Action& action);
+
 /// "a,b,,c" as a, b, c.
 std::vector<std::string> split_commas(const std::string& list);
 

@@ -19,21 +19,26 @@
 namespace bpa::cli {
 namespace {
 
+// A square of the edges 2 u and 2 v about origin + normal.
+void add_square(TriangleMesh& mesh, const Eigen::Vector3f& origin, const Eigen::Vector3f& normal,
+                const Eigen::Vector3f& u, const Eigen::Vector3f& v) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const Eigen::Vector3f& corner : std::initializer_list<Eigen::Vector3f>{
+           normal - u - v, normal + u - v, normal + u + v, normal - u + v}) {
+    mesh.vertices.push_back(origin + corner);
+  }
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  mesh.triangles.push_back({first, first + 2, first + 3});
+}
+
 // The inside of a cube: what lies behind the object.
 TriangleMesh room(float half, const Eigen::Vector3f& middle) {
   TriangleMesh mesh;
   for (int axis = 0; axis < 3; ++axis) {
     for (const float side : {-half, half}) {
-      const Eigen::Vector3f n = side * Eigen::Vector3f::Unit(axis);
-      const Eigen::Vector3f u = half * Eigen::Vector3f::Unit((axis + 1) % 3);
-      const Eigen::Vector3f v = half * Eigen::Vector3f::Unit((axis + 2) % 3);
-      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-      for (const Eigen::Vector3f& corner :
-           std::initializer_list<Eigen::Vector3f>{n - u - v, n + u - v, n + u + v, n - u + v}) {
-        mesh.vertices.push_back(middle + corner);
-      }
-      mesh.triangles.push_back({first, first + 1, first + 2});
-      mesh.triangles.push_back({first, first + 2, first + 3});
+      add_square(mesh, middle, side * Eigen::Vector3f::Unit(axis),
+                 half * Eigen::Vector3f::Unit((axis + 1) % 3),
+                 half * Eigen::Vector3f::Unit((axis + 2) % 3));
     }
   }
   return mesh;
@@ -85,14 +90,7 @@ TriangleMesh squares_of(const PointCloud& cloud) {
   TriangleMesh mesh;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3f u = half * cloud.normals[i].unitOrthogonal();
-    const Eigen::Vector3f v = cloud.normals[i].cross(u);
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (const Eigen::Vector3f& corner :
-         std::initializer_list<Eigen::Vector3f>{-u - v, u - v, u + v, v - u}) {
-      mesh.vertices.push_back(cloud.points[i] + corner);
-    }
-    mesh.triangles.push_back({first, first + 1, first + 2});
-    mesh.triangles.push_back({first, first + 2, first + 3});
+    add_square(mesh, cloud.points[i], Eigen::Vector3f::Zero(), u, cloud.normals[i].cross(u));
   }
   return mesh;
 }

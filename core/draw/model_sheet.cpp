@@ -12,6 +12,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/draw/canvas.hpp"
+#include "core/draw/plot.hpp"
 #include "core/model/model_index.hpp"
 
 namespace bpa::draw {
@@ -19,9 +20,9 @@ namespace {
 
 constexpr int kTile = 300;  // pixels
 constexpr double kText = 0.38;
-constexpr int kColumns = 4, kRows = 3;
-const cv::Scalar kInk(40, 40, 40), kRed(220, 40, 40), kBlue(40, 80, 230), kGreen(30, 140, 60),
-    kEdge(0, 190, 220);
+constexpr int kColumns = 3, kRows = 3;
+constexpr int kPlot = 450, kPlotRows = 338;  // pixels
+const cv::Scalar kBlue(40, 80, 230), kEdge(0, 190, 220);
 
 using Paint = std::function<Eigen::Vector3f(std::size_t)>;  // rgb of a surface point, in [0, 1]
 
@@ -106,29 +107,24 @@ class Look {
   float scale_ = 1;
 };
 
-/// One curve against edge distance (angle 30 degrees) and one against angle (edges 3 cm away).
-void draw_curves(cv::Mat& tile, const NoiseCurve& curve, const std::string& title, double unit,
-                 const char* unit_name) {
-  constexpr int kLeft = 40, kTop = 30, kSize = kTile - 70;
+/// The curve over edge distance (at an angle of 30 degrees) and over angle (3 cm from edges).
+cv::Mat noise_plot(const NoiseCurve& curve, const std::string& title, double unit) {
+  constexpr int kSteps = 40;
   constexpr double kFarEdge = 0.03, kAngle = M_PI / 6, kSteep = 85 * M_PI / 180;
-  const double highest = 1.1 * std::max(curve(0, kAngle), curve(kFarEdge, kSteep));
-  cv::rectangle(tile, {kLeft, kTop}, {kLeft + kSize, kTop + kSize}, kInk, 1);
-  const auto point = [&](double t, double sigma) {
-    return cv::Point(kLeft + static_cast<int>(t * kSize),
-                     kTop + kSize - static_cast<int>(std::min(1.0, sigma / highest) * kSize));
-  };
-  for (int k = 0; k < 100; ++k) {
-    const double a = 0.01 * k, b = a + 0.01;
-    cv::line(tile, point(a, curve(a * kFarEdge, kAngle)), point(b, curve(b * kFarEdge, kAngle)),
-             kRed, 2, cv::LINE_AA);
-    cv::line(tile, point(a, curve(kFarEdge, a * kSteep)), point(b, curve(kFarEdge, b * kSteep)),
-             kGreen, 2, cv::LINE_AA);
+  Series distance{"by edge distance, 0 to 30 mm, at 30 degrees", {}, {}};
+  Series angle{"by angle, 0 to 85 degrees, 30 mm from edges", {}, {}};
+  for (int k = 0; k <= kSteps; ++k) {
+    const double part = static_cast<double>(k) / kSteps;
+    distance.x.push_back(part);
+    angle.x.push_back(part);
+    distance.y.push_back(unit * curve(part * kFarEdge, kAngle));
+    angle.y.push_back(unit * curve(kFarEdge, part * kSteep));
   }
-  char text[80];
-  std::snprintf(text, sizeof text, "%s, up to %.3g %s", title.c_str(), unit * highest, unit_name);
-  write(tile, text, 10, 18, kText);
-  write(tile, "red: edge distance 0-30 mm, at 30 deg", 10, kTile - 24, kText);
-  write(tile, "green: angle 0-85 deg, no edge", 10, kTile - 8, kText);
+  const PlotAxes axes{title, "part of the range", "standard deviation", 0, 1, 0, 0};
+  cv::Mat plot;
+  cv::resize(to_mat(line_plot(axes, {distance, angle})), plot, {kPlot, kPlotRows}, 0, 0,
+             cv::INTER_AREA);
+  return plot;
 }
 
 Paint own_colors(const ObjectModel& model) {
@@ -154,12 +150,12 @@ Paint curvature(const ObjectModel& model) {
 }  // namespace
 
 io::ColorImage model_sheet(const ObjectModel& model) {
-  cv::Mat sheet(kRows * kTile, kColumns * kTile, CV_8UC3, cv::Scalar(255, 255, 255));
+  cv::Mat sheet(kRows * kTile + kPlotRows, kColumns * kTile, CV_8UC3, cv::Scalar::all(255));
   const auto put = [&sheet](const cv::Mat& tile, int place, const std::string& title) {
     const cv::Rect area(place % kColumns * kTile, place / kColumns * kTile, kTile, kTile);
     tile.copyTo(sheet(area));
     cv::rectangle(sheet, area, cv::Scalar(200, 200, 200), 1);
-    if (!title.empty()) write(sheet, title, area.x + 10, area.y + 18, kText);
+    write(sheet, title, area.x + 10, area.y + 18, kText);
   };
   const char* const names[] = {"from +x", "from -x", "from +y", "from -y", "from +z", "from -z"};
   const Paint colors = own_colors(model);
@@ -178,11 +174,10 @@ io::ColorImage model_sheet(const ObjectModel& model) {
   put(corner.draw(
           [&model](std::size_t i) { return heat(std::sqrt(model.normal_variance[i]) / 0.7f); }),
       8, "normals vary: 0 (blue) to 40 deg (red)");
-  cv::Mat range(kTile, kTile, CV_8UC3, cv::Scalar(255, 255, 255)), normal = range.clone();
-  draw_curves(range, model.noise.range, "range noise", 1000, "mm");
-  draw_curves(normal, model.noise.normal, "normal noise", 180 / M_PI, "deg");
-  put(range, 9, "");
-  put(normal, 10, "");
+  const cv::Rect left(0, kRows * kTile, kPlot, kPlotRows);
+  noise_plot(model.noise.range, "range noise, mm", 1000).copyTo(sheet(left));
+  noise_plot(model.noise.normal, "noise of normals, degrees", 180 / M_PI)
+      .copyTo(sheet(left + cv::Point(kPlot, 0)));
   return to_image(sheet);
 }
 

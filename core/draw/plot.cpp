@@ -27,6 +27,28 @@ std::string number(double value) {
   return text;
 }
 
+/// The next of 1, 1.5, 2, 3, 5 and 7.5 times a power of ten that is not smaller; 1 for 0.
+double round_up(double value) {
+  if (!(value > 0)) return 1;
+  const double power = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double step : {1.0, 1.5, 2.0, 3.0, 5.0, 7.5}) {
+    if (step * power >= value) return step * power;
+  }
+  return 10 * power;
+}
+
+PlotAxes fitted(PlotAxes axes, const std::vector<Series>& series) {
+  double x = 0, y = 0;
+  for (const Series& s : series) {
+    for (const double value : s.x) x = std::max(x, value);
+    for (const double value : s.y) y = std::max(y, value);
+  }
+  if (axes.diagonal) x = y = std::max(x, y);
+  if (axes.x_max == 0) axes.x_max = round_up(x);
+  if (axes.y_max == 0) axes.y_max = round_up(y);
+  return axes;
+}
+
 /// From values to pixels.
 struct Mapping {
   PlotAxes axes;
@@ -63,7 +85,7 @@ void draw_axes(cv::Mat& image, const Mapping& map) {
 
 io::ColorImage line_plot(const PlotAxes& axes, const std::vector<Series>& series) {
   cv::Mat image(480, 640, CV_8UC3, cv::Scalar::all(255));
-  const Mapping map{axes};
+  const Mapping map{fitted(axes, series)};
   draw_axes(image, map);
   for (std::size_t s = 0; s < series.size(); ++s) {
     const cv::Scalar& color = kColors[s % std::size(kColors)];

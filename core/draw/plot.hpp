@@ -18,8 +18,8 @@ struct Series {
 
 struct PlotAxes {
   std::string title, x_name, y_name;
-  double x_min = 0, x_max = 1, y_min = 0, y_max = 1;
-  bool diagonal = false;  ///< Also a thin line from corner to corner.
+  double x_min = 0, x_max = 1, y_min = 0, y_max = 1;  ///< A maximum of 0 fits the data.
+  bool diagonal = false;  ///< Also a thin line from corner to corner; fitted axes become equal.
 };
 
 /// 640x480 rgb. Points outside the axes are left out.

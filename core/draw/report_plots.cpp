@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/draw/report_plots.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/draw/number.hpp"
 #include "core/draw/plot.hpp"
 
@@ -13,16 +10,6 @@ namespace {
 
 using eval::EvaluationReport;
 using eval::Ratio;
-
-/// The next of 1, 2, 5, 10, 20 ... that is not smaller.
-double round_up(double value) {
-  if (!(value > 0)) return 1;
-  const double power = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {1.0, 2.0, 5.0}) {
-    if (step * power >= value) return step * power;
-  }
-  return 10 * power;
-}
 
 io::ColorImage groups_plot(const std::string& title, const std::vector<eval::Group>& groups) {
   std::vector<std::string> names, notes;
@@ -89,9 +76,7 @@ io::ColorImage time_plot(const EvaluationReport& report) {
   while (series.y.size() < series.x.size()) {
     series.y.push_back(static_cast<double>(series.y.size() + 1) / count);
   }
-  PlotAxes axes{"time of a frame", "seconds", "fraction of frames done"};
-  axes.x_max = round_up(report.time.max);
-  return line_plot(axes, {series});
+  return line_plot({"time of a frame", "seconds", "fraction of frames done", 0, 0}, {series});
 }
 
 }  // namespace

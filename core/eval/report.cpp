@@ -26,13 +26,83 @@ std::string percent(const Ratio& ratio) {
   return format("%5.1f %% (%d/%d)", 100 * ratio.value(), ratio.hits, ratio.total);
 }
 
+std::string row(const std::string& name, const std::string& value, const std::string& more = "") {
+  return format("  %-24s %-18s %s\n", name.c_str(), value.c_str(), more.c_str());
+}
+
+std::string heading(const char* name, const char* value, const char* more = "") {
+  return format("\n%-26s %-18s %s\n", name, value, more);
+}
+
 std::string groups_text(const char* title, const std::vector<Group>& groups, bool precision) {
-  std::string text = format("\n%-26s %-18s %s\n", title, "recall", precision ? "precision" : "");
+  std::string text = heading(title, "recall", precision ? "precision" : "");
   for (const Group& group : groups) {
-    text += format("  %-24s %-18s %s\n", group.name.c_str(), percent(group.recall).c_str(),
-                   precision ? percent(group.precision).c_str() : "");
+    text += row(group.name, percent(group.recall), precision ? percent(group.precision) : "");
   }
   return text;
+}
+
+std::string bins_text(const char* said, const std::vector<ReliabilityBin>& bins) {
+  std::string text;
+  for (const ReliabilityBin& bin : bins) {
+    if (bin.correct.total == 0) continue;
+    text += row(format("%s %.2f", said, bin.mean_probability), "right " + percent(bin.correct));
+  }
+  return text;
+}
+
+std::string frames_text(const EvaluationReport& report) {
+  std::string text = format("%d frames, %d instances that count, %d placements reported\n",
+                            report.frames, report.recall.total, report.precision.total);
+  if (report.recall.total > 0) {
+    text += format("visible fraction           median %.2f; instances by tenths:",
+                   report.median_visible_fraction);
+    for (const int count : report.visible_tenths) text += format(" %d", count);
+    text += "\n";
+  }
+  const FalseReports& false_reports = report.false_reports;
+  if (false_reports.free_frames > 0) {
+    text +=
+        format("frames without an object   %d; %d of them with %d false positives\n",
+               false_reports.free_frames, false_reports.frames_with_report, false_reports.reports);
+  }
+  return text;
+}
+
+std::string accuracy_text(const EvaluationReport& report) {
+  std::string text = heading("best interpretation", "2.5 cm, pi/16", "RMSE 1 cm");
+  text += row("precision", percent(report.precision), percent(report.rmse_precision));
+  text += row("recall", percent(report.recall), percent(report.rmse_recall));
+  text += heading("interpretations", "recall");
+  for (const auto& [rank, ratio] : report.recall_at) {
+    text += row(std::to_string(rank), percent(ratio));
+  }
+  if (report.has_bop) {
+    text += heading("BOP", "average recall");
+    text += format("  VSD %.3f   MSSD %.3f   MSPD %.3f   AR %.3f\n", report.vsd, report.mssd,
+                   report.mspd, report.average_recall);
+    text += row("ADD(-S) < 0.1 d", percent(report.add_recall));
+  }
+  return text + format("  mean of found instances  ADD %.1f mm   ADD-S %.1f mm\n",
+                       1000 * report.mean_add, 1000 * report.mean_adds);
+}
+
+std::string calibration_text(const EvaluationReport& report) {
+  std::string text = heading("calibration", format("Brier score %.3f", report.brier).c_str());
+  text += bins_text("probability", report.reliability);
+  text += heading("credible region, %", "holds the truth");
+  for (const Coverage& coverage : report.coverage) {
+    text += row(format("%.0f", 100 * coverage.level), percent(coverage.covered));
+  }
+  if (!report.coverage.empty() && report.coverage.front().covered.total > 0) {
+    text += format("  mean squared error in standard deviations %.3f (1 is right)\n",
+                   report.normalised_square);
+  }
+  if (report.open_poses.held.total == 0) return text;
+  text += heading("placements with alternatives of objects that are there", "");
+  text += row("own pose right", percent(report.open_poses.own));
+  text += row("own or an alternative", percent(report.open_poses.held));
+  return text + bins_text("weight", report.open_poses.weights);
 }
 
 Json ratio_json(const Ratio& ratio) {
@@ -85,67 +155,12 @@ Json calibration_json(const EvaluationReport& report) {
 }  // namespace
 
 std::string report_text(const EvaluationReport& report) {
-  std::string text = format("%d frames, %d instances that count, %d reported\n", report.frames,
-                            report.recall.total, report.precision.total);
-  if (report.recall.total > 0) {
-    text += format("visible fraction           median %.2f; instances by tenths:",
-                   report.median_visible_fraction);
-    for (const int count : report.visible_tenths) text += format(" %d", count);
-    text += "\n";
-  }
-  if (report.false_reports.free_frames > 0) {
-    text +=
-        format("nothing to find            in %d frames; something reported in %d, %d reports\n",
-               report.false_reports.free_frames, report.false_reports.frames_with_report,
-               report.false_reports.reports);
-  }
-  text += "\nbest interpretation        2.5 cm, pi/16      RMSE 1 cm\n";
-  text += format("  %-24s %-18s %s\n", "precision", percent(report.precision).c_str(),
-                 percent(report.rmse_precision).c_str());
-  text += format("  %-24s %-18s %s\n", "recall", percent(report.recall).c_str(),
-                 percent(report.rmse_recall).c_str());
-  text += "\ninterpretations            recall\n";
-  for (const auto& [rank, ratio] : report.recall_at) {
-    text += format("  %-24d %s\n", rank, percent(ratio).c_str());
-  }
-  if (report.has_bop) {
-    text += "\nBOP                        average recall\n";
-    text += format("  VSD %.3f   MSSD %.3f   MSPD %.3f   AR %.3f\n", report.vsd, report.mssd,
-                   report.mspd, report.average_recall);
-    text += format("  ADD(-S) < 0.1 d          %s\n", percent(report.add_recall).c_str());
-  }
-  text += format("  of what was found        ADD %.1f mm   ADD-S %.1f mm\n", 1000 * report.mean_add,
-                 1000 * report.mean_adds);
-  text += groups_text("object", report.by_object, true);
-  text += groups_text("visible fraction", report.by_visible_fraction, false);
-  text += groups_text("distance", report.by_distance, true);
-  text += format("\ncalibration                Brier score %.3f\n", report.brier);
-  for (const ReliabilityBin& bin : report.reliability) {
-    if (bin.correct.total == 0) continue;
-    text += format("  said %.2f                right %s\n", bin.mean_probability,
-                   percent(bin.correct).c_str());
-  }
-  text += "\ncredible region            holds the truth\n";
-  for (const Coverage& coverage : report.coverage) {
-    text += format("  %-24.0f %s\n", 100 * coverage.level, percent(coverage.covered).c_str());
-  }
-  if (!report.coverage.empty() && report.coverage.front().covered.total > 0) {
-    text += format("  mean square of the error in standard deviations %.3f (1 would be right)\n",
-                   report.normalised_square);
-  }
-  if (report.open_poses.held.total > 0) {
-    text += format("\nplacements with alternatives, the object being there\n");
-    text += format("  own pose right           %s\n", percent(report.open_poses.own).c_str());
-    text += format("  or one of the others     %s\n", percent(report.open_poses.held).c_str());
-    for (const ReliabilityBin& bin : report.open_poses.weights) {
-      if (bin.correct.total == 0) continue;
-      text += format("  weight %.2f              right %s\n", bin.mean_probability,
-                     percent(bin.correct).c_str());
-    }
-  }
-  text += format("\nseconds a frame            median %.2f, mean %.2f, largest %.2f\n",
-                 report.time.median, report.time.mean, report.time.max);
-  return text;
+  return frames_text(report) + accuracy_text(report) +
+         groups_text("object", report.by_object, true) +
+         groups_text("visible fraction", report.by_visible_fraction, false) +
+         groups_text("distance", report.by_distance, true) + calibration_text(report) +
+         format("\nseconds a frame            median %.2f, mean %.2f, largest %.2f\n",
+                report.time.median, report.time.mean, report.time.max);
 }
 
 std::string report_json(const EvaluationReport& report) {

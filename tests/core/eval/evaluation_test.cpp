@@ -305,7 +305,7 @@ TEST(Evaluation, FalseReportsWhereNothingIs) {
   EXPECT_EQ(report->visible_tenths[0], 1);
   EXPECT_EQ(report->visible_tenths[7], 1);
   EXPECT_NEAR(report->median_visible_fraction, 0.4, 1e-12);
-  EXPECT_NE(report_text(*report).find("reported in 1, 2 reports"), std::string::npos);
+  EXPECT_NE(report_text(*report).find("1 of them with 2 false positives"), std::string::npos);
 
   c.results.resize(2);
   const auto nothing = evaluate_nothing_there(c.results);
