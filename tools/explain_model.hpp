@@ -9,8 +9,8 @@
 #include "core/draw/html_page.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/pipeline/frame_trace.hpp"
-#include "core/score/score_layer.hpp"
 #include "core/result/interpretation.hpp"
+#include "core/score/score_layer.hpp"
 
 namespace bpa::cli {
 
