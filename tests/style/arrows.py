@@ -55,7 +55,8 @@ class Rooms:
                 if used not in self.may_use:
                     self.problems.append(
                         f"ARCHITECTURE.md: {room} may use {word}, which is no room further up")
-                uses.append(used)
+                else:
+                    uses.append(used)
             self.may_use[room] = {room, *uses}
         if not self.may_use:
             self.problems.append("ARCHITECTURE.md: no table of rooms")
@@ -109,14 +110,29 @@ def check_includes(rooms, libraries, path, content):
     return problems
 
 
-def check_uses(rooms, path, content):
+def included_rooms(rooms, content):
+    """The rooms whose headers a file includes."""
+    targets = (included_path(*include) for include in INCLUDE.findall(content))
+    return {rooms.room_of(target) for target in targets if target is not None}
+
+
+def check_uses(rooms, path, content, included):
+    """Each room of USES has to be allowed and `included`, a set of rooms by room, has to have it."""
     room = rooms.room_of(path)
     problems = []
     for names in USES.findall(re.sub(r"#.*", "", content)):
         for name in names.split():
             if room is None or "core/" + name not in rooms.may_use[room]:
                 problems.append(f"{path}: {room} may not use {name}")
+            elif "core/" + name not in included[room]:
+                problems.append(f"{path}: {room} includes nothing of {name}, which it says it USES")
     return problems
+
+
+def check_unused(rooms, included):
+    return [f"ARCHITECTURE.md: {room} may use {used}, but includes nothing of it"
+            for room, may_use in rooms.may_use.items()
+            for used in sorted(may_use - included[room] - {room})]
 
 
 def check(root):
@@ -124,9 +140,14 @@ def check(root):
     rooms = Rooms(markdown)
     libraries = [(row[0], words(row[1]), words(row[2])) for row in table(markdown, "library")]
     problems = list(rooms.problems)
-    for path in tree.files(root, *CHECKED_FOLDERS):
+    included = {room: set() for room in rooms.may_use}
+    paths = tree.files(root, *CHECKED_FOLDERS)
+    for path in paths:
         if path.suffix in (".hpp", ".cpp", ".h"):
-            problems += check_includes(rooms, libraries, path, tree.text(root, path))
-        elif path.name == "CMakeLists.txt" and path.parts[0] == "core" and len(path.parts) > 2:
-            problems += check_uses(rooms, path, tree.text(root, path))
-    return problems
+            content = tree.text(root, path)
+            problems += check_includes(rooms, libraries, path, content)
+            included.setdefault(rooms.room_of(path), set()).update(included_rooms(rooms, content))
+    for path in paths:
+        if path.name == "CMakeLists.txt" and path.parts[0] == "core" and len(path.parts) > 2:
+            problems += check_uses(rooms, path, tree.text(root, path), included)
+    return problems + check_unused(rooms, included)

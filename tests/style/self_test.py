@@ -34,6 +34,10 @@ class StyleChecks(unittest.TestCase):
         self.root = Path(folder.name)
         self.write("ARCHITECTURE.md", ARCHITECTURE)
         self.write("core/base/status.hpp", SPDX)
+        for path in ("core/cloud/user.cpp", "idl/wire/user.cpp"):
+            self.write(path, SPDX + '#include "core/base/status.hpp"\n')
+        self.write("client/src/user.cpp", SPDX + '#include "core/base/status.hpp"\n'
+                                                 '#include "idl/wire/qos.hpp"\n')
 
     def write(self, path, content):
         (self.root / path).parent.mkdir(parents=True, exist_ok=True)
@@ -76,6 +80,22 @@ class StyleChecks(unittest.TestCase):
         self.expect(arrows, "core/base/CMakeLists.txt",
                     "bpa_room(base SOURCES a.cpp\n  USES cloud PUBLIC_LIBS x)\n",
                     "core/base may not use cloud")
+
+    def test_permission_that_is_not_used(self):
+        self.expect(arrows, "ARCHITECTURE.md",
+                    ARCHITECTURE.replace("SDK | `base`", "SDK | `base` `cloud`"),
+                    "client may use core/cloud, but includes nothing of it")
+
+    def test_uses_without_an_include(self):
+        self.expect(arrows, "ARCHITECTURE.md", ARCHITECTURE.replace(
+            "| `idl/wire`", "| `core/align` | alignment | `cloud` |\n| `idl/wire`", 1),
+                    "core/align may use core/cloud")
+        self.write("ARCHITECTURE.md", ARCHITECTURE)
+        self.write("core/cloud/user.cpp", SPDX)
+        self.write("core/cloud/CMakeLists.txt", "bpa_room(cloud SOURCES user.cpp USES base)\n")
+        self.assertEqual(arrows.check(self.root), [
+            "core/cloud/CMakeLists.txt: core/cloud includes nothing of base, which it says it USES",
+            "ARCHITECTURE.md: core/cloud may use core/base, but includes nothing of it"])
 
     def test_table_with_an_upward_arrow(self):
         self.expect(arrows, "ARCHITECTURE.md", ARCHITECTURE.replace("| status | |",
