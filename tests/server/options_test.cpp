@@ -53,7 +53,7 @@ TEST_F(OptionsFile, RefusesWithFileLineKeyAndRule) {
     std::vector<const char*> words;
   } cases[] = {
       {"queue:\n  frames: 2\n  request: 3\n", ":3:", {"unknown key queue.request", "requests"}},
-      {"que:\n  frames: 2\n", ":2:", {"unknown key que", "queue"}},
+      {"que:\n  frames: 2\n", ":1:", {"unknown key que", "queue"}},
       {"queue:\n  frames: 0\n", ":2:", {"queue.frames is 0", "between 1 and 100"}},
       {"queue:\n  frames: many\n", ":2:", {"queue.frames", "many", "whole number"}},
       {"queue:\n  frames: [1]\n", ":2:", {"queue.frames", "whole number"}},

@@ -196,7 +196,7 @@ TEST_F(BadInput, DamagedModel) {
 TEST_F(BadInput, ConfigurationFile) {
   spill(folder_ / "a.yaml", "max_range_m: 2\nmax_rnage: 3\n");
   expect_failure(detect("d.png", "camera.json", "--config " + (folder_ / "a.yaml")),
-                 {"a.yaml:2", "unknown key \"max_rnage\""});
+                 {"a.yaml:2", "unknown key max_rnage"});
   spill(folder_ / "a.yaml", "max_range_m: 2000\n");
   expect_failure(detect("d.png", "camera.json", "--config " + (folder_ / "a.yaml")),
                  {"a.yaml", "max_range_m is 2000", "between"});
@@ -348,8 +348,8 @@ TEST(Commands, FromADataSetToFigures) {
   EXPECT_EQ(results->at(0).im_id, 9);
   for (const char* picture :
        {"pictures/000003_000009.png", "pictures/contact_sheet.png", "pictures/worst_frames.png",
-        "why/01_edges.png", "why/02_super_pixels.png", "why/03_sampled.png", "why/10_final.png",
-        "why/11_best.png"}) {
+        "why/01_edges.png", "why/02_super_pixels.png", "why/03_sampled.png", "why/11_final.png",
+        "why/12_best.png"}) {
     EXPECT_TRUE(io::read_color_image(folder / picture).ok()) << picture;
   }
   EXPECT_NE(slurp(folder / "why/index.html").find("box in scene 3 image 9"), std::string::npos);
@@ -362,7 +362,7 @@ TEST(Commands, FromADataSetToFigures) {
   EXPECT_FALSE(slurp(folder / "e.json").empty());
   outcome = run("evaluate --nothing-there --json " + (folder / "r.json"));
   EXPECT_EQ(outcome.code, 0) << outcome.out;
-  EXPECT_NE(outcome.out.find("in 1 frames; something reported"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("1 of them with 1 false positives"), std::string::npos) << outcome.out;
   outcome = run("bench sensor --bop " + (folder / "set") + " --sheet " + (folder / "sheet.png") +
                 " --json " + (folder / "sensor.json"));
   EXPECT_EQ(outcome.code, 0) << outcome.out;
