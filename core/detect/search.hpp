@@ -27,11 +27,11 @@ struct Search {
 
   const SceneFeatures& scene;
   const ObjectModel& model;
-  const DetectOptions options;
+  DetectOptions options;
   const ScoreLayers& layers;
-  const ModelPriors priors;
+  ModelPriors priors;
   const std::uint64_t seed;
-  const FeaturePlaces places;
+  FeaturePlaces places;
   Deadline deadline;              ///< Stages return what they have when it has passed.
   std::uint8_t* cut = nullptr;    ///< Set to 1 when a stage stopped for that; may be null.
   TraceStage* tracing = nullptr;  ///< Of the stage that runs; null unless traced.
