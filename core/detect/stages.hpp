@@ -7,26 +7,28 @@
 
 #include "core/detect/search.hpp"
 
-// The stages of the search for one object. Each one takes the candidates of the stage before and
-// returns its own. A stage is deterministic, for any number of threads, unless the deadline passes.
+// The stages of the search for one object; README.md says what each does, why, and how to add one.
+// Each takes the candidates of the stage before and returns its own. A stage is deterministic, for
+// any number of threads, unless the deadline passes.
 
 namespace bpa {
 
-/// Poses drawn by BPA from feature matches (V.2), voted for by point pairs, and drawn from priors.
-/// Ignores `none`.
+/// Poses drawn by BPA from feature matches (V.3), voted for by point pairs, and drawn from priors.
+/// Ignores its candidates.
 Candidates sample(const Search& search, Candidates none);
 
-/// Rejects poses that hang in free space or find no surface (V.2); keeps the best of each place.
+/// Rejects poses that hang in free space or find no surface (V.3); keeps the best of each place.
 Candidates check_free_space(const Search& search, Candidates sampled);
 
 /// Groups poses within the pose tolerance, modulo the model's symmetry, and aligns each group again
 /// with BPA (V.3). Rejects single feature matches; single voted poses stay.
 Candidates cluster(const Search& search, Candidates checked);
 
-/// Aligns each candidate with BPA to sampled segments and scores it (V.4, V.5). Rejects nothing.
+/// Aligns each candidate with BPA to sampled super-pixels (V.6) and scores it (V.5). Rejects
+/// nothing unless the deadline passes.
 Candidates round_two(const Search& search, Candidates clusters);
 
-/// Non-maximum suppression (V.6); aligns the best by gradients (V.7) and scores them with all
+/// Non-maximum suppression (V.7); aligns the best by gradients (V.7) and scores them with all
 /// components (V.8).
 Candidates refine(const Search& search, Candidates aligned);
 
@@ -39,7 +41,7 @@ Candidates try_turned(const Search& search, Candidates climbed);
 /// Compares candidates that claim one place on the pixels where they disagree. Rejects nothing.
 Candidates compare_rivals(const Search& search, Candidates turned);
 
-/// Rejects low scores and duplicates; the best first (V.10).
+/// Rejects low scores and duplicates; the best first (V.8).
 Candidates select(const Search& search, Candidates compared);
 
 struct Stage {
