@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include <openni2/PS1080.h>
 
@@ -17,90 +16,60 @@ constexpr int kLampBlue = 70;
 /// Each scene is shown for half a second.
 constexpr std::uint64_t kTicksPerScene = 15;
 
-/// Hands out one value, as OpenNI2 asks for it.
-template <class T>
-OniStatus give(const T& value, void* data, int* size) {
-  if (*size < static_cast<int>(sizeof(T))) return ONI_STATUS_BAD_PARAMETER;
-  std::memcpy(data, &value, sizeof(T));
-  *size = sizeof(T);
-  return ONI_STATUS_OK;
+int stride_of(const OniVideoMode& mode) {
+  return mode.resolutionX * (mode.pixelFormat == ONI_PIXEL_FORMAT_RGB888 ? 3 : 2);
 }
 
-template <class T>
-OniStatus take(const void* data, int size, T& value) {
-  if (size != static_cast<int>(sizeof(T))) return ONI_STATUS_BAD_PARAMETER;
-  std::memcpy(&value, data, sizeof(T));
-  return ONI_STATUS_OK;
-}
-
-bool equal(const OniVideoMode& a, const OniVideoMode& b) {
-  return a.pixelFormat == b.pixelFormat && a.resolutionX == b.resolutionX &&
-         a.resolutionY == b.resolutionY && a.fps == b.fps;
-}
-
-int pixel_bytes(const OniVideoMode& mode) {
-  return mode.pixelFormat == ONI_PIXEL_FORMAT_RGB888 ? 3 : 2;
+/// Calls visit(index in the scene) for each pixel of a frame of a scene this wide.
+template <class Visit>
+void visit_pixels(const OniVideoMode& mode, bool mirrored, int width, Visit visit) {
+  const int step = width / mode.resolutionX;
+  for (int v = 0; v < mode.resolutionY; ++v) {
+    for (int u = 0; u < mode.resolutionX; ++u) {
+      const int column = mirrored ? mode.resolutionX - 1 - u : u;
+      visit(static_cast<std::size_t>(v * step * width + column * step));
+    }
+  }
 }
 
 }  // namespace
 
 std::vector<OniVideoMode> modes_of(OniSensorType sensor, const Camera& camera, bool fine_depth) {
+  std::vector<OniPixelFormat> formats = {ONI_PIXEL_FORMAT_RGB888};
+  if (sensor == ONI_SENSOR_DEPTH) {
+    formats = {ONI_PIXEL_FORMAT_DEPTH_1_MM, ONI_PIXEL_FORMAT_DEPTH_100_UM};
+    if (fine_depth) formats.erase(formats.begin());
+  }
   std::vector<OniVideoMode> modes;
   for (const int divisor : {1, 2}) {
     for (const int fps : {30, 15}) {
-      OniVideoMode mode{};
-      mode.resolutionX = camera.width / divisor;
-      mode.resolutionY = camera.height / divisor;
-      mode.fps = fps;
-      mode.pixelFormat =
-          sensor == ONI_SENSOR_DEPTH ? ONI_PIXEL_FORMAT_DEPTH_1_MM : ONI_PIXEL_FORMAT_RGB888;
-      if (sensor != ONI_SENSOR_DEPTH || !fine_depth) modes.push_back(mode);
-      if (sensor != ONI_SENSOR_DEPTH) continue;
-      mode.pixelFormat = ONI_PIXEL_FORMAT_DEPTH_100_UM;
-      modes.push_back(mode);
+      for (const OniPixelFormat format : formats) {
+        modes.push_back({format, camera.width / divisor, camera.height / divisor, fps});
+      }
     }
   }
   return modes;
 }
 
-SimStream::SimStream(OniSensorType sensor, const SimFrames& frames, const SimConfig& config,
+SimStream::SimStream(OniSensorType sensor, const std::vector<OniVideoMode>& modes,
+                     const SimFrames& frames, const SimConfig& config,
                      const std::atomic<bool>& registering)
-    : sensor_(sensor),
+    : depth_(sensor == ONI_SENSOR_DEPTH),
+      modes_(modes),
       frames_(frames),
       config_(config),
       registering_(registering),
-      mode_(modes_of(sensor, sensor == ONI_SENSOR_DEPTH ? frames.depth : frames.color,
-                     config.fine_depth)
-                .front()) {}
+      mode_(modes.front()) {}
 
-SimStream::~SimStream() { stop(); }
-
-OniStatus SimStream::start() {
+void SimStream::set_running(bool running) {
   config_.pass();
   const std::lock_guard<std::mutex> lock(mutex_);
-  running_ = true;
-  return ONI_STATUS_OK;
-}
-
-void SimStream::stop() {
-  config_.pass();
-  const std::lock_guard<std::mutex> lock(mutex_);
-  running_ = false;
-}
-
-OniStatus SimStream::set_mode(const OniVideoMode& mode) {
-  const Camera& camera = sensor_ == ONI_SENSOR_DEPTH ? frames_.depth : frames_.color;
-  for (const OniVideoMode& known : modes_of(sensor_, camera, config_.fine_depth)) {
-    if (!equal(known, mode)) continue;
-    mode_ = mode;
-    return ONI_STATUS_OK;
-  }
-  return ONI_STATUS_NOT_SUPPORTED;
+  running_ = running;
 }
 
 int* SimStream::setting(int id) {
   if (id == ONI_STREAM_PROPERTY_MIRRORING) return &mirrored_;
-  if (sensor_ != ONI_SENSOR_COLOR) return nullptr;
+  if (depth_) return nullptr;
   switch (id) {
     case ONI_STREAM_PROPERTY_AUTO_EXPOSURE:
       return &auto_exposure_;
@@ -119,33 +88,37 @@ OniStatus SimStream::setProperty(int id, const void* data, int size) {
   config_.pass();
   const std::lock_guard<std::mutex> lock(mutex_);
   if (int* value = setting(id)) return take(data, size, *value);
-  if (id != ONI_STREAM_PROPERTY_VIDEO_MODE) return ONI_STATUS_NOT_SUPPORTED;
   OniVideoMode mode{};
-  const OniStatus status = take(data, size, mode);
-  return status == ONI_STATUS_OK ? set_mode(mode) : status;
+  if (id != ONI_STREAM_PROPERTY_VIDEO_MODE) return ONI_STATUS_NOT_SUPPORTED;
+  if (take(data, size, mode) != ONI_STATUS_OK) return ONI_STATUS_BAD_PARAMETER;
+  const bool known = std::any_of(modes_.begin(), modes_.end(), [&](const OniVideoMode& m) {
+    return std::memcmp(&m, &mode, sizeof m) == 0;
+  });
+  if (!known) return ONI_STATUS_NOT_SUPPORTED;
+  mode_ = mode;
+  return ONI_STATUS_OK;
 }
 
 OniStatus SimStream::getProperty(int id, void* data, int* size) {
   config_.pass();
   const std::lock_guard<std::mutex> lock(mutex_);
   if (const int* value = setting(id)) return give(*value, data, size);
-  const bool depth = sensor_ == ONI_SENSOR_DEPTH;
-  const Camera& camera = !depth || shows_registered() ? frames_.color : frames_.depth;
+  const Camera& c = in_own_view() ? frames_.depth : frames_.color;
   switch (id) {
     case ONI_STREAM_PROPERTY_VIDEO_MODE:
       return give(mode_, data, size);
     case ONI_STREAM_PROPERTY_HORIZONTAL_FOV:
-      return give(static_cast<float>(2 * std::atan(camera.width / (2 * camera.fx))), data, size);
+      return give(static_cast<float>(2 * std::atan(c.width / (2 * c.fx))), data, size);
     case ONI_STREAM_PROPERTY_VERTICAL_FOV:
-      return give(static_cast<float>(2 * std::atan(camera.height / (2 * camera.fy))), data, size);
+      return give(static_cast<float>(2 * std::atan(c.height / (2 * c.fy))), data, size);
     case ONI_STREAM_PROPERTY_STRIDE:
-      return give(mode_.resolutionX * pixel_bytes(mode_), data, size);
+      return give(stride_of(mode_), data, size);
     case ONI_STREAM_PROPERTY_CROPPING:  // never; but players show no stream that does not say so
       return give(OniCropping{}, data, size);
     default:
       break;
   }
-  if (!depth) return ONI_STATUS_NOT_SUPPORTED;
+  if (!depth_) return ONI_STATUS_NOT_SUPPORTED;
   const int units = mode_.pixelFormat == ONI_PIXEL_FORMAT_DEPTH_1_MM ? 1 : 10;
   if (id == ONI_STREAM_PROPERTY_MAX_VALUE) return give(kMaxDepthMm * units, data, size);
   if (id == ONI_STREAM_PROPERTY_MIN_VALUE) return give(0, data, size);
@@ -161,72 +134,48 @@ OniBool SimStream::isPropertySupported(int id) {
 
 void SimStream::notifyAllProperties() {
   // What OpenNI2's recorder keeps beside the frames.
-  if (sensor_ != ONI_SENSOR_DEPTH) return;
+  if (!depth_) return;
   const double centimetres = kBaseline * 100;
   raisePropertyChanged(XN_STREAM_PROPERTY_DCMOS_RCMOS_DISTANCE, &centimetres, sizeof centimetres);
 }
 
-bool SimStream::shows_registered() const {
-  return registering_ && config_.registration == Registration::device;
-}
-
-void SimStream::fill_depth(const SimFrame& scene, OniFrame& frame) const {
-  const bool registered = shows_registered();
-  const Camera& camera = registered ? frames_.color : frames_.depth;
-  const std::vector<std::uint16_t>& from = registered ? scene.registered : scene.unregistered;
-  auto* out = static_cast<std::uint16_t*>(frame.data);
-  const int step = camera.width / mode_.resolutionX;
-  const bool millimetres = mode_.pixelFormat == ONI_PIXEL_FORMAT_DEPTH_1_MM;
-  for (int v = 0; v < frame.height; ++v) {
-    for (int u = 0; u < frame.width; ++u) {
-      const int column = mirrored_ != FALSE ? frame.width - 1 - u : u;
-      const std::uint16_t z =
-          from[static_cast<std::size_t>(v * step * camera.width + column * step)];
-      *out++ = millimetres ? static_cast<std::uint16_t>((z + 5) / 10) : z;
-    }
-  }
-}
-
-void SimStream::fill_color(const SimFrame& scene, OniFrame& frame) const {
-  const Camera& camera = frames_.color;
-  auto* out = static_cast<std::uint8_t*>(frame.data);
-  const int step = camera.width / mode_.resolutionX;
-  const int brightness = auto_exposure_ != FALSE ? 10000 : exposure_ * gain_;
-  const int blue = auto_white_balance_ != FALSE ? brightness : brightness * kLampBlue / 100;
-  const int gains[3] = {brightness, brightness, blue};
-  for (int v = 0; v < frame.height; ++v) {
-    for (int u = 0; u < frame.width; ++u) {
-      const int column = mirrored_ != FALSE ? frame.width - 1 - u : u;
-      const auto* pixel =
-          scene.rgb.data() + 3 * static_cast<std::size_t>(v * step * camera.width + column * step);
-      for (int c = 0; c < 3; ++c) {
-        *out++ = static_cast<std::uint8_t>(std::min(255, pixel[c] * gains[c] / 10000));
-      }
-    }
-  }
-}
-
 void SimStream::fill(const SimFrame& scene, OniFrame& frame) const {
   frame.videoMode = mode_;
-  frame.sensorType = sensor_;
+  frame.sensorType = depth_ ? ONI_SENSOR_DEPTH : ONI_SENSOR_COLOR;
   frame.width = mode_.resolutionX;
   frame.height = mode_.resolutionY;
-  frame.stride = mode_.resolutionX * pixel_bytes(mode_);
+  frame.stride = stride_of(mode_);
   frame.dataSize = frame.stride * frame.height;
   frame.cropOriginX = frame.cropOriginY = 0;
   frame.croppingEnabled = FALSE;
-  if (sensor_ == ONI_SENSOR_DEPTH) {
-    fill_depth(scene, frame);
-  } else {
-    fill_color(scene, frame);
+  if (depth_) {
+    const bool own = in_own_view();
+    const std::vector<std::uint16_t>& units = own ? scene.unregistered : scene.registered;
+    const bool millimetres = mode_.pixelFormat == ONI_PIXEL_FORMAT_DEPTH_1_MM;
+    auto* out = static_cast<std::uint16_t*>(frame.data);
+    visit_pixels(mode_, mirrored_ != FALSE, own ? frames_.depth.width : frames_.color.width,
+                 [&](std::size_t i) {
+                   const int z = millimetres ? (units[i] + 5) / 10 : units[i];
+                   *out++ = static_cast<std::uint16_t>(z);
+                 });
+    return;
   }
+  const int brightness = auto_exposure_ != FALSE ? 10000 : exposure_ * gain_;
+  const int blue = auto_white_balance_ != FALSE ? brightness : brightness * kLampBlue / 100;
+  const int gains[3] = {brightness, brightness, blue};
+  auto* out = static_cast<std::uint8_t*>(frame.data);
+  visit_pixels(mode_, mirrored_ != FALSE, frames_.color.width, [&](std::size_t i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      *out++ = static_cast<std::uint8_t>(std::min(255, scene.rgb[3 * i + c] * gains[c] / 10000));
+    }
+  });
 }
 
 void SimStream::show(std::uint64_t tick, std::uint64_t timestamp_us) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto every = static_cast<std::uint64_t>(30 / mode_.fps);
   if (!running_ || tick % every != 0) return;
-  if (sensor_ == ONI_SENSOR_COLOR && !config_.deliver_color) return;
+  if (!depth_ && !config_.deliver_color) return;
   OniFrame* frame = getServices().acquireFrame();
   if (frame == nullptr) return;
   fill(frames_.frames[tick / kTicksPerScene % frames_.frames.size()], *frame);

@@ -92,7 +92,7 @@ inline void write_infrared(const std::string& folder, const Frame& frame, int im
   ASSERT_TRUE(io::write_gray_png(folder + "/test/000001/depth_ir" + name, image).ok());
 }
 
-/// Sets how the sensor behaves: lines of openni2_sim/sim_config.hpp.
+/// Sets how the sensor behaves: lines of openni2_sim/sim_scenes.hpp.
 inline void set_sensor(const std::string& folder, const std::string& lines = "") {
   test::spill(folder + "/sim.new", "scenes: .\n" + lines);
   std::filesystem::rename(folder + "/sim.new", folder + "/sim.yaml");

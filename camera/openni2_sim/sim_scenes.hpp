@@ -3,7 +3,12 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <string>
+#include <vector>
+
+#include "core/base/status.hpp"
+#include "core/geometry/camera.hpp"
 
 // What the simulated device shows and how it behaves. The environment variable BPA_SIM names
 //
@@ -24,8 +29,6 @@
 
 namespace bpa::sim_driver {
 
-enum class Registration { device, pretended, none };
-
 /// The settings now. Thread-safe; those that are no atomics do not change after the first reading.
 class SimConfig {
  public:
@@ -39,17 +42,39 @@ class SimConfig {
 
   std::string scenes;  ///< Empty: there is no device.
   std::string split = "test";
+  bool fine_depth = false;
   std::atomic<bool> plugged{true};
   std::atomic<bool> deliver{true};
   std::atomic<bool> deliver_color{true};
   std::atomic<bool> wedged{false};
   std::atomic<bool> color_sensor{true};
-  bool fine_depth = false;
-  std::atomic<Registration> registration{Registration::device};
+  std::atomic<bool> can_register{true};  ///< As the device says.
+  std::atomic<bool> registers{true};     ///< As it does when it is asked to.
 
  private:
   std::string file_;
   std::string text_;  ///< Of the file, as read last.
 };
+
+/// The colour camera stands this far to the right of the depth camera, metres (a Kinect's 2.5 cm).
+inline constexpr double kBaseline = 0.025;
+
+/// One scene as both cameras see it, row-major.
+struct SimFrame {
+  std::vector<std::uint8_t> rgb;
+  std::vector<std::uint16_t> registered;    ///< 0.1 mm, in the colour camera; 0 where none.
+  std::vector<std::uint16_t> unregistered;  ///< 0.1 mm, in the depth camera.
+};
+
+struct SimFrames {
+  Camera color;
+  Camera depth;
+  std::vector<SimFrame> frames;
+};
+
+/// Loads the frames of a data set (at most 60). The depth camera's own view is SCENE/depth_ir/*.png
+/// with the camera of DATASET/camera_ir.json where they are there; otherwise it is made by moving
+/// the registered depth, with the colour camera's intrinsics. Frames must have one size and camera.
+Result<SimFrames> load_sim_frames(const std::string& dataset, const std::string& split);
 
 }  // namespace bpa::sim_driver

@@ -1,18 +1,68 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/openni2_sim/sim_frames.hpp"
+#include "camera/openni2_sim/sim_scenes.hpp"
 
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include <yaml-cpp/yaml.h>
 
 #include "core/io/bop_dataset.hpp"
 #include "core/io/camera_file.hpp"
 #include "core/io/image_file.hpp"
 
 namespace bpa::sim_driver {
-namespace {
 
 namespace fs = std::filesystem;
+
+SimConfig::SimConfig() {
+  const char* named = std::getenv("BPA_SIM");
+  if (named == nullptr) return;
+  if (fs::is_directory(named)) {
+    scenes = named;
+  } else {
+    file_ = named;
+    refresh();
+  }
+}
+
+void SimConfig::refresh() {
+  std::ifstream file(file_);
+  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (text == text_ || text.empty()) return;
+  try {
+    const YAML::Node root = YAML::Load(text);
+    if (!root.IsMap()) return;
+    if (text_.empty()) {
+      split = root["split"].as<std::string>(split);
+      fine_depth = root["fine_depth"].as<bool>(fine_depth);
+      const fs::path folder = fs::path(file_).parent_path() / root["scenes"].as<std::string>("");
+      scenes = folder.lexically_normal().string();
+    }
+    deliver = root["deliver"].as<bool>(true);
+    deliver_color = root["deliver_color"].as<bool>(true);
+    wedged = root["wedged"].as<bool>(false);
+    color_sensor = root["color_sensor"].as<bool>(true);
+    const auto registration = root["registration"].as<std::string>("device");
+    can_register = registration != "none";
+    registers = can_register && registration != "pretended";
+    plugged = root["plugged"].as<bool>(true);
+    text_ = std::move(text);
+  } catch (const YAML::Exception&) {
+    return;
+  }
+}
+
+void SimConfig::pass() const {
+  while (wedged) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+}
+
+namespace {
 
 constexpr std::size_t kMaxFrames = 60;
 constexpr double kUnit = 1e-4;  // metres of one unit of depth
@@ -27,17 +77,16 @@ std::uint16_t to_units(double metres) {
 std::vector<std::uint16_t> moved(const std::vector<std::uint16_t>& registered,
                                  const Camera& camera) {
   std::vector<std::uint16_t> depth(registered.size(), 0);
-  for (int v = 0; v < camera.height; ++v) {
-    const std::size_t row = static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width);
-    for (int u = 0; u < camera.width; ++u) {
-      const std::uint16_t z = registered[row + static_cast<std::size_t>(u)];
-      if (z == 0) continue;
-      const double shift = camera.fx * kBaseline / (z * kUnit);
-      for (const double x : {std::floor(u + shift), std::ceil(u + shift)}) {
-        if (x >= camera.width) continue;
-        std::uint16_t& place = depth[row + static_cast<std::size_t>(x)];
-        if (place == 0 || z < place) place = z;
-      }
+  const auto width = static_cast<std::size_t>(camera.width);
+  for (std::size_t i = 0; i < registered.size(); ++i) {
+    const std::uint16_t z = registered[i];
+    if (z == 0) continue;
+    const std::size_t row = i / width * width;
+    const double shifted = static_cast<double>(i - row) + camera.fx * kBaseline / (z * kUnit);
+    for (const double x : {std::floor(shifted), std::ceil(shifted)}) {
+      if (x >= camera.width) continue;
+      std::uint16_t& place = depth[row + static_cast<std::size_t>(x)];
+      if (place == 0 || z < place) place = z;
     }
   }
   return depth;
