@@ -147,7 +147,7 @@ Status Server::start_sources(const ServerOptions& options) {
   topics_ = source->get();
   sources_.push_back(std::move(source).value());
   if (options.capture.source.empty()) return {};
-  auto camera = CameraSource::create(
+  auto camera = open_camera_source(
       *participant_, options.capture, on_frame, [this] { return worker_->queue_length() == 0; },
       log_);
   if (!camera.ok()) return camera.status();

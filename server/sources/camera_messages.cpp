@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/sources/image_messages.hpp"
+#include "server/sources/camera_messages.hpp"
 
+#include <cstring>
+#include <limits>
 #include <utility>
 
 #include "idl/wire/time.hpp"
@@ -9,10 +11,8 @@
 namespace bpa::server {
 namespace {
 
-const char* encoding_of(camera::PixelFormat format) {
-  constexpr const char* kEncodings[] = {"16UC1", "32FC1", "rgb8", "mono8"};
-  return kEncodings[static_cast<std::size_t>(format)];
-}
+/// By camera::PixelFormat.
+constexpr const char* kEncodings[] = {"16UC1", "32FC1", "rgb8", "mono8"};
 
 std::shared_ptr<const AnyImage> image_message(camera::Image image,
                                               const wire::std_msgs::Header& header) {
@@ -20,7 +20,7 @@ std::shared_ptr<const AnyImage> image_message(camera::Image image,
   message.header = header;
   message.width = static_cast<std::uint32_t>(image.width);
   message.height = static_cast<std::uint32_t>(image.height);
-  message.encoding = encoding_of(image.format);
+  message.encoding = kEncodings[static_cast<std::size_t>(image.format)];
   message.step = static_cast<std::uint32_t>(camera::bytes_per_pixel(image.format)) * message.width;
   message.data = std::move(image.bytes);
   return std::make_shared<const AnyImage>(std::move(message));
@@ -47,6 +47,38 @@ CameraImages image_messages(camera::SensorImages images, const std::string& fram
   if (images.color) messages.color = image_message(*std::move(images.color), header);
   messages.info = std::make_shared<const wire::sensor_msgs::CameraInfo>(std::move(info));
   return messages;
+}
+
+wire::sensor_msgs::PointCloud2 cloud_message(const Frame& frame) {
+  using wire::sensor_msgs::PointField;
+  constexpr std::uint32_t kStep = 16;
+  wire::sensor_msgs::PointCloud2 cloud;
+  cloud.header = {wire::builtin_interfaces::from_ns(frame.stamp_ns), frame.frame_id};
+  cloud.width = static_cast<std::uint32_t>(frame.camera.width);
+  cloud.height = static_cast<std::uint32_t>(frame.camera.height);
+  cloud.point_fields = {{"x", 0, PointField::kFloat32, 1},
+                        {"y", 4, PointField::kFloat32, 1},
+                        {"z", 8, PointField::kFloat32, 1},
+                        {"rgb", 12, PointField::kFloat32, 1}};
+  cloud.point_step = kStep;
+  cloud.row_step = kStep * cloud.width;
+  cloud.data.resize(std::size_t{cloud.row_step} * cloud.height);
+  std::uint8_t* out = cloud.data.data();
+  std::size_t i = 0;
+  for (int v = 0; v < frame.camera.height; ++v) {
+    for (int u = 0; u < frame.camera.width; ++u, ++i, out += kStep) {
+      Eigen::Vector3f point = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+      if (frame.depth[i] > 0) {
+        point = frame.camera.unproject(u, v, frame.depth[i]).cast<float>();
+      }
+      std::memcpy(out, point.data(), 3 * sizeof(float));
+      if (frame.color.empty()) continue;
+      const std::uint8_t* rgb = frame.color.data() + 3 * i;
+      const std::uint8_t bgr0[4] = {rgb[2], rgb[1], rgb[0], 0};  // 0x00RRGGBB
+      std::memcpy(out + 12, bgr0, sizeof bgr0);
+    }
+  }
+  return cloud;
 }
 
 }  // namespace bpa::server

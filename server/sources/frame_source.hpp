@@ -2,11 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "idl/wire/msg/diagnostic_msgs.hpp"
 
 namespace bpa::server {
+
+struct IncomingFrame;
+
+/// Takes a frame, on a thread of its source.
+using OnFrame = std::function<void(IncomingFrame&&)>;
 
 /// How one source of frames is doing. `name` is unique in the server ("camera"), `message` one
 /// sentence for people, `hardware_id` the device or the topic.

@@ -3,6 +3,7 @@
 #include "server/sources/synchronizer.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 #include "idl/wire/time.hpp"
@@ -13,8 +14,6 @@ namespace {
 /// A stream that goes back by more than this has started again (a bag played twice, say).
 constexpr std::int64_t kRestartNs = 1'000'000'000;
 
-std::int64_t gap(std::int64_t a, std::int64_t b) { return a < b ? b - a : a - b; }
-
 }  // namespace
 
 template <class T>
@@ -22,11 +21,12 @@ void Synchronizer::add(Stream<T>& stream, T&& message) {
   const std::int64_t stamp = to_ns(header_of(message).stamp);
   if (stream.newest_ns != INT64_MIN && stamp < stream.newest_ns - kRestartNs) {
     ++counts_.restarts;
-    clear();
+    color_ = {};
+    depth_ = {};
+    info_ = {};
   }
   stream.newest_ns = std::max(stream.newest_ns, stamp);
-  auto place = std::upper_bound(stream.items.begin(), stream.items.end(), stamp,
-                                [](std::int64_t s, const auto& item) { return s < item.stamp_ns; });
+  const auto place = std::ranges::upper_bound(stream.items, stamp, {}, &Stream<T>::Item::stamp_ns);
   stream.items.insert(place, {stamp, std::make_shared<const T>(std::move(message))});
 }
 
@@ -53,19 +53,15 @@ void Synchronizer::add_info(wire::sensor_msgs::CameraInfo&& info) {
 
 template <class T>
 Synchronizer::Choice Synchronizer::choose(const Stream<T>& stream, std::int64_t stamp_ns) const {
-  Choice choice;
-  choice.gap_ns = INT64_MAX;
+  Choice choice{Choice::Kind::wait, 0, INT64_MAX};
   for (std::size_t i = 0; i < stream.items.size(); ++i) {
-    const std::int64_t distance = gap(stream.items[i].stamp_ns, stamp_ns);
-    if (distance < choice.gap_ns) {
-      choice.index = i;
-      choice.gap_ns = distance;
-    }
+    const std::int64_t gap_ns = std::abs(stream.items[i].stamp_ns - stamp_ns);
+    if (gap_ns < choice.gap_ns) choice = {Choice::Kind::wait, i, gap_ns};
   }
   const bool complete = choice.gap_ns == 0 || stream.newest_ns >= stamp_ns;
   if (choice.gap_ns <= options_.tolerance_ns && complete) {
     choice.kind = Choice::Kind::take;
-  } else if (stream.newest_ns != INT64_MIN && stream.newest_ns > stamp_ns + options_.tolerance_ns) {
+  } else if (stream.newest_ns > stamp_ns + options_.tolerance_ns) {
     choice.kind = Choice::Kind::none;
   }
   return choice;
@@ -75,9 +71,8 @@ std::optional<CameraImages> Synchronizer::next() {
   while (!depth_.items.empty()) {
     const std::int64_t stamp = depth_.items.front().stamp_ns;
     const Choice info = choose(info_, stamp);
-    Choice color;
-    color.kind = Choice::Kind::take;
-    if (options_.with_color) color = choose(color_, stamp);
+    const Choice color =
+        options_.with_color ? choose(color_, stamp) : Choice{Choice::Kind::take, 0, 0};
     if (color.kind == Choice::Kind::none || info.kind == Choice::Kind::none) {
       give_up_depth(color, info);
       continue;
@@ -91,42 +86,31 @@ std::optional<CameraImages> Synchronizer::next() {
 void Synchronizer::give_up_depth(const Choice& color, const Choice& info) {
   const bool no_color = options_.with_color && color.kind != Choice::Kind::take;
   const std::int64_t miss = no_color ? color.gap_ns : info.gap_ns;
-  if (no_color) {
-    ++counts_.depth_without_color;
-  } else {
-    ++counts_.depth_without_info;
-  }
+  ++(no_color ? counts_.depth_without_color : counts_.depth_without_info);
   if (miss != INT64_MAX && (counts_.nearest_miss_ns == 0 || miss < counts_.nearest_miss_ns)) {
     counts_.nearest_miss_ns = miss;
   }
   depth_.items.pop_front();
 }
 
-CameraImages Synchronizer::take(const Choice& color, const Choice& info) {
-  CameraImages images;
-  images.depth = std::move(depth_.items.front().message);
-  depth_.items.pop_front();
-  images.info = info_.items[info.index].message;
-  const auto past_info = info_.items.begin() + static_cast<std::ptrdiff_t>(info.index) + 1;
-  info_.items.erase(info_.items.begin(), past_info);
-  if (options_.with_color) {
-    images.color = std::move(color_.items[color.index].message);
-    counts_.color_unused += color.index;
-    const auto past_color = color_.items.begin() + static_cast<std::ptrdiff_t>(color.index) + 1;
-    color_.items.erase(color_.items.begin(), past_color);
-  }
-  if (color.gap_ns == 0 && info.gap_ns == 0) {
-    ++counts_.exact;
-  } else {
-    ++counts_.approximate;
-  }
-  return images;
+template <class T>
+std::shared_ptr<const T> Synchronizer::take(Stream<T>& stream, std::size_t index) {
+  std::shared_ptr<const T> message = std::move(stream.items[index].message);
+  const auto next = stream.items.begin() + static_cast<std::ptrdiff_t>(index) + 1;
+  stream.items.erase(stream.items.begin(), next);
+  return message;
 }
 
-void Synchronizer::clear() {
-  color_ = {};
-  depth_ = {};
-  info_ = {};
+CameraImages Synchronizer::take(const Choice& color, const Choice& info) {
+  ++(color.gap_ns == 0 && info.gap_ns == 0 ? counts_.exact : counts_.approximate);
+  CameraImages images;
+  images.depth = take(depth_, 0);
+  images.info = take(info_, info.index);
+  if (options_.with_color) {
+    counts_.color_unused += color.index;
+    images.color = take(color_, color.index);
+  }
+  return images;
 }
 
 }  // namespace bpa::server

@@ -76,8 +76,10 @@ class Synchronizer {
   template <class T>
   Choice choose(const Stream<T>& stream, std::int64_t stamp_ns) const;
   void give_up_depth(const Choice& color, const Choice& info);
+  /// Takes the message out, and drops the earlier ones.
+  template <class T>
+  static std::shared_ptr<const T> take(Stream<T>& stream, std::size_t index);
   CameraImages take(const Choice& color, const Choice& info);
-  void clear();
 
   SynchronizerOptions options_;
   SyncCounts counts_;

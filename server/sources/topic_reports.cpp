@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
 #include <cstdio>
 
 #include "server/sources/topic_source.hpp"
@@ -24,10 +25,10 @@ std::string seconds(double value) {
 
 }  // namespace
 
-std::optional<double> TopicSource::Pulse::silence() const {
-  const std::int64_t last = last_ns_;
-  if (last == 0) return std::nullopt;
-  return 1e-9 * static_cast<double>(now() - last);
+std::optional<double> TopicSource::Topic::silence() const {
+  if (last_ns == 0) return std::nullopt;
+  const std::int64_t now_ns = std::chrono::steady_clock::now().time_since_epoch().count();
+  return 1e-9 * static_cast<double>(now_ns - last_ns);
 }
 
 double TopicSource::longest_silence() const {
@@ -48,7 +49,7 @@ SourceReport TopicSource::whole_report(const std::string& what, const Topic& top
   report.name = what;
   report.hardware_id = topic.name;
   const std::size_t publishers = topic.publishers();
-  const auto silence = topic.pulse.silence();
+  const auto silence = topic.silence();
   if (!silence) {
     report.message = publishers > 0 ? "a publisher is there and has sent nothing yet" : "unused";
   } else if (*silence > longest_silence()) {
@@ -72,7 +73,7 @@ std::string TopicSource::camera_trouble() const {
   bool alive = false, seen = false;
   const auto judge = [&](const char* what, const Topic& topic) {
     if (!topic.open()) return;
-    const auto silence = topic.pulse.silence();
+    const auto silence = topic.silence();
     seen = seen || silence;
     if (silence && *silence <= limit) {
       alive = true;
@@ -98,7 +99,7 @@ SourceReport TopicSource::camera_report() const {
     report.level = SourceReport::kError;
     report.message = trouble;
   } else {
-    report.message = depth_.pulse.silence() ? "images come" : "unused";
+    report.message = depth_.silence() ? "images come" : "unused";
   }
   const SyncCounts sync = sync_counts();
   Values& values = report.values;

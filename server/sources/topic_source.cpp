@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/sources/topic_source.hpp"
 
+#include <chrono>
 #include <utility>
 
 #include "server/convert/frames.hpp"
@@ -10,7 +11,6 @@
 namespace bpa::server {
 namespace {
 
-using wire::SampleMeta;
 using wire::Subscriber;
 using wire::bpa_msgs::RgbdFrame;
 using wire::sensor_msgs::CameraInfo;
@@ -19,11 +19,8 @@ using wire::sensor_msgs::Image;
 using wire::sensor_msgs::PointCloud2;
 
 SynchronizerOptions synchronizer_options(const InputOptions& options) {
-  SynchronizerOptions sync;
-  sync.with_color = !options.color.empty();
-  sync.tolerance_ns = static_cast<std::int64_t>(options.sync_tolerance_ms * 1e6);
-  sync.queue = static_cast<std::size_t>(options.sync_queue);
-  return sync;
+  return {!options.color.empty(), static_cast<std::int64_t>(options.sync_tolerance_ms * 1e6),
+          static_cast<std::size_t>(options.sync_queue)};
 }
 
 /// A whole frame; `convert` runs on the worker.
@@ -60,26 +57,10 @@ IncomingFrame incoming(CameraImages images, bool rectified) {
 
 }  // namespace
 
-template <class T, class OnMessage>
-Status TopicSource::subscribe_to(const wire::Participant& participant, const std::string& topic,
-                                 const wire::SubscriberOptions& options, OnMessage on_message,
-                                 Topic& place) {
-  auto made = Subscriber<T>::create(participant, topic, options,
-                                    [&place, on_message](T&& message, const SampleMeta&) {
-                                      place.pulse.beat();
-                                      on_message(std::move(message));
-                                    });
-  if (!made.ok()) return made.status();
-  const auto subscriber = std::make_shared<Subscriber<T>>(std::move(made).value());
-  place.name = subscriber->topic();
-  place.publishers = [raw = subscriber.get()] { return raw->matched_count(); };
-  place.statistics = [raw = subscriber.get()] { return raw->statistics(); };
-  place.subscriber = subscriber;
-  return {};
-}
-
-TopicSource::TopicSource(const InputOptions& options, OnFrame on_frame, LogHook log)
-    : on_frame_(std::move(on_frame)),
+TopicSource::TopicSource(const wire::Participant& participant, const InputOptions& options,
+                         OnFrame on_frame, LogHook log)
+    : participant_(participant),
+      on_frame_(std::move(on_frame)),
       log_(std::move(log)),
       options_(options),
       synchronizer_(synchronizer_options(options)) {}
@@ -88,8 +69,11 @@ Result<std::unique_ptr<TopicSource>> TopicSource::create(const wire::Participant
                                                          const ServerOptions& options,
                                                          OnFrame on_frame, LogHook log) {
   std::unique_ptr<TopicSource> source(
-      new TopicSource(options.input, std::move(on_frame), std::move(log)));
-  if (Status status = source->subscribe(participant, options); !status.ok()) return status;
+      new TopicSource(participant, options.input, std::move(on_frame), std::move(log)));
+  const auto shared_bytes = static_cast<std::size_t>(options.network.shared_frame_mb) << 20U;
+  if (Status status = source->subscribe_frames(shared_bytes); !status.ok()) return status;
+  if (Status status = source->subscribe_cloud(); !status.ok()) return status;
+  if (Status status = source->subscribe_camera(); !status.ok()) return status;
   return source;
 }
 
@@ -102,93 +86,86 @@ void TopicSource::set_options(const InputOptions& options) {
   synchronizer_.set_options(synchronizer_options(options_));
 }
 
-Status TopicSource::subscribe(const wire::Participant& participant, const ServerOptions& options) {
-  if (!options_.frames.empty()) {
-    const auto shared_bytes = static_cast<std::size_t>(options.network.shared_frame_mb) << 20U;
-    if (Status s = subscribe_frames(participant, shared_bytes); !s.ok()) return s;
-  }
-  if (!options_.cloud.empty()) {
-    if (Status s = subscribe_cloud(participant); !s.ok()) return s;
-  }
-  return options_.depth.empty() ? Status() : subscribe_camera(participant);
+template <class T, class OnMessage>
+Status TopicSource::subscribe(const std::string& topic, const wire::SubscriberOptions& options,
+                              OnMessage on_message, Topic& place) {
+  auto made = Subscriber<T>::create(
+      participant_, topic, options, [&place, on_message](T&& message, const wire::SampleMeta&) {
+        place.last_ns = std::chrono::steady_clock::now().time_since_epoch().count();
+        on_message(std::move(message));
+      });
+  if (!made.ok()) return made.status();
+  const auto subscriber = std::make_shared<Subscriber<T>>(std::move(made).value());
+  place.name = subscriber->topic();
+  place.publishers = [raw = subscriber.get()] { return raw->matched_count(); };
+  place.statistics = [raw = subscriber.get()] { return raw->statistics(); };
+  place.subscriber = subscriber;
+  return {};
 }
 
-Status TopicSource::subscribe_frames(const wire::Participant& participant,
-                                     std::size_t shared_bytes) {
-  wire::SubscriberOptions subscription;
-  subscription.qos = wire::qos::frames();
+Status TopicSource::subscribe_frames(std::size_t shared_bytes) {
+  if (options_.frames.empty()) return {};
+  wire::SubscriberOptions subscription{wire::qos::frames(), shared_bytes};
   if (!options_.frames_reliable) subscription.qos.reliability = wire::Reliability::best_effort;
-  subscription.shared_bytes = shared_bytes;
-  Status status = subscribe_to<RgbdFrame>(
-      participant, options_.frames, subscription,
+  Status status = subscribe<RgbdFrame>(
+      options_.frames, subscription,
       [this](RgbdFrame&& message) { on_frame_(incoming(std::move(message))); }, frames_);
   if (status.ok()) log(log_, LogLevel::info, "frames are taken from " + frames_.name);
   return status;
 }
 
-Status TopicSource::subscribe_cloud(const wire::Participant& participant) {
-  Status status = subscribe_to<PointCloud2>(
-      participant, options_.cloud, camera_subscription(),
+wire::SubscriberOptions TopicSource::camera_subscription() const {
+  return {options_.reliable ? wire::qos::reliable_input() : wire::qos::sensor_input()};
+}
+
+Status TopicSource::subscribe_cloud() {
+  if (options_.cloud.empty()) return {};
+  Status status = subscribe<PointCloud2>(
+      options_.cloud, camera_subscription(),
       [this](PointCloud2&& message) { on_frame_(incoming(std::move(message), frame_from_cloud)); },
       cloud_);
   if (status.ok()) log(log_, LogLevel::info, "clouds are taken from " + cloud_.name);
   return status;
 }
 
-wire::SubscriberOptions TopicSource::camera_subscription() const {
-  wire::SubscriberOptions subscription;
-  subscription.qos = options_.reliable ? wire::qos::reliable_input() : wire::qos::sensor_input();
-  return subscription;
-}
-
-Status TopicSource::subscribe_images(const wire::Participant& participant, const std::string& topic,
-                                     const std::string& transport,
-                                     void (Synchronizer::*add)(AnyImage&&), Topic& place) {
-  const auto take = [this, add](auto&& image) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    (synchronizer_.*add)(AnyImage(std::move(image)));
-    deliver_complete(std::move(lock));
-  };
-  if (transport == "raw") {
-    return subscribe_to<Image>(participant, topic, camera_subscription(), take, place);
-  }
-  // As image_transport does it, the base topic is remapped first.
-  const Result<std::string> base = participant.resolve(topic);
-  if (!base.ok()) return base.status();
-  return subscribe_to<CompressedImage>(participant, *base + "/" + transport, camera_subscription(),
-                                       take, place);
-}
-
-Status TopicSource::subscribe_camera(const wire::Participant& participant) {
-  if (!options_.color.empty()) {
-    Status status = subscribe_images(participant, options_.color, options_.color_transport,
-                                     &Synchronizer::add_color, color_);
-    if (!status.ok()) return status;
-  }
-  Status status = subscribe_images(participant, options_.depth, options_.depth_transport,
-                                   &Synchronizer::add_depth, depth_);
-  if (!status.ok()) return status;
-  status = subscribe_to<CameraInfo>(
-      participant, options_.camera_info, camera_subscription(),
-      [this](CameraInfo&& info) {
-        std::unique_lock<std::mutex> lock(mutex_);
-        synchronizer_.add_info(std::move(info));
-        deliver_complete(std::move(lock));
-      },
-      info_);
-  if (!status.ok()) return status;
-  log(log_, LogLevel::info,
-      "camera images are taken from " + depth_.name +
-          (color_.open() ? ", " + color_.name : " (without colour)") + " and " + info_.name);
-  return {};
-}
-
-void TopicSource::deliver_complete(std::unique_lock<std::mutex> lock) {
+template <class Message>
+void TopicSource::synchronize(void (Synchronizer::*add)(Message&&), Message message) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  (synchronizer_.*add)(std::move(message));
   std::vector<CameraImages> complete;
   while (auto images = synchronizer_.next()) complete.push_back(*std::move(images));
   const bool rectified = options_.rectified;
   lock.unlock();
   for (CameraImages& images : complete) on_frame_(incoming(std::move(images), rectified));
+}
+
+Status TopicSource::subscribe_images(const std::string& topic, const std::string& transport,
+                                     void (Synchronizer::*add)(AnyImage&&), Topic& place) {
+  if (topic.empty()) return {};
+  const auto take = [this, add](auto&& image) { synchronize(add, AnyImage(std::move(image))); };
+  if (transport == "raw") return subscribe<Image>(topic, camera_subscription(), take, place);
+  // As image_transport does it, the base topic is remapped first.
+  const Result<std::string> base = participant_.resolve(topic);
+  if (!base.ok()) return base.status();
+  return subscribe<CompressedImage>(*base + "/" + transport, camera_subscription(), take, place);
+}
+
+Status TopicSource::subscribe_camera() {
+  if (options_.depth.empty()) return {};
+  Status status =
+      subscribe_images(options_.color, options_.color_transport, &Synchronizer::add_color, color_);
+  if (!status.ok()) return status;
+  status =
+      subscribe_images(options_.depth, options_.depth_transport, &Synchronizer::add_depth, depth_);
+  if (!status.ok()) return status;
+  status = subscribe<CameraInfo>(
+      options_.camera_info, camera_subscription(),
+      [this](CameraInfo&& info) { synchronize(&Synchronizer::add_info, std::move(info)); }, info_);
+  if (!status.ok()) return status;
+  log(log_, LogLevel::info,
+      "camera images are taken from " + depth_.name +
+          (color_.open() ? ", " + color_.name : " (without colour)") + " and " + info_.name);
+  return {};
 }
 
 SyncCounts TopicSource::sync_counts() const {

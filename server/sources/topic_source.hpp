@@ -3,7 +3,7 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -28,9 +28,8 @@ namespace bpa::server {
 /// left to the worker.
 class TopicSource : public FrameSource {
  public:
-  using OnFrame = std::function<void(IncomingFrame&&)>;
-
-  /// Subscribes to what the options name. `on_frame` runs on DDS threads.
+  /// Subscribes to what the options name. `on_frame` runs on DDS threads; `participant` outlives
+  /// it.
   static Result<std::unique_ptr<TopicSource>> create(const wire::Participant& participant,
                                                      const ServerOptions& options, OnFrame on_frame,
                                                      LogHook log);
@@ -45,50 +44,40 @@ class TopicSource : public FrameSource {
   SyncCounts sync_counts() const;
 
  private:
-  /// When a topic last brought something.
-  class Pulse {
-   public:
-    void beat() { last_ns_ = now(); }
-    /// Seconds; nothing before the first message.
-    std::optional<double> silence() const;
-
-   private:
-    static std::int64_t now() {
-      return std::chrono::steady_clock::now().time_since_epoch().count();
-    }
-    std::atomic<std::int64_t> last_ns_{0};
-  };
-
-  /// A subscription to messages of any type, and when the last one came.
+  /// A subscription to messages of any type.
   struct Topic {
     std::string name;  ///< Resolved.
-    Pulse pulse;
     std::function<std::size_t()> publishers;
     std::function<wire::ReaderStatistics()> statistics;
     std::shared_ptr<void> subscriber;
+    std::atomic<std::int64_t> last_ns{0};  ///< When the last message came (steady_clock); 0: none.
 
     bool open() const { return subscriber != nullptr; }
+    /// Seconds since the last message; nothing before the first.
+    std::optional<double> silence() const;
   };
 
-  TopicSource(const InputOptions& options, OnFrame on_frame, LogHook log);
-  Status subscribe(const wire::Participant& participant, const ServerOptions& options);
-  Status subscribe_frames(const wire::Participant& participant, std::size_t shared_bytes);
-  Status subscribe_cloud(const wire::Participant& participant);
-  Status subscribe_camera(const wire::Participant& participant);
-  Status subscribe_images(const wire::Participant& participant, const std::string& topic,
-                          const std::string& transport, void (Synchronizer::*add)(AnyImage&&),
-                          Topic& place);
+  TopicSource(const wire::Participant& participant, const InputOptions& options, OnFrame on_frame,
+              LogHook log);
+  // Each does nothing when its topic is empty.
+  Status subscribe_frames(std::size_t shared_bytes);
+  Status subscribe_cloud();
+  Status subscribe_camera();
+  Status subscribe_images(const std::string& topic, const std::string& transport,
+                          void (Synchronizer::*add)(AnyImage&&), Topic& place);
   template <class T, class OnMessage>
-  static Status subscribe_to(const wire::Participant& participant, const std::string& topic,
-                             const wire::SubscriberOptions& options, OnMessage on_message,
-                             Topic& place);
+  Status subscribe(const std::string& topic, const wire::SubscriberOptions& options,
+                   OnMessage on_message, Topic& place);
   wire::SubscriberOptions camera_subscription() const;
-  void deliver_complete(std::unique_lock<std::mutex> lock);
+  /// Adds a message of the camera and hands on the images that it completes.
+  template <class Message>
+  void synchronize(void (Synchronizer::*add)(Message&&), Message message);
   SourceReport whole_report(const std::string& what, const Topic& topic) const;
   SourceReport camera_report() const;
   std::string camera_trouble() const;
   double longest_silence() const;
 
+  const wire::Participant& participant_;
   const OnFrame on_frame_;
   const LogHook log_;
   mutable std::mutex mutex_;  ///< Guards the options and the synchronizer.
