@@ -15,8 +15,7 @@ namespace {
 
 std::vector<Shape> all_shapes() {
   std::vector<Shape> shapes = vessel_shapes();
-  for (Shape& shape : package_shapes()) shapes.push_back(std::move(shape));
-  for (Shape& shape : toy_shapes()) shapes.push_back(std::move(shape));
+  for (Shape& shape : solid_shapes()) shapes.push_back(std::move(shape));
   return shapes;
 }
 
@@ -31,17 +30,12 @@ void paint_mesh(const Paint& paint, TriangleMesh& mesh) {
   }
 }
 
-}  // namespace
-
 SimulatedObject build_object(const Shape& shape) {
-  SimulatedObject object;
-  object.name = shape.name;
-  object.material = shape.material;
-  object.symmetry = shape.symmetry;
-  object.parts = shape.parts;
-  const Eigen::Vector3d center = (shape.low + shape.high) / 2;
+  SimulatedObject object{shape.name, {}, shape.material, shape.symmetry, shape.parts};
+  const auto& [low, high] = shape.bounds;
+  const Eigen::Vector3d center = (low + high) / 2;
   // The grid is symmetric about the centre and has no sample on planes through it.
-  const Eigen::Vector3d half_size = (shape.high - shape.low) / 2;
+  const Eigen::Vector3d half_size = (high - low) / 2;
   const Eigen::Vector3d reach =
       shape.cell * ((half_size.array() / shape.cell).ceil() + 2.5).matrix();
   object.mesh = mesh_from_field(shape.field, center - reach, center + reach, shape.cell);
@@ -54,31 +48,28 @@ SimulatedObject build_object(const Shape& shape) {
   return object;
 }
 
-namespace {
-
 // The points that are farthest along each of `count` directions; none for no points.
 std::vector<Eigen::Vector3f> outermost(const std::vector<Eigen::Vector3f>& points, int count) {
   std::vector<Eigen::Vector3f> out;
   for (int i = 0; i < count && !points.empty(); ++i) {
     const Eigen::Vector3f direction = sphere_direction(i, count).cast<float>();
-    out.push_back(*std::max_element(
-        points.begin(), points.end(),
-        [&](const auto& a, const auto& b) { return a.dot(direction) < b.dot(direction); }));
+    out.push_back(
+        *std::ranges::max_element(points, {}, [&](const auto& p) { return p.dot(direction); }));
   }
   return out;
 }
 
-std::vector<SimulatedObject> build_all(const std::vector<Shape>& shapes, int num_threads) {
+}  // namespace
+
+std::vector<SimulatedObject> build_objects(const std::vector<Shape>& shapes, int num_threads) {
   std::vector<SimulatedObject> objects(shapes.size());
   parallel_for(static_cast<int>(shapes.size()), num_threads,
                [&](int i) { objects[i] = build_object(shapes[i]); });
   return objects;
 }
 
-}  // namespace
-
 std::vector<SimulatedObject> household_objects(int num_threads) {
-  return build_all(all_shapes(), num_threads);
+  return build_objects(all_shapes(), num_threads);
 }
 
 std::vector<SimulatedObject> household_objects(const std::vector<std::string>& names,
@@ -86,22 +77,17 @@ std::vector<SimulatedObject> household_objects(const std::vector<std::string>& n
   const std::vector<Shape> shapes = all_shapes();
   std::vector<Shape> chosen;
   for (const std::string& name : names) {
-    const auto found = std::find_if(shapes.begin(), shapes.end(),
-                                    [&name](const Shape& shape) { return shape.name == name; });
+    const auto found = std::ranges::find(shapes, name, &Shape::name);
     if (found != shapes.end()) chosen.push_back(*found);
   }
-  return build_all(chosen, num_threads);
+  return build_objects(chosen, num_threads);
 }
 
 SimulatedObject object_from_mesh(std::string name, TriangleMesh mesh,
                                  const SymmetryGroup& symmetry) {
-  SimulatedObject object;
-  object.name = std::move(name);
-  object.symmetry = symmetry;
-  object.mesh = std::move(mesh);
   // The outermost vertices along many directions are enough of the hull to collide.
-  object.parts = {outermost(object.mesh.vertices, 120)};
-  return object;
+  ConvexPart hull = outermost(mesh.vertices, 120);
+  return {std::move(name), std::move(mesh), {}, symmetry, {std::move(hull)}};
 }
 
 SimulatedObject made_inexactly(SimulatedObject object, double error, std::uint64_t seed) {

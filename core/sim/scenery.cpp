@@ -6,7 +6,6 @@
 #include <cmath>
 #include <string>
 
-#include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/sim/private/shapes.hpp"
 
@@ -60,9 +59,7 @@ void add_sheet(const Sheet& sheet, Texture texture, TriangleMesh& mesh) {
     }
   }
   const int row = steps_u + 1;
-  const auto at = [base, row](int i, int j) {
-    return base + static_cast<std::uint32_t>(j * row + i);
-  };
+  const auto at = [base, row](int i, int j) -> std::uint32_t { return base + j * row + i; };
   for (int j = 0; j < steps_v; ++j) {
     for (int i = 0; i < steps_u; ++i) {
       mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
@@ -75,9 +72,7 @@ SimulatedObject make_table(Texture texture, const Material& material) {
   constexpr double kThickness = 0.03;
   const Eigen::Vector3d x(2 * kTableHalfX, 0, 0), y(0, 2 * kTableHalfY, 0), down(0, 0, -kThickness);
   const Eigen::Vector3d corner(-kTableHalfX, -kTableHalfY, 0);
-  SimulatedObject table;
-  table.name = "table";
-  table.material = material;
+  SimulatedObject table{"table", {}, material, {}, {}};
   add_sheet({corner, x, y, 240, 180}, texture, table.mesh);
   add_sheet({corner, down, x, 1, 60}, texture, table.mesh);
   add_sheet({corner + y, x, down, 60, 1}, texture, table.mesh);
@@ -122,11 +117,9 @@ struct Lump {
 std::vector<Lump> draw_lumps(RandomStream& random) {
   std::vector<Lump> lumps;
   for (int i = 0; i < 2; ++i) {
-    Lump lump;
-    lump.kind = static_cast<Lump::Kind>(random.index(3));
-    for (int a = 0; a < 3; ++a) lump.half_size[a] = random.uniform(0.014, 0.055);
+    Lump lump{static_cast<Lump::Kind>(random.index(3)), Eigen::Vector3d::Zero(), {}};
+    for (double& half : lump.half_size) half = random.uniform(0.014, 0.055);
     if (lump.kind == Lump::drum) lump.half_size.y() = lump.half_size.x();
-    lump.center.setZero();
     if (i == 1) {
       for (int a = 0; a < 3; ++a) lump.center[a] = random.uniform(-1, 1) * lumps[0].half_size[a];
     }
@@ -139,22 +132,22 @@ std::vector<Lump> draw_lumps(RandomStream& random) {
 Shape distractor(std::uint64_t index) {
   RandomStream random(0xd157, index);
   const std::vector<Lump> lumps = draw_lumps(random);
-  Shape shape;
-  shape.name = "distractor_" + std::to_string(index);
+  const auto draw_color = [&random] {
+    const double blue = random.uniform(0.1, 0.9), green = random.uniform(0.1, 0.9);
+    return Color(random.uniform(0.1, 0.9), green, blue);
+  };
+  const Color base = draw_color(), second = draw_color();
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(0.115);
+  const Material material{random.uniform(0.25, 0.8), random.uniform(0, 0.4)};
+  Shape shape{"distractor_" + std::to_string(index), {-reach, reach}, material, {}, 0.0035};
   shape.field = [lumps](const Eigen::Vector3d& p) {
     double d = 1e9;
     for (const Lump& lump : lumps) d = smooth_union(d, lump.distance(p), 0.006);
     return d;
   };
-  shape.low = Eigen::Vector3d::Constant(-0.115);
-  shape.high = Eigen::Vector3d::Constant(0.115);
-  shape.cell = 0.0035;
-  const Color base(random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9));
-  const Color second(random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9));
   shape.paint = [base, second](const Eigen::Vector3d& p, const Eigen::Vector3d&) {
     return mix(base, second, smooth_noise(p, 0.03) > 0.5 ? 1 : 0);
   };
-  shape.material = {random.uniform(0.25, 0.8), random.uniform(0, 0.4)};
   for (const Lump& lump : lumps) shape.parts.push_back(lump.part());
   return shape;
 }
@@ -170,9 +163,7 @@ SimulatedObject make_room() {
   constexpr double kHalf = 2.5, kHeight = 3;
   const Eigen::Vector3d x(2 * kHalf, 0, 0), y(0, 2 * kHalf, 0), up(0, 0, kHeight);
   const Eigen::Vector3d corner(-kHalf, -kHalf, kFloorHeight);
-  SimulatedObject room;
-  room.name = "room";
-  room.material = {0.55, 0};
+  SimulatedObject room{"room", {}, {0.55, 0}, {}, {}};
   add_sheet({corner, x, y, 200, 200}, carpet, room.mesh);
   add_sheet({corner, up, x, 10, 20}, plaster, room.mesh);
   add_sheet({corner + y, x, up, 20, 10}, plaster, room.mesh);
@@ -184,15 +175,14 @@ SimulatedObject make_room() {
 SimulatedObject make_bin() {
   constexpr double kWall = 0.004, kHeight = 0.1;
   const auto gray = [](const Eigen::Vector3d&) { return Color(0.42, 0.45, 0.5); };
-  SimulatedObject bin;
-  bin.name = "bin";
-  bin.material = {0.6, 0.1};
+  SimulatedObject bin{"bin", {}, {0.6, 0.1}, {}, {}};
   const auto add_box = [&](const Eigen::Vector3d& center, const Eigen::Vector3d& half) {
     bin.parts.push_back(box_part(center, half));
     for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Vector3d n = half[axis] * Eigen::Vector3d::Unit(axis);
-      const Eigen::Vector3d u = 2 * half[(axis + 1) % 3] * Eigen::Vector3d::Unit((axis + 1) % 3);
-      const Eigen::Vector3d v = 2 * half[(axis + 2) % 3] * Eigen::Vector3d::Unit((axis + 2) % 3);
+      const auto along = [&](int a) {
+        return Eigen::Vector3d(half[a % 3] * Eigen::Vector3d::Unit(a % 3));
+      };
+      const Eigen::Vector3d n = along(axis), u = 2 * along(axis + 1), v = 2 * along(axis + 2);
       add_sheet({center + n - u / 2 - v / 2, u, v, 1, 1}, gray, bin.mesh);
       add_sheet({center - n - u / 2 - v / 2, v, u, 1, 1}, gray, bin.mesh);
     }
@@ -207,18 +197,13 @@ SimulatedObject make_bin() {
 }
 
 SimulatedObject make_turntable_plate(double radius, double height) {
-  Shape shape;
-  shape.name = "turntable";
-  shape.field = [radius, height](const Eigen::Vector3d& p) {
+  const auto disc = [radius, height](const Eigen::Vector3d& p) {
     return cylinder_distance(p + Eigen::Vector3d(0, 0, height / 2), radius, height / 2, 0.001);
   };
-  shape.low = {-radius, -radius, -height};
-  shape.high = {radius, radius, 0};
-  SimulatedObject plate;
-  plate.name = shape.name;
-  plate.material = {0.7, 0.05};
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(0.0105);
-  plate.mesh = mesh_from_field(shape.field, shape.low - reach, shape.high + reach, 0.004);
+  const Eigen::Vector3d low(-radius, -radius, -height), high(radius, radius, 0);
+  SimulatedObject plate{"turntable", {}, {0.7, 0.05}, {}, {}};
+  plate.mesh = mesh_from_field(disc, low - reach, high + reach, 0.004);
   for (const Eigen::Vector3f& vertex : plate.mesh.vertices) {
     const double sector = 12 * (std::atan2(vertex.y(), vertex.x()) + 3.2) / 3.141592653589793;
     const double r = vertex.head<2>().norm() / radius;
@@ -230,11 +215,10 @@ SimulatedObject make_turntable_plate(double radius, double height) {
 }
 
 std::vector<SimulatedObject> make_distractors(int num_threads) {
-  constexpr int kCount = 12;
-  std::vector<SimulatedObject> result(kCount);
-  parallel_for(kCount, num_threads,
-               [&](int i) { result[i] = build_object(distractor(static_cast<std::uint64_t>(i))); });
-  return result;
+  constexpr std::uint64_t kCount = 12;
+  std::vector<Shape> shapes;
+  for (std::uint64_t i = 0; i < kCount; ++i) shapes.push_back(distractor(i));
+  return build_objects(shapes, num_threads);
 }
 
 }  // namespace bpa::sim

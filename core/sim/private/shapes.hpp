@@ -16,24 +16,29 @@ namespace bpa::sim {
 using Color = Eigen::Vector3d;  ///< rgb in [0, 1].
 using Paint = std::function<Color(const Eigen::Vector3d& point, const Eigen::Vector3d& normal)>;
 
+/// Two corners of an axis-aligned box, metres.
+struct Bounds {
+  Eigen::Vector3d low, high;
+};
+
 /// One object: what it is made of, in a frame of its own (z up).
 struct Shape {
   std::string name;
-  DistanceField field;
-  Eigen::Vector3d low, high;  ///< Bounding box; its centre becomes the origin.
-  double cell = 0.0022;       ///< Mesh resolution, metres.
-  Paint paint;
+  Bounds bounds;  ///< Its centre becomes the origin.
   Material material;
-  SymmetryGroup symmetry;  ///< About the centre of the bounding box.
-  std::vector<ConvexPart> parts;
+  SymmetryGroup symmetry = {};  ///< About the centre of the bounds.
+  double cell = 0.0022;         ///< Mesh resolution, metres.
+  DistanceField field = {};
+  Paint paint = {};
+  std::vector<ConvexPart> parts = {};
 };
 
-/// Meshes and paints a shape.
-SimulatedObject build_object(const Shape& shape);
+/// Meshes and paints each shape.
+std::vector<SimulatedObject> build_objects(const std::vector<Shape>& shapes, int num_threads);
 
-std::vector<Shape> vessel_shapes();   ///< mug, bowl, bottle, can, cup, tube, funnel, plate
-std::vector<Shape> package_shapes();  ///< milk_carton, cereal_box, snack_box, spray_bottle, jug
-std::vector<Shape> toy_shapes();      ///< cube, l_brick, stud_block, gear, banana
+std::vector<Shape> vessel_shapes();  ///< mug, bowl, bottle, can, cup, tube, funnel, plate
+/// milk_carton, cereal_box, snack_box, spray_bottle, jug, cube, l_brick, stud_block, gear, banana
+std::vector<Shape> solid_shapes();
 
 // Symmetries.
 SymmetryGroup turning_z();            ///< Any angle about z.
