@@ -3,6 +3,7 @@
 #include "core/sim/kinect.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,7 +11,6 @@
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/geometry/fast_pose.hpp"
-#include "core/sim/noise_field.hpp"
 
 namespace bpa::sim {
 namespace {
@@ -35,27 +35,26 @@ float smooth_step(float low, float high, float x) {
   return t * t * (3 - 2 * t);
 }
 
-// Steps 1 and 3 for the pixels of one row of the infrared camera.
-void see_row(const KinectView& infrared, const KinectOptions& options, int y, Measurement& m) {
+// Steps 1 and 3.
+Measurement see(const KinectView& infrared, const KinectOptions& options, int num_threads) {
+  const std::vector<float> zeros(infrared.camera.width * infrared.camera.height, 0);
+  Measurement m{infrared.camera, zeros, zeros, zeros, zeros, zeros};
   const FastPose world_from_camera = to_fast(infrared.world_from_camera);
   const Eigen::Matrix3f& rotation = world_from_camera.rotation;
   const Eigen::Vector3f& origin = world_from_camera.translation;
   const Eigen::Vector3f projector = origin + static_cast<float>(options.baseline) * rotation.col(0);
-  for (int x = 0; x < m.camera.width; ++x) {
-    const std::size_t i = static_cast<std::size_t>(y) * m.camera.width + x;
+  for_each_pixel(m.camera, num_threads, [&](int x, int y, int i) {
     const Eigen::Vector3f direction = rotation * m.camera.unproject(x, y, 1).cast<float>();
     const std::optional<RayHit> hit = infrared.scene.cast(origin, direction);
-    if (!hit || hit->distance < options.min_range || hit->distance > options.max_range) continue;
+    if (!hit || hit->distance < options.min_range || hit->distance > options.max_range) return;
     const Eigen::Vector3f point = origin + hit->distance * direction;
     const Eigen::Vector3f to_camera = -direction.normalized();
     const Eigen::Vector3f to_projector = (projector - point).normalized();
     const float lit = hit->face_normal.dot(to_projector);
     m.depth[i] = hit->distance;
     m.angle[i] = std::acos(std::clamp(hit->normal.dot(to_camera), 0.0f, 1.0f));
-    if (options.shadows &&
-        (lit <= 0 || infrared.scene.blocked(point + 3e-4f * hit->face_normal, projector))) {
-      continue;
-    }
+    const Eigen::Vector3f lifted = point + 3e-4f * hit->face_normal;
+    if (options.shadows && (lit <= 0 || infrared.scene.blocked(lifted, projector))) return;
     const Material material = infrared.shading.material(hit->instance, Material{});
     const float brightness = hit->color.sum() / 3;
     const auto shine = static_cast<float>(material.shine);
@@ -66,18 +65,7 @@ void see_row(const KinectView& infrared, const KinectOptions& options, int y, Me
     m.glare[i] = smooth_step(0.25f, 1.0f, shine) * smooth_step(0.965f, 0.998f, facing);
     m.disparity[i] =
         static_cast<float>(m.camera.fx * std::max(options.baseline, 1e-3) / hit->distance);
-  }
-}
-
-Measurement see(const KinectView& infrared, const KinectOptions& options, int num_threads) {
-  Measurement m;
-  m.camera = infrared.camera;
-  const std::size_t count = static_cast<std::size_t>(m.camera.width) * m.camera.height;
-  for (std::vector<float>* image : {&m.depth, &m.disparity, &m.angle, &m.signal, &m.glare}) {
-    image->assign(count, 0);
-  }
-  parallel_for(
-      m.camera.height, num_threads, [&](int y) { see_row(infrared, options, y, m); }, 8);
+  });
   return m;
 }
 
@@ -85,12 +73,56 @@ Measurement see(const KinectView& infrared, const KinectOptions& options, int nu
 float window_agreement(const Measurement& m, int x, int y, float disparity) {
   int agree = 0;
   for (int v = std::max(y - kWindow, 0); v <= std::min(y + kWindow, m.camera.height - 1); ++v) {
-    const float* row = m.disparity.data() + static_cast<std::size_t>(v) * m.camera.width;
+    const float* row = m.disparity.data() + v * m.camera.width;
     for (int u = std::max(x - kWindow, 0); u <= std::min(x + kWindow, m.camera.width - 1); ++u) {
       agree += std::abs(row[u] - disparity) <= kSameDisparity;
     }
   }
   return static_cast<float>(agree) / ((2 * kWindow + 1) * (2 * kWindow + 1));
+}
+
+// A tent whose squares sum to 1, so that variances stay 1.
+std::vector<float> tent(int radius) {
+  std::vector<float> weights;
+  double squares = 0;
+  for (int i = -radius; i <= radius; ++i) {
+    const double w = radius + 1 - std::abs(i);
+    weights.push_back(static_cast<float>(w));
+    squares += w * w;
+  }
+  for (float& w : weights) w /= static_cast<float>(std::sqrt(squares));
+  return weights;
+}
+
+// A row-major image of standard normal numbers, each pixel of variance 1. With `radius` > 0
+// neighbours resemble each other: white noise under a tent of half width `radius` + 1 pixels. The
+// same for any number of threads.
+std::vector<float> noise_field(int width, int height, int radius, std::uint64_t seed,
+                               int num_threads) {
+  const std::vector<float> weights = tent(radius);
+  const int taps = 2 * radius + 1, padded_height = height + 2 * radius;
+  // White noise, smoothed along its rows as it is made.
+  std::vector<float> smooth_rows(width * padded_height);
+  parallel_for(padded_height, num_threads, [&](int y) {
+    RandomStream random(seed, y);
+    std::vector<float> white(width + 2 * radius);
+    for (float& value : white) value = static_cast<float>(random.normal());
+    for (int x = 0; x < width; ++x) {
+      float sum = 0;
+      for (int t = 0; t < taps; ++t) sum += weights[t] * white[x + t];
+      smooth_rows[y * width + x] = sum;
+    }
+  });
+  if (radius == 0) return smooth_rows;
+  std::vector<float> field(width * height, 0);
+  parallel_for(height, num_threads, [&](int y) {
+    for (int t = 0; t < taps; ++t) {
+      for (int x = 0; x < width; ++x) {
+        field[y * width + x] += weights[t] * smooth_rows[(y + t) * width + x];
+      }
+    }
+  });
+  return field;
 }
 
 // The seed of what differs from shot to shot.
@@ -120,10 +152,9 @@ struct Noise {
 };
 
 // Which pixel's surface answers at (x, y): edges are ragged.
-std::size_t answering_pixel(const Measurement& m, const Noise& noise, double lateral_noise, int x,
-                            int y) {
+int answering_pixel(const Measurement& m, const Noise& noise, double lateral_noise, int x, int y) {
   const int width = m.camera.width;
-  const std::size_t i = static_cast<std::size_t>(y) * width + x;
+  const int i = y * width + x;
   const double bend =
       std::min(m.angle[i], 1.5f) / (std::numbers::pi / 2 - std::min(m.angle[i], 1.5f));
   const double lateral = lateral_noise * (0.8 + 0.035 * bend);
@@ -131,15 +162,14 @@ std::size_t answering_pixel(const Measurement& m, const Noise& noise, double lat
       std::clamp(x + static_cast<int>(std::lround(lateral * noise.lateral_x[i])), 0, width - 1);
   const int v = std::clamp(y + static_cast<int>(std::lround(lateral * noise.lateral_y[i])), 0,
                            m.camera.height - 1);
-  const std::size_t j = static_cast<std::size_t>(v) * width + u;
+  const int j = v * width + u;
   return std::abs(m.disparity[j] - m.disparity[i]) > kSameDisparity ? j : i;
 }
 
 // Whether matching fails at (x, y), where the surface of pixel `source` answers.
-bool drops_out(const Measurement& m, const Noise& noise, float dropouts, int x, int y,
-               std::size_t source) {
+bool drops_out(const Measurement& m, const Noise& noise, float dropouts, int x, int y, int source) {
   if (dropouts <= 0) return false;
-  const std::size_t i = static_cast<std::size_t>(y) * m.camera.width + x;
+  const int i = y * m.camera.width + x;
   const float enough = source != i ? kEnoughOfOther : kEnoughOfWindow;
   if (window_agreement(m, x, y, m.disparity[source]) < enough + 0.06f * noise.match[i]) return true;
   constexpr float kWeakSignal = 0.032f;
@@ -151,7 +181,7 @@ bool drops_out(const Measurement& m, const Noise& noise, float dropouts, int x, 
 // Steps 2 to 5 for one pixel: its depth, or 0.
 float measure(const Measurement& m, const Noise& noise, const KinectOptions& options, int x,
               int y) {
-  const std::size_t i = static_cast<std::size_t>(y) * m.camera.width + x;
+  const int i = y * m.camera.width + x;
   const std::size_t source = answering_pixel(m, noise, options.lateral_noise, x, y);
   if (m.disparity[source] <= 0) return 0;
   if (drops_out(m, noise, static_cast<float>(options.dropouts), x, y, source)) return 0;
@@ -181,7 +211,7 @@ std::vector<float> without_specks(const std::vector<float>& depth, const Camera&
   std::vector<float> result = depth;
   for (int y = 1; y + 1 < camera.height; ++y) {
     for (int x = 1; x + 1 < camera.width; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * camera.width + x;
+      const int i = y * camera.width + x;
       if (depth[i] > 0) continue;
       int answers = 0;
       float nearest = std::numeric_limits<float>::max(), farthest = 0;
@@ -206,7 +236,7 @@ std::vector<float> without_specks(const std::vector<float>& depth, const Camera&
 // which the other viewpoint stretches, has no cracks.
 std::vector<float> carried_over(const std::vector<float>& depth, const Camera& infrared,
                                 const Camera& color, double color_x, double pixels_per_inverse) {
-  std::vector<float> result(static_cast<std::size_t>(color.width) * color.height, 0);
+  std::vector<float> result(color.width * color.height, 0);
   const double half_x = std::max(0.5 * color.fx / infrared.fx, 0.5);
   const double half_y = std::max(0.5 * color.fy / infrared.fy, 0.5);
   const auto column = [&](int x, float z) {
@@ -217,7 +247,7 @@ std::vector<float> carried_over(const std::vector<float>& depth, const Camera& i
     return std::min(static_cast<int>(std::floor(p - 1e-6)), size - 1);
   };
   for (int y = 0; y < infrared.height; ++y) {
-    const float* row = depth.data() + static_cast<std::size_t>(y) * infrared.width;
+    const float* row = depth.data() + y * infrared.width;
     const auto joined = [&](int a, int b) {
       if (b < 0 || b >= infrared.width || row[b] <= 0) return false;
       return pixels_per_inverse * std::abs(1 / row[a] - 1 / row[b]) <= kSameDisparity;
@@ -231,7 +261,7 @@ std::vector<float> carried_over(const std::vector<float>& depth, const Camera& i
       if (joined(x, x + 1)) right = std::max(right, 0.5 * (u0 + column(x + 1, row[x + 1])));
       for (int v = first(v0 - half_y); v <= last(v0 + half_y, color.height); ++v) {
         for (int u = first(left); u <= last(right, color.width); ++u) {
-          float& target = result[static_cast<std::size_t>(v) * color.width + u];
+          float& target = result[v * color.width + u];
           if (target == 0 || z < target) target = z;
         }
       }
@@ -250,36 +280,28 @@ std::vector<std::uint8_t> photograph(const std::vector<std::uint8_t>& ideal, con
   for (int c = 0; c < 3; ++c) {
     gain[c] = exposure * std::exp(0.3 * options.exposure_spread * random.normal());
   }
-  std::vector<std::vector<float>> noise;
-  for (int c = 0; c < 3; ++c) {
-    noise.push_back(
-        noise_field(camera.width, camera.height, 1, shot_seed(random(), shot), num_threads));
-  }
+  const auto draw_field = [&] {
+    return noise_field(camera.width, camera.height, 1, shot_seed(random(), shot), num_threads);
+  };
+  const std::array<std::vector<float>, 3> noise{draw_field(), draw_field(), draw_field()};
   std::vector<std::uint8_t> image(ideal.size());
-  parallel_for(
-      camera.height, num_threads,
-      [&](int y) {
-        for (int x = 0; x < camera.width; ++x) {
-          const std::size_t i = static_cast<std::size_t>(y) * camera.width + x;
-          for (int c = 0; c < 3; ++c) {
-            double sum = 0;  // the 3 x 3 binomial
-            for (int dy = -1; dy <= 1; ++dy) {
-              for (int dx = -1; dx <= 1; ++dx) {
-                const int u = std::clamp(x + dx, 0, camera.width - 1);
-                const int v = std::clamp(y + dy, 0, camera.height - 1);
-                sum += (2 - std::abs(dx)) * (2 - std::abs(dy)) *
-                       ideal[3 * (static_cast<std::size_t>(v) * camera.width + u) + c] / 16.0;
-              }
-            }
-            const double light = gain[c] * sum;
-            const double sigma = options.color_noise * std::sqrt(6 + 0.12 * light);
-            const double value = light + sigma * noise[c][i];
-            image[3 * i + c] =
-                static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
-          }
+  for_each_pixel(camera, num_threads, [&](int x, int y, int i) {
+    for (int c = 0; c < 3; ++c) {
+      double sum = 0;  // the 3 x 3 binomial
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const int u = std::clamp(x + dx, 0, camera.width - 1);
+          const int v = std::clamp(y + dy, 0, camera.height - 1);
+          sum += (2 - std::abs(dx)) * (2 - std::abs(dy)) * ideal[3 * (v * camera.width + u) + c] /
+                 16.0;
         }
-      },
-      16);
+      }
+      const double light = gain[c] * sum;
+      const double sigma = options.color_noise * std::sqrt(6 + 0.12 * light);
+      const double value = light + sigma * noise[c][i];
+      image[3 * i + c] = static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
+    }
+  });
   return image;
 }
 
@@ -300,22 +322,14 @@ Frame simulate_depth(const KinectView& view, const KinectOptions& options, std::
   KinectView infrared = view;
   if (options.registered) {
     infrared.camera = {640, 480, options.infrared_focal, options.infrared_focal, 319.5, 239.5};
-    const Pose camera_from_infrared{Eigen::Quaterniond::Identity(),
-                                    {-options.color_baseline, 0, 0}};
-    infrared.world_from_camera = view.world_from_camera * camera_from_infrared;
+    infrared.world_from_camera = view.world_from_camera * Pose{Eigen::Quaterniond::Identity(),
+                                                               {-options.color_baseline, 0, 0}};
   }
   const Measurement m = see(infrared, options, num_threads);
   const Noise noise(m.camera, options.calibration_error > 0, seed, shot, num_threads);
   std::vector<float> depth(m.depth.size(), 0);
-  parallel_for(
-      m.camera.height, num_threads,
-      [&](int y) {
-        for (int x = 0; x < m.camera.width; ++x) {
-          depth[static_cast<std::size_t>(y) * m.camera.width + x] =
-              measure(m, noise, options, x, y);
-        }
-      },
-      8);
+  for_each_pixel(m.camera, num_threads,
+                 [&](int x, int y, int i) { depth[i] = measure(m, noise, options, x, y); });
   const double pixels_per_inverse = m.camera.fx * std::max(options.baseline, 1e-3);
   depth = without_specks(depth, m.camera, pixels_per_inverse);
   Frame frame;

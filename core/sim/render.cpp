@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/parallel.hpp"
-
 namespace bpa::sim {
 namespace {
 
@@ -37,7 +35,7 @@ Eigen::Vector3f shade(const RayScene& scene, const Shading& shading, const Eigen
 
 RenderedImage render(const RayScene& scene, const Camera& camera, const Pose& world_from_camera,
                      const std::optional<Shading>& shading, int num_threads) {
-  const std::size_t count = static_cast<std::size_t>(camera.width) * camera.height;
+  const int count = camera.width * camera.height;
   RenderedImage image;
   image.depth.assign(count, 0);
   image.instance.assign(count, -1);
@@ -45,29 +43,23 @@ RenderedImage render(const RayScene& scene, const Camera& camera, const Pose& wo
   if (shading) image.color.assign(3 * count, 0);
   const Eigen::Matrix3f rotation = world_from_camera.matrix().cast<float>();
   const Eigen::Vector3f origin = world_from_camera.translation.cast<float>();
-  parallel_for(
-      camera.height, num_threads,
-      [&](int y) {
-        for (int x = 0; x < camera.width; ++x) {
-          const std::size_t i = static_cast<std::size_t>(y) * camera.width + x;
-          const Eigen::Vector3f direction =
-              rotation * camera.unproject(x, y, 1).cast<float>();  // z = 1: distance is depth
-          const std::optional<RayHit> hit = scene.cast(origin, direction);
-          if (hit) {
-            image.depth[i] = hit->distance;
-            image.instance[i] = hit->instance;
-            image.normals[i] = rotation.transpose() * hit->normal;
-          }
-          if (!shading) continue;
-          const Eigen::Vector3f color = hit ? shade(scene, *shading, origin, direction, *hit)
-                                            : shading->background.cast<float>();
-          for (int c = 0; c < 3; ++c) {
-            image.color[3 * i + c] =
-                static_cast<std::uint8_t>(std::lround(255 * std::clamp(color[c], 0.0f, 1.0f)));
-          }
-        }
-      },
-      8);
+  for_each_pixel(camera, num_threads, [&](int x, int y, int i) {
+    const Eigen::Vector3f direction =
+        rotation * camera.unproject(x, y, 1).cast<float>();  // z = 1: distance is depth
+    const std::optional<RayHit> hit = scene.cast(origin, direction);
+    if (hit) {
+      image.depth[i] = hit->distance;
+      image.instance[i] = hit->instance;
+      image.normals[i] = rotation.transpose() * hit->normal;
+    }
+    if (!shading) return;
+    const Eigen::Vector3f color =
+        hit ? shade(scene, *shading, origin, direction, *hit) : shading->background.cast<float>();
+    for (int c = 0; c < 3; ++c) {
+      image.color[3 * i + c] =
+          static_cast<std::uint8_t>(std::lround(255 * std::clamp(color[c], 0.0f, 1.0f)));
+    }
+  });
   return image;
 }
 

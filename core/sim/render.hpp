@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/parallel.hpp"
 #include "core/cloud/point_cloud.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/geometry/pose.hpp"
@@ -104,6 +105,15 @@ struct Shading {
     return index < materials.size() ? materials[index] : other;
   }
 };
+
+/// Calls visit(x, y, index) for every pixel of a row-major image; threads share its rows.
+template <class Visit>
+void for_each_pixel(const Camera& camera, int num_threads, const Visit& visit) {
+  const auto visit_row = [&](int y) {
+    for (int x = 0; x < camera.width; ++x) visit(x, y, y * camera.width + x);
+  };
+  parallel_for(camera.height, num_threads, visit_row, 8);
+}
 
 /// One ray through every pixel centre. The same for any number of threads.
 RenderedImage render(const RayScene& scene, const Camera& camera, const Pose& world_from_camera,
