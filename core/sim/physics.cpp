@@ -16,12 +16,12 @@ namespace {
 constexpr double kScale = 10;
 constexpr double kStep = 1.0 / 180;
 constexpr double kMargin = 0.0003;  // metres, round every convex part
-constexpr double kMass = 0.3;       // kilograms
+constexpr btScalar kMass = 0.3f;    // kilograms
 constexpr int kFenceSides = 12;
 
 btVector3 to_bullet(const Eigen::Vector3d& v) {
-  return {static_cast<btScalar>(kScale * v.x()), static_cast<btScalar>(kScale * v.y()),
-          static_cast<btScalar>(kScale * v.z())};
+  const Eigen::Vector3f scaled = (kScale * v).cast<float>();
+  return {scaled.x(), scaled.y(), scaled.z()};
 }
 
 btTransform to_bullet(const Pose& pose) {
@@ -42,7 +42,7 @@ class World {
   World()
       : dispatcher_(&configuration_),
         world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
-    world_.setGravity({0, 0, static_cast<btScalar>(-9.81 * kScale)});
+    world_.setGravity(to_bullet({0, 0, -9.81}));
     world_.getSolverInfo().m_numIterations = 10;
   }
   ~World() {
@@ -51,17 +51,14 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  btRigidBody* add_static(std::unique_ptr<btCollisionShape> shape, const Pose& pose) {
-    return add(std::move(shape), pose, 0);
-  }
   btRigidBody* add_static_box(const Eigen::Vector3d& center, const Eigen::Vector3d& half_size,
                               double angle = 0) {
     const Pose pose{rotation_from_vector(angle * Eigen::Vector3d::UnitZ()), center};
-    return add_static(std::make_unique<btBoxShape>(to_bullet(half_size)), pose);
+    return add(std::make_unique<btBoxShape>(to_bullet(half_size)), pose, 0);
   }
 
   btRigidBody* add_object(const SimulatedObject& object, const Eigen::Vector3d& center,
-                          const Pose& world_from_object, double mass) {
+                          const Pose& world_from_object, btScalar mass) {
     auto compound = std::make_unique<btCompoundShape>();
     for (const ConvexPart& part : object.parts) {
       auto hull = std::make_unique<btConvexHullShape>();
@@ -69,7 +66,7 @@ class World {
         hull->addPoint(to_bullet(point.cast<double>() - center), false);
       }
       hull->recalcLocalAabb();
-      hull->setMargin(static_cast<btScalar>(kScale * kMargin));
+      hull->setMargin(kScale * kMargin);
       compound->addChildShape(btTransform::getIdentity(), hull.get());
       shapes_.push_back(std::move(hull));
     }
@@ -79,21 +76,16 @@ class World {
 
   void remove(btRigidBody* body) {
     world_.removeRigidBody(body);
-    const auto found = std::find_if(bodies_.begin(), bodies_.end(),
-                                    [body](const auto& b) { return b.get() == body; });
-    bodies_.erase(found);
+    std::erase_if(bodies_, [body](const auto& b) { return b.get() == body; });
     for (const auto& b : bodies_) b->activate(true);
   }
-  void step() {
-    world_.stepSimulation(static_cast<btScalar>(kStep), 1, static_cast<btScalar>(kStep));
-  }
+  void step() { world_.stepSimulation(kStep, 1, kStep); }
 
  private:
-  btRigidBody* add(std::unique_ptr<btCollisionShape> shape, const Pose& pose, double mass) {
+  btRigidBody* add(std::unique_ptr<btCollisionShape> shape, const Pose& pose, btScalar mass) {
     btVector3 inertia(0, 0, 0);
-    if (mass > 0) shape->calculateLocalInertia(static_cast<btScalar>(mass), inertia);
-    btRigidBody::btRigidBodyConstructionInfo info(static_cast<btScalar>(mass), nullptr, shape.get(),
-                                                  inertia);
+    if (mass > 0) shape->calculateLocalInertia(mass, inertia);
+    btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, shape.get(), inertia);
     info.m_startWorldTransform = to_bullet(pose);
     info.m_friction = 1.0f;
     info.m_rollingFriction = 0.05f;
@@ -101,7 +93,7 @@ class World {
     info.m_restitution = 0.05f;
     info.m_linearDamping = 0.3f;
     info.m_angularDamping = 0.6f;
-    info.m_linearSleepingThreshold = static_cast<btScalar>(0.01 * kScale);
+    info.m_linearSleepingThreshold = 0.01 * kScale;
     info.m_angularSleepingThreshold = 0.15f;
     bodies_.push_back(std::make_unique<btRigidBody>(info));
     shapes_.push_back(std::move(shape));
@@ -194,9 +186,8 @@ std::vector<RestingBody> drop(const std::vector<FallingBody>& bodies, const Drop
 
   std::vector<RestingBody> result;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    RestingBody rest;
-    rest.world_from_object = from_bullet(falling[i]->getWorldTransform()) *
-                             Pose{Eigen::Quaterniond::Identity(), -centers[i]};
+    RestingBody rest{from_bullet(falling[i]->getWorldTransform()) *
+                     Pose{Eigen::Quaterniond::Identity(), -centers[i]}};
     if (falling[i]->isActive()) {
       rest.speed = falling[i]->getLinearVelocity().length() / kScale;
       rest.turning = falling[i]->getAngularVelocity().length();

@@ -17,17 +17,11 @@ namespace {
 
 RTCRay ray_of(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float near,
               float far) {
-  RTCRay ray{};
-  ray.org_x = origin.x();
-  ray.org_y = origin.y();
-  ray.org_z = origin.z();
-  ray.dir_x = direction.x();
-  ray.dir_y = direction.y();
-  ray.dir_z = direction.z();
-  ray.tnear = near;
-  ray.tfar = far;
-  ray.mask = ~0u;
-  return ray;
+  constexpr float kTime = 0;
+  constexpr unsigned kMask = ~0u;
+  return {
+      origin.x(), origin.y(), origin.z(), near, direction.x(), direction.y(), direction.z(), kTime,
+      far,        kMask,      0,          0};
 }
 
 void intersect(RTCScene scene, RTCRayHit& query) {
@@ -76,70 +70,41 @@ RTCScene scene_of(RTCDevice device, const TriangleMesh& mesh) {
 
 }  // namespace
 
-struct RayMeshes::Impl {
-  RTCDevice device = nullptr;
-  std::vector<const TriangleMesh*> meshes;
-  std::vector<RTCScene> scenes;
-
-  ~Impl() {
-    for (RTCScene scene : scenes) rtcReleaseScene(scene);
-    if (device != nullptr) rtcReleaseDevice(device);
-  }
-};
-
 RayMeshes::RayMeshes(const std::vector<const TriangleMesh*>& meshes)
-    : impl_(std::make_unique<Impl>()) {
-  impl_->device = rtcNewDevice("threads=1");  // trees are built by the caller's thread alone
-  impl_->meshes = meshes;
-  for (const TriangleMesh* mesh : meshes) impl_->scenes.push_back(scene_of(impl_->device, *mesh));
+    // Trees are built by the caller's thread alone.
+    : meshes_(meshes), device_(rtcNewDevice("threads=1"), rtcReleaseDevice) {
+  for (const TriangleMesh* mesh : meshes) {
+    scenes_.emplace_back(scene_of(device_.get(), *mesh), rtcReleaseScene);
+  }
 }
-RayMeshes::~RayMeshes() = default;
-RayMeshes::RayMeshes(RayMeshes&&) noexcept = default;
-RayMeshes& RayMeshes::operator=(RayMeshes&&) noexcept = default;
-
-int RayMeshes::size() const { return static_cast<int>(impl_->meshes.size()); }
-
-const TriangleMesh& RayMeshes::mesh(int index) const { return *impl_->meshes[index]; }
 
 bool RayMeshes::hits(int mesh, const Eigen::Vector3f& origin,
                      const Eigen::Vector3f& direction) const {
   RTCRay ray = ray_of(origin, direction, 0, std::numeric_limits<float>::infinity());
-  find_any_hit(impl_->scenes[mesh], ray);
+  find_any_hit(scenes_[mesh].get(), ray);
   return ray.tfar < 0;
 }
 
-struct RayScene::Impl {
-  RTCScene scene = nullptr;
-  std::vector<Eigen::Matrix3f> rotations;
-
-  ~Impl() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-  }
-};
-
 RayScene::RayScene(const RayMeshes& meshes, std::vector<PosedMesh> instances)
-    : meshes_(&meshes), instances_(std::move(instances)), impl_(std::make_unique<Impl>()) {
-  RTCDevice device = meshes.impl().device;
-  impl_->scene = rtcNewScene(device);
-  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+    : meshes_(&meshes),
+      instances_(std::move(instances)),
+      scene_(rtcNewScene(meshes.device_.get()), rtcReleaseScene) {
+  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
   for (std::size_t i = 0; i < instances_.size(); ++i) {
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(geometry, meshes.impl().scenes[instances_[i].mesh]);
+    RTCGeometry geometry = rtcNewGeometry(meshes.device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, meshes.scenes_[instances_[i].mesh].get());
     rtcSetGeometryTimeStepCount(geometry, 1);
     Eigen::Matrix<float, 3, 4> transform;
     transform.leftCols<3>() = instances_[i].world_from_mesh.matrix().cast<float>();
     transform.col(3) = instances_[i].world_from_mesh.translation.cast<float>();
-    impl_->rotations.push_back(transform.leftCols<3>());
+    rotations_.push_back(transform.leftCols<3>());
     rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(impl_->scene, geometry, static_cast<unsigned>(i));
+    rtcAttachGeometryByID(scene_.get(), geometry, static_cast<unsigned>(i));
     rtcReleaseGeometry(geometry);
   }
-  rtcCommitScene(impl_->scene);
+  rtcCommitScene(scene_.get());
 }
-RayScene::~RayScene() = default;
-RayScene::RayScene(RayScene&&) noexcept = default;
-RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 std::optional<RayHit> RayScene::cast(const Eigen::Vector3f& origin,
                                      const Eigen::Vector3f& direction) const {
@@ -147,13 +112,13 @@ std::optional<RayHit> RayScene::cast(const Eigen::Vector3f& origin,
   query.ray = ray_of(origin, direction, 0, std::numeric_limits<float>::infinity());
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  intersect(impl_->scene, query);
+  intersect(scene_.get(), query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   RayHit hit;
   hit.distance = query.ray.tfar;
   hit.instance = static_cast<int>(query.hit.instID[0]);
-  const TriangleMesh& mesh = *meshes_->impl().meshes[instances_[hit.instance].mesh];
+  const TriangleMesh& mesh = meshes_->mesh(instances_[hit.instance].mesh);
   const auto& triangle = mesh.triangles[query.hit.primID];
   const std::array<float, 3> weight{1 - query.hit.u - query.hit.v, query.hit.u, query.hit.v};
   const Eigen::Vector3f& a = mesh.vertices[triangle[0]];
@@ -174,7 +139,7 @@ std::optional<RayHit> RayScene::cast(const Eigen::Vector3f& origin,
     }
   }
   for (Eigen::Vector3f* normal : {&hit.normal, &hit.face_normal}) {
-    *normal = impl_->rotations[hit.instance] * *normal;
+    *normal = rotations_[hit.instance] * *normal;
     if (normal->dot(direction) > 0) *normal = -*normal;
   }
   return hit;
@@ -184,7 +149,7 @@ bool RayScene::blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) c
   const Eigen::Vector3f direction = to - from;
   const float margin = 2e-4f / direction.norm();
   RTCRay ray = ray_of(from, direction, margin, 1 - margin);
-  find_any_hit(impl_->scene, ray);
+  find_any_hit(scene_.get(), ray);
   return ray.tfar < 0;
 }
 

@@ -16,6 +16,9 @@
 
 // Ray casting of posed meshes (Embree).
 
+struct RTCDeviceTy;
+struct RTCSceneTy;
+
 namespace bpa::sim {
 
 /// Where a ray meets a surface first.
@@ -33,20 +36,17 @@ struct RayHit {
 class RayMeshes {
  public:
   explicit RayMeshes(const std::vector<const TriangleMesh*>& meshes);
-  ~RayMeshes();
-  RayMeshes(RayMeshes&&) noexcept;
-  RayMeshes& operator=(RayMeshes&&) noexcept;
 
-  int size() const;
-  const TriangleMesh& mesh(int index) const;
+  int size() const { return static_cast<int>(meshes_.size()); }
+  const TriangleMesh& mesh(int index) const { return *meshes_[index]; }
   /// Whether a ray in the frame of one mesh meets it.
   bool hits(int mesh, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;
 
-  struct Impl;
-  const Impl& impl() const { return *impl_; }
-
  private:
-  std::unique_ptr<Impl> impl_;
+  friend class RayScene;
+  std::vector<const TriangleMesh*> meshes_;
+  std::shared_ptr<RTCDeviceTy> device_;
+  std::vector<std::shared_ptr<RTCSceneTy>> scenes_;  // one for each mesh
 };
 
 /// One mesh standing in the world.
@@ -59,9 +59,6 @@ struct PosedMesh {
 class RayScene {
  public:
   RayScene(const RayMeshes& meshes, std::vector<PosedMesh> instances);
-  ~RayScene();
-  RayScene(RayScene&&) noexcept;
-  RayScene& operator=(RayScene&&) noexcept;
 
   const std::vector<PosedMesh>& instances() const { return instances_; }
   const RayMeshes& meshes() const { return *meshes_; }
@@ -72,10 +69,10 @@ class RayScene {
   bool blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
 
  private:
-  struct Impl;
   const RayMeshes* meshes_;
   std::vector<PosedMesh> instances_;
-  std::unique_ptr<Impl> impl_;
+  std::vector<Eigen::Matrix3f> rotations_;  // world from mesh, of the instances
+  std::shared_ptr<RTCSceneTy> scene_;
 };
 
 /// What an ideal camera sees, row-major.

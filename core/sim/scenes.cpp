@@ -6,15 +6,18 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "core/base/random.hpp"
 #include "core/sim/physics.hpp"
-#include "core/sim/private/stage.hpp"
+#include "core/sim/scenery.hpp"
 
 namespace bpa::sim {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+// Places in Stage::scenery().
+constexpr int kRoom = 0, kBin = 1, kFirstTable = 2, kNumTables = 4, kFirstDistractor = 6;
 
 // Uniform over all orientations (Shoemake 1992).
 Eigen::Quaterniond random_rotation(RandomStream& random) {
@@ -33,11 +36,11 @@ Eigen::Quaterniond start_rotation(RandomStream& random) {
 }
 
 std::vector<int> chosen_without_repetition(int count, int from, RandomStream& random) {
+  count = std::min(count, from);
   std::vector<int> all(from);
-  for (int i = 0; i < from; ++i) all[i] = i;
-  for (int i = 0; i < std::min(count, from); ++i)
-    std::swap(all[i], all[i + random.index(from - i)]);
-  all.resize(std::min(count, from));
+  std::iota(all.begin(), all.end(), 0);
+  for (int i = 0; i < count; ++i) std::swap(all[i], all[i + random.index(from - i)]);
+  all.resize(count);
   return all;
 }
 
@@ -70,17 +73,9 @@ SceneKind draw_kind(const SceneOptions& options, RandomStream& random) {
   return SceneKind::pile;
 }
 
-// A mesh of a scene: a household object, or a distractor (object -1).
-struct Item {
-  int mesh = 0;
-  int object = -1;
-  Material material;
-  Pose world_from_object;
-};
-
-// The household objects of a pile, then its distractors; not placed yet.
-std::vector<Item> choose_items(const Stage::Impl& stage, const SceneOptions& options,
-                               SceneKind kind, RandomStream& random) {
+// Meshes of the household objects of a pile, then of its distractors.
+std::vector<int> choose_bodies(const Stage& stage, const SceneOptions& options, SceneKind kind,
+                               RandomStream& random) {
   const int span = std::max(options.max_objects - options.min_objects, 0) + 1;
   int wanted = options.min_objects + random.index(span);
   if (kind == SceneKind::border) wanted = std::max(wanted, 1);
@@ -89,64 +84,55 @@ std::vector<Item> choose_items(const Stage::Impl& stage, const SceneOptions& opt
     others = std::max(3, wanted);
     wanted = 0;
   }
-  std::vector<Item> items;
-  for (const int i :
-       chosen_without_repetition(wanted, static_cast<int>(stage.objects.size()), random)) {
-    items.push_back({i, i, stage.objects[i].material, {}});
+  const int objects = static_cast<int>(stage.objects().size());
+  const int distractors = static_cast<int>(stage.scenery().size()) - kFirstDistractor;
+  std::vector<int> bodies = chosen_without_repetition(wanted, objects, random);
+  for (const int i : chosen_without_repetition(others, distractors, random)) {
+    bodies.push_back(objects + kFirstDistractor + i);
   }
-  for (const int i :
-       chosen_without_repetition(others, static_cast<int>(stage.distractors.size()), random)) {
-    items.push_back({stage.first_distractor + i, -1, stage.distractors[i].material, {}});
-  }
-  return items;
+  return bodies;
 }
 
 // Chooses what falls where, and lets it fall.
-std::vector<Item> make_pile(const Stage::Impl& stage, const SceneOptions& options, SceneKind kind,
-                            RandomStream& random) {
+std::vector<PosedMesh> make_pile(const Stage& stage, const SceneOptions& options, SceneKind kind,
+                                 RandomStream& random) {
   if (kind == SceneKind::empty_table) return {};
-  const std::vector<Item> items = choose_items(stage, options, kind, random);
+  const std::vector<int> chosen = choose_bodies(stage, options, kind, random);
   // Heaps are the harder and the commoner case.
   const double clutter = options.min_clutter +
                          (options.max_clutter - options.min_clutter) * std::sqrt(random.uniform());
-  const double share = std::sqrt(static_cast<double>(items.size()) / 14);
+  const double share = std::sqrt(static_cast<double>(chosen.size()) / 14);
   const double radius = share * (0.36 + clutter * (0.08 - 0.36)) + 0.02;
   const bool in_bin = random.uniform() < options.bin_share * clutter;
   std::vector<Eigen::Vector2d> taken;
   std::vector<FallingBody> bodies;
-  for (const Item& item : items) {
-    const SimulatedObject& body = item.object >= 0
-                                      ? stage.objects[item.object]
-                                      : stage.distractors[item.mesh - stage.first_distractor];
+  for (const int mesh : chosen) {
     taken.push_back(start_point(radius, clutter, taken, random));
     const Eigen::Vector3d start(taken.back().x(), taken.back().y(), 0.05);
-    bodies.push_back({&body, {start_rotation(random), start}});
+    bodies.push_back({&stage.body(mesh), {start_rotation(random), start}});
   }
   DropOptions drop_options;
   drop_options.table_half_x = kTableHalfX;
   drop_options.table_half_y = kTableHalfY;
   drop_options.fence_radius = in_bin ? kBinHalfY : std::max(radius + 0.07, 0.13);
-  if (in_bin) drop_options.fixture = &stage.bin;
+  if (in_bin) drop_options.fixture = &stage.scenery()[kBin];
   const std::vector<RestingBody> resting = drop(bodies, drop_options);
-  std::vector<Item> kept;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (!resting[i].on_table) continue;
-    kept.push_back(items[i]);
-    kept.back().world_from_object = resting[i].world_from_object;
+  std::vector<PosedMesh> pile;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (resting[i].on_table) pile.push_back({chosen[i], resting[i].world_from_object});
   }
-  if (in_bin) kept.push_back({stage.bin_mesh, -1, stage.bin.material, {}});
-  return kept;
+  if (in_bin) pile.push_back({static_cast<int>(stage.objects().size()) + kBin, Pose{}});
+  return pile;
 }
 
 Shading draw_shading(RandomStream& random) {
   Shading shading;
   shading.lights.clear();
   for (int i = 0; i < 2; ++i) {
-    Light light;
     const double angle = 2 * kPi * random.uniform(), reach = random.uniform(0.3, 1.6);
-    light.position = {reach * std::cos(angle), reach * std::sin(angle), random.uniform(1.4, 2.2)};
-    light.power = random.uniform(0.25, 0.5);
-    shading.lights.push_back(light);
+    const double height = random.uniform(1.4, 2.2);
+    shading.lights.push_back(
+        {{reach * std::cos(angle), reach * std::sin(angle), height}, random.uniform(0.25, 0.5)});
   }
   shading.ambient = random.uniform(0.35, 0.55);
   return shading;
@@ -163,11 +149,13 @@ Pose aimed_past(const Pose& world_from_camera, const Eigen::Vector3d& object, co
   return world_from_camera * turn;
 }
 
-Pose draw_camera(const std::vector<Item>& items, const SceneOptions& options, SceneKind kind,
-                 double azimuth, RandomStream& random) {
+// The first `num_objects` of the pile are household objects.
+Pose draw_camera(const std::vector<PosedMesh>& pile, std::size_t num_objects,
+                 const SceneOptions& options, SceneKind kind, double azimuth,
+                 RandomStream& random) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const Item& item : items) {
-    middle += item.world_from_object.translation / static_cast<double>(items.size());
+  for (const PosedMesh& body : pile) {
+    middle += body.world_from_mesh.translation / static_cast<double>(pile.size());
   }
   const Eigen::Vector3d target(middle.x() + 0.03 * random.normal(),
                                middle.y() + 0.03 * random.normal(), middle.z());
@@ -178,20 +166,64 @@ Pose draw_camera(const std::vector<Item>& items, const SceneOptions& options, Sc
   if (kind != SceneKind::border) return pose;
   // The outermost object on one side, so that the others stay in view.
   const bool left = random.uniform() < 0.5;
-  const Item* outermost = nullptr;
-  double farthest = -std::numeric_limits<double>::infinity();
-  for (const Item& item : items) {
-    const double u =
-        options.camera.project(pose.inverse() * item.world_from_object.translation).x();
-    if (item.object < 0 || (left ? -u : u) < farthest) continue;
-    farthest = left ? -u : u;
-    outermost = &item;
-  }
-  if (outermost == nullptr) return pose;
-  return aimed_past(pose, outermost->world_from_object.translation, options.camera, left);
+  if (num_objects == 0) return pose;
+  const auto outward = [&](const PosedMesh& body) {
+    const Eigen::Vector3d in_camera = pose.inverse() * body.world_from_mesh.translation;
+    return (left ? -1 : 1) * options.camera.project(in_camera).x();
+  };
+  const PosedMesh& outermost =
+      *std::ranges::max_element(pile.begin(), pile.begin() + num_objects, {}, outward);
+  return aimed_past(pose, outermost.world_from_mesh.translation, options.camera, left);
 }
 
 }  // namespace
+
+Stage::Stage(std::vector<SimulatedObject> objects, int num_threads,
+             std::vector<SimulatedObject> look_alikes)
+    : objects_(std::move(objects)) {
+  scenery_ = {make_room(), make_bin()};
+  for (auto&& more : {make_tables(), make_distractors(num_threads), std::move(look_alikes)}) {
+    scenery_.insert(scenery_.end(), more.begin(), more.end());
+  }
+  std::vector<const TriangleMesh*> meshes;
+  for (const SimulatedObject& object : objects_) meshes.push_back(&object.mesh);
+  for (const SimulatedObject& object : scenery_) meshes.push_back(&object.mesh);
+  meshes_ = std::make_unique<RayMeshes>(meshes);
+}
+
+const SimulatedObject& Stage::body(int mesh) const {
+  const auto index = static_cast<std::size_t>(mesh);
+  return index < objects_.size() ? objects_[index] : scenery_[index - objects_.size()];
+}
+
+SimulatedFrame capture(const KinectView& view, const std::vector<int>& objects,
+                       const KinectOptions& options, std::uint64_t seed, int shot,
+                       int num_threads) {
+  KinectImage image = simulate_kinect(view, options, seed, shot, num_threads);
+  SimulatedFrame frame;
+  frame.frame = std::move(image.frame);
+  frame.camera_from_world = view.world_from_camera.inverse();
+  const int count = static_cast<int>(objects.size());
+  const std::vector<InstanceVisibility> seen =
+      visibility(view.scene, image.ideal, view.camera, view.world_from_camera, count, num_threads);
+  for (int i = 0; i < count; ++i) {
+    frame.instances.push_back(
+        {objects[i], frame.camera_from_world * view.scene.instances()[i].world_from_mesh, seen[i]});
+  }
+  frame.instance_image.reserve(image.ideal.instance.size());
+  for (const std::int32_t instance : image.ideal.instance) {
+    frame.instance_image.push_back(static_cast<std::int16_t>(instance < count ? instance : -1));
+  }
+  frame.ideal_depth = std::move(image.ideal.depth);
+  return frame;
+}
+
+std::vector<std::uint8_t> visible_mask(const SimulatedFrame& frame, int instance) {
+  std::vector<std::uint8_t> mask;
+  mask.reserve(frame.instance_image.size());
+  for (const std::int16_t i : frame.instance_image) mask.push_back(i == instance ? 255 : 0);
+  return mask;
+}
 
 Pose camera_looking_at(const Eigen::Vector3d& target, double distance, double elevation,
                        double azimuth, double roll) {
@@ -214,34 +246,24 @@ SimulatedScene simulate_scene(const Stage& stage, const SceneOptions& options, s
   RandomStream random(seed, 0);
   SimulatedScene result;
   result.kind = draw_kind(options, random);
-  const std::vector<Item> items = make_pile(stage.impl(), options, result.kind, random);
-
-  // Objects first, so that posed meshes and instances agree.
-  std::vector<PosedMesh> posed;
+  const std::vector<PosedMesh> pile = make_pile(stage, options, result.kind, random);
   Shading shading = draw_shading(random);
-  std::vector<int> objects;
-  const auto place = [&](const Item& item) {
-    posed.push_back({item.mesh, item.world_from_object});
-    shading.materials.push_back(item.material);
-  };
-  for (const Item& item : items) {
-    if (item.object < 0) continue;
-    objects.push_back(item.object);
-    place(item);
+  const int num_objects = static_cast<int>(stage.objects().size());
+  std::vector<PosedMesh> posed = pile;
+  posed.push_back({num_objects + kFirstTable + random.index(kNumTables), Pose{}});
+  posed.push_back({num_objects + kRoom, Pose{}});
+  std::vector<int> objects;  // of the instances, which come first
+  for (const PosedMesh& body : posed) {
+    shading.materials.push_back(stage.body(body.mesh).material);
+    if (body.mesh < num_objects) objects.push_back(body.mesh);
   }
-  for (const Item& item : items) {
-    if (item.object < 0) place(item);
-  }
-  const int table = random.index(static_cast<int>(stage.impl().tables.size()));
-  place({stage.impl().first_table + table, -1, stage.impl().tables[table].material, {}});
-  place({stage.impl().room_mesh, -1, stage.impl().room.material, {}});
-
-  const RayScene scene(stage.impl().meshes(), posed);
+  const RayScene scene(stage.meshes(), posed);
   const double first_azimuth = random.uniform(0, 2 * kPi);
   for (int view = 0; view < options.views; ++view) {
     RandomStream view_random(seed, 1 + static_cast<std::uint64_t>(view));
     const double azimuth = first_azimuth + 2 * kPi * view / options.views;
-    const Pose world_from_camera = draw_camera(items, options, result.kind, azimuth, view_random);
+    const Pose world_from_camera =
+        draw_camera(pile, objects.size(), options, result.kind, azimuth, view_random);
     const std::uint64_t view_seed = view_random();
     for (int shot = 0; shot < options.shots; ++shot) {
       result.frames.push_back(capture({scene, shading, options.camera, world_from_camera}, objects,

@@ -86,25 +86,31 @@ struct SimulatedScene {
   std::vector<SimulatedFrame> frames;  ///< All shots of a view, then those of the next.
 };
 
-/// The objects, the distractors, tables, a bin and the room, made ready for rendering once.
-/// Immutable.
+/// The objects, and the distractors, tables, bin and room about them, made ready for rendering
+/// once. Immutable.
 class Stage {
  public:
   /// `look_alikes` lie about as further distractors.
   explicit Stage(std::vector<SimulatedObject> objects, int num_threads = 0,
                  std::vector<SimulatedObject> look_alikes = {});
-  ~Stage();
-  Stage(Stage&&) noexcept;
-  Stage& operator=(Stage&&) noexcept;
 
-  const std::vector<SimulatedObject>& objects() const;
-
-  struct Impl;
-  const Impl& impl() const { return *impl_; }
+  const std::vector<SimulatedObject>& objects() const { return objects_; }
+  /// The room, the bin, four tables, then the distractors.
+  const std::vector<SimulatedObject>& scenery() const { return scenery_; }
+  /// Of the objects, then of the scenery.
+  const RayMeshes& meshes() const { return *meshes_; }
+  /// The object or scenery of one of the meshes.
+  const SimulatedObject& body(int mesh) const;
 
  private:
-  std::unique_ptr<Impl> impl_;
+  std::vector<SimulatedObject> objects_, scenery_;
+  std::unique_ptr<RayMeshes> meshes_;
 };
+
+/// One frame with its truth. The first posed meshes of the scene are the instances: instance i is
+/// the object of index `objects[i]`.
+SimulatedFrame capture(const KinectView& view, const std::vector<int>& objects,
+                       const KinectOptions& options, std::uint64_t seed, int shot, int num_threads);
 
 /// One scene. The same stage, options and seed give the same scene for any number of threads.
 SimulatedScene simulate_scene(const Stage& stage, const SceneOptions& options, std::uint64_t seed,

@@ -9,7 +9,7 @@
 
 #include "core/base/random.hpp"
 #include "core/sim/physics.hpp"
-#include "core/sim/private/stage.hpp"
+#include "core/sim/scenery.hpp"
 
 namespace bpa::sim {
 namespace {
