@@ -8,6 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include <opencv2/imgproc.hpp>
+
 namespace bpa::sim {
 namespace {
 
@@ -85,75 +87,47 @@ PlaneNoise plane_noise(double depth, double angle, const KinectOptions& options,
 
 namespace {
 
+using DepthImage = cv::Mat_<float>;
+
 // The rectangle of rows and columns of which at least a third is measured.
-struct Area {
-  int left = 0, top = 0, right = -1, bottom = -1;
-};
-
-Area measured_area(const Frame& frame) {
-  const int width = frame.camera.width, height = frame.camera.height;
-  std::vector<int> columns(width, 0), rows(height, 0);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const bool seen = frame.depth[static_cast<std::size_t>(y) * width + x] > 0;
-      columns[x] += seen;
-      rows[y] += seen;
-    }
-  }
-  Area area{0, 0, width - 1, height - 1};
-  while (area.left <= area.right && 3 * columns[area.left] < height) ++area.left;
-  while (area.right >= area.left && 3 * columns[area.right] < height) --area.right;
-  while (area.top <= area.bottom && 3 * rows[area.top] < width) ++area.top;
-  while (area.bottom >= area.top && 3 * rows[area.bottom] < width) --area.bottom;
-  return area;
+DepthImage measured_part(const DepthImage& depth) {
+  const auto range = [&depth](int dimension) {
+    cv::Mat_<int> seen;
+    cv::reduce((depth > 0) & 1, seen, dimension, cv::REDUCE_SUM, CV_32S);
+    const int all = dimension == 0 ? depth.rows : depth.cols;
+    int first = 0, last = static_cast<int>(seen.total());
+    while (first < last && 3 * seen(first) < all) ++first;
+    while (last > first && 3 * seen(last - 1) < all) --last;
+    return cv::Range(first, last);
+  };
+  return depth(range(1), range(0));
 }
 
-// Sizes of 4-connected regions without depth, in pixels of the frame; those that touch the area's
-// border are left out.
-std::vector<int> hole_sizes(const Frame& frame, const Area& area) {
-  const int width = frame.camera.width;
-  std::vector<std::uint8_t> visited(frame.depth.size(), 0);
-  std::vector<int> sizes, stack;
-  for (int y = area.top; y <= area.bottom; ++y) {
-    for (int x = area.left; x <= area.right; ++x) {
-      const int start = y * width + x;
-      if (frame.depth[start] > 0 || visited[start]) continue;
-      int size = 0;
-      bool border = false;
-      stack.assign(1, start);
-      visited[start] = 1;
-      while (!stack.empty()) {
-        const int i = stack.back();
-        stack.pop_back();
-        ++size;
-        const int u = i % width, v = i / width;
-        const int next[4][2] = {{u - 1, v}, {u + 1, v}, {u, v - 1}, {u, v + 1}};
-        for (const auto& [nu, nv] : next) {
-          if (nu < area.left || nu > area.right || nv < area.top || nv > area.bottom) {
-            border = true;
-            continue;
-          }
-          const int n = nv * width + nu;
-          if (frame.depth[n] > 0 || visited[n]) continue;
-          visited[n] = 1;
-          stack.push_back(n);
-        }
-      }
-      if (!border) sizes.push_back(size);
-    }
+// How many 4-connected regions without depth have at most `most` pixels; those that touch the
+// image's border do not count.
+int count_holes(const DepthImage& depth, double most) {
+  cv::Mat labels, centroids;
+  cv::Mat_<int> regions;
+  cv::connectedComponentsWithStats(depth <= 0, labels, regions, centroids, 4);
+  int holes = 0;
+  for (int i = 1; i < regions.rows; ++i) {
+    const int left = regions(i, cv::CC_STAT_LEFT), top = regions(i, cv::CC_STAT_TOP);
+    const bool inside = left > 0 && left + regions(i, cv::CC_STAT_WIDTH) < depth.cols && top > 0 &&
+                        top + regions(i, cv::CC_STAT_HEIGHT) < depth.rows;
+    holes += inside && regions(i, cv::CC_STAT_AREA) <= most;
   }
-  return sizes;
+  return holes;
 }
 
-// Holes along the rows, between surfaces whose depths differ by more than 5 cm.
-void add_gaps(const Frame& frame, const Area& area, Moments& left, Moments& right) {
+// Holes along the rows, between surfaces whose depths differ by more than 5 cm; `scale` times the
+// image's pixels.
+void add_gaps(const DepthImage& depth, double scale, Moments& left, Moments& right) {
   constexpr float kJump = 0.05f;
   constexpr int kLongest = 60;  // longer ones have other causes
-  const double scale = kInfraredFocal / frame.camera.fx;
-  for (int y = area.top; y <= area.bottom; ++y) {
-    const float* row = frame.depth.data() + static_cast<std::size_t>(y) * frame.camera.width;
+  for (int y = 0; y < depth.rows; ++y) {
+    const float* row = depth[y];
     int last = -1;
-    for (int x = area.left; x <= area.right; ++x) {
+    for (int x = 0; x < depth.cols; ++x) {
       if (row[x] <= 0) continue;
       if (last >= 0 && std::abs(row[x] - row[last]) > kJump && scale * (x - last) < kLongest) {
         (row[x] < row[last] ? left : right).add(scale * (x - last - 1));
@@ -169,24 +143,22 @@ struct Patch {
   double near_product = 0, far_product = 0;  ///< Mean product of residuals so far apart.
 };
 
-Patch fit_patch(const Frame& frame, int x0, int y0, int size, int near_step, int far_step) {
-  const int width = frame.camera.width;
+Patch fit_patch(const DepthImage& depth, int near_step, int far_step) {
+  const int size = depth.rows;
   Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  const auto disparity = [&](int x, int y) {
-    return kInfraredFocal * kBaseline / frame.depth[static_cast<std::size_t>(y) * width + x];
-  };
+  const auto disparity = [&](int x, int y) { return kInfraredFocal * kBaseline / depth(y, x); };
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
-      if (frame.depth[static_cast<std::size_t>(y0 + y) * width + x0 + x] <= 0) return {};
+      if (depth(y, x) <= 0) return {};
       const Eigen::Vector3d row(x - 0.5 * size, y - 0.5 * size, 1);
       a += row * row.transpose();
-      b += row * disparity(x0 + x, y0 + y);
+      b += row * disparity(x, y);
     }
   }
   const Eigen::Vector3d plane = a.ldlt().solve(b);
   const auto residual = [&](int x, int y) {
-    return disparity(x0 + x, y0 + y) - plane.x() * (x - 0.5 * size) - plane.y() * (y - 0.5 * size) -
+    return disparity(x, y) - plane.x() * (x - 0.5 * size) - plane.y() * (y - 0.5 * size) -
            plane.z();
   };
   Moments squares, near, far;
@@ -203,15 +175,14 @@ Patch fit_patch(const Frame& frame, int x0, int y0, int size, int near_step, int
   return {rms < kFlat ? rms : -1, near.mean(), far.mean()};
 }
 
-void add_roughness(const Frame& frame, const Area& area, DepthStatistics& statistics) {
-  const double scale = frame.camera.fx / kInfraredFocal;
+void add_roughness(const DepthImage& depth, double scale, DepthStatistics& statistics) {
   const auto pixels = [scale](double p) { return std::max(1, static_cast<int>(p * scale + 0.5)); };
   const int size = pixels(20);
   std::vector<double> roughness;
   double squares = 0, near = 0, far = 0;
-  for (int y = area.top; y + size <= area.bottom + 1; y += size) {
-    for (int x = area.left; x + size <= area.right + 1; x += size) {
-      const Patch patch = fit_patch(frame, x, y, size, pixels(1.5), pixels(5));
+  for (int y = 0; y + size <= depth.rows; y += size) {
+    for (int x = 0; x + size <= depth.cols; x += size) {
+      const Patch patch = fit_patch(depth({x, y, size, size}), pixels(1.5), pixels(5));
       if (patch.rms <= 0) continue;
       roughness.push_back(patch.rms);
       squares += patch.rms * patch.rms;
@@ -230,28 +201,21 @@ void add_roughness(const Frame& frame, const Area& area, DepthStatistics& statis
 }  // namespace
 
 DepthStatistics depth_statistics(const Frame& frame) {
-  DepthStatistics statistics;
-  const Area area = measured_area(frame);
-  const double count =
-      static_cast<double>(area.right - area.left + 1) * std::max(area.bottom - area.top + 1, 0);
-  if (!(count > 0)) return statistics;
-  int missing = 0;
-  for (int y = area.top; y <= area.bottom; ++y) {
-    for (int x = area.left; x <= area.right; ++x) {
-      missing += frame.depth[static_cast<std::size_t>(y) * frame.camera.width + x] <= 0;
-    }
-  }
-  statistics.missing = missing / count;
-  const double scale = frame.camera.fx / kInfraredFocal;
   constexpr double kSmall = 20;  // square pixels
-  int small = 0;
-  for (const int size : hole_sizes(frame, area)) small += size <= kSmall * scale * scale;
-  statistics.small_holes = small / (count / (scale * scale)) * 1e4;
+  const DepthImage depth = measured_part(
+      DepthImage(frame.camera.height, frame.camera.width, const_cast<float*>(frame.depth.data())));
+  if (depth.empty()) return {};
+  const double count = static_cast<double>(depth.total());
+  const double scale = frame.camera.fx / kInfraredFocal;
+  DepthStatistics statistics;
+  statistics.missing = cv::countNonZero(depth <= 0) / count;
+  statistics.small_holes =
+      count_holes(depth, kSmall * scale * scale) / (count / (scale * scale)) * 1e4;
   Moments left, right;
-  add_gaps(frame, area, left, right);
+  add_gaps(depth, kInfraredFocal / frame.camera.fx, left, right);
   statistics.left_gap = left.mean();
   statistics.right_gap = right.mean();
-  add_roughness(frame, area, statistics);
+  add_roughness(depth, scale, statistics);
   return statistics;
 }
 
