@@ -2,17 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "core/base/status.hpp"
 #include "idl/wire/cdr.hpp"
-#include "idl/wire/matches.hpp"
 #include "idl/wire/names.hpp"
 #include "idl/wire/participant.hpp"
 #include "idl/wire/qos.hpp"
@@ -21,6 +24,9 @@
 // Use those.
 
 namespace bpa::wire {
+
+/// A DDS GUID: 12 bytes of participant prefix, 4 of entity id. All zero: unknown.
+using Guid = std::array<std::uint8_t, 16>;
 
 /// Identifies a sample: its writer, and its place in the order of that writer.
 struct SampleId {
@@ -95,6 +101,24 @@ EndpointSpec endpoint_spec(std::string dds_topic, const Qos& qos, std::size_t sh
   return {std::move(dds_topic), dds_type_name(T::kType),
           std::string("typehash=") + T::kTypeHash + ";", qos, shared_bytes};
 }
+
+/// The remote endpoints that one of ours is matched with.
+class Matches {
+ public:
+  /// Adds a peer if `change`, DDS's change of the number of matches, is positive; removes it if
+  /// that is negative.
+  void update(const Guid& peer, int change);
+  std::size_t count() const;
+  /// Whether there are `count` of them or more, or were before the time was over.
+  bool wait_for(std::size_t count, std::chrono::milliseconds timeout) const;
+  /// An entity id of zero stands for any endpoint of that participant.
+  bool contains(const Guid& peer) const;
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  std::set<Guid> peers_;
+};
 
 /// What writers and readers have in common. They leave their topic when destroyed.
 class RawEndpoint {

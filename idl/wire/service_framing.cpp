@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "idl/wire/service_framing.hpp"
+#include "idl/wire/private/service_framing.hpp"
 
 #include <algorithm>
 #include <cstring>

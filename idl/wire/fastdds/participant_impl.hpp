@@ -18,9 +18,9 @@
 
 #include "idl/wire/fastdds/raw_type.hpp"
 #include "idl/wire/fastdds/version.hpp"
-#include "idl/wire/graph.hpp"
 #include "idl/wire/participant.hpp"
-#include "idl/wire/worker.hpp"
+#include "idl/wire/private/graph.hpp"
+#include "idl/wire/private/worker.hpp"
 
 // Private to idl/wire/fastdds, the only folder that includes Fast DDS.
 

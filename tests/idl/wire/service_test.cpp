@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "idl/wire/messages.hpp"
-#include "idl/wire/service_framing.hpp"
+#include "idl/wire/private/service_framing.hpp"
 #include "tests/idl/wire/domain.hpp"
 
 namespace bpa::wire {

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace bpa::wire::detail {
+
+/// One thread that runs tasks at their time. What a DDS callback must not do itself goes here.
+class Worker {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  Worker() : thread_([state = state_] { loop(*state); }) {}
+  /// Drops what has not run yet and waits for what is running, unless that is the caller.
+  ~Worker() {
+    {
+      const std::lock_guard<std::mutex> lock(state_->mutex);
+      state_->stop = true;
+    }
+    state_->wake.notify_all();
+    // A task may have been the last to hold what owns the worker.
+    if (thread_.get_id() == std::this_thread::get_id()) {
+      thread_.detach();
+    } else {
+      thread_.join();
+    }
+  }
+
+  void run_at(Clock::time_point time, std::function<void()> task) {
+    {
+      const std::lock_guard<std::mutex> lock(state_->mutex);
+      state_->tasks.emplace(time, std::move(task));
+    }
+    state_->wake.notify_all();
+  }
+
+ private:
+  struct State {
+    std::mutex mutex;
+    std::condition_variable wake;
+    std::multimap<Clock::time_point, std::function<void()>> tasks;
+    bool stop = false;
+  };
+
+  static void loop(State& state) {
+    std::unique_lock<std::mutex> lock(state.mutex);
+    while (!state.stop) {
+      if (state.tasks.empty()) {
+        state.wake.wait(lock);
+        continue;
+      }
+      const Clock::time_point next = state.tasks.begin()->first;
+      if (next > Clock::now()) {
+        state.wake.wait_until(lock, next);
+        continue;
+      }
+      std::function<void()> task = std::move(state.tasks.begin()->second);
+      state.tasks.erase(state.tasks.begin());
+      lock.unlock();
+      task();
+      task = nullptr;  // what it held may go here, not under the lock
+      lock.lock();
+    }
+  }
+
+  const std::shared_ptr<State> state_ = std::make_shared<State>();
+  std::thread thread_;
+};
+
+}  // namespace bpa::wire::detail
