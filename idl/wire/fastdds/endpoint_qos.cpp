@@ -32,9 +32,13 @@ Duration milliseconds(std::int64_t ms) {
                   static_cast<std::uint32_t>(ms % 1000) * 1'000'000U);
 }
 
-/// What writers and readers have in common. The defaults are read first, then changed.
-template <class EndpointQos>
-void set_common(const EndpointSpec& spec, EndpointQos& qos) {
+/// The QoS of the user's XML profile of the topic or else of `profile`, or else `qos` as
+/// `set_defaults` changes it; then what the spec says.
+template <class EndpointQos, class Find, class SetDefaults>
+EndpointQos endpoint_qos(const EndpointSpec& spec, EndpointQos qos, const char* profile, Find find,
+                         SetDefaults set_defaults) {
+  const bool has_profile = succeeded(find(spec.dds_topic, qos)) || succeeded(find(profile, qos));
+  if (!has_profile) set_defaults(qos);
   const Qos& wanted = spec.qos;
   const int depth = std::max(wanted.depth, 1);
   qos.reliability().kind = wanted.reliability == Reliability::reliable
@@ -63,17 +67,16 @@ void set_common(const EndpointSpec& spec, EndpointQos& qos) {
 #if BPA_FASTDDS_MAJOR >= 3
   qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION};
 #endif
+  return qos;
 }
 
 }  // namespace
 
 dds::DataWriterQos writer_qos(const EndpointSpec& spec, const dds::Publisher& publisher) {
-  dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
-  const bool has_profile =
-      succeeded(publisher.get_datawriter_qos_from_profile(spec.dds_topic, qos)) ||
-      succeeded(publisher.get_datawriter_qos_from_profile("bpa_writer", qos));
-  set_common(spec, qos);
-  if (!has_profile) {
+  const auto find = [&](const std::string& profile, dds::DataWriterQos& qos) {
+    return publisher.get_datawriter_qos_from_profile(profile, qos);
+  };
+  const auto set_defaults = [](dds::DataWriterQos& qos) {
     qos.reliability().max_blocking_time = milliseconds(100);
     qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
     // With the default of 3 s, what is written while a peer is being matched comes seconds late.
@@ -85,43 +88,43 @@ dds::DataWriterQos writer_qos(const EndpointSpec& spec, const dds::Publisher& pu
     times.heartbeatPeriod = milliseconds(100);
     times.nackResponseDelay = milliseconds(1);
 #endif
-  }
-  return qos;
+  };
+  return endpoint_qos(spec, dds::DATAWRITER_QOS_DEFAULT, "bpa_writer", find, set_defaults);
 }
 
 dds::DataReaderQos reader_qos(const EndpointSpec& spec, const dds::Subscriber& subscriber) {
-  dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
-  const bool has_profile =
-      succeeded(subscriber.get_datareader_qos_from_profile(spec.dds_topic, qos)) ||
-      succeeded(subscriber.get_datareader_qos_from_profile("bpa_reader", qos));
-  set_common(spec, qos);
-  if (!has_profile) {
-    auto& times = qos.reliable_reader_qos().times;
+  const auto find = [&](const std::string& profile, dds::DataReaderQos& qos) {
+    return subscriber.get_datareader_qos_from_profile(profile, qos);
+  };
+  const auto set_defaults = [](dds::DataReaderQos& qos) {
 #if BPA_FASTDDS_MAJOR >= 3
-    times.heartbeat_response_delay = milliseconds(1);
+    qos.reliable_reader_qos().times.heartbeat_response_delay = milliseconds(1);
 #else
-    times.heartbeatResponseDelay = milliseconds(1);
+    qos.reliable_reader_qos().times.heartbeatResponseDelay = milliseconds(1);
 #endif
-  }
-  return qos;
+  };
+  return endpoint_qos(spec, dds::DATAREADER_QOS_DEFAULT, "bpa_reader", find, set_defaults);
 }
 
 std::string incompatible_qos_text(const std::string& dds_topic, bool we_write,
                                   dds::QosPolicyId_t policy) {
+  const struct {
+    dds::QosPolicyId_t policy;
+    const char* name;
+    const char* remedy;
+  } known[] = {
+      {dds::RELIABILITY_QOS_POLICY_ID, "reliability", "subscribe best_effort or publish reliable"},
+      {dds::DURABILITY_QOS_POLICY_ID, "durability",
+       "subscribe volatile or publish transient_local"},
+      {dds::DEADLINE_QOS_POLICY_ID, "deadline", "subscribe without a deadline"},
+      {dds::LIVELINESS_QOS_POLICY_ID, "liveliness",
+       "subscribe with automatic liveliness and no lease"}};
   std::string name = "policy " + std::to_string(static_cast<int>(policy));
   std::string remedy = "give both the same";
-  if (policy == dds::RELIABILITY_QOS_POLICY_ID) {
-    name = "reliability";
-    remedy = "subscribe best_effort or publish reliable";
-  } else if (policy == dds::DURABILITY_QOS_POLICY_ID) {
-    name = "durability";
-    remedy = "subscribe volatile or publish transient_local";
-  } else if (policy == dds::DEADLINE_QOS_POLICY_ID) {
-    name = "deadline";
-    remedy = "subscribe without a deadline";
-  } else if (policy == dds::LIVELINESS_QOS_POLICY_ID) {
-    name = "liveliness";
-    remedy = "subscribe with automatic liveliness and no lease";
+  for (const auto& one : known) {
+    if (one.policy != policy) continue;
+    name = one.name;
+    remedy = one.remedy;
   }
   return "topic " + dds_topic + ": " +
          (we_write ? "a subscriber asks for more than we offer"

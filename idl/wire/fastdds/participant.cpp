@@ -2,9 +2,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "idl/wire/participant.hpp"
 
+#include <memory>
+
+#include <fastdds/dds/log/Log.hpp>
+
 #include "idl/wire/fastdds/participant_impl.hpp"
 
 namespace bpa::wire {
+namespace {
+
+using eprosima::fastdds::dds::Log;
+using eprosima::fastdds::dds::LogConsumer;
+
+class Bridge : public LogConsumer {
+ public:
+  explicit Bridge(LogHook hook) : hook_(std::move(hook)) {}
+
+  void Consume(const Log::Entry& entry) override {
+    const bool error = entry.kind == Log::Kind::Error;
+    log(hook_, error ? LogLevel::warning : LogLevel::debug, "Fast DDS: " + entry.message);
+  }
+
+ private:
+  LogHook hook_;
+};
+
+/// Takes Fast DDS's own messages, which it would print, to a hook: its errors as warnings, its
+/// warnings as debug. Fast DDS has one log a process; the hook of the last participant gets it.
+void bridge_log(const LogHook& hook) {
+  Log::ClearConsumers();
+  if (!hook) return;
+  Log::SetVerbosity(Log::Kind::Warning);
+  Log::RegisterConsumer(std::make_unique<Bridge>(hook));
+}
+
+}  // namespace
 
 Participant::Participant(std::shared_ptr<detail::ParticipantImpl> impl) : impl_(std::move(impl)) {}
 
@@ -22,6 +54,7 @@ Result<Participant> Participant::create(ParticipantOptions options) {
     if (!found.ok()) return found.status();
     discovery = *std::move(found);
   }
+  bridge_log(options.log);
   auto impl = std::make_shared<detail::ParticipantImpl>(std::move(options), std::move(discovery));
   status = impl->start();
   if (!status.ok()) return status;

@@ -7,7 +7,7 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 
 #include "idl/wire/fastdds/dds_qos.hpp"
-#include "idl/wire/fastdds/log_bridge.hpp"
+#include "idl/wire/fastdds/raw_type.hpp"
 #include "idl/wire/msg/rmw_dds_common.hpp"
 
 #if BPA_FASTDDS_MAJOR < 3
@@ -34,18 +34,28 @@ Guid to_guid(const rtps::GUID_t& guid) {
 
 Guid to_guid(const rtps::InstanceHandle_t& handle) { return to_guid(rtps::iHandle2GUID(handle)); }
 
-rtps::GUID_t from_guid(const Guid& guid) {
-  rtps::GUID_t result;
-  std::memcpy(result.guidPrefix.value, guid.data(), 12);
-  std::memcpy(result.entityId.value, guid.data() + 12, 4);
-  return result;
+SampleId to_id(const rtps::SampleIdentity& identity) {
+  if (identity.writer_guid() == rtps::c_Guid_Unknown) return {};
+  return {to_guid(identity.writer_guid()),
+          static_cast<std::int64_t>(identity.sequence_number().to64long())};
+}
+
+rtps::SampleIdentity to_identity(const SampleId& id) {
+  rtps::GUID_t writer;
+  std::memcpy(writer.guidPrefix.value, id.writer.data(), 12);
+  std::memcpy(writer.entityId.value, id.writer.data() + 12, 4);
+  rtps::SampleIdentity identity;
+  identity.writer_guid(writer);
+  if (id.sequence != 0) {  // else unknown, as in a request
+    identity.sequence_number(rtps::SequenceNumber_t(static_cast<std::uint64_t>(id.sequence)));
+  }
+  return identity;
 }
 
 ParticipantImpl::ParticipantImpl(ParticipantOptions options, Discovery discovery)
     : options_(std::move(options)), discovery_(std::move(discovery)) {}
 
 Status ParticipantImpl::start() {
-  bridge_log(options_.log);
   auto* factory = dds::DomainParticipantFactory::get_instance();
   if (!options_.profiles.empty() &&
       !succeeded(factory->load_XML_profiles_file(options_.profiles))) {
@@ -60,8 +70,7 @@ Status ParticipantImpl::start() {
   if (has_profile && qos->transport().use_builtin_transports) {
     log(LogLevel::warning,
         "the XML profile \"bpa\" uses Fast DDS's built-in transports: the shared memory of Fast "
-        "DDS "
-        "2.9.1 (Debian 12) fits no other release, and makes ROS 2 nodes on this machine abort");
+        "DDS 2.9.1 (Debian 12) fits no other release, and makes ROS 2 nodes on this machine abort");
   }
   participant_ = factory->create_participant(static_cast<dds::DomainId_t>(discovery_.domain_id),
                                              *qos, this, dds::StatusMask::none());
@@ -80,7 +89,8 @@ Status ParticipantImpl::start() {
       endpoint_spec<rmw_dds_common::ParticipantEntitiesInfo>(kGraphTopic, qos::latched(), 0);
   spec.user_data += kOwnMark;
   spec.in_graph = false;
-  auto writer = make_raw_writer(*this, nullptr, std::move(spec));
+  // Ours: it must not hold us alive.
+  auto writer = make_raw_writer({std::shared_ptr<void>(), this}, std::move(spec));
   if (!writer.ok()) return writer.status();
   {
     const std::lock_guard<std::mutex> lock(graph_mutex_);
@@ -196,22 +206,6 @@ void ParticipantImpl::publish_graph() {
   if (!status.ok()) log(LogLevel::warning, "ros_discovery_info: " + status.message);
 }
 
-void ParticipantImpl::watch_graph(const Peer& peer) {
-  if (peer.topic != kGraphTopic || options_.graph_layout != GraphLayout::automatic) return;
-  const GraphLayout before = graph_layout();
-  {
-    const std::lock_guard<std::mutex> lock(discovery_mutex_);
-    if (peer.change == Peer::Change::went) {
-      guess_.removed(peer.guid);
-    } else {
-      guess_.discovered(peer.guid, peer.user_data);
-    }
-  }
-  if (graph_layout() == before) return;
-  // Not from here: the caller holds the locks of the discovery protocol.
-  worker_.run_at(Worker::Clock::now(), [this] { publish_graph(); });
-}
-
 void ParticipantImpl::check_type(const Peer& peer, const std::string& ours) const {
   if (ours.empty() || ours == peer.type) return;
   log(LogLevel::warning, "topic " + peer.topic + ": a peer's " +
@@ -221,20 +215,25 @@ void ParticipantImpl::check_type(const Peer& peer, const std::string& ours) cons
 }
 
 void ParticipantImpl::on_peer(const Peer& peer) {
-  watch_graph(peer);
-  if (peer.change == Peer::Change::changed) return;
+  const GraphLayout before = graph_layout();
   std::string ours;
   {
     const std::lock_guard<std::mutex> lock(discovery_mutex_);
-    if (peer.change == Peer::Change::went) {
-      peers_.erase(peer.guid);
-      return;
+    const bool went = peer.change == Peer::Change::went;
+    const bool of_graph = peer.topic == kGraphTopic;
+    if (of_graph && !went) guess_.discovered(peer.guid, peer.user_data);
+    if (of_graph && went) guess_.removed(peer.guid);
+    if (went) peers_.erase(peer.guid);
+    if (peer.change == Peer::Change::came) {
+      if (peers_.size() < kMaxPeers) peers_.emplace(peer.guid, peer);
+      const auto entry = our_types_.find(peer.topic);
+      if (entry != our_types_.end()) ours = entry->second;
     }
-    if (peers_.size() < kMaxPeers) peers_.emplace(peer.guid, peer);
-    const auto entry = our_types_.find(peer.topic);
-    if (entry != our_types_.end()) ours = entry->second;
   }
   check_type(peer, ours);
+  if (graph_layout() == before) return;
+  // Not from here: the caller holds the locks of the discovery protocol.
+  worker_.run_at(Worker::Clock::now(), [this] { publish_graph(); });
 }
 
 template <class Data, class DdsChange>

@@ -16,7 +16,6 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
-#include "idl/wire/fastdds/raw_type.hpp"
 #include "idl/wire/fastdds/version.hpp"
 #include "idl/wire/participant.hpp"
 #include "idl/wire/private/graph.hpp"
@@ -28,7 +27,8 @@ namespace bpa::wire::detail {
 
 Guid to_guid(const rtps::GUID_t& guid);
 Guid to_guid(const rtps::InstanceHandle_t& handle);
-rtps::GUID_t from_guid(const Guid& guid);
+SampleId to_id(const rtps::SampleIdentity& identity);
+rtps::SampleIdentity to_identity(const SampleId& id);
 
 /// Owns the DDS participant, its topics and types, and its entry in the ROS 2 graph.
 class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
@@ -90,7 +90,6 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
   void on_peer(const Peer& peer);
   /// Says so when a peer uses one of our topics with another type: DDS itself is silent.
   void check_type(const Peer& peer, const std::string& ours) const;
-  void watch_graph(const Peer& peer);
   void publish_graph();
 
   const ParticipantOptions options_;
@@ -117,9 +116,8 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
   Worker worker_;
 };
 
-/// As make_writer, for a participant that is not public yet. `keep` holds the participant alive.
-Result<std::unique_ptr<RawWriter>> make_raw_writer(ParticipantImpl& participant,
-                                                   std::shared_ptr<ParticipantImpl> keep,
+/// As make_writer, for a participant that is not public yet.
+Result<std::unique_ptr<RawWriter>> make_raw_writer(std::shared_ptr<ParticipantImpl> participant,
                                                    EndpointSpec spec);
 
 }  // namespace bpa::wire::detail

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
+#include <utility>
 
 #include <fastdds/dds/topic/TopicDataType.hpp>
 
@@ -27,17 +27,43 @@ struct IncomingSample {
 /// IncomingSample when taken, so that our own CDR code writes into and reads from the payload.
 class RawType : public dds::TopicDataType {
  public:
-  explicit RawType(const std::string& dds_type);
+  explicit RawType(const std::string& dds_type) {
+#if BPA_FASTDDS_MAJOR >= 3
+    set_name(dds_type);
+    is_compute_key_provided = false;
+#else
+    setName(dds_type.c_str());
+    m_isGetKeyDefined = false;
+    auto_fill_type_object(false);  // announcing nothing never refuses a peer
+    auto_fill_type_information(false);
+#endif
+    set_bound(0);
+  }
 
   /// Before each endpoint of the type is made: > 0 makes it a bounded type of that size.
-  void set_bound(std::size_t bytes);
+  void set_bound(std::size_t bytes) {
+    constexpr std::size_t kFirstGuess = 1024;
+    bounded_ = bytes != 0;
+    const auto size = static_cast<std::uint32_t>(bounded_ ? bytes : kFirstGuess);
+#if BPA_FASTDDS_MAJOR >= 3
+    max_serialized_type_size = size;
+#else
+    m_typeSize = size;
+#endif
+  }
+  bool is_bounded() const override { return bounded_; }
 
 #if BPA_FASTDDS_MAJOR >= 3
   bool serialize(const void* data, rtps::SerializedPayload_t& payload,
-                 dds::DataRepresentationId_t representation) override;
-  bool deserialize(rtps::SerializedPayload_t& payload, void* data) override;
-  std::uint32_t calculate_serialized_size(const void* data,
-                                          dds::DataRepresentationId_t representation) override;
+                 dds::DataRepresentationId_t) override {
+    return write(data, payload);
+  }
+  bool deserialize(rtps::SerializedPayload_t& payload, void* data) override {
+    return read(payload, data);
+  }
+  std::uint32_t calculate_serialized_size(const void* data, dds::DataRepresentationId_t) override {
+    return size_of(data);
+  }
   void* create_data() override { return nullptr; }
   void delete_data(void*) override {}
   bool compute_key(rtps::SerializedPayload_t&, rtps::InstanceHandle_t&, bool) override {
@@ -45,16 +71,40 @@ class RawType : public dds::TopicDataType {
   }
   bool compute_key(const void*, rtps::InstanceHandle_t&, bool) override { return false; }
 #else
-  bool serialize(void* data, rtps::SerializedPayload_t* payload) override;
-  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override;
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override;
+  bool serialize(void* data, rtps::SerializedPayload_t* payload) override {
+    return write(data, *payload);
+  }
+  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
+    return read(*payload, data);
+  }
+  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
+    return [data] { return size_of(data); };
+  }
   void* createData() override { return nullptr; }
   void deleteData(void*) override {}
   bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
 #endif
-  bool is_bounded() const override { return bounded_; }
 
  private:
+  static bool write(const void* data, rtps::SerializedPayload_t& payload) {
+    const auto& message = *static_cast<const MessageRef*>(data);
+    const std::size_t size = message.encode(message.message, payload.data, payload.max_size);
+    payload.length = static_cast<std::uint32_t>(size);
+    payload.encapsulation = CDR_LE;
+    return size != 0;
+  }
+  static bool read(const rtps::SerializedPayload_t& payload, void* data) {
+    auto& sample = *static_cast<IncomingSample*>(data);
+    auto decoded = (*sample.decode)(payload.data, payload.length);
+    sample.status = decoded.status();
+    if (decoded.ok()) sample.deliver = std::move(decoded).value();
+    return true;  // a malformed sample is taken as well, to be counted
+  }
+  static std::uint32_t size_of(const void* data) {
+    const auto& message = *static_cast<const MessageRef*>(data);
+    return static_cast<std::uint32_t>(message.encoded_size(message.message));
+  }
+
   bool bounded_ = false;
 };
 

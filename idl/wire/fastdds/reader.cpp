@@ -9,26 +9,15 @@
 
 #include "idl/wire/fastdds/dds_qos.hpp"
 #include "idl/wire/fastdds/participant_impl.hpp"
+#include "idl/wire/fastdds/raw_type.hpp"
 
 namespace bpa::wire::detail {
 
 namespace {
 
-SampleId to_id(const rtps::SampleIdentity& identity) {
-  SampleId id;
-  if (identity.writer_guid() != rtps::c_Guid_Unknown) {
-    id.writer = to_guid(identity.writer_guid());
-    id.sequence = static_cast<std::int64_t>(identity.sequence_number().to64long());
-  }
-  return id;
-}
-
 SampleMeta to_meta(const dds::SampleInfo& info) {
-  SampleMeta meta;
-  meta.id = to_id(info.sample_identity);
-  meta.related = to_id(info.related_sample_identity);
-  meta.source_time_ns = info.source_timestamp.to_ns();
-  return meta;
+  return {to_id(info.sample_identity), to_id(info.related_sample_identity),
+          info.source_timestamp.to_ns()};
 }
 
 class Reader : public RawReader, private dds::DataReaderListener {

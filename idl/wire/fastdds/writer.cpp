@@ -13,15 +13,6 @@ namespace bpa::wire::detail {
 
 namespace {
 
-rtps::SampleIdentity to_identity(const SampleId& id) {
-  rtps::SampleIdentity identity;
-  identity.writer_guid(from_guid(id.writer));
-  if (id.sequence != 0) {  // else unknown, as in a request
-    identity.sequence_number(rtps::SequenceNumber_t(static_cast<std::uint64_t>(id.sequence)));
-  }
-  return identity;
-}
-
 /// The kernel makes a file in memory whole only as it is filled, and kills the process that fills
 /// it when no room is left (a container's /dev/shm has 64 MB unless told otherwise). So a writer
 /// shares memory only if there is room for the most that it may come to fill.
@@ -42,12 +33,12 @@ void share_what_there_is_room_for(const ParticipantImpl& participant, EndpointSp
 
 class Writer : public RawWriter, private dds::DataWriterListener {
  public:
-  Writer(ParticipantImpl& participant, std::shared_ptr<ParticipantImpl> keep, EndpointSpec spec)
-      : participant_(participant), keep_(std::move(keep)), spec_(std::move(spec)) {}
+  Writer(std::shared_ptr<ParticipantImpl> participant, EndpointSpec spec)
+      : participant_(std::move(participant)), spec_(std::move(spec)) {}
 
   Status open() {
-    return participant_.open(spec_, false, [this](dds::Topic* topic) {
-      dds::Publisher& publisher = *participant_.publisher();
+    return participant_->open(spec_, false, [this](dds::Topic* topic) {
+      dds::Publisher& publisher = *participant_->publisher();
       writer_ = publisher.create_datawriter(topic, writer_qos(spec_, publisher), this);
       return writer_ == nullptr ? Guid{} : guid();
     });
@@ -55,20 +46,18 @@ class Writer : public RawWriter, private dds::DataWriterListener {
 
   ~Writer() override {
     if (writer_ == nullptr) return;
-    participant_.close(spec_, guid(), [this] {
+    participant_->close(spec_, guid(), [this] {
       writer_->set_listener(nullptr);
-      participant_.publisher()->delete_datawriter(writer_);
+      participant_->publisher()->delete_datawriter(writer_);
     });
   }
 
   Status write(const MessageRef& message, const SampleId* related, SampleId* written) override {
-    if (spec_.shared_bytes > 0) {
-      const std::size_t size = message.encoded_size(message.message);
-      if (size > spec_.shared_bytes) {
-        return invalid_argument("the message of " + std::to_string(size) + " bytes on " +
-                                spec_.dds_topic + " is larger than shared_bytes, which is " +
-                                std::to_string(spec_.shared_bytes));
-      }
+    const std::size_t size = spec_.shared_bytes > 0 ? message.encoded_size(message.message) : 0;
+    if (size > spec_.shared_bytes) {
+      return invalid_argument("the message of " + std::to_string(size) + " bytes on " +
+                              spec_.dds_topic + " is larger than shared_bytes, which is " +
+                              std::to_string(spec_.shared_bytes));
     }
     rtps::WriteParams params;
     if (related != nullptr) params.related_sample_identity(to_identity(*related));
@@ -79,9 +68,7 @@ class Writer : public RawWriter, private dds::DataWriterListener {
                         ": the history is full, or the message breaks a bound");
     }
     if (written != nullptr) {
-      written->writer = to_guid(params.sample_identity().writer_guid());
-      written->sequence =
-          static_cast<std::int64_t>(params.sample_identity().sequence_number().to64long());
+      *written = to_id(params.sample_identity());
     }
     return {};
   }
@@ -96,30 +83,28 @@ class Writer : public RawWriter, private dds::DataWriterListener {
 
   void on_offered_incompatible_qos(dds::DataWriter*,
                                    const dds::OfferedIncompatibleQosStatus& status) override {
-    participant_.log(LogLevel::warning,
-                     incompatible_qos_text(spec_.dds_topic, true, status.last_policy_id));
+    participant_->log(LogLevel::warning,
+                      incompatible_qos_text(spec_.dds_topic, true, status.last_policy_id));
   }
 
-  ParticipantImpl& participant_;
-  const std::shared_ptr<ParticipantImpl> keep_;
+  const std::shared_ptr<ParticipantImpl> participant_;
   const EndpointSpec spec_;
   dds::DataWriter* writer_ = nullptr;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<RawWriter>> make_raw_writer(ParticipantImpl& participant,
-                                                   std::shared_ptr<ParticipantImpl> keep,
+Result<std::unique_ptr<RawWriter>> make_raw_writer(std::shared_ptr<ParticipantImpl> participant,
                                                    EndpointSpec spec) {
-  share_what_there_is_room_for(participant, spec);
-  auto writer = std::make_unique<Writer>(participant, std::move(keep), std::move(spec));
+  share_what_there_is_room_for(*participant, spec);
+  auto writer = std::make_unique<Writer>(std::move(participant), std::move(spec));
   Status status = writer->open();
   if (!status.ok()) return status;
   return std::unique_ptr<RawWriter>(std::move(writer));
 }
 
 Result<std::unique_ptr<RawWriter>> make_writer(const Participant& participant, EndpointSpec spec) {
-  return make_raw_writer(*participant.impl(), participant.impl(), std::move(spec));
+  return make_raw_writer(participant.impl(), std::move(spec));
 }
 
 }  // namespace bpa::wire::detail
