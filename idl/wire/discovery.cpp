@@ -18,25 +18,19 @@ std::string variable(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-Result<int> domain_id(const std::string& text) {
-  int id = 0;
-  const char* end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, id);
-  if (error != std::errc() || stopped != end || id < 0 || id > kMaxDomainId) {
-    return invalid_argument("ROS_DOMAIN_ID is '" + text + "'; it must be a number from 0 to 232");
-  }
-  return id;
-}
-
 }  // namespace
 
 Result<Discovery> discovery_from_environment() {
   Discovery result;
   const std::string domain = variable("ROS_DOMAIN_ID");
   if (!domain.empty()) {
-    Result<int> id = domain_id(domain);
-    if (!id.ok()) return id.status();
-    result.domain_id = *id;
+    int& id = result.domain_id;
+    const char* end = domain.data() + domain.size();
+    const auto [stopped, error] = std::from_chars(domain.data(), end, id);
+    if (error != std::errc() || stopped != end || id < 0 || id > kMaxDomainId) {
+      return invalid_argument("ROS_DOMAIN_ID is '" + domain +
+                              "'; it must be a number from 0 to 232");
+    }
   }
 
   const std::string localhost_only = variable("ROS_LOCALHOST_ONLY");

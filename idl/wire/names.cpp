@@ -10,17 +10,18 @@ namespace {
 // 255 in DDS less the longest prefix and suffix, as rmw counts it.
 constexpr std::size_t kMaxNameLength = 247;
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+constexpr std::string_view kDigits = "0123456789";
+constexpr std::string_view kLegal =
+    "_abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
 
 /// What is wrong with one token of a name; null if nothing is.
 const char* token_error(std::string_view token) {
   if (token.empty()) return "must not have two slashes in a row or end in one";
-  if (is_digit(token[0])) return "must not have a digit at the start of a part";
+  if (kDigits.find(token[0]) != kDigits.npos) return "must not have a digit at the start of a part";
   if (token.find("__") != std::string_view::npos) return "must not have two underscores in a row";
-  const bool legal = std::all_of(token.begin(), token.end(),
-                                 [](char c) { return is_letter(c) || is_digit(c) || c == '_'; });
-  return legal ? nullptr : "must have letters, digits, underscores and slashes only";
+  return token.find_first_not_of(kLegal) == token.npos
+             ? nullptr
+             : "must have letters, digits, underscores and slashes only";
 }
 
 std::string join(const std::string& parent, std::string_view child) {

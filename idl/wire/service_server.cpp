@@ -4,9 +4,9 @@
 #include <map>
 #include <mutex>
 
-#include "idl/wire/service.hpp"
 #include "idl/wire/private/service_framing.hpp"
 #include "idl/wire/private/worker.hpp"
+#include "idl/wire/service.hpp"
 
 namespace bpa::wire::detail {
 namespace {
@@ -58,25 +58,19 @@ class Server : public RawServer, public std::enable_shared_from_this<Server> {
   }
 
   ReaderStatistics statistics() const override {
-    ReaderStatistics result;
-    result.received = received_;
-    result.malformed = malformed_;
-    if (requests_) result.lost = requests_->statistics().lost;
-    return result;
+    return {received_, malformed_, requests_ ? requests_->statistics().lost : 0};
   }
 
   Status send(const ReplyAddress& address, const MessageRef& response) {
-    auto reply = std::make_shared<Reply>();
-    reply->address = address;
-    reply->bytes = frame_reply(address, response);
-    reply->deadline = Clock::now() + kClientPatience;
+    const auto reply = std::make_shared<const Reply>(
+        Reply{address, frame_reply(address, response), Clock::now() + kClientPatience});
     if (reply->bytes.empty()) {
       return invalid_argument("the reply of " + name_ + " breaks one of its bounds");
     }
     if (!start_waiting(*reply)) {
       return Status(StatusCode::busy, "too many replies of " + name_ + " wait for their clients");
     }
-    return send_when_matched(std::move(reply));
+    return send_when_matched(reply);
   }
 
  private:
