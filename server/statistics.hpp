@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/result/interpretation.hpp"
-#include "server/convert/decoded_frame.hpp"
+#include "server/convert/frames.hpp"
 
 namespace bpa::server {
 

@@ -17,7 +17,7 @@
 #include "core/base/status.hpp"
 #include "core/cloud/frame_fusion.hpp"
 #include "idl/wire/endpoint.hpp"
-#include "server/convert/decoded_frame.hpp"
+#include "server/convert/frames.hpp"
 #include "server/fair_queue.hpp"
 #include "server/once.hpp"
 #include "server/recognition.hpp"

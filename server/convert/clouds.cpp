@@ -9,6 +9,7 @@
 #include "core/io/pcd_file.hpp"
 #include "idl/wire/time.hpp"
 #include "server/convert/frames.hpp"
+#include "server/convert/images.hpp"
 
 namespace bpa::server {
 namespace {
@@ -18,19 +19,15 @@ static_assert(std::endian::native == std::endian::little, "points are copied as 
 using wire::sensor_msgs::PointCloud2;
 using wire::sensor_msgs::PointField;
 
-constexpr std::uint32_t kMaxSide = 8192;
 constexpr std::uint32_t kFieldBytes = 4;
 
 Status check_layout(const PointCloud2& cloud) {
-  const std::string size = std::to_string(cloud.width) + "x" + std::to_string(cloud.height);
   if (cloud.height < 2) {
-    return invalid_argument("cloud is " + size +
+    return invalid_argument("cloud is " + std::to_string(cloud.width) + "x" +
+                            std::to_string(cloud.height) +
                             ": it must be organised, one row of points for each row of pixels");
   }
-  if (cloud.width == 0 || cloud.width > kMaxSide || cloud.height > kMaxSide) {
-    return invalid_argument("cloud is " + size + "; each side must be between 1 and " +
-                            std::to_string(kMaxSide));
-  }
+  if (Status status = check_size("cloud", cloud.width, cloud.height); !status.ok()) return status;
   if (cloud.is_bigendian) {
     return Status(StatusCode::unsupported, "cloud is_bigendian is true; it must be false");
   }

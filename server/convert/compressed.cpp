@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/convert/compressed.hpp"
-
 #include <cmath>
 #include <cstring>
 #include <exception>
@@ -10,14 +8,13 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "server/convert/rvl.hpp"
+#include "server/convert/images.hpp"
 
 namespace bpa::server {
 namespace {
 
 using wire::sensor_msgs::CompressedImage;
 
-constexpr std::uint32_t kMaxSide = 8192;
 constexpr std::size_t kDepthHeader = 12;
 
 struct Bytes {
@@ -63,11 +60,8 @@ Result<Size> size_of(const char* field, Bytes file) {
     return Status(StatusCode::unsupported,
                   std::string(field) + " data is neither a PNG nor a JPEG file");
   }
-  if (size.width == 0 || size.height == 0 || size.width > kMaxSide || size.height > kMaxSide) {
-    return invalid_argument(std::string(field) + " image is " + std::to_string(size.width) + "x" +
-                            std::to_string(size.height) + "; each side must be between 1 and " +
-                            std::to_string(kMaxSide));
-  }
+  const Status status = check_size(std::string(field) + " image", size.width, size.height);
+  if (!status.ok()) return status;
   return size;
 }
 
@@ -97,25 +91,17 @@ Result<Decoded<std::uint16_t>> decode_png16(const char* field, Bytes file) {
         StatusCode::unsupported,
         std::string(field) + " data is no PNG of 16 bits and one channel, so it holds no depth");
   }
-  Decoded<std::uint16_t> decoded{
-      static_cast<std::uint32_t>(pixels->cols), static_cast<std::uint32_t>(pixels->rows), {}};
-  decoded.pixels.reserve(pixels->total());
-  for (int v = 0; v < pixels->rows; ++v) {
-    const auto* row = pixels->ptr<std::uint16_t>(v);
-    decoded.pixels.insert(decoded.pixels.end(), row, row + pixels->cols);
-  }
-  return decoded;
+  return Decoded<std::uint16_t>{static_cast<std::uint32_t>(pixels->cols),
+                                static_cast<std::uint32_t>(pixels->rows),
+                                {pixels->begin<std::uint16_t>(), pixels->end<std::uint16_t>()}};
 }
 
 /// An RVL stream with its size in front: width and height, uint32 each.
 Result<Decoded<std::uint16_t>> decode_rvl_image(const char* field, Bytes stream) {
   std::uint32_t size[2] = {};
   if (stream.size >= sizeof size) std::memcpy(size, stream.data, sizeof size);
-  if (size[0] == 0 || size[1] == 0 || size[0] > kMaxSide || size[1] > kMaxSide) {
-    return invalid_argument(std::string(field) + " image is " + std::to_string(size[0]) + "x" +
-                            std::to_string(size[1]) + "; each side must be between 1 and " +
-                            std::to_string(kMaxSide));
-  }
+  const Status status = check_size(std::string(field) + " image", size[0], size[1]);
+  if (!status.ok()) return status;
   Decoded<std::uint16_t> decoded{size[0], size[1], {}};
   const std::size_t count = std::size_t{size[0]} * size[1];
   if (!decode_rvl(stream.data + sizeof size, stream.size - sizeof size, count, decoded.pixels)) {
@@ -139,20 +125,12 @@ Result<Decoded<std::uint8_t>> decode_color(const char* field, const CompressedIm
   const std::size_t split = image.format.find(';');
   const std::string_view encoded =
       split == std::string::npos ? "" : std::string_view(image.format).substr(split);
-  const bool swapped = has(encoded, "compressed rgb");
-  Decoded<std::uint8_t> result{
-      static_cast<std::uint32_t>(bgr.cols), static_cast<std::uint32_t>(bgr.rows), {}};
-  result.pixels.resize(3 * bgr.total());
-  std::uint8_t* out = result.pixels.data();
-  for (int v = 0; v < bgr.rows; ++v) {
-    const std::uint8_t* pixel = bgr.ptr<std::uint8_t>(v);
-    for (int u = 0; u < bgr.cols; ++u, pixel += 3) {
-      *out++ = pixel[swapped ? 0 : 2];
-      *out++ = pixel[1];
-      *out++ = pixel[swapped ? 2 : 0];
-    }
-  }
-  return result;
+  const char* order = has(encoded, "compressed rgb") ? "rgb8" : "bgr8";
+  const auto width = static_cast<std::uint32_t>(bgr.cols);
+  const auto height = static_cast<std::uint32_t>(bgr.rows);
+  auto rgb = color_from_image({field, order, width, height, 0, false, bgr.data, 3 * bgr.total()});
+  if (!rgb.ok()) return rgb.status();
+  return Decoded<std::uint8_t>{width, height, std::move(rgb).value()};
 }
 
 Result<Decoded<float>> decode_depth(const char* field, const CompressedImage& image) {

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "idl/wire/time.hpp"
-#include "server/convert/compressed.hpp"
 #include "server/convert/images.hpp"
 
 namespace bpa::server {
@@ -24,12 +23,14 @@ Status check_distortion(const std::vector<double>& d) {
                                              "rational_polynomial): rectify the images");
 }
 
+/// Held by an int; validate() refuses what is larger.
+int clamped(std::uint32_t pixels) { return static_cast<int>(std::min(pixels, 1U << 20U)); }
+
 /// The camera of a row-major 3x3 matrix whose rows are `stride` long.
 Camera camera_of(std::uint32_t width, std::uint32_t height, const double* k, std::size_t stride) {
-  constexpr std::uint32_t kTooLarge = 1U << 20U;  // validate() refuses it; int holds it
   Camera camera;
-  camera.width = static_cast<int>(std::min(width, kTooLarge));
-  camera.height = static_cast<int>(std::min(height, kTooLarge));
+  camera.width = clamped(width);
+  camera.height = clamped(height);
   camera.fx = k[0];
   camera.fy = k[stride + 1];
   camera.cx = k[2];
@@ -58,13 +59,8 @@ void undistort(const std::vector<double>& distortion, Frame& frame) {
   remap<std::uint8_t, 3>(map, frame.color);
 }
 
-/// Limits that int arithmetic and validate(Frame) can work with.
 RegionOfInterest roi_of(const sensor::RegionOfInterest& roi) {
-  constexpr std::uint32_t kTooLarge = 1U << 20U;
-  return {static_cast<int>(std::min(roi.x_offset, kTooLarge)),
-          static_cast<int>(std::min(roi.y_offset, kTooLarge)),
-          static_cast<int>(std::min(roi.width, kTooLarge)),
-          static_cast<int>(std::min(roi.height, kTooLarge))};
+  return {clamped(roi.x_offset), clamped(roi.y_offset), clamped(roi.width), clamped(roi.height)};
 }
 
 DecodedFrame checked(Frame frame) {

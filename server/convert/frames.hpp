@@ -3,20 +3,42 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "core/base/status.hpp"
 #include "core/cloud/frame.hpp"
+#include "core/detect/pose_prior.hpp"
 #include "idl/wire/msg/bpa_msgs.hpp"
 #include "idl/wire/msg/sensor_msgs.hpp"
-#include "server/convert/decoded_frame.hpp"
 
 // Messages -> frames that are fit for the detector: sizes, camera and depth are checked here, once,
 // and everything behind may rely on them. Failures name the field, its value and the rule.
 
 namespace bpa::server {
 
-/// A frame of bpa_msgs/RgbdFrame but for its priors (priors.hpp). Lens distortion is taken out
+/// The part of a message that kept it from becoming a frame.
+enum class RejectionCause { camera, distortion, depth, color, cloud, priors, frame };
+
+/// Names of the causes, by number; `frame`: too few depths, or a mask or region that does not fit.
+inline constexpr const char* kRejectionCauses[] = {"camera", "distortion", "depth", "color",
+                                                   "cloud",  "priors",     "frame"};
+
+/// A frame, or why there is none.
+class DecodedFrame : public Result<Frame> {
+ public:
+  DecodedFrame(Frame frame) : Result(std::move(frame)) {}  // NOLINT: implicit on purpose
+  DecodedFrame(RejectionCause cause, Status status) : Result(std::move(status)), cause_(cause) {}
+
+  /// Of no meaning when ok().
+  RejectionCause cause() const { return cause_; }
+
+ private:
+  RejectionCause cause_ = RejectionCause::frame;
+};
+
+/// A frame of bpa_msgs/RgbdFrame but for its priors. Lens distortion is taken out
 /// (nearest pixel). Move the message in: pixels that are as a Frame has them are not copied then.
 DecodedFrame frame_from_message(wire::bpa_msgs::RgbdFrame message);
 
@@ -24,6 +46,12 @@ DecodedFrame frame_from_message(wire::bpa_msgs::RgbdFrame message);
 /// message without them changes nothing. Fails where it has priors in another frame_id than the
 /// frame's.
 Status restrict_frame(const wire::bpa_msgs::RgbdFrame& message, Frame& frame);
+
+/// The priors of a message as the detector takes them, which also checks their numbers: camera
+/// frame, as the message's. Fails with invalid_argument where pose.orientation is not the most
+/// probable one of the distribution that comes with it.
+Result<std::vector<PosePrior>> priors_from_messages(
+    const std::vector<wire::bpa_msgs::PosePrior>& messages);
 
 /// An image as it came: raw, or as image_transport's plugins compress it.
 using AnyImage = std::variant<wire::sensor_msgs::Image, wire::sensor_msgs::CompressedImage>;

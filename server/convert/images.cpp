@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/convert/images.hpp"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <sstream>
+
+#include <opencv2/imgproc.hpp>
 
 #include "core/cloud/frame.hpp"
 #include "core/geometry/distortion.hpp"
@@ -15,15 +18,11 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "pixels are copied as they lie");
 
-constexpr std::uint32_t kMaxSide = 8192;
-
-Status check_layout(const ImageView& image, std::size_t pixel_bytes) {
+/// The bytes from row to row, once it is known that all rows are there.
+Result<std::size_t> checked_step(const ImageView& image, std::size_t pixel_bytes) {
+  const Status status = check_size(std::string(image.field) + " image", image.width, image.height);
+  if (!status.ok()) return status;
   std::ostringstream text;
-  if (image.width == 0 || image.height == 0 || image.width > kMaxSide || image.height > kMaxSide) {
-    text << image.field << " image is " << image.width << "x" << image.height
-         << "; each side must be between 1 and " << kMaxSide;
-    return invalid_argument(text.str());
-  }
   const std::size_t row = image.width * pixel_bytes;
   const std::size_t step = image.step > 0 ? image.step : row;
   if (step < row) {
@@ -32,70 +31,58 @@ Status check_layout(const ImageView& image, std::size_t pixel_bytes) {
     return invalid_argument(text.str());
   }
   const std::size_t needed = step * image.height;
-  if (image.size == needed) return {};
+  if (image.size == needed) return step;
   text << image.field << " data has " << image.size << " bytes; it must have " << needed << " ("
        << image.height << " rows of " << step << " for " << image.width << "x" << image.height
        << " " << image.encoding << ")";
   return invalid_argument(text.str());
 }
 
-const std::uint8_t* row_of(const ImageView& image, std::size_t row, std::size_t pixel_bytes) {
-  return image.data + row * (image.step > 0 ? image.step : image.width * pixel_bytes);
-}
-
-template <class Raw, bool kSwap>
-Raw read(const std::uint8_t* bytes) {
-  Raw value;
-  if constexpr (kSwap) {
-    std::uint8_t copy[sizeof(Raw)];
-    for (std::size_t i = 0; i < sizeof(Raw); ++i) copy[i] = bytes[sizeof(Raw) - 1 - i];
-    std::memcpy(&value, copy, sizeof(Raw));
-  } else {
-    std::memcpy(&value, bytes, sizeof(Raw));
-  }
-  return value;
-}
-
-template <class Raw, bool kSwap, class ToMetres>
-void read_rows(const ImageView& image, ToMetres to_metres, std::vector<float>& depth) {
-  depth.reserve(std::size_t{image.width} * image.height);
-  for (std::size_t v = 0; v < image.height; ++v) {
-    const std::uint8_t* row = row_of(image, v, sizeof(Raw));
-    depth.resize((v + 1) * image.width);  // row by row: what resize writes is still in the cache
-    float* out = depth.data() + v * image.width;
-    for (std::size_t u = 0; u < image.width; ++u) {
-      out[u] = to_metres(read<Raw, kSwap>(row + u * sizeof(Raw)));
-    }
-  }
+template <class Raw>
+Raw read(const std::uint8_t* bytes, bool swap) {
+  std::array<std::uint8_t, sizeof(Raw)> copy;
+  std::copy_n(bytes, sizeof(Raw), copy.begin());
+  if (swap) std::reverse(copy.begin(), copy.end());
+  return std::bit_cast<Raw>(copy);
 }
 
 template <class Raw, class ToMetres>
 Result<std::vector<float>> read_depth(const ImageView& image, ToMetres to_metres) {
-  if (Status status = check_layout(image, sizeof(Raw)); !status.ok()) return status;
+  const Result<std::size_t> step = checked_step(image, sizeof(Raw));
+  if (!step.ok()) return step.status();
   std::vector<float> depth;
-  if (image.big_endian) {
-    read_rows<Raw, true>(image, to_metres, depth);
-  } else {
-    read_rows<Raw, false>(image, to_metres, depth);
+  depth.reserve(std::size_t{image.width} * image.height);
+  for (std::size_t v = 0; v < image.height; ++v) {
+    const std::uint8_t* row = image.data + v * *step;
+    depth.resize((v + 1) * image.width);  // row by row: what resize writes is still in the cache
+    float* out = depth.data() + v * image.width;
+    for (std::size_t u = 0; u < image.width; ++u) {
+      out[u] = to_metres(read<Raw>(row + u * sizeof(Raw), image.big_endian));
+    }
   }
   return depth;
 }
 
 struct ColorLayout {
   const char* encoding;
-  std::size_t bytes;
-  std::size_t red, green, blue;  ///< Offsets in a pixel.
-
-  bool is_rgb() const { return bytes == 3 && red == 0 && blue == 2; }
+  int type;
+  int to_rgb;  ///< cv::cvtColor's code; below 0: it is rgb.
 };
 
-constexpr ColorLayout kColorLayouts[] = {{"rgb8", 3, 0, 1, 2},
-                                         {"bgr8", 3, 2, 1, 0},
-                                         {"rgba8", 4, 0, 1, 2},
-                                         {"bgra8", 4, 2, 1, 0},
-                                         {"mono8", 1, 0, 0, 0}};
+constexpr ColorLayout kColorLayouts[] = {{"rgb8", CV_8UC3, -1},
+                                         {"bgr8", CV_8UC3, cv::COLOR_BGR2RGB},
+                                         {"rgba8", CV_8UC4, cv::COLOR_RGBA2RGB},
+                                         {"bgra8", CV_8UC4, cv::COLOR_BGRA2RGB},
+                                         {"mono8", CV_8UC1, cv::COLOR_GRAY2RGB}};
 
 }  // namespace
+
+Status check_size(const std::string& what, std::uint32_t width, std::uint32_t height) {
+  constexpr std::uint32_t kMaxSide = 8192;
+  if (width > 0 && height > 0 && width <= kMaxSide && height <= kMaxSide) return {};
+  return invalid_argument(what + " is " + std::to_string(width) + "x" + std::to_string(height) +
+                          "; each side must be between 1 and " + std::to_string(kMaxSide));
+}
 
 Result<std::vector<float>> depth_from_image(const ImageView& image) {
   if (image.encoding == "16UC1" || image.encoding == "mono16") {
@@ -113,20 +100,16 @@ Result<std::vector<float>> depth_from_image(const ImageView& image) {
 Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image) {
   for (const ColorLayout& layout : kColorLayouts) {
     if (image.encoding != layout.encoding) continue;
-    if (Status status = check_layout(image, layout.bytes); !status.ok()) return status;
-    const std::size_t row_bytes = std::size_t{3} * image.width;
-    if (layout.is_rgb() && (image.step == 0 || image.step == row_bytes)) {
-      return std::vector<std::uint8_t>(image.data, image.data + image.size);
-    }
-    std::vector<std::uint8_t> rgb(row_bytes * image.height);
-    std::uint8_t* out = rgb.data();
-    for (std::size_t v = 0; v < image.height; ++v) {
-      const std::uint8_t* pixel = row_of(image, v, layout.bytes);
-      for (std::size_t u = 0; u < image.width; ++u, pixel += layout.bytes) {
-        *out++ = pixel[layout.red];
-        *out++ = pixel[layout.green];
-        *out++ = pixel[layout.blue];
-      }
+    const Result<std::size_t> step = checked_step(image, CV_ELEM_SIZE(layout.type));
+    if (!step.ok()) return step.status();
+    const cv::Size size(static_cast<int>(image.width), static_cast<int>(image.height));
+    const cv::Mat pixels(size, layout.type, const_cast<std::uint8_t*>(image.data), *step);
+    std::vector<std::uint8_t> rgb(std::size_t{3} * image.width * image.height);
+    cv::Mat out(size, CV_8UC3, rgb.data());
+    if (layout.to_rgb < 0) {
+      pixels.copyTo(out);
+    } else {
+      cv::cvtColor(pixels, out, layout.to_rgb);
     }
     return rgb;
   }

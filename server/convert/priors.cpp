@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/convert/priors.hpp"
-
-#include <algorithm>
+#include <Eigen/Core>
 #include <string>
+
+#include "server/convert/frames.hpp"
 
 namespace bpa::server {
 namespace {
@@ -12,12 +12,8 @@ namespace msgs = wire::bpa_msgs;
 
 OrientationUncertainty orientation_from(const msgs::Bingham& message) {
   OrientationUncertainty orientation;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int i = 0; i < 4; ++i) {
-      orientation.axes(i, axis) = message.axes[static_cast<std::size_t>(4 * axis + i)];
-    }
-    orientation.concentrations[axis] = message.concentrations[static_cast<std::size_t>(axis)];
-  }
+  orientation.axes = Eigen::Matrix<double, 4, 3>::Map(message.axes.data());
+  orientation.concentrations = Eigen::Vector3d::Map(message.concentrations.data());
   return orientation;
 }
 
@@ -29,13 +25,11 @@ double exponent_at(const OrientationUncertainty& orientation, const Eigen::Vecto
 PosePrior prior_from(const msgs::PosePrior& message) {
   PosePrior prior;
   prior.model = message.model;
-  const auto& covariance = message.position_covariance;
-  if (std::any_of(covariance.begin(), covariance.end(), [](double c) { return c != 0; })) {
+  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  const RowMajor covariance = RowMajor::Map(message.position_covariance.data());
+  if ((covariance.array() != 0).any()) {
     const auto& p = message.pose.position;
-    prior.position = PositionPrior{{p.x, p.y, p.z}, Eigen::Matrix3d::Zero()};
-    for (int i = 0; i < 9; ++i) {
-      prior.position->covariance(i / 3, i % 3) = covariance[static_cast<std::size_t>(i)];
-    }
+    prior.position = PositionPrior{{p.x, p.y, p.z}, covariance};
   }
   prior.orientation = orientation_from(message.orientation);
   if (message.weight != 0) prior.weight = message.weight;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/convert/results.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -32,23 +33,15 @@ geometry::Pose pose_message(const Pose& pose) {
 geometry::PoseWithCovariance pose_with_covariance(const Placement& placement) {
   geometry::PoseWithCovariance message;
   message.pose = pose_message(placement.camera_from_object);
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column) {
-      message.covariance[static_cast<std::size_t>(6 * row + column)] =
-          placement.covariance(row, column);
-    }
-  }
+  Eigen::Matrix<double, 6, 6, Eigen::RowMajor>::Map(message.covariance.data()) =
+      placement.covariance;
   return message;
 }
 
 msgs::Bingham bingham_message(const OrientationUncertainty& orientation) {
   msgs::Bingham message;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int i = 0; i < 4; ++i) {
-      message.axes[static_cast<std::size_t>(4 * axis + i)] = orientation.axes(i, axis);
-    }
-    message.concentrations[static_cast<std::size_t>(axis)] = orientation.concentrations[axis];
-  }
+  Eigen::Matrix<double, 4, 3>::Map(message.axes.data()) = orientation.axes;
+  Eigen::Vector3d::Map(message.concentrations.data()) = orientation.concentrations;
   return message;
 }
 
@@ -72,58 +65,35 @@ msgs::Placement placement_message(const Placement& placement, std::uint32_t inst
   return message;
 }
 
-/// Numbers the placements of each model from 0.
-class InstanceCounter {
- public:
-  std::uint32_t next(const std::string& model) { return counts_[model]++; }
-
- private:
-  std::map<std::string, std::uint32_t> counts_;
-};
-
-std::string instance_name(const Placement& placement, std::uint32_t instance) {
-  return placement.model + "_" + std::to_string(instance);
-}
-
-/// Calls visit(placement, instance) for the best interpretation.
+/// Calls visit(placement, "MODEL_INSTANCE") for the best interpretation.
 template <class Visit>
 void for_each_best(const SceneInterpretations& result, Visit visit) {
   if (result.interpretations.empty()) return;
-  InstanceCounter instances;
+  std::map<std::string, int> instances;
   for (const Placement& placement : result.interpretations.front().placements) {
-    visit(placement, instances.next(placement.model));
+    const int instance = instances[placement.model]++;
+    visit(placement, placement.model + "_" + std::to_string(instance));
   }
 }
 
-struct Box {
-  Eigen::Vector3d min = Eigen::Vector3d::Zero();
-  Eigen::Vector3d max = Eigen::Vector3d::Zero();
-};
-
-Box box_of(const ObjectModel& model) {
-  Box box;
-  if (model.surface.empty()) return box;
-  Eigen::Vector3f low = model.surface.points.front(), high = low;
-  for (const Eigen::Vector3f& point : model.surface.points) {
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
-  }
-  box.min = low.cast<double>();
-  box.max = high.cast<double>();
-  return box;
+/// The box along the axes; a point for a model without surface.
+Eigen::AlignedBox3d box_of(const ObjectModel& model) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& point : model.surface.points) box.extend(point);
+  if (box.isEmpty()) box.extend(Eigen::Vector3f::Zero().eval());
+  return box.cast<double>();
 }
 
 vision::BoundingBox3D box_message(const Placement& placement, const Models& models) {
-  Box box;
-  for (const auto& model : models) {
-    if (model->number == placement.model_number) box = box_of(*model);
-  }
   vision::BoundingBox3D message;
   Pose center = placement.camera_from_object;
-  center.translation = placement.camera_from_object * (0.5 * (box.min + box.max));
+  for (const auto& model : models) {
+    if (model->number != placement.model_number) continue;
+    const Eigen::AlignedBox3d box = box_of(*model);
+    center.translation = center * box.center();
+    message.size = {box.sizes().x(), box.sizes().y(), box.sizes().z()};
+  }
   message.center = pose_message(center);
-  const Eigen::Vector3d size = box.max - box.min;
-  message.size = {size.x(), size.y(), size.z()};
   return message;
 }
 
@@ -132,7 +102,7 @@ wire::std_msgs::ColorRGBA color_of(int number, float alpha) {
   const double hue = 6.0 * std::fmod(number * 0.6180339887498949, 1.0);
   const auto channel = [hue](double shift) {
     const double distance = std::abs(std::fmod(hue + shift, 6.0) - 3.0) - 1.0;
-    return static_cast<float>(std::min(1.0, std::max(0.15, distance)));
+    return static_cast<float>(std::clamp(distance, 0.15, 1.0));
   };
   return {channel(0), channel(4), channel(2), alpha};
 }
@@ -156,9 +126,9 @@ msgs::SceneInterpretations interpretations_message(const Result<SceneInterpretat
     ranked.rank = static_cast<std::uint32_t>(interpretation.rank);
     ranked.score = interpretation.score;
     ranked.probability = interpretation.probability;
-    InstanceCounter instances;
+    std::map<std::string, std::uint32_t> instances;
     for (const Placement& placement : interpretation.placements) {
-      ranked.placements.push_back(placement_message(placement, instances.next(placement.model)));
+      ranked.placements.push_back(placement_message(placement, instances[placement.model]++));
     }
     message.interpretations.push_back(std::move(ranked));
   }
@@ -175,15 +145,13 @@ vision::Detection3DArray detections_message(const SceneInterpretations& result,
                                             const Models& models) {
   vision::Detection3DArray message;
   message.header = header(result.stamp_ns, result.frame_id);
-  for_each_best(result, [&](const Placement& placement, std::uint32_t instance) {
+  for_each_best(result, [&](const Placement& placement, const std::string& name) {
     vision::Detection3D detection;
     detection.header = message.header;
-    vision::ObjectHypothesisWithPose hypothesis;
-    hypothesis.hypothesis = {placement.model, placement.probability};
-    hypothesis.pose = pose_with_covariance(placement);
-    detection.results.push_back(std::move(hypothesis));
+    detection.results.push_back(
+        {{placement.model, placement.probability}, pose_with_covariance(placement)});
     detection.bbox = box_message(placement, models);
-    detection.id = instance_name(placement, instance);
+    detection.id = name;
     message.detections.push_back(std::move(detection));
   });
   return message;
@@ -196,13 +164,12 @@ markers::MarkerArray markers_message(const SceneInterpretations& result, const M
   clear.header = header(result.stamp_ns, result.frame_id);
   clear.action = markers::Marker::kDeleteall;
   message.markers.push_back(clear);
-  std::int32_t id = 0;
-  for_each_best(result, [&](const Placement& placement, std::uint32_t instance) {
+  for_each_best(result, [&](const Placement& placement, const std::string& name) {
     const vision::BoundingBox3D box = box_message(placement, models);
     markers::Marker marker;
     marker.header = clear.header;
     marker.ns = "boxes";
-    marker.id = id;
+    marker.id = static_cast<std::int32_t>(message.markers.size() / 2);
     marker.type = markers::Marker::kCube;
     marker.action = markers::Marker::kAdd;
     const auto lifetime =
@@ -218,9 +185,8 @@ markers::MarkerArray markers_message(const SceneInterpretations& result, const M
     marker.color = {1, 1, 1, 1};
     char percent[16];
     std::snprintf(percent, sizeof percent, " %.0f %%", 100 * placement.probability);
-    marker.text = instance_name(placement, instance) + percent;
+    marker.text = name + percent;
     message.markers.push_back(std::move(marker));
-    ++id;
   });
   return message;
 }
@@ -228,10 +194,10 @@ markers::MarkerArray markers_message(const SceneInterpretations& result, const M
 wire::tf2_msgs::TFMessage transforms_message(const SceneInterpretations& result,
                                              const std::string& prefix) {
   wire::tf2_msgs::TFMessage message;
-  for_each_best(result, [&](const Placement& placement, std::uint32_t instance) {
+  for_each_best(result, [&](const Placement& placement, const std::string& name) {
     geometry::TransformStamped transform;
     transform.header = header(result.stamp_ns, result.frame_id);
-    transform.child_frame_id = prefix + "/" + instance_name(placement, instance);
+    transform.child_frame_id = prefix + "/" + name;
     const geometry::Pose pose = pose_message(placement.camera_from_object);
     transform.transform.translation = {pose.position.x, pose.position.y, pose.position.z};
     transform.transform.rotation = pose.orientation;
@@ -257,9 +223,9 @@ msgs::ModelInfo model_message(const ObjectModel& model) {
   message.name = model.name;
   message.number = static_cast<std::uint32_t>(model.number);
   message.diameter = model.diameter;
-  const Box box = box_of(model);
-  message.box_min = {box.min.x(), box.min.y(), box.min.z()};
-  message.box_max = {box.max.x(), box.max.y(), box.max.z()};
+  const Eigen::AlignedBox3d box = box_of(model);
+  message.box_min = {box.min().x(), box.min().y(), box.min().z()};
+  message.box_max = {box.max().x(), box.max().y(), box.max().z()};
   message.point_count = static_cast<std::uint32_t>(model.surface.size());
   for (const Pose& pose : model.symmetry.discrete) {
     message.discrete_symmetries.push_back(pose_message(pose));

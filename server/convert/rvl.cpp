@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/convert/rvl.hpp"
-
 #include <cstring>
+
+#include "server/convert/images.hpp"
 
 namespace bpa::server {
 namespace {

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "server/convert/frames.hpp"
-#include "server/convert/priors.hpp"
 #include "server/convert/results.hpp"
 #include "server/services/services.hpp"
 

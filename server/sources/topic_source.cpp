@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "server/convert/frames.hpp"
-#include "server/convert/priors.hpp"
 
 namespace bpa::server {
 namespace {

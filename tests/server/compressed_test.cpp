@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/convert/compressed.hpp"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "server/convert/frames.hpp"
-#include "server/convert/rvl.hpp"
+#include "server/convert/images.hpp"
 #include "tests/support/depth_codecs.hpp"
 
 namespace bpa::server {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/convert/priors.hpp"
-
 #include <gtest/gtest.h>
+
+#include "server/convert/frames.hpp"
 
 namespace bpa::server {
 namespace {
