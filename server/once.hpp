@@ -4,7 +4,7 @@
 
 #include <cassert>
 #include <concepts>
-#include <memory>
+#include <future>
 #include <type_traits>
 #include <utility>
 
@@ -19,27 +19,19 @@ class Once {
   template <class F>
   requires(!std::same_as<std::remove_cvref_t<F>, Once> && std::is_invocable_r_v<T, F>)
       Once(F work)  // NOLINT: implicit on purpose
-      : work_(std::make_unique<Holder<F>>(std::move(work))) {}
+      : work_(std::move(work)) {}
 
-  explicit operator bool() const { return work_ != nullptr; }
+  explicit operator bool() const { return work_.valid(); }
   /// Calling an empty one is a caller's bug.
   T operator()() && {
-    assert(work_);
-    return std::exchange(work_, nullptr)->run();
+    assert(work_.valid());
+    std::packaged_task<T()> work = std::move(work_);
+    work();
+    return work.get_future().get();
   }
 
  private:
-  struct Work {
-    virtual ~Work() = default;
-    virtual T run() = 0;
-  };
-  template <class F>
-  struct Holder : Work {
-    explicit Holder(F f) : function(std::move(f)) {}
-    T run() override { return std::move(function)(); }
-    F function;
-  };
-  std::unique_ptr<Work> work_;
+  std::packaged_task<T()> work_;
 };
 
 }  // namespace bpa::server

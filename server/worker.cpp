@@ -145,48 +145,35 @@ bool Worker::has_work() const {
   return !tasks_.empty() || !requests_.empty() || (!frames_.empty() && frame_wanted);
 }
 
-std::optional<WaitableClock::TimePoint> Worker::first_deadline() const {
-  std::optional<WaitableClock::TimePoint> first;
-  for (const DetectJob& job : awaiting_frame_) {
-    if (!first || job.deadline < *first) first = job.deadline;
-  }
-  return first;
-}
-
 std::vector<DetectJob> Worker::take_expired() {
-  std::vector<DetectJob> expired;
-  const auto now = clock_->now();
-  for (auto job = awaiting_frame_.begin(); job != awaiting_frame_.end();) {
-    if (job->deadline <= now) {
-      expired.push_back(std::move(*job));
-      job = awaiting_frame_.erase(job);
-    } else {
-      ++job;
-    }
-  }
+  const auto end = std::stable_partition(
+      awaiting_frame_.begin(), awaiting_frame_.end(),
+      [now = clock_->now()](const DetectJob& job) { return job.deadline > now; });
+  std::vector<DetectJob> expired(std::make_move_iterator(end),
+                                 std::make_move_iterator(awaiting_frame_.end()));
+  awaiting_frame_.erase(end, awaiting_frame_.end());
   return expired;
 }
 
 void Worker::run() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopping_) {
-    std::vector<DetectJob> expired = take_expired();
-    if (!expired.empty()) {
+    if (const std::vector<DetectJob> expired = take_expired(); !expired.empty()) {
       lock.unlock();
-      expire(std::move(expired));
-      lock.lock();
-      continue;
-    }
-    if (!has_work()) {
-      const auto deadline = first_deadline();
-      if (deadline) {
-        clock_->wait_until(wake_, lock, *deadline);
-      } else {
-        wake_.wait(lock);
+      for (const DetectJob& job : expired) {
+        refuse(job, Status(StatusCode::timeout,
+                           "no usable frame came in time; is a camera publishing, or does the "
+                           "request want to carry a frame of its own?"));
       }
-      continue;
+      lock.lock();
+    } else if (has_work()) {
+      run_one(lock);
+    } else if (awaiting_frame_.empty()) {
+      wake_.wait(lock);
+    } else {
+      const auto first = std::ranges::min_element(awaiting_frame_, {}, &DetectJob::deadline);
+      clock_->wait_until(wake_, lock, first->deadline);
     }
-    run_one(lock);
   }
 }
 
@@ -218,14 +205,15 @@ void Worker::run_one(std::unique_lock<std::mutex>& lock) {
   busy_since_.reset();
 }
 
-void Worker::expire(std::vector<DetectJob> jobs) {
-  for (const DetectJob& job : jobs) {
-    statistics_.add(&Counts::requests_refused);
-    job.done(job, nullptr,
-             Status(StatusCode::timeout,
-                    "no usable frame came in time; is a camera publishing, or does the "
-                    "request want to carry a frame of its own?"));
-  }
+void Worker::refuse(const DetectJob& job, const Status& status) {
+  statistics_.add(&Counts::requests_refused);
+  job.done(job, nullptr, status);
+}
+
+void Worker::answer(const DetectJob& job, const Frame& frame, const DetectRequest& request) {
+  const Result<SceneInterpretations> result = detect(frame, request);
+  statistics_.add(result.ok() ? &Counts::requests_served : &Counts::requests_refused);
+  job.done(job, &frame, result);
 }
 
 /// The oldest, or all that wait where they are combined.
@@ -294,33 +282,18 @@ void Worker::answer_next_frame(const WorkerOptions& options, const IncomingFrame
   }
   Frame narrowed = frame;
   if (job.restrict_frame) {
-    if (Status status = job.restrict_frame(narrowed); !status.ok()) {
-      statistics_.add(&Counts::requests_refused);
-      job.done(job, nullptr, status);
-      return;
-    }
+    if (Status status = job.restrict_frame(narrowed); !status.ok()) return refuse(job, status);
   }
-  const Result<SceneInterpretations> result =
-      detect(narrowed, with_priors(job.request, incoming.priors));
-  statistics_.add(result.ok() ? &Counts::requests_served : &Counts::requests_refused);
-  job.done(job, &narrowed, result);
+  answer(job, narrowed, with_priors(job.request, incoming.priors));
 }
 
 void Worker::work_on_request(DetectJob job) {
   if (clock_->now() >= job.deadline) {
-    statistics_.add(&Counts::requests_refused);
-    job.done(job, nullptr, Status(StatusCode::timeout, "its turn came after its time-out"));
-    return;
+    return refuse(job, Status(StatusCode::timeout, "its turn came after its time-out"));
   }
   const Result<Frame> frame = std::move(job.decode)();
-  if (!frame.ok()) {
-    statistics_.add(&Counts::requests_refused);
-    job.done(job, nullptr, frame.status());
-    return;
-  }
-  const Result<SceneInterpretations> result = detect(*frame, job.request);
-  statistics_.add(result.ok() ? &Counts::requests_served : &Counts::requests_refused);
-  job.done(job, &*frame, result);
+  if (!frame.ok()) return refuse(job, frame.status());
+  answer(job, *frame, job.request);
 }
 
 Result<SceneInterpretations> Worker::detect(const Frame& frame, const DetectRequest& request) {
@@ -329,8 +302,9 @@ Result<SceneInterpretations> Worker::detect(const Frame& frame, const DetectRequ
     if (result.ok()) statistics_.add_timings(*result);
     return result;
   } catch (const std::exception& error) {
-    log(log_, LogLevel::error, std::string("the detector failed: ") + error.what());
-    return Status(StatusCode::internal, std::string("the detector failed: ") + error.what());
+    Status status(StatusCode::internal, std::string("the detector failed: ") + error.what());
+    log(log_, LogLevel::error, status.message);
+    return status;
   }
 }
 

@@ -99,9 +99,9 @@ class Worker {
   void run();
   bool has_work() const;
   double wait_ms(const DetectJob& job) const;
-  std::optional<WaitableClock::TimePoint> first_deadline() const;
   std::vector<DetectJob> take_expired();
-  void expire(std::vector<DetectJob> jobs);
+  void refuse(const DetectJob& job, const Status& status);
+  void answer(const DetectJob& job, const Frame& frame, const DetectRequest& request);
   void run_one(std::unique_lock<std::mutex>& lock);
   std::vector<IncomingFrame> take_frames(const WorkerOptions& options);
   void work_on_frames(const WorkerOptions& options, std::vector<IncomingFrame> taken,
