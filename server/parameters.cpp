@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <type_traits>
+#include <optional>
+#include <utility>
 
 #include "idl/wire/cdr.hpp"
 
@@ -17,13 +17,18 @@ using wire::rcl_interfaces::ParameterDescriptor;
 using wire::rcl_interfaces::ParameterType;
 using wire::rcl_interfaces::ParameterValue;
 
-template <class T>
-constexpr std::uint8_t type_of() {
-  if constexpr (std::is_same_v<T, bool>) return ParameterType::kBool;
-  if constexpr (std::is_integral_v<T>) return ParameterType::kInteger;
-  if constexpr (std::is_floating_point_v<T>) return ParameterType::kDouble;
-  if constexpr (std::is_same_v<T, std::string>) return ParameterType::kString;
-  return ParameterType::kStringArray;
+/// One function of several.
+template <class... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+
+std::uint8_t type_of(const Option& setting) {
+  constexpr std::uint8_t kTypes[] = {ParameterType::kNotSet,     ParameterType::kBool,
+                                     ParameterType::kInteger,    ParameterType::kDouble,
+                                     ParameterType::kInteger,    ParameterType::kString,
+                                     ParameterType::kStringArray};
+  return kTypes[setting.value.index()];
 }
 
 const char* type_name(std::uint8_t type) {
@@ -33,96 +38,61 @@ const char* type_name(std::uint8_t type) {
   return type < std::size(kNames) ? kNames[type] : "unknown";
 }
 
-template <class T>
-ParameterValue to_value(const T& field) {
+ParameterValue value_of(const Option& setting) {
   ParameterValue value;
-  value.type = type_of<T>();
-  if constexpr (std::is_same_v<T, bool>) {
-    value.bool_value = field;
-  } else if constexpr (std::is_integral_v<T>) {
-    value.integer_value = static_cast<std::int64_t>(field);
-  } else if constexpr (std::is_floating_point_v<T>) {
-    value.double_value = static_cast<double>(field);
-  } else if constexpr (std::is_same_v<T, std::string>) {
-    value.string_value = field;
-  } else {
-    value.string_array_value = field;
-  }
+  value.type = type_of(setting);
+  std::visit(
+      Overloaded{
+          [](std::monostate) {}, [&](const bool* field) { value.bool_value = *field; },
+          [&](const double* field) { value.double_value = *field; },
+          [&](const std::string* field) { value.string_value = *field; },
+          [&](const std::vector<std::string>* field) { value.string_array_value = *field; },
+          [&](const auto* integer) { value.integer_value = static_cast<std::int64_t>(*integer); }},
+      setting.value);
   return value;
 }
 
-/// False when the integer is none that the field can hold.
-template <class T>
-bool fits(std::int64_t value) {
-  if constexpr (std::is_unsigned_v<T>) {
-    return value >= 0 &&
-           static_cast<std::uint64_t>(value) <= std::uint64_t{std::numeric_limits<T>::max()};
-  } else {
-    return value >= std::numeric_limits<T>::min() && value <= std::numeric_limits<T>::max();
-  }
-}
-
-template <class T>
-Status from_value(const std::string& name, const ParameterValue& value, T& field) {
-  const bool widened = std::is_floating_point_v<T> && value.type == ParameterType::kInteger;
-  if (value.type != type_of<T>() && !widened) {
-    return invalid_argument(name + " is of type " + type_name(type_of<T>()) +
+Status set_value(const Option& setting, const ParameterValue& value) {
+  const bool widened =
+      type_of(setting) == ParameterType::kDouble && value.type == ParameterType::kInteger;
+  if (value.type != type_of(setting) && !widened) {
+    return invalid_argument(setting.path + " is of type " + type_name(type_of(setting)) +
                             "; it cannot be set to one of type " + type_name(value.type));
   }
-  if constexpr (std::is_same_v<T, bool>) {
-    field = value.bool_value;
-  } else if constexpr (std::is_integral_v<T>) {
-    if (!fits<T>(value.integer_value)) {
-      return invalid_argument(name + " is " + std::to_string(value.integer_value) +
-                              "; it is out of range");
-    }
-    field = static_cast<T>(value.integer_value);
-  } else if constexpr (std::is_floating_point_v<T>) {
-    field = static_cast<T>(widened ? static_cast<double>(value.integer_value) : value.double_value);
-  } else if constexpr (std::is_same_v<T, std::string>) {
-    field = value.string_value;
-  } else {
-    field = value.string_array_value;
-  }
-  return {};
+  bool fits = true;
+  std::visit(Overloaded{[](std::monostate) {}, [&](bool* field) { *field = value.bool_value; },
+                        [&](double* field) {
+                          *field = widened ? static_cast<double>(value.integer_value)
+                                           : value.double_value;
+                        },
+                        [&](std::string* field) { *field = value.string_value; },
+                        [&](std::vector<std::string>* field) { *field = value.string_array_value; },
+                        [&]<class Integer>(Integer* field) {
+                          fits = std::in_range<Integer>(value.integer_value);
+                          if (fits) *field = static_cast<Integer>(value.integer_value);
+                        }},
+             setting.value);
+  if (fits) return {};
+  return invalid_argument(setting.path + " is " + std::to_string(value.integer_value) +
+                          "; it is out of range");
 }
 
-/// Calls visit(full name, field, rule) for every setting.
-template <class Visit>
-void for_each_setting(ServerOptions& options, Visit visit) {
-  for (const Option& option : options_of(options)) {
-    std::visit(
-        [&](const auto& value) {
-          if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(value)>, std::monostate>) {
-            visit(option.path, *value, option.rule);
-          }
-        },
-        option.value);
-  }
+/// Every setting; the values point into `options`.
+std::vector<Option> settings_of(ServerOptions& options) {
+  std::vector<Option> settings = options_of(options);
+  std::erase_if(settings, [](const Option& option) { return option.is_group(); });
+  return settings;
 }
 
-bool is_read_only(const std::string& name, const FieldRule& rule) {
-  return !rule.runtime && name.rfind("detector.", 0) != 0;  // the detector is made anew
+std::optional<Option> find_setting(ServerOptions& options, const std::string& name) {
+  for (Option& setting : settings_of(options)) {
+    if (setting.path == name) return std::move(setting);
+  }
+  return std::nullopt;
 }
 
-template <class T>
-ParameterDescriptor describe(const std::string& name, const T&, const FieldRule& rule) {
-  ParameterDescriptor descriptor;
-  descriptor.name = name;
-  descriptor.type = type_of<T>();
-  descriptor.description = rule.description;
-  descriptor.read_only = is_read_only(name, rule);
-  const bool bounded = std::isfinite(rule.min) && std::isfinite(rule.max);
-  if constexpr (std::is_same_v<T, bool>) {
-  } else if constexpr (std::is_integral_v<T>) {
-    if (bounded) {
-      descriptor.integer_range.push_back(
-          {static_cast<std::int64_t>(rule.min), static_cast<std::int64_t>(rule.max), 1});
-    }
-  } else if constexpr (std::is_floating_point_v<T>) {
-    if (bounded) descriptor.floating_point_range.push_back({rule.min, rule.max, 0});
-  }
-  return descriptor;
+bool is_read_only(const Option& setting) {
+  return !setting.rule.runtime && !setting.path.starts_with("detector.");  // it is made anew
 }
 
 std::uint64_t levels(const std::string& name) {
@@ -134,72 +104,78 @@ std::uint64_t levels(const std::string& name) {
 std::vector<Parameter> all_parameters(const ServerOptions& options) {
   std::vector<Parameter> parameters;
   ServerOptions copy = options;
-  for_each_setting(copy, [&](const std::string& name, auto& field, const FieldRule&) {
-    parameters.push_back({name, to_value(field)});
-  });
+  for (const Option& setting : settings_of(copy)) {
+    parameters.push_back({setting.path, value_of(setting)});
+  }
   return parameters;
 }
 
 ParameterValue parameter(const ServerOptions& options, const std::string& name) {
-  ParameterValue value;
   ServerOptions copy = options;
-  for_each_setting(copy, [&](const std::string& one, auto& field, const FieldRule&) {
-    if (one == name) value = to_value(field);
-  });
-  return value;
+  const auto setting = find_setting(copy, name);
+  return setting ? value_of(*setting) : ParameterValue();
 }
 
 ParameterDescriptor describe_parameter(const std::string& name) {
   ParameterDescriptor descriptor;
   descriptor.name = name;
   ServerOptions options;
-  for_each_setting(options, [&](const std::string& one, auto& field, const FieldRule& rule) {
-    if (one == name) descriptor = describe(name, field, rule);
-  });
+  const auto setting = find_setting(options, name);
+  if (!setting) return descriptor;
+  const FieldRule& rule = setting->rule;
+  descriptor.type = type_of(*setting);
+  descriptor.description = rule.description;
+  descriptor.read_only = is_read_only(*setting);
+  if (!std::isfinite(rule.min) || !std::isfinite(rule.max)) return descriptor;
+  if (descriptor.type == ParameterType::kInteger) {
+    descriptor.integer_range.push_back(
+        {static_cast<std::int64_t>(rule.min), static_cast<std::int64_t>(rule.max), 1});
+  } else if (descriptor.type == ParameterType::kDouble) {
+    descriptor.floating_point_range.push_back({rule.min, rule.max, 0});
+  }
   return descriptor;
 }
 
 Status set_parameter(const Parameter& parameter, ServerOptions& options) {
-  Status status(StatusCode::not_found, "there is no parameter " + parameter.name);
-  for_each_setting(options, [&](const std::string& name, auto& field, const FieldRule& rule) {
-    if (name != parameter.name) return;
-    status = is_read_only(name, rule)
-                 ? Status(StatusCode::unsupported,
-                          name + " is read-only: it is set when the server starts")
-                 : from_value(name, parameter.value, field);
-  });
-  return status;
+  const auto setting = find_setting(options, parameter.name);
+  if (!setting) {
+    return Status(StatusCode::not_found, "there is no parameter " + parameter.name);
+  }
+  if (is_read_only(*setting)) {
+    return Status(StatusCode::unsupported,
+                  parameter.name + " is read-only: it is set when the server starts");
+  }
+  return set_value(*setting, parameter.value);
 }
 
 wire::rcl_interfaces::ListParametersResult list_parameters(const std::vector<std::string>& prefixes,
                                                            std::uint64_t depth) {
   wire::rcl_interfaces::ListParametersResult result;
   ServerOptions options;
-  for_each_setting(options, [&](const std::string& name, auto&, const FieldRule&) {
+  for (const Option& setting : settings_of(options)) {
+    const std::string& name = setting.path;
     bool wanted = prefixes.empty() && (depth == 0 || levels(name) <= depth);
     for (const std::string& prefix : prefixes) {
       const bool below = name.rfind(prefix + ".", 0) == 0;
       const bool near = depth == 0 || levels(name) - levels(prefix) <= depth;
       wanted = wanted || name == prefix || (below && near);
     }
-    if (!wanted) return;
+    if (!wanted) continue;
     result.names.push_back(name);
     const std::string group = name.substr(0, name.rfind('.'));
     if (result.prefixes.empty() || result.prefixes.back() != group) {
       result.prefixes.push_back(group);
     }
-  });
+  }
   return result;
 }
 
 std::vector<Parameter> changed_parameters(const ServerOptions& before, const ServerOptions& after) {
-  std::vector<Parameter> changed = all_parameters(after);
-  const std::vector<Parameter> old = all_parameters(before);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < changed.size(); ++i) {
-    if (wire::encode(changed[i]) != wire::encode(old[i])) changed[kept++] = changed[i];
+  const std::vector<Parameter> old = all_parameters(before), now = all_parameters(after);
+  std::vector<Parameter> changed;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (wire::encode(now[i]) != wire::encode(old[i])) changed.push_back(now[i]);
   }
-  changed.resize(kept);
   return changed;
 }
 
