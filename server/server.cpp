@@ -131,11 +131,10 @@ Status Server::start() {
   settings_.on_change([this](const ServerOptions& before, const ServerOptions& after) {
     return apply(before, after);
   });
-  auto parameters = ParameterServices::create(*participant_, settings_, log_);
-  if (!parameters.ok()) return parameters.status();
-  parameters_ = std::move(parameters).value();
-  reporter_ = std::thread([this] { report(); });
-  return {};
+  parameters_.emplace(*participant_, log_, wire::qos::parameters());
+  Status status = add_parameter_services(*participant_, settings_, log_, *parameters_);
+  if (status.ok()) reporter_ = std::thread([this] { report(); });
+  return status;
 }
 
 Status Server::start_sources(const ServerOptions& options) {

@@ -20,7 +20,6 @@
 #include "server/options.hpp"
 #include "server/recognition.hpp"
 #include "server/result_publisher.hpp"
-#include "server/services/parameter_services.hpp"
 #include "server/services/services.hpp"
 #include "server/settings.hpp"
 #include "server/sources/frame_source.hpp"
@@ -84,7 +83,7 @@ class Server {
   std::vector<std::unique_ptr<FrameSource>> sources_;
   TopicSource* topics_ = nullptr;  ///< One of them.
   std::optional<ServiceSet> services_;
-  std::unique_ptr<ParameterServices> parameters_;
+  std::optional<ServiceSet> parameters_;
 
   std::mutex report_mutex_;
   std::condition_variable stop_report_;

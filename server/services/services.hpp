@@ -4,11 +4,16 @@
 
 #include <functional>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/log.hpp"
 #include "core/base/status.hpp"
+#include "idl/wire/participant.hpp"
+#include "idl/wire/qos.hpp"
+#include "idl/wire/service.hpp"
 #include "server/recognition.hpp"
-#include "server/services/service_set.hpp"
 #include "server/settings.hpp"
 #include "server/statistics.hpp"
 #include "server/worker.hpp"
@@ -16,6 +21,65 @@
 // A request that fails is answered with success = false, a code and a sentence; the server goes on.
 
 namespace bpa::server {
+
+/// Answers one request, once, from any thread.
+template <class Service>
+class Reply {
+ public:
+  Reply(wire::ReplyToken<Service> token, std::string service, LogHook log)
+      : token_(std::move(token)), service_(std::move(service)), log_(std::move(log)) {}
+
+  /// Never blocks; a reply that cannot be delivered is logged.
+  void send(const typename Service::Response& response) const {
+    const Status sent = token_.reply(response);
+    if (!sent.ok()) log(log_, LogLevel::info, service_ + ": reply not delivered: " + sent.message);
+  }
+  /// Who asks.
+  wire::Guid client() const { return token_.client(); }
+
+ private:
+  wire::ReplyToken<Service> token_;
+  std::string service_;
+  LogHook log_;
+};
+
+/// Services that are offered from their add() until this is destroyed.
+class ServiceSet {
+ public:
+  /// `participant` outlives it.
+  ServiceSet(const wire::Participant& participant, LogHook log,
+             const wire::Qos& qos = wire::qos::services())
+      : participant_(participant), log_(std::move(log)), qos_(qos) {}
+
+  /// `handle(request, reply)` runs on a DDS thread and must not block; the reply may come later.
+  template <class Service, class Handle>
+  Status add(const std::string& name, Handle handle) {
+    auto server = wire::ServiceServer<Service>::create(
+        participant_, name,
+        [name, handle = std::move(handle), log = log_](typename Service::Request&& request,
+                                                       wire::ReplyToken<Service> token) {
+          handle(std::move(request), Reply<Service>(std::move(token), name, log));
+        },
+        qos_);
+    if (!server.ok()) return server.status();
+    servers_.push_back(std::make_shared<wire::ServiceServer<Service>>(std::move(server).value()));
+    return {};
+  }
+  /// `answer(request)` gives the response at once.
+  template <class Service, class Answer>
+  Status add_quick(const std::string& name, Answer answer) {
+    return add<Service>(name, [answer = std::move(answer)](typename Service::Request&& request,
+                                                           const Reply<Service>& reply) {
+      reply.send(answer(std::move(request)));
+    });
+  }
+
+ private:
+  const wire::Participant& participant_;
+  const LogHook log_;
+  const wire::Qos qos_;
+  std::vector<std::shared_ptr<void>> servers_;
+};
 
 /// What the services need of the server; all of it outlives them.
 struct ServiceContext {
@@ -32,5 +96,12 @@ struct ServiceContext {
 Status add_detect(const ServiceContext& context, ServiceSet& services);
 /// Offers `list_models`, `load_model` and `unload_model`.
 Status add_library_services(const ServiceContext& context, ServiceSet& services);
+
+/// Offers what every ROS 2 node has for `ros2 param`: NODE/list_parameters, get_parameters,
+/// get_parameter_types, describe_parameters, set_parameters and set_parameters_atomically, and
+/// /parameter_events, on which all parameters are announced at the start and then each change.
+/// `participant` and `settings` outlive the services.
+Status add_parameter_services(const wire::Participant& participant, Settings& settings,
+                              const LogHook& log, ServiceSet& services);
 
 }  // namespace bpa::server

@@ -15,7 +15,7 @@
 #include "idl/wire/time.hpp"
 #include "server/convert/results.hpp"
 #include "server/output.hpp"
-#include "server/services/service_set.hpp"
+#include "server/services/services.hpp"
 #include "server/sources/camera_messages.hpp"
 #include "server/worker.hpp"
 
