@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/log_relay.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <deque>
@@ -19,24 +20,14 @@ using wire::rcl_interfaces::Log;
 constexpr std::size_t kMaxWaiting = 256;
 
 std::uint8_t ros_level(LogLevel level) {
-  switch (level) {
-    case LogLevel::debug:
-      return Log::kDebug;
-    case LogLevel::info:
-      return Log::kInfo;
-    case LogLevel::warning:
-      return Log::kWarn;
-    case LogLevel::error:
-      break;
-  }
-  return Log::kError;
+  constexpr std::uint8_t kLevels[] = {Log::kDebug, Log::kInfo, Log::kWarn, Log::kError};
+  return kLevels[static_cast<std::size_t>(level)];
 }
 
 /// "/bpa/server" -> "bpa.server".
 std::string logger_name(std::string node) {
-  node.erase(0, 1);
-  for (char& c : node) c = c == '/' ? '.' : c;
-  return node;
+  std::replace(node.begin(), node.end(), '/', '.');
+  return node.substr(1);
 }
 
 }  // namespace
@@ -45,10 +36,9 @@ struct LogRelay::State {
   LogHook sink;
   std::atomic<LogLevel> least;
   std::mutex mutex;
-  std::condition_variable changed;
+  std::condition_variable_any changed;
   std::deque<Log> waiting;
   std::uint64_t lost = 0;
-  bool stop = false;
 
   void take(LogLevel level, std::string_view text) {
     if (level < least) return;
@@ -59,7 +49,6 @@ struct LogRelay::State {
     message.msg = text;
     {
       const std::lock_guard<std::mutex> lock(mutex);
-      if (stop) return;
       if (waiting.size() >= kMaxWaiting) {
         waiting.pop_front();
         ++lost;
@@ -75,15 +64,6 @@ LogRelay::LogRelay(LogHook sink, LogLevel least) : state_(std::make_shared<State
   state_->least = least;
 }
 
-LogRelay::~LogRelay() {
-  {
-    const std::lock_guard<std::mutex> lock(state_->mutex);
-    state_->stop = true;
-  }
-  state_->changed.notify_all();
-  if (thread_.joinable()) thread_.join();
-}
-
 LogHook LogRelay::hook() const {
   return [state = state_](LogLevel level, std::string_view text) { state->take(level, text); };
 }
@@ -97,15 +77,15 @@ Status LogRelay::connect(const wire::Participant& participant, const std::string
   if (!publisher.ok()) return publisher.status();
   publisher_.emplace(std::move(publisher).value());
   logger_ = logger_name(participant.node().full());
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   return {};
 }
 
-void LogRelay::run() {
+void LogRelay::run(const std::stop_token& stop) {
   std::unique_lock<std::mutex> lock(state_->mutex);
   while (true) {
-    state_->changed.wait(lock, [this] { return state_->stop || !state_->waiting.empty(); });
-    if (state_->waiting.empty()) return;
+    state_->changed.wait(lock, stop, [this] { return !state_->waiting.empty(); });
+    if (state_->waiting.empty()) return;  // stopped, after all was published
     Log message = std::move(state_->waiting.front());
     state_->waiting.pop_front();
     if (const auto lost = std::exchange(state_->lost, 0); lost > 0) {

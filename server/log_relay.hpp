@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -22,7 +23,6 @@ class LogRelay {
  public:
   /// `sink` may be empty.
   LogRelay(LogHook sink, LogLevel least);
-  ~LogRelay();
   LogRelay(const LogRelay&) = delete;
   LogRelay& operator=(const LogRelay&) = delete;
 
@@ -35,12 +35,12 @@ class LogRelay {
 
  private:
   struct State;
-  void run();
+  void run(const std::stop_token& stop);
 
   const std::shared_ptr<State> state_;
   std::string logger_;  ///< The node's name, as loggers are called in ROS 2.
   std::optional<wire::Publisher<wire::rcl_interfaces::Log>> publisher_;
-  std::thread thread_;
+  std::jthread thread_;  ///< Last: uses what stands above.
 };
 
 /// "debug", "info", "warning" (also "warn") or "error" (also "fatal"); info for any other word.

@@ -23,8 +23,7 @@ Result<std::unique_ptr<ResultPublisher>> ResultPublisher::create(
         self->annotated_.open(participant, options.annotated, results),
         self->markers_.open(participant, options.markers, results),
         self->vision_info_.open(participant, options.vision_info, wire::qos::latched()),
-        self->tf_.open(participant, options.tf, wire::qos::transforms()),
-        self->diagnostics_.open(participant, options.diagnostics, results)}) {
+        self->tf_.open(participant, options.tf, wire::qos::transforms())}) {
     if (!status.ok()) return status;
   }
   return self;
@@ -43,15 +42,11 @@ void ResultPublisher::publish(const Frame* frame, const Result<SceneInterpretati
     markers_.send(markers_message(*result, models, lifetime_s), log_);
   }
   if (tf_.wanted()) tf_.send(transforms_message(*result, tf_prefix_), log_);
-  if (annotated_.wanted()) publish_annotated(*frame, *result);
-}
-
-void ResultPublisher::publish_annotated(const Frame& frame, const SceneInterpretations& result) {
-  const Interpretation none;
-  const Interpretation& best =
-      result.interpretations.empty() ? none : result.interpretations.front();
-  annotated_.send(image_message(result, frame.camera.width, frame.camera.height,
-                                recognition_->annotate(frame, best)),
+  if (!annotated_.wanted()) return;
+  const Interpretation best =
+      result->interpretations.empty() ? Interpretation() : result->interpretations.front();
+  annotated_.send(image_message(*result, frame->camera.width, frame->camera.height,
+                                recognition_->annotate(*frame, best)),
                   log_);
 }
 
@@ -63,11 +58,5 @@ void ResultPublisher::publish_vision_info() {
   info.database_version = recognition_->version();
   vision_info_.send(info, log_);
 }
-
-void ResultPublisher::publish(const wire::diagnostic_msgs::DiagnosticArray& diagnostics) {
-  diagnostics_.send(diagnostics, log_);
-}
-
-bool ResultPublisher::diagnostics_wanted() const { return diagnostics_.wanted(); }
 
 }  // namespace bpa::server

@@ -30,14 +30,11 @@ class ResultPublisher {
                const ResultContext& context);
   /// The latched vision_info: again after each change of the library.
   void publish_vision_info();
-  void publish(const wire::diagnostic_msgs::DiagnosticArray& diagnostics);
-  bool diagnostics_wanted() const;
 
  private:
   ResultPublisher(const Settings& settings, std::shared_ptr<const Recognition> recognition,
                   LogHook log)
       : settings_(settings), recognition_(std::move(recognition)), log_(std::move(log)) {}
-  void publish_annotated(const Frame& frame, const SceneInterpretations& result);
 
   const Settings& settings_;
   const std::shared_ptr<const Recognition> recognition_;
@@ -49,7 +46,6 @@ class ResultPublisher {
   Output<wire::visualization_msgs::MarkerArray> markers_;
   Output<wire::vision_msgs::VisionInfo> vision_info_;
   Output<wire::tf2_msgs::TFMessage> tf_;
-  Output<wire::diagnostic_msgs::DiagnosticArray> diagnostics_;
 };
 
 }  // namespace bpa::server

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <sstream>
 #include <utility>
 
@@ -24,20 +25,18 @@ using wire::diagnostic_msgs::KeyValue;
 constexpr auto kReportPeriod = std::chrono::seconds(1);
 constexpr auto kRepeatAfter = std::chrono::seconds(10);
 
-Result<std::optional<wire::Discovery>> discovery_of(const NetworkOptions& options) {
+Result<wire::Discovery> discovery_of(const NetworkOptions& options) {
   auto environment = wire::discovery_from_environment();
   if (!environment.ok()) return environment.status();
   wire::Discovery discovery = *environment;
   if (options.domain >= 0) discovery.domain_id = options.domain;
   if (options.range == "subnet") discovery.range = wire::DiscoveryRange::subnet;
   if (options.range == "localhost") discovery.range = wire::DiscoveryRange::localhost;
-  if (options.range == "humble_localhost") {
-    discovery.range = wire::DiscoveryRange::humble_localhost;
-  }
+  if (options.range == "humble_localhost") discovery.range = wire::DiscoveryRange::humble_localhost;
   if (options.range == "off") discovery.range = wire::DiscoveryRange::off;
   discovery.static_peers.insert(discovery.static_peers.end(), options.peers.begin(),
                                 options.peers.end());
-  return std::optional<wire::Discovery>(discovery);
+  return discovery;
 }
 
 /// Frames that are to be combined must be able to wait for one another.
@@ -81,12 +80,6 @@ Result<std::unique_ptr<Server>> Server::create(const ServerOptions& options,
 }
 
 Server::~Server() {
-  {
-    const std::lock_guard<std::mutex> lock(report_mutex_);
-    stopping_ = true;
-  }
-  stop_report_.notify_all();
-  if (reporter_.joinable()) reporter_.join();
   if (worker_) worker_->stop();  // answers what waits, while the services can still send it
 }
 
@@ -120,20 +113,23 @@ Status Server::start() {
   if (!publisher.ok()) return publisher.status();
   publisher_ = std::move(publisher).value();
   publisher_->publish_vision_info();
+  Status status =
+      diagnostics_.open(*participant_, options.output.diagnostics, wire::qos::results());
+  if (!status.ok()) return status;
 
   worker_ = std::make_unique<Worker>(
       recognition_, worker_options(options), statistics_,
       [this](const IncomingFrame& incoming, const Frame* frame,
              const Result<SceneInterpretations>& result) { on_result(incoming, frame, result); },
       log_);
-  if (Status status = start_sources(options); !status.ok()) return status;
-  if (Status status = offer_services(); !status.ok()) return status;
+  if (status = start_sources(options); !status.ok()) return status;
+  if (status = offer_services(); !status.ok()) return status;
   settings_.on_change([this](const ServerOptions& before, const ServerOptions& after) {
     return apply(before, after);
   });
   parameters_.emplace(*participant_, log_, wire::qos::parameters());
-  Status status = add_parameter_services(*participant_, settings_, log_, *parameters_);
-  if (status.ok()) reporter_ = std::thread([this] { report(); });
+  status = add_parameter_services(*participant_, settings_, log_, *parameters_);
+  if (status.ok()) reporter_ = std::jthread([this](const std::stop_token& stop) { report(stop); });
   return status;
 }
 
@@ -285,14 +281,18 @@ std::vector<KeyValue> Server::details() const {
   return details;
 }
 
-void Server::report() {
-  std::unique_lock<std::mutex> lock(report_mutex_);
-  while (!stop_report_.wait_for(lock, kReportPeriod, [this] { return stopping_; })) {
-    rates_.add(Clock::now(), statistics_.counts());
-    if (publisher_->diagnostics_wanted()) {
-      publisher_->publish(diagnostics_message({participant_->node().full(), status(),
-                                               rates_.rates(), drops(), source_reports(), fusion()},
-                                              unix_time_ns()));
+void Server::report(const std::stop_token& stop) {
+  RateMeter rates;
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  std::unique_lock<std::mutex> lock(mutex);
+  while (!wake.wait_for(lock, stop, kReportPeriod, [&] { return stop.stop_requested(); })) {
+    rates.add(Clock::now(), statistics_.counts());
+    if (diagnostics_.wanted()) {
+      diagnostics_.send(diagnostics_message({participant_->node().full(), status(), rates.rates(),
+                                             drops(), source_reports(), fusion()},
+                                            unix_time_ns()),
+                        log_);
     }
     report_losses();
   }

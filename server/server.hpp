@@ -3,10 +3,10 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <utility>
@@ -18,6 +18,7 @@
 #include "server/diagnostics.hpp"
 #include "server/log_relay.hpp"
 #include "server/options.hpp"
+#include "server/output.hpp"
 #include "server/recognition.hpp"
 #include "server/result_publisher.hpp"
 #include "server/services/services.hpp"
@@ -61,7 +62,7 @@ class Server {
   std::vector<std::pair<std::string, std::uint64_t>> drops() const;
   std::vector<wire::diagnostic_msgs::KeyValue> fusion() const;
   std::vector<SourceReport> source_reports() const;
-  void report();
+  void report(const std::stop_token& stop);
   void report_losses();
 
   Settings settings_;
@@ -79,17 +80,13 @@ class Server {
   // into what is gone.
   std::optional<wire::Participant> participant_;
   std::unique_ptr<ResultPublisher> publisher_;
+  Output<wire::diagnostic_msgs::DiagnosticArray> diagnostics_;
   std::unique_ptr<Worker> worker_;
   std::vector<std::unique_ptr<FrameSource>> sources_;
   TopicSource* topics_ = nullptr;  ///< One of them.
   std::optional<ServiceSet> services_;
   std::optional<ServiceSet> parameters_;
-
-  std::mutex report_mutex_;
-  std::condition_variable stop_report_;
-  bool stopping_ = false;
-  RateMeter rates_;  ///< The reporter's own.
-  std::thread reporter_;
+  std::jthread reporter_;
 };
 
 }  // namespace bpa::server
