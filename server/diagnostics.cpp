@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/diagnostics.hpp"
 
+#include <concepts>
 #include <cstdio>
 
 #include "idl/wire/time.hpp"
@@ -11,95 +12,81 @@ namespace {
 
 using wire::bpa_msgs::GetStatus_Response;
 using wire::diagnostic_msgs::DiagnosticStatus;
+using wire::diagnostic_msgs::KeyValue;
 
 constexpr auto kWindow = std::chrono::seconds(10);
 
-std::string number(double value, const char* format = "%.2f") {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
+std::string text(double value, const char* format = "%.2f") {
+  char digits[64];
+  std::snprintf(digits, sizeof digits, format, value);
+  return digits;
+}
+template <std::integral Integer>
+std::string text(Integer value) {
+  return std::to_string(value);
 }
 
-/// A DiagnosticStatus that is being filled in.
-class Line {
- public:
-  Line(const Health& health, const std::string& what) {
-    status_.name = health.node + ": " + what;
-    status_.hardware_id = "bpa-server " + health.status.version;
-  }
-  void say(std::byte level, std::string message) {
-    status_.level = level;
-    status_.message = std::move(message);
-  }
-  void add(const std::string& key, std::string value) {
-    status_.values.push_back({key, std::move(value)});
-  }
-  void add(const std::string& key, std::uint64_t value) { add(key, std::to_string(value)); }
-  DiagnosticStatus& status() { return status_; }
-
- private:
-  DiagnosticStatus status_;
-};
+DiagnosticStatus line(const Health& health, const char* what, std::byte level, std::string message,
+                      std::vector<KeyValue> values) {
+  return {level, health.node + ": " + what, std::move(message),
+          "bpa-server " + health.status.version, std::move(values)};
+}
 
 const char* state_name(std::uint8_t state) {
   if (state == GetStatus_Response::kPaused) return "paused: frames are searched on request only";
   return state == GetStatus_Response::kIdle ? "idle: no frame comes in" : "running";
 }
 
-Line detection_line(const Health& health) {
-  Line line(health, "detection");
-  const bool empty = health.status.model_count == 0;
-  line.say(empty ? DiagnosticStatus::kError : DiagnosticStatus::kOk,
-           empty ? "the model library is empty" : state_name(health.status.state));
-  line.add("frames received per s", number(health.rates.frames_received));
-  line.add("frames searched per s", number(health.rates.frames_processed));
-  line.add("frames dropped per s", number(health.rates.frames_dropped));
-  line.add("requests served per s", number(health.rates.requests_served));
-  line.add("frames received", health.status.frames_received);
-  line.add("frames searched", health.status.frames_processed);
-  line.add("requests served", health.status.requests_served);
-  for (const auto& pair : health.fusion) line.add(pair.key, pair.value);
-  for (const auto& timing : health.status.stage_timings) {
-    line.add("median ms of " + timing.name, number(timing.duration_ms, "%.3f"));
+DiagnosticStatus detection_line(const Health& health) {
+  const GetStatus_Response& status = health.status;
+  std::vector<KeyValue> values = {{"frames received per s", text(health.rates.frames_received)},
+                                  {"frames searched per s", text(health.rates.frames_processed)},
+                                  {"frames dropped per s", text(health.rates.frames_dropped)},
+                                  {"requests served per s", text(health.rates.requests_served)},
+                                  {"frames received", text(status.frames_received)},
+                                  {"frames searched", text(status.frames_processed)},
+                                  {"requests served", text(status.requests_served)}};
+  values.insert(values.end(), health.fusion.begin(), health.fusion.end());
+  for (const auto& timing : status.stage_timings) {
+    values.push_back({"median ms of " + timing.name, text(timing.duration_ms, "%.3f")});
   }
-  line.add("memory MB", number(1e-6 * static_cast<double>(health.status.memory_bytes), "%.1f"));
-  line.add("uptime s", number(health.status.uptime_s, "%.0f"));
-  return line;
+  values.push_back({"memory MB", text(1e-6 * static_cast<double>(status.memory_bytes), "%.1f")});
+  values.push_back({"uptime s", text(status.uptime_s, "%.0f")});
+  const bool empty = status.model_count == 0;
+  return line(health, "detection", empty ? DiagnosticStatus::kError : DiagnosticStatus::kOk,
+              empty ? "the model library is empty" : state_name(status.state), std::move(values));
 }
 
-Line drops_line(const Health& health) {
-  Line line(health, "drops");
-  const bool bad = health.rates.frames_bad > 0;
-  line.say(bad ? DiagnosticStatus::kWarn : DiagnosticStatus::kOk,
-           bad ? number(health.rates.frames_bad) + " frames per s are refused or fail"
-               : number(health.rates.frames_dropped) + " frames per s give way to newer ones");
-  line.add("frames dropped for newer ones", health.status.frames_dropped);
-  for (const auto& [cause, count] : health.drops) line.add(cause, count);
-  return line;
+DiagnosticStatus drops_line(const Health& health) {
+  std::vector<KeyValue> values = {
+      {"frames dropped for newer ones", text(health.status.frames_dropped)}};
+  for (const auto& [cause, count] : health.drops) values.push_back({cause, text(count)});
+  const Rates& rates = health.rates;
+  const bool bad = rates.frames_bad > 0;
+  return line(health, "drops", bad ? DiagnosticStatus::kWarn : DiagnosticStatus::kOk,
+              bad ? text(rates.frames_bad) + " frames per s are refused or fail"
+                  : text(rates.frames_dropped) + " frames per s give way to newer ones",
+              std::move(values));
 }
 
-Line queue_line(const Health& health) {
-  Line line(health, "queue");
+DiagnosticStatus queue_line(const Health& health) {
   const bool refuses = health.rates.requests_refused > 0;
-  line.say(refuses ? DiagnosticStatus::kWarn : DiagnosticStatus::kOk,
-           refuses ? number(health.rates.requests_refused) + " requests per s are refused"
-                   : "no request is refused");
-  line.add("length", health.status.queue_length);
-  line.add("capacity", health.status.queue_capacity);
-  line.add("requests refused", health.status.requests_refused);
-  return line;
+  return line(health, "queue", refuses ? DiagnosticStatus::kWarn : DiagnosticStatus::kOk,
+              refuses ? text(health.rates.requests_refused) + " requests per s are refused"
+                      : "no request is refused",
+              {{"length", text(health.status.queue_length)},
+               {"capacity", text(health.status.queue_capacity)},
+               {"requests refused", text(health.status.requests_refused)}});
 }
 
-Line models_line(const Health& health) {
-  Line line(health, "models");
+DiagnosticStatus models_line(const Health& health) {
+  const std::string count = text(health.status.model_count);
   const bool empty = health.status.model_count == 0;
-  line.say(
-      empty ? DiagnosticStatus::kError : DiagnosticStatus::kOk,
-      empty ? "the model library is empty" : std::to_string(health.status.model_count) + " models");
-  line.add("library", health.status.library);
-  line.add("database version", std::to_string(health.status.database_version));
-  line.add("models", health.status.model_count);
-  return line;
+  return line(health, "models", empty ? DiagnosticStatus::kError : DiagnosticStatus::kOk,
+              empty ? "the model library is empty" : count + " models",
+              {{"library", health.status.library},
+               {"database version", text(health.status.database_version)},
+               {"models", count}});
 }
 
 }  // namespace
@@ -112,33 +99,27 @@ void RateMeter::add(TimePoint now, const Counts& counts) {
 
 Rates RateMeter::rates() const {
   if (readings_.size() < 2) return {};
-  const auto& [then, before] = readings_.front();
-  const auto& [now, after] = readings_.back();
-  const double seconds = std::chrono::duration<double>(now - then).count();
+  const auto& before = readings_.front();
+  const auto& after = readings_.back();
+  const double seconds = std::chrono::duration<double>(after.first - before.first).count();
   if (!(seconds > 0)) return {};
-  const Counts& a = before;
-  const Counts& b = after;
   const auto rate = [&](std::uint64_t Counts::*counter) {
-    return static_cast<double>(b.*counter - a.*counter) / seconds;
+    return static_cast<double>(after.second.*counter - before.second.*counter) / seconds;
   };
-  Rates rates;
-  rates.frames_received = rate(&Counts::frames_received);
-  rates.frames_processed = rate(&Counts::frames_processed);
-  rates.frames_dropped = rate(&Counts::frames_dropped);
-  rates.frames_bad = rate(&Counts::frames_rejected) + rate(&Counts::frames_failed);
-  rates.requests_served = rate(&Counts::requests_served);
-  rates.requests_refused = rate(&Counts::requests_refused);
-  return rates;
+  return {.frames_received = rate(&Counts::frames_received),
+          .frames_processed = rate(&Counts::frames_processed),
+          .frames_dropped = rate(&Counts::frames_dropped),
+          .frames_bad = rate(&Counts::frames_rejected) + rate(&Counts::frames_failed),
+          .requests_served = rate(&Counts::requests_served),
+          .requests_refused = rate(&Counts::requests_refused)};
 }
 
 wire::diagnostic_msgs::DiagnosticArray diagnostics_message(const Health& health,
                                                            std::int64_t stamp_ns) {
   wire::diagnostic_msgs::DiagnosticArray array;
   array.header.stamp = wire::builtin_interfaces::from_ns(stamp_ns);
-  for (Line line :
-       {detection_line(health), drops_line(health), queue_line(health), models_line(health)}) {
-    array.status.push_back(std::move(line.status()));
-  }
+  array.status = {detection_line(health), drops_line(health), queue_line(health),
+                  models_line(health)};
   for (SourceReport source : health.sources) {
     source.name = health.node + ": " + source.name;
     array.status.push_back(std::move(source));
