@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/library_detector.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -126,13 +127,10 @@ Result<std::shared_ptr<const ObjectModel>> LibraryDetector::load(const std::stri
   if (const auto old = library.find(wanted)) {
     read->number = old->number;
     if (Status s = library.remove(wanted); !s.ok()) return s;
-  } else {
-    for (const auto& model : library.models()) {
-      if (model->number == read->number) {
-        read->number = library.next_number();
-        break;
-      }
-    }
+  } else if (std::ranges::any_of(library.models(), [&](const auto& model) {
+               return model->number == read->number;
+             })) {
+    read->number = library.next_number();
   }
   if (Status s = add_model(std::move(read).value(), num_threads_, library); !s.ok()) return s;
   auto model = library.find(wanted);

@@ -96,11 +96,9 @@ bpa::LogHook make_log() {
   logger->set_level(spdlog::level::debug);
   logger->flush_on(spdlog::level::info);
   return [logger](LogLevel severity, std::string_view text) {
-    const auto spd = severity == LogLevel::debug     ? spdlog::level::debug
-                     : severity == LogLevel::info    ? spdlog::level::info
-                     : severity == LogLevel::warning ? spdlog::level::warn
-                                                     : spdlog::level::err;
-    logger->log(spd, "{}", text);
+    constexpr spdlog::level::level_enum kLevels[] = {spdlog::level::debug, spdlog::level::info,
+                                                     spdlog::level::warn, spdlog::level::err};
+    logger->log(kLevels[static_cast<std::size_t>(severity)], "{}", text);
   };
 }
 
@@ -124,6 +122,11 @@ Status serve(const ServerOptions& options, const bpa::LogHook& hook, const sigse
   return {};
 }
 
+int fail(const Status& status, int exit_code) {
+  std::cerr << "bpa-server: " << status.message << '\n';
+  return exit_code;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -135,10 +138,7 @@ int main(int argc, char** argv) {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
   const auto ros = bpa::server::take_ros_arguments({argv, argv + argc});
-  if (!ros.ok()) {
-    std::cerr << "bpa-server: " << ros.status().message << '\n';
-    return 2;
-  }
+  if (!ros.ok()) return fail(ros.status(), 2);
   CLI::App program("Finds known objects in the RGB-D frames of a DDS domain.", "bpa-server");
   program.footer(
       "ROS 2's own arguments come after --ros-args: -r FROM:=TO, -r __node:=NAME, "
@@ -152,19 +152,16 @@ int main(int argc, char** argv) {
     return program.exit(error) == 0 ? 0 : 2;
   }
   const bpa::Result<ServerOptions> options = settle(line, *ros);
-  if (!options.ok()) {
-    std::cerr << "bpa-server: " << options.status().message << '\n';
-    return 2;
-  }
+  if (!options.ok()) return fail(options.status(), 2);
   if (line.print_config) {
     std::cout << bpa::server::to_yaml(*options, true);
     return 0;
   }
   if (line.list_devices) {
     const auto devices = bpa::camera::list_devices();
-    if (devices.ok()) std::cout << *devices;
-    if (!devices.ok()) std::cerr << "bpa-server: " << devices.status().message << '\n';
-    return devices.ok() ? 0 : 1;
+    if (!devices.ok()) return fail(devices.status(), 1);
+    std::cout << *devices;
+    return 0;
   }
   const bpa::LogHook hook = make_log();
   const Status status = serve(*options, hook, signals);

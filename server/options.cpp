@@ -2,21 +2,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/options.hpp"
 
-#include <initializer_list>
-
 #include "core/io/options_yaml.hpp"
 
 namespace bpa::server {
 namespace {
 
-Status check_choice(const char* field, const std::string& value,
-                    std::initializer_list<const char*> choices) {
+struct Choice {
+  const char* field;
+  const std::string& value;
+  std::vector<std::string> choices;
+};
+
+Status check(const Choice& choice) {
   std::string rule;
-  for (const char* choice : choices) {
-    if (value == choice) return {};
-    (rule += rule.empty() ? "" : ", ") += choice;
+  for (const std::string& word : choice.choices) {
+    if (choice.value == word) return {};
+    rule += (rule.empty() ? "" : ", ") + word;
   }
-  return invalid_argument(std::string(field) + " is \"" + value + "\"; it must be one of " + rule);
+  return invalid_argument(std::string(choice.field) + " is \"" + choice.value +
+                          "\"; it must be one of " + rule);
 }
 
 io::OptionsReading reading_into(ServerOptions& options) {
@@ -27,21 +31,21 @@ io::OptionsReading reading_into(ServerOptions& options) {
 
 Status validate(const ServerOptions& options) {
   Status status = bpa::validate<ServerOptions>(options);
-  if (!status.ok()) return status;
-  status = check_choice("network.range", options.network.range,
-                        {"environment", "subnet", "localhost", "humble_localhost", "off"});
-  if (!status.ok()) return status;
-  status = check_choice("network.graph_layout", options.network.graph_layout,
-                        {"automatic", "humble", "iron"});
-  if (!status.ok()) return status;
-  status =
-      check_choice("input.color_transport", options.input.color_transport, {"raw", "compressed"});
-  if (!status.ok()) return status;
-  status = check_choice("input.depth_transport", options.input.depth_transport,
-                        {"raw", "compressed", "compressedDepth"});
-  if (!status.ok()) return status;
-  if (status = camera::check(options.capture); !status.ok()) return status;
-  return check_choice("log.level", options.log.level, {"debug", "info", "warning", "error"});
+  if (status.ok()) status = camera::check(options.capture);
+  const Choice choices[] = {
+      {"network.range",
+       options.network.range,
+       {"environment", "subnet", "localhost", "humble_localhost", "off"}},
+      {"network.graph_layout", options.network.graph_layout, {"automatic", "humble", "iron"}},
+      {"input.color_transport", options.input.color_transport, {"raw", "compressed"}},
+      {"input.depth_transport",
+       options.input.depth_transport,
+       {"raw", "compressed", "compressedDepth"}},
+      {"log.level", options.log.level, {"debug", "info", "warning", "error"}}};
+  for (const Choice& choice : choices) {
+    if (status.ok()) status = check(choice);
+  }
+  return status;
 }
 
 Status load_options(const std::string& path, ServerOptions& options) {

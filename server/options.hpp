@@ -25,10 +25,10 @@ struct NodeOptions {
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit("name", name, FieldRule{0, 0, "How ROS 2 tools show the server in its namespace."});
+    visit("name", name, {0, 0, "How ROS 2 tools show the server in its namespace."});
     visit("namespace", ros_namespace,
-          FieldRule{0, 0, "Goes in front of every name below that has no leading '/'."});
-    visit("remaps", remaps, FieldRule{0, 0, "Other names for topics and services: [from:=to]."});
+          {0, 0, "Goes in front of every name below that has no leading '/'."});
+    visit("remaps", remaps, {0, 0, "Other names for topics and services: [from:=to]."});
   }
 };
 
@@ -42,25 +42,25 @@ struct NetworkOptions {
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit("domain", domain, FieldRule{-1, 232, "DDS domain; -1 takes ROS_DOMAIN_ID, else 0."});
+    visit("domain", domain, {-1, 232, "DDS domain; -1 takes ROS_DOMAIN_ID, else 0."});
     visit("range", range,
-          FieldRule{0, 0,
-                    "How far to look for others: environment (as ROS_AUTOMATIC_DISCOVERY_RANGE and "
-                    "ROS_LOCALHOST_ONLY say), subnet, localhost, humble_localhost (as Humble's "
-                    "ROS_LOCALHOST_ONLY does it), off."});
-    visit("peers", peers, FieldRule{0, 0, "More hosts to discover: names or addresses."});
+          {0, 0,
+           "How far to look for others: environment (as ROS_AUTOMATIC_DISCOVERY_RANGE and "
+           "ROS_LOCALHOST_ONLY say), subnet, localhost, humble_localhost (as Humble's "
+           "ROS_LOCALHOST_ONLY does it), off."});
+    visit("peers", peers, {0, 0, "More hosts to discover: names or addresses."});
     visit("shared_frame_mb", shared_frame_mb,
-          FieldRule{0, 256,
-                    "Largest frame in MB that comes through shared memory from clients on this "
-                    "machine; larger ones are refused. 0: always over UDP."});
+          {0, 256,
+           "Largest frame in MB that comes through shared memory from clients on this machine; "
+           "larger ones are refused. 0: always over UDP."});
     visit("graph_layout", graph_layout,
-          FieldRule{0, 0,
-                    "Size of ids in the ROS 2 graph: humble (24 bytes), iron (16: Iron and later), "
-                    "automatic (iron unless all ROS 2 peers in sight are Humble's)."});
+          {0, 0,
+           "Size of ids in the ROS 2 graph: humble (24 bytes), iron (16: Iron and later), "
+           "automatic (iron unless all ROS 2 peers in sight are Humble's)."});
     visit("profiles", profiles,
-          FieldRule{0, 0,
-                    "File of Fast DDS XML profiles that override transports and timing, such as "
-                    "dds_profiles.xml; empty: none."});
+          {0, 0,
+           "File of Fast DDS XML profiles that override transports and timing, such as "
+           "dds_profiles.xml; empty: none."});
   }
 };
 
@@ -81,41 +81,34 @@ struct InputOptions {
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit("frames", frames, FieldRule{0, 0, "Topic of bpa_msgs/RgbdFrame; empty: none."});
+    visit("frames", frames, {0, 0, "Topic of bpa_msgs/RgbdFrame; empty: none."});
     visit("frames_reliable", frames_reliable,
-          FieldRule{0, 0, "Ask for reliable delivery; best-effort publishers then do not match."});
-    visit("color", color, FieldRule{0, 0, "Topic of colour images; empty: depth alone."});
+          {0, 0, "Ask for reliable delivery; best-effort publishers then do not match."});
+    visit("color", color, {0, 0, "Topic of colour images; empty: depth alone."});
     visit("color_transport", color_transport,
-          FieldRule{0, 0, "raw, or compressed: then TOPIC/compressed is taken."});
-    visit("depth", depth,
-          FieldRule{0, 0, "Topic of depth images registered to colour; empty: no camera."});
+          {0, 0, "raw, or compressed: then TOPIC/compressed is taken."});
+    visit("depth", depth, {0, 0, "Topic of depth images registered to colour; empty: no camera."});
     visit("depth_transport", depth_transport,
-          FieldRule{0, 0,
-                    "raw, or compressed (PNG) or compressedDepth: then TOPIC/compressed or "
-                    "TOPIC/compressedDepth is taken."});
-    visit("camera_info", camera_info, FieldRule{0, 0, "Topic of their sensor_msgs/CameraInfo."});
+          {0, 0,
+           "raw, or compressed (PNG) or compressedDepth: then TOPIC/compressed or "
+           "TOPIC/compressedDepth is taken."});
+    visit("camera_info", camera_info, {0, 0, "Topic of their sensor_msgs/CameraInfo."});
     visit("cloud", cloud,
-          FieldRule{0, 0,
-                    "Topic of organised sensor_msgs/PointCloud2 in an optical frame; empty: "
-                    "none."});
-    visit(
-        "reliable", reliable,
-        FieldRule{0, 0, "Ask for reliable camera topics; best-effort cameras then do not match."});
+          {0, 0, "Topic of organised sensor_msgs/PointCloud2 in an optical frame; empty: none."});
+    visit("reliable", reliable,
+          {0, 0, "Ask for reliable camera topics; best-effort cameras then do not match."});
     visit("rectified", rectified,
-          at_run_time(FieldRule{
-              0, 0,
-              "The camera's images have no lens distortion any more, so that the projection "
-              "matrix p holds; otherwise k and d do."}));
+          at_run_time({0, 0,
+                       "The camera's images have no lens distortion any more, so that the "
+                       "projection matrix p holds; otherwise k and d do."}));
     visit("sync_tolerance_ms", sync_tolerance_ms,
-          at_run_time(
-              FieldRule{0, 1000,
-                        "Largest difference of stamps of images that belong together; 0: equal "
-                        "stamps only."}));
-    visit("sync_queue", sync_queue,
-          at_run_time(FieldRule{2, 100, "Images of one topic that may wait."}));
+          at_run_time({0, 1000,
+                       "Largest difference of stamps of images that belong together; 0: equal "
+                       "stamps only."}));
+    visit("sync_queue", sync_queue, at_run_time({2, 100, "Images of one topic that may wait."}));
     visit("silence_s", silence_s,
-          at_run_time(FieldRule{
-              0.1, 3600, "Seconds without a message after which a camera is reported as lost."}));
+          at_run_time(
+              {0.1, 3600, "Seconds without a message after which a camera is reported as lost."}));
   }
 };
 
@@ -132,19 +125,19 @@ struct CaptureOptions : camera::CameraOptions {
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
     CameraOptions::visit_fields(visit);
-    visit("frame_id", frame_id, FieldRule{0, 0, "Frame id of this camera's messages."});
-    visit("search", search, FieldRule{0, 0, "Search its frames; false: only publish them."});
-    visit("color_topic", color_topic, FieldRule{0, 0, "sensor_msgs/Image, rgb8; empty: none."});
+    visit("frame_id", frame_id, {0, 0, "Frame id of this camera's messages."});
+    visit("search", search, {0, 0, "Search its frames; false: only publish them."});
+    visit("color_topic", color_topic, {0, 0, "sensor_msgs/Image, rgb8; empty: none."});
     visit("color_info_topic", color_info_topic,
-          FieldRule{0, 0, "sensor_msgs/CameraInfo beside it; empty: none."});
+          {0, 0, "sensor_msgs/CameraInfo beside it; empty: none."});
     visit("depth_topic", depth_topic,
-          FieldRule{0, 0, "sensor_msgs/Image, 16UC1 in mm, registered to colour; empty: none."});
+          {0, 0, "sensor_msgs/Image, 16UC1 in mm, registered to colour; empty: none."});
     visit("depth_info_topic", depth_info_topic,
-          FieldRule{0, 0, "sensor_msgs/CameraInfo beside it; empty: none."});
+          {0, 0, "sensor_msgs/CameraInfo beside it; empty: none."});
     visit("points_topic", points_topic,
-          FieldRule{0, 0,
-                    "sensor_msgs/PointCloud2, xyz and rgb, made only while it has a subscriber; "
-                    "empty: none."});
+          {0, 0,
+           "sensor_msgs/PointCloud2, xyz and rgb, made only while it has a subscriber; empty: "
+           "none."});
   }
 };
 
@@ -154,12 +147,10 @@ struct QueueOptions {
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit(
-        "frames", frames,
-        at_run_time(FieldRule{1, 100, "Frames that may wait; a newer one displaces the oldest."}));
+    visit("frames", frames,
+          at_run_time({1, 100, "Frames that may wait; a newer one displaces the oldest."}));
     visit("requests", requests,
-          at_run_time(
-              FieldRule{1, 1000, "Detect requests that may wait; more are refused as busy."}));
+          at_run_time({1, 1000, "Detect requests that may wait; more are refused as busy."}));
   }
 };
 
@@ -177,22 +168,22 @@ struct OutputOptions {
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
     visit("interpretations", interpretations,
-          FieldRule{0, 0, "bpa_msgs/SceneInterpretations: everything, ranked."});
+          {0, 0, "bpa_msgs/SceneInterpretations: everything, ranked."});
     visit("detections", detections,
-          FieldRule{0, 0, "vision_msgs/Detection3DArray: the best interpretation."});
+          {0, 0, "vision_msgs/Detection3DArray: the best interpretation."});
     visit("annotated", annotated,
-          FieldRule{0, 0, "sensor_msgs/Image, drawn only while it has a subscriber."});
-    visit("markers", markers, FieldRule{0, 0, "visualization_msgs/MarkerArray for RViz."});
-    visit("vision_info", vision_info, FieldRule{0, 0, "vision_msgs/VisionInfo, latched."});
-    visit("tf", tf, FieldRule{0, 0, "tf2_msgs/TFMessage: a transform per object; empty: none."});
+          {0, 0, "sensor_msgs/Image, drawn only while it has a subscriber."});
+    visit("markers", markers, {0, 0, "visualization_msgs/MarkerArray for RViz."});
+    visit("vision_info", vision_info, {0, 0, "vision_msgs/VisionInfo, latched."});
+    visit("tf", tf, {0, 0, "tf2_msgs/TFMessage: a transform per object; empty: none."});
     visit("diagnostics", diagnostics,
-          FieldRule{0, 0, "diagnostic_msgs/DiagnosticArray, once a second; empty: none."});
+          {0, 0, "diagnostic_msgs/DiagnosticArray, once a second; empty: none."});
     visit("rosout", rosout,
-          FieldRule{0, 0, "rcl_interfaces/Log: what is said on the terminal; empty: none."});
+          {0, 0, "rcl_interfaces/Log: what is said on the terminal; empty: none."});
     visit(
         "marker_lifetime_s", marker_lifetime_s,
-        at_run_time(FieldRule{
-            0, 3600, "Seconds after which RViz removes markers; 0: when the next frame's come."}));
+        at_run_time(
+            {0, 3600, "Seconds after which RViz removes markers; 0: when the next frame's come."}));
   }
 };
 
@@ -209,26 +200,23 @@ struct DetectionOptions {
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit("library", library, FieldRule{0, 0, "Folder of the model library."});
+    visit("library", library, {0, 0, "Folder of the model library."});
     visit("detector", detector,
-          FieldRule{0, 0, "File with settings of the detector (detector.yaml); empty: defaults."});
+          {0, 0, "File with settings of the detector (detector.yaml); empty: defaults."});
     visit("continuous", continuous,
-          at_run_time(
-              FieldRule{0, 0, "Search every frame; false: only when a request asks for one."}));
-    visit("top_k", top_k, at_run_time(FieldRule{1, 100, "Interpretations to report."}));
+          at_run_time({0, 0, "Search every frame; false: only when a request asks for one."}));
+    visit("top_k", top_k, at_run_time({1, 100, "Interpretations to report."}));
     visit("budget_ms", budget_ms,
-          at_run_time(FieldRule{0, 1e6, "Report the best so far after this long; 0: no limit."}));
-    visit(
-        "fuse_frames", fuse_frames,
-        at_run_time(FieldRule{1, 30,
-                              "Number of latest frames that are combined before the search, for a "
-                              "camera and a scene that stand still; 1: each frame by itself."}));
-    visit("seed", seed,
-          at_run_time(FieldRule{0, 9.0e15, "Same frame, library and seed: same answer."}));
+          at_run_time({0, 1e6, "Report the best so far after this long; 0: no limit."}));
+    visit("fuse_frames", fuse_frames,
+          at_run_time({1, 30,
+                       "Number of latest frames that are combined before the search, for a camera "
+                       "and a scene that stand still; 1: each frame by itself."}));
+    visit("seed", seed, at_run_time({0, 9.0e15, "Same frame, library and seed: same answer."}));
     visit("threads", threads,
-          at_run_time(FieldRule{0, 256, "0: one per core. Does not change the answer."}));
+          at_run_time({0, 256, "0: one per core. Does not change the answer."}));
     visit("request_timeout_ms", request_timeout_ms,
-          at_run_time(FieldRule{1, 1e7, "Longest wait of a detect request that names none."}));
+          at_run_time({1, 1e7, "Longest wait of a detect request that names none."}));
   }
 };
 
@@ -237,7 +225,7 @@ struct LogOptions {
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit("level", level, at_run_time(FieldRule{0, 0, "debug, info, warning or error."}));
+    visit("level", level, at_run_time({0, 0, "debug, info, warning or error."}));
   }
 };
 

@@ -3,7 +3,6 @@
 #include "server/ros_arguments.hpp"
 
 #include <filesystem>
-#include <string_view>
 
 #include <yaml-cpp/yaml.h>
 
@@ -14,9 +13,11 @@ namespace {
 
 constexpr const char* kIgnored = "use_sim_time";
 
-/// One of the options that take a value, by its short or long name.
-bool is_option(const std::string& word, std::string_view brief, std::string_view full) {
-  return word == full || (!brief.empty() && word == brief);
+bool is_log_switch(const std::string& word) {
+  for (const std::string what : {"stdout", "rosout", "external-lib"}) {
+    if (word == "--enable-" + what + "-logs" || word == "--disable-" + what + "-logs") return true;
+  }
+  return false;
 }
 
 /// "name:=value" taken apart; both empty when it is not of that form.
@@ -42,16 +43,11 @@ Status set_tree(const std::string& path, const std::string& prefix, const YAML::
                 ServerOptions& options) {
   for (const auto& entry : tree) {
     const std::string name = prefix + entry.first.as<std::string>();
-    Status status;
     if (entry.second.IsMap()) {
-      status = set_tree(path, name + ".", entry.second, options);
-      if (!status.ok()) return status;
-      continue;
-    }
-    status = set_parameter_text(name, text_of(entry.second), options);
-    if (!status.ok()) {
+      if (Status s = set_tree(path, name + ".", entry.second, options); !s.ok()) return s;
+    } else if (Status s = set_parameter_text(name, text_of(entry.second), options); !s.ok()) {
       return invalid_argument(path + ":" + std::to_string(entry.first.Mark().line + 1) + ": " +
-                              status.message);
+                              s.message);
     }
   }
   return {};
@@ -94,7 +90,7 @@ Status load_file(const std::string& path, ServerOptions& options) {
 
 /// Names first: files and parameters are looked up by them. A remap may be for one node alone,
 /// NODE:from:=to.
-Status set_names(const std::vector<std::string>& remaps, ServerOptions& options) {
+void set_names(const std::vector<std::string>& remaps, ServerOptions& options) {
   std::vector<wire::Remap> others;
   for (const std::string& text : remaps) {
     wire::Remap remap = split(text);
@@ -113,7 +109,6 @@ Status set_names(const std::vector<std::string>& remaps, ServerOptions& options)
     }
     options.node.remaps.push_back(remap.from + ":=" + remap.to);
   }
-  return {};
 }
 
 }  // namespace
@@ -131,23 +126,18 @@ Result<RosArguments> take_ros_arguments(const std::vector<std::string>& command_
       taken.own.push_back(word);
       continue;
     }
-    const bool has_value = i + 1 < command_line.size();
-    std::vector<std::string>* list = is_option(word, "-r", "--remap")       ? &taken.remaps
-                                     : is_option(word, "-p", "--param")     ? &taken.parameters
-                                     : is_option(word, "", "--params-file") ? &taken.files
-                                                                            : nullptr;
-    if (is_option(word, "-e", "--enclave")) {
+    std::vector<std::string>* list = word == "-r" || word == "--remap"   ? &taken.remaps
+                                     : word == "-p" || word == "--param" ? &taken.parameters
+                                     : word == "--params-file"           ? &taken.files
+                                                                         : nullptr;
+    if (word == "-e" || word == "--enclave") {
       return Status(StatusCode::unsupported, "--enclave: there is no security (SROS2) here");
     }
-    if (word == "--disable-stdout-logs" || word == "--enable-stdout-logs" ||
-        word == "--disable-rosout-logs" || word == "--enable-rosout-logs" ||
-        word == "--disable-external-lib-logs" || word == "--enable-external-lib-logs") {
-      continue;  // legal; log.level and output.rosout decide here
-    }
+    if (is_log_switch(word)) continue;  // legal; log.level and output.rosout decide here
     if (list == nullptr && word != "--log-level") {
       return invalid_argument("'" + word + "' after --ros-args is not known; end it with --");
     }
-    if (!has_value) return invalid_argument(word + " needs a value");
+    if (i + 1 == command_line.size()) return invalid_argument(word + " needs a value");
     const std::string& value = command_line[++i];
     if (list == nullptr) {
       const wire::Remap level = split(value);  // LOGGER:=LEVEL or LEVEL
@@ -163,7 +153,8 @@ Result<RosArguments> take_ros_arguments(const std::vector<std::string>& command_
 }
 
 Status apply(const RosArguments& arguments, ServerOptions& options) {
-  Status status = set_names(arguments.remaps, options);
+  set_names(arguments.remaps, options);
+  Status status;
   for (const std::string& path : arguments.files) {
     if (status.ok()) status = load_file(path, options);
   }

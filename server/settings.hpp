@@ -31,7 +31,19 @@ class Settings {
   void on_change(Apply apply) { apply_ = std::move(apply); }
 
   /// `edit` changes a copy; when that is legal and can be applied, it is the new snapshot.
-  Status change(const std::function<Status(ServerOptions&)>& edit);
+  Status change(const std::function<Status(ServerOptions&)>& edit) {
+    const std::lock_guard<std::mutex> change_lock(change_mutex_);
+    const Snapshot before = get();
+    auto after = std::make_shared<ServerOptions>(*before);
+    if (Status status = edit(*after); !status.ok()) return status;
+    if (Status status = validate(*after); !status.ok()) return status;
+    if (apply_) {
+      if (Status status = apply_(*before, *after); !status.ok()) return status;
+    }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    current_ = std::move(after);
+    return {};
+  }
 
  private:
   std::mutex change_mutex_;  ///< Held while a change is being made.
