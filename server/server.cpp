@@ -188,10 +188,7 @@ void Server::on_result(const IncomingFrame& incoming, const Frame* frame,
   publisher_->publish(
       frame, result,
       {incoming.stamp_ns, incoming.frame_id, models, settings_.get()->detection.seed});
-  if (!result.ok()) {
-    log_failure(result.status());
-    return;
-  }
+  if (!result.ok()) return log_failure(result.status());
   std::ostringstream text;
   const std::size_t found =
       result->interpretations.empty() ? 0 : result->interpretations.front().placements.size();

@@ -13,14 +13,10 @@
 namespace bpa::server {
 namespace {
 
+using wire::ByteView;
 using wire::sensor_msgs::CompressedImage;
 
 constexpr std::size_t kDepthHeader = 12;
-
-struct Bytes {
-  const std::uint8_t* data;
-  std::size_t size;
-};
 
 struct Size {
   std::uint32_t width = 0, height = 0;
@@ -32,12 +28,12 @@ std::uint32_t big_endian(const std::uint8_t* bytes, int count) {
   return value;
 }
 
-bool is_png(Bytes file) {
+bool is_png(ByteView file) {
   return file.size >= 24 && std::memcmp(file.data, "\x89PNG\r\n\x1a\n", 8) == 0;
 }
 
 /// The size that the frame header of a JPEG file gives; zero when there is none.
-Size jpeg_size(Bytes file) {
+Size jpeg_size(ByteView file) {
   std::size_t at = 2;
   while (at + 9 <= file.size && file.data[at] == 0xff) {
     const std::uint8_t marker = file.data[at + 1];
@@ -50,7 +46,7 @@ Size jpeg_size(Bytes file) {
 }
 
 /// The size of a PNG or JPEG file, from its first bytes.
-Result<Size> size_of(const char* field, Bytes file) {
+Result<Size> size_of(const char* field, ByteView file) {
   Size size;
   if (is_png(file)) {
     size = {big_endian(file.data + 16, 4), big_endian(file.data + 20, 4)};
@@ -65,7 +61,7 @@ Result<Size> size_of(const char* field, Bytes file) {
   return size;
 }
 
-Result<cv::Mat> decode_file(const char* field, Bytes file, int mode) {
+Result<cv::Mat> decode_file(const char* field, ByteView file, int mode) {
   const Result<Size> size = size_of(field, file);
   if (!size.ok()) return size.status();
   cv::Mat pixels;
@@ -83,7 +79,7 @@ Result<cv::Mat> decode_file(const char* field, Bytes file, int mode) {
   return pixels;
 }
 
-Result<Decoded<std::uint16_t>> decode_png16(const char* field, Bytes file) {
+Result<Decoded<std::uint16_t>> decode_png16(const char* field, ByteView file) {
   const Result<cv::Mat> pixels = decode_file(field, file, cv::IMREAD_UNCHANGED);
   if (!pixels.ok()) return pixels.status();
   if (pixels->type() != CV_16UC1) {
@@ -97,7 +93,7 @@ Result<Decoded<std::uint16_t>> decode_png16(const char* field, Bytes file) {
 }
 
 /// An RVL stream with its size in front: width and height, uint32 each.
-Result<Decoded<std::uint16_t>> decode_rvl_image(const char* field, Bytes stream) {
+Result<Decoded<std::uint16_t>> decode_rvl_image(const char* field, ByteView stream) {
   std::uint32_t size[2] = {};
   if (stream.size >= sizeof size) std::memcpy(size, stream.data, sizeof size);
   const Status status = check_size(std::string(field) + " image", size[0], size[1]);
@@ -143,7 +139,7 @@ Result<Decoded<float>> decode_depth(const char* field, const CompressedImage& im
                   std::string(field) + " format is \"" + image.format +
                       "\"; it must begin with 16UC1, or be compressedDepth of 32FC1");
   }
-  Bytes file{image.data.data(), image.data.size()};
+  ByteView file{image.data.data(), image.data.size()};
   float quantum[2] = {};
   if (plugin) {
     if (file.size < kDepthHeader) {

@@ -11,13 +11,6 @@ namespace {
 
 namespace msgs = wire::bpa_msgs;
 
-/// The model of this name, or the end.
-template <class Container, class Name>
-auto find_named(const Container& models, const std::string& wanted, Name name_of) {
-  return std::find_if(models.begin(), models.end(),
-                      [&](const auto& model) { return name_of(model) == wanted; });
-}
-
 msgs::ListModels_Response list(const Recognition& recognition,
                                const std::vector<std::string>& names) {
   msgs::ListModels_Response response;
@@ -25,10 +18,10 @@ msgs::ListModels_Response list(const Recognition& recognition,
   response.database_version = recognition.version();
   const Models models = recognition.models();
   const auto broken = recognition.broken();
-  const auto name_of = [](const auto& model) { return model->name; };
   for (const std::string& name : names) {
-    if (find_named(models, name, name_of) != models.end()) continue;
-    const auto damaged = find_named(broken, name, [](const auto& model) { return model.name; });
+    const auto has_name = [&](const auto& model) { return model->name == name; };
+    if (std::ranges::any_of(models, has_name)) continue;
+    const auto damaged = std::ranges::find(broken, name, &io::BrokenModel::name);
     response.status =
         to_message(damaged != broken.end()
                        ? damaged->reason
@@ -36,9 +29,8 @@ msgs::ListModels_Response list(const Recognition& recognition,
     return response;
   }
   for (const auto& model : models) {
-    const bool wanted =
-        names.empty() || std::find(names.begin(), names.end(), model->name) != names.end();
-    if (wanted) response.models.push_back(model_message(*model));
+    const bool named = std::ranges::find(names, model->name) != names.end();
+    if (named || names.empty()) response.models.push_back(model_message(*model));
   }
   response.success = true;
   if (names.empty()) response.status = to_message(io::explain_broken(response.library, broken));
@@ -81,26 +73,23 @@ Status add_change(const ServiceContext& context, const char* name, Change change
 
 Status add_library_services(const ServiceContext& context, ServiceSet& services) {
   const std::shared_ptr<Recognition> recognition = context.recognition;
-  Status status = services.add_quick<msgs::ListModels>(
-      "list_models", [recognition](const msgs::ListModels_Request& request) {
-        return list(*recognition, request.names);
-      });
+  const auto list_models = [recognition](const msgs::ListModels_Request& request) {
+    return list(*recognition, request.names);
+  };
+  const auto load = [recognition](const msgs::LoadModel_Request& request,
+                                  msgs::LoadModel_Response& response) {
+    const auto model = recognition->load(request.source, request.name);
+    if (model.ok()) response.model = model_message(**model);
+    return model.status();
+  };
+  const auto unload = [recognition](const msgs::UnloadModel_Request& request,
+                                    msgs::UnloadModel_Response&) {
+    return recognition->unload(request.name);
+  };
+  Status status = services.add_quick<msgs::ListModels>("list_models", list_models);
+  if (status.ok()) status = add_change<msgs::LoadModel>(context, "load_model", load, services);
   if (!status.ok()) return status;
-  status = add_change<msgs::LoadModel>(
-      context, "load_model",
-      [recognition](const msgs::LoadModel_Request& request, msgs::LoadModel_Response& response) {
-        const auto model = recognition->load(request.source, request.name);
-        if (model.ok()) response.model = model_message(**model);
-        return model.status();
-      },
-      services);
-  if (!status.ok()) return status;
-  return add_change<msgs::UnloadModel>(
-      context, "unload_model",
-      [recognition](const msgs::UnloadModel_Request& request, msgs::UnloadModel_Response&) {
-        return recognition->unload(request.name);
-      },
-      services);
+  return add_change<msgs::UnloadModel>(context, "unload_model", unload, services);
 }
 
 }  // namespace bpa::server
