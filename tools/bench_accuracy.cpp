@@ -4,14 +4,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
-#include <memory>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "core/eval/matching.hpp"
 #include "core/io/file_bytes.hpp"
-#include "tools/command.hpp"
 #include "tools/search.hpp"
 
 namespace bpa::cli {
@@ -151,37 +148,34 @@ nlohmann::json to_json(const Tally& tally) {
           {"mean_milliseconds", times}};
 }
 
-Status bench_accuracy(const AccuracyArguments& a) {
-  const Result<Detector> detector = open_detector(a.detector, a.common.threads);
-  if (!detector.ok()) return detector.status();
+void bench_accuracy(const AccuracyArguments& a) {
+  const Detector detector = open_detector(a.detector, a.common.threads);
   Tally tally;
-  const Status status =
-      search_frames(*detector, a.dataset, a.common, [&](const SearchedFrame& frame) {
+  search_frames(
+      detector, a.dataset, a.common,
+      [&](const TrueFrame& frame, const SceneInterpretations& result, const FrameTrace& trace) {
         ++tally.frames;
         for (const io::BopInstance& instance : frame.truth) {
           if (instance.visible_fraction < a.min_visible) continue;
-          add_instance(instance, frame.trace, frame.result, tally);
+          add_instance(instance, trace, result, tally);
         }
-        add_reported(frame.truth, frame.trace, frame.result.interpretations.front(), tally);
-        add_times(frame.trace, frame.result, tally);
+        add_reported(frame.truth, trace, result.interpretations.front(), tally);
+        add_times(trace, result, tally);
       });
-  if (!status.ok()) return status;
   print_tally(tally);
-  return a.json.empty() ? Status() : io::write_file(a.json, to_json(tally).dump(2) + "\n");
+  if (!a.json.empty()) or_throw(io::write_file(a.json, to_json(tally).dump(2) + "\n"));
 }
 
 }  // namespace
 
-void add_bench_accuracy(CLI::App& bench, Action& action) {
-  CLI::App& command = *bench.add_subcommand(
-      "accuracy", "The stages of the detector that lose true placements, by object");
-  const auto a = std::make_shared<AccuracyArguments>();
-  add_dataset_options(command, a->dataset);
-  add_detector_options(command, a->detector);
-  add_min_visible_option(command, a->min_visible);
-  command.add_option("--json", a->json, "Write the table as JSON")->type_name("FILE");
-  add_common_options(command, a->common);
-  command.callback([&action, a] { action = [a] { return bench_accuracy(*a); }; });
+void add_bench_accuracy(CLI::App& bench) {
+  const auto [command, a] = add_command(
+      bench, "accuracy", "The stages of the detector that lose true placements, by object",
+      bench_accuracy);
+  add_dataset_options(command, a.dataset);
+  add_detector_options(command, a.detector);
+  add_min_visible_option(command, a.min_visible);
+  add_option(command, "--json", a.json, "Write the table as JSON", "FILE");
 }
 
 }  // namespace bpa::cli

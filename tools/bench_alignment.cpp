@@ -5,9 +5,7 @@
 #include <cstdio>
 #include <list>
 #include <map>
-#include <memory>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "core/align/convergence.hpp"
@@ -15,13 +13,10 @@
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/cloud/planes.hpp"
 #include "core/draw/plot.hpp"
-#include "core/io/bop_dataset.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/model_file.hpp"
 #include "core/model/model_index.hpp"
-#include "tools/command.hpp"
-#include "tools/option_fields.hpp"
-#include "tools/progress.hpp"
+#include "tools/search.hpp"
 
 namespace bpa::cli {
 namespace {
@@ -44,15 +39,12 @@ struct Experiment {
   std::vector<align::TruePlacement> placements;
 };
 
-Status load_models(const AlignmentArguments& a, Experiment& experiment) {
-  const auto sources = io::load_library(a.library);
-  if (!sources.ok()) return sources.status();
-  for (const ModelSource& source : *sources) {
+void load_models(const AlignmentArguments& a, Experiment& experiment) {
+  for (const ModelSource& source : or_throw(io::load_library(a.library))) {
     PointCloud cloud = downsample(source.surface, kSpacing);
     estimate_curvature(cloud, kCurvatureRadius, a.common.threads);
     experiment.models[source.number] = std::move(cloud);
   }
-  return {};
 }
 
 // The seen surface without large planes, with curvature.
@@ -72,45 +64,36 @@ PointCloud scene_cloud(const Frame& frame, const AlignmentArguments& a) {
   return cloud;
 }
 
-Status load_placements(const AlignmentArguments& a, Experiment& experiment) {
-  const auto frames = io::read_bop_frames(a.dataset.folder, a.dataset.split, a.dataset.scenes);
-  if (!frames.ok()) return frames.status();
-  const auto infos = io::read_bop_models(a.dataset.folder);
-  if (!infos.ok()) return infos.status();
+void load_placements(const AlignmentArguments& a, Experiment& experiment) {
   std::map<int, SymmetryGroup> symmetries;
-  for (const io::BopModel& info : *infos) symmetries[info.obj_id] = info.symmetry;
-  Progress progress("frames", static_cast<int>(frames->size()));
-  for (std::size_t i = 0; i < frames->size(); ++i) {
-    progress.show(static_cast<int>(i));
-    Result<Frame> frame = io::load_bop_frame((*frames)[i]);
-    if (!frame.ok()) return frame.status();
-    clean_depth(*frame);
-    if (Status status = validate(*frame); !status.ok()) return status;
-    experiment.scenes.push_back(scene_cloud(*frame, a));
-    for (const io::BopInstance& instance : (*frames)[i].truth) {
+  for (const io::BopModel& info : or_throw(io::read_bop_models(a.dataset.folder))) {
+    symmetries[info.obj_id] = info.symmetry;
+  }
+  read_true_frames(a.dataset, [&](const TrueFrame& frame) {
+    or_throw(validate(frame.frame));
+    experiment.scenes.push_back(scene_cloud(frame.frame, a));
+    for (const io::BopInstance& instance : frame.truth) {
       const auto model = experiment.models.find(instance.obj_id);
       if (model == experiment.models.end() || instance.visible_fraction < a.min_visible) continue;
       experiment.placements.push_back({&model->second, &experiment.scenes.back(),
                                        instance.camera_from_object, symmetries[instance.obj_id]});
     }
-  }
+  });
   if (experiment.placements.empty()) {
-    return Status(StatusCode::not_found, "split " + a.dataset.split + " of " + a.dataset.folder +
-                                             " has no true placement of a model in " + a.library);
+    throw Failure({StatusCode::not_found, "split " + a.dataset.split + " of " + a.dataset.folder +
+                                              " has no true placement of a model in " + a.library});
   }
-  return {};
 }
 
 nlohmann::json to_json(const align::ConvergenceCurve& curve) {
   return {{"mean_min_position_m", curve.position_m}, {"mean_min_angle_rad", curve.angle_rad}};
 }
 
-std::string report_json(const AlignmentArguments& a, const Experiment& experiment,
+std::string report_json(align::ConvergenceOptions set, const Experiment& experiment,
                         const align::ConvergenceResult& result) {
   nlohmann::json options;
-  align::ConvergenceOptions copy = a.options;
-  copy.visit_fields([&](const char* name, auto& value, const FieldRule&) {
-    if (std::string(name) != "num_threads") options[name] = value;
+  set.visit_fields([&](std::string_view name, auto& value, const FieldRule&) {
+    if (name != "num_threads") options[std::string(name)] = value;
   });
   const nlohmann::json report = {{"experiment", "bpa bench alignment"},
                                  {"placements", experiment.placements.size()},
@@ -130,33 +113,25 @@ struct Quantity {
   std::vector<double> align::ConvergenceCurve::*values;
 };
 
-constexpr Quantity kPosition = {"position", "mm", 1e3, &align::ConvergenceCurve::position_m};
-constexpr Quantity kOrientation = {"orientation", "degrees", kDegrees,
-                                   &align::ConvergenceCurve::angle_rad};
+constexpr Quantity kQuantities[] = {
+    {"position", "mm", 1e3, &align::ConvergenceCurve::position_m},
+    {"orientation", "degrees", kDegrees, &align::ConvergenceCurve::angle_rad}};
 
-Status write_plot(const std::string& folder, const Quantity& quantity,
-                  const align::ConvergenceResult& result) {
-  const draw::PlotAxes axes{std::string("Mean of the least error so far: ") + quantity.name,
-                            "iteration",
-                            quantity.unit,
-                            0,
-                            static_cast<double>(result.bpa.position_m.size() - 1),
-                            0,
-                            0};
-  std::vector<draw::Series> all;
-  const auto add = [&](const char* name, const align::ConvergenceCurve& curve) {
-    draw::Series series{name, {}, {}};
+io::ColorImage plot(const Quantity& quantity, const align::ConvergenceResult& result) {
+  const auto series = [&](const char* name, const align::ConvergenceCurve& curve) {
+    draw::Series out{name, {}, {}};
     for (const double value : curve.*quantity.values) {
-      series.x.push_back(static_cast<double>(series.x.size()));
-      series.y.push_back(quantity.scale * value);
+      out.x.push_back(static_cast<double>(out.x.size()));
+      out.y.push_back(quantity.scale * value);
     }
-    all.push_back(series);
+    return out;
   };
-  add("BPA", result.bpa);
-  add("BPA, normals only", result.bpa_normals);
-  add("ICP", result.icp);
-  return io::write_color_png(folder + "/alignment_" + quantity.name + ".png",
-                             draw::line_plot(axes, all));
+  const auto last = static_cast<double>(result.bpa.position_m.size() - 1);
+  return draw::line_plot(
+      {std::string("Mean of the least error so far: ") + quantity.name, "iteration", quantity.unit,
+       0, last, 0, 0},
+      {series("BPA", result.bpa), series("BPA, normals only", result.bpa_normals),
+       series("ICP", result.icp)});
 }
 
 void print_table(const Experiment& experiment, const align::ConvergenceResult& result) {
@@ -172,38 +147,37 @@ void print_table(const Experiment& experiment, const align::ConvergenceResult& r
   }
 }
 
-Status bench_alignment(AlignmentArguments a) {
-  a.options.seed = a.common.seed;
-  a.options.num_threads = a.common.threads;
-  if (Status status = validate(a.options); !status.ok()) return status;
+void bench_alignment(const AlignmentArguments& a) {
+  align::ConvergenceOptions options = a.options;
+  options.seed = a.common.seed;
+  options.num_threads = a.common.threads;
+  or_throw(validate(options));
   Experiment experiment;
-  if (Status status = load_models(a, experiment); !status.ok()) return status;
-  if (Status status = load_placements(a, experiment); !status.ok()) return status;
-  const align::ConvergenceResult result = run_convergence(experiment.placements, a.options);
+  load_models(a, experiment);
+  load_placements(a, experiment);
+  const align::ConvergenceResult result = run_convergence(experiment.placements, options);
   print_table(experiment, result);
-  if (!a.json.empty()) {
-    const Status status = io::write_file(a.json, report_json(a, experiment, result));
-    if (!status.ok()) return status;
+  const std::string report = report_json(options, experiment, result);
+  if (!a.json.empty()) or_throw(io::write_file(a.json, report));
+  if (a.plots.empty()) return;
+  for (const Quantity& quantity : kQuantities) {
+    const std::string path = a.plots + "/alignment_" + quantity.name + ".png";
+    or_throw(io::write_color_png(path, plot(quantity, result)));
   }
-  if (a.plots.empty()) return {};
-  for (const Quantity& quantity : {kPosition, kOrientation}) {
-    if (Status status = write_plot(a.plots, quantity, result); !status.ok()) return status;
-  }
-  return io::write_file(a.plots + "/alignment.json", report_json(a, experiment, result));
+  or_throw(io::write_file(a.plots + "/alignment.json", report));
 }
 
 }  // namespace
 
-void add_bench_alignment(CLI::App& bench, Action& action) {
-  CLI::App& command = *bench.add_subcommand("alignment", "Compare BPA with ICP from noisy starts");
-  const auto a = std::make_shared<AlignmentArguments>();
-  add_dataset_options(command, a->dataset);
-  add_library_option(command, a->library);
-  command.add_option("--plots", a->plots, "Write plots as PNG and alignment.json")
-      ->type_name("DIR");
-  command.add_option("--json", a->json, "Write the curves as JSON")->type_name("FILE");
-  add_min_visible_option(command, a->min_visible);
-  add_options(command, a->options,
+void add_bench_alignment(CLI::App& bench) {
+  const auto [command, a] =
+      add_command(bench, "alignment", "Compare BPA with ICP from noisy starts", bench_alignment);
+  add_dataset_options(command, a.dataset);
+  add_library_option(command, a.library);
+  add_option(command, "--plots", a.plots, "Write plots as PNG and alignment.json", "DIR");
+  add_option(command, "--json", a.json, "Write the curves as JSON", "FILE");
+  add_min_visible_option(command, a.min_visible);
+  add_options(command, a.options,
               {{"--starts", "starts"},
                {"--iterations", "iterations"},
                {"--points", "points"},
@@ -212,8 +186,6 @@ void add_bench_alignment(CLI::App& bench, Action& action) {
                {"--assign", "assign_m"},
                {"--assign-angle", "assign_deg"},
                {"--sigma", "sigma_m"}});
-  add_common_options(command, a->common);
-  command.callback([&action, a] { action = [a] { return bench_alignment(*a); }; });
 }
 
 }  // namespace bpa::cli

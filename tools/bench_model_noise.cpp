@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <functional>
 
+#include "core/base/failure.hpp"
 #include "core/draw/plot.hpp"
 #include "core/io/image_file.hpp"
 #include "core/sim/kinect.hpp"
@@ -97,8 +98,8 @@ bool somewhat_slanted(const NoiseBin& bin) {
 double degrees(const NoiseBin& bin) { return kDegrees * bin.angle; }
 double millimetres(const NoiseBin& bin) { return kMillimetres * bin.edge_distance; }
 
-Status save_plots(const Kind& kind, const draw::Series& law, const std::string& start,
-                  const std::string& model) {
+void save_plots(const Kind& kind, const draw::Series& law, const std::string& start,
+                const std::string& model) {
   const Value observed = [](const NoiseBin& bin) { return bin.sigma; };
   const Value fitted = [&kind](const NoiseBin& bin) { return kind.predicted(bin); };
   const auto curves = [&](bool (*kept)(const NoiseBin&), const Value& x) {
@@ -119,16 +120,14 @@ Status save_plots(const Kind& kind, const draw::Series& law, const std::string& 
                                      "observed, " + unit, 0, 0, 0, 0, true},
                                     {observed_over_predicted(kind)})}};
   for (const auto& [name, plot] : plots) {
-    const Status status = io::write_color_png(start + name + ".png", plot);
-    if (!status.ok()) return status;
+    or_throw(io::write_color_png(start + name + ".png", plot));
   }
-  return {};
 }
 
 }  // namespace
 
-Status measure_noise(const ModelSource& model, const std::vector<PosedView>& views,
-                     const std::string& name, const std::string& plots, int num_threads) {
+void measure_noise(const ModelSource& model, const std::vector<PosedView>& views,
+                   const std::string& name, const std::string& plots, int num_threads) {
   std::vector<PosedView> half[2];
   for (std::size_t i = 0; i < views.size(); ++i) half[i % 2].push_back(views[i]);
   ModelSource learned = model;
@@ -153,9 +152,9 @@ Status measure_noise(const ModelSource& model, const std::vector<PosedView>& vie
   std::printf(
       "  predicted noise of held-out views is off by a factor of %.2f (range), %.2f (normals)\n",
       factor_off(range), factor_off(normals));
-  if (plots.empty()) return {};
-  if (Status s = save_plots(range, law, plots + "/" + name + "_range_", name); !s.ok()) return s;
-  return save_plots(normals, {}, plots + "/" + name + "_normals_", name);
+  if (plots.empty()) return;
+  save_plots(range, law, plots + "/" + name + "_range_", name);
+  save_plots(normals, {}, plots + "/" + name + "_normals_", name);
 }
 
 }  // namespace bpa::cli

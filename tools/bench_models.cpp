@@ -5,13 +5,12 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <memory>
 
-#include <CLI/CLI.hpp>
 #include <sys/resource.h>
 
 #include "core/base/stopwatch.hpp"
 #include "core/cloud/neighbor_grid.hpp"
+#include "core/geometry/fast_pose.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/mesh_file.hpp"
 #include "core/io/model_file.hpp"
@@ -64,12 +63,11 @@ std::vector<float> distances(const PointCloud& points, const PointCloud& surface
   return out;
 }
 
-PointCloud moved(const PointCloud& cloud, const Pose& pose) {
-  PointCloud out = cloud;
-  const Eigen::Matrix3f r = pose.matrix().cast<float>();
-  for (auto& p : out.points) p = r * p + pose.translation.cast<float>();
-  for (auto& n : out.normals) n = r * n;
-  return out;
+PointCloud moved(PointCloud cloud, const Pose& pose) {
+  const FastPose fast = to_fast(pose);
+  for (auto& p : cloud.points) p = fast * p;
+  for (auto& n : cloud.normals) n = fast.rotation * n;
+  return cloud;
 }
 
 /// The part of the surface (mesh frame) that the images of the scan could show, whether or not the
@@ -113,21 +111,19 @@ struct Truth {
   }
 };
 
-Result<Truth> read_truth(const std::string& folder, const std::string& split) {
-  auto frames = io::read_bop_frames(folder, split);
-  if (!frames.ok()) return frames.status();
-  for (const io::BopFrame& frame : *frames) {
-    if (frame.truth.empty()) return Status(StatusCode::not_found, "frames without truth");
+Truth read_truth(const std::string& folder, const std::string& split) {
+  Truth truth;
+  truth.frames = or_throw(io::read_bop_frames(folder, split));
+  if (std::ranges::any_of(truth.frames, [](const auto& frame) { return frame.truth.empty(); })) {
+    throw Failure({StatusCode::not_found, folder + ": frames without truth"});
   }
-  const auto models = io::read_bop_models(folder);
-  if (!models.ok()) return models.status();
-  const auto mesh = io::read_mesh(models->front().path, 0.001);
-  if (!mesh.ok()) return mesh.status();
+  const io::BopModel model = or_throw(io::read_bop_models(folder)).front();
+  truth.name = model.name;
   ModelOptions fine;
   fine.spacing_m = 0.001;
-  auto surface = model_source_from_mesh(*mesh, "truth", 1, fine);
-  if (!surface.ok()) return surface.status();
-  return Truth{models->front().name, std::move(*frames), std::move(surface->surface)};
+  const TriangleMesh mesh = or_throw(io::read_mesh(model.path, 0.001));
+  truth.surface = or_throw(model_source_from_mesh(mesh, "truth", 1, fine), folder).surface;
+  return truth;
 }
 
 void print_axes(const AlignedScan& scan, const Truth& truth) {
@@ -158,10 +154,8 @@ void print_poses(const AlignedScan& scan, const Truth& truth, const Pose& mesh_f
 }
 
 double share_within(const std::vector<float>& distances, float most) {
-  const auto near =
-      std::count_if(distances.begin(), distances.end(), [most](float d) { return d <= most; });
-  return static_cast<double>(near) /
-         static_cast<double>(std::max<std::size_t>(1, distances.size()));
+  const auto near = std::ranges::count_if(distances, [most](float d) { return d <= most; });
+  return static_cast<double>(near) / std::max(1.0, static_cast<double>(distances.size()));
 }
 
 void print_surface(const PointCloud& surface, const Truth& truth) {
@@ -176,9 +170,8 @@ void print_surface(const PointCloud& surface, const Truth& truth) {
 }
 
 /// Writes the model, in the frame of the mesh, into the library.
-Status save(const ModelSource& scanned, const PointCloud& surface, const Truth& truth, int number,
-            const ModelsArguments& a) {
-  ModelSource model = scanned;
+void save(ModelSource model, const PointCloud& surface, const Truth& truth, int number,
+          const ModelsArguments& a) {
   model.name = io::clean_model_name(truth.name);
   model.number = number;
   model.surface.points = surface.points;
@@ -186,74 +179,52 @@ Status save(const ModelSource& scanned, const PointCloud& surface, const Truth& 
   model.symmetry = find_symmetries(model.surface, model.diameter, a.common.threads);
   model.symmetry_origin = SymmetryOrigin::found;
   std::printf("  symmetries: %s\n", describe(model.symmetry).c_str());
-  return io::save_model(a.library, model, a.common.threads);
+  or_throw(io::save_model(a.library, model, a.common.threads));
 }
 
-Status measure(const std::string& folder, int number, const ModelsArguments& a) {
-  const Result<Truth> truth = read_truth(folder, a.split);
-  if (!truth.ok()) return truth.status();
+void measure(const std::string& folder, int number, const ModelsArguments& a) {
+  const Truth truth = read_truth(folder, a.split);
   const Stopwatch watch;
-  auto scan = read_scan(folder, a.split, a.common.threads);
-  if (!scan.ok()) return scan.status();
-  ScanOptions options;
-  options.step_deg = a.step_deg;
-  options.seed = a.common.seed;
-  options.num_threads = a.common.threads;
-  const auto aligned = align_scan(std::move(*scan), options);
-  if (!aligned.ok()) return aligned.status();
-  const auto model = model_source_from_views(aligned->views, "scan", 1);
-  if (!model.ok()) return model.status();
-  std::printf("%s: %zu views, %.1f s\n", truth->name.c_str(), aligned->views.size(),
-              watch.seconds());
+  const AlignedScan aligned = align_scan_of(folder, a.split, a.step_deg, a.common);
+  ModelSource model = or_throw(model_source_from_views(aligned.views, "scan", 1), folder);
+  std::printf("%s: %zu views, %.1f s\n", truth.name.c_str(), aligned.views.size(), watch.seconds());
 
-  const PosedView& first = aligned->views.front();
+  const PosedView& first = aligned.views.front();
   const Pose mesh_from_model =
-      truth->camera_from_mesh(static_cast<std::size_t>(first.id)).inverse() *
+      truth.camera_from_mesh(static_cast<std::size_t>(first.id)).inverse() *
       first.camera_from_object;
-  const PointCloud surface = moved(model->surface, mesh_from_model);
-  print_axes(*aligned, *truth);
-  print_poses(*aligned, *truth, mesh_from_model);
-  print_surface(surface, *truth);
-  for (const std::string& w : aligned->warnings) std::printf("  warning: %s\n", w.c_str());
-  for (const std::string& w : model->warnings) std::printf("  warning: %s\n", w.c_str());
-  if (Status s = measure_noise(*model, aligned->views, truth->name, a.plots, a.common.threads);
-      !s.ok()) {
-    return s;
+  const PointCloud surface = moved(model.surface, mesh_from_model);
+  print_axes(aligned, truth);
+  print_poses(aligned, truth, mesh_from_model);
+  print_surface(surface, truth);
+  for (const auto& warnings : {aligned.warnings, model.warnings}) {
+    for (const std::string& w : warnings) std::printf("  warning: %s\n", w.c_str());
   }
-  return a.library.empty() ? Status{} : save(*model, surface, *truth, number, a);
+  measure_noise(model, aligned.views, truth.name, a.plots, a.common.threads);
+  if (!a.library.empty()) save(std::move(model), surface, truth, number, a);
 }
 
-Status bench_models(const ModelsArguments& a) {
+void bench_models(const ModelsArguments& a) {
   int number = 0;
-  for (const std::string& folder : a.scans) {
-    if (Status s = measure(folder, ++number, a); !s.ok()) {
-      return Status(s.code, folder + ": " + s.message);
-    }
-  }
+  for (const std::string& folder : a.scans) measure(folder, ++number, a);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   std::printf("peak memory %.0f MB\n", static_cast<double>(usage.ru_maxrss) / 1024);
-  return {};
 }
 
 }  // namespace
 
-void add_bench_models(CLI::App& bench, Action& action) {
-  const auto a = std::make_shared<ModelsArguments>();
-  CLI::App& command =
-      *bench.add_subcommand("models", "Compare models from simulated scans with the true meshes");
-  command.add_option("scans", a->scans, "Folders that `bpa simulate turntable` wrote")->required();
-  add_split_option(command, a->split);
-  command
-      .add_option("--step-deg", a->step_deg, "Assumed turn of the table between images, degrees")
-      ->capture_default_str();
-  command.add_option("--plots", a->plots, "Write plots of the noise here")->type_name("DIR");
-  command
-      .add_option("--library", a->library,
-                  "Write the models here, in the frames of the meshes, numbered from 1 as listed")
-      ->type_name("DIR");
-  add_common_options(command, a->common);
-  command.callback([&action, a] { action = [a] { return bench_models(*a); }; });
+void add_bench_models(CLI::App& bench) {
+  const auto [command, a] = add_command(
+      bench, "models", "Compare models from simulated scans with the true meshes", bench_models);
+  command.add_option("scans", a.scans, "Folders that `bpa simulate turntable` wrote")->required();
+  add_split_option(command, a.split);
+  add_option(command, "--step-deg", a.step_deg,
+             "Assumed turn of the table between images, degrees");
+  add_option(command, "--plots", a.plots, "Write plots of the noise here", "DIR");
+  add_option(command, "--library", a.library,
+             "Write the models here, in the frames of the meshes, numbered from 1 as listed",
+             "DIR");
 }
 
 }  // namespace bpa::cli

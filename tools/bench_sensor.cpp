@@ -5,10 +5,8 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <numbers>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "core/draw/sheet.hpp"
@@ -84,19 +82,16 @@ struct NamedFrame {
   Frame frame;
 };
 
-Result<std::vector<NamedFrame>> read_real_frames(const SensorArguments& a) {
+std::vector<NamedFrame> read_real_frames(const SensorArguments& a) {
   DetectArguments of_set, of_clouds;
   of_set.dataset = a.dataset;
   of_clouds.pcd = a.pcd;
   std::vector<NamedFrame> frames;
   for (const DetectArguments& source : {of_set, of_clouds}) {
-    const Result<Inputs> inputs = Inputs::open(source);
-    if (!inputs.ok()) return inputs.status();
-    for (std::size_t i = 0; i < inputs->size(); ++i) {
-      Result<Input> input = inputs->read(i);
-      if (!input.ok()) return input.status();
-      frames.push_back({"real " + std::filesystem::path(input->name).filename().string(),
-                        std::move(input->frame)});
+    for (const io::BopFrame& entry : list_inputs(source)) {
+      Input input = read_input(source, entry);
+      frames.push_back({"real " + std::filesystem::path(input.name).filename().string(),
+                        std::move(input.frame)});
     }
   }
   return frames;
@@ -167,23 +162,22 @@ DepthStatistics mean_of(const std::vector<DepthStatistics>& rows) {
   return mean;
 }
 
-Result<Json> bench_frames(const SensorArguments& a) {
-  Result<std::vector<NamedFrame>> real = read_real_frames(a);
-  if (!real.ok()) return real.status();
-  if (real->empty()) return Json{{"frames", 0}};
+Json bench_frames(const SensorArguments& a) {
+  const std::vector<NamedFrame> real = read_real_frames(a);
+  if (real.empty()) return {{"frames", 0}};
   const sim::Stage stage(sim::household_objects(a.common.threads), a.common.threads);
   std::printf(
       "\nframes                    no     small    gap left  right  roughness  correlation of\n"
       "                       depth %%     holes   of edges, px      px disp.   1.5 px   5 px\n");
   std::vector<io::ColorImage> cells;
   std::vector<DepthStatistics> real_rows, simulated_rows;
-  const int count = std::min(static_cast<int>(real->size()), a.frames);
+  const int count = std::min(static_cast<int>(real.size()), a.frames);
   Progress progress("frames", count);
   for (int k = 0; k < count; ++k) {
     progress.show(k);
     // Evenly over all that were given.
     const NamedFrame& frame =
-        (*real)[static_cast<std::size_t>(k) * real->size() / static_cast<std::size_t>(count)];
+        real[static_cast<std::size_t>(k) * real.size() / static_cast<std::size_t>(count)];
     const NamedFrame beside =
         simulated_beside(stage, frame.frame, sim::scene_seed(a.common.seed, k), a.common.threads);
     progress.clear();
@@ -198,49 +192,37 @@ Result<Json> bench_frames(const SensorArguments& a) {
   print_row("mean of the real ones", mean_of(real_rows));
   print_row("mean of the simulated", mean_of(simulated_rows));
   if (!a.sheet.empty()) {
-    const Status status = io::write_color_png(a.sheet, draw::contact_sheet(cells, 2, 1280));
-    if (!status.ok()) return status;
+    or_throw(io::write_color_png(a.sheet, draw::contact_sheet(cells, 2, 1280)));
   }
-  return Json{{"frames", count},
-              {"real", to_json(mean_of(real_rows))},
-              {"simulated", to_json(mean_of(simulated_rows))}};
+  return {{"frames", count},
+          {"real", to_json(mean_of(real_rows))},
+          {"simulated", to_json(mean_of(simulated_rows))}};
 }
 
-Status bench_sensor(const SensorArguments& a) {
-  Json json = {{"format", "bpa sensor bench"}, {"version", 1}, {"planes", bench_planes(a)}};
-  if (!a.dataset.folder.empty() || !a.pcd.empty()) {
-    const Result<Json> frames = bench_frames(a);
-    if (!frames.ok()) return frames.status();
-    json["frames"] = *frames;
+void bench_sensor(const SensorArguments& a) {
+  const bool with_frames = !a.dataset.folder.empty() || !a.pcd.empty();
+  if (!a.sheet.empty() && !with_frames) {
+    throw CLI::ValidationError("--sheet", "needs real frames: --bop or --pcd");
   }
-  return a.json.empty() ? Status() : io::write_file(a.json, json.dump(1) + "\n");
+  Json json = {{"format", "bpa sensor bench"}, {"version", 1}, {"planes", bench_planes(a)}};
+  if (with_frames) json["frames"] = bench_frames(a);
+  if (!a.json.empty()) or_throw(io::write_file(a.json, json.dump(1) + "\n"));
 }
 
 }  // namespace
 
-void add_bench_sensor(CLI::App& bench, Action& action) {
-  CLI::App& command = *bench.add_subcommand(
-      "sensor", "Compare the simulated Kinect with published noise and real frames");
-  const auto a = std::make_shared<SensorArguments>();
-  command.add_option("--bop", a->dataset.folder, "Real frames: folder of a BOP data set")
-      ->type_name("DIR");
-  add_split_options(command, a->dataset);
-  command.add_option("--pcd", a->pcd, "Real frames: organised PCD clouds")->type_name("FILE...");
-  command.add_option("--frames", a->frames, "Largest number of real frames, taken evenly from all")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command
-      .add_option("--sheet", a->sheet,
-                  "Write a picture of real frames (left) beside simulated ones (right)")
-      ->type_name("FILE");
-  command.add_option("--json", a->json, "Write the figures as JSON")->type_name("FILE");
-  add_common_options(command, a->common);
-  command.callback([&action, a] {
-    if (!a->sheet.empty() && a->dataset.folder.empty() && a->pcd.empty()) {
-      throw CLI::ValidationError("--sheet", "needs real frames: --bop or --pcd");
-    }
-    action = [a] { return bench_sensor(*a); };
-  });
+void add_bench_sensor(CLI::App& bench) {
+  const auto [command, a] = add_command(
+      bench, "sensor", "Compare the simulated Kinect with published noise and real frames",
+      bench_sensor);
+  add_option(command, "--bop", a.dataset.folder, "Real frames: folder of a BOP data set", "DIR");
+  add_split_options(command, a.dataset);
+  add_option(command, "--pcd", a.pcd, "Real frames: organised PCD clouds", "FILE...");
+  add_option(command, "--frames", a.frames, "Largest number of real frames, taken evenly from all")
+      ->check(CLI::Range(1, 1000));
+  add_option(command, "--sheet", a.sheet,
+             "Write a picture of real frames (left) beside simulated ones (right)", "FILE");
+  add_option(command, "--json", a.json, "Write the figures as JSON", "FILE");
 }
 
 }  // namespace bpa::cli

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // bpa evaluate: results against truth.
 #include <cstdio>
-#include <memory>
-
-#include <CLI/CLI.hpp>
 
 #include "core/draw/report_plots.hpp"
 #include "core/eval/evaluation.hpp"
@@ -24,66 +21,50 @@ struct EvaluateArguments {
   eval::EvaluationOptions options;
 };
 
-Result<std::vector<io::FrameResult>> read_results(const EvaluateArguments& a) {
-  return a.csv.empty() ? io::read_results_json(a.json) : io::read_results_csv(a.csv);
-}
-
-Result<eval::EvaluationReport> report_on(const EvaluateArguments& a) {
+eval::EvaluationReport report_on(const EvaluateArguments& a) {
   eval::EvaluationOptions options = a.options;
   options.num_threads = a.common.threads;
-  if (a.nothing_there) {
-    const auto results = read_results(a);
-    if (!results.ok()) return results.status();
-    return eval::evaluate_nothing_there(*results, options);
-  }
-  const auto frames = io::read_bop_frames(a.dataset.folder, a.dataset.split, a.dataset.scenes);
-  if (!frames.ok()) return frames.status();
-  const auto results = read_results(a);
-  if (!results.ok()) return results.status();
-  const auto objects = eval::load_eval_objects(a.dataset.folder);
-  if (!objects.ok()) return objects.status();
-  Progress progress("evaluate", static_cast<int>(frames->size()));
+  const auto read_results = [&a] {
+    return or_throw(a.csv.empty() ? io::read_results_json(a.json) : io::read_results_csv(a.csv));
+  };
+  if (a.nothing_there) return or_throw(eval::evaluate_nothing_there(read_results(), options));
+  const auto frames =
+      or_throw(io::read_bop_frames(a.dataset.folder, a.dataset.split, a.dataset.scenes));
+  const std::vector<io::FrameResult> results = read_results();
+  const eval::EvalObjects objects = or_throw(eval::load_eval_objects(a.dataset.folder));
+  Progress progress("evaluate", static_cast<int>(frames.size()));
   progress.show(0);
-  return eval::evaluate(*frames, *objects, *results, options,
-                        [&progress](int done) { progress.show(done); });
+  return or_throw(eval::evaluate(frames, objects, results, options,
+                                 [&progress](int done) { progress.show(done); }));
 }
 
-Status evaluate(const EvaluateArguments& a) {
-  const Result<eval::EvaluationReport> report = report_on(a);
-  if (!report.ok()) return report.status();
-  std::fputs(eval::report_text(*report).c_str(), stdout);
-  if (!a.json_out.empty()) {
-    if (Status s = io::write_file(a.json_out, eval::report_json(*report)); !s.ok()) return s;
+void evaluate(const EvaluateArguments& a) {
+  if (a.csv.empty() == a.json.empty()) {
+    throw CLI::ValidationError("results", "give one of --csv and --json");
   }
-  return a.plots.empty() ? Status() : draw::write_plots(a.plots, *report);
+  if (a.dataset.folder.empty() != a.nothing_there) {
+    throw CLI::ValidationError("truth", "give one of --bop and --nothing-there");
+  }
+  const eval::EvaluationReport report = report_on(a);
+  std::fputs(eval::report_text(report).c_str(), stdout);
+  if (!a.json_out.empty()) or_throw(io::write_file(a.json_out, eval::report_json(report)));
+  if (!a.plots.empty()) or_throw(draw::write_plots(a.plots, report));
 }
 
 }  // namespace
 
-void add_evaluate_command(CLI::App& program, Action& action) {
-  CLI::App& command = *program.add_subcommand("evaluate", "Compare results with the truth");
-  const auto a = std::make_shared<EvaluateArguments>();
-  auto* bop = command.add_option("--bop", a->dataset.folder, "Folder of a BOP data set with truth");
-  bop->type_name("DIR");
-  command.add_flag("--nothing-there", a->nothing_there,
+void add_evaluate_command(CLI::App& program) {
+  const auto [command, a] =
+      add_command(program, "evaluate", "Compare results with the truth", evaluate);
+  add_option(command, "--bop", a.dataset.folder, "Folder of a BOP data set with truth", "DIR");
+  command.add_flag("--nothing-there", a.nothing_there,
                    "Instead of --bop: the frames hold no known object, all placements are false");
-  add_split_options(command, a->dataset);
-  auto* csv = command.add_option("--csv", a->csv, "Results as BOP CSV")->type_name("FILE");
-  auto* json = command.add_option("--json", a->json, "Results as JSON")->type_name("FILE");
-  csv->excludes(json);
-  command.add_option("--json-out", a->json_out, "Write the report as JSON")->type_name("FILE");
-  command.add_option("--plots", a->plots, "Write plots as PNG")->type_name("DIR");
-  add_min_visible_option(command, a->options.min_visible_fraction);
-  add_common_options(command, a->common);
-  command.callback([&action, a] {
-    if (a->csv.empty() == a->json.empty()) {
-      throw CLI::ValidationError("results", "give one of --csv and --json");
-    }
-    if (a->dataset.folder.empty() != a->nothing_there) {
-      throw CLI::ValidationError("truth", "give one of --bop and --nothing-there");
-    }
-    action = [a] { return evaluate(*a); };
-  });
+  add_split_options(command, a.dataset);
+  auto* csv = add_option(command, "--csv", a.csv, "Results as BOP CSV", "FILE");
+  add_option(command, "--json", a.json, "Results as JSON", "FILE")->excludes(csv);
+  add_option(command, "--json-out", a.json_out, "Write the report as JSON", "FILE");
+  add_option(command, "--plots", a.plots, "Write plots as PNG", "DIR");
+  add_min_visible_option(command, a.options.min_visible_fraction);
 }
 
 }  // namespace bpa::cli

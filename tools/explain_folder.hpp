@@ -5,9 +5,24 @@
 #include <string>
 #include <vector>
 
-#include "tools/explain_model.hpp"
+#include "core/cloud/frame.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/pipeline/frame_trace.hpp"
+#include "core/result/interpretation.hpp"
+#include "core/score/score_layer.hpp"
 
 namespace bpa::cli {
+
+/// A searched frame; what is referred to is not owned.
+struct ExplainedFrame {
+  std::string title;  ///< For people.
+  std::string name;   ///< Of its folder where there are several frames.
+  const Frame& frame;
+  const FrameTrace& trace;
+  const SceneInterpretations& result;
+  const ScoreLayers& layers;  ///< That the frame was searched with.
+  const std::vector<io::BopInstance>& truth;
+};
 
 /// Writes what happened to frames as pictures and pages, for bpa detect --explain:
 ///
@@ -24,10 +39,10 @@ class ExplainFolder {
   ExplainFolder(std::string folder, bool several_frames)
       : folder_(std::move(folder)), several_frames_(several_frames) {}
 
-  /// Folders are made as needed. Fails with unavailable.
-  Status add(const ExplainedFrame& frame);
+  /// Folders are made as needed. Throws a Failure where that is not possible.
+  void add(const ExplainedFrame& frame);
   /// Writes the page that leads to the frames, where there are several.
-  Status finish() const;
+  void finish() const;
 
  private:
   std::string folder_;

@@ -4,9 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
-
-#include <CLI/CLI.hpp>
 
 #include "core/draw/model_sheet.hpp"
 #include "core/io/bop_dataset.hpp"
@@ -19,7 +16,6 @@
 #include "core/modeling/registration.hpp"
 #include "core/modeling/symmetry_search.hpp"
 #include "tools/command.hpp"
-#include "tools/option_fields.hpp"
 #include "tools/progress.hpp"
 #include "tools/scan_files.hpp"
 #include "tools/simulated_views.hpp"
@@ -43,22 +39,28 @@ struct ModelArguments {
   double step_deg = 10;
   int known_object = 0;  // obj_id when the poses are known
   ModelOptions options;
+
+  ModelOptions options_with_threads() const {
+    ModelOptions out = options;
+    out.num_threads = common.threads;
+    return out;
+  }
 };
 
 /// Leaves of a model what a simulated sensor sees of its mesh, and learns what that is off by.
 void look_at(const TriangleMesh& mesh, const ModelArguments& a, ModelSource& source) {
   if (a.views == 0) return;
-  Progress progress(source.name, a.views);
-  const std::vector<PosedView> views =
-      simulate_views(mesh, a.views, a.common.seed, a.common.threads,
-                     [&progress](int done) { progress.show(done, "simulated views"); });
-  keep_measured(source, views, a.common.threads);
+  keep_measured(source,
+                simulate_views(mesh, a.views, a.common.seed, a.common.threads,
+                               source.name + ", simulated views"),
+                a.common.threads);
 }
 
-Result<ModelSource> source_from_mesh(const TriangleMesh& mesh, const ModelArguments& a,
-                                     const std::string& name, int number) {
-  Result<ModelSource> source = model_source_from_mesh(mesh, name, number, a.options);
-  if (source.ok()) look_at(mesh, a, *source);
+ModelSource source_from_mesh(const TriangleMesh& mesh, const std::string& path,
+                             const ModelArguments& a, const std::string& name, int number) {
+  ModelSource source =
+      or_throw(model_source_from_mesh(mesh, name, number, a.options_with_threads()), path);
+  look_at(mesh, a, source);
   return source;
 }
 
@@ -103,150 +105,111 @@ void warn_of_twins(ModelSource& source, const ModelArguments& a) {
   }
 }
 
-/// `bpa model symmetry`: the user's answer.
-Status set_symmetry(ModelArguments a) {
-  Result<ModelSource> model = io::load_model(a.library, a.name);
-  if (!model.ok()) return model.status();
-  if (a.symmetry == "none") model->symmetry = {};
-  if (a.symmetry != "find") {
-    model->symmetry_origin = SymmetryOrigin::declared;
-    auto occupancy = io::load_occupancy(a.library, a.name);
-    if (!occupancy.ok()) return occupancy.status();
-    model->occupancy = std::move(*occupancy);
-    if (Status s = io::save_model(a.library, *model, a.common.threads); !s.ok()) return s;
-  }
-  std::printf("%s: symmetries: %s%s\n", a.name.c_str(), describe(model->symmetry).c_str(),
-              model->symmetry_origin == SymmetryOrigin::found ? " (found, not confirmed)" : "");
-  return {};
+std::string symmetry_text(const ModelSource& model) {
+  return describe(model.symmetry) +
+         (model.symmetry_origin == SymmetryOrigin::found ? " (found, not confirmed)" : "");
 }
 
-void print_saved(const ModelSource& model, const std::string& library) {
+/// `bpa model symmetry`: the user's answer.
+void set_symmetry(const ModelArguments& a) {
+  ModelSource model = or_throw(io::load_model(a.library, a.name));
+  if (a.symmetry == "none") model.symmetry = {};
+  if (a.symmetry != "find") {
+    model.symmetry_origin = SymmetryOrigin::declared;
+    model.occupancy = or_throw(io::load_occupancy(a.library, a.name));
+    or_throw(io::save_model(a.library, model, a.common.threads));
+  }
+  std::printf("%s: symmetries: %s\n", a.name.c_str(), symmetry_text(model).c_str());
+}
+
+void save(const ModelSource& model, const ModelArguments& a) {
+  or_throw(io::save_model(a.library, model, a.common.threads));
   std::printf("%s: number %d, diameter %.1f mm, %zu points -> %s\n", model.name.c_str(),
               model.number, 1000 * model.diameter, model.surface.size(),
-              (std::filesystem::path(library) / model.name).c_str());
+              (std::filesystem::path(a.library) / model.name).c_str());
   for (const std::string& warning : model.warnings) {
     std::fprintf(stderr, "warning: %s: %s\n", model.name.c_str(), warning.c_str());
   }
 }
 
-/// The number of a model of that name, else the first that is free. Broken models have none.
-int choose_number(const std::string& library, const std::string& name) {
+/// The number asked for, else that of a model of that name, else the first that is free. Broken
+/// models have none.
+int choose_number(const ModelArguments& a) {
+  if (a.number > 0) return a.number;
   int largest = 0;
-  for (const std::string& other : io::list_models(library)) {
-    const Result<ModelSource> model = io::describe_model(library, other);
+  for (const std::string& other : io::list_models(a.library)) {
+    const Result<ModelSource> model = io::describe_model(a.library, other);
     if (!model.ok()) continue;
-    if (other == name) return model->number;
+    if (other == a.name) return model->number;
     largest = std::max(largest, model->number);
   }
   return largest + 1;
 }
 
-Result<ModelSource> source_from_file(const ModelArguments& a) {
+ModelSource source_from_file(const ModelArguments& a, int number) {
   if (io::lower_extension(a.input) != "pcd") {
-    const Result<TriangleMesh> mesh = io::read_mesh(a.input, a.scale);
-    if (!mesh.ok()) return mesh.status();
-    if (!mesh->triangles.empty()) {
-      return source_from_mesh(*mesh, a, a.name, a.number);
-    }
+    const TriangleMesh mesh = or_throw(io::read_mesh(a.input, a.scale));
+    if (!mesh.triangles.empty()) return source_from_mesh(mesh, a.input, a, a.name, number);
   }
-  const Result<PointCloud> cloud = io::read_point_cloud(a.input, a.scale);
-  if (!cloud.ok()) return cloud.status();
-  Result<ModelSource> source = model_source_from_points(*cloud, a.name, a.number, a.options);
-  if (source.ok() && source->complete) look_at(squares_of(source->surface), a, *source);
+  const PointCloud cloud = or_throw(io::read_point_cloud(a.input, a.scale));
+  ModelSource source =
+      or_throw(model_source_from_points(cloud, a.name, number, a.options_with_threads()), a.input);
+  if (source.complete) look_at(squares_of(source.surface), a, source);
   return source;
 }
 
-/// Prefixes a failure with the input, unless it is named already.
-Status about(const std::string& input, Status status) {
-  if (status.message.find(input) == std::string::npos) {
-    status.message = input + ": " + status.message;
-  }
-  return status;
-}
-
-/// Completes a new model and adds it to the library.
-Status add_to_library(ModelSource source, const ModelArguments& a) {
-  source.source = std::filesystem::path(a.input).filename().string();
-  if (source.complete) add_symmetries(source, a);
-  warn_of_twins(source, a);
-  if (Status s = io::save_model(a.library, source, a.common.threads); !s.ok()) return s;
-  print_saved(source, a.library);
-  return {};
-}
-
-Status from_mesh(ModelArguments a) {
-  if (a.number == 0) a.number = choose_number(a.library, a.name);
-  a.options.num_threads = a.common.threads;
-  Result<ModelSource> source = source_from_file(a);
-  if (!source.ok()) return about(a.input, source.status());
-  return add_to_library(std::move(*source), a);
-}
-
-Status from_bop(ModelArguments a) {
-  const Result<std::vector<io::BopModel>> models = io::read_bop_models(a.input);
-  if (!models.ok()) return models.status();
-  a.options.num_threads = a.common.threads;
-  Progress progress("models", static_cast<int>(models->size()));
-  for (std::size_t i = 0; i < models->size(); ++i) {
-    const io::BopModel& model = (*models)[i];
-    progress.show(static_cast<int>(i), model.name);
-    const Result<TriangleMesh> mesh = io::read_mesh(model.path, kMetresPerMillimetre);
-    if (!mesh.ok()) return mesh.status();
-    Result<ModelSource> source =
-        source_from_mesh(*mesh, a, io::clean_model_name(model.name), model.obj_id);
-    if (!source.ok()) {
-      return Status(source.status().code, model.path + ": " + source.status().message);
-    }
-    source->source = std::filesystem::path(model.path).filename().string();
-    source->symmetry = model.symmetry;
-    source->symmetry_origin = SymmetryOrigin::declared;
-    source->diameter = model.diameter;
-    if (Status s = io::save_model(a.library, *source, a.common.threads); !s.ok()) return s;
-    progress.clear();
-    print_saved(*source, a.library);
-  }
-  return {};
-}
-
-Result<std::vector<PosedView>> posed_views(const ModelArguments& a,
-                                           std::vector<std::string>& warnings) {
+ModelSource source_from_scans(const ModelArguments& a, int number) {
+  AlignedScan scan;
   if (a.known_object > 0) {
-    return read_posed_views(a.input, a.split, a.known_object, a.common.threads);
+    scan.views = read_posed_views(a.input, a.split, a.known_object, a.common.threads);
+  } else {
+    scan = align_scan_of(a.input, a.split, a.step_deg, a.common);
+    center_object(scan.views);
   }
-  auto scan = read_scan(a.input, a.split, a.common.threads);
-  if (!scan.ok()) return scan.status();
-  ScanOptions options;
-  options.step_deg = a.step_deg;
-  options.seed = a.common.seed;
-  options.num_threads = a.common.threads;
-  Progress progress(a.name, 2);
-  progress.show(0, "centres of rotation");
-  Result<AlignedScan> aligned = align_scan(std::move(*scan), options);
-  if (!aligned.ok()) return aligned.status();
-  progress.clear();
-  for (const RestingPosition& p : aligned->positions) {
+  for (const RestingPosition& p : scan.positions) {
     std::printf(
         "resting position: turntable %.0f mm away, axis at (%.1f, %.1f, %.1f) mm, step %.2f "
         "degrees\n",
         1000 * p.centre.norm(), 1000 * p.centre.x(), 1000 * p.centre.y(), 1000 * p.centre.z(),
         p.step_deg);
   }
-  warnings = std::move(aligned->warnings);
-  center_object(aligned->views);
-  return std::move(aligned->views);
+  ModelSource source = or_throw(
+      model_source_from_views(std::move(scan.views), a.name, number, a.options_with_threads()));
+  source.warnings.insert(source.warnings.begin(), scan.warnings.begin(), scan.warnings.end());
+  return source;
 }
 
-Status from_scans(ModelArguments a) {
-  if (a.number == 0) a.number = choose_number(a.library, a.name);
-  a.options.num_threads = a.common.threads;
-  std::vector<std::string> warnings;
-  Result<std::vector<PosedView>> views = posed_views(a, warnings);
-  if (!views.ok()) return about(a.input, views.status());
-  Result<ModelSource> source =
-      model_source_from_views(std::move(*views), a.name, a.number, a.options);
-  if (!source.ok()) return source.status();
-  source->warnings.insert(source->warnings.begin(), warnings.begin(), warnings.end());
-  return add_to_library(std::move(*source), a);
+/// Completes a new model and adds it to the library.
+void add_to_library(ModelSource source, const ModelArguments& a) {
+  source.source = std::filesystem::path(a.input).filename().string();
+  if (source.complete) add_symmetries(source, a);
+  warn_of_twins(source, a);
+  save(source, a);
+}
+
+void from_mesh(const ModelArguments& a) {
+  add_to_library(source_from_file(a, choose_number(a)), a);
+}
+void from_scans(const ModelArguments& a) {
+  add_to_library(source_from_scans(a, choose_number(a)), a);
+}
+
+void from_bop(const ModelArguments& a) {
+  const std::vector<io::BopModel> models = or_throw(io::read_bop_models(a.input));
+  Progress progress("models", static_cast<int>(models.size()));
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const io::BopModel& model = models[i];
+    progress.show(static_cast<int>(i), model.name);
+    const TriangleMesh mesh = or_throw(io::read_mesh(model.path, kMetresPerMillimetre));
+    ModelSource source =
+        source_from_mesh(mesh, model.path, a, io::clean_model_name(model.name), model.obj_id);
+    source.source = std::filesystem::path(model.path).filename().string();
+    source.symmetry = model.symmetry;
+    source.symmetry_origin = SymmetryOrigin::declared;
+    source.diameter = model.diameter;
+    progress.clear();
+    save(source, a);
+  }
 }
 
 void print_occupancy(const OccupancyGrid* grid) {
@@ -264,169 +227,150 @@ void print_occupancy(const OccupancyGrid* grid) {
               static_cast<double>(1000 * grid->cell), walls);
 }
 
-Status info(ModelArguments a) {
-  const Result<ModelSource> model = io::load_model(a.library, a.name);
-  if (!model.ok()) return model.status();
+void info(const ModelArguments& a) {
+  const ModelSource model = or_throw(io::load_model(a.library, a.name));
   Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& point : model->surface.points) box.extend(point);
-  const Eigen::Vector3f size = 1000 * box.sizes();
-  std::printf("name        %s\nnumber      %d\nsource      %s\n", model->name.c_str(),
-              model->number, model->source.c_str());
-  std::printf("diameter    %.1f mm\nsize        %.1f x %.1f x %.1f mm\n", 1000 * model->diameter,
-              static_cast<double>(size.x()), static_cast<double>(size.y()),
-              static_cast<double>(size.z()));
-  std::printf("points      %zu%s%s\n", model->surface.size(),
-              model->surface.normals.empty() ? "" : ", normals",
-              model->surface.colors.empty() ? "" : ", colours");
-  std::printf("symmetries  %s%s\n", describe(model->symmetry).c_str(),
-              model->symmetry_origin == SymmetryOrigin::found ? " (found, not confirmed)" : "");
-  const NoiseModel& noise = model->noise;
+  for (const Eigen::Vector3f& point : model.surface.points) box.extend(point);
+  const Eigen::Vector3d size = (1000 * box.sizes()).cast<double>();
+  std::printf("name        %s\nnumber      %d\nsource      %s\n", model.name.c_str(), model.number,
+              model.source.c_str());
+  std::printf("diameter    %.1f mm\nsize        %.1f x %.1f x %.1f mm\n", 1000 * model.diameter,
+              size.x(), size.y(), size.z());
+  std::printf("points      %zu%s%s\n", model.surface.size(),
+              model.surface.normals.empty() ? "" : ", normals",
+              model.surface.colors.empty() ? "" : ", colours");
+  std::printf("symmetries  %s\n", symmetry_text(model).c_str());
+  const NoiseModel& noise = model.noise;
   std::printf("noise       %s; at %.2f m, seen straight on: range %.1f mm, normals %.0f degrees\n",
               noise.fitted ? "fitted" : "the usual", noise.depth,
               1000 * noise.range(kMaxEdgeDistance, 0),
               noise.normal(kMaxEdgeDistance, 0) * 180 / M_PI);
-  const auto occupancy = io::load_occupancy(a.library, a.name);
-  if (!occupancy.ok()) return occupancy.status();
-  print_occupancy(occupancy->get());
-  for (const std::string& warning : model->warnings)
+  print_occupancy(or_throw(io::load_occupancy(a.library, a.name)).get());
+  for (const std::string& warning : model.warnings) {
     std::printf("warning     %s\n", warning.c_str());
-  if (a.render.empty()) return {};
-  const auto made = make_object_model(*model, a.common.threads);
-  if (!made.ok()) return made.status();
-  return io::write_color_png(a.render, draw::model_sheet(**made));
+  }
+  if (a.render.empty()) return;
+  const auto made = or_throw(make_object_model(model, a.common.threads));
+  or_throw(io::write_color_png(a.render, draw::model_sheet(*made)));
 }
 
-Status list(ModelArguments a) {
-  const Result<io::LibraryContents> found = io::read_library(a.library, a.common.threads);
-  if (!found.ok()) return found.status();
-  if (found->models.empty() && found->broken.empty()) {
-    return invalid_argument("library " + a.library + " is empty");
+void list(const ModelArguments& a) {
+  const io::LibraryContents found = or_throw(io::read_library(a.library, a.common.threads));
+  if (found.models.empty() && found.broken.empty()) {
+    throw Failure(invalid_argument("library " + a.library + " is empty"));
   }
   std::printf("%6s  %-28s %12s %8s  %s\n", "number", "name", "diameter", "points", "symmetries");
-  for (const ModelSource& model : found->models) {
+  for (const ModelSource& model : found.models) {
     std::printf("%6d  %-28s %9.1f mm %8zu  %zu discrete, %zu continuous\n", model.number,
                 model.name.c_str(), 1000 * model.diameter, model.surface.size(),
                 model.symmetry.discrete.size(), model.symmetry.continuous.size());
   }
   std::fflush(stdout);
-  return io::explain_broken(a.library, found->broken);
+  or_throw(io::explain_broken(a.library, found.broken));
 }
 
-Status remove(ModelArguments a) {
-  if (Status s = io::remove_model(a.library, a.name); !s.ok()) return s;
+void remove(const ModelArguments& a) {
+  or_throw(io::remove_model(a.library, a.name));
   std::printf("removed %s from %s\n", a.name.c_str(), a.library.c_str());
-  return {};
 }
-
-using Arguments = std::shared_ptr<ModelArguments>;
 
 /// A subcommand of `bpa model` with the options that all of them have.
-CLI::App& add(CLI::App& model, const char* name, const char* description, const Arguments& a,
-              Action& action, Status (*run)(ModelArguments)) {
-  CLI::App& command = *model.add_subcommand(name, description);
-  add_common_options(command, a->common);
-  add_library_option(command, a->library);
-  command.callback([&action, a, run] { action = [a, run] { return run(*a); }; });
-  return command;
+std::pair<CLI::App&, ModelArguments&> add(CLI::App& model, const char* name,
+                                          const char* description,
+                                          void (*run)(const ModelArguments&)) {
+  const auto added = add_command(model, name, description, run);
+  add_library_option(added.first, added.second.library);
+  return added;
 }
 
 void add_name(CLI::App& command, const char* option, ModelArguments& a) {
-  command.add_option(option, a.name, "Name of the model")->required();
+  add_option(command, option, a.name, "Name of the model")->required();
 }
 
 void add_views_option(CLI::App& command, ModelArguments& a) {
-  command
-      .add_option(
-          "--views", a.views,
-          "Simulated views: surface that no view measures is left out, and noise is learned "
-          "from them; 0 = keep all outer surface, with default noise")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
+  add_option(command, "--views", a.views,
+             "Simulated views: surface that no view measures is left out, and noise is learned "
+             "from them; 0 = keep all outer surface, with default noise")
+      ->check(CLI::Range(0, 1000));
 }
 
 /// The options of one object that becomes a model.
 void add_new_model_options(CLI::App& command, ModelArguments& a) {
   add_name(command, "--name", a);
-  command
-      .add_option("--number", a.number,
-                  "Number of the model (obj_id); the next free one if not given")
+  add_option(command, "--number", a.number,
+             "Number of the model (obj_id); the next free one if not given")
       ->check(CLI::PositiveNumber);
-  command
-      .add_option("--symmetry", a.symmetry,
-                  "find: look for symmetries and use them; confirm: and take them as confirmed; "
-                  "none: the object has none")
-      ->check(CLI::IsMember({"find", "confirm", "none"}))
-      ->capture_default_str();
+  add_option(command, "--symmetry", a.symmetry,
+             "find: look for symmetries and use them; confirm: and take them as confirmed; "
+             "none: the object has none")
+      ->check(CLI::IsMember({"find", "confirm", "none"}));
   add_options(command, a.options, {{"--spacing", "spacing_m"}});
 }
 
-void add_from_mesh(CLI::App& model, const Arguments& a, Action& action) {
-  CLI::App& command =
-      add(model, "from-mesh", "One mesh or point cloud to a model", a, action, from_mesh);
-  command.add_option("mesh", a->input, "PLY, OBJ or STL mesh; PLY or PCD point cloud")->required();
-  command.add_option("--scale", a->scale, "Metres of one unit of the file; 0.001 for millimetres")
+void add_from_mesh(CLI::App& model) {
+  const auto [command, a] =
+      add(model, "from-mesh", "One mesh or point cloud to a model", from_mesh);
+  add_option(command, "mesh", a.input, "PLY, OBJ or STL mesh; PLY or PCD point cloud")->required();
+  add_option(command, "--scale", a.scale, "Metres of one unit of the file; 0.001 for millimetres")
       ->check(CLI::PositiveNumber);
-  add_new_model_options(command, *a);
-  add_views_option(command, *a);
+  add_new_model_options(command, a);
+  add_views_option(command, a);
 }
 
-void add_from_bop(CLI::App& model, const Arguments& a, Action& action) {
-  CLI::App& command = add(model, "from-bop", "Every model of a BOP data set", a, action, from_bop);
-  command.add_option("dataset", a->input, "Folder of the data set")->required();
-  add_options(command, a->options, {{"--spacing", "spacing_m"}});
-  add_views_option(command, *a);
+void add_from_bop(CLI::App& model) {
+  const auto [command, a] = add(model, "from-bop", "Every model of a BOP data set", from_bop);
+  add_option(command, "dataset", a.input, "Folder of the data set")->required();
+  add_options(command, a.options, {{"--spacing", "spacing_m"}});
+  add_views_option(command, a);
 }
 
-void add_from_scans(CLI::App& model, const Arguments& a, Action& action) {
-  CLI::App& command = add(model, "from-scans", "RGB-D views of an object on a turntable to a model",
-                          a, action, from_scans);
-  command
-      .add_option("scans", a->input,
-                  "Folder in the BOP layout: each scene is a resting position, image k was taken "
-                  "after k steps")
+void add_from_scans(CLI::App& model) {
+  const auto [command, a] =
+      add(model, "from-scans", "RGB-D views of an object on a turntable to a model", from_scans);
+  add_option(command, "scans", a.input,
+             "Folder in the BOP layout: each scene is a resting position, image k was taken after "
+             "k steps")
       ->required();
-  add_split_option(command, a->split);
-  command.add_option("--step-deg", a->step_deg, "Turn of the table between images, degrees")
-      ->check(CLI::Range(0.5, 120.0))
-      ->capture_default_str();
-  command
-      .add_option("--known-poses", a->known_object,
-                  "Take the poses of this object (obj_id) from scene_gt.json instead: any views, "
-                  "no turntable")
-      ->check(CLI::PositiveNumber)
-      ->type_name("OBJ_ID");
-  add_new_model_options(command, *a);
+  add_split_option(command, a.split);
+  add_option(command, "--step-deg", a.step_deg, "Turn of the table between images, degrees")
+      ->check(CLI::Range(0.5, 120.0));
+  add_option(command, "--known-poses", a.known_object,
+             "Take the poses of this object (obj_id) from scene_gt.json instead: any views, no "
+             "turntable",
+             "OBJ_ID")
+      ->check(CLI::PositiveNumber);
+  add_new_model_options(command, a);
 }
 
-void add_symmetry(CLI::App& model, const Arguments& a, Action& action) {
-  CLI::App& command = add(model, "symmetry", "Show, confirm or drop the symmetries of a model", a,
-                          action, set_symmetry);
-  add_name(command, "name", *a);
-  auto* confirm = command.add_flag_callback(
-      "--confirm", [a] { a->symmetry = "confirm"; }, "The symmetries found are right");
-  command
-      .add_flag_callback(
-          "--none", [a] { a->symmetry = "none"; }, "The object has none")
-      ->excludes(confirm);
+void add_symmetry(CLI::App& model) {
+  const auto [command, a] =
+      add(model, "symmetry", "Show, confirm or drop the symmetries of a model", set_symmetry);
+  add_name(command, "name", a);
+  const auto answer = [&, &symmetry = a.symmetry](const char* option, const char* value,
+                                                  const char* text) {
+    return command.add_flag_callback(
+        option, [&symmetry, value] { symmetry = value; }, text);
+  };
+  answer("--none", "none", "The object has none")
+      ->excludes(answer("--confirm", "confirm", "The symmetries found are right"));
 }
 
 }  // namespace
 
-void add_model_command(CLI::App& program, Action& action) {
+void add_model_command(CLI::App& program) {
   CLI::App& model = *program.add_subcommand("model", "Make, list and remove object models");
   model.require_subcommand(1);
-  const auto a = std::make_shared<ModelArguments>();
-  add_from_mesh(model, a, action);
-  add_from_bop(model, a, action);
-  add_from_scans(model, a, action);
-  CLI::App& about_one = add(model, "info", "What a library holds of a model", a, action, info);
-  add_name(about_one, "name", *a);
-  about_one.add_option("--render", a->render, "Write a picture of the model: sides, edges, noise")
-      ->type_name("F.png");
-  add_symmetry(model, a, action);
-  add(model, "list", "The models of a library; exits with 1 if one of them cannot be read", a,
-      action, list);
-  add_name(add(model, "remove", "Remove a model from a library", a, action, remove), "name", *a);
+  add_from_mesh(model);
+  add_from_bop(model);
+  add_from_scans(model);
+  const auto [about_one, a] = add(model, "info", "What a library holds of a model", info);
+  add_name(about_one, "name", a);
+  add_option(about_one, "--render", a.render, "Write a picture of the model: sides, edges, noise",
+             "F.png");
+  add_symmetry(model);
+  add(model, "list", "The models of a library; exits with 1 if one of them cannot be read", list);
+  const auto [removal, b] = add(model, "remove", "Remove a model from a library", remove);
+  add_name(removal, "name", b);
 }
 
 }  // namespace bpa::cli

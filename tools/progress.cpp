@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <mutex>
 #include <utility>
-#include <vector>
 
 #include <unistd.h>
 
@@ -38,20 +37,16 @@ void Progress::clear() {
   drawn_ = false;
 }
 
-Status run_all(const std::string& title, int count, int num_threads,
-               const std::function<Status(int)>& work) {
+void run_all(const std::string& title, int count, int num_threads,
+             const std::function<void(int)>& work) {
   Progress progress(title, count);
-  std::vector<Status> status(static_cast<std::size_t>(count));
   std::mutex mutex;
   int done = 0;
   parallel_for(count, num_threads, [&](int i) {
-    status[static_cast<std::size_t>(i)] = work(i);
+    work(i);
     const std::lock_guard lock(mutex);
     progress.show(++done);
   });
-  const auto failed =
-      std::find_if(status.begin(), status.end(), [](const Status& s) { return !s.ok(); });
-  return failed == status.end() ? Status() : *failed;
 }
 
 }  // namespace bpa::cli

@@ -5,8 +5,6 @@
 #include <functional>
 #include <string>
 
-#include "core/base/status.hpp"
-
 namespace bpa::cli {
 
 /// A progress bar on stderr, if that is a terminal. The destructor removes it.
@@ -29,9 +27,8 @@ class Progress {
   bool drawn_ = false;
 };
 
-/// Runs work(0) to work(count - 1) in parallel under a progress bar. Returns the first failure, by
-/// index.
-Status run_all(const std::string& title, int count, int num_threads,
-               const std::function<Status(int)>& work);
+/// Runs work(0) to work(count - 1) in parallel under a progress bar. Throws as parallel_for does.
+void run_all(const std::string& title, int count, int num_threads,
+             const std::function<void(int)>& work);
 
 }  // namespace bpa::cli

@@ -10,15 +10,15 @@
 
 namespace bpa::cli {
 
-/// A split of a BOP data set as a turntable scan: every scene is a resting position, and the number
-/// of an image says how many steps the table has turned. Truth and masks are not read.
-Result<std::vector<std::vector<ScanView>>> read_scan(const std::string& dataset,
-                                                     const std::string& split, int num_threads);
+/// Reads a split of a BOP data set as a turntable scan and finds the poses of its views: every
+/// scene is a resting position, and the number of an image says how many steps the table has
+/// turned. Truth and masks are not read.
+AlignedScan align_scan_of(const std::string& dataset, const std::string& split, double step_deg,
+                          const CommonOptions& common);
 
 /// The views of a BOP split that show object `obj_id`, with the poses of scene_gt.json; where there
 /// is mask_visib, only its pixels belong to the object.
-Result<std::vector<PosedView>> read_posed_views(const std::string& dataset,
-                                                const std::string& split, int obj_id,
-                                                int num_threads);
+std::vector<PosedView> read_posed_views(const std::string& dataset, const std::string& split,
+                                        int obj_id, int num_threads);
 
 }  // namespace bpa::cli

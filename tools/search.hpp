@@ -25,19 +25,23 @@ struct DetectorArguments {
 void add_detector_options(CLI::App& command, DetectorArguments& arguments);
 
 /// Reads settings, models and the library's score layers, with a progress bar.
-Result<Detector> open_detector(const DetectorArguments& arguments, int num_threads);
+Detector open_detector(const DetectorArguments& arguments, int num_threads);
 
-/// A searched frame; nothing is owned.
-struct SearchedFrame {
-  std::size_t index;  ///< Among all frames of the split, from 0.
+/// A frame with truth; nothing is owned.
+struct TrueFrame {
+  std::size_t index;   ///< Among all frames of the split, from 0.
+  const Frame& frame;  ///< Its depth is clean.
   const std::vector<io::BopInstance>& truth;
-  const SceneInterpretations& result;
-  const FrameTrace& trace;
 };
 
-/// Searches the frames of a split that have truth, with a progress bar, and hands over each.
-Status search_frames(const Detector& detector, const DatasetOptions& dataset,
-                     const CommonOptions& common,
-                     const std::function<void(const SearchedFrame&)>& use);
+/// Reads the frames of a split that have truth, with a progress bar, and hands over each.
+void read_true_frames(const DatasetOptions& dataset,
+                      const std::function<void(const TrueFrame&)>& use);
+
+/// The same for frames that the detector has searched.
+using UseSearched =
+    std::function<void(const TrueFrame&, const SceneInterpretations&, const FrameTrace&)>;
+void search_frames(const Detector& detector, const DatasetOptions& dataset,
+                   const CommonOptions& common, const UseSearched& use);
 
 }  // namespace bpa::cli

@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
-
-#include <CLI/CLI.hpp>
 
 #include "core/base/random.hpp"
 #include "core/io/bop_writer.hpp"
@@ -14,7 +11,6 @@
 #include "core/sim/scenes.hpp"
 #include "core/sim/turntable.hpp"
 #include "tools/command.hpp"
-#include "tools/option_fields.hpp"
 #include "tools/progress.hpp"
 
 namespace bpa::cli {
@@ -27,7 +23,7 @@ struct SimulateArguments {
   CommonOptions common;
   std::string out, meshes, mesh, object;
   std::string split = "test";
-  std::string models;
+  std::vector<std::string> models;
   int scenes = 30;
   double scale = 1;
   double model_error = 0;
@@ -36,24 +32,23 @@ struct SimulateArguments {
   sim::TurntableOptions turntable;
 };
 
-Result<sim::SimulatedObject> read_object(const std::string& path, double scale) {
+sim::SimulatedObject read_object(const std::string& path, double scale) {
   constexpr double kSmallest = 0.005, kLargest = 3;  // metres
-  Result<TriangleMesh> mesh = io::read_mesh(path, scale);
-  if (!mesh.ok()) return mesh.status();
-  if (mesh->triangles.empty()) return invalid_argument(path + " has no triangles");
-  const double diameter = sim::diameter(*mesh);
+  TriangleMesh mesh = or_throw(io::read_mesh(path, scale));
+  if (mesh.triangles.empty()) throw Failure(invalid_argument(path + " has no triangles"));
+  const double diameter = sim::diameter(mesh);
   if (!(diameter >= kSmallest && diameter <= kLargest)) {
     char text[160];
     std::snprintf(text, sizeof text,
                   " is %.3g m across; it must be between 0.005 and 3 m. For files in millimetres "
                   "give --scale 0.001",
                   diameter);
-    return invalid_argument(path + text);
+    throw Failure(invalid_argument(path + text));
   }
-  return sim::object_from_mesh(fs::path(path).stem().string(), std::move(mesh).value());
+  return sim::object_from_mesh(fs::path(path).stem().string(), std::move(mesh));
 }
 
-Result<std::vector<sim::SimulatedObject>> read_objects(const std::string& folder, double scale) {
+std::vector<sim::SimulatedObject> read_objects(const std::string& folder, double scale) {
   std::vector<std::string> paths;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
@@ -63,68 +58,69 @@ Result<std::vector<sim::SimulatedObject>> read_objects(const std::string& folder
     }
   }
   if (paths.empty()) {
-    return Status(StatusCode::not_found, folder + " holds no PLY, OBJ or STL mesh");
+    throw Failure({StatusCode::not_found, folder + " holds no PLY, OBJ or STL mesh"});
   }
   std::sort(paths.begin(), paths.end());
   std::vector<sim::SimulatedObject> objects;
-  for (const std::string& path : paths) {
-    Result<sim::SimulatedObject> object = read_object(path, scale);
-    if (!object.ok()) return object.status();
-    objects.push_back(std::move(object).value());
+  for (const std::string& path : paths) objects.push_back(read_object(path, scale));
+  return objects;
+}
+
+std::vector<sim::SimulatedObject> household_objects(const std::vector<std::string>& names,
+                                                    int num_threads) {
+  std::vector<sim::SimulatedObject> objects = sim::household_objects(names, num_threads);
+  for (const std::string& name : names) {
+    if (std::ranges::count(objects, name, &sim::SimulatedObject::name) > 0) continue;
+    throw Failure({StatusCode::not_found, "there is no household object " + name});
   }
   return objects;
 }
 
-Result<std::vector<sim::SimulatedObject>> chosen_objects(const SimulateArguments& a) {
+std::vector<sim::SimulatedObject> chosen_objects(const SimulateArguments& a) {
   if (!a.meshes.empty()) return read_objects(a.meshes, a.scale);
   if (a.models.empty()) return sim::household_objects(a.common.threads);
-  const std::vector<std::string> names = split_commas(a.models);
-  std::vector<sim::SimulatedObject> objects = sim::household_objects(names, a.common.threads);
-  for (const std::string& name : names) {
-    const bool found = std::any_of(objects.begin(), objects.end(),
-                                   [&name](const auto& object) { return object.name == name; });
-    if (!found) return Status(StatusCode::not_found, "there is no household object " + name);
-  }
-  return objects;
+  return household_objects(a.models, a.common.threads);
 }
 
-Status write_models(const std::string& out, const std::vector<sim::SimulatedObject>& objects) {
+void write_models(const std::string& out, const std::vector<sim::SimulatedObject>& objects) {
   std::vector<io::BopMesh> meshes;
   for (const sim::SimulatedObject& object : objects) {
     meshes.push_back({static_cast<int>(meshes.size()) + 1, object.name, sim::diameter(object.mesh),
                       object.symmetry, object.mesh});
   }
-  return io::write_bop_models(out, meshes);
+  or_throw(io::write_bop_models(out, meshes));
 }
 
-Status add_frame(io::BopSceneWriter& writer, int im_id, const sim::SimulatedFrame& frame) {
+void add_frame(io::BopSceneWriter& writer, int im_id, const sim::SimulatedFrame& frame) {
   std::vector<io::BopInstanceRecord> records;
-  for (std::size_t i = 0; i < frame.instances.size(); ++i) {
-    const sim::SimulatedInstance& instance = frame.instances[i];
-    io::BopInstanceRecord record;
-    record.obj_id = instance.object + 1;
-    record.camera_from_object = instance.camera_from_object;
-    record.mask_visible = sim::visible_mask(frame, static_cast<int>(i));
-    record.visible_fraction = instance.visibility.fraction();
-    records.push_back(std::move(record));
+  for (const sim::SimulatedInstance& instance : frame.instances) {
+    const std::vector<std::uint8_t> visible =
+        sim::visible_mask(frame, static_cast<int>(records.size()));
+    records.push_back({instance.object + 1,
+                       instance.camera_from_object,
+                       visible,
+                       {},
+                       instance.visibility.fraction()});
   }
-  return writer.add(im_id, frame.frame, records);
+  or_throw(writer.add(im_id, frame.frame, records));
 }
 
-Status write_scene(const SimulateArguments& a, const sim::Stage& stage, int index,
-                   std::vector<double>& fractions) {
+/// Returns the visible fractions of the instances.
+std::vector<double> write_scene(const SimulateArguments& a, const sim::Stage& stage,
+                                const sim::SceneOptions& options, int index) {
   // One thread for each scene: a pile of bodies is hard to share among threads.
   const sim::SimulatedScene scene =
-      sim::simulate_scene(stage, a.scene, sim::scene_seed(a.common.seed, index), 1);
+      sim::simulate_scene(stage, options, sim::scene_seed(a.common.seed, index), 1);
   io::BopSceneWriter writer(a.out, a.split, index + 1, kDepthUnitMm);
+  std::vector<double> fractions;
   for (std::size_t view = 0; view < scene.frames.size(); ++view) {
-    const sim::SimulatedFrame& frame = scene.frames[view];
-    if (Status s = add_frame(writer, static_cast<int>(view), frame); !s.ok()) return s;
-    for (const sim::SimulatedInstance& instance : frame.instances) {
+    add_frame(writer, static_cast<int>(view), scene.frames[view]);
+    for (const sim::SimulatedInstance& instance : scene.frames[view].instances) {
       fractions.push_back(instance.visibility.fraction());
     }
   }
-  return writer.finish();
+  or_throw(writer.finish());
+  return fractions;
 }
 
 void print_visible_fractions(std::vector<double> fractions) {
@@ -149,87 +145,76 @@ std::vector<sim::SimulatedObject> make_look_alikes(const std::vector<sim::Simula
   return out;
 }
 
-Status simulate_scenes(SimulateArguments a) {
-  if (Status s = validate(a.scene); !s.ok()) return s;
-  if (a.scene.min_objects > a.scene.max_objects) {
-    return invalid_argument("--objects MIN,MAX: MIN must not be greater than MAX");
+void simulate_scenes(const SimulateArguments& a) {
+  sim::SceneOptions options = a.scene;
+  or_throw(validate(options));
+  if (options.min_objects > options.max_objects) {
+    throw Failure(invalid_argument("--objects MIN,MAX: MIN must not be greater than MAX"));
   }
-  Result<std::vector<sim::SimulatedObject>> objects = chosen_objects(a);
-  if (!objects.ok()) return objects.status();
-  if (Status s = write_models(a.out, *objects); !s.ok()) return s;
-  std::vector<sim::SimulatedObject> look_alikes;
+  std::vector<sim::SimulatedObject> objects = chosen_objects(a), look_alikes;
+  write_models(a.out, objects);
   if (a.look_alikes > 0) {
-    look_alikes = make_look_alikes(*objects, a.common.seed);
-    a.scene.max_distractors = a.look_alikes;
+    look_alikes = make_look_alikes(objects, a.common.seed);
+    options.max_distractors = a.look_alikes;
   }
-  for (std::size_t i = 0; a.model_error > 0 && i < objects->size(); ++i) {
-    (*objects)[i] = sim::made_inexactly(std::move((*objects)[i]), a.model_error,
-                                        RandomStream(a.common.seed, 1000 + i)());
+  for (std::size_t i = 0; a.model_error > 0 && i < objects.size(); ++i) {
+    objects[i] = sim::made_inexactly(std::move(objects[i]), a.model_error,
+                                     RandomStream(a.common.seed, 1000 + i)());
   }
-  const sim::Stage stage(std::move(objects).value(), a.common.threads, std::move(look_alikes));
+  const sim::Stage stage(std::move(objects), a.common.threads, std::move(look_alikes));
 
   std::vector<std::vector<double>> fractions(a.scenes);
-  const Status written = run_all("scenes", a.scenes, a.common.threads,
-                                 [&](int i) { return write_scene(a, stage, i, fractions[i]); });
-  if (!written.ok()) return written;
+  run_all("scenes", a.scenes, a.common.threads,
+          [&](int i) { fractions[i] = write_scene(a, stage, options, i); });
   std::vector<double> all;
   for (const auto& f : fractions) all.insert(all.end(), f.begin(), f.end());
   std::printf("%d scenes in %s/%s, %zu models\n", a.scenes, a.out.c_str(), a.split.c_str(),
               stage.objects().size());
   print_visible_fractions(std::move(all));
-  return {};
 }
 
-Result<sim::SimulatedObject> turntable_object(const SimulateArguments& a) {
-  if (!a.mesh.empty()) return read_object(a.mesh, a.scale);
-  std::vector<sim::SimulatedObject> found =
-      sim::household_objects(std::vector<std::string>{a.object}, a.common.threads);
-  if (found.empty()) {
-    return Status(StatusCode::not_found, "there is no household object " + a.object);
+void simulate_turntable(const SimulateArguments& a) {
+  if (a.mesh.empty() == a.object.empty()) {
+    throw CLI::ValidationError("object", "give one of --mesh and --object");
   }
-  return std::move(found.front());
-}
-
-Status simulate_turntable(const SimulateArguments& a) {
-  if (Status s = validate(a.turntable); !s.ok()) return s;
-  const Result<sim::SimulatedObject> object = turntable_object(a);
-  if (!object.ok()) return object.status();
-  if (Status s = write_models(a.out, {*object}); !s.ok()) return s;
+  or_throw(validate(a.turntable));
+  const sim::SimulatedObject object = a.mesh.empty()
+                                          ? household_objects({a.object}, a.common.threads).front()
+                                          : read_object(a.mesh, a.scale);
+  write_models(a.out, {object});
   Progress progress("simulate", 2);
   progress.show(0, "views");
   const sim::TurntableScan scan =
-      sim::simulate_turntable(*object, a.turntable, a.common.seed, a.common.threads);
+      sim::simulate_turntable(object, a.turntable, a.common.seed, a.common.threads);
   progress.show(1, "files");
   // One BOP scene for each resting position; images are numbered in steps of the turn.
-  std::size_t view = 0;
   int positions = 0;
-  while (view < scan.views.size()) {
-    const int position = scan.views[view].resting_position;
+  for (auto view = scan.views.begin(); view != scan.views.end(); ++positions) {
+    const int position = view->resting_position;
     io::BopSceneWriter writer(a.out, a.split, position + 1, kDepthUnitMm);
-    for (int im_id = 0; view < scan.views.size() && scan.views[view].resting_position == position;
-         ++view, ++im_id) {
-      if (Status s = add_frame(writer, im_id, scan.views[view].frame); !s.ok()) return s;
+    for (int im_id = 0; view != scan.views.end() && view->resting_position == position; ++view) {
+      add_frame(writer, im_id++, view->frame);
     }
-    if (Status s = writer.finish(); !s.ok()) return s;
-    ++positions;
+    or_throw(writer.finish());
   }
   progress.clear();
   std::printf(
       "%zu views of %s in %d resting positions in %s/%s; the true mesh is "
       "models/obj_000001.ply\n",
-      scan.views.size(), object->name.c_str(), positions, a.out.c_str(), a.split.c_str());
-  return {};
+      scan.views.size(), object.name.c_str(), positions, a.out.c_str(), a.split.c_str());
 }
 
-void add_output_options(CLI::App& command, SimulateArguments& a) {
-  command.add_option("--out", a.out, "Folder of the data set to write")
-      ->required()
-      ->type_name("DIR");
+/// A subcommand of `bpa simulate` with the options that both of them have.
+std::pair<CLI::App&, SimulateArguments&> add(CLI::App& simulate, const char* name,
+                                             const char* description,
+                                             void (*run)(const SimulateArguments&)) {
+  const auto added = add_command(simulate, name, description, run);
+  const auto& [command, a] = added;
+  add_option(command, "--out", a.out, "Folder of the data set to write", "DIR")->required();
   add_split_option(command, a.split);
-  command.add_option("--scale", a.scale, "Metres of one unit of the meshes' files")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  add_common_options(command, a.common);
+  add_option(command, "--scale", a.scale, "Metres of one unit of the meshes' files")
+      ->check(CLI::PositiveNumber);
+  return added;
 }
 
 template <class Value>
@@ -244,39 +229,29 @@ void add_range(CLI::App& command, const char* name, Value& low, Value& high, con
       ->type_name("MIN,MAX");
 }
 
-void add_object_options(CLI::App& command, SimulateArguments& a) {
-  auto* meshes =
-      command.add_option("--meshes", a.meshes, "Folder of PLY, OBJ or STL meshes instead of ours");
-  meshes->type_name("DIR");
-  command.add_option("--models", a.models, "Only these of the household objects")
+void add_scenes(CLI::App& simulate) {
+  const auto [command, a] = add(simulate, "scenes", "Piles of objects on a table", simulate_scenes);
+  add_option(command, "--scenes", a.scenes, "Number of scenes")->check(CLI::Range(1, 999999));
+  add_range(command, "--objects", a.scene.min_objects, a.scene.max_objects,
+            "Fewest and most objects of a scene; 10,14 if not given");
+  add_range(command, "--clutter", a.scene.min_clutter, a.scene.max_clutter,
+            "Range of clutter, 0.6,1 if not given; 0 = apart on the table, 1 = heap");
+  auto* meshes = add_option(command, "--meshes", a.meshes,
+                            "Folder of PLY, OBJ or STL meshes instead of ours", "DIR");
+  add_option(command, "--models", a.models, "Only these of the household objects", "LIST")
       ->excludes(meshes)
-      ->type_name("LIST");
-  command
-      .add_option("--model-error", a.model_error,
-                  "Largest change of an object's length along each axis against its model, "
-                  "as a fraction")
+      ->delimiter(',');
+  add_option(command, "--model-error", a.model_error,
+             "Largest change of an object's length along each axis against its model, as a "
+             "fraction")
       ->check(CLI::Range(0.0, 0.2))
       ->capture_default_str();
-  command
-      .add_option("--look-alikes", a.look_alikes,
-                  "Most distractors of a scene with an object's shape and other measures, "
-                  "which are not in the truth")
+  add_option(command, "--look-alikes", a.look_alikes,
+             "Most distractors of a scene with an object's shape and other measures, which are "
+             "not in the truth")
       ->check(CLI::Range(0, 20))
       ->capture_default_str();
-}
-
-void add_scenes(CLI::App& simulate, const std::shared_ptr<SimulateArguments>& a, Action& action) {
-  CLI::App& command = *simulate.add_subcommand("scenes", "Piles of objects on a table");
-  add_output_options(command, *a);
-  command.add_option("--scenes", a->scenes, "Number of scenes")
-      ->check(CLI::Range(1, 999999))
-      ->capture_default_str();
-  add_range(command, "--objects", a->scene.min_objects, a->scene.max_objects,
-            "Fewest and most objects of a scene; 10,14 if not given");
-  add_range(command, "--clutter", a->scene.min_clutter, a->scene.max_clutter,
-            "Range of clutter, 0.6,1 if not given; 0 = apart on the table, 1 = heap");
-  add_object_options(command, *a);
-  add_options(command, a->scene,
+  add_options(command, a.scene,
               {{"--views", "views"},
                {"--shots", "shots"},
                {"--empty", "empty_share"},
@@ -284,35 +259,25 @@ void add_scenes(CLI::App& simulate, const std::shared_ptr<SimulateArguments>& a,
                {"--border", "border_share"},
                {"--misregistration", "misregistration"},
                {"--calibration-error", "calibration_error"}});
-  command.callback([&action, a] { action = [a] { return simulate_scenes(*a); }; });
 }
 
-void add_turntable(CLI::App& simulate, const std::shared_ptr<SimulateArguments>& a,
-                   Action& action) {
-  CLI::App& command = *simulate.add_subcommand("turntable", "An object turned before a camera");
-  add_output_options(command, *a);
-  auto* mesh = command.add_option("--mesh", a->mesh, "PLY, OBJ or STL mesh")->type_name("FILE");
-  command.add_option("--object", a->object, "One of the household objects instead")
-      ->excludes(mesh)
-      ->type_name("NAME");
-  add_options(command, a->turntable,
+void add_turntable(CLI::App& simulate) {
+  const auto [command, a] =
+      add(simulate, "turntable", "An object turned before a camera", simulate_turntable);
+  auto* mesh = add_option(command, "--mesh", a.mesh, "PLY, OBJ or STL mesh", "FILE");
+  add_option(command, "--object", a.object, "One of the household objects instead", "NAME")
+      ->excludes(mesh);
+  add_options(command, a.turntable,
               {{"--step-deg", "step_deg"}, {"--positions", "resting_positions"}});
-  command.callback([&action, a] {
-    if (a->mesh.empty() == a->object.empty()) {
-      throw CLI::ValidationError("object", "give one of --mesh and --object");
-    }
-    action = [a] { return simulate_turntable(*a); };
-  });
 }
 
 }  // namespace
 
-void add_simulate_command(CLI::App& program, Action& action) {
+void add_simulate_command(CLI::App& program) {
   CLI::App& simulate = *program.add_subcommand("simulate", "RGB-D frames with truth, as BOP sets");
   simulate.require_subcommand(1);
-  const auto a = std::make_shared<SimulateArguments>();
-  add_scenes(simulate, a, action);
-  add_turntable(simulate, a, action);
+  add_scenes(simulate);
+  add_turntable(simulate);
 }
 
 }  // namespace bpa::cli

@@ -8,13 +8,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 
-#include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/geometry/sphere_directions.hpp"
 #include "core/sim/kinect.hpp"
 #include "core/sim/scenery.hpp"
+#include "tools/progress.hpp"
 
 namespace bpa::cli {
 namespace {
@@ -96,7 +95,7 @@ TriangleMesh squares_of(const PointCloud& cloud) {
 }
 
 std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::uint64_t seed,
-                                      int num_threads, const std::function<void(int)>& progress) {
+                                      int num_threads, const std::string& title) {
   constexpr double kFocal = 570.3;  // of a Kinect's depth camera
   constexpr double kDistance = 0.8, kMargin = 24;
   Eigen::AlignedBox3f box;
@@ -118,20 +117,14 @@ std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::
   kinect.registered = false;
 
   std::vector<PosedView> views(static_cast<std::size_t>(count));
-  std::mutex mutex;
-  int done = 0;
-  parallel_for(count, num_threads, [&](int k) {
+  run_all(title, count, num_threads, [&](int k) {
     const Pose object_from_camera =
         look_from(sphere_direction(k, count), distance, box.center().cast<double>());
     const Frame frame =
         sim::simulate_depth({scene, shading, camera, object_from_camera}, kinect,
                             RandomStream(seed, static_cast<std::uint64_t>(k))(), 0, 1);
-    PosedView& view = views[static_cast<std::size_t>(k)];
-    view =
+    views[static_cast<std::size_t>(k)] =
         make_posed_view(frame, near(frame, object_from_camera, box), object_from_camera.inverse());
-    if (!progress) return;
-    const std::lock_guard lock(mutex);
-    progress(++done);
   });
   return views;
 }

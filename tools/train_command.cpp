@@ -3,9 +3,6 @@
 // bpa train: the score layers, from frames with truth.
 #include <algorithm>
 #include <cstdio>
-#include <memory>
-
-#include <CLI/CLI.hpp>
 
 #include "core/eval/matching.hpp"
 #include "core/io/file_bytes.hpp"
@@ -72,27 +69,25 @@ ScoreFrame round_three_samples(const FrameTrace& trace, const DetectorOptions& o
 
 // The placements of every frame as the detector chooses from them: right ones, the right object in
 // a wrong pose, and wrong objects, each aligned as well as possible (paper section V).
-Status collect(const TrainArguments& a, AllSamples& samples) {
+AllSamples collect(const TrainArguments& a) {
   DetectorArguments built_in = a.detector;
   built_in.built_in_layers = true;
-  const Result<Detector> detector = open_detector(built_in, a.common.threads);
-  if (!detector.ok()) return detector.status();
-  const auto use = [&](const SearchedFrame& frame) {
+  const Detector detector = open_detector(built_in, a.common.threads);
+  const DetectorOptions& options = detector.options();
+  AllSamples samples;
+  const auto use = [&](const TrueFrame& frame, const auto&, const FrameTrace& trace) {
     const int index = static_cast<int>(frame.index);
     const bool held_out = a.held_out > 0 && index % a.held_out == a.held_out - 1;
-    const auto add = [&](Samples& to, ScoreFrame scores) {
-      (held_out ? to.held_out : to.training).push_back(std::move(scores));
-    };
-    add(samples.round_two, round_two_samples(frame.trace, detector->options(), frame.truth));
-    add(samples.round_three, round_three_samples(frame.trace, detector->options(), frame.truth));
+    const auto part = held_out ? &Samples::held_out : &Samples::training;
+    (samples.round_two.*part).push_back(round_two_samples(trace, options, frame.truth));
+    (samples.round_three.*part).push_back(round_three_samples(trace, options, frame.truth));
   };
   for (const std::string& folder : a.bop) {
     DatasetOptions dataset = a.dataset;
     dataset.folder = folder;
-    const Status status = search_frames(*detector, dataset, a.common, use);
-    if (!status.ok()) return status;
+    search_frames(detector, dataset, a.common, use);
   }
-  return {};
+  return samples;
 }
 
 // Of what a layer was made.
@@ -129,62 +124,41 @@ Samples without_color(Samples samples) {
   return samples;
 }
 
-Status train(const TrainArguments& a) {
-  AllSamples samples;
-  if (Status status = collect(a, samples); !status.ok()) return status;
+ScoreLayer learn(const TrainArguments& a, const char* name, const Samples& samples) {
+  ScoreLayer layer = or_throw(train_score_layer(samples.training));
+  layer.provenance = provenance(a, samples.training.size());
+  std::printf("%s\n", name);
+  print_reliability("training", layer, samples.training);
+  print_reliability("held out", layer, samples.held_out);
+  return layer;
+}
+
+void train(const TrainArguments& a) {
+  const AllSamples samples = collect(a);
   ScoreLayers layers;
-  const auto learn = [&](const char* name, const Samples& from, ScoreLayer& layer) {
-    Result<ScoreLayer> learned = train_score_layer(from.training);
-    if (!learned.ok()) return learned.status();
-    layer = std::move(*learned);
-    layer.provenance = provenance(a, from.training.size());
-    std::printf("%s\n", name);
-    print_reliability("training", layer, from.training);
-    print_reliability("held out", layer, from.held_out);
-    return Status();
-  };
-  struct Task {
-    const char* name;
-    const Samples& from;
-    ScoreLayer& layer;
-  };
-  const Samples uncolored = without_color(samples.round_three);
-  for (const Task& task : {Task{"round two", samples.round_two, layers.round_two},
-                           Task{"round three", samples.round_three, layers.round_three},
-                           Task{"without colours", uncolored, layers.without_color}}) {
-    if (Status status = learn(task.name, task.from, task.layer); !status.ok()) return status;
-  }
+  layers.round_two = learn(a, "round two", samples.round_two);
+  layers.round_three = learn(a, "round three", samples.round_three);
+  layers.without_color = learn(a, "without colours", without_color(samples.round_three));
   const std::string path = a.output.empty() ? score_layer_path(a.detector.library) : a.output;
-  if (Status status = write_score_layers(path, layers); !status.ok()) return status;
+  or_throw(write_score_layers(path, layers));
   std::printf("wrote %s\n", path.c_str());
-  return {};
 }
 
 }  // namespace
 
-void add_train_command(CLI::App& program, Action& action) {
-  CLI::App& command = *program.add_subcommand(
-      "train", "Learn the probability of a placement from frames with truth");
-  const auto a = std::make_shared<TrainArguments>();
-  add_detector_options(command, a->detector);
-  command.add_option("--bop", a->bop, "Folder of a BOP data set with truth; may be repeated")
-      ->required()
-      ->type_name("DIR");
-  add_split_options(command, a->dataset);
-  command
-      .add_option("--held-out", a->held_out,
-                  "Keep every N-th frame out of training, to judge the layers by; 0 = none")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
-  command
-      .add_option("--output", a->output,
-                  "Write the layers to this file instead of the library's score_layer.json")
-      ->type_name("FILE");
-  command.add_option("--made-by", a->made_by, "Command that the file's provenance names")
-      ->type_name("TEXT")
-      ->capture_default_str();
-  add_common_options(command, a->common);
-  command.callback([&action, a] { action = [a] { return train(*a); }; });
+void add_train_command(CLI::App& program) {
+  const auto [command, a] = add_command(
+      program, "train", "Learn the probability of a placement from frames with truth", train);
+  add_detector_options(command, a.detector);
+  add_option(command, "--bop", a.bop, "Folder of a BOP data set with truth; may be repeated", "DIR")
+      ->required();
+  add_split_options(command, a.dataset);
+  add_option(command, "--held-out", a.held_out,
+             "Keep every N-th frame out of training, to judge the layers by; 0 = none")
+      ->check(CLI::Range(0, 1000));
+  add_option(command, "--output", a.output,
+             "Write the layers to this file instead of the library's score_layer.json", "FILE");
+  add_option(command, "--made-by", a.made_by, "Command that the file's provenance names", "TEXT");
 }
 
 }  // namespace bpa::cli

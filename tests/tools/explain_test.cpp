@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/failure.hpp"
 #include "core/draw/number.hpp"
 #include "core/io/image_file.hpp"
 #include "core/pipeline/detector.hpp"
@@ -73,8 +74,8 @@ std::string cell(const std::string& text) { return "<td>" + text + "</td>"; }
 TEST_F(Explain, OneModelIsOneFolderWhosePageAgreesWithTheTrace) {
   search({l_});
   ExplainFolder folder(folder_ / "out", false);
-  ASSERT_TRUE(folder.add(explained()).ok());
-  ASSERT_TRUE(folder.finish().ok());
+  folder.add(explained());
+  folder.finish();
   expect_picture("out/01_edges.png");
   expect_picture("out/02_super_pixels.png");
   const std::string text = page("out/index.html");
@@ -121,8 +122,8 @@ TEST_F(Explain, OneModelIsOneFolderWhosePageAgreesWithTheTrace) {
 TEST_F(Explain, SeveralModelsHaveAFolderEach) {
   search({l_, brick_});
   ExplainFolder folder(folder_ / "out", false);
-  ASSERT_TRUE(folder.add(explained()).ok());
-  ASSERT_TRUE(folder.finish().ok());
+  folder.add(explained());
+  folder.finish();
   expect_picture("out/01_edges.png");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/03_sampled.png"));
   const std::string text = page("out/index.html");
@@ -137,9 +138,9 @@ TEST_F(Explain, SeveralModelsHaveAFolderEach) {
 TEST_F(Explain, SeveralFramesHaveAFolderEach) {
   search({l_});
   ExplainFolder folder(folder_ / "out", true);
-  ASSERT_TRUE(folder.add(explained("000001_000002")).ok());
-  ASSERT_TRUE(folder.add(explained("000001_000003")).ok());
-  ASSERT_TRUE(folder.finish().ok());
+  folder.add(explained("000001_000002"));
+  folder.add(explained("000001_000003"));
+  folder.finish();
   const std::string text = page("out/index.html");
   for (const std::string name : {"000001_000002", "000001_000003"}) {
     expect_picture("out/" + name + "/03_sampled.png");
@@ -151,7 +152,7 @@ TEST_F(Explain, AModelThatTimeWasTooShortForIsSaid) {
   search({l_, brick_}, 1e-6);
   ASSERT_TRUE(result_.budget_exhausted);
   ExplainFolder folder(folder_ / "out", false);
-  ASSERT_TRUE(folder.add(explained()).ok());
+  folder.add(explained());
   EXPECT_NE(page("out/brick/index.html").find("time budget was exhausted"), std::string::npos);
 }
 
@@ -159,9 +160,13 @@ TEST_F(Explain, AFolderThatCannotBeMadeIsNamed) {
   search({l_});
   test::spill(folder_ / "file", "");
   ExplainFolder folder(folder_ / "file/out", false);
-  const Status status = folder.add(explained());
-  EXPECT_EQ(status.code, StatusCode::unavailable);
-  EXPECT_NE(status.message.find("file/out"), std::string::npos) << status.message;
+  try {
+    folder.add(explained());
+    FAIL() << "the folder was made";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.status().code, StatusCode::unavailable);
+    EXPECT_NE(failure.status().message.find("file/out"), std::string::npos) << failure.what();
+  }
 }
 
 }  // namespace
