@@ -25,53 +25,40 @@ std::vector<float> gaussian(double sigma) {
   return weights;
 }
 
-// Both passes run over plain rows of floats, so that the compiler can use wide vectors; `channels`
-// neighbouring floats belong to one pixel.
-struct Blur {
-  int width, height, channels;
-  std::vector<float> weights;
+// Runs over plain rows of floats, so that the compiler can use wide vectors.
+void add_row(const float* from, float weight, int count, float* to) {
+  for (int j = 0; j < count; ++j) to[j] += weight * from[j];
+}
 
-  int row_size() const { return width * channels; }
-  int radius() const { return static_cast<int>(weights.size() / 2); }
-
-  void add_row(const float* from, float weight, float* to) const {
-    const int count = row_size();
-    for (int j = 0; j < count; ++j) to[j] += weight * from[j];
-  }
-  void across(const float* in, float* out, std::vector<float>& padded) const {
-    const int margin = radius() * channels;
-    padded.resize(static_cast<std::size_t>(row_size() + 2 * margin));
-    for (int j = 0; j < margin; ++j) {
-      padded[static_cast<std::size_t>(j)] = in[j % channels];
-      padded[static_cast<std::size_t>(margin + row_size() + j)] =
-          in[row_size() - channels + j % channels];
-    }
-    std::copy(in, in + row_size(), padded.begin() + margin);
-    std::fill(out, out + row_size(), 0.0f);
-    for (std::size_t k = 0; k < weights.size(); ++k) {
-      add_row(padded.data() + static_cast<int>(k) * channels, weights[k], out);
-    }
-  }
-  void down(const float* in, int row, float* out) const {
-    std::fill(out, out + row_size(), 0.0f);
-    for (int k = -radius(); k <= radius(); ++k) {
-      const int from = std::clamp(row + k, 0, height - 1);
-      add_row(in + from * row_size(), weights[static_cast<std::size_t>(k + radius())], out);
-    }
-  }
-};
-
-void run(const Blur& blur, const float* in, float* out, int num_threads) {
-  std::vector<float> between(static_cast<std::size_t>(blur.row_size() * blur.height));
-  parallel_for_pieces(blur.height, kRowsPerPiece, num_threads, [&](int first, int last, int) {
-    std::vector<float> padded;
+// `channels` neighbouring floats belong to one pixel.
+void blur(const float* in, int width, int height, int channels, const std::vector<float>& weights,
+          int num_threads, float* out) {
+  const int row = width * channels;
+  const int radius = static_cast<int>(weights.size() / 2), margin = radius * channels;
+  std::vector<float> between(static_cast<std::size_t>(row * height), 0.0f);
+  parallel_for_pieces(height, kRowsPerPiece, num_threads, [&](int first, int last, int) {
+    std::vector<float> padded(static_cast<std::size_t>(row + 2 * margin));
     for (int v = first; v < last; ++v) {
-      blur.across(in + v * blur.row_size(), between.data() + v * blur.row_size(), padded);
+      const float* const from = in + v * row;
+      std::copy(from, from + row, padded.begin() + margin);
+      for (int j = 0; j < margin; ++j) {
+        padded[static_cast<std::size_t>(j)] = from[j % channels];
+        padded[static_cast<std::size_t>(margin + row + j)] = from[row - channels + j % channels];
+      }
+      for (int k = 0; k <= 2 * radius; ++k) {
+        add_row(padded.data() + k * channels, weights[static_cast<std::size_t>(k)], row,
+                between.data() + v * row);
+      }
     }
   });
-  parallel_for(
-      blur.height, num_threads,
-      [&](int v) { blur.down(between.data(), v, out + v * blur.row_size()); }, kRowsPerPiece);
+  const auto down = [&](int v) {
+    for (int k = -radius; k <= radius; ++k) {
+      const int from = std::clamp(v + k, 0, height - 1);
+      add_row(between.data() + from * row, weights[static_cast<std::size_t>(k + radius)], row,
+              out + v * row);
+    }
+  };
+  parallel_for(height, num_threads, down, kRowsPerPiece);
 }
 
 }  // namespace
@@ -79,16 +66,16 @@ void run(const Blur& blur, const float* in, float* out, int num_threads) {
 Image<float> blur(const Image<float>& image, double sigma, int num_threads) {
   if (!(sigma > 0) || image.empty()) return image;
   Image<float> out(image.width, image.height, 0);
-  run({image.width, image.height, 1, gaussian(sigma)}, image.pixels.data(), out.pixels.data(),
-      num_threads);
+  blur(image.pixels.data(), image.width, image.height, 1, gaussian(sigma), num_threads,
+       out.pixels.data());
   return out;
 }
 
 Image<Eigen::Vector3f> blur(const Image<Eigen::Vector3f>& image, double sigma, int num_threads) {
   if (!(sigma > 0) || image.empty()) return image;
   Image<Eigen::Vector3f> out(image.width, image.height, Eigen::Vector3f::Zero());
-  run({image.width, image.height, 3, gaussian(sigma)}, image.pixels.data()->data(),
-      out.pixels.data()->data(), num_threads);
+  blur(image.pixels.data()->data(), image.width, image.height, 3, gaussian(sigma), num_threads,
+       out.pixels.data()->data());
   return out;
 }
 

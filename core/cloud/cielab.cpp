@@ -32,8 +32,8 @@ float interpolate(const std::array<float, N>& table, float position) {
 
 CielabConverter::CielabConverter() {
   for (std::size_t i = 0; i < linear_.size(); ++i) {
-    linear_[i] =
-        static_cast<float>(linear_of_srgb(std::min<double>(255, static_cast<double>(i)) / 255));
+    const double value = std::min(255.0, static_cast<double>(i)) / 255;
+    linear_[i] = static_cast<float>(linear_of_srgb(value));
   }
   for (std::size_t i = 0; i < lightness_.size(); ++i) {
     const double value = std::min(1.0, static_cast<double>(i) / kSteps);
@@ -60,33 +60,29 @@ Image<Eigen::Vector3f> reduced_color(const Frame& frame, const SurfaceMap& map, 
   Image<Eigen::Vector3f> out(map.width(), map.height(), Eigen::Vector3f::Zero());
   const int reduction = map.reduction;
   const float share = 1.0f / static_cast<float>(reduction * reduction);
-  parallel_for(
-      out.height, num_threads,
-      [&](int v) {
-        for (int u = 0; u < out.width; ++u) {
-          int sum[3] = {0, 0, 0};
-          for (int y = 0; y < reduction; ++y) {
-            const auto first = static_cast<std::size_t>((v * reduction + y) * frame.camera.width);
-            const std::uint8_t* pixel =
-                frame.color.data() + 3 * (first + static_cast<std::size_t>(u * reduction));
-            for (int x = 0; x < 3 * reduction; ++x) sum[x % 3] += pixel[x];
-          }
-          out.at(u, v) = share * Eigen::Vector3i(sum[0], sum[1], sum[2]).cast<float>();
-        }
-      },
-      16);
+  const auto average = [&](int v) {
+    for (int u = 0; u < out.width; ++u) {
+      int sum[3] = {0, 0, 0};
+      for (int y = 0; y < reduction; ++y) {
+        const auto first = static_cast<std::size_t>((v * reduction + y) * frame.camera.width);
+        const std::uint8_t* pixel =
+            frame.color.data() + 3 * (first + static_cast<std::size_t>(u * reduction));
+        for (int x = 0; x < 3 * reduction; ++x) sum[x % 3] += pixel[x];
+      }
+      out.at(u, v) = share * Eigen::Vector3i(sum[0], sum[1], sum[2]).cast<float>();
+    }
+  };
+  parallel_for(out.height, num_threads, average, 16);
   return out;
 }
 
 Image<Eigen::Vector3f> cielab(const Image<Eigen::Vector3f>& rgb, int num_threads) {
   Image<Eigen::Vector3f> out = rgb;
   const CielabConverter convert;
-  parallel_for(
-      out.height, num_threads,
-      [&](int v) {
-        for (int u = 0; u < out.width; ++u) out.at(u, v) = convert(rgb.at(u, v));
-      },
-      16);
+  const auto convert_row = [&](int v) {
+    for (int u = 0; u < out.width; ++u) out.at(u, v) = convert(rgb.at(u, v));
+  };
+  parallel_for(out.height, num_threads, convert_row, 16);
   return out;
 }
 

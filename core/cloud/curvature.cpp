@@ -35,54 +35,52 @@ void estimate_curvature(PointCloud& cloud, float radius, int num_threads) {
   const NeighborGrid grid(cloud.points, radius);
   cloud.principal_directions.resize(cloud.size());
   cloud.curvatures.resize(cloud.size());
-  parallel_for(
-      static_cast<int>(cloud.size()), num_threads,
-      [&](int index) {
-        const auto i = static_cast<std::size_t>(index);
-        const Eigen::Vector3f normal = cloud.normals[i];
-        const Eigen::Vector3f u = normal.unitOrthogonal();
-        const Eigen::Vector3f v = normal.cross(u);
-        TangentCovariance covariance;
-        grid.for_each_neighbor(cloud.points[i], [&](int j, float) {
-          const Eigen::Vector3f& other = cloud.normals[static_cast<std::size_t>(j)];
-          if (other.dot(normal) < kMinCosine) return;
-          const float a = other.dot(u);
-          const float b = other.dot(v);
-          covariance.uu += a * a, covariance.uv += a * b, covariance.vv += b * b;
-          ++covariance.count;
-        });
-        Eigen::Vector2f direction;
-        decompose(covariance, cloud.curvatures[i], direction);
-        cloud.principal_directions[i] = (direction.x() * u + direction.y() * v).normalized();
-      },
-      64);
+  const auto estimate = [&](int index) {
+    const auto i = static_cast<std::size_t>(index);
+    const Eigen::Vector3f normal = cloud.normals[i];
+    const Eigen::Vector3f u = normal.unitOrthogonal();
+    const Eigen::Vector3f v = normal.cross(u);
+    TangentCovariance covariance;
+    grid.for_each_neighbor(cloud.points[i], [&](int j, float) {
+      const Eigen::Vector3f& other = cloud.normals[static_cast<std::size_t>(j)];
+      if (other.dot(normal) < kMinCosine) return;
+      const float a = other.dot(u);
+      const float b = other.dot(v);
+      covariance.uu += a * a;
+      covariance.uv += a * b;
+      covariance.vv += b * b;
+      ++covariance.count;
+    });
+    Eigen::Vector2f direction;
+    decompose(covariance, cloud.curvatures[i], direction);
+    cloud.principal_directions[i] = (direction.x() * u + direction.y() * v).normalized();
+  };
+  parallel_for(static_cast<int>(cloud.size()), num_threads, estimate, 64);
 }
 
 void estimate_normals(PointCloud& cloud, float radius, const Eigen::Vector3f& viewpoint,
                       int num_threads) {
   const NeighborGrid grid(cloud.points, radius);
   cloud.normals.assign(cloud.size(), Eigen::Vector3f::Zero());
-  parallel_for(
-      static_cast<int>(cloud.size()), num_threads,
-      [&](int index) {
-        const auto i = static_cast<std::size_t>(index);
-        Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-        Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
-        int count = 0;
-        grid.for_each_neighbor(cloud.points[i], [&](int j, float) {
-          const Eigen::Vector3f d = cloud.points[static_cast<std::size_t>(j)] - cloud.points[i];
-          sum += d;
-          squares += d * d.transpose();
-          ++count;
-        });
-        if (count < 3) return;
-        const Eigen::Matrix3f scatter = squares - sum * sum.transpose() / static_cast<float>(count);
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver(scatter);
-        Eigen::Vector3f normal = solver.eigenvectors().col(0);
-        if (normal.dot(viewpoint - cloud.points[i]) < 0) normal = -normal;
-        cloud.normals[i] = normal;
-      },
-      64);
+  const auto estimate = [&](int index) {
+    const auto i = static_cast<std::size_t>(index);
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+    int count = 0;
+    grid.for_each_neighbor(cloud.points[i], [&](int j, float) {
+      const Eigen::Vector3f d = cloud.points[static_cast<std::size_t>(j)] - cloud.points[i];
+      sum += d;
+      squares += d * d.transpose();
+      ++count;
+    });
+    if (count < 3) return;
+    const Eigen::Matrix3f scatter = squares - sum * sum.transpose() / static_cast<float>(count);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver(scatter);
+    Eigen::Vector3f normal = solver.eigenvectors().col(0);
+    if (normal.dot(viewpoint - cloud.points[i]) < 0) normal = -normal;
+    cloud.normals[i] = normal;
+  };
+  parallel_for(static_cast<int>(cloud.size()), num_threads, estimate, 64);
 }
 
 }  // namespace bpa

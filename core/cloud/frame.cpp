@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/cloud/frame.hpp"
 
-#include <sstream>
+#include <tuple>
+
+#include "core/base/concat.hpp"
 
 namespace bpa {
 namespace {
@@ -10,12 +12,12 @@ namespace {
 constexpr float kMaxDepth = 20.0f;
 constexpr std::size_t kMinValidPixels = 500;
 
-Status check_size(const char* field, std::size_t size, std::size_t expected, const char* what) {
+Status check_size(const Frame& frame, const char* field, std::size_t size, std::size_t channels) {
+  const auto expected = channels * static_cast<std::size_t>(frame.camera.width) *
+                        static_cast<std::size_t>(frame.camera.height);
   if (size == expected) return {};
-  std::ostringstream text;
-  text << "frame " << field << " has " << size << " values; it must have " << expected << " ("
-       << what << " of the camera)";
-  return invalid_argument(text.str());
+  return invalid_argument("frame ", field, " has ", size, " values; it must have ", expected, " (",
+                          channels == 1 ? "" : "3 x ", "width x height of the camera)");
 }
 
 Status check_roi(const Frame& frame) {
@@ -24,42 +26,30 @@ Status check_roi(const Frame& frame) {
                       roi.height <= frame.camera.height - roi.y)) {
     return {};
   }
-  std::ostringstream text;
-  text << "frame roi " << roi.width << "x" << roi.height << " at (" << roi.x << ", " << roi.y
-       << ") leaves the image of " << frame.camera.width << "x" << frame.camera.height
-       << "; it must lie inside";
-  return invalid_argument(text.str());
+  return invalid_argument("frame roi ", roi.width, "x", roi.height, " at (", roi.x, ", ", roi.y,
+                          ") leaves the image of ", frame.camera.width, "x", frame.camera.height,
+                          "; it must lie inside");
 }
 
 }  // namespace
 
 Status validate(const Frame& frame) {
   if (Status status = validate(frame.camera); !status.ok()) return status;
-  const auto pixels =
-      static_cast<std::size_t>(frame.camera.width) * static_cast<std::size_t>(frame.camera.height);
-  const char* one = "width x height";
-  if (Status s = check_size("depth", frame.depth.size(), pixels, one); !s.ok()) return s;
-  if (!frame.color.empty()) {
-    if (Status s = check_size("color", frame.color.size(), 3 * pixels, "3 x width x height");
-        !s.ok())
-      return s;
-  }
-  if (!frame.mask.empty()) {
-    if (Status s = check_size("mask", frame.mask.size(), pixels, one); !s.ok()) return s;
-  }
-  if (!frame.background.empty()) {
-    if (Status s = check_size("background", frame.background.size(), pixels, one); !s.ok())
-      return s;
+  if (Status s = check_size(frame, "depth", frame.depth.size(), 1); !s.ok()) return s;
+  const std::tuple<const char*, const std::vector<std::uint8_t>&, std::size_t> optional[] = {
+      {"color", frame.color, 3}, {"mask", frame.mask, 1}, {"background", frame.background, 1}};
+  for (const auto& [field, values, channels] : optional) {
+    if (values.empty()) continue;
+    if (Status s = check_size(frame, field, values.size(), channels); !s.ok()) return s;
   }
   if (Status s = check_roi(frame); !s.ok()) return s;
   std::size_t valid = 0;
   for (const float z : frame.depth) {
     if (z > 0 && z <= kMaxDepth && ++valid == kMinValidPixels) return {};
   }
-  std::ostringstream text;
-  text << "frame depth has " << valid << " valid pixels; it must have at least " << kMinValidPixels
-       << " with a depth in (0, " << kMaxDepth << "] m (0 and NaN mean no depth)";
-  return invalid_argument(text.str());
+  return invalid_argument("frame depth has ", valid, " valid pixels; it must have at least ",
+                          kMinValidPixels, " with a depth in (0, ", kMaxDepth,
+                          "] m (0 and NaN mean no depth)");
 }
 
 void clean_depth(Frame& frame) {

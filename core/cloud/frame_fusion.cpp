@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <sstream>
+#include <tuple>
 #include <utility>
 
+#include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/cloud/surface_map.hpp"
 
@@ -20,9 +21,7 @@ bool agree(float depth, float median) {
 
 template <class T>
 std::string changed(const char* field, const T& from, const T& to) {
-  std::ostringstream text;
-  text << field << " changed from " << from << " to " << to;
-  return text.str();
+  return concat(field, " changed from ", from, " to ", to);
 }
 
 struct MovedPixels {
@@ -77,24 +76,22 @@ void FrameFusion::set_max_frames(int max_frames) {
 }
 
 std::string FrameFusion::change_of(const Frame& frame) const {
-  const Camera& now = frame.camera;
-  if (now.width != camera_.width) return changed("camera.width", camera_.width, now.width);
-  if (now.height != camera_.height) return changed("camera.height", camera_.height, now.height);
-  constexpr std::pair<const char*, double Camera::*> kIntrinsics[] = {{"camera.fx", &Camera::fx},
-                                                                      {"camera.fy", &Camera::fy},
-                                                                      {"camera.cx", &Camera::cx},
-                                                                      {"camera.cy", &Camera::cy}};
-  for (const auto& [field, member] : kIntrinsics) {
-    if (std::abs(now.*member - camera_.*member) <= kSameCamera) continue;
-    return changed(field, camera_.*member, now.*member);
+  const Camera &was = camera_, &now = frame.camera;
+  if (now.width != was.width) return changed("camera.width", was.width, now.width);
+  if (now.height != was.height) return changed("camera.height", was.height, now.height);
+  const std::tuple<const char*, double, double> intrinsics[] = {{"camera.fx", was.fx, now.fx},
+                                                                {"camera.fy", was.fy, now.fy},
+                                                                {"camera.cx", was.cx, now.cx},
+                                                                {"camera.cy", was.cy, now.cy}};
+  for (const auto& [field, from, to] : intrinsics) {
+    if (std::abs(to - from) > kSameCamera) return changed(field, from, to);
   }
   if (frame.frame_id == frame_id_) return {};
   return changed("frame_id", "\"" + frame_id_ + "\"", "\"" + frame.frame_id + "\"");
 }
 
 std::string FrameFusion::hold(const Frame& frame) {
-  std::string restart;
-  if (!depths_.empty()) restart = change_of(frame);
+  const std::string restart = depths_.empty() ? "" : change_of(frame);
   if (!restart.empty()) depths_.clear();
   camera_ = frame.camera;
   frame_id_ = frame.frame_id;
@@ -128,7 +125,7 @@ FusedFrame FrameFusion::add(Frame frame, int num_threads) {
     all.moved += count.moved;
   }
   const double share =
-      static_cast<double>(all.moved) / static_cast<double>(std::max<std::size_t>(1, all.compared));
+      static_cast<double>(all.moved) / std::max(1.0, static_cast<double>(all.compared));
   if (share > kMostMoved) {
     out.restart = std::to_string(std::lround(100 * share)) + " % of the depths changed";
     depths_.erase(depths_.begin(), depths_.end() - 1);

@@ -9,11 +9,11 @@
 
 #include "core/cloud/frame.hpp"
 
-// What a camera that stands still sees of a scene that stands still: the depths of its last frames
-// combined, pixel by pixel, so that what noise is new in every frame shrinks with the root of their
-// number and a pixel without depth takes that of the frames which have it. What a sensor always
-// gets wrong stays (its calibration, its steps of disparity where there is less noise than steps,
-// surfaces that it never sees). An object that moves is seen as the newest frame shows it.
+// Combines the last depth images of a camera and a scene that stand still, pixel by pixel. Noise
+// that is new in every frame shrinks with the root of their number, and holes are filled from
+// frames that have a depth there. Errors that all frames share stay: calibration, steps of
+// disparity larger than the noise, surfaces that the sensor never sees. An object that moves is
+// seen as in the newest frame.
 
 namespace bpa {
 
@@ -21,8 +21,8 @@ namespace bpa {
 /// there (depth_noise()).
 constexpr float kFusionAgreement = 3;
 
-/// The robust mean of a pixel's depths: the mean of those that agree with the median, which is the
-/// lower of the two middle ones of an even number, so that nothing between two surfaces is made up.
+/// The robust mean of a pixel's depths: of those that agree with the median, which is the lower of
+/// the two middle ones of an even number, so that no depth between two surfaces is invented.
 struct AgreedDepth {
   float median = 0;  ///< metres
   float mean = 0;    ///< metres
@@ -34,8 +34,7 @@ AgreedDepth agreed_depth(std::span<float> depths);
 /// A frame whose depth is that of the frames so far.
 struct FusedFrame {
   Frame frame;  ///< The newest with all that belongs to it, but for depth and Frame::fused.
-  /// Why this frame begins anew, such as "camera.fx changed from 525 to 600"; empty when it does
-  /// not, and for the first.
+  /// Why this frame begins anew, such as "camera.fx changed from 525 to 600"; else empty.
   std::string restart;
 };
 
@@ -44,12 +43,10 @@ struct FusedFrame {
 ///  - the robust mean of its depths, where the newest one is among those that agree;
 ///  - the newest, where it is not: something moved;
 ///  - where the newest has none, the robust mean of the others', if at least half of all frames
-///    have one and most of these agree. So a hole in what has just come shows what was behind it
-///    until most frames have the hole.
+///    have one and most of these agree.
 ///
 /// Begins anew with a frame of another camera (size, intrinsics by more than kSameCamera,
-/// frame_id), and with one of which more than kMostMoved has moved: the camera did, or all of the
-/// scene. Not thread-safe.
+/// frame_id), and with one of which more than kMostMoved has moved. Not thread-safe.
 class FrameFusion {
  public:
   /// The share of the pixels with depth in the newest frame and in one before whose depth does not
@@ -67,8 +64,8 @@ class FrameFusion {
   /// frames give the same depth for any number of threads.
   FusedFrame add(Frame frame, int num_threads = 0);
 
-  /// Takes up a frame that a newer one will follow before anything is asked: does not compare it
-  /// with those before. Returns FusedFrame::restart, which is about the camera alone then.
+  /// Takes up a frame without comparing its depths, for when a newer one will follow before
+  /// anything is asked. Returns FusedFrame::restart, which is about the camera alone then.
   std::string hold(const Frame& frame);
 
  private:

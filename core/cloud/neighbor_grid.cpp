@@ -24,6 +24,16 @@ Eigen::Vector3i cell_at(const Eigen::Vector3f& point, float inverse_cell) {
   return (point * inverse_cell).array().floor().cast<int>();
 }
 
+std::vector<std::uint64_t> keys_of(std::span<const Eigen::Vector3f> points, float inverse_cell) {
+  std::vector<std::uint64_t> keys;
+  keys.reserve(points.size());
+  for (const Eigen::Vector3f& point : points) {
+    const Eigen::Vector3i cell = cell_at(point, inverse_cell);
+    keys.push_back(key_of(cell.x(), cell.y(), cell.z()));
+  }
+  return keys;
+}
+
 std::vector<std::uint32_t> sort_by_key(const std::vector<std::uint64_t>& keys) {
   std::vector<std::uint32_t> order(keys.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -32,37 +42,6 @@ std::vector<std::uint32_t> sort_by_key(const std::vector<std::uint64_t>& keys) {
   });
   return order;
 }
-
-}  // namespace
-
-NeighborGrid::NeighborGrid(std::span<const Eigen::Vector3f> points, float radius)
-    : inverse_cell_(1 / radius), radius_squared_(radius * radius) {
-  std::vector<std::uint64_t> keys(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3i cell = cell_of(points[i]);
-    keys[i] = key_of(cell.x(), cell.y(), cell.z());
-  }
-  order_ = sort_by_key(keys);
-  keys_.resize(points.size());
-  points_.resize(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    keys_[i] = keys[order_[i]];
-    points_[i] = points[order_[i]];
-  }
-}
-
-Eigen::Vector3i NeighborGrid::cell_of(const Eigen::Vector3f& point) const {
-  return cell_at(point, inverse_cell_);
-}
-
-std::pair<std::size_t, std::size_t> NeighborGrid::row(int x, int y, int z) const {
-  const auto first = std::lower_bound(keys_.begin(), keys_.end(), key_of(x, y, z));
-  const auto last = std::upper_bound(first, keys_.end(), key_of(x + 2, y, z));
-  return {static_cast<std::size_t>(first - keys_.begin()),
-          static_cast<std::size_t>(last - keys_.begin())};
-}
-
-namespace {
 
 struct Mean {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();
@@ -95,12 +74,29 @@ struct Mean {
 
 }  // namespace
 
-PointCloud downsample(const PointCloud& cloud, float spacing) {
-  std::vector<std::uint64_t> keys(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Vector3i cell = cell_at(cloud.points[i], 1 / spacing);
-    keys[i] = key_of(cell.x(), cell.y(), cell.z());
+NeighborGrid::NeighborGrid(std::span<const Eigen::Vector3f> points, float radius)
+    : inverse_cell_(1 / radius), radius_squared_(radius * radius) {
+  const std::vector<std::uint64_t> keys = keys_of(points, inverse_cell_);
+  order_ = sort_by_key(keys);
+  for (const std::uint32_t i : order_) {
+    keys_.push_back(keys[i]);
+    points_.push_back(points[i]);
   }
+}
+
+Eigen::Vector3i NeighborGrid::cell_of(const Eigen::Vector3f& point) const {
+  return cell_at(point, inverse_cell_);
+}
+
+std::pair<std::size_t, std::size_t> NeighborGrid::row(int x, int y, int z) const {
+  const auto first = std::lower_bound(keys_.begin(), keys_.end(), key_of(x, y, z));
+  const auto last = std::upper_bound(first, keys_.end(), key_of(x + 2, y, z));
+  return {static_cast<std::size_t>(first - keys_.begin()),
+          static_cast<std::size_t>(last - keys_.begin())};
+}
+
+PointCloud downsample(const PointCloud& cloud, float spacing) {
+  const std::vector<std::uint64_t> keys = keys_of(cloud.points, 1 / spacing);
   const std::vector<std::uint32_t> order = sort_by_key(keys);
   PointCloud out;
   for (std::size_t first = 0; first < order.size();) {

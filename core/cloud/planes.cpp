@@ -21,6 +21,8 @@ constexpr std::size_t kMinCandidates = 100;   // pixels; with fewer the search e
 constexpr int kMinInliers = 10;
 constexpr int kFits = 3;
 
+using Indices = std::vector<std::size_t>;  // of pixels
+
 float plane_tolerance(float z) { return kToleranceFloor + kToleranceSigmas * depth_noise(z); }
 
 bool on_plane(const SurfaceMap& map, std::size_t i, const Plane& plane) {
@@ -34,12 +36,11 @@ struct PlaneFit {
   int count = 0;
 };
 
-PlaneFit fit(const SurfaceMap& map, const std::vector<int>& candidates, const Plane& start) {
+PlaneFit fit(const SurfaceMap& map, const Indices& candidates, const Plane& start) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   PlaneFit result;
-  for (int index : candidates) {
-    const auto i = static_cast<std::size_t>(index);
+  for (const std::size_t i : candidates) {
     if (!on_plane(map, i, start) || map.normals[i].dot(start.normal) < kMinNormalCosine) continue;
     const Eigen::Vector3d p = map.points[i].cast<double>();
     sum += p;
@@ -57,19 +58,19 @@ PlaneFit fit(const SurfaceMap& map, const std::vector<int>& candidates, const Pl
   return result;
 }
 
-PlaneFit best_plane(const SurfaceMap& map, const std::vector<int>& candidates,
-                    const PlaneOptions& options, std::uint64_t stream) {
+PlaneFit best_plane(const SurfaceMap& map, const Indices& candidates, const PlaneOptions& options,
+                    std::uint64_t stream) {
   RandomStream random(options.seed, stream);
   Plane best;
   int best_count = -1;
   const std::size_t step = std::max<std::size_t>(1, candidates.size() / kCountedPixels);
   for (int draw = 0; draw < options.num_samples; ++draw) {
-    const auto i = static_cast<std::size_t>(
-        candidates[static_cast<std::size_t>(random.index(static_cast<int>(candidates.size())))]);
+    const auto drawn = static_cast<std::size_t>(random.index(static_cast<int>(candidates.size())));
+    const std::size_t i = candidates[drawn];
     const Plane plane{map.normals[i], map.normals[i].dot(map.points[i])};
     int count = 0;
     for (std::size_t k = 0; k < candidates.size(); k += step) {
-      const auto j = static_cast<std::size_t>(candidates[k]);
+      const std::size_t j = candidates[k];
       count += on_plane(map, j, plane) && map.normals[j].dot(plane.normal) > kMinNormalCosine;
     }
     if (count > best_count) {
@@ -77,8 +78,7 @@ PlaneFit best_plane(const SurfaceMap& map, const std::vector<int>& candidates,
       best = plane;
     }
   }
-  PlaneFit result;
-  result.plane = best;
+  PlaneFit result{best};
   for (int iteration = 0; iteration < kFits; ++iteration) {
     result = fit(map, candidates, result.plane);
     if (result.count < kMinInliers) break;
@@ -90,11 +90,9 @@ PlaneFit best_plane(const SurfaceMap& map, const std::vector<int>& candidates,
 
 std::vector<Plane> label_background_planes(SurfaceMap& map, const PlaneOptions& options) {
   if (!options.label_planes) return {};
-  std::vector<int> candidates;
+  Indices candidates;
   for (std::size_t i = 0; i < map.size(); ++i) {
-    if (map.searched[i] && map.normals[i].squaredNorm() > 0) {
-      candidates.push_back(static_cast<int>(i));
-    }
+    if (map.searched[i] && map.normals[i].squaredNorm() > 0) candidates.push_back(i);
   }
   const double min_count = options.min_fraction * static_cast<double>(candidates.size());
   std::vector<Plane> planes;
@@ -108,7 +106,7 @@ std::vector<Plane> label_background_planes(SurfaceMap& map, const PlaneOptions& 
                           map.normals[i].dot(found.plane.normal) > kMinBackgroundCosine;
       if (map.searched[i] && agrees && on_plane(map, i, found.plane)) map.searched[i] = 0;
     }
-    std::erase_if(candidates, [&](int i) { return !map.searched[static_cast<std::size_t>(i)]; });
+    std::erase_if(candidates, [&](std::size_t i) { return !map.searched[i]; });
   }
   return planes;
 }

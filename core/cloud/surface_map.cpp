@@ -31,16 +31,24 @@ Camera reduced_camera(const Camera& camera, int reduction) {
           camera.fy * scale,        (camera.cx - shift) * scale, (camera.cy - shift) * scale};
 }
 
-// The mean of the block's depths near its median, 0 when less than half of the block has a depth.
-float block_depth(const Frame& frame, int u0, int v0, int reduction) {
-  float values[kMaxReduction * kMaxReduction];
-  int count = 0;
-  for (int v = v0; v < v0 + reduction; ++v) {
-    for (int u = u0; u < u0 + reduction; ++u) {
-      const float z = frame.depth[static_cast<std::size_t>(v * frame.camera.width + u)];
-      if (z > 0 && std::isfinite(z)) values[count++] = z;
+// Calls visit(u, v, depth) for the pixels of the frame that pixel (column, row) of the map stands
+// for.
+template <class Visit>
+void for_each_of_block(const Frame& frame, int column, int row, int reduction, const Visit& visit) {
+  for (int v = row * reduction; v < (row + 1) * reduction; ++v) {
+    for (int u = column * reduction; u < (column + 1) * reduction; ++u) {
+      visit(u, v, frame.depth[static_cast<std::size_t>(v * frame.camera.width + u)]);
     }
   }
+}
+
+// The mean of the block's depths near its median, 0 when less than half of the block has a depth.
+float block_depth(const Frame& frame, int column, int row, int reduction) {
+  float values[kMaxReduction * kMaxReduction];
+  int count = 0;
+  for_each_of_block(frame, column, row, reduction, [&](int, int, float z) {
+    if (z > 0 && std::isfinite(z)) values[count++] = z;
+  });
   if (2 * count < reduction * reduction) return 0;
   std::sort(values, values + count);
   const float median = values[(count - 1) / 2];
@@ -68,16 +76,13 @@ bool pixel_searched(const Frame& frame, int u, int v) {
 // Whether at least half of the block's pixels on the surface at `depth`, which stands for the
 // block, are searched. Any of them would let a mask grow by up to a block to each side, and all of
 // them shrink it; half keeps its area, and pixels on another surface have no say.
-bool block_searched(const Frame& frame, int u0, int v0, int reduction, float depth) {
+bool block_searched(const Frame& frame, int column, int row, int reduction, float depth) {
   int searched = 0, on_surface = 0;
-  for (int v = v0; v < v0 + reduction; ++v) {
-    for (int u = u0; u < u0 + reduction; ++u) {
-      const float z = frame.depth[static_cast<std::size_t>(v * frame.camera.width + u)];
-      if (!(std::abs(z - depth) <= same_surface_gate(depth))) continue;
-      ++on_surface;
-      searched += pixel_searched(frame, u, v);
-    }
-  }
+  for_each_of_block(frame, column, row, reduction, [&](int u, int v, float z) {
+    if (!(std::abs(z - depth) <= same_surface_gate(depth))) return;
+    ++on_surface;
+    searched += pixel_searched(frame, u, v);
+  });
   return searched > 0 && 2 * searched >= on_surface;
 }
 
@@ -131,33 +136,27 @@ SurfaceMap surface_map(const Frame& frame, const SurfaceMapOptions& options) {
   map.points.resize(size);
   map.normals.assign(size, Eigen::Vector3f::Zero());
   map.searched.assign(size, 0);
-  parallel_for(
-      map.height(), options.num_threads,
-      [&](int v) {
-        for (int u = 0; u < width; ++u) {
-          const auto index = static_cast<std::size_t>(v * width + u);
-          const float z = block_depth(frame, u * map.reduction, v * map.reduction, map.reduction);
-          map.depth[index] = z;
-          map.points[index] = map.camera.unproject(u, v, z).cast<float>();
-          map.searched[index] =
-              z > 0 && z <= static_cast<float>(options.max_range_m) &&
-              block_searched(frame, u * map.reduction, v * map.reduction, map.reduction, z);
-        }
-      },
-      16);
-  parallel_for(
-      map.height(), options.num_threads,
-      [&](int v) {
-        for (int u = 0; u < width; ++u) {
-          const auto index = static_cast<std::size_t>(v * width + u);
-          if (map.depth[index] <= 0) continue;
-          const double pixels = options.normal_radius_m * map.camera.fx / map.depth[index];
-          const int radius =
-              std::clamp(static_cast<int>(std::lround(pixels)), kMinWindow, kMaxWindow);
-          map.normals[index] = fit_normal(map, u, v, radius);
-        }
-      },
-      8);
+  const auto measure = [&](int v) {
+    for (int u = 0; u < width; ++u) {
+      const auto i = static_cast<std::size_t>(v * width + u);
+      const float z = block_depth(frame, u, v, map.reduction);
+      map.depth[i] = z;
+      map.points[i] = map.camera.unproject(u, v, z).cast<float>();
+      map.searched[i] = z > 0 && z <= static_cast<float>(options.max_range_m) &&
+                        block_searched(frame, u, v, map.reduction, z);
+    }
+  };
+  parallel_for(map.height(), options.num_threads, measure, 16);
+  const auto fit_normals = [&](int v) {
+    for (int u = 0; u < width; ++u) {
+      const auto i = static_cast<std::size_t>(v * width + u);
+      if (map.depth[i] <= 0) continue;
+      const double pixels = options.normal_radius_m * map.camera.fx / map.depth[i];
+      const int radius = std::clamp(static_cast<int>(std::lround(pixels)), kMinWindow, kMaxWindow);
+      map.normals[i] = fit_normal(map, u, v, radius);
+    }
+  };
+  parallel_for(map.height(), options.num_threads, fit_normals, 8);
   return map;
 }
 

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sstream>
+
+#include "core/base/status.hpp"
+
+// Texts put together of parts, and statuses that say them. For source files.
+
+namespace bpa {
+
+/// The parts one after the other, as a stream writes them.
+template <class... Parts>
+std::string concat(const Parts&... parts) {
+  std::ostringstream text;
+  (text << ... << parts);
+  return text.str();
+}
+
+/// The message is concat(first, parts...), in the functions below too.
+template <class First, class... Parts>
+Status invalid_argument(const First& first, const Parts&... parts) {
+  return Status(StatusCode::invalid_argument, concat(first, parts...));
+}
+template <class... Parts>
+Status not_found(const Parts&... parts) {
+  return Status(StatusCode::not_found, concat(parts...));
+}
+template <class... Parts>
+Status corrupt(const Parts&... parts) {
+  return Status(StatusCode::corrupt, concat(parts...));
+}
+template <class... Parts>
+Status unavailable(const Parts&... parts) {
+  return Status(StatusCode::unavailable, concat(parts...));
+}
+
+}  // namespace bpa
