@@ -17,20 +17,6 @@ namespace {
 
 constexpr double kMillimetres = 1000;
 
-Json symmetries_json(const SymmetryGroup& group, Json info) {
-  for (const Pose& pose : group.discrete) {
-    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-    matrix.topLeftCorner<3, 3>() = pose.matrix();
-    matrix.topRightCorner<3, 1>() = kMillimetres * pose.translation;
-    info["symmetries_discrete"].push_back(matrix);
-  }
-  for (const ContinuousSymmetry& symmetry : group.continuous) {
-    info["symmetries_continuous"].push_back(
-        {{"axis", symmetry.axis}, {"offset", Eigen::Vector3d(kMillimetres * symmetry.point)}});
-  }
-  return info;
-}
-
 Json model_json(const BopMesh& model) {
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& vertex : model.mesh.vertices) box.extend(vertex);
@@ -40,70 +26,68 @@ Json model_json(const BopMesh& model) {
                {"min_x", low.x()},   {"min_y", low.y()},
                {"min_z", low.z()},   {"size_x", size.x()},
                {"size_y", size.y()}, {"size_z", size.z()}};
-  return symmetries_json(model.symmetry, std::move(info));
+  for (const Pose& pose : model.symmetry.discrete) {
+    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+    matrix.topLeftCorner<3, 3>() = pose.matrix();
+    matrix.topRightCorner<3, 1>() = kMillimetres * pose.translation;
+    info["symmetries_discrete"].push_back(matrix);
+  }
+  for (const ContinuousSymmetry& symmetry : model.symmetry.continuous) {
+    info["symmetries_continuous"].push_back(
+        {{"axis", symmetry.axis}, {"offset", Eigen::Vector3d(kMillimetres * symmetry.point)}});
+  }
+  return info;
 }
 
-struct MaskExtent {
-  int count = 0;
-  Json box = {-1, -1, -1, -1};  // x, y, width, height, as the toolkit does
-};
-
-MaskExtent extent(const std::vector<std::uint8_t>& mask, int width) {
-  MaskExtent result;
-  int left = width, right = -1, top = -1, bottom = -1;
-  for (std::size_t i = 0; i < mask.size(); ++i) {
-    if (mask[i] == 0) continue;
-    const int x = static_cast<int>(i) % width;
-    const int y = static_cast<int>(i) / width;
-    left = std::min(left, x);
-    right = std::max(right, x);
-    if (top < 0) top = y;
-    bottom = y;
-    ++result.count;
+/// x, y, width and height of the pixels of a mask, as the toolkit does.
+Json box_json(const std::vector<std::uint8_t>& mask, int width) {
+  Eigen::AlignedBox2i box;
+  for (int i = 0; i < static_cast<int>(mask.size()); ++i) {
+    if (mask[static_cast<std::size_t>(i)]) box.extend(Eigen::Vector2i(i % width, i / width));
   }
-  if (result.count > 0) result.box = {left, top, right - left + 1, bottom - top + 1};
-  return result;
+  if (box.isEmpty()) return {-1, -1, -1, -1};
+  const Eigen::Vector2i size = box.sizes() + Eigen::Vector2i::Ones();
+  return {box.min().x(), box.min().y(), size.x(), size.y()};
 }
 
 Json info_json(const BopInstanceRecord& instance, const Frame& frame) {
-  const MaskExtent seen = extent(instance.mask_visible, frame.camera.width);
-  if (instance.mask.empty()) {
-    return {{"bbox_visib", seen.box},
-            {"px_count_visib", seen.count},
-            {"visib_fract", instance.visible_fraction}};
-  }
-  const MaskExtent all = extent(instance.mask, frame.camera.width);
+  const auto count = [](const auto& mask) {
+    return mask.size() - static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 0));
+  };
+  const std::size_t seen = count(instance.mask_visible);
+  Json info = {{"bbox_visib", box_json(instance.mask_visible, frame.camera.width)},
+               {"px_count_visib", seen},
+               {"visib_fract", instance.visible_fraction}};
+  if (instance.mask.empty()) return info;
+  const std::size_t all = count(instance.mask);
   int valid = 0;
   for (std::size_t i = 0; i < instance.mask.size(); ++i) {
     valid += instance.mask[i] != 0 && frame.depth[i] > 0;
   }
-  return {{"bbox_obj", all.box},
-          {"bbox_visib", seen.box},
-          {"px_count_all", all.count},
-          {"px_count_valid", valid},
-          {"px_count_visib", seen.count},
-          {"visib_fract", all.count > 0 ? static_cast<double>(seen.count) / all.count : 0.0}};
+  info["bbox_obj"] = box_json(instance.mask, frame.camera.width);
+  info["px_count_all"] = all;
+  info["px_count_valid"] = valid;
+  info["visib_fract"] = all > 0 ? static_cast<double>(seen) / static_cast<double>(all) : 0.0;
+  return info;
 }
 
 Status write_mask(const std::string& path, const Frame& frame, const char* field,
                   const std::vector<std::uint8_t>& mask) {
   if (mask.empty()) return {};
   if (mask.size() != frame.depth.size()) {
-    return invalid_argument(std::string(field) + " has " + std::to_string(mask.size()) +
+    return invalid_argument(field, " has ", mask.size(),
                             " values; it must have one for each pixel of the frame");
   }
-  std::vector<std::uint8_t> bytes(mask.size());
-  for (std::size_t i = 0; i < mask.size(); ++i) bytes[i] = mask[i] != 0 ? 255 : 0;
+  std::vector<std::uint8_t> bytes = mask;
+  for (std::uint8_t& value : bytes) value = value != 0 ? 255 : 0;
   return write_mask_png(path, frame.camera.width, frame.camera.height, bytes);
 }
 
 Status write_images(const fs::path& folder, int im_id, const Frame& frame, double depth_scale_mm) {
   GrayImage depth{frame.camera.width, frame.camera.height, {}};
-  depth.pixels.resize(frame.depth.size());
-  for (std::size_t i = 0; i < frame.depth.size(); ++i) {
-    const double units = std::round(frame.depth[i] * kMillimetres / depth_scale_mm);
-    depth.pixels[i] =
-        units > 0 && units <= 65535 ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
+  for (const float z : frame.depth) {
+    const double units = std::round(z * kMillimetres / depth_scale_mm);
+    depth.pixels.push_back(static_cast<std::uint16_t>(units > 0 && units <= 65535 ? units : 0.0));
   }
   const std::string name = bop_number(im_id) + ".png";
   if (Status s = write_gray_png((folder / "depth" / name).string(), depth); !s.ok()) return s;
@@ -168,13 +152,14 @@ Status BopSceneWriter::add(int im_id, const Frame& frame,
 }
 
 Status BopSceneWriter::finish() {
-  const fs::path folder(folder_);
-  const auto write = [&folder](const char* name, const Json& json) {
-    return write_file((folder / name).string(), json.dump(1) + "\n");
-  };
-  if (Status s = write("scene_camera.json", records_->camera); !s.ok()) return s;
-  if (Status s = write("scene_gt.json", records_->gt); !s.ok()) return s;
-  return write("scene_gt_info.json", records_->info);
+  const std::pair<const char*, const Json&> files[] = {{"scene_camera.json", records_->camera},
+                                                       {"scene_gt.json", records_->gt},
+                                                       {"scene_gt_info.json", records_->info}};
+  for (const auto& [name, json] : files) {
+    const std::string path = (fs::path(folder_) / name).string();
+    if (Status s = write_file(path, json.dump(1) + "\n"); !s.ok()) return s;
+  }
+  return {};
 }
 
 }  // namespace bpa::io

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/io/camera_file.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include <yaml-cpp/yaml.h>
 
@@ -13,15 +13,12 @@ namespace bpa::io {
 namespace {
 
 Status check(const std::string& path, const CameraFile& file) {
-  const auto positive = [&path](const char* field, double value) -> Status {
-    if (std::isfinite(value) && value > 0) return {};
-    std::ostringstream text;
-    text << path << ": " << field << " is " << value << "; it must be positive";
-    return invalid_argument(text.str());
-  };
-  if (Status s = positive("fx", file.camera.fx); !s.ok()) return s;
-  if (Status s = positive("fy", file.camera.fy); !s.ok()) return s;
-  if (Status s = positive("depth_scale", file.depth_scale_mm); !s.ok()) return s;
+  const std::pair<const char*, double> positive[] = {
+      {"fx", file.camera.fx}, {"fy", file.camera.fy}, {"depth_scale", file.depth_scale_mm}};
+  for (const auto& [field, value] : positive) {
+    if (std::isfinite(value) && value > 0) continue;
+    return invalid_argument(path, ": ", field, " is ", value, "; it must be positive");
+  }
   if (file.camera.width == 0 && file.camera.height == 0) return {};
   Status status = validate(file.camera);
   if (!status.ok()) status.message = path + ": " + status.message;
@@ -32,16 +29,12 @@ CameraFile from_json(const Json& json) {
   CameraFile file;
   Camera& camera = file.camera;
   if (json.contains("cam_K")) {
-    const auto k = json.at("cam_K").get<std::array<double, 9>>();
-    camera.fx = k[0];
-    camera.cx = k[2];
-    camera.fy = k[4];
-    camera.cy = k[5];
+    camera = camera_of(json.at("cam_K").get<std::array<double, 9>>());
   } else {
-    camera.fx = json.at("fx").get<double>();
-    camera.fy = json.at("fy").get<double>();
-    camera.cx = json.at("cx").get<double>();
-    camera.cy = json.at("cy").get<double>();
+    json.at("fx").get_to(camera.fx);
+    json.at("fy").get_to(camera.fy);
+    json.at("cx").get_to(camera.cx);
+    json.at("cy").get_to(camera.cy);
   }
   camera.width = json.value("width", 0);
   camera.height = json.value("height", 0);
@@ -51,18 +44,13 @@ CameraFile from_json(const Json& json) {
 
 CameraFile from_yaml(const YAML::Node& yaml) {
   CameraFile file;
-  Camera& camera = file.camera;
-  camera.width = yaml["image_width"].as<int>();
-  camera.height = yaml["image_height"].as<int>();
-  const auto k = yaml["camera_matrix"]["data"].as<std::array<double, 9>>();
-  camera.fx = k[0];
-  camera.cx = k[2];
-  camera.fy = k[4];
-  camera.cy = k[5];
+  file.camera = camera_of(yaml["camera_matrix"]["data"].as<std::array<double, 9>>());
+  file.camera.width = yaml["image_width"].as<int>();
+  file.camera.height = yaml["image_height"].as<int>();
   if (const YAML::Node distortion = yaml["distortion_coefficients"]) {
     file.distortion = distortion["data"].as<std::vector<double>>();
-    for (const double d : file.distortion) {
-      if (d != 0) file.note = "its distortion is ignored: images must be rectified";
+    if (std::ranges::any_of(file.distortion, [](double d) { return d != 0; })) {
+      file.note = "its distortion is ignored: images must be rectified";
     }
   }
   if (const YAML::Node scale = yaml["depth_scale"]) file.depth_scale_mm = scale.as<double>();
@@ -75,11 +63,10 @@ Result<CameraFile> read_yaml(const std::string& path) {
   try {
     return from_yaml(YAML::Load(*bytes));
   } catch (const std::exception& error) {
-    return Status(StatusCode::corrupt,
-                  path +
-                      " is not a ROS camera_info file (image_width, image_height, "
-                      "camera_matrix.data of 9): " +
-                      error.what());
+    return corrupt(path,
+                   " is not a ROS camera_info file (image_width, image_height, "
+                   "camera_matrix.data of 9): ",
+                   error.what());
   }
 }
 
@@ -90,9 +77,7 @@ Result<CameraFile> read_camera(const std::string& path) {
   Result<CameraFile> file =
       Status(StatusCode::unsupported, path + " is not a camera file; use .json or .yaml");
   if (extension == "json") {
-    const Result<Json> json = read_json(path);
-    if (!json.ok()) return json.status();
-    file = with_json(path, [&]() -> Result<CameraFile> { return from_json(*json); });
+    file = read_json(path, [](const Json& json) -> Result<CameraFile> { return from_json(json); });
   } else if (extension == "yaml" || extension == "yml") {
     file = read_yaml(path);
   }

@@ -13,15 +13,17 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include "core/base/concat.hpp"
+
 namespace bpa::io {
 namespace fs = std::filesystem;
 Result<std::string> read_file(const std::string& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) {
-    return invalid_argument(path + " is a folder; a file is needed");
+    return invalid_argument(path, " is a folder; a file is needed");
   }
   std::ifstream in(path, std::ios::binary);
-  if (!in) return Status(StatusCode::not_found, path + " cannot be opened");
+  if (!in) return not_found(path, " cannot be opened");
   std::string bytes;
   if (const auto size = fs::file_size(path, error); !error) {
     bytes.resize(size);
@@ -34,7 +36,7 @@ Result<std::string> read_file(const std::string& path) {
     rest << in.rdbuf();
     bytes += std::move(rest).str();
   }
-  if (in.bad()) return Status(StatusCode::corrupt, path + " cannot be read");
+  if (in.bad()) return corrupt(path, " cannot be read");
   return bytes;
 }
 
@@ -42,8 +44,7 @@ Status make_folder(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (!error && fs::is_directory(path, error)) return {};
-  return Status(StatusCode::unavailable,
-                path + " cannot be made: " + (error ? error.message() : "it is not a folder"));
+  return unavailable(path, " cannot be made: ", error ? error.message() : "it is not a folder");
 }
 
 Status write_file(const std::string& path, std::string_view bytes) {
@@ -61,7 +62,7 @@ Status write_file(const std::string& path, std::string_view bytes) {
   }
   if (written && std::rename(temporary.c_str(), path.c_str()) == 0) return {};
   std::remove(temporary.c_str());
-  return Status(StatusCode::unavailable, path + " cannot be written");
+  return unavailable(path, " cannot be written");
 }
 
 std::uint32_t crc32(std::string_view bytes, std::uint32_t seed) {

@@ -2,17 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/io/frame_file.hpp"
 
+#include "core/base/concat.hpp"
 #include "core/io/image_file.hpp"
 
 namespace bpa::io {
-namespace {
-
-std::string size_text(int width, int height) {
-  return std::to_string(width) + "x" + std::to_string(height);
-}
-
-}  // namespace
-
 Result<Frame> read_frame(const std::string& depth_path, const std::string& color_path,
                          const Camera& camera, double depth_scale_mm) {
   const Result<GrayImage> depth = read_gray_png(depth_path);
@@ -25,23 +18,22 @@ Result<Frame> read_frame(const std::string& depth_path, const std::string& color
   }
   if (Status status = validate(frame.camera); !status.ok()) return status;
   if (depth->width != frame.camera.width || depth->height != frame.camera.height) {
-    return invalid_argument("depth image " + depth_path + " is " +
-                            size_text(depth->width, depth->height) + "; it must be " +
-                            size_text(frame.camera.width, frame.camera.height) + " as the camera");
+    return invalid_argument("depth image ", depth_path, " is ", depth->width, "x", depth->height,
+                            "; it must be ", frame.camera.width, "x", frame.camera.height,
+                            " as the camera");
   }
   if (!color_path.empty()) {
     Result<ColorImage> color = read_color_image(color_path);
     if (!color.ok()) return color.status();
     if (color->width != depth->width || color->height != depth->height) {
-      return invalid_argument(
-          "depth image " + depth_path + " is " + size_text(depth->width, depth->height) +
-          "; it must have the size of the colour image, " + size_text(color->width, color->height));
+      return invalid_argument("depth image ", depth_path, " is ", depth->width, "x", depth->height,
+                              "; it must have the size of the colour image, ", color->width, "x",
+                              color->height);
     }
     frame.color = std::move(color->pixels);
   }
-  frame.depth.resize(depth->pixels.size());
-  for (std::size_t i = 0; i < frame.depth.size(); ++i) {
-    frame.depth[i] = static_cast<float>(depth->pixels[i] * depth_scale_mm * 0.001);
+  for (const std::uint16_t units : depth->pixels) {
+    frame.depth.push_back(static_cast<float>(units * depth_scale_mm * 0.001));
   }
   return frame;
 }

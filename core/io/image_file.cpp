@@ -4,12 +4,12 @@
 // anything, so PNG bytes are checked chunk by chunk first, and only sound files reach it.
 #include "core/io/image_file.hpp"
 
-#include <cstring>
 #include <fstream>
 #include <string_view>
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "core/base/concat.hpp"
 #include "core/io/file_bytes.hpp"
 
 namespace bpa::io {
@@ -24,34 +24,18 @@ std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-Status corrupt(const std::string& path, const std::string& why) {
-  return Status(StatusCode::corrupt, path + " " + why);
-}
-
 Result<ImageSize> parse_png_header(const std::string& path, std::string_view bytes) {
-  if (bytes.substr(0, 8) != kPngSignature) return corrupt(path, "is not a PNG image");
-  if (bytes.size() < 33 || bytes.substr(12, 4) != "IHDR") return corrupt(path, "is truncated");
+  if (bytes.substr(0, 8) != kPngSignature) return corrupt(path, " is not a PNG image");
+  if (bytes.size() < 33 || bytes.substr(12, 4) != "IHDR") return corrupt(path, " is truncated");
   ImageSize size;
   size.width = static_cast<int>(big_endian(bytes, 16) & 0x7fffffff);
   size.height = static_cast<int>(big_endian(bytes, 20) & 0x7fffffff);
   size.bit_depth = static_cast<std::uint8_t>(bytes[24]);
-  switch (bytes[25]) {
-    case 0:
-      size.channels = 1;
-      break;
-    case 4:
-      size.channels = 2;
-      break;
-    case 6:
-      size.channels = 4;
-      break;
-    default:
-      size.channels = 3;  // rgb, or a palette of it
-  }
+  const char color_type = bytes[25];
+  size.channels = color_type == 0 ? 1 : color_type == 4 ? 2 : color_type == 6 ? 4 : 3;
   if (size.width < 1 || size.height < 1 || size.width > kMaxSide || size.height > kMaxSide) {
-    return invalid_argument(path + " has " + std::to_string(size.width) + "x" +
-                            std::to_string(size.height) + " pixels; each side must be 1 to " +
-                            std::to_string(kMaxSide));
+    return invalid_argument(path, " has ", size.width, "x", size.height,
+                            " pixels; each side must be 1 to ", kMaxSide);
   }
   return size;
 }
@@ -64,23 +48,35 @@ Status check_png_chunks(const std::string& path, std::string_view bytes) {
     if (length > bytes.size() - at - 12) break;
     const std::string_view content = bytes.substr(at + 4, length + 4);
     if (crc32(content) != big_endian(bytes, at + 8 + length)) {
-      return corrupt(path, "is damaged: a PNG chunk does not match its checksum");
+      return corrupt(path, " is damaged: a PNG chunk does not match its checksum");
     }
     if (content.substr(0, 4) == "IEND") return {};
     at += 12 + length;
   }
-  return corrupt(path, "is truncated");
+  return corrupt(path, " is truncated");
 }
 
-Result<cv::Mat> decode(const std::string& path, const std::string& bytes, int flags) {
-  try {
-    const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
-    cv::Mat image = cv::imdecode(buffer, flags);
-    if (image.empty()) return corrupt(path, "is not an image that can be decoded");
-    return image;
-  } catch (const std::exception&) {
-    return corrupt(path, "is not an image that can be decoded");
+/// Decodes a PNG whose header passes check(size); with `jpeg_too`, a JPEG, whose header is not
+/// read.
+template <class Check>
+Result<cv::Mat> read_image(const std::string& path, int flags, bool jpeg_too, const Check& check) {
+  const Result<std::string> bytes = read_file(path);
+  if (!bytes.ok()) return bytes.status();
+  if (!jpeg_too || !bytes->starts_with("\xff\xd8\xff")) {
+    const Result<ImageSize> size = parse_png_header(path, *bytes);
+    if (!size.ok()) return size.status();
+    if (Status status = check(*size); !status.ok()) return status;
+    if (Status status = check_png_chunks(path, *bytes); !status.ok()) return status;
   }
+  cv::Mat image;
+  try {
+    image = cv::imdecode(
+        cv::Mat(1, static_cast<int>(bytes->size()), CV_8U, const_cast<char*>(bytes->data())),
+        flags);
+  } catch (const std::exception&) {
+  }
+  if (image.empty()) return corrupt(path, " is not an image that can be decoded");
+  return image;
 }
 
 /// Writes width x height pixels of an OpenCV type, of which `pixels` holds `channels` values each.
@@ -90,18 +86,17 @@ Status encode(const std::string& path, int width, int height, int type, int chan
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
       pixels.size() !=
           static_cast<std::size_t>(width) * static_cast<std::size_t>(height * channels)) {
-    return invalid_argument(path + ": the image has " + std::to_string(pixels.size()) +
-                            " values; it must have " + std::to_string(channels) + " x " +
-                            std::to_string(width) + " x " + std::to_string(height));
+    return invalid_argument(path, ": the image has ", pixels.size(), " values; it must have ",
+                            channels, " x ", width, " x ", height);
   }
   const cv::Mat image(height, width, type, const_cast<T*>(pixels.data()));
   std::vector<std::uint8_t> bytes;
+  bool encoded = false;
   try {
-    if (!cv::imencode(".png", image, bytes)) bytes.clear();
+    encoded = cv::imencode(".png", image, bytes);
   } catch (const std::exception&) {
-    bytes.clear();
   }
-  if (bytes.empty()) return Status(StatusCode::internal, path + " cannot be encoded");
+  if (!encoded) return Status(StatusCode::internal, path + " cannot be encoded");
   return write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
@@ -113,59 +108,37 @@ void swap_red_and_blue(std::vector<std::uint8_t>& pixels) {
 
 Result<ImageSize> read_png_size(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  if (!in) return Status(StatusCode::not_found, path + " cannot be opened");
+  if (!in) return not_found(path, " cannot be opened");
   char head[33];
   in.read(head, sizeof head);
   return parse_png_header(path, {head, static_cast<std::size_t>(in.gcount())});
 }
 
 Result<ColorImage> read_color_image(const std::string& path) {
-  const Result<std::string> bytes = read_file(path);
-  if (!bytes.ok()) return bytes.status();
-  const bool jpeg = bytes->substr(0, 3) == "\xff\xd8\xff";
-  if (!jpeg) {
-    const Result<ImageSize> size = parse_png_header(path, *bytes);
-    if (!size.ok()) return size.status();
-    if (size->bit_depth != 8) {
-      return invalid_argument(path + " has " + std::to_string(size->bit_depth) +
-                              " bits a channel; a colour image must have 8");
-    }
-    if (Status status = check_png_chunks(path, *bytes); !status.ok()) return status;
-  }
+  const auto check = [&path](const ImageSize& size) -> Status {
+    if (size.bit_depth == 8) return {};
+    return invalid_argument(path, " has ", size.bit_depth,
+                            " bits a channel; a colour image must have 8");
+  };
   const Result<cv::Mat> image =
-      decode(path, *bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+      read_image(path, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION, true, check);
   if (!image.ok()) return image.status();
-  ColorImage result;
-  result.width = image->cols;
-  result.height = image->rows;
-  result.pixels.assign(image->datastart, image->dataend);
+  ColorImage result{image->cols, image->rows, {image->datastart, image->dataend}};
   swap_red_and_blue(result.pixels);
   return result;
 }
 
 Result<GrayImage> read_gray_png(const std::string& path) {
-  const Result<std::string> bytes = read_file(path);
-  if (!bytes.ok()) return bytes.status();
-  const Result<ImageSize> size = parse_png_header(path, *bytes);
-  if (!size.ok()) return size.status();
-  if (size->channels != 1 || (size->bit_depth != 8 && size->bit_depth != 16)) {
-    return invalid_argument(path + " has " + std::to_string(size->channels) + " channels of " +
-                            std::to_string(size->bit_depth) +
+  const auto check = [&path](const ImageSize& size) -> Status {
+    if (size.channels == 1 && (size.bit_depth == 8 || size.bit_depth == 16)) return {};
+    return invalid_argument(path, " has ", size.channels, " channels of ", size.bit_depth,
                             " bits; a depth image must have 1 of 16");
-  }
-  if (Status status = check_png_chunks(path, *bytes); !status.ok()) return status;
-  const Result<cv::Mat> image = decode(path, *bytes, cv::IMREAD_UNCHANGED);
+  };
+  const Result<cv::Mat> image = read_image(path, cv::IMREAD_UNCHANGED, false, check);
   if (!image.ok()) return image.status();
-  GrayImage result;
-  result.width = image->cols;
-  result.height = image->rows;
-  const std::size_t count = image->total();
-  result.pixels.resize(count);
-  if (image->depth() == CV_16U) {
-    std::memcpy(result.pixels.data(), image->data, 2 * count);
-  } else {
-    for (std::size_t i = 0; i < count; ++i) result.pixels[i] = image->data[i];
-  }
+  GrayImage result{image->cols, image->rows, std::vector<std::uint16_t>(image->total())};
+  cv::Mat pixels(image->size(), CV_16U, result.pixels.data());
+  image->convertTo(pixels, CV_16U);
   return result;
 }
 

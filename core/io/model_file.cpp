@@ -6,12 +6,11 @@
 #include <filesystem>
 #include <map>
 
+#include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/mesh_file.hpp"
-#include "core/io/private/model_description.hpp"
-#include "core/io/private/model_index_file.hpp"
-#include "core/io/private/occupancy_file.hpp"
+#include "core/io/private/model_parts.hpp"
 
 namespace bpa::io {
 namespace fs = std::filesystem;
@@ -29,20 +28,20 @@ bool legal_character(char c) {
 
 bool legal_name(const std::string& name) {
   return !name.empty() && name.size() <= 100 && name[0] != '.' &&
-         std::all_of(name.begin(), name.end(), legal_character);
+         std::ranges::all_of(name, legal_character);
 }
 
 /// The description of LIBRARY/NAME.
 Result<ModelDescription> find_description(const std::string& library, const std::string& name) {
   const fs::path folder = fs::path(library) / name;
   if (!legal_name(name) || !fs::exists(folder / kModelFile)) {
-    return Status(StatusCode::not_found, "library " + library + " has no model \"" + name + "\"");
+    return not_found("library ", library, " has no model \"", name, "\"");
   }
   Result<ModelDescription> description = read_description((folder / kModelFile).string());
   if (!description.ok()) return description.status();
   if (description->model.name != name) {
-    return Status(StatusCode::corrupt, (folder / kModelFile).string() + " names the model \"" +
-                                           description->model.name + "\"; its folder must too");
+    return corrupt((folder / kModelFile).string(), " names the model \"", description->model.name,
+                   "\"; its folder must too");
   }
   return description;
 }
@@ -53,18 +52,16 @@ Result<std::string> read_checked(const fs::path& folder, const char* name,
   const std::string path = (folder / name).string();
   const auto record = description.files.find(name);
   if (record == description.files.end()) {
-    return Status(StatusCode::corrupt, path + " is not in " + kModelFile);
+    return corrupt(path, " is not in ", kModelFile);
   }
   Result<std::string> bytes = read_file(path);
   if (!bytes.ok()) return bytes.status();
   const auto& [size, checksum] = record->second;
   if (bytes->size() < size) {
-    return Status(StatusCode::corrupt, path + " is truncated: " + std::to_string(bytes->size()) +
-                                           " of " + std::to_string(size) + " bytes");
+    return corrupt(path, " is truncated: ", bytes->size(), " of ", size, " bytes");
   }
   if (bytes->size() != size || crc32(*bytes) != checksum) {
-    return Status(StatusCode::corrupt,
-                  path + " was altered: it does not match the checksum in " + kModelFile);
+    return corrupt(path, " was altered: it does not match the checksum in ", kModelFile);
   }
   return bytes;
 }
@@ -80,9 +77,8 @@ Status read_surface(const fs::path& folder, ModelDescription& description) {
   surface.normals = std::move(mesh->normals);
   surface.colors = std::move(mesh->colors);
   if (surface.size() == description.points && surface.normals.size() == surface.size()) return {};
-  return Status(StatusCode::corrupt, path + " has " + std::to_string(surface.size()) +
-                                         " points; model.json says " +
-                                         std::to_string(description.points) + " with normals");
+  return corrupt(path, " has ", surface.size(), " points; model.json says ", description.points,
+                 " with normals");
 }
 
 Status read_index(const fs::path& folder, ModelDescription& description) {
@@ -124,16 +120,15 @@ Result<std::map<std::string, std::string>> model_files(const ObjectModel& model)
 /// Fails when another model of the library has the number already.
 Status check_number(const std::string& library, const ModelSource& model) {
   if (model.number < 1) {
-    return invalid_argument("model number is " + std::to_string(model.number) +
-                            "; it must be positive");
+    return invalid_argument("model number is ", model.number, "; it must be positive");
   }
   for (const std::string& name : list_models(library)) {
     if (name == model.name) continue;
     const Result<ModelDescription> other =
         read_description((fs::path(library) / name / kModelFile).string());
     if (other.ok() && other->model.number == model.number) {
-      return invalid_argument("model number " + std::to_string(model.number) + " belongs to " +
-                              name + " in " + library + "; numbers must differ");
+      return invalid_argument("model number ", model.number, " belongs to ", name, " in ", library,
+                              "; numbers must differ");
     }
   }
   return {};
@@ -152,7 +147,7 @@ std::string clean_model_name(const std::string& name) {
 
 Status save_model(const std::string& library, const ModelSource& source, int num_threads) {
   if (!legal_name(source.name)) {
-    return invalid_argument("model name \"" + source.name +
+    return invalid_argument("model name \"", source.name,
                             "\" must be 1 to 100 letters, digits, '_', '-' and '.', and not begin "
                             "with '.'");
   }
@@ -174,8 +169,7 @@ Status save_model(const std::string& library, const ModelSource& source, int num
   if (fs::exists(target)) fs::rename(target, old, error);
   if (!error) fs::rename(fresh, target, error);
   if (error) {
-    return Status(StatusCode::unavailable,
-                  target.string() + " cannot be written: " + error.message());
+    return unavailable(target.string(), " cannot be written: ", error.message());
   }
   fs::remove_all(old, error);
   return {};
@@ -224,7 +218,7 @@ std::vector<std::string> list_models(const std::string& library) {
 Result<LibraryContents> read_library(const std::string& library, int num_threads) {
   std::error_code error;
   if (!fs::is_directory(library, error)) {
-    return Status(StatusCode::not_found, "library " + library + " is not there");
+    return not_found("library ", library, " is not there");
   }
   const std::vector<std::string> names = list_models(library);
   std::vector<Result<ModelSource>> loaded(names.size(), Result<ModelSource>(ModelSource{}));
@@ -239,9 +233,7 @@ Result<LibraryContents> read_library(const std::string& library, int num_threads
     if (reason.ok()) {
       const auto [owner, free] = owners.emplace(loaded[k]->number, names[k]);
       if (!free) {
-        reason = Status(StatusCode::corrupt, owner->second + " and " + names[k] +
-                                                 " have the same number " +
-                                                 std::to_string(owner->first));
+        reason = corrupt(owner->second, " and ", names[k], " have the same number ", owner->first);
       }
     }
     if (reason.ok()) {
@@ -250,8 +242,7 @@ Result<LibraryContents> read_library(const std::string& library, int num_threads
       contents.broken.push_back({names[k], std::move(reason)});
     }
   }
-  std::sort(contents.models.begin(), contents.models.end(),
-            [](const ModelSource& a, const ModelSource& b) { return a.number < b.number; });
+  std::ranges::sort(contents.models, {}, &ModelSource::number);
   return contents;
 }
 
@@ -264,7 +255,7 @@ Status explain_broken(const std::string& library, const std::vector<BrokenModel>
     text += separator + model.name + " (" + model.reason.message + ")";
     separator = ", ";
   }
-  return Status(StatusCode::corrupt, text);
+  return corrupt(text);
 }
 
 Result<std::vector<ModelSource>> load_library(const std::string& library, int num_threads) {
@@ -272,7 +263,7 @@ Result<std::vector<ModelSource>> load_library(const std::string& library, int nu
   if (!contents.ok()) return contents.status();
   if (!contents->broken.empty()) return contents->broken.front().reason;
   if (contents->models.empty()) {
-    return invalid_argument("library " + library + " is empty; it must hold at least one model");
+    return invalid_argument("library ", library, " is empty; it must hold at least one model");
   }
   return std::move(contents->models);
 }
@@ -281,12 +272,11 @@ Status remove_model(const std::string& library, const std::string& name) {
   const fs::path folder = fs::path(library) / name;
   std::error_code error;
   if (!legal_name(name) || !fs::exists(folder / kModelFile, error)) {
-    return Status(StatusCode::not_found, "library " + library + " has no model \"" + name + "\"");
+    return not_found("library ", library, " has no model \"", name, "\"");
   }
   fs::remove_all(folder, error);
   if (!error) return {};
-  return Status(StatusCode::unavailable,
-                folder.string() + " cannot be removed: " + error.message());
+  return unavailable(folder.string(), " cannot be removed: ", error.message());
 }
 
 }  // namespace bpa::io

@@ -9,6 +9,8 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "core/base/concat.hpp"
+
 namespace bpa::io {
 namespace {
 
@@ -30,15 +32,7 @@ std::string one_line(const YAML::Node& node) {
 }
 
 Status at(const std::string& file, const YAML::Mark& mark, const std::string& problem) {
-  return invalid_argument(file + ":" + std::to_string(mark.line + 1) + ": " + problem);
-}
-
-bool starts_with(const std::string& text, const std::string& start) {
-  return text.compare(0, start.size(), start) == 0;
-}
-
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+  return invalid_argument(file, ":", mark.line + 1, ": ", problem);
 }
 
 std::string last_name(const std::string& path) { return path.substr(path.rfind('.') + 1); }
@@ -51,8 +45,8 @@ std::vector<const Option*> find(const OptionsReading& reading, const std::string
   end += path.substr(std::min(below.size(), path.size()));
   for (const Option& option : reading.options) {
     if (option.path == path) exact.push_back(&option);
-    const bool named = starts_with(path, below) && starts_with(option.path, below) &&
-                       ends_with(option.path, end) && !option.is_group();
+    const bool named = path.starts_with(below) && option.path.starts_with(below) &&
+                       option.path.ends_with(end) && !option.is_group();
     if (named) in_short.push_back(&option);
   }
   return exact.empty() ? in_short : exact;
@@ -69,7 +63,7 @@ std::string unknown(const OptionsReading& reading, const std::string& path) {
   std::string beside, elsewhere;
   for (const Option& option : reading.options) {
     const bool here =
-        starts_with(option.path, group) && option.path.find('.', group.size()) == std::string::npos;
+        option.path.starts_with(group) && option.path.find('.', group.size()) == std::string::npos;
     if (here) append(option.path.substr(group.size()), ", ", beside);
     if (last_name(option.path) == last_name(path)) append(option.path, " or ", elsewhere);
   }
@@ -78,21 +72,11 @@ std::string unknown(const OptionsReading& reading, const std::string& path) {
   return "unknown key " + path;
 }
 
+// `value` is empty or zero before. Texts and lists may be empty: `key:` with nothing after it.
 template <class T>
 bool convert(const YAML::Node& node, T& value) {
-  if constexpr (std::is_same_v<T, std::string>) {
-    if (node.IsNull()) {  // `key:` with nothing after it
-      value.clear();
-      return true;
-    }
-    if (!node.IsScalar()) return false;
-  }
-  if constexpr (std::is_same_v<T, std::vector<std::string>>) {
-    if (node.IsNull()) {
-      value.clear();
-      return true;
-    }
-  }
+  if (std::is_class_v<T> && node.IsNull()) return true;
+  if (std::is_same_v<T, std::string> && !node.IsScalar()) return false;
   return YAML::convert<T>::decode(node, value);
 }
 
@@ -110,7 +94,7 @@ Status set_value(const Option& option, const YAML::Node& node) {
             return status;
           }
         }
-        return invalid_argument(option.path + " is " + one_line(node) + "; it must be " +
+        return invalid_argument(option.path, " is ", one_line(node), "; it must be ",
                                 kind_of(option.value));
       },
       option.value);
@@ -147,36 +131,27 @@ Status apply(const std::string& file, const OptionsReading& reading, const std::
   return {};
 }
 
-void write_value(std::ostream& out, const std::string& value) { out << '"' << value << '"'; }
-void write_value(std::ostream& out, const std::vector<std::string>& values) {
-  out << '[';
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0) out << ", ";
-    write_value(out, values[i]);
-  }
-  out << ']';
-}
-template <class T>
-void write_value(std::ostream& out, const T& value) {
-  out << std::boolalpha << value;
-}
+// Writes a value behind its key.
+struct ValueWriter {
+  std::ostream& out;
 
-// " 0.2 to 20." of numbers, and whether it may change.
-std::string rule_text(const Option& option) {
-  std::ostringstream out;
-  out << std::setprecision(12);
-  const std::size_t kind = option.value.index();
-  const bool number = kind >= 2 && kind <= 4;
-  if (number) out << " " << option.rule.min << " to " << option.rule.max << ".";
-  if (option.rule.runtime) out << " Also at run time.";
-  return out.str();
-}
+  void operator()(std::monostate) const {}
+  void operator()(const auto* value) const { out << ' ' << *value; }
+  void operator()(const std::string* value) const { out << " \"" << *value << '"'; }
+  void operator()(const std::vector<std::string>* values) const {
+    out << " [";
+    for (const std::string& value : *values) {
+      out << (&value == values->data() ? "\"" : ", \"") << value << '"';
+    }
+    out << ']';
+  }
+};
 
 }  // namespace
 
 Status read_options(const std::string& path, const OptionsReading& reading) {
   if (!std::filesystem::is_regular_file(path)) {
-    return Status(StatusCode::not_found, path + ": there is no such file");
+    return not_found(path, ": there is no such file");
   }
   try {
     return apply(path, reading, "", YAML::LoadFile(path));
@@ -188,32 +163,29 @@ Status read_options(const std::string& path, const OptionsReading& reading) {
 Status set_option(const std::string& assignment, const OptionsReading& reading) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
-    return invalid_argument("\"" + assignment + "\" must read group.key=value");
+    return invalid_argument("\"", assignment, "\" must read group.key=value");
   }
   try {
     return set(reading, assignment.substr(0, equals), YAML::Load(assignment.substr(equals + 1)));
   } catch (const YAML::Exception& error) {
-    return invalid_argument("\"" + assignment + "\" is not YAML: " + error.msg);
+    return invalid_argument("\"", assignment, "\" is not YAML: ", error.msg);
   }
 }
 
 std::string options_yaml(const std::vector<Option>& options, bool hidden) {
   std::ostringstream out;
-  out << std::setprecision(12);
+  out << std::setprecision(12) << std::boolalpha;
   for (const Option& option : options) {
     const auto depth = std::count(option.path.begin(), option.path.end(), '.');
     const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
     if (option.is_group()) out << (depth == 0 ? "\n" : "");
-    out << indent << "# " << option.rule.description << rule_text(option) << '\n';
-    out << indent << (hidden && !option.is_group() ? "#" : "") << last_name(option.path) << ":";
-    std::visit(
-        [&](const auto& value) {
-          if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(value)>, std::monostate>) {
-            out << ' ';
-            write_value(out, *value);
-          }
-        },
-        option.value);
+    out << indent << "# " << option.rule.description;
+    const std::size_t kind = option.value.index();
+    const bool number = kind >= 2 && kind <= 4;
+    if (number) out << ' ' << option.rule.min << " to " << option.rule.max << '.';
+    out << (option.rule.runtime ? " Also at run time.\n" : "\n") << indent
+        << (hidden && !option.is_group() ? "#" : "") << last_name(option.path) << ":";
+    std::visit(ValueWriter{out}, option.value);
     out << '\n';
   }
   return out.str();

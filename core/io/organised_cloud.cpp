@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "core/base/concat.hpp"
 #include "core/io/pcd_file.hpp"
 
 namespace bpa::io {
@@ -33,17 +34,22 @@ struct AxisFit {
   }
 };
 
+/// Where point i of a cloud of that width is stored.
+Eigen::Vector2d pixel_of(std::size_t i, int width) {
+  const auto columns = static_cast<std::size_t>(width);
+  return {static_cast<double>(i % columns), static_cast<double>(i / columns)};
+}
+
 Result<Camera> fit_camera(const PcdCloud& cloud, const std::vector<Eigen::Vector3f>& points) {
   AxisFit horizontal, vertical;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d p = points[i].cast<double>();
     if (!(p.z() > 0)) continue;
-    horizontal.add(p.x() / p.z(), static_cast<double>(i % static_cast<std::size_t>(cloud.width)));
-    vertical.add(p.y() / p.z(), static_cast<double>(i / static_cast<std::size_t>(cloud.width)));
+    const Eigen::Vector2d pixel = pixel_of(i, cloud.width);
+    horizontal.add(p.x() / p.z(), pixel.x());
+    vertical.add(p.y() / p.z(), pixel.y());
   }
-  Camera camera;
-  camera.width = cloud.width;
-  camera.height = cloud.height;
+  Camera camera{cloud.width, cloud.height};
   if (!horizontal.solve(camera.fx, camera.cx) || !vertical.solve(camera.fy, camera.cy)) {
     return invalid_argument(
         "the organised cloud covers too little of the image to find its camera");
@@ -57,9 +63,7 @@ double mean_residual(const Camera& camera, const std::vector<Eigen::Vector3f>& p
   std::size_t count = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!(points[i].z() > 0)) continue;
-    const Eigen::Vector2d pixel(static_cast<double>(i % static_cast<std::size_t>(camera.width)),
-                                static_cast<double>(i / static_cast<std::size_t>(camera.width)));
-    sum += (camera.project(points[i].cast<double>()) - pixel).norm();
+    sum += (camera.project(points[i].cast<double>()) - pixel_of(i, camera.width)).norm();
     ++count;
   }
   return count > 0 ? sum / static_cast<double>(count) : 0;
@@ -74,8 +78,8 @@ Result<std::vector<Eigen::Vector3f>> to_optical(const PcdCloud& cloud, bool& tur
     behind += p.z() < 0;
   }
   if (before + behind < kMinPoints) {
-    return invalid_argument("the cloud has " + std::to_string(before + behind) +
-                            " finite points; it must have at least " + std::to_string(kMinPoints));
+    return invalid_argument("the cloud has ", before + behind,
+                            " finite points; it must have at least ", kMinPoints);
   }
   if (before > 0 && behind > 0 && std::min(before, behind) * 100 > before + behind) {
     return invalid_argument(
@@ -83,12 +87,10 @@ Result<std::vector<Eigen::Vector3f>> to_optical(const PcdCloud& cloud, bool& tur
         "camera sees, in that camera's frame");
   }
   turned = behind > before;
-  std::vector<Eigen::Vector3f> points(cloud.points.size(), Eigen::Vector3f::Zero());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    Eigen::Vector3f p = cloud.points[i];
-    if (!p.allFinite()) continue;
+  std::vector<Eigen::Vector3f> points = cloud.points;
+  for (Eigen::Vector3f& p : points) {
     if (turned) p = Eigen::Vector3f(p.x(), -p.y(), -p.z());
-    if (p.z() > 0) points[i] = p;
+    if (!p.allFinite() || !(p.z() > 0)) p.setZero();
   }
   return points;
 }
@@ -118,18 +120,15 @@ Result<OrganisedFrame> frame_from_organised_cloud(const PcdCloud& cloud, const C
   const Result<Camera> fitted = camera ? Result<Camera>(*camera) : fit_camera(cloud, *points);
   if (!fitted.ok()) return fitted.status();
   if (fitted->width != cloud.width || fitted->height != cloud.height) {
-    return invalid_argument("camera is " + std::to_string(fitted->width) + "x" +
-                            std::to_string(fitted->height) + "; it must be " +
-                            std::to_string(cloud.width) + "x" + std::to_string(cloud.height) +
-                            " as the cloud");
+    return invalid_argument("camera is ", fitted->width, "x", fitted->height, "; it must be ",
+                            cloud.width, "x", cloud.height, " as the cloud");
   }
   if (Status status = validate(*fitted); !status.ok()) return status;
   const double residual = mean_residual(*fitted, *points);
   if (!(residual <= kMaxMeanResidual)) {
-    std::ostringstream text;
-    text << "the points are " << residual << " pixels from where the camera sees them; the mean "
-         << "must be at most " << kMaxMeanResidual;
-    return invalid_argument(text.str());
+    return invalid_argument("the points are ", residual,
+                            " pixels from where the camera sees them; the mean must be at most ",
+                            kMaxMeanResidual);
   }
 
   OrganisedFrame result;

@@ -14,6 +14,7 @@
 #include <pcl/console/print.h>
 #include <pcl/io/pcd_io.h>
 
+#include "core/base/concat.hpp"
 #include "core/io/pcd_file.hpp"
 
 namespace bpa::io {
@@ -21,16 +22,12 @@ namespace {
 
 constexpr std::uint64_t kMaxPoints = 50'000'000;
 
-Status corrupt(const std::string& path, const std::string& why) {
-  return Status(StatusCode::corrupt, path + " " + why);
-}
-
 /// Whether a header is complete and its counts are sane.
 Status check_header(const std::string& path) {
   std::error_code error;
   std::ifstream in(path, std::ios::binary);
   if (!in || !std::filesystem::is_regular_file(path, error)) {
-    return Status(StatusCode::not_found, path + " cannot be opened");
+    return not_found(path, " cannot be opened");
   }
   std::set<std::string> keys;
   std::uint64_t width = 0, height = 1, points = 0;
@@ -46,19 +43,18 @@ Status check_header(const std::string& path) {
     if (key == "HEIGHT") words >> height;
     if (key == "POINTS") words >> points;
     if (!words && (key == "WIDTH" || key == "HEIGHT" || key == "POINTS")) {
-      return corrupt(path, "has a PCD header whose " + key + " is not a number");
+      return corrupt(path, " has a PCD header whose ", key, " is not a number");
     }
     if (key == "DATA") break;
   }
   for (const char* key : {"FIELDS", "SIZE", "TYPE", "WIDTH", "POINTS", "DATA"}) {
-    if (keys.count(key) == 0) return corrupt(path, std::string("is not a PCD file: no ") + key);
+    if (keys.count(key) == 0) return corrupt(path, " is not a PCD file: no ", key);
   }
   if (width > kMaxPoints || height > kMaxPoints || width * height != points) {
-    return corrupt(path, "has a PCD header whose POINTS is not WIDTH x HEIGHT");
+    return corrupt(path, " has a PCD header whose POINTS is not WIDTH x HEIGHT");
   }
   if (points == 0 || points > kMaxPoints) {
-    return invalid_argument(path + " has " + std::to_string(points) +
-                            " points; it must have 1 to " + std::to_string(kMaxPoints));
+    return invalid_argument(path, " has ", points, " points; it must have 1 to ", kMaxPoints);
   }
   return {};
 }
@@ -119,13 +115,13 @@ Result<PcdCloud> read_pcd(const std::string& path) {
   pcl::console::setVerbosityLevel(verbosity);
   const std::size_t count = std::size_t{blob.width} * blob.height;
   if (outcome < 0 || count == 0 || blob.data.size() < count * blob.point_step) {
-    return corrupt(path, "is truncated or damaged");
+    return corrupt(path, " is truncated or damaged");
   }
   PcdCloud cloud;
   cloud.width = static_cast<int>(blob.width);
   cloud.height = static_cast<int>(blob.height);
   cloud.points = read_vectors(blob, "x", "y", "z");
-  if (cloud.points.empty()) return invalid_argument(path + " has no float fields x, y and z");
+  if (cloud.points.empty()) return invalid_argument(path, " has no float fields x, y and z");
   cloud.normals = read_vectors(blob, "normal_x", "normal_y", "normal_z");
   cloud.colors = read_colors(blob);
   return cloud;

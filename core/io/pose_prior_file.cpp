@@ -2,33 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/io/pose_prior_file.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
+#include <set>
 
 #include "core/io/private/json_file.hpp"
 
 namespace bpa::io {
 namespace {
 
-Status corrupt(const std::string& where, const std::string& what) {
-  return Status(StatusCode::corrupt, where + ": " + what);
-}
-
 Status check_keys(const Json& prior, const std::string& where) {
-  const std::array<const char*, 7> known{
+  const std::set<std::string> known{
       "model",   "pose",  "position_sigma_m", "position_covariance_m2", "rotation_sigma_deg",
       "bingham", "weight"};
   for (const auto& [key, value] : prior.items()) {
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
-      return corrupt(where, "unknown field \"" + key + "\"");
+    if (!known.contains(key)) {
+      return corrupt(where, ": unknown field \"", key, "\"");
     }
   }
   if (prior.contains("position_sigma_m") && prior.contains("position_covariance_m2")) {
-    return corrupt(where, "give position_sigma_m or position_covariance_m2, not both");
+    return corrupt(where, ": give position_sigma_m or position_covariance_m2, not both");
   }
   if (prior.contains("rotation_sigma_deg") && prior.contains("bingham")) {
-    return corrupt(where, "give rotation_sigma_deg or bingham, not both");
+    return corrupt(where, ": give rotation_sigma_deg or bingham, not both");
   }
   return {};
 }
@@ -65,18 +60,15 @@ PosePrior prior_from(const Json& json) {
 Result<std::vector<PosePrior>> read_pose_priors(const std::string& path) {
   std::vector<PosePrior> priors;
   if (path.empty()) return priors;
-  const Result<Json> file = read_json(path);
-  if (!file.ok()) return file.status();
   std::string where = path;
-  const auto read_all = [&]() -> Result<std::vector<PosePrior>> {
-    for (const Json& json : file->at("priors")) {
-      where = path + ": priors[" + std::to_string(priors.size()) + "]";
+  return read_json(where, [&](const Json& file) -> Result<std::vector<PosePrior>> {
+    for (const Json& json : file.at("priors")) {
+      where = concat(path, ": priors[", priors.size(), "]");
       if (Status status = check_keys(json, where); !status.ok()) return status;
       priors.push_back(prior_from(json));
     }
     return priors;
-  };
-  return with_json(where, read_all);
+  });
 }
 
 }  // namespace bpa::io

@@ -8,11 +8,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/base/status.hpp"
+#include "core/base/concat.hpp"
+#include "core/geometry/camera.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/io/file_bytes.hpp"
 
-// JSON without exceptions leaving a function, matrices and poses as JSON.
+// JSON without exceptions leaving a function; matrices, poses and cameras as JSON.
 
 /// A matrix as its values, row by row. More values than it has are ignored.
 template <int kRows, int kCols>
@@ -55,7 +56,7 @@ inline Result<Json> read_json(const std::string& path) {
   if (!bytes.ok()) return bytes.status();
   Json json = Json::parse(*bytes, nullptr, false);
   if (json.is_discarded()) {
-    return Status(StatusCode::corrupt, path + " is truncated or not JSON");
+    return corrupt(path, " is truncated or not JSON");
   }
   return json;
 }
@@ -69,8 +70,19 @@ auto with_json(const std::string& path, const Body& body) -> decltype(body()) {
   } catch (const std::exception& error) {
     std::string text = error.what();  // "[json.exception.out_of_range.403] key 'x' not found"
     if (const std::size_t end = text.find("] "); end != std::string::npos) text.erase(0, end + 2);
-    return Status(StatusCode::corrupt, path + " does not have the expected content: " + text);
+    return corrupt(path, " does not have the expected content: ", text);
   }
 }
+
+/// Reads a file and runs body(json) as with_json does.
+template <class Body>
+auto read_json(const std::string& path, const Body& body) -> decltype(body(Json())) {
+  const Result<Json> json = read_json(path);
+  if (!json.ok()) return json.status();
+  return with_json(path, [&]() { return body(*json); });
+}
+
+/// The camera of a BOP "cam_K", the 3 x 3 matrix of its intrinsics row by row, without a size.
+inline Camera camera_of(const std::array<double, 9>& k) { return {0, 0, k[0], k[4], k[2], k[5]}; }
 
 }  // namespace bpa::io

@@ -6,8 +6,7 @@
 
 #include "core/base/random.hpp"
 #include "core/io/file_bytes.hpp"
-#include "core/io/private/model_index_file.hpp"
-#include "core/io/private/occupancy_file.hpp"
+#include "core/io/private/model_parts.hpp"
 #include "core/model/model_index.hpp"
 #include "core/model/occupancy_grid.hpp"
 #include "core/modeling/model_source.hpp"

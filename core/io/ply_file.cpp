@@ -1,0 +1,304 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// Not by Assimp, which reads OBJ and STL here: 5.2.5 does not return from a truncated binary PLY.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <sstream>
+#include <string_view>
+
+#include "core/base/concat.hpp"
+#include "core/io/file_bytes.hpp"
+#include "core/io/mesh_file.hpp"
+#include "core/io/private/byte_stream.hpp"
+
+namespace bpa::io {
+namespace {
+
+/// A type of number: its two names, its size, and how to read it from bytes of this machine's
+/// order.
+struct NumberType {
+  std::string_view name, other_name;
+  std::size_t size;
+  bool real;
+  double (*read)(const char* bytes);
+};
+
+template <class T>
+constexpr NumberType number_type(std::string_view name, std::string_view other_name) {
+  return {name, other_name, sizeof(T), std::is_floating_point_v<T>, [](const char* bytes) {
+            T value;
+            std::memcpy(&value, bytes, sizeof(T));
+            return static_cast<double>(value);
+          }};
+}
+
+constexpr NumberType kTypes[] = {
+    number_type<std::int8_t>("char", "int8"),    number_type<std::uint8_t>("uchar", "uint8"),
+    number_type<std::int16_t>("short", "int16"), number_type<std::uint16_t>("ushort", "uint16"),
+    number_type<std::int32_t>("int", "int32"),   number_type<std::uint32_t>("uint", "uint32"),
+    number_type<float>("float", "float32"),      number_type<double>("double", "float64")};
+
+/// Null for an unknown name.
+const NumberType* find_type(const std::string& name) {
+  const auto found = std::find_if(std::begin(kTypes), std::end(kTypes), [&](const NumberType& t) {
+    return t.name == name || t.other_name == name;
+  });
+  return found == std::end(kTypes) ? nullptr : found;
+}
+
+struct Property {
+  std::string name;
+  const NumberType* type = nullptr;
+  const NumberType* count_type = nullptr;  ///< Of a list.
+};
+
+struct Element {
+  std::string name;
+  std::size_t count = 0;
+  std::vector<Property> properties;
+};
+
+struct Header {
+  std::string format;
+  std::vector<Element> elements;
+  std::size_t size = 0;  ///< Bytes, to the first value.
+};
+
+Status parse_property(const std::string& name, std::istringstream& words, Header& header) {
+  Property property;
+  std::string type;
+  words >> type;
+  if (type == "list") {
+    std::string count_type;
+    words >> count_type >> type;
+    property.count_type = find_type(count_type);
+    if (!property.count_type) return corrupt(name, " has an unknown PLY list type");
+  }
+  words >> property.name;
+  property.type = find_type(type);
+  if (!property.type || header.elements.empty()) {
+    return corrupt(name, " has a PLY property of unknown type \"", type, "\"");
+  }
+  header.elements.back().properties.push_back(property);
+  return {};
+}
+
+Result<Header> parse_header(const std::string& bytes, const std::string& name) {
+  Header header;
+  std::string key;
+  for (bool first = true; key != "end_header"; first = false) {
+    const std::size_t end = bytes.find('\n', header.size);
+    if (end == std::string::npos)
+      return corrupt(name, " is truncated: its PLY header does not end");
+    std::istringstream words(bytes.substr(header.size, end - header.size));
+    header.size = end + 1;
+    key.clear();
+    words >> key;
+    if (first && key != "ply") return corrupt(name, " is not a PLY file");
+    if (key == "format") {
+      words >> header.format;
+      if (header.format != "ascii" && header.format != "binary_little_endian" &&
+          header.format != "binary_big_endian") {
+        return corrupt(name, " has the unknown PLY format \"", header.format, "\"");
+      }
+    } else if (key == "element") {
+      Element& element = header.elements.emplace_back();
+      words >> element.name >> element.count;
+      if (!words) return corrupt(name, " has a PLY element without a count");
+    } else if (key == "property") {
+      if (Status status = parse_property(name, words, header); !status.ok()) return status;
+    }
+  }
+  return header;
+}
+
+/// The numbers of an element, for each property one or, of a list, several.
+using Row = std::vector<std::vector<double>>;
+
+/// Reads number after number; after the end of the bytes each is 0 and ok() is false.
+class Values {
+ public:
+  Values(std::string_view bytes, const std::string& format)
+      : bytes_(bytes),
+        ascii_(format != "binary_little_endian" && format != "binary_big_endian"),
+        swapped_(format == "binary_big_endian") {}
+
+  bool ok() const { return ok_; }
+  std::size_t remaining() const { return bytes_.size(); }
+
+  void next_row(const Element& element, Row& row) {
+    row.resize(element.properties.size());
+    for (std::size_t p = 0; p < row.size(); ++p) {
+      const Property& property = element.properties[p];
+      const double count = property.count_type ? next(*property.count_type) : 1;
+      row[p].clear();
+      for (double k = 0; k < count && ok_; ++k) row[p].push_back(next(*property.type));
+    }
+  }
+
+ private:
+  double next(const NumberType& type) {
+    if (ascii_) return next_word();
+    ok_ = ok_ && bytes_.size() >= type.size;
+    if (!ok_) return 0;
+    char number[8];
+    std::copy_n(bytes_.data(), type.size, number);
+    if (swapped_) std::reverse(number, number + type.size);
+    bytes_.remove_prefix(type.size);
+    return type.read(number);
+  }
+
+  double next_word() {
+    constexpr std::string_view kSpaces = " \t\r\n";
+    bytes_.remove_prefix(std::min(bytes_.find_first_not_of(kSpaces), bytes_.size()));
+    std::string_view word = bytes_.substr(0, bytes_.find_first_of(kSpaces));
+    bytes_.remove_prefix(word.size());
+    if (word.starts_with('+')) word.remove_prefix(1);
+    double value = 0;
+    const char* const end = word.data() + word.size();
+    ok_ = std::from_chars(word.data(), end, value).ec == std::errc() && ok_;
+    return value;
+  }
+
+  std::string_view bytes_;
+  bool ascii_, swapped_;
+  bool ok_ = true;
+};
+
+/// Where the numbers of a vertex stand in its row: position, normal, colour; -1 for none.
+using Columns = std::array<int, 9>;
+
+Columns find_columns(const Element& element) {
+  constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
+  Columns columns;
+  columns.fill(-1);
+  for (std::size_t p = 0; p < element.properties.size(); ++p) {
+    const auto name = std::find(std::begin(kNames), std::end(kNames), element.properties[p].name);
+    if (name == std::end(kNames) || element.properties[p].count_type) continue;
+    columns[static_cast<std::size_t>(name - std::begin(kNames))] = static_cast<int>(p);
+  }
+  return columns;
+}
+
+std::uint8_t color_byte(double value, const NumberType& type) {
+  const double scaled = type.real ? 255 * value : value;
+  return static_cast<std::uint8_t>(std::clamp(std::round(scaled), 0.0, 255.0));
+}
+
+void add_vertex(const Element& element, const Columns& columns, const Row& row, double scale,
+                TriangleMesh& mesh) {
+  const auto has = [&](std::size_t first) {
+    return std::all_of(&columns[first], &columns[first] + 3, [](int p) { return p >= 0; });
+  };
+  const auto number = [&](std::size_t k) {
+    return columns[k] < 0 ? 0.0 : row[static_cast<std::size_t>(columns[k])].front();
+  };
+  mesh.vertices.push_back(
+      Eigen::Vector3d(scale * number(0), scale * number(1), scale * number(2)).cast<float>());
+  if (has(3)) {
+    const Eigen::Vector3d normal(number(3), number(4), number(5));
+    mesh.normals.push_back(normal.stableNormalized().cast<float>());
+  }
+  if (!has(6)) return;
+  std::array<std::uint8_t, 3>& color = mesh.colors.emplace_back();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto p = static_cast<std::size_t>(columns[6 + k]);
+    color[k] = color_byte(row[p].front(), *element.properties[p].type);
+  }
+}
+
+void add_face(const Element& element, const Row& row, TriangleMesh& mesh) {
+  const auto vertex = [](double index) {
+    constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
+    return index >= 0 && index < kNone ? static_cast<std::uint32_t>(index) : kNone;
+  };
+  for (std::size_t p = 0; p < row.size(); ++p) {
+    const Property& property = element.properties[p];
+    if (!property.count_type) continue;
+    if (property.name != "vertex_indices" && property.name != "vertex_index") continue;
+    for (std::size_t k = 2; k < row[p].size(); ++k) {
+      mesh.triangles.push_back({vertex(row[p][0]), vertex(row[p][k - 1]), vertex(row[p][k])});
+    }
+  }
+}
+
+std::string bytes_of(const std::vector<Eigen::Vector3f>& points,
+                     const std::vector<Eigen::Vector3f>& normals,
+                     const std::vector<std::array<std::uint8_t, 3>>& colors,
+                     const std::vector<std::array<std::uint32_t, 3>>& triangles, double scale) {
+  std::string bytes = concat("ply\nformat binary_little_endian 1.0\nelement vertex ", points.size(),
+                             "\nproperty float x\nproperty float y\nproperty float z\n");
+  if (!normals.empty()) bytes += "property float nx\nproperty float ny\nproperty float nz\n";
+  if (!colors.empty()) bytes += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  if (!triangles.empty()) {
+    bytes +=
+        concat("element face ", triangles.size(), "\nproperty list uchar int vertex_indices\n");
+  }
+  bytes += "end_header\n";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3f scaled = (scale * points[i].cast<double>()).cast<float>();
+    append(bytes, scaled);
+    if (!normals.empty()) append(bytes, normals[i]);
+    if (!colors.empty()) append(bytes, colors[i]);
+  }
+  for (const auto& triangle : triangles) {
+    append(bytes, std::uint8_t{3});
+    append(bytes, triangle);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+Result<TriangleMesh> parse_ply(const std::string& bytes, const std::string& name, double scale) {
+  const Result<Header> header = parse_header(bytes, name);
+  if (!header.ok()) return header.status();
+  Values values(std::string_view(bytes).substr(header->size), header->format);
+  TriangleMesh mesh;
+  Row row;
+  for (const Element& element : header->elements) {
+    if (element.count > values.remaining() + 1) {
+      return corrupt(name, " is truncated: ", element.count, " of PLY element ", element.name,
+                     " do not fit");
+    }
+    const Columns columns = find_columns(element);
+    for (std::size_t i = 0; i < element.count; ++i) {
+      values.next_row(element, row);
+      if (!values.ok()) {
+        return corrupt(name, " is truncated or damaged in PLY element ", element.name);
+      }
+      if (element.name == "vertex") add_vertex(element, columns, row, scale, mesh);
+      if (element.name == "face") add_face(element, row, mesh);
+    }
+  }
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t index : triangle) {
+      if (index < mesh.vertices.size()) continue;
+      return corrupt(name, " has a face with vertex ", index, "; it has only ",
+                     mesh.vertices.size(), " vertices");
+    }
+  }
+  return mesh;
+}
+
+std::string ply_bytes(const TriangleMesh& mesh, double scale) {
+  return bytes_of(mesh.vertices, mesh.normals, mesh.colors, mesh.triangles, scale);
+}
+
+std::string ply_bytes(const PointCloud& cloud, double scale) {
+  return bytes_of(cloud.points, cloud.normals, cloud.colors, {}, scale);
+}
+
+Status write_ply(const std::string& path, const TriangleMesh& mesh, double scale) {
+  return write_file(path, ply_bytes(mesh, scale));
+}
+
+Status write_ply(const std::string& path, const PointCloud& cloud, double scale) {
+  return write_file(path, ply_bytes(cloud, scale));
+}
+
+}  // namespace bpa::io

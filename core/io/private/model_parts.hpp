@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "core/base/status.hpp"
+#include "core/model/model_index.hpp"
+#include "core/model/occupancy_grid.hpp"
+
+// The files of a model's folder. `name` is for messages. What cannot be parsed is corrupt.
+
+namespace bpa::io {
+
+/// What model.json says of another file of the folder.
+struct FileRecord {
+  std::size_t bytes = 0;
+  std::uint32_t crc32 = 0;
+};
+
+/// model.json.
+struct ModelDescription {
+  ModelSource model;                        ///< Without surface, index and occupancy grid.
+  std::size_t points = 0;                   ///< Of the surface.
+  std::map<std::string, FileRecord> files;  ///< By name.
+};
+
+std::string description_text(const ModelDescription& description);
+
+/// Fails with not_found, or with corrupt when the file is not JSON, lacks a field, or is of another
+/// version.
+Result<ModelDescription> read_description(const std::string& path);
+
+/// index.bin. The index is null when it was written by another version of the program, whose
+/// indices differ: it must then be computed again. Little-endian; "bpaindex", kIndexVersion as u32,
+/// the distance transform's corner, cell and size, then arrays: a u64 with the number of elements,
+/// then these. Whatever derive_index() computes is not in it.
+struct IndexFile {
+  std::shared_ptr<ModelIndex> index;
+  std::vector<float> normal_variance;
+};
+
+std::string index_bytes(const ModelIndex& index, const std::vector<float>& normal_variance);
+
+/// `points` is the size of the model's surface, which the index must fit.
+Result<IndexFile> parse_index(const std::string& bytes, std::size_t points,
+                              const std::string& name);
+
+/// occupancy.bin. Little-endian, packed: "bpaoccup", version u32, corner of cell (0, 0, 0) 3 f32,
+/// side of a cell f32, size 3 i32, number of cells u64; then for each cell in which a ray ended
+/// place 3 u16, which buckets have rays u8 (bit 0, bit 1), and for each that has a StoredBucket.
+/// Fails with unsupported when the grid has more than 65535 cells along an axis.
+Result<std::string> occupancy_bytes(const OccupancyGrid& grid);
+
+/// What occupancy_bytes wrote, exact to the units of StoredBucket.
+Result<OccupancyGrid> parse_occupancy(const std::string& bytes, const std::string& name);
+
+}  // namespace bpa::io
