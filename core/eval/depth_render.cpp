@@ -12,8 +12,7 @@ constexpr double kNearest = 0.01;
 
 struct Vertex {
   Eigen::Vector2d pixel;
-  double inverse_depth = 0;  // linear in the image
-  bool visible = false;
+  double inverse_depth = 0;  // linear in the image; 0 where the vertex is too near
 };
 
 void draw_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Camera& camera,
@@ -50,21 +49,18 @@ std::vector<float> render_depth(const TriangleMesh& mesh, const Pose& camera_fro
                                 const Camera& camera) {
   std::vector<float> depth(
       static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height), 0.0f);
-  std::vector<Vertex> vertices(mesh.vertices.size());
+  std::vector<Vertex> vertices;
   const Eigen::Matrix3d rotation = camera_from_object.matrix();
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const Eigen::Vector3d point =
-        rotation * mesh.vertices[i].cast<double>() + camera_from_object.translation;
-    vertices[i].visible = point.z() > kNearest;
-    if (!vertices[i].visible) continue;
-    vertices[i].pixel = camera.project(point);
-    vertices[i].inverse_depth = 1 / point.z();
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    const Eigen::Vector3d p = rotation * vertex.cast<double>() + camera_from_object.translation;
+    vertices.push_back(p.z() > kNearest ? Vertex{camera.project(p), 1 / p.z()} : Vertex{});
   }
   for (const auto& triangle : mesh.triangles) {
     const Vertex& a = vertices[triangle[0]];
     const Vertex& b = vertices[triangle[1]];
     const Vertex& c = vertices[triangle[2]];
-    if (a.visible && b.visible && c.visible) draw_triangle(a, b, c, camera, depth);
+    const bool visible = a.inverse_depth > 0 && b.inverse_depth > 0 && c.inverse_depth > 0;
+    if (visible) draw_triangle(a, b, c, camera, depth);
   }
   return depth;
 }

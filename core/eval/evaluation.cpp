@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 
+#include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/eval/private/frame_evaluation.hpp"
 
@@ -37,14 +38,13 @@ Result<std::vector<const io::FrameResult*>> assign(const std::vector<io::BopFram
   for (std::size_t i = 0; i < frames.size(); ++i) {
     index[{frames[i].scene_id, frames[i].im_id}] = i;
     if (!frames[i].has_truth) {
-      return invalid_argument(frame_name(frames[i].scene_id, frames[i].im_id) +
+      return invalid_argument(frame_name(frames[i].scene_id, frames[i].im_id),
                               " has no truth (scene_gt.json); evaluation needs it");
     }
     for (const io::BopInstance& instance : frames[i].truth) {
       if (objects.count(instance.obj_id) == 0) {
-        return invalid_argument("the truth of " + frame_name(frames[i].scene_id, frames[i].im_id) +
-                                " has obj_id " + std::to_string(instance.obj_id) +
-                                ", which is not among the models");
+        return invalid_argument("the truth of ", frame_name(frames[i].scene_id, frames[i].im_id),
+                                " has obj_id ", instance.obj_id, ", which is not among the models");
       }
     }
   }
@@ -52,14 +52,13 @@ Result<std::vector<const io::FrameResult*>> assign(const std::vector<io::BopFram
   for (const io::FrameResult& result : results) {
     const auto found = index.find({result.scene_id, result.im_id});
     if (found == index.end()) {
-      return invalid_argument("the results have " + frame_name(result.scene_id, result.im_id) +
+      return invalid_argument("the results have ", frame_name(result.scene_id, result.im_id),
                               ", which is not in the data set");
     }
     for (const Interpretation& interpretation : result.interpretations) {
       for (const Placement& placement : interpretation.placements) {
         if (objects.count(placement.model_number) == 0) {
-          return invalid_argument("the results have obj_id " +
-                                  std::to_string(placement.model_number) +
+          return invalid_argument("the results have obj_id ", placement.model_number,
                                   ", which is not among the data set's models");
         }
       }
@@ -74,61 +73,34 @@ void count(Ratio& ratio, bool hit) {
   ++ratio.total;
 }
 
-std::string range_name(double low, double high, const char* unit) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.1f-%.1f%s", low, high, unit);
-  return text;
-}
+/// Rows of equal width; the last one takes everything beyond.
+struct Rows {
+  double first, width;
+  int count;
+  const char* unit;
+};
 
-/// Rows of equal width from `first`; the last one takes everything beyond.
-std::vector<Group> range_groups(double first, double width, int rows, const char* unit) {
-  std::vector<Group> groups(static_cast<std::size_t>(rows));
-  for (int i = 0; i < rows; ++i) {
-    groups[static_cast<std::size_t>(i)].name =
-        range_name(first + i * width, first + (i + 1) * width, unit);
+constexpr Rows kFractionRows{0.1, 0.1, 9, ""}, kDistanceRows{0.4, 0.2, 8, " m"};
+
+std::vector<Group> groups_of(const Rows& rows) {
+  std::vector<Group> groups;
+  for (int i = 0; i < rows.count; ++i) {
+    char name[64];
+    std::snprintf(name, sizeof name, "%.1f-%.1f%s", rows.first + i * rows.width,
+                  rows.first + (i + 1) * rows.width, rows.unit);
+    groups.push_back({name, {}, {}});
   }
   return groups;
 }
 
-Group& group_of(std::vector<Group>& groups, double first, double width, double value) {
-  const int row = static_cast<int>((value - first) / width + 1e-9);
-  return groups[static_cast<std::size_t>(std::clamp(row, 0, static_cast<int>(groups.size()) - 1))];
-}
-
-void add_groups(const EvalObjects& objects, EvaluationReport& report) {
-  std::map<int, Group> by_object;
-  report.by_visible_fraction = range_groups(0.1, 0.1, 9, "");
-  report.by_distance = range_groups(0.4, 0.2, 8, " m");
-  for (const FrameOutcome& frame : report.outcomes) {
-    for (const TruthOutcome& truth : frame.truth) {
-      if (!truth.counts) continue;
-      count(by_object[truth.obj_id].recall, truth.found);
-      count(group_of(report.by_visible_fraction, 0.1, 0.1, truth.visible_fraction).recall,
-            truth.found);
-      count(group_of(report.by_distance, 0.4, 0.2, truth.distance).recall, truth.found);
-    }
-    for (const EstimateOutcome& estimate : frame.estimates) {
-      if (estimate.ignored) continue;
-      count(by_object[estimate.obj_id].precision, estimate.truth >= 0);
-      count(group_of(report.by_distance, 0.4, 0.2, estimate.distance).precision,
-            estimate.truth >= 0);
-    }
-  }
-  for (auto& [obj_id, group] : by_object) {
-    group.name = objects.at(obj_id).name;
-    report.by_object.push_back(group);
-  }
-  const auto empty = [](const Group& g) { return g.recall.total + g.precision.total == 0; };
-  std::erase_if(report.by_visible_fraction, empty);
-  std::erase_if(report.by_distance, empty);
+Group& group_of(std::vector<Group>& groups, const Rows& rows, double value) {
+  const int row = static_cast<int>((value - rows.first) / rows.width + 1e-9);
+  return groups[static_cast<std::size_t>(std::clamp(row, 0, rows.count - 1))];
 }
 
 std::vector<ReliabilityBin> empty_bins() {
-  std::vector<ReliabilityBin> bins(kBins);
-  for (int i = 0; i < kBins; ++i) {
-    bins[static_cast<std::size_t>(i)].low = i / static_cast<double>(kBins);
-    bins[static_cast<std::size_t>(i)].high = (i + 1) / static_cast<double>(kBins);
-  }
+  std::vector<ReliabilityBin> bins;
+  for (double i = 0; i < kBins; ++i) bins.push_back({i / kBins, (i + 1) / kBins, 0, {}});
   return bins;
 }
 
@@ -140,136 +112,152 @@ void add_to_bins(std::vector<ReliabilityBin>& bins, double probability, bool rig
 }
 
 void finish_bins(std::vector<ReliabilityBin>& bins) {
-  for (ReliabilityBin& bin : bins) {
-    if (bin.correct.total > 0) bin.mean_probability /= bin.correct.total;
+  for (ReliabilityBin& bin : bins) bin.mean_probability /= std::max(1, bin.correct.total);
+}
+
+/// A report in the making: its means are sums.
+struct Draft {
+  EvaluationReport report;
+  std::map<int, Group> by_object;
+  std::vector<double> visible_fractions;  ///< Of all instances.
+  int with_covariance = 0;                ///< Placements behind normalised_square.
+};
+
+Draft empty_draft() {
+  Draft draft;
+  draft.report.by_visible_fraction = groups_of(kFractionRows);
+  draft.report.by_distance = groups_of(kDistanceRows);
+  draft.report.reliability = draft.report.open_poses.weights = empty_bins();
+  for (const auto& row : kChiSquared) draft.report.coverage.push_back({row.level, {}});
+  return draft;
+}
+
+void add_open_poses(const EstimateOutcome& estimate, OpenPoses& open) {
+  if (estimate.poses.empty()) return;
+  bool any = false;
+  for (const PoseOutcome& pose : estimate.poses) {
+    any = any || pose.right;
+    add_to_bins(open.weights, pose.weight, pose.right);
+  }
+  count(open.held, any);
+  count(open.own, estimate.poses.front().right);
+}
+
+/// A placement that counts.
+void add_estimate(const EstimateOutcome& estimate, Draft& draft) {
+  EvaluationReport& report = draft.report;
+  const bool right = estimate.truth >= 0;
+  const double p = std::clamp(estimate.probability, 0.0, 1.0);
+  count(report.precision, right);
+  count(draft.by_object[estimate.obj_id].precision, right);
+  count(group_of(report.by_distance, kDistanceRows, estimate.distance).precision, right);
+  report.brier += (p - right) * (p - right);
+  add_to_bins(report.reliability, p, right);
+  if (!right || !estimate.has_covariance) return;
+  ++draft.with_covariance;
+  report.normalised_square += estimate.mahalanobis_squared / estimate.degrees_of_freedom;
+  for (std::size_t i = 0; i < std::size(kChiSquared); ++i) {
+    const double quantile = kChiSquared[i].quantile[estimate.degrees_of_freedom - 3];
+    count(report.coverage[i].covered, estimate.mahalanobis_squared <= quantile);
   }
 }
 
-void add_open_poses(EvaluationReport& report) {
-  OpenPoses& open = report.open_poses;
-  open.weights = empty_bins();
-  for (const FrameOutcome& frame : report.outcomes) {
-    for (const EstimateOutcome& estimate : frame.estimates) {
-      if (estimate.poses.empty()) continue;
-      bool any = false;
-      for (const PoseOutcome& pose : estimate.poses) {
-        any = any || pose.right;
-        add_to_bins(open.weights, pose.weight, pose.right);
-      }
-      count(open.held, any);
-      count(open.own, estimate.poses.front().right);
-    }
+/// An instance that counts.
+void add_truth(const TruthOutcome& truth, Draft& draft) {
+  EvaluationReport& report = draft.report;
+  count(report.recall, truth.found);
+  count(report.rmse_recall, truth.found_rmse);
+  for (const int rank : kRanks) {
+    count(report.recall_at[rank], truth.found_at_rank > 0 && truth.found_at_rank <= rank);
   }
-  finish_bins(open.weights);
+  count(draft.by_object[truth.obj_id].recall, truth.found);
+  count(group_of(report.by_visible_fraction, kFractionRows, truth.visible_fraction).recall,
+        truth.found);
+  count(group_of(report.by_distance, kDistanceRows, truth.distance).recall, truth.found);
+  if (!truth.found) return;
+  report.mean_add += truth.add;
+  report.mean_adds += truth.adds;
 }
 
-void add_calibration(EvaluationReport& report) {
-  report.reliability = empty_bins();
-  for (const auto& row : kChiSquared) report.coverage.push_back({row.level, {}});
-  double squared = 0;
-  int reported = 0, with_covariance = 0;
-  for (const FrameOutcome& frame : report.outcomes) {
-    for (const EstimateOutcome& estimate : frame.estimates) {
-      if (estimate.ignored) continue;
-      const bool correct = estimate.truth >= 0;
-      const double p = std::clamp(estimate.probability, 0.0, 1.0);
-      squared += (p - correct) * (p - correct);
-      ++reported;
-      add_to_bins(report.reliability, p, correct);
-      if (!correct || !estimate.has_covariance) continue;
-      ++with_covariance;
-      report.normalised_square += estimate.mahalanobis_squared / estimate.degrees_of_freedom;
-      for (std::size_t i = 0; i < std::size(kChiSquared); ++i) {
-        count(report.coverage[i].covered,
-              estimate.mahalanobis_squared <=
-                  kChiSquared[i].quantile[estimate.degrees_of_freedom - 3]);
-      }
-    }
+void add_frame(const FrameOutcome& frame, Draft& draft) {
+  EvaluationReport& report = draft.report;
+  int reports = 0;
+  for (const EstimateOutcome& estimate : frame.estimates) {
+    add_open_poses(estimate, report.open_poses);
+    if (estimate.ignored) continue;
+    ++reports;
+    add_estimate(estimate, draft);
   }
-  if (with_covariance > 0) report.normalised_square /= with_covariance;
-  report.brier = reported > 0 ? squared / reported : 0;
-  finish_bins(report.reliability);
+  bool free = true;
+  for (const TruthOutcome& truth : frame.truth) {
+    draft.visible_fractions.push_back(truth.visible_fraction);
+    const int tenth = std::clamp(static_cast<int>(10 * truth.visible_fraction + 1e-9), 0, 9);
+    ++report.visible_tenths[static_cast<std::size_t>(tenth)];
+    if (!truth.counts) continue;
+    free = false;
+    add_truth(truth, draft);
+  }
+  report.rmse_precision.hits += frame.rmse_correct;
+  report.rmse_precision.total += frame.rmse_reported;
+  if (!free) return;
+  ++report.false_reports.free_frames;
+  report.false_reports.frames_with_report += reports > 0;
+  report.false_reports.reports += reports;
 }
 
-/// The middle value; of an even number of them, the mean of the middle two.
+/// The middle value; of an even number of them, the mean of the middle two; 0 of none.
 double median(const std::vector<double>& sorted) {
   const std::size_t n = sorted.size();
-  return 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
+  return n > 0 ? 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]) : 0;
+}
+
+/// Turns sums into means.
+EvaluationReport finished(Draft draft, const EvalObjects& objects) {
+  EvaluationReport& report = draft.report;
+  report.mean_add /= std::max(1, report.recall.hits);
+  report.mean_adds /= std::max(1, report.recall.hits);
+  report.brier /= std::max(1, report.precision.total);
+  report.normalised_square /= std::max(1, draft.with_covariance);
+  finish_bins(report.reliability);
+  finish_bins(report.open_poses.weights);
+  for (auto& [obj_id, group] : draft.by_object) {
+    group.name = objects.at(obj_id).name;
+    report.by_object.push_back(group);
+  }
+  const auto empty = [](const Group& g) { return g.recall.total + g.precision.total == 0; };
+  std::erase_if(report.by_visible_fraction, empty);
+  std::erase_if(report.by_distance, empty);
+  std::ranges::sort(draft.visible_fractions);
+  report.median_visible_fraction = median(draft.visible_fractions);
+  return std::move(report);
 }
 
 void add_time(EvaluationReport& report) {
   const std::vector<double> seconds = sorted_seconds(report);
   if (seconds.empty()) return;
+  const double sum = std::accumulate(seconds.begin(), seconds.end(), 0.0);
   report.time.frames = static_cast<int>(seconds.size());
-  report.time.mean =
-      std::accumulate(seconds.begin(), seconds.end(), 0.0) / static_cast<double>(seconds.size());
+  report.time.mean = sum / report.time.frames;
   report.time.median = median(seconds);
   report.time.max = seconds.back();
 }
 
-void add_scenes(EvaluationReport& report) {
-  std::vector<double> fractions;
-  for (const FrameOutcome& frame : report.outcomes) {
-    bool free = true;
-    for (const TruthOutcome& truth : frame.truth) {
-      free = free && !truth.counts;
-      fractions.push_back(truth.visible_fraction);
-      const int tenth = std::clamp(static_cast<int>(10 * truth.visible_fraction + 1e-9), 0, 9);
-      ++report.visible_tenths[static_cast<std::size_t>(tenth)];
-    }
-    if (!free) continue;
-    const auto reports = static_cast<int>(
-        std::count_if(frame.estimates.begin(), frame.estimates.end(),
-                      [](const EstimateOutcome& estimate) { return !estimate.ignored; }));
-    ++report.false_reports.free_frames;
-    report.false_reports.frames_with_report += reports > 0;
-    report.false_reports.reports += reports;
-  }
-  if (fractions.empty()) return;
-  std::sort(fractions.begin(), fractions.end());
-  report.median_visible_fraction = median(fractions);
-}
-
-void add_paper(EvaluationReport& report) {
-  int found = 0;
-  for (const FrameOutcome& frame : report.outcomes) {
-    for (const EstimateOutcome& estimate : frame.estimates) {
-      if (!estimate.ignored) count(report.precision, estimate.truth >= 0);
-    }
-    report.rmse_precision.hits += frame.rmse_correct;
-    report.rmse_precision.total += frame.rmse_reported;
-    for (const TruthOutcome& truth : frame.truth) {
-      if (!truth.counts) continue;
-      count(report.recall, truth.found);
-      count(report.rmse_recall, truth.found_rmse);
-      for (const int rank : kRanks) {
-        count(report.recall_at[rank], truth.found_at_rank > 0 && truth.found_at_rank <= rank);
-      }
-      if (!truth.found) continue;
-      ++found;
-      report.mean_add += truth.add;
-      report.mean_adds += truth.adds;
-    }
-  }
-  if (found == 0) return;
-  report.mean_add /= found;
-  report.mean_adds /= found;
-}
-
 void add_bop(EvaluationReport& report) {
   report.has_bop = true;
-  double vsd = 0, mssd = 0, mspd = 0;
+  const auto sum = [](const auto& counts) {
+    return std::accumulate(counts.begin(), counts.end(), 0.0);
+  };
   for (const FrameOutcome& frame : report.outcomes) {
     report.add_recall.hits += frame.add_correct;
-    mssd += std::accumulate(frame.mssd.begin(), frame.mssd.end(), 0.0);
-    mspd += std::accumulate(frame.mspd.begin(), frame.mspd.end(), 0.0);
-    for (const auto& row : frame.vsd) vsd += std::accumulate(row.begin(), row.end(), 0.0);
+    report.mssd += sum(frame.mssd);
+    report.mspd += sum(frame.mspd);
+    for (const auto& row : frame.vsd) report.vsd += sum(row);
   }
   report.add_recall.total = report.recall.total;
   if (report.recall.total == 0) return;
-  report.vsd = vsd / (100.0 * report.recall.total);
-  report.mssd = mssd / (10.0 * report.recall.total);
-  report.mspd = mspd / (10.0 * report.recall.total);
+  report.vsd /= 100.0 * report.recall.total;
+  report.mssd /= 10.0 * report.recall.total;
+  report.mspd /= 10.0 * report.recall.total;
   report.average_recall = (report.vsd + report.mssd + report.mspd) / 3;
 }
 
@@ -314,18 +302,15 @@ Result<EvaluationReport> evaluate(const std::vector<io::BopFrame>& frames,
     ++done;
     if (progress) progress(done);
   });
-  EvaluationReport report;
-  report.frames = static_cast<int>(frames.size());
+  Draft draft = empty_draft();
+  draft.report.frames = static_cast<int>(frames.size());
   for (auto& outcome : outcomes) {
     if (!outcome->ok()) return outcome->status();
-    report.outcomes.push_back(std::move(**outcome));
+    add_frame(**outcome, draft);
+    draft.report.outcomes.push_back(std::move(**outcome));
   }
-  add_paper(report);
+  EvaluationReport report = finished(std::move(draft), objects);
   if (options.bop_errors) add_bop(report);
-  add_groups(objects, report);
-  add_calibration(report);
-  add_open_poses(report);
-  add_scenes(report);
   add_time(report);
   return report;
 }

@@ -47,9 +47,9 @@ Costs below(Costs costs, double threshold) {
 
 /// The paper's criterion: both errors relative to their limits, the larger one.
 double paper_cost(const EvalObjects& objects, const EvaluationOptions& options,
-                  const Placement& estimate, const io::BopInstance& truth) {
-  return right_cost(estimate.camera_from_object, truth.camera_from_object,
-                    objects.at(truth.obj_id).symmetry, options.position_m, options.angle_rad);
+                  const Pose& estimate, const io::BopInstance& truth) {
+  return right_cost(estimate, truth.camera_from_object, objects.at(truth.obj_id).symmetry,
+                    options.position_m, options.angle_rad);
 }
 
 using Twist = Eigen::Matrix<double, 6, 1>;  // position, then turn; camera frame
@@ -77,22 +77,15 @@ std::vector<Twist> free_motions(const Pose& pose, const SymmetryGroup& symmetry)
   return motions;
 }
 
-struct CovarianceError {
-  double mahalanobis_squared = -1;  // negative: the covariance is not positive definite
-  int degrees_of_freedom = 6;
-};
-
 /// Squared length of the error in units of the reported covariance, both seen modulo the motions
-/// that the symmetry leaves free.
-CovarianceError covariance_error(const Placement& estimate, const io::BopInstance& truth,
-                                 const SymmetryGroup& symmetry) {
-  const Pose nearest =
-      nearest_symmetric_pose(truth.camera_from_object, estimate.camera_from_object, symmetry);
+/// that the symmetry leaves free. `truth` is the symmetric one nearest to the estimate.
+void add_covariance_error(const Placement& estimate, const Pose& truth,
+                          const SymmetryGroup& symmetry, EstimateOutcome& result) {
+  const Pose& pose = estimate.camera_from_object;
   Twist error;
-  error.head<3>() = nearest.translation - estimate.camera_from_object.translation;
-  error.tail<3>() = vector_from_rotation(
-      (nearest.rotation * estimate.camera_from_object.rotation.conjugate()).normalized());
-  const std::vector<Twist> motions = free_motions(estimate.camera_from_object, symmetry);
+  error << truth.translation - pose.translation,
+      vector_from_rotation((truth.rotation * pose.rotation.conjugate()).normalized());
+  const std::vector<Twist> motions = free_motions(pose, symmetry);
   const int free = static_cast<int>(motions.size());
   // Any linear map whose kernel is spanned by the free motions gives the same length.
   Eigen::MatrixXd kernel(6, std::max(free, 1));
@@ -104,9 +97,11 @@ CovarianceError covariance_error(const Placement& estimate, const io::BopInstanc
   const Eigen::MatrixXd seen = basis.rightCols(6 - free).transpose();
   const Eigen::MatrixXd covariance = seen * estimate.covariance * seen.transpose();
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
-  if (factor.info() != Eigen::Success || !(covariance.diagonal().minCoeff() > 0)) return {};
+  result.has_covariance = factor.info() == Eigen::Success && covariance.diagonal().minCoeff() > 0;
+  if (!result.has_covariance) return;
   const Eigen::VectorXd seen_error = seen * error;
-  return {seen_error.dot(factor.solve(seen_error)), 6 - free};
+  result.mahalanobis_squared = seen_error.dot(factor.solve(seen_error));
+  result.degrees_of_freedom = 6 - free;
 }
 
 /// Only what counts takes part in BOP's errors, and for each object at most as many estimates, the
@@ -125,8 +120,7 @@ BopCase bop_case(const Estimates& estimates, const Instances& truth, double min_
     ++room[instance.obj_id];
   }
   Estimates sorted = estimates;
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
+  std::ranges::stable_sort(sorted, std::greater(), &Placement::probability);
   for (const Placement& estimate : sorted) {
     if (room[estimate.model_number]-- > 0) result.estimates.push_back(estimate);
   }
@@ -135,8 +129,7 @@ BopCase bop_case(const Estimates& estimates, const Instances& truth, double min_
 
 int matched(const std::vector<double>& scores, const Costs& costs, double threshold) {
   const std::vector<int> truth_of = match_greedily(scores, below(costs, threshold));
-  return static_cast<int>(
-      truth_of.size() - static_cast<std::size_t>(std::count(truth_of.begin(), truth_of.end(), -1)));
+  return static_cast<int>(std::ranges::count_if(truth_of, [](int t) { return t >= 0; }));
 }
 
 /// VSD of every pair of the same object, for each tolerance.
@@ -239,18 +232,15 @@ std::vector<PoseOutcome> open_poses(const io::BopFrame& frame, const EvalObjects
     least = distance;
     nearest = &truth;
   }
-  if (nearest == nullptr) return {};
-  std::vector<PoseOutcome> out{{1, false}};
+  if (!nearest) return {};
   const auto is_right = [&](const Pose& pose) {
-    Placement at_pose = estimate;
-    at_pose.camera_from_object = pose;
-    return paper_cost(objects, options, at_pose, *nearest) < kNoMatch;
+    return paper_cost(objects, options, pose, *nearest) < kNoMatch;
   };
+  std::vector<PoseOutcome> out{{1, is_right(estimate.camera_from_object)}};
   for (const PoseAlternative& other : estimate.alternatives) {
     out.front().weight -= other.weight;
     out.push_back({other.weight, is_right(other.camera_from_object)});
   }
-  out.front().right = is_right(estimate.camera_from_object);
   return out;
 }
 
@@ -259,30 +249,23 @@ void add_estimates(const io::BopFrame& frame, const EvalObjects& objects,
                    const EvaluationOptions& options, FrameOutcome& outcome) {
   for (std::size_t e = 0; e < estimates.size(); ++e) {
     const Placement& estimate = estimates[e];
-    EstimateOutcome result;
+    const Pose& pose = estimate.camera_from_object;
+    EstimateOutcome& result = outcome.estimates.emplace_back();
     result.obj_id = estimate.model_number;
     result.probability = estimate.probability;
-    result.distance = estimate.camera_from_object.translation.norm();
+    result.distance = pose.translation.norm();
     result.truth = truth_of[e];
     result.poses = open_poses(frame, objects, options, estimate);
-    if (result.truth >= 0) {
-      const auto t = static_cast<std::size_t>(result.truth);
-      const EvalObject& object = objects.at(estimate.model_number);
-      result.ignored = !outcome.truth[t].counts;
-      outcome.truth[t].found = true;
-      const Pose& truth = frame.truth[t].camera_from_object;
-      const Pose nearest =
-          nearest_symmetric_pose(truth, estimate.camera_from_object, object.symmetry);
-      outcome.truth[t].add =
-          average_distance(object.mesh.vertices, estimate.camera_from_object, nearest);
-      outcome.truth[t].adds =
-          average_nearest_distance(object.mesh.vertices, estimate.camera_from_object, truth);
-      const CovarianceError error = covariance_error(estimate, frame.truth[t], object.symmetry);
-      result.mahalanobis_squared = error.mahalanobis_squared;
-      result.degrees_of_freedom = error.degrees_of_freedom;
-      result.has_covariance = error.mahalanobis_squared >= 0;
-    }
-    outcome.estimates.push_back(result);
+    if (result.truth < 0) continue;
+    const auto t = static_cast<std::size_t>(result.truth);
+    const EvalObject& object = objects.at(estimate.model_number);
+    const Pose& truth = frame.truth[t].camera_from_object;
+    const Pose nearest = nearest_symmetric_pose(truth, pose, object.symmetry);
+    outcome.truth[t].found = true;
+    outcome.truth[t].add = average_distance(object.mesh.vertices, pose, nearest);
+    outcome.truth[t].adds = average_nearest_distance(object.mesh.vertices, pose, truth);
+    result.ignored = !outcome.truth[t].counts;
+    add_covariance_error(estimate, nearest, object.symmetry, result);
   }
 }
 
@@ -295,18 +278,16 @@ Result<FrameOutcome> evaluate_frame(const io::BopFrame& frame, const EvalObjects
   outcome.scene_id = frame.scene_id;
   outcome.im_id = frame.im_id;
   outcome.reported = result != nullptr;
-  for (const io::BopInstance& instance : frame.truth) {
-    TruthOutcome truth;
-    truth.obj_id = instance.obj_id;
-    truth.visible_fraction = instance.visible_fraction;
-    truth.distance = instance.camera_from_object.translation.norm();
-    truth.counts = instance.visible_fraction >= options.min_visible_fraction;
-    outcome.truth.push_back(truth);
+  for (const io::BopInstance& truth : frame.truth) {
+    outcome.truth.push_back({.obj_id = truth.obj_id,
+                             .visible_fraction = truth.visible_fraction,
+                             .distance = truth.camera_from_object.translation.norm(),
+                             .counts = truth.visible_fraction >= options.min_visible_fraction});
   }
   if (result == nullptr) return outcome;
   outcome.seconds = result->seconds;
   const Cost cost = [&](const auto& e, const auto& t) {
-    return paper_cost(objects, options, e, t);
+    return paper_cost(objects, options, e.camera_from_object, t);
   };
   for (std::size_t rank = 0; rank < result->interpretations.size(); ++rank) {
     const Estimates& estimates = result->interpretations[rank].placements;

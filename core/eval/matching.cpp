@@ -3,6 +3,7 @@
 #include "core/eval/matching.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 namespace bpa::eval {
@@ -24,15 +25,12 @@ bool is_right_about_any(const Pose& estimate, const ObjectModel& model,
 
 std::vector<int> match_greedily(const std::vector<double>& scores,
                                 const std::vector<std::vector<double>>& costs) {
-  std::vector<int> order(scores.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&scores](int a, int b) {
-    return scores[static_cast<std::size_t>(a)] > scores[static_cast<std::size_t>(b)];
-  });
+  std::vector<std::size_t> order(scores.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t e) { return scores[e]; });
   std::vector<int> truth_of(scores.size(), -1);
   std::vector<bool> taken(costs.empty() ? 0 : costs.front().size(), false);
-  for (const int index : order) {
-    const auto e = static_cast<std::size_t>(index);
+  for (const std::size_t e : order) {
     double best = kNoMatch;
     for (std::size_t t = 0; t < taken.size(); ++t) {
       if (taken[t] || !(costs[e][t] < best)) continue;

@@ -14,11 +14,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMaxQueries = 2000;
 
 Eigen::Matrix3Xd transformed(const Points& points, const Pose& pose) {
-  Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    result.col(static_cast<Eigen::Index>(i)) = points[i].cast<double>();
-  }
-  return (pose.matrix() * result).colwise() + pose.translation;
+  const Eigen::Map<const Eigen::Matrix3Xf> all(reinterpret_cast<const float*>(points.data()), 3,
+                                               static_cast<Eigen::Index>(points.size()));
+  return (pose.matrix() * all.cast<double>()).colwise() + pose.translation;
 }
 
 /// Largest squared column difference, given up once it exceeds `limit`.
@@ -34,11 +32,8 @@ double max_squared_difference(const A& a, const B& b, double limit) {
 Eigen::Matrix2Xd projected(const Eigen::Matrix3Xd& points, const Camera& camera) {
   Eigen::Matrix2Xd pixels(2, points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    if (points(2, i) > 0) {
-      pixels.col(i) = camera.project(points.col(i));
-    } else {
-      pixels.col(i).setConstant(kInfinity);
-    }
+    const bool visible = points(2, i) > 0;
+    pixels.col(i) = visible ? camera.project(points.col(i)) : Eigen::Vector2d::Constant(kInfinity);
   }
   return pixels;
 }

@@ -8,9 +8,40 @@
 #include <nlohmann/json.hpp>
 
 namespace bpa::eval {
-namespace {
 
 using Json = nlohmann::json;
+
+static void to_json(Json& json, const Ratio& ratio) {
+  json = {{"value", ratio.total > 0 ? Json(ratio.value()) : Json()},
+          {"hits", ratio.hits},
+          {"total", ratio.total}};
+}
+
+static void to_json(Json& json, const ReliabilityBin& bin) {
+  json = {{"low", bin.low},
+          {"high", bin.high},
+          {"mean_probability", bin.mean_probability},
+          {"correct", bin.correct}};
+}
+
+static void to_json(Json& json, const Coverage& coverage) {
+  json = {{"level", coverage.level}, {"covered", coverage.covered}};
+}
+
+static void to_json(Json& json, const FrameOutcome& frame) {
+  Json found = Json::array(), missed = Json::array(), false_alarms = Json::array();
+  for (const TruthOutcome& truth : frame.truth) {
+    if (truth.counts) (truth.found ? found : missed).push_back(truth.obj_id);
+  }
+  for (const EstimateOutcome& estimate : frame.estimates) {
+    if (estimate.truth < 0) false_alarms.push_back(estimate.obj_id);
+  }
+  json = {{"scene_id", frame.scene_id}, {"im_id", frame.im_id},
+          {"seconds", frame.seconds},   {"found", found},
+          {"missed", missed},           {"false_alarms", false_alarms}};
+}
+
+namespace {
 
 __attribute__((format(printf, 1, 2))) std::string format(const char* pattern, ...) {
   char text[256];
@@ -105,51 +136,13 @@ std::string calibration_text(const EvaluationReport& report) {
   return text + bins_text("weight", report.open_poses.weights);
 }
 
-Json ratio_json(const Ratio& ratio) {
-  return {{"value", ratio.total > 0 ? Json(ratio.value()) : Json()},
-          {"hits", ratio.hits},
-          {"total", ratio.total}};
-}
-
 Json groups_json(const std::vector<Group>& groups, bool precision) {
   Json json = Json::array();
   for (const Group& group : groups) {
-    Json row = {{"name", group.name}, {"recall", ratio_json(group.recall)}};
-    if (precision) row["precision"] = ratio_json(group.precision);
-    json.push_back(row);
+    json.push_back({{"name", group.name}, {"recall", group.recall}});
+    if (precision) json.back()["precision"] = group.precision;
   }
   return json;
-}
-
-Json frames_json(const EvaluationReport& report) {
-  Json json = Json::array();
-  for (const FrameOutcome& frame : report.outcomes) {
-    Json found = Json::array(), missed = Json::array(), false_alarms = Json::array();
-    for (const TruthOutcome& truth : frame.truth) {
-      if (truth.counts) (truth.found ? found : missed).push_back(truth.obj_id);
-    }
-    for (const EstimateOutcome& estimate : frame.estimates) {
-      if (estimate.truth < 0) false_alarms.push_back(estimate.obj_id);
-    }
-    json.push_back({{"scene_id", frame.scene_id},
-                    {"im_id", frame.im_id},
-                    {"seconds", frame.seconds},
-                    {"found", found},
-                    {"missed", missed},
-                    {"false_alarms", false_alarms}});
-  }
-  return json;
-}
-
-Json calibration_json(const EvaluationReport& report) {
-  Json bins = Json::array();
-  for (const ReliabilityBin& bin : report.reliability) {
-    bins.push_back({{"low", bin.low},
-                    {"high", bin.high},
-                    {"mean_probability", bin.mean_probability},
-                    {"correct", ratio_json(bin.correct)}});
-  }
-  return {{"brier", report.brier}, {"bins", bins}};
 }
 
 }  // namespace
@@ -166,50 +159,42 @@ std::string report_text(const EvaluationReport& report) {
 std::string report_json(const EvaluationReport& report) {
   Json recall_at = Json::object();
   for (const auto& [rank, ratio] : report.recall_at) {
-    recall_at[std::to_string(rank)] = ratio_json(ratio);
+    recall_at[std::to_string(rank)] = ratio;
   }
-  Json coverage = Json::array();
-  for (const Coverage& c : report.coverage) {
-    coverage.push_back({{"level", c.level}, {"covered", ratio_json(c.covered)}});
-  }
-  Json json = {
-      {"format", "bpa evaluation"},
-      {"version", 1},
-      {"frames", report.frames},
-      {"precision", ratio_json(report.precision)},
-      {"recall", ratio_json(report.recall)},
-      {"recall_at", recall_at},
-      {"rmse",
-       {{"precision", ratio_json(report.rmse_precision)},
-        {"recall", ratio_json(report.rmse_recall)}}},
-      {"mean_add_m", report.mean_add},
-      {"mean_adds_m", report.mean_adds},
-      {"by_object", groups_json(report.by_object, true)},
-      {"by_visible_fraction", groups_json(report.by_visible_fraction, false)},
-      {"by_distance", groups_json(report.by_distance, true)},
-      {"calibration", calibration_json(report)},
-      {"coverage", coverage},
-      {"normalised_square", report.normalised_square},
-      {"open_poses",
-       {{"own", ratio_json(report.open_poses.own)}, {"held", ratio_json(report.open_poses.held)}}},
-      {"false_reports",
-       {{"free_frames", report.false_reports.free_frames},
-        {"frames_with_report", report.false_reports.frames_with_report},
-        {"reports", report.false_reports.reports}}},
-      {"visible_fraction",
-       {{"median", report.median_visible_fraction}, {"tenths", report.visible_tenths}}},
-      {"seconds",
-       {{"frames", report.time.frames},
-        {"mean", report.time.mean},
-        {"median", report.time.median},
-        {"max", report.time.max}}},
-      {"outcomes", frames_json(report)}};
+  Json json = {{"format", "bpa evaluation"},
+               {"version", 1},
+               {"frames", report.frames},
+               {"precision", report.precision},
+               {"recall", report.recall},
+               {"recall_at", recall_at},
+               {"rmse", {{"precision", report.rmse_precision}, {"recall", report.rmse_recall}}},
+               {"mean_add_m", report.mean_add},
+               {"mean_adds_m", report.mean_adds},
+               {"by_object", groups_json(report.by_object, true)},
+               {"by_visible_fraction", groups_json(report.by_visible_fraction, false)},
+               {"by_distance", groups_json(report.by_distance, true)},
+               {"calibration", {{"brier", report.brier}, {"bins", report.reliability}}},
+               {"coverage", report.coverage},
+               {"normalised_square", report.normalised_square},
+               {"open_poses", {{"own", report.open_poses.own}, {"held", report.open_poses.held}}},
+               {"false_reports",
+                {{"free_frames", report.false_reports.free_frames},
+                 {"frames_with_report", report.false_reports.frames_with_report},
+                 {"reports", report.false_reports.reports}}},
+               {"visible_fraction",
+                {{"median", report.median_visible_fraction}, {"tenths", report.visible_tenths}}},
+               {"seconds",
+                {{"frames", report.time.frames},
+                 {"mean", report.time.mean},
+                 {"median", report.time.median},
+                 {"max", report.time.max}}},
+               {"outcomes", report.outcomes}};
   if (report.has_bop) {
     json["bop"] = {{"vsd", report.vsd},
                    {"mssd", report.mssd},
                    {"mspd", report.mspd},
                    {"average_recall", report.average_recall},
-                   {"add_recall", ratio_json(report.add_recall)}};
+                   {"add_recall", report.add_recall}};
   }
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
