@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <opencv2/imgproc.hpp>
 
@@ -31,11 +32,6 @@ cv::Mat grey_depth(const Frame& frame) {
   grey.setTo(0, ~measured);
   cv::cvtColor(grey, image, cv::COLOR_GRAY2RGB);
   return image;
-}
-
-cv::Mat canvas(const Frame& frame) {
-  if (frame.color.empty()) return grey_depth(frame);
-  return to_mat({frame.camera.width, frame.camera.height, frame.color});
 }
 
 void fill(cv::Mat image, const cv::Mat& mask, const cv::Scalar& color) {
@@ -119,10 +115,11 @@ Rgb object_color(int number) {
 }
 
 io::ColorImage objects(const Frame& frame, const std::vector<DrawnObject>& drawn) {
-  cv::Mat image = canvas(frame);
+  const io::ColorImage color{frame.camera.width, frame.camera.height, frame.color};
+  cv::Mat image = frame.color.empty() ? grey_depth(frame) : to_mat(color);
   std::vector<DrawnObject> furthest_first = drawn;
-  std::stable_sort(furthest_first.begin(), furthest_first.end(), [](const auto& a, const auto& b) {
-    return a.camera_from_object.translation.z() > b.camera_from_object.translation.z();
+  std::ranges::stable_sort(furthest_first, std::greater(), [](const DrawnObject& object) {
+    return object.camera_from_object.translation.z();
   });
   std::vector<cv::Rect> boxes, taken;
   for (const DrawnObject& object : furthest_first) {

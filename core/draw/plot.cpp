@@ -81,6 +81,16 @@ void draw_axes(cv::Mat& image, const Mapping& map) {
   write(image, axes.y_name, 8, 44);
 }
 
+/// The color of series `s`, whose name it writes below those before it.
+cv::Scalar write_legend(cv::Mat& image, const Mapping& map, std::size_t s, const std::string& name,
+                        int thickness) {
+  const cv::Scalar& color = kColors[s % std::size(kColors)];
+  const cv::Point at(map.area.x + 12, map.area.y + 20 + 20 * static_cast<int>(s));
+  cv::line(image, at + cv::Point(0, -4), at + cv::Point(20, -4), color, thickness, cv::LINE_AA);
+  write(image, name, at.x + 28, at.y);
+  return color;
+}
+
 }  // namespace
 
 io::ColorImage line_plot(const PlotAxes& axes, const std::vector<Series>& series) {
@@ -88,7 +98,7 @@ io::ColorImage line_plot(const PlotAxes& axes, const std::vector<Series>& series
   const Mapping map{fitted(axes, series)};
   draw_axes(image, map);
   for (std::size_t s = 0; s < series.size(); ++s) {
-    const cv::Scalar& color = kColors[s % std::size(kColors)];
+    const cv::Scalar color = write_legend(image, map, s, series[s].name, 2);
     cv::Point last;
     for (std::size_t i = 0; i < series[s].x.size(); ++i) {
       const cv::Point here = map(series[s].x[i], series[s].y[i]);
@@ -97,9 +107,6 @@ io::ColorImage line_plot(const PlotAxes& axes, const std::vector<Series>& series
       cv::circle(image, here, 4, color, cv::FILLED, cv::LINE_AA);
       last = here;
     }
-    const cv::Point legend(map.area.x + 12, map.area.y + 20 + 20 * static_cast<int>(s));
-    cv::line(image, legend + cv::Point(0, -4), legend + cv::Point(20, -4), color, 2, cv::LINE_AA);
-    write(image, series[s].name, legend.x + 28, legend.y);
   }
   return to_image(image);
 }
@@ -107,10 +114,9 @@ io::ColorImage line_plot(const PlotAxes& axes, const std::vector<Series>& series
 io::ColorImage histogram_plot(const PlotAxes& axes, const std::vector<std::string>& names,
                               const std::vector<std::vector<int>>& counts) {
   cv::Mat image(480, 640, CV_8UC3, cv::Scalar::all(255));
-  std::size_t bins = 0;
-  for (const auto& series : counts) bins = std::max(bins, series.size());
-  std::vector<int> totals(bins, 0);
+  std::vector<int> totals;
   for (const auto& series : counts) {
+    totals.resize(std::max(totals.size(), series.size()), 0);
     for (std::size_t i = 0; i < series.size(); ++i) totals[i] += series[i];
   }
   Mapping map{axes};
@@ -118,10 +124,10 @@ io::ColorImage histogram_plot(const PlotAxes& axes, const std::vector<std::strin
   const int highest = totals.empty() ? 0 : *std::max_element(totals.begin(), totals.end());
   map.axes.y_max = std::max(5, (highest + 4) / 5 * 5);  // whole numbers at the five lines
   draw_axes(image, map);
-  const double width = (axes.x_max - axes.x_min) / std::max<double>(static_cast<double>(bins), 1);
-  std::vector<int> base(bins, 0);
+  const double width = (axes.x_max - axes.x_min) / static_cast<double>(totals.size());
+  std::vector<int> base(totals.size(), 0);
   for (std::size_t s = 0; s < counts.size(); ++s) {
-    const cv::Scalar& color = kColors[s % std::size(kColors)];
+    const cv::Scalar color = write_legend(image, map, s, names[s], 10);
     for (std::size_t i = 0; i < counts[s].size(); ++i) {
       if (counts[s][i] <= 0) continue;
       const double left = axes.x_min + width * static_cast<double>(i);
@@ -130,9 +136,6 @@ io::ColorImage histogram_plot(const PlotAxes& axes, const std::vector<std::strin
       cv::rectangle(image, low + cv::Point(2, 0), high - cv::Point(2, 0), color, cv::FILLED);
       base[i] += counts[s][i];
     }
-    const cv::Point legend(map.area.x + 12, map.area.y + 20 + 20 * static_cast<int>(s));
-    cv::rectangle(image, legend + cv::Point(0, -10), legend + cv::Point(20, 0), color, cv::FILLED);
-    write(image, names[s], legend.x + 28, legend.y);
   }
   return to_image(image);
 }

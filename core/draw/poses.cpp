@@ -19,14 +19,12 @@ constexpr double kFaintest = 0.35;          // brightness of the last of several
 constexpr std::size_t kDash = 10;           // pixels, and as many between dashes
 
 Camera enlarged(const Camera& camera, double factor) {
-  Camera out;
-  out.width = cvRound(factor * camera.width);
-  out.height = cvRound(factor * camera.height);
-  out.fx = factor * camera.fx;
-  out.fy = factor * camera.fy;
-  out.cx = factor * (camera.cx + 0.5) - 0.5;  // (0, 0) is the middle of a pixel
-  out.cy = factor * (camera.cy + 0.5) - 0.5;
-  return out;
+  return {cvRound(factor * camera.width),
+          cvRound(factor * camera.height),
+          factor * camera.fx,
+          factor * camera.fy,
+          factor * (camera.cx + 0.5) - 0.5,  // (0, 0) is the middle of a pixel
+          factor * (camera.cy + 0.5) - 0.5};
 }
 
 cv::Mat canvas_of(const Frame& frame, const Camera& camera, bool dimmed) {
@@ -79,12 +77,6 @@ void draw_dot(cv::Mat& canvas, const Camera& camera, const Eigen::Vector3d& at,
   cv::circle(canvas, {cvRound(pixel.x()), cvRound(pixel.y())}, 2, color, cv::FILLED, cv::LINE_AA);
 }
 
-Eigen::Vector3f middle_of(const std::vector<Eigen::Vector3f>& points) {
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  for (const Eigen::Vector3f& p : points) sum += p;
-  return sum / static_cast<float>(std::max<std::size_t>(1, points.size()));
-}
-
 constexpr int kView = 640, kViewRows = 480;  // pixels of each of two views of one pose
 constexpr Rgb kPlaced{80, 255, 120}, kTrue{255, 255, 255};
 
@@ -123,14 +115,15 @@ io::ColorImage poses(const Frame& frame, const ObjectModel& model,
   const double factor = std::max(1.0, static_cast<double>(options.min_width) / frame.camera.width);
   const Camera camera = enlarged(frame.camera, factor);
   cv::Mat canvas = canvas_of(frame, camera, options.dimmed);
-  const Eigen::Vector3f middle = middle_of(model.surface.points);
+  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+  for (const Eigen::Vector3f& p : model.surface.points) middle += p;
+  middle /= static_cast<float>(std::max<std::size_t>(1, model.surface.size()));
   for (const DrawnPoses& group : groups) {
     for (std::size_t i = group.poses.size(); i-- > 0;) {
       const FastPose& pose = group.poses[i];
       const cv::Scalar color = shade(group, i);
       if (group.style == DrawnPoses::Style::dots) {
-        const Eigen::Vector3f at = pose * middle;
-        draw_dot(canvas, camera, at.cast<double>(), color);
+        draw_dot(canvas, camera, Eigen::Vector3f(pose * middle).cast<double>(), color);
       } else {
         draw_outline(canvas, camera, model, pose, color, group.style);
       }

@@ -35,9 +35,7 @@ void for_each_pixel(const io::ColorImage& picture, const Image<T>& map, const Vi
 
 io::ColorImage dimmed(const Frame& frame) {
   io::ColorImage picture = objects(frame, {});
-  for (std::uint8_t& value : picture.pixels) {
-    value = static_cast<std::uint8_t>(kDim * static_cast<float>(value));
-  }
+  for (std::uint8_t& v : picture.pixels) v = static_cast<std::uint8_t>(kDim * v);
   return picture;
 }
 
@@ -47,14 +45,11 @@ io::ColorImage black(const Frame& frame) {
 }
 
 Rgb rgb_of_lab(const Eigen::Vector3f& lab) {
-  cv::Mat pixel(1, 1, CV_32FC3, cv::Scalar(lab[0], lab[1], lab[2])), rgb;
-  cv::cvtColor(pixel, rgb, cv::COLOR_Lab2RGB);
-  const auto& value = rgb.at<cv::Vec3f>(0, 0);
-  Rgb out{};
-  for (int k = 0; k < 3; ++k) {
-    out[static_cast<std::size_t>(k)] = cv::saturate_cast<std::uint8_t>(255 * value[k]);
-  }
-  return out;
+  cv::Mat color(1, 1, CV_32FC3, cv::Scalar(lab[0], lab[1], lab[2]));
+  cv::cvtColor(color, color, cv::COLOR_Lab2RGB);
+  color.convertTo(color, CV_8U, 255);
+  const auto& rgb = color.at<cv::Vec3b>(0, 0);
+  return {rgb[0], rgb[1], rgb[2]};
 }
 
 Rgb shade(const Eigen::Vector3f& normal) {

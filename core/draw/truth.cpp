@@ -3,9 +3,11 @@
 #include "core/draw/truth.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <numeric>
 
+#include "core/base/concat.hpp"
 #include "core/draw/annotate.hpp"
 #include "core/draw/sheet.hpp"
 #include "core/eval/matching.hpp"
@@ -71,9 +73,8 @@ JudgedFrame truth_beside_result(const Frame& frame, const std::vector<io::BopIns
     mark_wrong(right.back(), "FALSE");
     ++judged.wrong;
   }
-  const std::string summary = "result: " + std::to_string(judged.found) + " of " +
-                              std::to_string(judged.found + judged.missed) + " found, " +
-                              std::to_string(judged.wrong) + " false";
+  const std::string summary = concat("result: ", judged.found, " of ", judged.found + judged.missed,
+                                     " found, ", judged.wrong, " false");
   judged.picture = beside(with_words(objects(frame, left), caption + " truth"),
                           with_words(objects(frame, right), summary));
   return judged;
@@ -82,9 +83,8 @@ JudgedFrame truth_beside_result(const Frame& frame, const std::vector<io::BopIns
 std::vector<std::size_t> worst_first(const std::vector<JudgedFrame>& frames) {
   std::vector<std::size_t> order(frames.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&frames](std::size_t a, std::size_t b) {
-    return frames[a].missed + frames[a].wrong > frames[b].missed + frames[b].wrong;
-  });
+  std::ranges::stable_sort(order, std::greater(),
+                           [&frames](std::size_t i) { return frames[i].missed + frames[i].wrong; });
   return order;
 }
 
