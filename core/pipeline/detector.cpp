@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <atomic>
 
+#include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/cloud/cielab.hpp"
 #include "core/detect/detect_object.hpp"
+#include "core/io/options_yaml.hpp"
 #include "core/pipeline/frame_trace.hpp"
 #include "core/scene/interpretations.hpp"
 
@@ -19,11 +21,10 @@ using Models = std::vector<std::shared_ptr<const ObjectModel>>;
 
 Status check_request(const DetectRequest& request) {
   if (request.top_k < 1 || request.top_k > 100) {
-    return invalid_argument("top_k is " + std::to_string(request.top_k) +
-                            "; it must be between 1 and 100");
+    return invalid_argument("top_k is ", request.top_k, "; it must be between 1 and 100");
   }
   if (!(request.budget_ms >= 0)) {
-    return invalid_argument("budget_ms is " + std::to_string(request.budget_ms) +
+    return invalid_argument("budget_ms is ", std::to_string(request.budget_ms),
                             "; it must be 0 (no limit) or more");
   }
   return {};
@@ -33,8 +34,7 @@ Status check_priors(const ModelLibrary& library, const std::vector<PosePrior>& p
   for (std::size_t i = 0; i < priors.size(); ++i) {
     const std::string name = "priors[" + std::to_string(i) + "]";
     if (!library.find(priors[i].model)) {
-      return Status(StatusCode::not_found,
-                    name + ": the library holds no model named \"" + priors[i].model + "\"");
+      return not_found(name, ": the library holds no model named \"", priors[i].model, "\"");
     }
     if (Status status = validate(priors[i], name); !status.ok()) return status;
   }
@@ -50,7 +50,7 @@ Result<Models> chosen_models(const ModelLibrary& library, const DetectRequest& r
   for (const std::string& name : request.models) {
     auto model = library.find(name);
     if (!model) {
-      return Status(StatusCode::not_found, "the library holds no model named \"" + name + "\"");
+      return not_found("the library holds no model named \"", name, "\"");
     }
     if (std::find(chosen.begin(), chosen.end(), model) != chosen.end()) continue;  // named twice
     chosen.push_back(std::move(model));
@@ -81,40 +81,32 @@ SceneFeatures observe(const Frame& frame, const DetectRequest& request, Detector
 
 // The candidates of all models. Where there is a deadline, each model gets an equal part of the
 // time that is left when its turn comes.
-class ModelSearch {
- public:
-  ModelSearch(const SceneFeatures& scene, const DetectorOptions& options, const ScoreLayers& layers,
-              const DetectRequest& request, Deadline deadline)
-      : scene_(scene), options_(options), layers_(layers), request_(request), deadline_(deadline) {}
+struct ModelSearch {
+  const SceneFeatures& scene;
+  const DetectOptions& options;
+  const ScoreLayers& layers;
+  const DetectRequest& request;
+  Deadline deadline;
 
   /// `cut`: whether time ran out for some model.
   Candidates run(const Models& models, std::vector<ObjectTrace>* traces, bool& cut) const {
     std::vector<std::uint8_t> late(models.size(), 0);
     std::vector<Candidates> found(models.size());
     std::atomic<int> waiting{static_cast<int>(models.size())};
-    const int threads = std::min(resolve_num_threads(request_.num_threads), waiting.load());
+    const int threads = std::min(resolve_num_threads(request.num_threads), waiting.load());
     if (traces) traces->resize(models.size());
-    parallel_for(static_cast<int>(models.size()), request_.num_threads, [&](int m) {
+    parallel_for(static_cast<int>(models.size()), request.num_threads, [&](int m) {
       const auto i = static_cast<std::size_t>(m);
-      Search search(scene_, *models[i], options_.detect, layers_, request_.priors, request_.seed);
-      search.deadline = deadline_.part(std::min(1.0, static_cast<double>(threads) / waiting--));
+      Search search(scene, *models[i], options, layers, request.priors, request.seed);
+      search.deadline = deadline.part(std::min(1.0, static_cast<double>(threads) / waiting--));
       search.cut = &late[i];
       found[i] = detect_object(std::move(search), traces ? &(*traces)[i] : nullptr);
     });
-    cut = std::find(late.begin(), late.end(), 1) != late.end();
+    cut = std::ranges::count(late, 1) > 0;
     Candidates all;
-    for (Candidates& of_model : found) {
-      std::move(of_model.begin(), of_model.end(), std::back_inserter(all));
-    }
+    for (Candidates& of_model : found) std::ranges::move(of_model, std::back_inserter(all));
     return all;
   }
-
- private:
-  const SceneFeatures& scene_;
-  const DetectorOptions& options_;
-  const ScoreLayers& layers_;
-  const DetectRequest& request_;
-  Deadline deadline_;
 };
 
 // The first `count`, their probabilities scaled to sum to 1 again.
@@ -127,6 +119,13 @@ void keep_best(std::vector<Interpretation>& interpretations, std::size_t count) 
 }
 
 }  // namespace
+
+Result<DetectorOptions> load_detector_options(const std::string& path) {
+  DetectorOptions options;
+  Status status = io::read_options(path, {options_of(options), "", {}});
+  if (!status.ok()) return status;
+  return options;
+}
 
 Detector::Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions options,
                    ScoreLayers layers)
@@ -149,9 +148,8 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   SceneFeatures scene = observe(frame, request, options_, out.timings);
 
   Stopwatch stage;
-  Candidates candidates =
-      ModelSearch(scene, options_, layers_, request, deadline)
-          .run(*models, trace ? &trace->objects : nullptr, out.budget_exhausted);
+  Candidates candidates = ModelSearch{scene, options_.detect, layers_, request, deadline}.run(
+      *models, trace ? &trace->objects : nullptr, out.budget_exhausted);
   out.timings.push_back({"objects", stage.lap_milliseconds()});
 
   out.interpretations = interpret_scene(scene, candidates, request);
