@@ -52,8 +52,65 @@ rtps::SampleIdentity to_identity(const SampleId& id) {
   return identity;
 }
 
+namespace {
+
+/// Tells of the endpoints of peers.
+class Listener : public dds::DomainParticipantListener {
+ public:
+  explicit Listener(ParticipantImpl& participant) : participant_(participant) {}
+
+ private:
+#if BPA_FASTDDS_MAJOR >= 3
+  void on_data_writer_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryStatus status,
+                                const dds::PublicationBuiltinTopicData& data, bool&) override {
+    using Change = rtps::WriterDiscoveryStatus;
+    tell(data, false, status, Change::DISCOVERED_WRITER, Change::CHANGED_QOS_WRITER);
+  }
+  void on_data_reader_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryStatus status,
+                                const dds::SubscriptionBuiltinTopicData& data, bool&) override {
+    using Change = rtps::ReaderDiscoveryStatus;
+    tell(data, true, status, Change::DISCOVERED_READER, Change::CHANGED_QOS_READER);
+  }
+#else
+  void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
+    tell(info.info, false, info.status, info.DISCOVERED_WRITER, info.CHANGED_QOS_WRITER);
+  }
+  void on_subscriber_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) override {
+    tell(info.info, true, info.status, info.DISCOVERED_READER, info.CHANGED_QOS_READER);
+  }
+#endif
+
+  /// `came` and `changed` are what the `change` may be, else the endpoint went.
+  template <class Data, class Change>
+  void tell(const Data& data, bool is_reader, Change change, Change came, Change changed) {
+    ParticipantImpl::Peer peer;
+    if (change == came) peer.change = ParticipantImpl::Peer::Change::came;
+    if (change == changed) peer.change = ParticipantImpl::Peer::Change::changed;
+    peer.is_reader = is_reader;
+#if BPA_FASTDDS_MAJOR >= 3
+    peer.guid = to_guid(data.guid);
+    peer.topic = data.topic_name.to_string();
+    peer.type = data.type_name.to_string();
+    const auto& user_data = data.user_data.data_vec();
+#else
+    peer.guid = to_guid(data.guid());
+    peer.topic = data.topicName().to_string();
+    peer.type = data.typeName().to_string();
+    const auto& user_data = data.m_qos.m_userData.data_vec();
+#endif
+    peer.user_data.assign(user_data.begin(), user_data.end());
+    participant_.on_peer(peer);
+  }
+
+  ParticipantImpl& participant_;
+};
+
+}  // namespace
+
 ParticipantImpl::ParticipantImpl(ParticipantOptions options, Discovery discovery)
-    : options_(std::move(options)), discovery_(std::move(discovery)) {}
+    : options_(std::move(options)),
+      discovery_(std::move(discovery)),
+      listener_(std::make_unique<Listener>(*this)) {}
 
 Status ParticipantImpl::start() {
   auto* factory = dds::DomainParticipantFactory::get_instance();
@@ -73,7 +130,7 @@ Status ParticipantImpl::start() {
         "DDS 2.9.1 (Debian 12) fits no other release, and makes ROS 2 nodes on this machine abort");
   }
   participant_ = factory->create_participant(static_cast<dds::DomainId_t>(discovery_.domain_id),
-                                             *qos, this, dds::StatusMask::none());
+                                             *qos, listener_.get(), dds::StatusMask::none());
   if (participant_ == nullptr) {
     return Status(StatusCode::unavailable, "cannot join DDS domain " +
                                                std::to_string(discovery_.domain_id) +
@@ -235,60 +292,5 @@ void ParticipantImpl::on_peer(const Peer& peer) {
   // Not from here: the caller holds the locks of the discovery protocol.
   worker_.run_at(Worker::Clock::now(), [this] { publish_graph(); });
 }
-
-template <class Data, class DdsChange>
-void ParticipantImpl::on_peer_data(const Data& data, bool is_reader, DdsChange change,
-                                   DdsChange came, DdsChange changed) {
-  Peer peer;
-  peer.change = change == came      ? Peer::Change::came
-                : change == changed ? Peer::Change::changed
-                                    : Peer::Change::went;
-  peer.is_reader = is_reader;
-#if BPA_FASTDDS_MAJOR >= 3
-  peer.guid = to_guid(data.guid);
-  peer.topic = data.topic_name.to_string();
-  peer.type = data.type_name.to_string();
-  const auto& user_data = data.user_data.data_vec();
-#else
-  peer.guid = to_guid(data.guid());
-  peer.topic = data.topicName().to_string();
-  peer.type = data.typeName().to_string();
-  const auto& user_data = data.m_qos.m_userData.data_vec();
-#endif
-  peer.user_data.assign(user_data.begin(), user_data.end());
-  on_peer(peer);
-}
-
-#if BPA_FASTDDS_MAJOR >= 3
-
-void ParticipantImpl::on_data_writer_discovery(dds::DomainParticipant*,
-                                               rtps::WriterDiscoveryStatus status,
-                                               const dds::PublicationBuiltinTopicData& data,
-                                               bool&) {
-  using Change = rtps::WriterDiscoveryStatus;
-  on_peer_data(data, false, status, Change::DISCOVERED_WRITER, Change::CHANGED_QOS_WRITER);
-}
-
-void ParticipantImpl::on_data_reader_discovery(dds::DomainParticipant*,
-                                               rtps::ReaderDiscoveryStatus status,
-                                               const dds::SubscriptionBuiltinTopicData& data,
-                                               bool&) {
-  using Change = rtps::ReaderDiscoveryStatus;
-  on_peer_data(data, true, status, Change::DISCOVERED_READER, Change::CHANGED_QOS_READER);
-}
-
-#else
-
-void ParticipantImpl::on_publisher_discovery(dds::DomainParticipant*,
-                                             rtps::WriterDiscoveryInfo&& info) {
-  on_peer_data(info.info, false, info.status, info.DISCOVERED_WRITER, info.CHANGED_QOS_WRITER);
-}
-
-void ParticipantImpl::on_subscriber_discovery(dds::DomainParticipant*,
-                                              rtps::ReaderDiscoveryInfo&& info) {
-  on_peer_data(info.info, true, info.status, info.DISCOVERED_READER, info.CHANGED_QOS_READER);
-}
-
-#endif
 
 }  // namespace bpa::wire::detail

@@ -31,11 +31,10 @@ SampleId to_id(const rtps::SampleIdentity& identity);
 rtps::SampleIdentity to_identity(const SampleId& id);
 
 /// Owns the DDS participant, its topics and types, and its entry in the ROS 2 graph.
-class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
-                        private dds::DomainParticipantListener {
+class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
  public:
   ParticipantImpl(ParticipantOptions options, Discovery discovery);
-  ~ParticipantImpl() override;
+  ~ParticipantImpl();
   Status start();
 
   const ParticipantOptions& options() const { return options_; }
@@ -54,24 +53,6 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
   /// The reverse; `end` deletes the DDS entity.
   void close(const EndpointSpec& spec, const Guid& guid, const std::function<void()>& end);
 
- private:
-  struct TopicEntry {
-    dds::Topic* topic = nullptr;
-    std::string dds_type;
-    int users = 0;
-  };
-
-#if BPA_FASTDDS_MAJOR >= 3
-  void on_data_writer_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryStatus status,
-                                const dds::PublicationBuiltinTopicData& data,
-                                bool& should_be_ignored) override;
-  void on_data_reader_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryStatus status,
-                                const dds::SubscriptionBuiltinTopicData& data,
-                                bool& should_be_ignored) override;
-#else
-  void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override;
-  void on_subscriber_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) override;
-#endif
   /// An endpoint of a peer came, changed or went.
   struct Peer {
     enum class Change { came, changed, went } change = Change::went;
@@ -79,21 +60,26 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl>,
     Guid guid{};
     std::string topic, type, user_data;
   };
+  void on_peer(const Peer& peer);
+
+ private:
+  struct TopicEntry {
+    dds::Topic* topic = nullptr;
+    std::string dds_type;
+    int users = 0;
+  };
+
   /// The topic, made when it is the first of its name; null, with the reason, when Fast DDS refuses
   /// it or another type has the name. The caller of both holds endpoint_mutex_.
   dds::Topic* acquire_topic(const EndpointSpec& spec, std::string* error);
   void release_topic(const std::string& dds_topic);
-  /// From Fast DDS's data of it; `came` and `changed` are what its `change` may be, else it went.
-  template <class Data, class DdsChange>
-  void on_peer_data(const Data& data, bool is_reader, DdsChange change, DdsChange came,
-                    DdsChange changed);
-  void on_peer(const Peer& peer);
   /// Says so when a peer uses one of our topics with another type: DDS itself is silent.
   void check_type(const Peer& peer, const std::string& ours) const;
   void publish_graph();
 
   const ParticipantOptions options_;
   const Discovery discovery_;
+  const std::unique_ptr<dds::DomainParticipantListener> listener_;
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher* publisher_ = nullptr;
   dds::Subscriber* subscriber_ = nullptr;
