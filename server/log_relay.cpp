@@ -71,11 +71,8 @@ LogHook LogRelay::hook() const {
 void LogRelay::set_level(LogLevel least) { state_->least = least; }
 
 Status LogRelay::connect(const wire::Participant& participant, const std::string& topic) {
-  wire::PublisherOptions options;
-  options.qos = wire::qos::rosout();
-  auto publisher = wire::Publisher<Log>::create(participant, topic, options);
-  if (!publisher.ok()) return publisher.status();
-  publisher_.emplace(std::move(publisher).value());
+  Status status = rosout_.open(participant, topic, wire::qos::rosout());
+  if (!status.ok()) return status;
   logger_ = logger_name(participant.node().full());
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   return {};
@@ -94,7 +91,7 @@ void LogRelay::run(const std::stop_token& stop) {
     lock.unlock();
     message.name = logger_;
     // A failure is not logged: it would come here.
-    if (!publisher_->publish(message).ok()) {
+    if (!rosout_.publish(message).ok()) {
       const std::lock_guard<std::mutex> again(state_->mutex);
       ++state_->lost;
     }

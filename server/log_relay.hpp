@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -12,7 +11,7 @@
 #include "core/base/status.hpp"
 #include "idl/wire/msg/rcl_interfaces.hpp"
 #include "idl/wire/participant.hpp"
-#include "idl/wire/publisher.hpp"
+#include "server/output.hpp"
 
 namespace bpa::server {
 
@@ -39,7 +38,7 @@ class LogRelay {
 
   const std::shared_ptr<State> state_;
   std::string logger_;  ///< The node's name, as loggers are called in ROS 2.
-  std::optional<wire::Publisher<wire::rcl_interfaces::Log>> publisher_;
+  Output<wire::rcl_interfaces::Log> rosout_;
   std::jthread thread_;  ///< Last: uses what stands above.
 };
 

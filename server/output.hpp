@@ -30,10 +30,11 @@ class Output {
   bool is_open() const { return publisher_.has_value(); }
   /// Whether a subscriber is matched: otherwise the message need not be made.
   bool wanted() const { return publisher_ && publisher_->matched_count() > 0; }
-  /// Does nothing when it is switched off; a failure is logged with this severity.
+  /// Does nothing when it is switched off.
+  Status publish(const T& message) { return publisher_ ? publisher_->publish(message) : Status(); }
+  /// The same; a failure is logged with this severity.
   void send(const T& message, const LogHook& hook, LogLevel severity = LogLevel::warning) {
-    if (!publisher_) return;
-    const Status status = publisher_->publish(message);
+    const Status status = publish(message);
     if (!status.ok()) log(hook, severity, publisher_->topic() + ": " + status.message);
   }
 

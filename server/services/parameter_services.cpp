@@ -4,8 +4,8 @@
 
 #include "core/base/clock.hpp"
 #include "idl/wire/msg/rcl_interfaces.hpp"
-#include "idl/wire/publisher.hpp"
 #include "idl/wire/time.hpp"
+#include "server/output.hpp"
 #include "server/parameters.hpp"
 #include "server/services/services.hpp"
 
@@ -19,7 +19,7 @@ struct Parameters {
   std::string node;
   Settings& settings;
   LogHook log;
-  wire::Publisher<rcl::ParameterEvent> events;
+  Output<rcl::ParameterEvent> events;
 
   rcl::ParameterEvent new_event() const {
     rcl::ParameterEvent event;
@@ -49,8 +49,7 @@ struct Parameters {
     for (const rcl::Parameter& parameter : event.changed_parameters) {
       bpa::log(log, LogLevel::info, "parameter " + parameter.name + " changed");
     }
-    const Status told = events.publish(event);
-    if (!told.ok()) bpa::log(log, LogLevel::warning, events.topic() + ": " + told.message);
+    events.send(event, log);
     return {true, ""};
   }
 };
@@ -68,13 +67,10 @@ Response each(const std::vector<std::string>& names, std::vector<Element> Respon
 
 Status add_parameter_services(const wire::Participant& participant, Settings& settings,
                               const LogHook& hook, ServiceSet& services) {
-  wire::PublisherOptions publishing;
-  publishing.qos = wire::qos::parameters();
-  auto events =
-      wire::Publisher<rcl::ParameterEvent>::create(participant, "/parameter_events", publishing);
-  if (!events.ok()) return events.status();
-  const auto self = std::make_shared<Parameters>(
-      Parameters{participant.node().full(), settings, hook, std::move(events).value()});
+  const auto self =
+      std::make_shared<Parameters>(Parameters{participant.node().full(), settings, hook, {}});
+  Status opened = self->events.open(participant, "/parameter_events", wire::qos::parameters());
+  if (!opened.ok()) return opened;
   for (const Status& status :
        {services.add_quick<rcl::ListParameters>(
             "~/list_parameters",
