@@ -63,7 +63,23 @@ RegionOfInterest roi_of(const sensor::RegionOfInterest& roi) {
   return {clamped(roi.x_offset), clamped(roi.y_offset), clamped(roi.width), clamped(roi.height)};
 }
 
-DecodedFrame checked(Frame frame) {
+/// The frame with its pixels, from which the lens distortion is taken out, once all is legal.
+template <class MakeDepth, class MakeColor>
+DecodedFrame completed(Frame frame, const std::vector<double>& distortion, MakeDepth make_depth,
+                       MakeColor make_color) {
+  if (Status status = validate(frame.camera); !status.ok()) {
+    return {RejectionCause::camera, status};
+  }
+  if (Status status = check_distortion(distortion); !status.ok()) {
+    return {RejectionCause::distortion, status};
+  }
+  Result<std::vector<float>> depth = make_depth();
+  if (!depth.ok()) return {RejectionCause::depth, depth.status()};
+  Result<std::vector<std::uint8_t>> color = make_color();
+  if (!color.ok()) return {RejectionCause::color, color.status()};
+  frame.depth = std::move(depth).value();
+  frame.color = std::move(color).value();
+  undistort(distortion, frame);
   clean_depth(frame);
   if (Status status = validate(frame); !status.ok()) return {RejectionCause::frame, status};
   return frame;
@@ -105,6 +121,7 @@ Result<Pixels> pixels_of(const char* field, const AnyImage& any, const Camera& c
 
 /// The pixels of a message; taken out of it where they need no change.
 Result<std::vector<std::uint8_t>> take_color(msgs::RgbdFrame& message) {
+  if (message.color_encoding.empty() && message.color.empty()) return std::vector<std::uint8_t>();
   const std::size_t bytes = std::size_t{3} * message.width * message.height;
   if (message.color_encoding == "rgb8" && message.color.size() == bytes) {
     return std::move(message.color);
@@ -120,25 +137,14 @@ DecodedFrame frame_from_message(msgs::RgbdFrame message) {
   frame.stamp_ns = to_ns(message.header.stamp);
   frame.frame_id = message.header.frame_id;
   frame.camera = camera_of(message.width, message.height, message.k.data(), 3);
-  if (Status status = validate(frame.camera); !status.ok()) {
-    return {RejectionCause::camera, status};
-  }
-  if (Status status = check_distortion(message.d); !status.ok()) {
-    return {RejectionCause::distortion, status};
-  }
-  auto depth = depth_from_image({"depth", message.depth_encoding, message.width, message.height, 0,
-                                 false, message.depth.data(), message.depth.size()});
-  if (!depth.ok()) return {RejectionCause::depth, depth.status()};
-  frame.depth = std::move(depth).value();
-  if (!message.color_encoding.empty() || !message.color.empty()) {
-    auto color = take_color(message);
-    if (!color.ok()) return {RejectionCause::color, color.status()};
-    frame.color = std::move(color).value();
-  }
-  undistort(message.d, frame);
   frame.roi = roi_of(message.roi);
   frame.mask = std::move(message.mask);
-  return checked(std::move(frame));
+  const auto make_depth = [&message] {
+    return depth_from_image({"depth", message.depth_encoding, message.width, message.height, 0,
+                             false, message.depth.data(), message.depth.size()});
+  };
+  return completed(std::move(frame), message.d, make_depth,
+                   [&message] { return take_color(message); });
 }
 
 Status restrict_frame(const msgs::RgbdFrame& message, Frame& frame) {
@@ -164,26 +170,18 @@ DecodedFrame frame_from_images(const CameraImages& images, bool rectified) {
   const bool use_projection = rectified && info.p[0] > 0;
   frame.camera = use_projection ? camera_of(info.width, info.height, info.p.data(), 4)
                                 : camera_of(info.width, info.height, info.k.data(), 3);
-  if (Status status = validate(frame.camera); !status.ok()) {
-    return {RejectionCause::camera, status};
-  }
-  auto depth = pixels_of<std::vector<float>>("depth", *images.depth, frame.camera, depth_from_image,
-                                             decode_depth);
-  if (!depth.ok()) return {RejectionCause::depth, depth.status()};
-  frame.depth = std::move(depth).value();
-  if (images.color) {
-    auto color = pixels_of<std::vector<std::uint8_t>>("color", *images.color, frame.camera,
-                                                      color_from_image, decode_color);
-    if (!color.ok()) return {RejectionCause::color, color.status()};
-    frame.color = std::move(color).value();
-  }
-  if (!rectified) {
-    if (Status status = check_distortion(info.d); !status.ok()) {
-      return {RejectionCause::distortion, status};
-    }
-    undistort(info.d, frame);
-  }
-  return checked(std::move(frame));
+  const Camera camera = frame.camera;
+  const auto make_depth = [&] {
+    return pixels_of<std::vector<float>>("depth", *images.depth, camera, depth_from_image,
+                                         decode_depth);
+  };
+  const auto make_color = [&]() -> Result<std::vector<std::uint8_t>> {
+    if (!images.color) return std::vector<std::uint8_t>();
+    return pixels_of<std::vector<std::uint8_t>>("color", *images.color, camera, color_from_image,
+                                                decode_color);
+  };
+  return completed(std::move(frame), rectified ? std::vector<double>() : info.d, make_depth,
+                   make_color);
 }
 
 }  // namespace bpa::server
