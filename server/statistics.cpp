@@ -27,11 +27,6 @@ double median(const std::deque<double>& values) {
 
 }  // namespace
 
-void Statistics::add(std::uint64_t Counts::*counter) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  ++(counts_.*counter);
-}
-
 void Statistics::add_frame() {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++counts_.frames_received;
@@ -65,16 +60,6 @@ void Statistics::add_fusion_restart(const std::string& reason) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++counts_.fusion_restarts;
   fusion_restart_ = reason;
-}
-
-std::string Statistics::fusion_restart() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return fusion_restart_;
-}
-
-Counts Statistics::counts() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return counts_;
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> Statistics::rejections() const {

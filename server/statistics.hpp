@@ -35,7 +35,10 @@ struct Counts {
 class Statistics {
  public:
   /// Adds to one counter: add(&Counts::frames_dropped).
-  void add(std::uint64_t Counts::*counter);
+  void add(std::uint64_t Counts::*counter) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++(counts_.*counter);
+  }
   /// Counts a frame that came in, and remembers when.
   void add_frame();
   /// Since the last frame came in; nothing before the first.
@@ -46,9 +49,15 @@ class Statistics {
   /// Counts it, and remembers why.
   void add_fusion_restart(const std::string& reason);
 
-  Counts counts() const;
+  Counts counts() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return counts_;
+  }
   /// The last reason; empty before the first.
-  std::string fusion_restart() const;
+  std::string fusion_restart() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return fusion_restart_;
+  }
   /// The causes of rejection that occurred, with their counts.
   std::vector<std::pair<std::string, std::uint64_t>> rejections() const;
   /// Medians over the last 50 frames, in the order of the stages, "total" last.
