@@ -9,8 +9,8 @@
 
 #include "camera/openni2_device.hpp"
 #include "core/pipeline/detector_options.hpp"
-#include "server/library_detector.hpp"
 #include "server/options.hpp"
+#include "server/recognition.hpp"
 #include "server/ros_arguments.hpp"
 #include "server/server.hpp"
 
@@ -106,8 +106,8 @@ Status serve(const ServerOptions& options, const bpa::LogHook& hook, const sigse
   if (options.detection.library.empty()) {
     return bpa::invalid_argument("no model library: give --library DIR (or detection.library)");
   }
-  auto library = bpa::server::LibraryDetector::create(options.detection.library, options.detector,
-                                                      options.detection.threads, hook);
+  auto library = bpa::server::open_library(options.detection.library, options.detector,
+                                           options.detection.threads, hook);
   if (!library.ok()) return library.status();
   auto server = bpa::server::Server::create(options, *library, hook);
   if (!server.ok()) return server.status();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/log.hpp"
 #include "core/base/status.hpp"
 #include "core/cloud/frame.hpp"
 #include "core/io/model_file.hpp"
@@ -16,8 +17,8 @@
 
 namespace bpa::server {
 
-/// What the server serves: the detector with its library (LibraryDetector), or the tests' stub.
-/// Every function may be called from any thread.
+/// What the server serves: the detector with its library (open_library()), or the tests'
+/// stub. Every function may be called from any thread.
 class Recognition {
  public:
   virtual ~Recognition() = default;
@@ -48,5 +49,12 @@ class Recognition {
   /// Searches that begin from now on have these settings.
   virtual Status set_options(const DetectorOptions& options) = 0;
 };
+
+/// The detector with a library from disk whose models may come and go while it serves; linked into
+/// bpa-server alone. A folder without models is no failure (searches fail until one is loaded), and
+/// a broken model is left out and told to `log`; a folder that is not there is a failure.
+Result<std::shared_ptr<Recognition>> open_library(const std::string& folder,
+                                                  const DetectorOptions& options, int num_threads,
+                                                  const LogHook& log);
 
 }  // namespace bpa::server

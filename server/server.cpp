@@ -5,12 +5,28 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <mutex>
+#include <optional>
 #include <sstream>
+#include <stop_token>
+#include <string>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "core/base/clock.hpp"
+#include "idl/wire/participant.hpp"
+#include "server/diagnostics.hpp"
+#include "server/log_relay.hpp"
+#include "server/output.hpp"
 #include "server/parameters.hpp"
+#include "server/result_publisher.hpp"
+#include "server/services/services.hpp"
+#include "server/settings.hpp"
 #include "server/sources/camera_source.hpp"
+#include "server/sources/topic_source.hpp"
+#include "server/statistics.hpp"
+#include "server/worker.hpp"
 
 #ifndef BPA_VERSION
 #define BPA_VERSION "0"
@@ -20,6 +36,7 @@ namespace bpa::server {
 namespace {
 
 namespace msgs = wire::bpa_msgs;
+using Clock = std::chrono::steady_clock;
 using wire::diagnostic_msgs::KeyValue;
 
 constexpr auto kReportPeriod = std::chrono::seconds(1);
@@ -62,257 +79,285 @@ wire::GraphLayout graph_layout_of(const std::string& word) {
   return word == "iron" ? wire::GraphLayout::iron16 : wire::GraphLayout::automatic;
 }
 
-}  // namespace
+class Running : public Server {
+ public:
+  Running(const ServerOptions& options, std::shared_ptr<Recognition> recognition, LogHook log)
+      : settings_(options),
+        recognition_(std::move(recognition)),
+        relay_(std::move(log), log_level(options.log.level)),
+        log_(relay_.hook()) {}
 
-Server::Server(const ServerOptions& options, std::shared_ptr<Recognition> recognition, LogHook log)
-    : settings_(options),
-      recognition_(std::move(recognition)),
-      relay_(std::move(log), log_level(options.log.level)),
-      log_(relay_.hook()) {}
+  ~Running() override {
+    if (worker_) worker_->stop();  // answers what waits, while the services can still send it
+  }
+
+  Status start() {
+    if (Status status = join(); !status.ok()) return status;
+    const ServerOptions options = *settings_.get();
+    auto publisher = ResultPublisher::create(*participant_, settings_, recognition_, log_);
+    if (!publisher.ok()) return publisher.status();
+    publisher_ = std::move(publisher).value();
+    publisher_->publish_vision_info();
+    Status status =
+        diagnostics_.open(*participant_, options.output.diagnostics, wire::qos::results());
+    if (!status.ok()) return status;
+
+    worker_ = std::make_unique<Worker>(
+        recognition_, worker_options(options), statistics_,
+        [this](const IncomingFrame& incoming, const Frame* frame,
+               const Result<SceneInterpretations>& result) { on_result(incoming, frame, result); },
+        log_);
+    if (status = start_sources(options); !status.ok()) return status;
+    if (status = offer_services(); !status.ok()) return status;
+    settings_.on_change([this](const ServerOptions& before, const ServerOptions& after) {
+      return apply(before, after);
+    });
+    parameters_.emplace(*participant_, log_, wire::qos::parameters());
+    status = add_parameter_services(*participant_, settings_, log_, *parameters_);
+    if (status.ok())
+      reporter_ = std::jthread([this](const std::stop_token& stop) { report(stop); });
+    return status;
+  }
+
+ private:
+  Status join() {
+    const ServerOptions options = *settings_.get();
+    auto discovery = discovery_of(options.network);
+    if (!discovery.ok()) return discovery.status();
+    wire::ParticipantOptions seat;
+    seat.node.node_namespace = options.node.ros_namespace;
+    seat.node.name = options.node.name;
+    seat.discovery = *discovery;
+    seat.graph_layout = graph_layout_of(options.network.graph_layout);
+    seat.profiles = options.network.profiles;
+    seat.log = log_;
+    for (const std::string& text : options.node.remaps) {
+      auto remap = wire::parse_remap(text);
+      if (!remap.ok()) return remap.status();
+      seat.remaps.push_back(*remap);
+    }
+    auto participant = wire::Participant::create(std::move(seat));
+    if (!participant.ok()) return participant.status();
+    participant_.emplace(std::move(participant).value());
+    if (options.output.rosout.empty()) return {};
+    return relay_.connect(*participant_, options.output.rosout);
+  }
+
+  Status start_sources(const ServerOptions& options) {
+    const auto on_frame = [this](IncomingFrame&& frame) { worker_->push(std::move(frame)); };
+    ServerOptions topics = options;
+    if (!options.capture.source.empty()) topics.input.depth.clear();  // they may be our own
+    auto source = TopicSource::create(*participant_, topics, on_frame, log_);
+    if (!source.ok()) return source.status();
+    topics_ = source->get();
+    sources_.push_back(std::move(source).value());
+    if (options.capture.source.empty()) return {};
+    auto camera = open_camera_source(
+        *participant_, options.capture, on_frame, [this] { return worker_->queue_length() == 0; },
+        log_);
+    if (!camera.ok()) return camera.status();
+    sources_.push_back(std::move(camera).value());
+    return {};
+  }
+
+  Status apply(const ServerOptions& before, const ServerOptions& after) {
+    const auto changed = changed_parameters(before, after);
+    const bool detector_changed =
+        std::any_of(changed.begin(), changed.end(),
+                    [](const auto& parameter) { return parameter.name.starts_with("detector."); });
+    if (detector_changed) {
+      if (Status status = recognition_->set_options(after.detector); !status.ok()) return status;
+      statistics_.forget_timings();
+    }
+    worker_->set_options(worker_options(after));
+    topics_->set_options(after.input);
+    relay_.set_level(log_level(after.log.level));
+    return {};
+  }
+
+  Status offer_services() {
+    const ServiceContext context{settings_,
+                                 recognition_,
+                                 *worker_,
+                                 statistics_,
+                                 [this] {
+                                   statistics_.forget_timings();
+                                   publisher_->publish_vision_info();
+                                 },
+                                 log_};
+    services_.emplace(*participant_, log_);
+    if (Status s = add_detect(context, *services_); !s.ok()) return s;
+    if (Status s = add_library_services(context, *services_); !s.ok()) return s;
+    return services_->add_quick<msgs::GetStatus>(
+        "get_status", [this](const msgs::GetStatus_Request&) { return status(); });
+  }
+
+  void on_result(const IncomingFrame& incoming, const Frame* frame,
+                 const Result<SceneInterpretations>& result) {
+    const int models = static_cast<int>(recognition_->models().size());
+    publisher_->publish(
+        frame, result,
+        {incoming.stamp_ns, incoming.frame_id, models, settings_.get()->detection.seed});
+    if (!result.ok()) return log_failure(result.status());
+    std::ostringstream text;
+    const std::size_t found =
+        result->interpretations.empty() ? 0 : result->interpretations.front().placements.size();
+    text << "frame " << incoming.stamp_ns << ": " << found << " objects, "
+         << result->interpretations.size() << " interpretations, "
+         << static_cast<long>(result->total_milliseconds) << " ms";
+    log(log_, LogLevel::debug, text.str());
+  }
+
+  void log_failure(const Status& status) {
+    const std::lock_guard<std::mutex> lock(failure_mutex_);
+    const auto now = Clock::now();
+    if (status.message == last_failure_ && now - last_logged_ < kRepeatAfter) return;
+    last_failure_ = status.message;
+    last_logged_ = now;
+    log(log_, LogLevel::error, "frame not searched: " + status.message);
+  }
+
+  msgs::GetStatus_Response status() const {
+    const Counts counts = statistics_.counts();
+    const Settings::Snapshot options = settings_.get();
+    msgs::GetStatus_Response response;
+    response.success = true;
+    response.version = BPA_VERSION;
+    const std::optional<double> silence = statistics_.seconds_since_frame();
+    const bool idle = !silence || *silence > options->input.silence_s;
+    response.state = !options->detection.continuous ? msgs::GetStatus_Response::kPaused
+                     : idle                         ? msgs::GetStatus_Response::kIdle
+                                                    : msgs::GetStatus_Response::kRunning;
+    response.uptime_s = std::chrono::duration<double>(Clock::now() - started_).count();
+    response.frames_received = counts.frames_received;
+    response.frames_processed = counts.frames_processed;
+    response.frames_dropped = counts.frames_dropped;
+    response.frames_rejected = counts.frames_rejected;
+    response.requests_served = counts.requests_served;
+    response.requests_refused = counts.requests_refused;
+    response.queue_length = static_cast<std::uint32_t>(worker_->queue_length());
+    response.queue_capacity =
+        static_cast<std::uint32_t>(frame_capacity(*options) + options->queue.requests);
+    response.model_count = static_cast<std::uint32_t>(recognition_->models().size());
+    response.library = recognition_->library();
+    response.database_version = recognition_->version();
+    response.memory_bytes = resident_bytes();
+    for (const StageTiming& timing : statistics_.median_timings()) {
+      response.stage_timings.push_back({timing.stage, timing.milliseconds});
+    }
+    response.details = details();
+    response.frame_publishers = static_cast<std::uint32_t>(topics_->frame_publishers());
+    return response;
+  }
+
+  std::vector<std::pair<std::string, std::uint64_t>> drops() const {
+    std::vector<std::pair<std::string, std::uint64_t>> drops;
+    drops.emplace_back("frames failed in the search", statistics_.counts().frames_failed);
+    for (const auto& [cause, count] : statistics_.rejections()) {
+      drops.emplace_back("rejected: " + cause, count);
+    }
+    return drops;
+  }
+
+  std::vector<SourceReport> source_reports() const {
+    std::vector<SourceReport> reports;
+    for (const auto& source : sources_) {
+      for (SourceReport& report : source->reports()) reports.push_back(std::move(report));
+    }
+    return reports;
+  }
+
+  /// Empty while frames are searched each by itself.
+  std::vector<KeyValue> fusion() const {
+    const Counts counts = statistics_.counts();
+    if (settings_.get()->detection.fuse_frames == 1 && counts.fusion_restarts == 0) return {};
+    std::vector<KeyValue> values = {
+        {"frames searched as a part of newer ones", std::to_string(counts.frames_fused)},
+        {"frames combined anew", std::to_string(counts.fusion_restarts)}};
+    const std::string reason = statistics_.fusion_restart();
+    if (!reason.empty()) values.push_back({"frames last combined anew because", reason});
+    return values;
+  }
+
+  std::vector<KeyValue> details() const {
+    std::vector<KeyValue> details = fusion();
+    for (const auto& [cause, count] : drops()) details.push_back({cause, std::to_string(count)});
+    for (const SourceReport& report : source_reports()) {
+      details.insert(details.end(), report.values.begin(), report.values.end());
+    }
+    return details;
+  }
+
+  void report(const std::stop_token& stop) {
+    RateMeter rates;
+    std::mutex mutex;
+    std::condition_variable_any wake;
+    std::unique_lock<std::mutex> lock(mutex);
+    while (!wake.wait_for(lock, stop, kReportPeriod, [&] { return stop.stop_requested(); })) {
+      rates.add(Clock::now(), statistics_.counts());
+      if (diagnostics_.wanted()) {
+        diagnostics_.send(diagnostics_message({participant_->node().full(), status(), rates.rates(),
+                                               drops(), source_reports(), fusion()},
+                                              unix_time_ns()),
+                          log_);
+      }
+      report_losses();
+    }
+  }
+
+  void report_losses() {
+    const SyncCounts sync = topics_->sync_counts();
+    const std::uint64_t losses = sync.depth_without_color + sync.depth_without_info;
+    // Says it at 10, 100, 1000 ... so that a camera that never fits is heard, and not for ever.
+    if (losses < 10 || losses < 10 * losses_reported_) return;
+    losses_reported_ = losses;
+    std::ostringstream text;
+    const Settings::Snapshot options = settings_.get();
+    text << losses << " depth images had no partner: " << sync.depth_without_color
+         << " without a colour image, " << sync.depth_without_info << " without a camera info";
+    if (sync.nearest_miss_ns > 0) {
+      text << "; the nearest one was " << static_cast<double>(sync.nearest_miss_ns) * 1e-6
+           << " ms away (input.sync_tolerance_ms is " << options->input.sync_tolerance_ms << ")";
+    } else {
+      text << "; are " << options->input.color << " and " << options->input.camera_info
+           << " published?";
+    }
+    log(log_, LogLevel::warning, text.str());
+  }
+
+  Settings settings_;
+  const std::shared_ptr<Recognition> recognition_;
+  LogRelay relay_;
+  const LogHook log_;
+  const Clock::time_point started_ = Clock::now();
+  Statistics statistics_;
+  std::mutex failure_mutex_;
+  std::string last_failure_;       ///< Text of the last failed frame, and
+  Clock::time_point last_logged_;  ///< when one was logged: the same is said once in 10 s.
+  std::uint64_t losses_reported_ = 0;
+
+  // In the order in which they come up; destroyed from the last to the first, so that nothing calls
+  // into what is gone.
+  std::optional<wire::Participant> participant_;
+  std::unique_ptr<ResultPublisher> publisher_;
+  Output<wire::diagnostic_msgs::DiagnosticArray> diagnostics_;
+  std::unique_ptr<Worker> worker_;
+  std::vector<std::unique_ptr<FrameSource>> sources_;
+  TopicSource* topics_ = nullptr;  ///< One of them.
+  std::optional<ServiceSet> services_;
+  std::optional<ServiceSet> parameters_;
+  std::jthread reporter_;
+};
+
+}  // namespace
 
 Result<std::unique_ptr<Server>> Server::create(const ServerOptions& options,
                                                std::shared_ptr<Recognition> recognition,
                                                LogHook log) {
   if (Status status = validate(options); !status.ok()) return status;
-  std::unique_ptr<Server> server(new Server(options, std::move(recognition), std::move(log)));
+  auto server = std::make_unique<Running>(options, std::move(recognition), std::move(log));
   if (Status status = server->start(); !status.ok()) return status;
-  return server;
-}
-
-Server::~Server() {
-  if (worker_) worker_->stop();  // answers what waits, while the services can still send it
-}
-
-Status Server::join() {
-  const ServerOptions options = *settings_.get();
-  auto discovery = discovery_of(options.network);
-  if (!discovery.ok()) return discovery.status();
-  wire::ParticipantOptions seat;
-  seat.node.node_namespace = options.node.ros_namespace;
-  seat.node.name = options.node.name;
-  seat.discovery = *discovery;
-  seat.graph_layout = graph_layout_of(options.network.graph_layout);
-  seat.profiles = options.network.profiles;
-  seat.log = log_;
-  for (const std::string& text : options.node.remaps) {
-    auto remap = wire::parse_remap(text);
-    if (!remap.ok()) return remap.status();
-    seat.remaps.push_back(*remap);
-  }
-  auto participant = wire::Participant::create(std::move(seat));
-  if (!participant.ok()) return participant.status();
-  participant_.emplace(std::move(participant).value());
-  if (options.output.rosout.empty()) return {};
-  return relay_.connect(*participant_, options.output.rosout);
-}
-
-Status Server::start() {
-  if (Status status = join(); !status.ok()) return status;
-  const ServerOptions options = *settings_.get();
-  auto publisher = ResultPublisher::create(*participant_, settings_, recognition_, log_);
-  if (!publisher.ok()) return publisher.status();
-  publisher_ = std::move(publisher).value();
-  publisher_->publish_vision_info();
-  Status status =
-      diagnostics_.open(*participant_, options.output.diagnostics, wire::qos::results());
-  if (!status.ok()) return status;
-
-  worker_ = std::make_unique<Worker>(
-      recognition_, worker_options(options), statistics_,
-      [this](const IncomingFrame& incoming, const Frame* frame,
-             const Result<SceneInterpretations>& result) { on_result(incoming, frame, result); },
-      log_);
-  if (status = start_sources(options); !status.ok()) return status;
-  if (status = offer_services(); !status.ok()) return status;
-  settings_.on_change([this](const ServerOptions& before, const ServerOptions& after) {
-    return apply(before, after);
-  });
-  parameters_.emplace(*participant_, log_, wire::qos::parameters());
-  status = add_parameter_services(*participant_, settings_, log_, *parameters_);
-  if (status.ok()) reporter_ = std::jthread([this](const std::stop_token& stop) { report(stop); });
-  return status;
-}
-
-Status Server::start_sources(const ServerOptions& options) {
-  const auto on_frame = [this](IncomingFrame&& frame) { worker_->push(std::move(frame)); };
-  ServerOptions topics = options;
-  if (!options.capture.source.empty()) topics.input.depth.clear();  // they may be our own
-  auto source = TopicSource::create(*participant_, topics, on_frame, log_);
-  if (!source.ok()) return source.status();
-  topics_ = source->get();
-  sources_.push_back(std::move(source).value());
-  if (options.capture.source.empty()) return {};
-  auto camera = open_camera_source(
-      *participant_, options.capture, on_frame, [this] { return worker_->queue_length() == 0; },
-      log_);
-  if (!camera.ok()) return camera.status();
-  sources_.push_back(std::move(camera).value());
-  return {};
-}
-
-Status Server::apply(const ServerOptions& before, const ServerOptions& after) {
-  const auto changed = changed_parameters(before, after);
-  const bool detector_changed =
-      std::any_of(changed.begin(), changed.end(),
-                  [](const auto& parameter) { return parameter.name.starts_with("detector."); });
-  if (detector_changed) {
-    if (Status status = recognition_->set_options(after.detector); !status.ok()) return status;
-    statistics_.forget_timings();
-  }
-  worker_->set_options(worker_options(after));
-  topics_->set_options(after.input);
-  relay_.set_level(log_level(after.log.level));
-  return {};
-}
-
-Status Server::offer_services() {
-  const ServiceContext context{settings_,
-                               recognition_,
-                               *worker_,
-                               statistics_,
-                               [this] {
-                                 statistics_.forget_timings();
-                                 publisher_->publish_vision_info();
-                               },
-                               log_};
-  services_.emplace(*participant_, log_);
-  if (Status s = add_detect(context, *services_); !s.ok()) return s;
-  if (Status s = add_library_services(context, *services_); !s.ok()) return s;
-  return services_->add_quick<msgs::GetStatus>(
-      "get_status", [this](const msgs::GetStatus_Request&) { return status(); });
-}
-
-void Server::on_result(const IncomingFrame& incoming, const Frame* frame,
-                       const Result<SceneInterpretations>& result) {
-  const int models = static_cast<int>(recognition_->models().size());
-  publisher_->publish(
-      frame, result,
-      {incoming.stamp_ns, incoming.frame_id, models, settings_.get()->detection.seed});
-  if (!result.ok()) return log_failure(result.status());
-  std::ostringstream text;
-  const std::size_t found =
-      result->interpretations.empty() ? 0 : result->interpretations.front().placements.size();
-  text << "frame " << incoming.stamp_ns << ": " << found << " objects, "
-       << result->interpretations.size() << " interpretations, "
-       << static_cast<long>(result->total_milliseconds) << " ms";
-  log(log_, LogLevel::debug, text.str());
-}
-
-void Server::log_failure(const Status& status) {
-  const std::lock_guard<std::mutex> lock(failure_mutex_);
-  const auto now = Clock::now();
-  if (status.message == last_failure_ && now - last_logged_ < kRepeatAfter) return;
-  last_failure_ = status.message;
-  last_logged_ = now;
-  log(log_, LogLevel::error, "frame not searched: " + status.message);
-}
-
-msgs::GetStatus_Response Server::status() const {
-  const Counts counts = statistics_.counts();
-  const Settings::Snapshot options = settings_.get();
-  msgs::GetStatus_Response response;
-  response.success = true;
-  response.version = BPA_VERSION;
-  const std::optional<double> silence = statistics_.seconds_since_frame();
-  const bool idle = !silence || *silence > options->input.silence_s;
-  response.state = !options->detection.continuous ? msgs::GetStatus_Response::kPaused
-                   : idle                         ? msgs::GetStatus_Response::kIdle
-                                                  : msgs::GetStatus_Response::kRunning;
-  response.uptime_s = std::chrono::duration<double>(Clock::now() - started_).count();
-  response.frames_received = counts.frames_received;
-  response.frames_processed = counts.frames_processed;
-  response.frames_dropped = counts.frames_dropped;
-  response.frames_rejected = counts.frames_rejected;
-  response.requests_served = counts.requests_served;
-  response.requests_refused = counts.requests_refused;
-  response.queue_length = static_cast<std::uint32_t>(worker_->queue_length());
-  response.queue_capacity =
-      static_cast<std::uint32_t>(frame_capacity(*options) + options->queue.requests);
-  response.model_count = static_cast<std::uint32_t>(recognition_->models().size());
-  response.library = recognition_->library();
-  response.database_version = recognition_->version();
-  response.memory_bytes = resident_bytes();
-  for (const StageTiming& timing : statistics_.median_timings()) {
-    response.stage_timings.push_back({timing.stage, timing.milliseconds});
-  }
-  response.details = details();
-  response.frame_publishers = static_cast<std::uint32_t>(topics_->frame_publishers());
-  return response;
-}
-
-std::vector<std::pair<std::string, std::uint64_t>> Server::drops() const {
-  std::vector<std::pair<std::string, std::uint64_t>> drops;
-  drops.emplace_back("frames failed in the search", statistics_.counts().frames_failed);
-  for (const auto& [cause, count] : statistics_.rejections()) {
-    drops.emplace_back("rejected: " + cause, count);
-  }
-  return drops;
-}
-
-std::vector<SourceReport> Server::source_reports() const {
-  std::vector<SourceReport> reports;
-  for (const auto& source : sources_) {
-    for (SourceReport& report : source->reports()) reports.push_back(std::move(report));
-  }
-  return reports;
-}
-
-/// Empty while frames are searched each by itself.
-std::vector<KeyValue> Server::fusion() const {
-  const Counts counts = statistics_.counts();
-  if (settings_.get()->detection.fuse_frames == 1 && counts.fusion_restarts == 0) return {};
-  std::vector<KeyValue> values = {
-      {"frames searched as a part of newer ones", std::to_string(counts.frames_fused)},
-      {"frames combined anew", std::to_string(counts.fusion_restarts)}};
-  const std::string reason = statistics_.fusion_restart();
-  if (!reason.empty()) values.push_back({"frames last combined anew because", reason});
-  return values;
-}
-
-std::vector<KeyValue> Server::details() const {
-  std::vector<KeyValue> details = fusion();
-  for (const auto& [cause, count] : drops()) details.push_back({cause, std::to_string(count)});
-  for (const SourceReport& report : source_reports()) {
-    details.insert(details.end(), report.values.begin(), report.values.end());
-  }
-  return details;
-}
-
-void Server::report(const std::stop_token& stop) {
-  RateMeter rates;
-  std::mutex mutex;
-  std::condition_variable_any wake;
-  std::unique_lock<std::mutex> lock(mutex);
-  while (!wake.wait_for(lock, stop, kReportPeriod, [&] { return stop.stop_requested(); })) {
-    rates.add(Clock::now(), statistics_.counts());
-    if (diagnostics_.wanted()) {
-      diagnostics_.send(diagnostics_message({participant_->node().full(), status(), rates.rates(),
-                                             drops(), source_reports(), fusion()},
-                                            unix_time_ns()),
-                        log_);
-    }
-    report_losses();
-  }
-}
-
-void Server::report_losses() {
-  const SyncCounts sync = topics_->sync_counts();
-  const std::uint64_t losses = sync.depth_without_color + sync.depth_without_info;
-  // Says it at 10, 100, 1000 ... so that a camera that never fits is heard, and not for ever.
-  if (losses < 10 || losses < 10 * losses_reported_) return;
-  losses_reported_ = losses;
-  std::ostringstream text;
-  const Settings::Snapshot options = settings_.get();
-  text << losses << " depth images had no partner: " << sync.depth_without_color
-       << " without a colour image, " << sync.depth_without_info << " without a camera info";
-  if (sync.nearest_miss_ns > 0) {
-    text << "; the nearest one was " << static_cast<double>(sync.nearest_miss_ns) * 1e-6
-         << " ms away (input.sync_tolerance_ms is " << options->input.sync_tolerance_ms << ")";
-  } else {
-    text << "; are " << options->input.color << " and " << options->input.camera_info
-         << " published?";
-  }
-  log(log_, LogLevel::warning, text.str());
+  return std::unique_ptr<Server>(std::move(server));
 }
 
 }  // namespace bpa::server
