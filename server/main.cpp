@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "camera/openni2_device.hpp"
+#include "core/base/failure.hpp"
 #include "core/pipeline/detector_options.hpp"
 #include "server/options.hpp"
 #include "server/recognition.hpp"
@@ -64,28 +65,26 @@ void add_options(CLI::App& program, CommandLine& line) {
 }
 
 /// From the weakest to the strongest: defaults, the detector's file, the server's file, single
-/// settings, the arguments of ROS.
-bpa::Result<ServerOptions> settle(const CommandLine& line, const RosArguments& ros) {
-  const auto read = [&](ServerOptions& options) -> Status {
-    if (!line.config.empty()) {
-      if (Status s = bpa::server::load_options(line.config, options); !s.ok()) return s;
-    }
+/// settings, the arguments of ROS. Throws a Failure.
+ServerOptions settle(const CommandLine& line, const RosArguments& ros) {
+  const auto read = [&](ServerOptions& options) {
+    if (!line.config.empty()) or_throw(bpa::server::load_options(line.config, options));
     for (const std::string& setting : line.settings) {
-      if (Status s = bpa::server::set_option(setting, options); !s.ok()) return s;
+      or_throw(bpa::server::set_option(setting, options));
     }
     if (line.localhost) options.network.range = "localhost";
-    if (Status s = bpa::server::apply(ros, options); !s.ok()) return s;
-    return bpa::server::validate(options);
+    or_throw(bpa::server::apply(ros, options));
+    or_throw(bpa::server::validate(options));
   };
   ServerOptions options;
-  if (Status s = read(options); !s.ok()) return s;
+  read(options);
   if (options.detection.detector.empty()) return options;
   // Once more, now that it is known which file stands below all the others.
-  auto detector = bpa::load_detector_options(options.detection.detector);
-  if (!detector.ok()) return detector.status();
+  const bpa::DetectorOptions detector =
+      or_throw(bpa::load_detector_options(options.detection.detector));
   options = {};
-  options.detector = *detector;
-  if (Status s = read(options); !s.ok()) return s;
+  options.detector = detector;
+  read(options);
   return options;
 }
 
@@ -102,15 +101,15 @@ bpa::LogHook make_log() {
   };
 }
 
-Status serve(const ServerOptions& options, const bpa::LogHook& hook, const sigset_t& signals) {
-  if (options.detection.library.empty()) {
-    return bpa::invalid_argument("no model library: give --library DIR (or detection.library)");
+/// Until a signal comes. Throws a Failure.
+void serve(const ServerOptions& options, const bpa::LogHook& hook, const sigset_t& signals) {
+  const std::string& folder = options.detection.library;
+  if (folder.empty()) {
+    or_throw(bpa::invalid_argument("no model library: give --library DIR (or detection.library)"));
   }
-  auto library = bpa::server::open_library(options.detection.library, options.detector,
-                                           options.detection.threads, hook);
-  if (!library.ok()) return library.status();
-  auto server = bpa::server::Server::create(options, *library, hook);
-  if (!server.ok()) return server.status();
+  auto library = or_throw(
+      bpa::server::open_library(folder, options.detector, options.detection.threads, hook));
+  const auto server = or_throw(bpa::server::Server::create(options, std::move(library), hook));
   bpa::log(hook, LogLevel::info, "ready in namespace " + options.node.ros_namespace);
   int signal = 0;
   sigwait(&signals, &signal);
@@ -119,7 +118,6 @@ Status serve(const ServerOptions& options, const bpa::LogHook& hook, const sigse
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
-  return {};
 }
 
 int fail(const Status& status, int exit_code) {
@@ -151,10 +149,14 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : 2;
   }
-  const bpa::Result<ServerOptions> options = settle(line, *ros);
-  if (!options.ok()) return fail(options.status(), 2);
+  ServerOptions options;
+  try {
+    options = settle(line, *ros);
+  } catch (const bpa::Failure& failure) {
+    return fail(failure.status(), 2);
+  }
   if (line.print_config) {
-    std::cout << bpa::server::to_yaml(*options, true);
+    std::cout << bpa::server::to_yaml(options, true);
     return 0;
   }
   if (line.list_devices) {
@@ -164,8 +166,11 @@ int main(int argc, char** argv) {
     return 0;
   }
   const bpa::LogHook hook = make_log();
-  const Status status = serve(*options, hook, signals);
-  if (status.ok()) return 0;
-  bpa::log(hook, LogLevel::error, status.message);
-  return 1;
+  try {
+    serve(options, hook, signals);
+    return 0;
+  } catch (const bpa::Failure& failure) {
+    bpa::log(hook, LogLevel::error, failure.what());
+    return 1;
+  }
 }

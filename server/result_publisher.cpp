@@ -5,28 +5,24 @@
 #include <utility>
 
 #include "core/base/clock.hpp"
+#include "core/base/failure.hpp"
 #include "server/convert/results.hpp"
 
 namespace bpa::server {
-Result<std::unique_ptr<ResultPublisher>> ResultPublisher::create(
-    const wire::Participant& participant, const Settings& settings,
-    std::shared_ptr<const Recognition> recognition, LogHook log) {
+
+ResultPublisher::ResultPublisher(const wire::Participant& participant, const Settings& settings,
+                                 std::shared_ptr<const Recognition> recognition, LogHook log)
+    : settings_(settings), recognition_(std::move(recognition)), log_(std::move(log)) {
+  tf_prefix_ = participant.node().node_namespace.substr(1);
+  if (tf_prefix_.empty()) tf_prefix_ = participant.node().name;
   const OutputOptions options = settings.get()->output;
-  std::unique_ptr<ResultPublisher> self(
-      new ResultPublisher(settings, std::move(recognition), std::move(log)));
-  self->tf_prefix_ = participant.node().node_namespace.substr(1);
-  if (self->tf_prefix_.empty()) self->tf_prefix_ = participant.node().name;
   const wire::Qos results = wire::qos::results();
-  for (const Status& status :
-       {self->interpretations_.open(participant, options.interpretations, results),
-        self->detections_.open(participant, options.detections, results),
-        self->annotated_.open(participant, options.annotated, results),
-        self->markers_.open(participant, options.markers, results),
-        self->vision_info_.open(participant, options.vision_info, wire::qos::latched()),
-        self->tf_.open(participant, options.tf, wire::qos::transforms())}) {
-    if (!status.ok()) return status;
-  }
-  return self;
+  or_throw(interpretations_.open(participant, options.interpretations, results));
+  or_throw(detections_.open(participant, options.detections, results));
+  or_throw(annotated_.open(participant, options.annotated, results));
+  or_throw(markers_.open(participant, options.markers, results));
+  or_throw(vision_info_.open(participant, options.vision_info, wire::qos::latched()));
+  or_throw(tf_.open(participant, options.tf, wire::qos::transforms()));
 }
 
 void ResultPublisher::publish(const Frame* frame, const Result<SceneInterpretations>& result,

@@ -20,10 +20,9 @@ namespace bpa::server {
 /// Publishes results. All but the interpretations are made only while they have a subscriber.
 class ResultPublisher {
  public:
-  /// `settings` outlives it.
-  static Result<std::unique_ptr<ResultPublisher>> create(
-      const wire::Participant& participant, const Settings& settings,
-      std::shared_ptr<const Recognition> recognition, LogHook log);
+  /// Opens the topics; `settings` outlives it. Throws a Failure.
+  ResultPublisher(const wire::Participant& participant, const Settings& settings,
+                  std::shared_ptr<const Recognition> recognition, LogHook log);
 
   /// `frame` is null when the frame broke a rule; then only the failed interpretations go out.
   void publish(const Frame* frame, const Result<SceneInterpretations>& result,
@@ -32,10 +31,6 @@ class ResultPublisher {
   void publish_vision_info();
 
  private:
-  ResultPublisher(const Settings& settings, std::shared_ptr<const Recognition> recognition,
-                  LogHook log)
-      : settings_(settings), recognition_(std::move(recognition)), log_(std::move(log)) {}
-
   const Settings& settings_;
   const std::shared_ptr<const Recognition> recognition_;
   const LogHook log_;

@@ -6,6 +6,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "core/base/failure.hpp"
 #include "idl/wire/names.hpp"
 
 namespace bpa::server {
@@ -38,24 +39,23 @@ std::string text_of(const YAML::Node& node) {
   return text.c_str();
 }
 
-/// Sets the leaves of a map: nested keys are joined by dots.
-Status set_tree(const std::string& path, const std::string& prefix, const YAML::Node& tree,
-                ServerOptions& options) {
+/// Sets the leaves of a map: nested keys are joined by dots. Throws a Failure, as set_file() does.
+void set_tree(const std::string& path, const std::string& prefix, const YAML::Node& tree,
+              ServerOptions& options) {
   for (const auto& entry : tree) {
     const std::string name = prefix + entry.first.as<std::string>();
     if (entry.second.IsMap()) {
-      if (Status s = set_tree(path, name + ".", entry.second, options); !s.ok()) return s;
-    } else if (Status s = set_parameter_text(name, text_of(entry.second), options); !s.ok()) {
-      return invalid_argument(path + ":" + std::to_string(entry.first.Mark().line + 1) + ": " +
-                              s.message);
+      set_tree(path, name + ".", entry.second, options);
+    } else {
+      or_throw(set_parameter_text(name, text_of(entry.second), options),
+               path + ":" + std::to_string(entry.first.Mark().line + 1));
     }
   }
-  return {};
 }
 
 /// Sets what a file says of this node. `scope` is the namespace that `tree` stands for.
-Status set_file(const std::string& path, const std::string& scope, const YAML::Node& tree,
-                ServerOptions& options) {
+void set_file(const std::string& path, const std::string& scope, const YAML::Node& tree,
+              ServerOptions& options) {
   const wire::NodeName node{options.node.ros_namespace, options.node.name};
   for (const auto& entry : tree) {
     const auto key = entry.first.as<std::string>();
@@ -64,16 +64,13 @@ Status set_file(const std::string& path, const std::string& scope, const YAML::N
     const bool ours = any || key == node.full() || scope + "/" + key == node.full() ||
                       (scope.empty() && key == node.name);
     const YAML::Node parameters = entry.second["ros__parameters"];
-    Status status;
     if (parameters && ours) {
-      status = set_tree(path, "", parameters, options);
+      set_tree(path, "", parameters, options);
     } else if (!parameters) {  // a namespace
       const std::string below = key[0] == '/' ? key : scope + "/" + key;
-      status = set_file(path, any ? node.node_namespace : below, entry.second, options);
+      set_file(path, any ? node.node_namespace : below, entry.second, options);
     }
-    if (!status.ok()) return status;
   }
-  return {};
 }
 
 Status load_file(const std::string& path, ServerOptions& options) {
@@ -81,7 +78,10 @@ Status load_file(const std::string& path, ServerOptions& options) {
     return Status(StatusCode::not_found, path + ": there is no such file");
   }
   try {
-    return set_file(path, "", YAML::LoadFile(path), options);
+    set_file(path, "", YAML::LoadFile(path), options);
+    return {};
+  } catch (const Failure& failure) {
+    return failure.status();
   } catch (const YAML::Exception& error) {
     return invalid_argument(path + ":" + std::to_string(error.mark.line + 1) +
                             ": not a parameter file: " + error.msg);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/clock.hpp"
+#include "core/base/failure.hpp"
 #include "idl/wire/participant.hpp"
 #include "server/diagnostics.hpp"
 #include "server/log_relay.hpp"
@@ -42,10 +43,8 @@ using wire::diagnostic_msgs::KeyValue;
 constexpr auto kReportPeriod = std::chrono::seconds(1);
 constexpr auto kRepeatAfter = std::chrono::seconds(10);
 
-Result<wire::Discovery> discovery_of(const NetworkOptions& options) {
-  auto environment = wire::discovery_from_environment();
-  if (!environment.ok()) return environment.status();
-  wire::Discovery discovery = *environment;
+wire::Discovery discovery_of(const NetworkOptions& options) {
+  wire::Discovery discovery = or_throw(wire::discovery_from_environment());
   if (options.domain >= 0) discovery.domain_id = options.domain;
   if (options.range == "subnet") discovery.range = wire::DiscoveryRange::subnet;
   if (options.range == "localhost") discovery.range = wire::DiscoveryRange::localhost;
@@ -91,73 +90,56 @@ class Running : public Server {
     if (worker_) worker_->stop();  // answers what waits, while the services can still send it
   }
 
-  Status start() {
-    if (Status status = join(); !status.ok()) return status;
+  /// Throws a Failure.
+  void start() {
     const ServerOptions options = *settings_.get();
-    auto publisher = ResultPublisher::create(*participant_, settings_, recognition_, log_);
-    if (!publisher.ok()) return publisher.status();
-    publisher_ = std::move(publisher).value();
+    join(options);
+    publisher_ = std::make_unique<ResultPublisher>(*participant_, settings_, recognition_, log_);
     publisher_->publish_vision_info();
-    Status status =
-        diagnostics_.open(*participant_, options.output.diagnostics, wire::qos::results());
-    if (!status.ok()) return status;
+    or_throw(diagnostics_.open(*participant_, options.output.diagnostics, wire::qos::results()));
 
     worker_ = std::make_unique<Worker>(
         recognition_, worker_options(options), statistics_,
         [this](const IncomingFrame& incoming, const Frame* frame,
                const Result<SceneInterpretations>& result) { on_result(incoming, frame, result); },
         log_);
-    if (status = start_sources(options); !status.ok()) return status;
-    if (status = offer_services(); !status.ok()) return status;
+    start_sources(options);
+    offer_services();
     settings_.on_change([this](const ServerOptions& before, const ServerOptions& after) {
       return apply(before, after);
     });
     parameters_.emplace(*participant_, log_, wire::qos::parameters());
-    status = add_parameter_services(*participant_, settings_, log_, *parameters_);
-    if (status.ok())
-      reporter_ = std::jthread([this](const std::stop_token& stop) { report(stop); });
-    return status;
+    add_parameter_services(*participant_, settings_, log_, *parameters_);
+    reporter_ = std::jthread([this](const std::stop_token& stop) { report(stop); });
   }
 
  private:
-  Status join() {
-    const ServerOptions options = *settings_.get();
-    auto discovery = discovery_of(options.network);
-    if (!discovery.ok()) return discovery.status();
+  void join(const ServerOptions& options) {
     wire::ParticipantOptions seat;
-    seat.node.node_namespace = options.node.ros_namespace;
-    seat.node.name = options.node.name;
-    seat.discovery = *discovery;
+    seat.node = {options.node.ros_namespace, options.node.name};
+    seat.discovery = discovery_of(options.network);
     seat.graph_layout = graph_layout_of(options.network.graph_layout);
     seat.profiles = options.network.profiles;
     seat.log = log_;
     for (const std::string& text : options.node.remaps) {
-      auto remap = wire::parse_remap(text);
-      if (!remap.ok()) return remap.status();
-      seat.remaps.push_back(*remap);
+      seat.remaps.push_back(or_throw(wire::parse_remap(text)));
     }
-    auto participant = wire::Participant::create(std::move(seat));
-    if (!participant.ok()) return participant.status();
-    participant_.emplace(std::move(participant).value());
-    if (options.output.rosout.empty()) return {};
-    return relay_.connect(*participant_, options.output.rosout);
+    participant_.emplace(or_throw(wire::Participant::create(std::move(seat))));
+    const std::string& rosout = options.output.rosout;
+    if (!rosout.empty()) or_throw(relay_.connect(*participant_, rosout));
   }
 
-  Status start_sources(const ServerOptions& options) {
+  void start_sources(const ServerOptions& options) {
     const auto on_frame = [this](IncomingFrame&& frame) { worker_->push(std::move(frame)); };
     ServerOptions topics = options;
     if (!options.capture.source.empty()) topics.input.depth.clear();  // they may be our own
-    auto source = TopicSource::create(*participant_, topics, on_frame, log_);
-    if (!source.ok()) return source.status();
-    topics_ = source->get();
-    sources_.push_back(std::move(source).value());
-    if (options.capture.source.empty()) return {};
-    auto camera = open_camera_source(
-        *participant_, options.capture, on_frame, [this] { return worker_->queue_length() == 0; },
-        log_);
-    if (!camera.ok()) return camera.status();
-    sources_.push_back(std::move(camera).value());
-    return {};
+    auto source = or_throw(TopicSource::create(*participant_, topics, on_frame, log_));
+    topics_ = source.get();
+    sources_.push_back(std::move(source));
+    if (options.capture.source.empty()) return;
+    const auto idle = [this] { return worker_->queue_length() == 0; };
+    sources_.push_back(
+        or_throw(open_camera_source(*participant_, options.capture, on_frame, idle, log_)));
   }
 
   Status apply(const ServerOptions& before, const ServerOptions& after) {
@@ -175,7 +157,7 @@ class Running : public Server {
     return {};
   }
 
-  Status offer_services() {
+  void offer_services() {
     const ServiceContext context{settings_,
                                  recognition_,
                                  *worker_,
@@ -186,10 +168,10 @@ class Running : public Server {
                                  },
                                  log_};
     services_.emplace(*participant_, log_);
-    if (Status s = add_detect(context, *services_); !s.ok()) return s;
-    if (Status s = add_library_services(context, *services_); !s.ok()) return s;
-    return services_->add_quick<msgs::GetStatus>(
-        "get_status", [this](const msgs::GetStatus_Request&) { return status(); });
+    add_detect(context, *services_);
+    add_library_services(context, *services_);
+    or_throw(services_->add_quick<msgs::GetStatus>(
+        "get_status", [this](const msgs::GetStatus_Request&) { return status(); }));
   }
 
   void on_result(const IncomingFrame& incoming, const Frame* frame,
@@ -356,7 +338,11 @@ Result<std::unique_ptr<Server>> Server::create(const ServerOptions& options,
                                                LogHook log) {
   if (Status status = validate(options); !status.ok()) return status;
   auto server = std::make_unique<Running>(options, std::move(recognition), std::move(log));
-  if (Status status = server->start(); !status.ok()) return status;
+  try {
+    server->start();
+  } catch (const Failure& failure) {
+    return failure.status();
+  }
   return std::unique_ptr<Server>(std::move(server));
 }
 

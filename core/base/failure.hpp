@@ -8,8 +8,8 @@
 
 #include "core/base/status.hpp"
 
-// How the programs bpa and bpa-client fail: by an exception, which main() prints as one line. The
-// rooms that they call return a Status or a Result; or_throw() stands between the two.
+// How the programs bpa, bpa-client and bpa-server fail: by an exception, which main() prints as one
+// line. The rooms that they call return a Status or a Result; or_throw() stands between the two.
 
 namespace bpa {
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/base/failure.hpp"
 #include "server/convert/frames.hpp"
 #include "server/convert/results.hpp"
 #include "server/services/services.hpp"
@@ -71,8 +72,8 @@ DetectJob job_of(std::shared_ptr<msgs::Detect_Request> request, const DetectRequ
 
 }  // namespace
 
-Status add_detect(const ServiceContext& context, ServiceSet& services) {
-  return services.add<msgs::Detect>(
+void add_detect(const ServiceContext& context, ServiceSet& services) {
+  or_throw(services.add<msgs::Detect>(
       "detect", [context](msgs::Detect_Request&& message, const Reply<msgs::Detect>& reply) {
         const auto refuse = [&](const Status& status) {
           context.statistics.add(&Counts::requests_refused);
@@ -101,7 +102,7 @@ Status add_detect(const ServiceContext& context, ServiceSet& services) {
         };
         const Status accepted = context.worker.push(std::move(job));
         if (!accepted.ok()) refuse(accepted);
-      });
+      }));
 }
 
 }  // namespace bpa::server

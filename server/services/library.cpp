@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/failure.hpp"
 #include "server/convert/results.hpp"
 #include "server/services/services.hpp"
 
@@ -71,7 +72,7 @@ Status add_change(const ServiceContext& context, const char* name, Change change
 
 }  // namespace
 
-Status add_library_services(const ServiceContext& context, ServiceSet& services) {
+void add_library_services(const ServiceContext& context, ServiceSet& services) {
   const std::shared_ptr<Recognition> recognition = context.recognition;
   const auto list_models = [recognition](const msgs::ListModels_Request& request) {
     return list(*recognition, request.names);
@@ -86,10 +87,9 @@ Status add_library_services(const ServiceContext& context, ServiceSet& services)
                                     msgs::UnloadModel_Response&) {
     return recognition->unload(request.name);
   };
-  Status status = services.add_quick<msgs::ListModels>("list_models", list_models);
-  if (status.ok()) status = add_change<msgs::LoadModel>(context, "load_model", load, services);
-  if (!status.ok()) return status;
-  return add_change<msgs::UnloadModel>(context, "unload_model", unload, services);
+  or_throw(services.add_quick<msgs::ListModels>("list_models", list_models));
+  or_throw(add_change<msgs::LoadModel>(context, "load_model", load, services));
+  or_throw(add_change<msgs::UnloadModel>(context, "unload_model", unload, services));
 }
 
 }  // namespace bpa::server

@@ -92,16 +92,16 @@ struct ServiceContext {
   LogHook log;
 };
 
-/// Offers `detect`.
-Status add_detect(const ServiceContext& context, ServiceSet& services);
+/// Offers `detect`. This and the next two throw a Failure.
+void add_detect(const ServiceContext& context, ServiceSet& services);
 /// Offers `list_models`, `load_model` and `unload_model`.
-Status add_library_services(const ServiceContext& context, ServiceSet& services);
+void add_library_services(const ServiceContext& context, ServiceSet& services);
 
 /// Offers what every ROS 2 node has for `ros2 param`: NODE/list_parameters, get_parameters,
 /// get_parameter_types, describe_parameters, set_parameters and set_parameters_atomically, and
 /// /parameter_events, on which all parameters are announced at the start and then each change.
 /// `participant` and `settings` outlive the services.
-Status add_parameter_services(const wire::Participant& participant, Settings& settings,
-                              const LogHook& log, ServiceSet& services);
+void add_parameter_services(const wire::Participant& participant, Settings& settings,
+                            const LogHook& log, ServiceSet& services);
 
 }  // namespace bpa::server
