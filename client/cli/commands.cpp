@@ -33,7 +33,7 @@ void catch_interrupts() {
 
 bool interrupted() { return interrupt_count > 0; }
 
-void Common::run(const std::function<Status(Client)>& body) {
+Client Common::connect() const {
   ClientOptions all = options;
   all.timeout = std::chrono::milliseconds(static_cast<long>(1000 * timeout_s));
   if (localhost) {
@@ -41,11 +41,7 @@ void Common::run(const std::function<Status(Client)>& body) {
     all.range = DiscoveryRange::localhost;
   }
   all.log = [](const std::string& text) { std::cerr << "bpa-client: " << text << '\n'; };
-  auto client = Client::connect(all);
-  const Status status = client.ok() ? body(std::move(client).value()) : client.status();
-  if (status.ok()) return;
-  std::cerr << "bpa-client: " << status.message << '\n';
-  exit_code = 1;
+  return or_throw(Client::connect(all));
 }
 
 }  // namespace bpa::cli

@@ -15,8 +15,7 @@ int main(int argc, char** argv) {
   bpa::cli::add_send(program, common);
   bpa::cli::add_watch(program, common);
   bpa::cli::add_detect(program, common);
-  bpa::cli::add_models(program, common);
-  bpa::cli::add_status(program, common);
+  bpa::cli::add_questions(program, common);
   bpa::cli::add_record(program, common);
   bpa::cli::add_play(program, common);
   try {
@@ -27,5 +26,4 @@ int main(int argc, char** argv) {
     std::cerr << "bpa-client: " << error.what() << '\n';
     return 1;
   }
-  return common.exit_code;
 }

@@ -3,6 +3,7 @@
 #include "client/cli/options.hpp"
 
 #include "client/cli/convert.hpp"
+#include "core/base/failure.hpp"
 #include "core/io/camera_file.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/pose_prior_file.hpp"
@@ -17,32 +18,11 @@ void add_frame_options(CLI::App& command, FrameFiles& files) {
   command.add_option("--color", files.color, "PNG of the same size");
   command.add_option("--camera", files.camera,
                      "BOP camera.json (fx fy cx cy, depth_scale in mm) or camera_info YAML");
-}
-
-void add_restriction_options(CLI::App& command, Restriction& restriction) {
-  command.add_option("--roi", restriction.roi, "part of each frame to search: x y width height")
+  command.add_option("--roi", files.roi, "part of each frame to search: x y width height")
       ->expected(4)
       ->check(CLI::NonNegativeNumber);
-  command.add_option("--mask", restriction.mask_path,
+  command.add_option("--mask", files.mask,
                      "8-bit PNG of the frames' size; where it is black, they are not searched");
-}
-
-Status Restriction::apply(Frame& frame) const {
-  if (!roi.empty()) frame.roi = {roi[0], roi[1], roi[2], roi[3]};
-  if (mask_path.empty()) return {};
-  const auto image = io::read_color_image(mask_path);
-  if (!image.ok()) return image.status();
-  const Camera& camera = frame.camera;
-  if (image->width != camera.width || image->height != camera.height) {
-    return invalid_argument(mask_path + " is " + std::to_string(image->width) + "x" +
-                            std::to_string(image->height) + " but the frame is " +
-                            std::to_string(camera.width) + "x" + std::to_string(camera.height) +
-                            "; they must be equal");
-  }
-  for (auto pixel = image->pixels.begin(); pixel != image->pixels.end(); pixel += 3) {
-    frame.mask.push_back(pixel[0] != 0 || pixel[1] != 0 || pixel[2] != 0);
-  }
-  return {};
 }
 
 void add_priors_option(CLI::App& command, std::string& path) {
@@ -53,53 +33,61 @@ void add_priors_option(CLI::App& command, std::string& path) {
       "\"position_sigma_m\": S, \"rotation_sigma_deg\": S, \"weight\": W}]}");
 }
 
-Result<std::vector<ExpectedPose>> read_priors(const std::string& path) {
-  const auto priors = io::read_pose_priors(path);
-  if (!priors.ok()) return priors.status();
+std::vector<ExpectedPose> read_priors(const std::string& path) {
   std::vector<ExpectedPose> expected;
-  for (const PosePrior& prior : *priors) expected.push_back(to_expected_pose(prior));
+  for (const PosePrior& prior : or_throw(io::read_pose_priors(path))) {
+    expected.push_back(to_expected_pose(prior));
+  }
   return expected;
 }
 
-void add_sink_options(CLI::App& command, Sinks& sinks) {
-  command.add_option("--json", sinks.json, "write all results to this file");
-  command.add_option("--annotated", sinks.annotated, "write annotated images to this folder");
-  command.add_option("--top", sinks.top, "interpretations to print for each frame")
-      ->capture_default_str();
-}
-
-Status check_frame_options(const FrameFiles& files, bool needed) {
+void check_frame_options(const char* command, const FrameFiles& files, bool needed) {
   const bool pngs = !files.depth.empty() || !files.color.empty() || !files.camera.empty();
   if (!files.bop.empty() && pngs) {
-    return invalid_argument("give either --bop or --depth, --color and --camera");
+    throw CLI::ValidationError(command, "give either --bop or --depth, --color and --camera");
   }
   if (pngs && (files.depth.empty() || files.camera.empty())) {
-    return invalid_argument("--depth and --camera are both needed");
+    throw CLI::ValidationError(command, "--depth and --camera are both needed");
   }
   if (needed && files.bop.empty() && !pngs) {
-    return invalid_argument("give --bop DATASET, or --depth F --camera F [--color F]");
+    throw CLI::ValidationError(command, "give --bop DATASET, or --depth F --camera F [--color F]");
   }
-  return {};
+  if (files.empty() && !(files.roi.empty() && files.mask.empty())) {
+    throw CLI::ValidationError(command, "--roi and --mask need frames from disk");
+  }
 }
 
-Result<std::vector<io::BopFrame>> list_frames(const FrameFiles& files) {
-  if (!files.bop.empty()) return io::read_bop_frames(files.bop, files.split, files.scenes);
-  const auto camera = io::read_camera(files.camera);
-  if (!camera.ok()) return camera.status();
+std::vector<io::BopFrame> list_frames(const FrameFiles& files) {
+  if (!files.bop.empty()) {
+    return or_throw(io::read_bop_frames(files.bop, files.split, files.scenes));
+  }
+  const io::CameraFile camera = or_throw(io::read_camera(files.camera));
   io::BopFrame frame;
-  frame.camera = camera->camera;
-  frame.depth_scale_mm = camera->depth_scale_mm;
+  frame.camera = camera.camera;
+  frame.depth_scale_mm = camera.depth_scale_mm;
   frame.depth_path = files.depth;
   frame.color_path = files.color;
-  return std::vector<io::BopFrame>{frame};
+  return {frame};
 }
 
-Result<Frame> load_frame(const io::BopFrame& entry, const Restriction& restriction,
-                         std::int64_t stamp_ns) {
-  Result<Frame> frame = io::load_bop_frame(entry);
-  if (!frame.ok()) return frame;
-  frame->stamp_ns = stamp_ns;
-  if (Status status = restriction.apply(*frame); !status.ok()) return status;
+Frame load_frame(const io::BopFrame& entry, const FrameFiles& files, std::int64_t stamp_ns) {
+  Frame frame = or_throw(io::load_bop_frame(entry));
+  frame.stamp_ns = stamp_ns;
+  if (!files.roi.empty()) frame.roi = {files.roi[0], files.roi[1], files.roi[2], files.roi[3]};
+  if (files.mask.empty()) return frame;
+  const io::ColorImage image = or_throw(io::read_color_image(files.mask));
+  const auto size = [](int width, int height) {
+    return std::to_string(width) + "x" + std::to_string(height);
+  };
+  const Camera& camera = frame.camera;
+  if (image.width != camera.width || image.height != camera.height) {
+    throw Failure(invalid_argument(files.mask + " is " + size(image.width, image.height) +
+                                   " but the frame is " + size(camera.width, camera.height) +
+                                   "; they must be equal"));
+  }
+  for (auto pixel = image.pixels.begin(); pixel != image.pixels.end(); pixel += 3) {
+    frame.mask.push_back(pixel[0] != 0 || pixel[1] != 0 || pixel[2] != 0);
+  }
   return frame;
 }
 

@@ -8,38 +8,32 @@
 #include <map>
 
 #include "client/cli/convert.hpp"
+#include "core/base/failure.hpp"
 
 namespace bpa::cli {
 namespace {
 
-std::string format(const char* pattern, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
+std::string name_of(const Detection& d) { return d.model + "_" + std::to_string(d.instance); }
 
-/// One standard deviation of the position (mm) and of the rotation (degrees), over all directions.
-std::string spread(const Detection& d) {
+/// Prints one standard deviation of the position and of the rotation, over all directions.
+void print_spread(const Detection& d) {
   const auto deviation = [&d](std::size_t first) {
     double sum = 0;
     for (std::size_t i = first; i < first + 3; ++i) sum += d.covariance[7 * i];
     return std::sqrt(std::max(0.0, sum));
   };
-  return format("+-%.1f mm", 1000 * deviation(0)) +
-         format(" +-%.1f deg", deviation(3) * 57.29577951308232);
+  std::printf("  +-%.1f mm +-%.1f deg", 1000 * deviation(0), deviation(3) * 57.29577951308232);
 }
 
-void print_detection(std::ostream& out, const Detection& d) {
-  char line[256];
+void print_detection(const Detection& d) {
   const auto& p = d.camera_from_object.position;
   const auto& q = d.camera_from_object.orientation;
-  std::snprintf(line, sizeof line,
-                "    %-24s %5.1f %%  at (%+.3f %+.3f %+.3f) m  q (%+.3f %+.3f %+.3f %+.3f)",
-                (d.model + "_" + std::to_string(d.instance)).c_str(), 100 * d.probability, p[0],
-                p[1], p[2], q[0], q[1], q[2], q[3]);
-  out << line << "  " << spread(d) << "  seen " << format("%.0f %%", 100 * d.visible_fraction);
-  if (!d.alternatives.empty()) out << "  or " << d.alternatives.size() << " other poses";
-  out << '\n';
+  std::printf("    %-24s %5.1f %%  at (%+.3f %+.3f %+.3f) m  q (%+.3f %+.3f %+.3f %+.3f)",
+              name_of(d).c_str(), 100 * d.probability, p[0], p[1], p[2], q[0], q[1], q[2], q[3]);
+  print_spread(d);
+  std::printf("  seen %.0f %%", 100 * d.visible_fraction);
+  if (!d.alternatives.empty()) std::printf("  or %zu other poses", d.alternatives.size());
+  std::printf("\n");
 }
 
 std::map<std::string, int> models_of(const RankedInterpretation& interpretation) {
@@ -64,58 +58,56 @@ std::string difference(const RankedInterpretation& best, const RankedInterpretat
 
 }  // namespace
 
-void print_table(std::ostream& out, const DetectionSet& set, double frames_per_second) {
-  char line[200];
-  std::snprintf(line, sizeof line, "frame %lld.%03lld  %s  %.1f a second  search %.0f ms",
-                static_cast<long long>(set.stamp_ns / 1'000'000'000),
-                static_cast<long long>(set.stamp_ns / 1'000'000 % 1000), set.frame_id.c_str(),
-                frames_per_second, set.total_ms);
-  out << line << '\n';
-  if (!set.status.ok()) {
-    out << "not searched: " << set.status.message << '\n';
-    return;
+void print_table(const DetectionSet& set, double frames_per_second) {
+  std::printf("\x1b[H\x1b[J");  // home, and clear what follows
+  std::printf("frame %lld.%03lld  %s  %.1f a second  search %.0f ms\n",
+              static_cast<long long>(set.stamp_ns / 1'000'000'000),
+              static_cast<long long>(set.stamp_ns / 1'000'000 % 1000), set.frame_id.c_str(),
+              frames_per_second, set.total_ms);
+  if (set.status.ok()) {
+    std::printf("%-24s %6s  %7s %7s %7s  %5s\n", "object", "sure", "x m", "y m", "z m", "seen");
+  } else {
+    std::printf("not searched: %s\n", set.status.message.c_str());
   }
-  std::snprintf(line, sizeof line, "%-24s %6s  %7s %7s %7s  %5s", "object", "sure", "x m", "y m",
-                "z m", "seen");
-  out << line << '\n';
   for (const Detection& d : set.best()) {
     const auto& p = d.camera_from_object.position;
-    std::snprintf(line, sizeof line, "%-24s %5.1f %%  %+7.3f %+7.3f %+7.3f  %3.0f %%",
-                  (d.model + "_" + std::to_string(d.instance)).c_str(), 100 * d.probability, p[0],
-                  p[1], p[2], 100 * d.visible_fraction);
-    out << line << "  " << spread(d) << '\n';
+    std::printf("%-24s %5.1f %%  %+7.3f %+7.3f %+7.3f  %3.0f %%", name_of(d).c_str(),
+                100 * d.probability, p[0], p[1], p[2], 100 * d.visible_fraction);
+    print_spread(d);
+    std::printf("\n");
   }
+  std::fflush(stdout);
 }
 
-void print_detections(std::ostream& out, const DetectionSet& set, int max_interpretations) {
-  out << "frame " << set.frame_id << ": ";
+void print_detections(const DetectionSet& set, int max_interpretations) {
+  std::printf("frame %s: ", set.frame_id.c_str());
   if (!set.status.ok()) {
-    out << "not searched (" << to_string(set.status.code) << "): " << set.status.message << '\n';
-    return;
+    std::printf("not searched (%s): %s\n", to_string(set.status.code), set.status.message.c_str());
+  } else {
+    std::printf("%zu interpretations of %d models in %.0f ms%s", set.interpretations.size(),
+                set.models_searched, set.total_ms, set.budget_exhausted ? " (time was up)" : "");
+    if (set.fused_frames > 1) std::printf(", %d frames combined", set.fused_frames);
+    std::printf("\n");
   }
-  out << set.interpretations.size() << " interpretations of " << set.models_searched
-      << " models in " << format("%.0f", set.total_ms) << " ms"
-      << (set.budget_exhausted ? " (time was up)" : "");
-  if (set.fused_frames > 1) out << ", " << set.fused_frames << " frames combined";
-  out << '\n';
   int printed = 0;
   for (const RankedInterpretation& interpretation : set.interpretations) {
     if (printed++ == max_interpretations) break;
-    out << "  #" << interpretation.rank << format("  %.1f %%", 100 * interpretation.probability);
+    std::printf("  #%d  %.1f %%", interpretation.rank, 100 * interpretation.probability);
     if (printed > 1) {
-      out << ' ' << difference(set.interpretations.front(), interpretation) << '\n';
+      std::printf(" %s\n", difference(set.interpretations.front(), interpretation).c_str());
       continue;
     }
-    out << "  " << interpretation.detections.size() << " objects\n";
-    for (const Detection& d : interpretation.detections) print_detection(out, d);
+    std::printf("  %zu objects\n", interpretation.detections.size());
+    for (const Detection& d : interpretation.detections) print_detection(d);
   }
+  std::fflush(stdout);
 }
 
-Status write_results(const std::string& path, const std::vector<DetectionSet>& sets) {
-  if (path.empty()) return {};
+void write_results(const std::string& path, const std::vector<DetectionSet>& sets) {
+  if (path.empty()) return;
   std::vector<io::FrameResult> frames;
   for (const DetectionSet& set : sets) frames.push_back(to_frame_result(set));
-  return io::write_results_json(path, frames);
+  or_throw(io::write_results_json(path, frames));
 }
 
 }  // namespace bpa::cli

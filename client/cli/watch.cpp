@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <deque>
 #include <iostream>
 #include <memory>
-#include <mutex>
 #include <thread>
 
 #include "client/cli/commands.hpp"
@@ -39,39 +39,36 @@ class Rate {
   std::deque<std::chrono::steady_clock::time_point> times_;
 };
 
-Status watch(Client client, const WatchOptions& options) {
+void watch(const Common& common, const WatchOptions& options) {
   std::atomic<int> seen{0};
   Rate rate;
-  Status status = client.subscribe([&](const DetectionSet& set) {
+  Client client = common.connect();
+  or_throw(client.subscribe([&](const DetectionSet& set) {
     if (options.count > 0 && seen >= options.count) return;
     if (options.json) {
-      std::cout << io::result_json_line(to_frame_result(set)) << std::endl;
+      std::puts(io::result_json_line(to_frame_result(set)).c_str());
+      std::fflush(stdout);
     } else if (options.table) {
-      std::cout << "\x1b[H\x1b[J";  // home, and clear what follows
-      print_table(std::cout, set, rate.add());
-      std::cout.flush();
+      print_table(set, rate.add());
     } else {
-      print_detections(std::cout, set, options.top);
-      std::cout.flush();
+      print_detections(set, options.top);
     }
     ++seen;
-  });
-  if (status.ok() && !options.annotated.empty()) {
-    status = client.subscribe_annotated([&](const AnnotatedImage& image) {
+  }));
+  if (!options.annotated.empty()) {
+    or_throw(client.subscribe_annotated([&](const AnnotatedImage& image) {
       const Status written = write_annotated(options.annotated, image);
       if (!written.ok()) std::cerr << "bpa-client: " << written.message << '\n';
-    });
+    }));
   }
-  while (status.ok() && !interrupted() && (options.count == 0 || seen < options.count)) {
+  while (!interrupted() && (options.count == 0 || seen < options.count)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  close(std::move(client));
-  return status;
 }
 
 }  // namespace
 
-void add_watch(CLI::App& program, Common& common) {
+void add_watch(CLI::App& program, const Common& common) {
   CLI::App* command =
       program.add_subcommand("watch", "print what the server finds until interrupted");
   auto options = std::make_shared<WatchOptions>();
@@ -82,9 +79,7 @@ void add_watch(CLI::App& program, Common& common) {
   command->add_option("--top", options->top, "interpretations to print for each frame")
       ->capture_default_str();
   command->add_option("--count", options->count, "frames after which to stop; default never");
-  command->callback([options, &common] {
-    common.run([&](Client client) { return watch(std::move(client), *options); });
-  });
+  command->callback([options, &common] { watch(common, *options); });
 }
 
 }  // namespace bpa::cli
