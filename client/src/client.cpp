@@ -9,19 +9,21 @@
 
 #include <bpa/client.hpp>
 
-#include "client/src/callback_thread.hpp"
 #include "client/src/convert.hpp"
 #include "idl/wire/messages.hpp"
 #include "idl/wire/participant.hpp"
 #include "idl/wire/publisher.hpp"
 #include "idl/wire/service.hpp"
 #include "idl/wire/subscriber.hpp"
+#include "idl/wire/worker.hpp"
 
 namespace bpa {
 namespace {
 
 namespace msgs = wire::bpa_msgs;
 using Milliseconds = std::chrono::milliseconds;
+
+constexpr std::size_t kMaxWaitingCallbacks = 100;
 
 Result<wire::Discovery> discovery_of(const ClientOptions& options) {
   auto environment = wire::discovery_from_environment();
@@ -96,17 +98,16 @@ struct Client::Impl {
   std::optional<Caller<msgs::GetStatus>> get_status = {};
   std::optional<Caller<msgs::Record>> record = {};
 
-  struct Made {  ///< On first use.
-    std::mutex mutex;
-    std::optional<wire::Publisher<msgs::RgbdFrame>> frames;
-    bool listened = false;  ///< The server has told that it takes our frames.
-    sdk::CallbackThread callbacks;
-    // Last: they post to the thread above until they are destroyed.
-    std::optional<wire::Subscriber<msgs::SceneInterpretations>> results;
-    std::optional<wire::Subscriber<wire::sensor_msgs::Image>> images;
-    std::optional<wire::Subscriber<msgs::RgbdFrame>> others_frames;
-  };
-  std::unique_ptr<Made> made = std::make_unique<Made>();
+  // Those below are made on first use.
+  std::mutex mutex = {};
+  std::optional<wire::Publisher<msgs::RgbdFrame>> frames = {};
+  bool listened = false;  ///< The server has told that it takes our frames.
+  /// So that a slow callback never holds up DDS.
+  wire::Worker callbacks{kMaxWaitingCallbacks};
+  // Last: they give the thread above work until they are destroyed.
+  std::optional<wire::Subscriber<msgs::SceneInterpretations>> results = {};
+  std::optional<wire::Subscriber<wire::sensor_msgs::Image>> images = {};
+  std::optional<wire::Subscriber<msgs::RgbdFrame>> others_frames = {};
 
   static Result<std::unique_ptr<Impl>> create(const ClientOptions& options);
   Result<Recording> call_record(const msgs::Record_Request& request) const;
@@ -118,8 +119,10 @@ struct Client::Impl {
   template <class Message, class Convert, class Call>
   Status subscribe(std::optional<wire::Subscriber<Message>>& slot, const char* topic,
                    const wire::Qos& qos, bool wait, Convert convert, Call call);
-  Result<wire::Publisher<msgs::RgbdFrame>*> frame_publisher();
-  Status wait_for_listener(const wire::Publisher<msgs::RgbdFrame>& frames);
+  /// Makes `frames` unless it is there.
+  Status make_frames();
+  /// Waits until the server takes `frames`.
+  Status wait_for_listener();
 };
 
 Result<std::unique_ptr<Client::Impl>> Client::Impl::create(const ClientOptions& options) {
@@ -146,17 +149,16 @@ Result<std::unique_ptr<Client::Impl>> Client::Impl::create(const ClientOptions& 
 template <class Message, class Convert, class Call>
 Status Client::Impl::subscribe(std::optional<wire::Subscriber<Message>>& slot, const char* topic,
                                const wire::Qos& qos, bool wait, Convert convert, Call call) {
-  const std::lock_guard<std::mutex> lock(made->mutex);
+  const std::lock_guard<std::mutex> lock(mutex);
   slot.reset();
   wire::SubscriberOptions subscription;
   subscription.qos = qos;
   auto subscriber = wire::Subscriber<Message>::create(
       participant, topic, subscription,
-      [&callbacks = made->callbacks, convert, call = std::move(call)](Message&& message,
-                                                                      const wire::SampleMeta&) {
+      [this, convert, call = std::move(call)](Message&& message, const wire::SampleMeta&) {
         using Value = std::decay_t<decltype(convert(std::move(message)))>;
         auto value = std::make_shared<const Value>(convert(std::move(message)));
-        callbacks.post([call, value] { call(*value); });
+        callbacks.run_at(wire::Worker::Clock::now(), [call, value] { call(*value); });
       });
   if (!subscriber.ok()) return subscriber.status();
   slot.emplace(std::move(subscriber).value());
@@ -188,41 +190,39 @@ Result<DetectionSet> Client::Impl::search(msgs::Detect_Request request, const De
   return found;
 }
 
-Result<wire::Publisher<msgs::RgbdFrame>*> Client::Impl::frame_publisher() {
-  const std::lock_guard<std::mutex> lock(made->mutex);
-  if (!made->frames) {
-    wire::PublisherOptions publishing;
-    publishing.qos = wire::qos::frames();
-    publishing.shared_bytes = options.shared_frame_mb << 20U;
-    auto publisher = wire::Publisher<msgs::RgbdFrame>::create(participant, "frames", publishing);
-    if (!publisher.ok()) return publisher.status();
-    made->frames.emplace(std::move(publisher).value());
-  }
-  return &*made->frames;
+Status Client::Impl::make_frames() {
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (frames) return {};
+  wire::PublisherOptions publishing;
+  publishing.qos = wire::qos::frames();
+  publishing.shared_bytes = options.shared_frame_mb << 20U;
+  auto publisher = wire::Publisher<msgs::RgbdFrame>::create(participant, "frames", publishing);
+  if (publisher.ok()) frames.emplace(std::move(publisher).value());
+  return publisher.status();
 }
 
 // That we know the server does not mean that it knows us already, and what is sent before the two
 // have exchanged their first heartbeats (every 100 ms) is lost. So the server is asked once, and
 // given one more heartbeat; again after it was away.
-Status Client::Impl::wait_for_listener(const wire::Publisher<msgs::RgbdFrame>& frames) {
+Status Client::Impl::wait_for_listener() {
   const auto end = std::chrono::steady_clock::now() + options.timeout;
   {
-    const std::lock_guard<std::mutex> lock(made->mutex);
-    if (made->listened && frames.matched_count() > 0) return {};
-    made->listened = false;
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (listened && frames->matched_count() > 0) return {};
+    listened = false;
   }
   const Status silence(StatusCode::unavailable,
-                       "no server listens to " + frames.topic() + " within " +
+                       "no server listens to " + frames->topic() + " within " +
                            std::to_string(options.timeout.count()) + " ms");
-  if (!frames.wait_for_matched(options.timeout)) return silence;
+  if (!frames->wait_for_matched(options.timeout)) return silence;
   while (std::chrono::steady_clock::now() < end) {
     std::this_thread::sleep_for(Milliseconds(50));
     const auto response = get_status->call({}, options.timeout);
     if (Status status = outcome(response); !status.ok()) return status;
     if (response->frame_publishers == 0) continue;
     std::this_thread::sleep_for(Milliseconds(100));
-    const std::lock_guard<std::mutex> lock(made->mutex);
-    made->listened = true;
+    const std::lock_guard<std::mutex> lock(mutex);
+    listened = true;
     return {};
   }
   return silence;
@@ -276,23 +276,20 @@ Result<DetectionSet> Client::detect_in(const FrameView& frame, const DetectQuery
 Status Client::publish_frame(const FrameView& frame, const std::vector<ExpectedPose>& priors) {
   return guarded([&]() -> Status {
     if (Status status = sdk::check(frame); !status.ok()) return status;
-    auto publisher = impl_->frame_publisher();
-    if (!publisher.ok()) return publisher.status();
-    auto& frames = **publisher;
-    if (Status status = impl_->wait_for_listener(frames); !status.ok()) return status;
+    if (Status status = impl_->make_frames(); !status.ok()) return status;
+    if (Status status = impl_->wait_for_listener(); !status.ok()) return status;
     auto known = sdk::to_messages(priors);
     if (!known.ok()) return known.status();
     msgs::RgbdFrameView message = sdk::to_message(frame);
     message.priors = std::move(known).value();
-    return frames.publish(message);
+    return impl_->frames->publish(message);
   });
 }
 
 Status Client::subscribe(std::function<void(const DetectionSet&)> on_result) {
-  const auto convert = [](const msgs::SceneInterpretations& m) { return sdk::to_detections(m); };
   return guarded([&] {
-    return impl_->subscribe(impl_->made->results, "interpretations", wire::qos::results(), true,
-                            convert, std::move(on_result));
+    return impl_->subscribe(impl_->results, "interpretations", wire::qos::results(), true,
+                            sdk::to_detections, std::move(on_result));
   });
 }
 
@@ -304,15 +301,14 @@ Status Client::subscribe_frames(std::function<void(const FrameView&)> on_frame) 
   };
   // Over UDP: a second reader of shared memory gets nothing from Fast DDS 2.9.1.
   return guarded([&] {
-    return impl_->subscribe(impl_->made->others_frames, "frames", wire::qos::frames(), false,
-                            convert, call);
+    return impl_->subscribe(impl_->others_frames, "frames", wire::qos::frames(), false, convert,
+                            call);
   });
 }
 
 Status Client::subscribe_annotated(std::function<void(const AnnotatedImage&)> on_image) {
-  const auto convert = [](wire::sensor_msgs::Image&& m) { return sdk::to_image(std::move(m)); };
   return guarded([&] {
-    return impl_->subscribe(impl_->made->images, "annotated", wire::qos::results(), true, convert,
+    return impl_->subscribe(impl_->images, "annotated", wire::qos::results(), true, sdk::to_image,
                             std::move(on_image));
   });
 }
@@ -326,20 +322,14 @@ Result<ServerStatus> Client::status() {
 }
 
 Status Client::load_model(const std::string& source, const std::string& name) {
-  return guarded([&]() -> Status {
-    msgs::LoadModel_Request request;
-    request.source = source;
-    request.name = name;
-    return outcome(impl_->load_model->call(request, impl_->options.detect_timeout));
+  return guarded([&] {
+    return outcome(impl_->load_model->call({source, name}, impl_->options.detect_timeout));
   });
 }
 
 Status Client::unload_model(const std::string& name) {
-  return guarded([&]() -> Status {
-    msgs::UnloadModel_Request request;
-    request.name = name;
-    return outcome(impl_->unload_model->call(request, impl_->options.detect_timeout));
-  });
+  return guarded(
+      [&] { return outcome(impl_->unload_model->call({name}, impl_->options.detect_timeout)); });
 }
 
 Result<Recording> Client::Impl::call_record(const msgs::Record_Request& request) const {
@@ -353,20 +343,11 @@ Result<Recording> Client::Impl::call_record(const msgs::Record_Request& request)
 }
 
 Result<Recording> Client::start_recording(const std::string& path, double seconds) {
-  return guarded([&]() -> Result<Recording> {
-    msgs::Record_Request request;
-    request.path = path;
-    request.seconds = seconds;
-    return impl_->call_record(request);
-  });
+  return guarded([&] { return impl_->call_record({path, seconds, false}); });
 }
 
 Result<Recording> Client::stop_recording() {
-  return guarded([&]() -> Result<Recording> {
-    msgs::Record_Request request;
-    request.stop = true;
-    return impl_->call_record(request);
-  });
+  return guarded([&] { return impl_->call_record({"", 0, true}); });
 }
 
 }  // namespace bpa

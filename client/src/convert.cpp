@@ -3,6 +3,7 @@
 #include "client/src/convert.hpp"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 namespace bpa::sdk {
@@ -23,10 +24,8 @@ Detection to_detection(const msgs::Placement& message) {
   detection.instance = static_cast<int>(message.instance);
   detection.camera_from_object = to_pose(message.pose.pose);
   detection.covariance = message.pose.covariance;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      detection.orientation_spread.axes[axis][i] = message.orientation.axes[4 * axis + i];
-    }
+  for (std::size_t i = 0; i < 12; ++i) {
+    detection.orientation_spread.axes[i / 4][i % 4] = message.orientation.axes[i];
   }
   detection.orientation_spread.concentrations = message.orientation.concentrations;
   detection.score = message.score;
@@ -49,19 +48,16 @@ std::vector<StageTime> to_stage_times(const std::vector<msgs::StageTiming>& timi
   return times;
 }
 
+/// A view or a vector of some bytes; empty without data.
 template <class Bytes>
-Bytes bytes(const void* data, std::size_t size);
-
-template <>
-wire::ByteView bytes<wire::ByteView>(const void* data, std::size_t size) {
-  return {static_cast<const std::uint8_t*>(data), data == nullptr ? 0 : size};
-}
-
-template <>
-std::vector<std::uint8_t> bytes<std::vector<std::uint8_t>>(const void* data, std::size_t size) {
+Bytes bytes(const void* data, std::size_t size) {
   const auto* first = static_cast<const std::uint8_t*>(data);
-  return first == nullptr ? std::vector<std::uint8_t>()
-                          : std::vector<std::uint8_t>(first, first + size);
+  if (first == nullptr) return {};
+  if constexpr (std::is_same_v<Bytes, wire::ByteView>) {
+    return {first, size};
+  } else {
+    return Bytes(first, first + size);
+  }
 }
 
 template <class Bytes>
@@ -97,10 +93,8 @@ msgs::PosePrior to_message(const ExpectedPose& prior) {
   const auto& q = prior.camera_from_object.orientation;
   message.pose.position = {p[0], p[1], p[2]};
   message.pose.orientation = {q[0], q[1], q[2], q[3]};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      message.orientation.axes[4 * axis + i] = prior.orientation_spread.axes[axis][i];
-    }
+  for (std::size_t i = 0; i < 12; ++i) {
+    message.orientation.axes[i] = prior.orientation_spread.axes[i / 4][i % 4];
   }
   message.orientation.concentrations = prior.orientation_spread.concentrations;
   message.position_covariance = prior.position_covariance;
@@ -124,10 +118,10 @@ DetectionSet to_detections(const msgs::SceneInterpretations& message) {
   set.frame_id = message.header.frame_id;
   set.status = to_status(message.status);
   for (const auto& interpretation : message.interpretations) {
-    RankedInterpretation ranked;
-    ranked.rank = static_cast<int>(interpretation.rank);
-    ranked.score = interpretation.score;
-    ranked.probability = interpretation.probability;
+    RankedInterpretation ranked{static_cast<int>(interpretation.rank),
+                                interpretation.score,
+                                interpretation.probability,
+                                {}};
     for (const auto& placement : interpretation.placements) {
       ranked.detections.push_back(to_detection(placement));
     }
@@ -143,16 +137,14 @@ DetectionSet to_detections(const msgs::SceneInterpretations& message) {
 }
 
 KnownModel to_model(const msgs::ModelInfo& message) {
-  KnownModel model;
-  model.name = message.name;
-  model.number = static_cast<int>(message.number);
-  model.diameter = message.diameter;
-  model.box_min = to_array(message.box_min);
-  model.box_max = to_array(message.box_max);
-  model.point_count = static_cast<int>(message.point_count);
-  model.discrete_symmetries = static_cast<int>(message.discrete_symmetries.size());
-  model.continuous_symmetries = static_cast<int>(message.continuous_symmetries.size());
-  return model;
+  return {message.name,
+          static_cast<int>(message.number),
+          message.diameter,
+          to_array(message.box_min),
+          to_array(message.box_max),
+          static_cast<int>(message.point_count),
+          static_cast<int>(message.discrete_symmetries.size()),
+          static_cast<int>(message.continuous_symmetries.size())};
 }
 
 ServerStatus to_server_status(const msgs::GetStatus_Response& message) {
@@ -181,13 +173,8 @@ ServerStatus to_server_status(const msgs::GetStatus_Response& message) {
 }
 
 AnnotatedImage to_image(wire::sensor_msgs::Image&& message) {
-  AnnotatedImage image;
-  image.stamp_ns = to_ns(message.header.stamp);
-  image.frame_id = message.header.frame_id;
-  image.width = static_cast<int>(message.width);
-  image.height = static_cast<int>(message.height);
-  image.rgb = std::move(message.data);
-  return image;
+  return {to_ns(message.header.stamp), message.header.frame_id, static_cast<int>(message.width),
+          static_cast<int>(message.height), std::move(message.data)};
 }
 
 Status check(const FrameView& frame) {

@@ -66,6 +66,8 @@ struct SubscriberOptions {
 /// Holds a bpa_msgs/RgbdFrame of 1920 x 1080 with colour, 32FC1 depth and mask, or less.
 inline constexpr std::size_t kFrameBytes = 24U << 20U;
 
+class Worker;
+
 namespace detail {
 
 /// A message to be written, its type forgotten.
@@ -172,8 +174,6 @@ using RawDecode = std::function<Result<Deliver>(const std::uint8_t*, std::size_t
 
 /// Copies the bytes, for samples that cannot be decoded before their SampleMeta is known.
 RawDecode copy_bytes(std::function<void(std::vector<std::uint8_t>&&, const SampleMeta&)> callback);
-
-class Worker;
 
 /// Of events that a peer can cause at will, the 1st, 2nd, 4th, 8th ... are logged.
 inline bool is_power_of_two(std::uint64_t count) { return (count & (count - 1)) == 0; }

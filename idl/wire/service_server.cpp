@@ -5,8 +5,8 @@
 #include <mutex>
 
 #include "idl/wire/private/service_framing.hpp"
-#include "idl/wire/private/worker.hpp"
 #include "idl/wire/service.hpp"
+#include "idl/wire/worker.hpp"
 
 namespace bpa::wire::detail {
 namespace {

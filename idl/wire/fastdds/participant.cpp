@@ -75,7 +75,7 @@ const LogHook& detail::participant_log(const Participant& participant) {
   return participant.impl()->options().log;
 }
 
-detail::Worker& detail::participant_worker(const Participant& participant) {
+Worker& detail::participant_worker(const Participant& participant) {
   return participant.impl()->worker();
 }
 

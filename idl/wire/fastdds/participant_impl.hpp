@@ -19,7 +19,7 @@
 #include "idl/wire/fastdds/version.hpp"
 #include "idl/wire/participant.hpp"
 #include "idl/wire/private/graph.hpp"
-#include "idl/wire/private/worker.hpp"
+#include "idl/wire/worker.hpp"
 
 // Private to idl/wire/fastdds, the only folder that includes Fast DDS.
 

@@ -4,21 +4,25 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <utility>
 
-namespace bpa::wire::detail {
+namespace bpa::wire {
 
 /// One thread that runs tasks at their time. What a DDS callback must not do itself goes here.
 class Worker {
  public:
   using Clock = std::chrono::steady_clock;
 
-  Worker() : thread_([state = state_] { loop(*state); }) {}
+  /// When more than `max_waiting` tasks wait, the one that is due first is dropped.
+  explicit Worker(std::size_t max_waiting = std::numeric_limits<std::size_t>::max())
+      : max_waiting_(max_waiting), thread_([state = state_] { loop(*state); }) {}
   /// Drops what has not run yet and waits for what is running, unless that is the caller.
   ~Worker() {
     {
@@ -35,9 +39,12 @@ class Worker {
   }
 
   void run_at(Clock::time_point time, std::function<void()> task) {
+    decltype(State::tasks)::node_type dropped;  // destroyed outside the lock
     {
       const std::lock_guard<std::mutex> lock(state_->mutex);
-      state_->tasks.emplace(time, std::move(task));
+      auto& tasks = state_->tasks;
+      tasks.emplace(time, std::move(task));
+      if (tasks.size() > max_waiting_) dropped = tasks.extract(tasks.begin());
     }
     state_->wake.notify_all();
   }
@@ -71,8 +78,9 @@ class Worker {
     }
   }
 
+  const std::size_t max_waiting_;
   const std::shared_ptr<State> state_ = std::make_shared<State>();
   std::thread thread_;
 };
 
-}  // namespace bpa::wire::detail
+}  // namespace bpa::wire
