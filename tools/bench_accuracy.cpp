@@ -55,34 +55,28 @@ std::ptrdiff_t index_of(const FrameTrace& trace, int number) {
   return found == trace.models.end() ? -1 : found - trace.models.begin();
 }
 
-bool holds(const Interpretation& interpretation, const io::BopInstance& truth,
-           const SymmetryGroup& symmetry) {
-  return std::any_of(
-      interpretation.placements.begin(), interpretation.placements.end(), [&](const Placement& p) {
-        return p.model_number == truth.obj_id &&
-               eval::is_right(p.camera_from_object, truth.camera_from_object, symmetry);
-      });
-}
-
 void add_instance(const io::BopInstance& truth, const FrameTrace& trace,
                   const SceneInterpretations& result, Tally& tally) {
   const std::ptrdiff_t index = index_of(trace, truth.obj_id);
   if (index < 0) return;
   const auto m = static_cast<std::size_t>(index);
-  const SymmetryGroup& symmetry = trace.models[m]->symmetry;
+  const auto is_right = [&](const Pose& pose) {
+    return eval::is_right(pose, truth.camera_from_object, trace.models[m]->symmetry);
+  };
+  const auto holds = [&](const Interpretation& interpretation) {
+    return std::ranges::any_of(interpretation.placements, [&](const Placement& p) {
+      return p.model_number == truth.obj_id && is_right(p.camera_from_object);
+    });
+  };
   tally.stages.clear();
   std::vector<bool> alive;
   for (const TraceStage& stage : trace.objects[m].stages) {
     tally.stages.emplace_back(stage.name);
-    alive.push_back(std::any_of(stage.poses.begin(), stage.poses.end(), [&](const FastPose& pose) {
-      return eval::is_right(to_pose(pose), truth.camera_from_object, symmetry);
-    }));
+    alive.push_back(std::ranges::any_of(stage.poses, is_right, to_pose));
   }
-  const auto& ranked = result.interpretations;
   tally.stages.insert(tally.stages.end(), {"best 20", "best"});
-  alive.push_back(std::any_of(ranked.begin(), ranked.end(),
-                              [&](const Interpretation& i) { return holds(i, truth, symmetry); }));
-  alive.push_back(holds(ranked.front(), truth, symmetry));
+  alive.push_back(std::ranges::any_of(result.interpretations, holds));
+  alive.push_back(holds(result.interpretations.front()));
   tally.all.add(alive);
   tally.by_object[io::bop_object_name(truth.obj_id)].add(alive);
 }

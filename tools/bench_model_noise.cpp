@@ -31,11 +31,9 @@ struct Kind {
   double predicted(const NoiseBin& bin) const { return fitted(bin.edge_distance, bin.angle); }
 };
 
-std::vector<NoiseBin> well_filled(const std::vector<NoiseBin>& bins) {
-  std::vector<NoiseBin> out;
-  std::copy_if(bins.begin(), bins.end(), std::back_inserter(out),
-               [](const NoiseBin& bin) { return bin.count >= kMinCount; });
-  return out;
+std::vector<NoiseBin> well_filled(std::vector<NoiseBin> bins) {
+  std::erase_if(bins, [](const NoiseBin& bin) { return bin.count < kMinCount; });
+  return bins;
 }
 
 /// The factor by which predictions are off: root mean square of its logarithm over all errors.
@@ -51,8 +49,7 @@ double factor_off(const Kind& kind) {
 using Value = std::function<double(const NoiseBin&)>;
 
 std::vector<NoiseBin> sorted(std::vector<NoiseBin> bins, const Value& by) {
-  std::stable_sort(bins.begin(), bins.end(),
-                   [&](const NoiseBin& a, const NoiseBin& b) { return by(a) < by(b); });
+  std::ranges::stable_sort(bins, {}, by);
   return bins;
 }
 
@@ -109,19 +106,18 @@ void save_plots(const Kind& kind, const draw::Series& law, const std::string& st
   const std::string title = model + ": " + kind.name, unit = kind.unit_name;
   std::vector<draw::Series> over_angle = curves(far_from_edges, degrees);
   if (!law.x.empty()) over_angle.push_back(law);
-  const std::pair<const char*, io::ColorImage> plots[] = {
-      {"angle", draw::line_plot({title + ", 15 to 25 mm from edges", "surface angle, degrees", unit,
-                                 0, 90, 0, 0},
-                                over_angle)},
-      {"edge_distance", draw::line_plot({title + ", surface angle 30 to 37 degrees",
-                                         "edge distance, mm", unit, 0, 25, 0, 0},
-                                        curves(somewhat_slanted, millimetres))},
-      {"predicted", draw::line_plot({title + " of held-out views", "predicted, " + unit,
-                                     "observed, " + unit, 0, 0, 0, 0, true},
-                                    {observed_over_predicted(kind)})}};
-  for (const auto& [name, plot] : plots) {
-    or_throw(io::write_color_png(start + name + ".png", plot));
-  }
+  const auto save = [&start](const char* name, const draw::PlotAxes& axes,
+                             const std::vector<draw::Series>& series) {
+    or_throw(io::write_color_png(start + name + ".png", draw::line_plot(axes, series)));
+  };
+  save("angle", {title + ", 15 to 25 mm from edges", "surface angle, degrees", unit, 0, 90, 0, 0},
+       over_angle);
+  save("edge_distance",
+       {title + ", surface angle 30 to 37 degrees", "edge distance, mm", unit, 0, 25, 0, 0},
+       curves(somewhat_slanted, millimetres));
+  save("predicted",
+       {title + " of held-out views", "predicted, " + unit, "observed, " + unit, 0, 0, 0, 0, true},
+       {observed_over_predicted(kind)});
 }
 
 }  // namespace

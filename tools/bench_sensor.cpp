@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/draw/number.hpp"
 #include "core/draw/sheet.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/image_file.hpp"
@@ -53,16 +54,12 @@ Json bench_planes(const SensorArguments& a) {
       const sim::PlaneNoise noise =
           sim::plane_noise(depth, angle, {}, a.common.seed, a.common.threads);
       const double nguyen = sim::published_axial_noise(depth, angle);
-      std::printf("%3.1f m  %3.0f deg %8.2f %8.2f ", depth, degrees, 1e3 * noise.axial,
-                  1e3 * nguyen);
-      // Theirs is for surfaces that face the camera.
-      if (degrees == 0) {
-        std::printf("%10.2f", 1e3 * khoshelham_noise(depth));
-      } else {
-        std::printf("%10s", "");
-      }
-      std::printf(" %11.2f %8.2f %9.1f\n", noise.lateral, nguyen_lateral(angle),
-                  100 * noise.missing);
+      // Khoshelham's figure is for surfaces that face the camera.
+      const std::string khoshelham =
+          degrees == 0 ? draw::fixed(1e3 * khoshelham_noise(depth), 2) : "";
+      std::printf("%3.1f m  %3.0f deg %8.2f %8.2f %10s %11.2f %8.2f %9.1f\n", depth, degrees,
+                  1e3 * noise.axial, 1e3 * nguyen, khoshelham.c_str(), noise.lateral,
+                  nguyen_lateral(angle), 100 * noise.missing);
       rows.push_back({{"depth_m", depth},
                       {"angle_deg", degrees},
                       {"axial_m", noise.axial},
@@ -77,40 +74,32 @@ Json bench_planes(const SensorArguments& a) {
 
 // --- frames -----------------------------------------------------------------------------------
 
-struct NamedFrame {
-  std::string name;
-  Frame frame;
-};
-
-std::vector<NamedFrame> read_real_frames(const SensorArguments& a) {
+std::vector<Input> read_real_frames(const SensorArguments& a) {
   DetectArguments of_set, of_clouds;
   of_set.dataset = a.dataset;
   of_clouds.pcd = a.pcd;
-  std::vector<NamedFrame> frames;
+  std::vector<Input> frames;
   for (const DetectArguments& source : {of_set, of_clouds}) {
     for (const io::BopFrame& entry : list_inputs(source)) {
-      Input input = read_input(source, entry);
-      frames.push_back({"real " + std::filesystem::path(input.name).filename().string(),
-                        std::move(input.frame)});
+      Input& input = frames.emplace_back(read_input(source, entry));
+      input.name = "real " + std::filesystem::path(input.name).filename().string();
     }
   }
   return frames;
 }
 
 double median_depth(const Frame& frame) {
-  std::vector<float> depths;
-  for (const float z : frame.depth) {
-    if (z > 0) depths.push_back(z);
-  }
+  std::vector<float> depths = frame.depth;
+  std::erase(depths, 0.0f);
   if (depths.empty()) return 1;
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
+  std::ranges::nth_element(depths, middle);
   return *middle;
 }
 
 /// A simulated table seen by the same camera from about as far.
-NamedFrame simulated_beside(const sim::Stage& stage, const Frame& real, std::uint64_t seed,
-                            int num_threads) {
+Input simulated_beside(const sim::Stage& stage, const Frame& real, std::uint64_t seed,
+                       int num_threads) {
   sim::SceneOptions options;
   options.camera = real.camera;
   options.min_clutter = 0;
@@ -122,7 +111,7 @@ NamedFrame simulated_beside(const sim::Stage& stage, const Frame& real, std::uin
   options.min_distance = options.max_distance = std::clamp(median_depth(real), 0.5, 3.0);
   options.max_elevation_deg = 50;
   sim::SimulatedScene scene = sim::simulate_scene(stage, options, seed, num_threads);
-  return {"simulated", std::move(scene.frames.front().frame)};
+  return {"simulated", std::move(scene.frames.front().frame), {}};
 }
 
 constexpr struct {
@@ -163,7 +152,7 @@ DepthStatistics mean_of(const std::vector<DepthStatistics>& rows) {
 }
 
 Json bench_frames(const SensorArguments& a) {
-  const std::vector<NamedFrame> real = read_real_frames(a);
+  const std::vector<Input> real = read_real_frames(a);
   if (real.empty()) return {{"frames", 0}};
   const sim::Stage stage(sim::household_objects(a.common.threads), a.common.threads);
   std::printf(
@@ -176,16 +165,16 @@ Json bench_frames(const SensorArguments& a) {
   for (int k = 0; k < count; ++k) {
     progress.show(k);
     // Evenly over all that were given.
-    const NamedFrame& frame =
+    const Input& frame =
         real[static_cast<std::size_t>(k) * real.size() / static_cast<std::size_t>(count)];
-    const NamedFrame beside =
+    const Input beside =
         simulated_beside(stage, frame.frame, sim::scene_seed(a.common.seed, k), a.common.threads);
     progress.clear();
     real_rows.push_back(sim::depth_statistics(frame.frame));
     simulated_rows.push_back(sim::depth_statistics(beside.frame));
     print_row(frame.name, real_rows.back());
     print_row("  simulated", simulated_rows.back());
-    for (const NamedFrame* one : {&frame, &beside}) {
+    for (const Input* one : {&frame, &beside}) {
       cells.push_back(draw::color_beside_depth(one->frame, one->name));
     }
   }

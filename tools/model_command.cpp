@@ -91,15 +91,16 @@ void warn_of_twins(ModelSource& source, const ModelArguments& a) {
     if (std::abs(described->diameter / source.diameter - 1) > kSameSize) continue;
     const Result<ModelSource> other = io::load_model(a.library, name);
     if (!other.ok()) continue;
-    RegistrationOptions options;
-    options.tolerance_m = std::max(0.002, 0.015 * source.diameter);
-    options.draws = 600;
-    options.kept = 4;
-    options.num_threads = a.common.threads;
-    const auto there = register_surfaces(source.surface, other->surface, options);
-    if (there.empty() || there.front().overlap < kSameShape) continue;
-    const auto back = register_surfaces(other->surface, source.surface, options);
-    if (back.empty() || back.front().overlap < kSameShape) continue;
+    const RegistrationOptions options{.tolerance_m = std::max(0.002, 0.015 * source.diameter),
+                                      .draws = 600,
+                                      .kept = 4,
+                                      .num_threads = a.common.threads};
+    const auto lies_on = [&options](const PointCloud& from, const PointCloud& onto) {
+      const auto found = register_surfaces(from, onto, options);
+      return !found.empty() && found.front().overlap >= kSameShape;
+    };
+    if (!lies_on(source.surface, other->surface)) continue;
+    if (!lies_on(other->surface, source.surface)) continue;
     source.warnings.push_back("has nearly the same shape as " + name +
                               ": one may be taken for the other");
   }

@@ -37,10 +37,8 @@ AlignedScan align_scan_of(const std::string& dataset, const std::string& split, 
     if (i == 0 || frames[i].scene_id != frames[i - 1].scene_id) positions.emplace_back();
     positions.back().push_back(std::move(views[i]));
   }
-  ScanOptions options;
-  options.step_deg = step_deg;
-  options.seed = common.seed;
-  options.num_threads = common.threads;
+  const ScanOptions options{
+      .step_deg = step_deg, .seed = common.seed, .num_threads = common.threads};
   Progress progress("scan", 2);
   progress.show(0, "centres of rotation");
   return or_throw(align_scan(std::move(positions), options), dataset);
