@@ -27,22 +27,22 @@ struct Line {
   void transform(int n) {
     int count = 0;
     for (int q = 0; q < n; ++q) {
-      const auto i = static_cast<std::size_t>(q);
+      const int i = q;
       if (height[i] >= kFar) continue;
       float begin = -std::numeric_limits<float>::infinity();
       while (count > 0) {
-        const int v = place[static_cast<std::size_t>(count - 1)];
-        const float hv = height[static_cast<std::size_t>(v)];
+        const int v = place[count - 1];
+        const float hv = height[v];
         begin = 0.5f *
                 ((height[i] + static_cast<float>(q) * static_cast<float>(q)) -
                  (hv + static_cast<float>(v) * static_cast<float>(v))) /
                 static_cast<float>(q - v);
-        if (begin > border[static_cast<std::size_t>(count - 1)]) break;
+        if (begin > border[count - 1]) break;
         --count;
         begin = -std::numeric_limits<float>::infinity();
       }
-      place[static_cast<std::size_t>(count)] = q;
-      border[static_cast<std::size_t>(count)] = begin;
+      place[count] = q;
+      border[count] = begin;
       ++count;
     }
     if (count == 0) return;
@@ -50,11 +50,11 @@ struct Line {
     old_site = site;
     int k = 0;
     for (int q = 0; q < n; ++q) {
-      while (k + 1 < count && border[static_cast<std::size_t>(k + 1)] < static_cast<float>(q)) ++k;
-      const int v = place[static_cast<std::size_t>(k)];
+      while (k + 1 < count && border[k + 1] < static_cast<float>(q)) ++k;
+      const int v = place[k];
       const auto d = static_cast<float>(q - v);
-      height[static_cast<std::size_t>(q)] = old_height[static_cast<std::size_t>(v)] + d * d;
-      site[static_cast<std::size_t>(q)] = old_site[static_cast<std::size_t>(v)];
+      height[q] = old_height[v] + d * d;
+      site[q] = old_site[v];
     }
   }
 };
@@ -74,7 +74,7 @@ void refine(std::span<const Eigen::Vector3f> points, const std::vector<std::uint
             t.low + t.cell * (Eigen::Vector3i(x, y, z).cast<float>().array() + 0.5f).matrix();
         float best = std::numeric_limits<float>::infinity();
         const auto consider = [&](std::size_t neighbour) {
-          const auto s = static_cast<std::size_t>(site[neighbour]);
+          const int s = site[neighbour];
           for (std::uint32_t k = first[s]; k < first[s + 1]; ++k) {
             const float squared = (points[order[k]] - centre).squaredNorm();
             if (squared >= best) continue;
@@ -119,14 +119,14 @@ std::vector<std::int32_t> nearest_marked_cells(const std::vector<std::uint8_t>& 
             static_cast<std::size_t>(a) * stride[u] + static_cast<std::size_t>(b) * stride[v];
         for (int q = 0; q < n; ++q) {
           const std::size_t i = begin + static_cast<std::size_t>(q) * stride[axis];
-          line.height[static_cast<std::size_t>(q)] = height[i];
-          line.site[static_cast<std::size_t>(q)] = site[i];
+          line.height[q] = height[i];
+          line.site[q] = site[i];
         }
         line.transform(n);
         for (int q = 0; q < n; ++q) {
           const std::size_t i = begin + static_cast<std::size_t>(q) * stride[axis];
-          height[i] = line.height[static_cast<std::size_t>(q)];
-          site[i] = line.site[static_cast<std::size_t>(q)];
+          height[i] = line.height[q];
+          site[i] = line.site[q];
         }
       }
     }

@@ -29,7 +29,7 @@ struct DistanceTransform {
   /// model point is nearer to `point` by more than a cell's diagonal.
   int nearest_to(const Eigen::Vector3f& point) const {
     const std::int64_t c = cell_of(point);
-    return c < 0 ? -1 : static_cast<int>(nearest[static_cast<std::size_t>(c)]);
+    return c < 0 ? -1 : static_cast<int>(nearest[c]);
   }
 };
 

@@ -82,7 +82,7 @@ class SelfFit {
       const Eigen::Vector3f n = fast.rotation * surface_.normals[i];
       const int found = nearest(p, n);
       if (found < 0) continue;
-      const auto j = static_cast<std::size_t>(found);
+      const int j = found;
       const auto off = static_cast<double>((p - surface_.points[j]).dot(surface_.normals[j]));
       const double beside = static_cast<double>((p - surface_.points[j]).norm());
       if (std::abs(off) > gate ||
@@ -97,7 +97,7 @@ class SelfFit {
   int nearest(const Eigen::Vector3f& p, const Eigen::Vector3f& n) const {
     for (const float step : {0.0f, 0.004f}) {
       const int found = surface_.distances.nearest_to(p + step * n);
-      if (found >= 0 && surface_.normals[static_cast<std::size_t>(found)].dot(n) > kFacing) {
+      if (found >= 0 && surface_.normals[found].dot(n) > kFacing) {
         return found;
       }
     }

@@ -30,7 +30,7 @@ NoiseTable::NoiseTable(const NoiseModel& noise) {
     for (int a = 0; a < kAngleCells; ++a) {
       const double edge_distance = (e + 0.5) * static_cast<double>(kEdgeCell);
       const double angle = std::acos((a + 0.5) / kAngleCells);
-      const auto i = static_cast<std::size_t>(e * kAngleCells + a);
+      const int i = e * kAngleCells + a;
       range_[i] = static_cast<float>(noise.range(edge_distance, angle));
       normal_[i] = static_cast<float>(noise.normal(edge_distance, angle));
     }

@@ -23,16 +23,16 @@ constexpr float kMaxCoarsePoints = 500;
 constexpr float kFitRadius = 0.008f;  // what a fitted normal averages over
 
 CheckPoints check_points(const PointCloud& surface) {
-  std::vector<std::size_t> order(surface.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::uint32_t> order(surface.size());
+  std::iota(order.begin(), order.end(), 0);
   RandomStream random(1);
-  for (std::size_t i = order.size(); i > 1; --i) {
-    std::swap(order[i - 1], order[static_cast<std::size_t>(random.index(static_cast<int>(i)))]);
+  for (int i = static_cast<int>(order.size()); i > 1; --i) {
+    std::swap(order[i - 1], order[random.index(i)]);
   }
   order.resize(std::min(order.size(), kMaxCheckPoints));
   CheckPoints check;
-  for (std::size_t i : order) {
-    check.surface.push_back(static_cast<std::uint32_t>(i));
+  for (const std::uint32_t i : order) {
+    check.surface.push_back(i);
     check.points.push_back(surface.points[i]);
     check.normals.push_back(surface.normals[i]);
   }
@@ -60,32 +60,15 @@ PointCloud coarse_points(const PointCloud& surface, double diameter) {
   return coarse;
 }
 
-// The mean distance of a point to its nearest neighbour, from some 100 of them.
-float mean_spacing(const std::vector<Eigen::Vector3f>& points) {
-  const std::size_t step = std::max<std::size_t>(1, points.size() / 100);
-  float sum = 0;
-  int count = 0;
-  for (std::size_t i = 0; i < points.size(); i += step) {
-    float nearest = std::numeric_limits<float>::infinity();
-    for (std::size_t j = 0; j < points.size(); ++j) {
-      if (j != i) nearest = std::min(nearest, (points[j] - points[i]).squaredNorm());
-    }
-    sum += std::sqrt(nearest);
-    ++count;
-  }
-  return sum / static_cast<float>(count);
-}
-
 std::vector<Eigen::Vector3f> soften_normals(const PointCloud& surface, int num_threads) {
   const NeighborGrid grid(surface.points, kFitRadius);
   std::vector<Eigen::Vector3f> soft(surface.size());
   parallel_for(
       static_cast<int>(surface.size()), num_threads,
-      [&](int index) {
-        const auto i = static_cast<std::size_t>(index);
+      [&](int i) {
         Eigen::Vector3f sum = Eigen::Vector3f::Zero();
         grid.for_each_neighbor(surface.points[i], [&](int j, float) {
-          const Eigen::Vector3f& other = surface.normals[static_cast<std::size_t>(j)];
+          const Eigen::Vector3f& other = surface.normals[j];
           if (other.dot(surface.normals[i]) > -0.2f) sum += other;
         });
         soft[i] = sum.normalized();
@@ -104,7 +87,7 @@ double mean_point_area(const PointCloud& surface) {
   for (std::size_t i = 0; i < surface.size(); i += step) {
     int count = 0;
     grid.for_each_neighbor(surface.points[i], [&](int j, float) {
-      count += surface.normals[static_cast<std::size_t>(j)].dot(surface.normals[i]) > 0;
+      count += surface.normals[j].dot(surface.normals[i]) > 0;
     });
     sum += M_PI * kRadius * kRadius / std::max(1, count);
     ++discs;
@@ -114,17 +97,33 @@ double mean_point_area(const PointCloud& surface) {
 
 }  // namespace
 
+float mean_spacing(const PointCloud& surface, float least_cosine) {
+  const std::vector<Eigen::Vector3f>& points = surface.points;
+  const std::size_t step = std::max<std::size_t>(1, points.size() / 100);
+  float sum = 0, count = 0;
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    float nearest = std::numeric_limits<float>::infinity();
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      if (j == i || surface.normals[j].dot(surface.normals[i]) < least_cosine) continue;
+      nearest = std::min(nearest, (points[j] - points[i]).squaredNorm());
+    }
+    if (!std::isfinite(nearest)) continue;
+    sum += std::sqrt(nearest);
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
 std::vector<float> geometric_normal_variance(const PointCloud& surface, int num_threads) {
   const NeighborGrid grid(surface.points, kFitRadius);
   std::vector<float> variance(surface.size());
   parallel_for(
       static_cast<int>(surface.size()), num_threads,
-      [&](int index) {
-        const auto i = static_cast<std::size_t>(index);
+      [&](int i) {
         float sum = 0;
         int count = 0;
         grid.for_each_neighbor(surface.points[i], [&](int j, float) {
-          const float cosine = surface.normals[static_cast<std::size_t>(j)].dot(surface.normals[i]);
+          const float cosine = surface.normals[j].dot(surface.normals[i]);
           if (cosine <= -0.2f) return;
           const float angle = std::acos(std::min(1.0f, cosine));
           sum += angle * angle;
@@ -147,7 +146,7 @@ std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threa
   index->fpfh = compute_fpfh(index->features, all, kFeatureRadius, num_threads);
   index->coarse = coarse_points(source.surface, source.diameter);
   // A sparse surface is drawn with larger cells, so that it has no holes.
-  const float spacing = std::max(0.003f, 1.3f * mean_spacing(source.surface.points));
+  const float spacing = std::max(0.003f, 1.3f * mean_spacing(source.surface, -2));
   index->views = render_views(source.surface, spacing, num_threads);
   if (!source.complete) {
     for (ModelView& view : index->views) {

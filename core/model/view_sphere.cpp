@@ -29,7 +29,7 @@ struct DepthBuffer {
   int row(float y) const { return static_cast<int>((y - origin.y()) / cell); }
   float at(int x, int y) const {
     if (x < 0 || y < 0 || x >= width || y >= height) return kNothing;
-    return nearest[static_cast<std::size_t>(y * width + x)];
+    return nearest[y * width + x];
   }
 };
 
@@ -50,8 +50,8 @@ DepthBuffer draw(const std::vector<Eigen::Vector3f>& points, float cell) {
   for (const Eigen::Vector3f& p : points) {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
-        float& value = buffer.nearest[static_cast<std::size_t>(
-            (buffer.row(p.y()) + dy) * buffer.width + buffer.column(p.x()) + dx)];
+        float& value =
+            buffer.nearest[(buffer.row(p.y()) + dy) * buffer.width + buffer.column(p.x()) + dx];
         value = std::max(value, p.z());
       }
     }
@@ -101,7 +101,7 @@ class EdgeDistance {
   float operator()(const Eigen::Vector3f& p) const {
     const std::int32_t cell = nearest_[cell_of(p)];
     if (cell < 0) return kMaxEdgeDistance;
-    return std::min(kMaxEdgeDistance, (edge_[static_cast<std::size_t>(cell)] - p.head<2>()).norm());
+    return std::min(kMaxEdgeDistance, (edge_[cell] - p.head<2>()).norm());
   }
 
  private:
@@ -160,15 +160,6 @@ ModelView render_view(const SeenPoints& all, const Eigen::Matrix3f& axes, float 
   return view;
 }
 
-// Rows: x and y of the view plane, and the direction to the camera.
-Eigen::Matrix3f view_axes(const Eigen::Vector3f& direction) {
-  Eigen::Matrix3f axes;
-  axes.row(0) = direction.unitOrthogonal();
-  axes.row(1) = direction.cross(Eigen::Vector3f(axes.row(0)));
-  axes.row(2) = direction;
-  return axes;
-}
-
 float cosine_of(const PointCloud& surface, std::size_t i, const Eigen::Vector3f& to_camera) {
   return surface.normals.empty() ? 1.0f : surface.normals[i].dot(to_camera);
 }
@@ -185,6 +176,14 @@ ModelView render_from_afar(const PointCloud& surface, const Eigen::Vector3f& dir
 }
 
 }  // namespace
+
+Eigen::Matrix3f view_axes(const Eigen::Vector3f& direction) {
+  Eigen::Matrix3f axes;
+  axes.row(0) = direction.unitOrthogonal();
+  axes.row(1) = direction.cross(Eigen::Vector3f(axes.row(0)));
+  axes.row(2) = direction;
+  return axes;
+}
 
 ModelView render_from(const PointCloud& surface, const Eigen::Vector3f& camera, float spacing) {
   if (surface.empty()) return {};
@@ -206,16 +205,15 @@ ModelView render_from(const PointCloud& surface, const Eigen::Vector3f& camera, 
 std::array<Eigen::Vector3f, kNumViews> view_directions() {
   std::array<Eigen::Vector3f, kNumViews> directions;
   for (int i = 0; i < kNumViews; ++i) {
-    directions[static_cast<std::size_t>(i)] = sphere_direction(i, kNumViews).cast<float>();
+    directions[i] = sphere_direction(i, kNumViews).cast<float>();
   }
   return directions;
 }
 
 const ModelView& nearest_view(const std::vector<ModelView>& views,
                               const Eigen::Vector3f& direction) {
-  return *std::max_element(views.begin(), views.end(), [&](auto& a, auto& b) {
-    return a.direction.dot(direction) < b.direction.dot(direction);
-  });
+  return *std::ranges::max_element(
+      views, {}, [&](const ModelView& view) { return view.direction.dot(direction); });
 }
 
 const ModelView& nearest_view(const std::vector<ModelView>& views,
@@ -229,10 +227,8 @@ std::vector<ModelView> render_views(const PointCloud& surface, float spacing, in
   const auto directions = view_directions();
   std::vector<ModelView> views(kNumViews);
   if (surface.empty()) return views;
-  parallel_for(kNumViews, num_threads, [&](int i) {
-    const auto k = static_cast<std::size_t>(i);
-    views[k] = render_from_afar(surface, directions[k], spacing);
-  });
+  parallel_for(kNumViews, num_threads,
+               [&](int k) { views[k] = render_from_afar(surface, directions[k], spacing); });
   return views;
 }
 

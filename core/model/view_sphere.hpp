@@ -28,6 +28,9 @@ struct ModelView {
                                          ///< edge, away from the surface, in the view plane.
 };
 
+/// Rows: x and y of a view plane, and the `direction` to the camera (unit length).
+Eigen::Matrix3f view_axes(const Eigen::Vector3f& direction);
+
 /// 66 directions spread evenly over the sphere (a Fibonacci lattice).
 std::array<Eigen::Vector3f, kNumViews> view_directions();
 

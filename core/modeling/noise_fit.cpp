@@ -50,8 +50,7 @@ void linearise(std::span<const NoiseBin> bins, const Parameters& p, const Parame
   constexpr double kStep = 1e-5;
   const NoiseCurve curve = to_curve(p);
   std::array<NoiseCurve, 7> moved;
-  for (int k = 0; k < 7; ++k)
-    moved[static_cast<std::size_t>(k)] = to_curve(p + kStep * Parameters::Unit(k));
+  for (int k = 0; k < 7; ++k) moved[k] = to_curve(p + kStep * Parameters::Unit(k));
   const Parameters weight = prior_spread().cwiseAbs2().cwiseInverse();
   gradient = weight.cwiseProduct(p - prior);
   hessian = weight.asDiagonal();
@@ -59,9 +58,7 @@ void linearise(std::span<const NoiseBin> bins, const Parameters& p, const Parame
     const double log_sigma = std::log(curve(bin.edge_distance, bin.angle));
     Parameters slope;
     for (int k = 0; k < 7; ++k) {
-      slope[k] =
-          (std::log(moved[static_cast<std::size_t>(k)](bin.edge_distance, bin.angle)) - log_sigma) /
-          kStep;
+      slope[k] = (std::log(moved[k](bin.edge_distance, bin.angle)) - log_sigma) / kStep;
     }
     gradient += 2 * bin.count * (log_sigma - std::log(bin.sigma)) * slope;
     hessian += 2 * bin.count * slope * slope.transpose();

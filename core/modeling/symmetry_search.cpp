@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
+#include <functional>
 #include <numeric>
 #include <optional>
 
@@ -14,6 +14,7 @@
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/geometry/sphere_directions.hpp"
 #include "core/model/distance_transform.hpp"
+#include "core/model/object_model.hpp"
 
 namespace bpa {
 namespace {
@@ -24,28 +25,12 @@ constexpr double kSymmetric = 0.98;  // share of the points
 constexpr double kPromising = 0.85;  // the same by a quick look
 constexpr double kNearly = 0.95;     // the same where other turns have shown half of it already
 
+// Angles that no discrete symmetry has together.
+const std::vector<double> kAnyTurns{kTurn * 0.381, kTurn * 0.107, kTurn * 0.23, kTurn * 0.5};
+
 struct Axis {
   Eigen::Vector3d direction, point;
 };
-
-// Twice the mean distance of a point to its nearest neighbour on the same side, from some 100 of
-// them: no point of an evenly sampled surface is farther from the samples.
-float hole_size(const PointCloud& surface) {
-  const std::vector<Eigen::Vector3f>& points = surface.points;
-  const std::size_t step = std::max<std::size_t>(1, points.size() / 100);
-  float sum = 0, count = 0;
-  for (std::size_t i = 0; i < points.size(); i += step) {
-    float nearest = std::numeric_limits<float>::infinity();
-    for (std::size_t j = 0; j < points.size(); ++j) {
-      if (j == i || surface.normals[j].dot(surface.normals[i]) < kSameSide) continue;
-      nearest = std::min(nearest, (points[j] - points[i]).squaredNorm());
-    }
-    if (!std::isfinite(nearest)) continue;
-    sum += std::sqrt(nearest);
-    ++count;
-  }
-  return count > 0 ? 2 * sum / count : 0;
-}
 
 // How well turned copies of a surface lie on it.
 class SelfMatch {
@@ -54,10 +39,11 @@ class SelfMatch {
       : surface_(surface),
         tolerance_(tolerance),
         distances_(distance_transform(surface.points, 0.003f, 0.02f)),
-        neighbors_(surface.points, tolerance + hole_size(surface)) {
+        // No point of an evenly sampled surface is farther from the samples.
+        neighbors_(surface.points, tolerance + 2 * mean_spacing(surface, kSameSide)) {
     mean_.setZero();
     for (const Eigen::Vector3f& p : surface.points) {
-      mean_ += p.cast<double>() / static_cast<double>(surface.size());
+      mean_ += p.cast<double>() / surface.size();
     }
     for (const Eigen::Vector3f& p : surface.points) {
       radius_ = std::max(radius_, (p.cast<double>() - mean_).norm());
@@ -81,7 +67,7 @@ class SelfMatch {
       const float distance = distance_to(p, n);
       if (distance > tolerance_) return;
       ++on;
-      off += static_cast<double>(distance / tolerance_);
+      off += distance / tolerance_;
     });
     return {on / all, on > 0 ? off / on : 1};
   }
@@ -95,8 +81,7 @@ class SelfMatch {
     for_each_turned(axis, angle, 3000, [&](const Eigen::Vector3f& p, const Eigen::Vector3f& n) {
       ++all;
       bool found = false;
-      neighbors_.for_each_neighbor(p, [&](int k, float) {
-        const auto j = static_cast<std::size_t>(k);
+      neighbors_.for_each_neighbor(p, [&](int j, float) {
         const Eigen::Vector3f& normal = surface_.normals[j];
         found = found || (normal.dot(n) > kSameSide &&
                           std::abs(normal.dot(p - surface_.points[j])) < tolerance_);
@@ -128,11 +113,10 @@ class SelfMatch {
     for (const float step : {0.0f, 0.003f}) {
       const int found = distances_.nearest_to(p + step * n);
       if (found < 0) continue;
-      const auto j = static_cast<std::size_t>(found);
-      const Eigen::Vector3f d = p - surface_.points[j];
-      const float cosine = surface_.normals[j].dot(n);
+      const Eigen::Vector3f d = p - surface_.points[found];
+      const float cosine = surface_.normals[found].dot(n);
       if (std::abs(cosine) < kSameSide || d.norm() > 4 * tolerance_ + 0.004f) continue;
-      const float off = std::abs(d.dot(surface_.normals[j]));
+      const float off = std::abs(d.dot(surface_.normals[found]));
       if (cosine > 0) return off;
       other_side = std::min(other_side, off);
     }
@@ -162,25 +146,24 @@ double climb(const SelfMatch& match, const std::vector<double>& angles, Axis& ax
     return least;
   };
   double best = score(axis);
-  for (double step = 0.03; step > 0.002; step *= 0.5) {
-    bool better = true;
-    for (int k = 0; better && k < kMostSteps; ++k) {
-      better = false;
-      const Eigen::Vector3d u = axis.direction.unitOrthogonal(), v = axis.direction.cross(u);
-      for (const Eigen::Vector3d& d : {u, v, Eigen::Vector3d(-u), Eigen::Vector3d(-v)}) {
-        const Axis turned{(axis.direction + step * d).normalized(), axis.point};
-        const Axis moved{axis.direction, axis.point + step * match.radius() * d};
-        for (const Axis& next : {turned, moved}) {
-          const double s = score(next);
-          if (s <= best + 1e-9) continue;
-          best = s;
-          axis = next;
-          better = true;
-          break;
-        }
-        if (better) break;
+  // Takes the first of eight small moves that is better.
+  const auto improve = [&](double step) {
+    const Eigen::Vector3d u = axis.direction.unitOrthogonal(), v = axis.direction.cross(u);
+    for (const Eigen::Vector3d& d : {u, v, Eigen::Vector3d(-u), Eigen::Vector3d(-v)}) {
+      const Axis turned{(axis.direction + step * d).normalized(), axis.point};
+      const Axis moved{axis.direction, axis.point + step * match.radius() * d};
+      for (const Axis& next : {turned, moved}) {
+        const double s = score(next);
+        if (s <= best + 1e-9) continue;
+        best = s;
+        axis = next;
+        return true;
       }
     }
+    return false;
+  };
+  for (double step = 0.03; step > 0.002; step *= 0.5) {
+    for (int k = 0; k < kMostSteps && improve(step); ++k) continue;
   }
   double least = 1;
   for (const double angle : angles) least = std::min(least, match.share(axis, angle, kPoints));
@@ -206,13 +189,12 @@ std::vector<Axis> axes_of(const SelfMatch& match, const std::vector<double>& ang
       kDirections, num_threads,
       [&](int i) {
         const Axis axis{sphere_direction(i, 2 * kDirections), match.mean()};  // half the sphere
-        tried[static_cast<std::size_t>(i)] = {match.share(axis, angles.front(), 150), axis};
+        tried[i] = {match.share(axis, angles.front(), 150), axis};
       },
       16);
-  std::stable_sort(tried.begin(), tried.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::ranges::stable_sort(tried, std::greater(), &std::pair<double, Axis>::first);
   const auto apart = [](const std::vector<Axis>& axes, const Axis& axis) {
-    return std::none_of(axes.begin(), axes.end(), [&](const Axis& a) {
+    return std::ranges::none_of(axes, [&](const Axis& a) {
       return std::abs(a.direction.dot(axis.direction)) > std::cos(0.14);
     });
   };
@@ -222,8 +204,7 @@ std::vector<Axis> axes_of(const SelfMatch& match, const std::vector<double>& ang
     if (apart(starts, axis)) starts.push_back(axis);
   }
   std::vector<double> score(starts.size());
-  parallel_for(static_cast<int>(starts.size()), num_threads, [&](int k) {
-    const auto i = static_cast<std::size_t>(k);
+  parallel_for(static_cast<int>(starts.size()), num_threads, [&](int i) {
     score[i] = climb(match, angles, starts[i]);
     if (score[i] >= kPromising) score[i] = worst_share(match, starts[i], angles);
   });
@@ -245,9 +226,8 @@ std::vector<Pose> closed(std::vector<Pose> turns) {
   std::vector<Pose> group;
   const auto add = [&](const Pose& pose) {
     if (rotation_angle(pose.rotation, Eigen::Quaterniond::Identity()) < kSame) return;
-    const bool known = std::any_of(group.begin(), group.end(), [&](const Pose& g) {
-      return rotation_angle(g.rotation, pose.rotation) < kSame;
-    });
+    const bool known = std::ranges::any_of(
+        group, [&](const Pose& g) { return rotation_angle(g.rotation, pose.rotation) < kSame; });
     if (!known && group.size() < kMost) group.push_back(pose);
   };
   for (const Pose& turn : turns) add(turn);
@@ -287,12 +267,6 @@ Eigen::Vector3d common_point(const std::vector<Turn>& turns, const Eigen::Vector
   return mean + normal.ldlt().solve(right);
 }
 
-// Turns that no discrete symmetry has together.
-const std::vector<double>& any_turns() {
-  static const std::vector<double> kAny{kTurn * 0.381, kTurn * 0.107, kTurn * 0.23, kTurn * 0.5};
-  return kAny;
-}
-
 // The axis about which turns of several orders follow one another so closely, 24 degrees or less,
 // that the surface may well turn by any angle; it does if it nearly passes that test. Noise may
 // keep a scanned bowl just below the threshold for some angle and above it for others.
@@ -305,7 +279,7 @@ std::optional<Axis> nearly_continuous(const SelfMatch& match, const std::vector<
       together = std::lcm(together, other.order);
     }
     if (together < kMany) continue;
-    if (worst_share(match, one.axis, any_turns()) >= kNearly) return one.axis;
+    if (worst_share(match, one.axis, kAnyTurns) >= kNearly) return one.axis;
   }
   return std::nullopt;
 }
@@ -332,7 +306,7 @@ SymmetryGroup find_symmetries(const PointCloud& surface, double diameter, int nu
   SymmetryGroup group;
   if (surface.size() < 100) return group;
   const SelfMatch match(surface, static_cast<float>(std::max(0.0015, 0.012 * diameter)));
-  const std::vector<Axis> continuous = axes_of(match, any_turns(), num_threads);
+  const std::vector<Axis> continuous = axes_of(match, kAnyTurns, num_threads);
   if (!continuous.empty()) return continuous_group(match, continuous);
   std::vector<Turn> turns;
   for (int order = 6; order >= 2; --order) {
