@@ -32,21 +32,15 @@ struct BinSums {
     angle += a;
     squares += error * error;
   }
-  void add(const BinSums& other) {
-    count += other.count;
-    edge += other.edge;
-    angle += other.angle;
-    squares += other.squares;
-  }
 };
 
-using Bins = std::array<BinSums, static_cast<std::size_t>(kEdgeBins* kAngleBins)>;
+using Bins = std::array<BinSums, kEdgeBins * kAngleBins>;
 
 std::size_t bin_of(double edge, double angle) {
   int e = 0;
   while (e + 1 < kEdgeBins && edge >= kEdgeBorders[e]) ++e;
   const int a = std::clamp(static_cast<int>(angle / kAngleStep), 0, kAngleBins - 1);
-  return static_cast<std::size_t>(e * kAngleBins + a);
+  return e * kAngleBins + a;
 }
 
 // One point compared with one view.
@@ -55,7 +49,7 @@ struct Comparison {
   float edge_distance = 0, angle = 0;
   float range_error = 0, normal_error = -1;  // the latter negative where there is no normal
   float depth = 0;
-  std::size_t pixel = 0;
+  int pixel = 0;
 };
 
 std::vector<Comparison> compare(const PointCloud& surface, const PosedView& view, float spacing) {
@@ -72,7 +66,7 @@ std::vector<Comparison> compare(const PointCloud& surface, const PosedView& view
     const auto u = static_cast<int>(std::lround(pixel.x()));
     const auto v = static_cast<int>(std::lround(pixel.y()));
     if (u < 0 || v < 0 || u >= map.width() || v >= map.height()) continue;
-    const auto index = static_cast<std::size_t>(v * map.width() + u);
+    const int index = v * map.width() + u;
     if (!(map.depth[index] > 0) || !view.object[index]) continue;
     // The tangent plane where the pixel's ray meets it.
     const Eigen::Vector3f ray = map.camera.unproject(u, v, 1).cast<float>();
@@ -82,13 +76,8 @@ std::vector<Comparison> compare(const PointCloud& surface, const PosedView& view
     const float predicted = n.dot(p) / along;
     const float error = map.depth[index] - predicted;
     if (std::abs(error) > kOtherSurface || std::abs(predicted - p.z()) > kOtherSurface) continue;
-    Comparison c{i,
-                 expected.edge_distance[k],
-                 std::acos(std::min(1.0f, cosine)),
-                 error,
-                 -1,
-                 map.depth[index],
-                 index};
+    const float angle = std::acos(std::min(1.0f, cosine));
+    Comparison c{i, expected.edge_distance[k], angle, error, -1, map.depth[index], index};
     if (map.normals[index].squaredNorm() > 0.5f) {
       c.normal_error = std::acos(std::clamp(n.dot(map.normals[index]), -1.0f, 1.0f));
     }
@@ -106,30 +95,25 @@ std::vector<NoiseBin> to_noise_bins(const Bins& bins) {
   return out;
 }
 
-// Sums over what the views say of each point, in the order of the views.
+// Sums over what the views say of one point, in the order of the views.
 struct PointSums {
-  std::vector<float> squared_angles, color_weight;
-  std::vector<int> normals;
-  std::vector<Eigen::Vector3f> color;
-
-  explicit PointSums(std::size_t n)
-      : squared_angles(n, 0),
-        color_weight(n, 0),
-        normals(n, 0),
-        color(n, Eigen::Vector3f::Zero()) {}
+  float squared_angles = 0, color_weight = 0;
+  int normals = 0, seen = 0;
+  Eigen::Vector3f color = Eigen::Vector3f::Zero();
 
   void add(const Comparison& c, const PosedView& view) {
     constexpr float kWellSeen = 1.2f;        // radians
     constexpr float kClearOfEdges = 0.004f;  // metres: colour may lie a pixel off depth
+    ++seen;
     if (c.angle < kWellSeen && c.normal_error >= 0) {
-      squared_angles[c.point] += c.normal_error * c.normal_error;
-      ++normals[c.point];
+      squared_angles += c.normal_error * c.normal_error;
+      ++normals;
     }
     if (view.colors.empty() || c.angle > kWellSeen) return;
     const float weight = std::cos(c.angle) * (c.edge_distance > kClearOfEdges ? 1.0f : 0.01f);
     const auto& rgb = view.colors[c.pixel];
-    color[c.point] += weight * Eigen::Vector3f(rgb[0], rgb[1], rgb[2]);
-    color_weight[c.point] += weight;
+    color += weight * Eigen::Vector3f(rgb[0], rgb[1], rgb[2]);
+    color_weight += weight;
   }
 };
 
@@ -149,24 +133,22 @@ PosedView make_posed_view(const Frame& frame, const std::vector<std::uint8_t>& o
   const int r = view.map.reduction;
   for (int y = 0; y < view.map.height(); ++y) {
     for (int x = 0; x < view.map.width(); ++x) {
-      const auto target = static_cast<std::size_t>(y * view.map.width() + x);
+      const int target = y * view.map.width() + x;
       Eigen::Vector3i sum = Eigen::Vector3i::Zero();
       int count = 0, inside = 0;
       for (int v = r * y; v < std::min(r * (y + 1), frame.camera.height); ++v) {
         for (int u = r * x; u < std::min(r * (x + 1), frame.camera.width); ++u) {
-          const auto source = static_cast<std::size_t>(v * frame.camera.width + u);
+          const int source = v * frame.camera.width + u;
           ++count;
           inside += object.empty() || object[source] != 0;
           if (frame.color.empty()) continue;
-          for (int c = 0; c < 3; ++c)
-            sum[c] += frame.color[3 * source + static_cast<std::size_t>(c)];
+          for (int c = 0; c < 3; ++c) sum[c] += frame.color[3 * source + c];
         }
       }
       if (count == 0) continue;
       view.object[target] = 2 * inside > count;
       for (int c = 0; c < 3 && !frame.color.empty(); ++c) {
-        view.colors[target][static_cast<std::size_t>(c)] =
-            static_cast<std::uint8_t>((sum[c] + count / 2) / count);
+        view.colors[target][c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
       }
     }
   }
@@ -176,43 +158,36 @@ PosedView make_posed_view(const Frame& frame, const std::vector<std::uint8_t>& o
 SurfaceObservations observe_surface(const PointCloud& surface, const std::vector<PosedView>& views,
                                     int num_threads) {
   constexpr float kSpacing = 0.003f;  // of the buffers that say what is hidden
-  const std::size_t n = surface.size();
   std::vector<std::vector<Comparison>> comparisons(views.size());
-  parallel_for(static_cast<int>(views.size()), num_threads, [&](int k) {
-    const auto i = static_cast<std::size_t>(k);
-    comparisons[i] = compare(surface, views[i], kSpacing);
-  });
-  SurfaceObservations out;
-  out.seen.assign(n, 0);
-  PointSums sums(n);
+  parallel_for(static_cast<int>(views.size()), num_threads,
+               [&](int i) { comparisons[i] = compare(surface, views[i], kSpacing); });
+  std::vector<PointSums> sums(surface.size());
   Bins range{}, normal{};
   double depth = 0, count = 0;
   bool colored = !views.empty();
   for (std::size_t v = 0; v < views.size(); ++v) {
     colored = colored && !views[v].colors.empty();
     for (const Comparison& c : comparisons[v]) {
-      ++out.seen[c.point];
       const double e = c.edge_distance, a = c.angle;
       range[bin_of(e, a)].add(e, a, c.range_error);
       if (c.normal_error >= 0) normal[bin_of(e, a)].add(e, a, c.normal_error);
       depth += c.depth;
       ++count;
-      sums.add(c, views[v]);
+      sums[c.point].add(c, views[v]);
     }
   }
+  SurfaceObservations out;
   out.depth = count > 0 ? depth / count : 0;
   out.range_bins = to_noise_bins(range);
   out.normal_bins = to_noise_bins(normal);
-  out.normal_variance.assign(n, 0);
-  if (colored) out.colors.assign(n, {0, 0, 0});
-  for (std::size_t i = 0; i < n; ++i) {
-    if (sums.normals[i] > 0) {
-      out.normal_variance[i] = sums.squared_angles[i] / static_cast<float>(sums.normals[i]);
-    }
-    if (!colored || !(sums.color_weight[i] > 0)) continue;
-    for (int c = 0; c < 3; ++c) {
-      out.colors[i][static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(
-          std::clamp(sums.color[i][c] / sums.color_weight[i], 0.0f, 255.0f));
+  for (const PointSums& point : sums) {
+    out.seen.push_back(point.seen);
+    out.normal_variance.push_back(point.normals > 0 ? point.squared_angles / point.normals : 0);
+    if (!colored) continue;
+    auto& rgb = out.colors.emplace_back(std::array<std::uint8_t, 3>{});
+    for (int c = 0; c < 3 && point.color_weight > 0; ++c) {
+      rgb[c] =
+          static_cast<std::uint8_t>(std::clamp(point.color[c] / point.color_weight, 0.0f, 255.0f));
     }
   }
   return out;
@@ -243,7 +218,7 @@ void learn_noise(ModelSource& source, const std::vector<PosedView>& views, int n
     if (!(variance > 0)) variance = geometric[i] + floor * floor;
   }
   if (source.surface.colors.empty()) source.surface.colors = seen.colors;
-  const double share = static_cast<double>(never) / static_cast<double>(seen.seen.size());
+  const double share = static_cast<double>(never) / seen.seen.size();
   if (share > 0.03) {
     source.warnings.push_back(
         std::to_string(std::lround(100 * share)) +

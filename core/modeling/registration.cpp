@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
@@ -14,9 +15,13 @@
 #include "core/geometry/fast_pose.hpp"
 #include "core/geometry/symmetry.hpp"
 #include "core/model/distance_transform.hpp"
+#include "core/modeling/private/select.hpp"
 
 namespace bpa {
 namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 struct Candidate {
   FastPose motion;
@@ -35,24 +40,19 @@ struct Target {
   int partner(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float tolerance) const {
     const int j = distances.nearest_to(p);
     if (j < 0) return -1;
-    const auto k = static_cast<std::size_t>(j);
-    const Eigen::Vector3f d = p - cloud.points[k];
-    const bool lies = std::abs(d.dot(cloud.normals[k])) < tolerance &&
+    const Eigen::Vector3f d = p - cloud.points[j];
+    const bool lies = std::abs(d.dot(cloud.normals[j])) < tolerance &&
                       d.squaredNorm() < 6 * tolerance * tolerance;
-    return lies && n.dot(cloud.normals[k]) > 0.7f ? j : -1;
+    return lies && n.dot(cloud.normals[j]) > 0.7f ? j : -1;
   }
 };
 
 // A random part of a cloud.
 PointCloud sample_of(const PointCloud& cloud, std::size_t count, std::uint64_t seed) {
   RandomStream random(seed);
-  PointCloud out;
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto i = static_cast<std::size_t>(random.index(static_cast<int>(cloud.size())));
-    out.points.push_back(cloud.points[i]);
-    out.normals.push_back(cloud.normals[i]);
-  }
-  return out;
+  std::vector<int> chosen(count);
+  for (int& i : chosen) i = random.index(static_cast<int>(cloud.size()));
+  return select(cloud, chosen);
 }
 
 // The share of the sample that lies on the target; gives up where the first points do not.
@@ -65,7 +65,7 @@ float check(const PointCloud& sample, const Target& target, const FastPose& moti
     on += target.partner(motion * sample.points[i], motion.rotation * sample.normals[i],
                          tolerance) >= 0;
   }
-  return static_cast<float>(on) / static_cast<float>(sample.size());
+  return static_cast<float>(on) / sample.size();
 }
 
 // Point-to-plane ICP: each round solves for a small rotation about the middle and a translation.
@@ -77,26 +77,25 @@ Registration refine(const PointCloud& source, const Target& target, const FastPo
   for (int round = 0; round <= kRounds; ++round) {
     const float reach = round < 8 ? 2 * tolerance : tolerance;
     const FastPose m = to_fast(pose);
-    Eigen::Matrix<double, 6, 6> hessian = 1e-9 * Eigen::Matrix<double, 6, 6>::Identity();
-    Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
+    Matrix6 hessian = 1e-9 * Matrix6::Identity();
+    Vector6 gradient = Vector6::Zero();
     double squares = 0, count = 0;
     for (std::size_t i = 0; i < source.size(); ++i) {
       const Eigen::Vector3f p = m * source.points[i];
       const int j = target.partner(p, m.rotation * source.normals[i], reach);
       if (j < 0) continue;
-      const Eigen::Vector3d n = target.cloud.normals[static_cast<std::size_t>(j)].cast<double>();
-      const double r = n.dot((p - target.cloud.points[static_cast<std::size_t>(j)]).cast<double>());
-      Eigen::Matrix<double, 6, 1> slope;
+      const Eigen::Vector3d n = target.cloud.normals[j].cast<double>();
+      const double r = n.dot((p - target.cloud.points[j]).cast<double>());
+      Vector6 slope;
       slope << p.cast<double>().cross(n), n;
       hessian += slope * slope.transpose();
       gradient += r * slope;
       squares += r * r;
       ++count;
     }
-    out = {pose, count / static_cast<double>(source.size()),
-           count > 0 ? std::sqrt(squares / count) : 0};
+    out = {pose, count / source.size(), count > 0 ? std::sqrt(squares / count) : 0};
     if (count < 12 || round == kRounds) break;
-    const Eigen::Matrix<double, 6, 1> step = -hessian.ldlt().solve(gradient);
+    const Vector6 step = -hessian.ldlt().solve(gradient);
     const Pose change{rotation_from_vector(step.head<3>()), step.tail<3>()};
     pose = change * pose;
     if (round > 8 && step.head<3>().norm() < 1e-5 && step.tail<3>().norm() < 1e-6) break;
@@ -111,21 +110,21 @@ bool alike(const Pose& a, const Pose& b, double angle, double distance) {
 
 // From candidates by falling score, the best few of each way to turn: of a box laid onto itself the
 // checks accept many poses: worse ones, which may show its other faces, would find no room.
-std::vector<Candidate> best_of_each_kind(const std::vector<Candidate>& candidates, double size) {
+std::vector<FastPose> best_of_each_kind(const std::vector<Candidate>& candidates, double size) {
   constexpr std::size_t kMost = 1000;
   constexpr int kEachTurn = 6;
-  std::vector<Candidate> kept;
+  std::vector<FastPose> kept;
   std::vector<Pose> poses;
   for (const Candidate& c : candidates) {
     if (kept.size() >= kMost) break;
     const Pose pose = to_pose(c.motion);
     int turned_alike = 0;
-    const bool known = std::any_of(poses.begin(), poses.end(), [&](const Pose& k) {
+    const bool known = std::ranges::any_of(poses, [&](const Pose& k) {
       turned_alike += rotation_angle(k.rotation, pose.rotation) < 0.6;
       return turned_alike >= kEachTurn || alike(k, pose, 0.2, 0.06 * size);
     });
     if (known) continue;
-    kept.push_back(c);
+    kept.push_back(c.motion);
     poses.push_back(pose);
   }
   return kept;
@@ -151,8 +150,8 @@ class PairSearch {
   // Adds the poses that one random pair of the source's points suggests.
   void try_pair(RandomStream& random, std::vector<Candidate>& found) const {
     const int n = static_cast<int>(source_.size());
-    const auto i = static_cast<std::size_t>(random.index(n));
-    const auto j = static_cast<std::size_t>(random.index(n));
+    const int i = random.index(n);
+    const int j = random.index(n);
     const Eigen::Vector3f &p = source_.points[i], &normal = source_.normals[i];
     const PointPairFeature f = point_pair_feature(p, normal, source_.points[j], source_.normals[j]);
     if (f.distance < kShortest || !fixes_pose(f)) return;
@@ -162,8 +161,7 @@ class PairSearch {
     const std::size_t stride = entries.size() / kMostEntries + 1;
     for (std::size_t e = 0; e < entries.size(); e += stride) {
       const std::size_t k = entries[e].point;
-      const float angle = static_cast<float>(static_cast<int>(entries[e].turn) - turn) *
-                          (2 * 3.14159265f / kTurnSteps);
+      const float angle = (entries[e].turn - turn) * (2 * 3.14159265f / kTurnSteps);
       Candidate c;
       c.motion.rotation = basis_of(target_.normals[k]) *
                           Eigen::AngleAxisf(angle, Eigen::Vector3f::UnitZ()).toRotationMatrix() *
@@ -209,15 +207,12 @@ std::vector<Candidate> candidates_of(const PairSearch& search, const Registratio
   constexpr int kPieces = 64;
   std::vector<std::vector<Candidate>> found(kPieces);
   parallel_for(kPieces, options.num_threads, [&](int piece) {
-    RandomStream random(options.seed, static_cast<std::uint64_t>(piece) + 1);
-    for (int k = piece; k < options.draws; k += kPieces) {
-      search.try_pair(random, found[static_cast<std::size_t>(piece)]);
-    }
+    RandomStream random(options.seed, piece + 1);
+    for (int k = piece; k < options.draws; k += kPieces) search.try_pair(random, found[piece]);
   });
   std::vector<Candidate> candidates;
   for (const auto& f : found) candidates.insert(candidates.end(), f.begin(), f.end());
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  std::ranges::stable_sort(candidates, std::greater(), &Candidate::score);
   return candidates;
 }
 
@@ -226,13 +221,10 @@ std::vector<Registration> refine_all(const PointCloud& source, const Target& tar
                                      const std::vector<FastPose>& starts,
                                      const RegistrationOptions& options) {
   std::vector<Registration> refined(starts.size());
-  parallel_for(static_cast<int>(starts.size()), options.num_threads, [&](int k) {
-    const auto i = static_cast<std::size_t>(k);
+  parallel_for(static_cast<int>(starts.size()), options.num_threads, [&](int i) {
     refined[i] = refine(source, target, starts[i], static_cast<float>(options.tolerance_m));
   });
-  std::stable_sort(
-      refined.begin(), refined.end(),
-      [](const Registration& a, const Registration& b) { return a.overlap > b.overlap; });
+  std::ranges::stable_sort(refined, std::greater(), &Registration::overlap);
   return refined;
 }
 
@@ -243,22 +235,21 @@ std::vector<Registration> register_surfaces(const PointCloud& source, const Poin
   if (source.size() < 30 || target.size() < 30) return {};
   const Target surface(target);
   const PairSearch search(source, target, surface, options);
-  std::vector<FastPose> starts;
-  for (const Candidate& c : best_of_each_kind(candidates_of(search, options), search.size())) {
-    starts.push_back(c.motion);
-  }
+  const std::vector<FastPose> starts =
+      best_of_each_kind(candidates_of(search, options), search.size());
   // Many come to the same end; the best of each go on with all points.
   std::vector<Pose> ends;
+  std::vector<FastPose> fast_ends;
   for (const Registration& r : refine_all(search.thinned_source(), surface, starts, options)) {
     if (static_cast<int>(ends.size()) >= options.kept) break;
-    const bool known = std::any_of(ends.begin(), ends.end(), [&](const Pose& end) {
+    const bool known = std::ranges::any_of(ends, [&](const Pose& end) {
       return alike(end, r.target_from_source, 0.09, 0.015 * search.size());
     });
-    if (!known) ends.push_back(r.target_from_source);
+    if (known) continue;
+    ends.push_back(r.target_from_source);
+    fast_ends.push_back(to_fast(r.target_from_source));
   }
-  starts.clear();
-  for (const Pose& end : ends) starts.push_back(to_fast(end));
-  return refine_all(source, surface, starts, options);
+  return refine_all(source, surface, fast_ends, options);
 }
 
 }  // namespace bpa

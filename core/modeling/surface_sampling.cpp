@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <mutex>
 #include <sstream>
 
 #include "core/base/parallel.hpp"
@@ -11,8 +13,9 @@
 #include "core/cloud/curvature.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/geometry/sphere_directions.hpp"
-#include "core/modeling/mesh_visibility.hpp"
+#include "core/model/view_sphere.hpp"
 #include "core/modeling/model_source.hpp"
+#include "core/modeling/private/select.hpp"
 
 namespace bpa {
 namespace {
@@ -20,10 +23,17 @@ namespace {
 constexpr double kMinDiameter = 0.005;
 constexpr double kMaxDiameter = 3.0;
 
+// Points of the surface of a mesh, and the triangles that they lie on.
 struct Samples {
   PointCloud cloud;
-  std::vector<MeshPoint> places;
+  std::vector<std::uint32_t> triangles;
 };
+
+// Points away from the front of a triangle; twice its area long.
+Eigen::Vector3f cross_of(const TriangleMesh& mesh, std::size_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  return (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+}
 
 // Points on the triangles, `per_square_metre` on average, with the triangles' normals.
 Samples sample_triangles(const TriangleMesh& mesh, double per_square_metre) {
@@ -31,12 +41,11 @@ Samples sample_triangles(const TriangleMesh& mesh, double per_square_metre) {
   RandomStream random(1);
   double carry = 0;
   for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
-    const auto& triangle = mesh.triangles[k];
-    const Eigen::Vector3f a = mesh.vertices[triangle[0]];
-    const Eigen::Vector3f ab = mesh.vertices[triangle[1]] - a;
-    const Eigen::Vector3f ac = mesh.vertices[triangle[2]] - a;
-    const Eigen::Vector3f cross = ab.cross(ac);
-    const double area = 0.5 * static_cast<double>(cross.norm());
+    const auto& [first, second, third] = mesh.triangles[k];
+    const Eigen::Vector3f a = mesh.vertices[first];
+    const Eigen::Vector3f ab = mesh.vertices[second] - a, ac = mesh.vertices[third] - a;
+    const Eigen::Vector3f cross = cross_of(mesh, k);
+    const double area = 0.5 * cross.norm();
     if (!(area > 0)) continue;
     carry += area * per_square_metre;
     for (; carry >= 1; carry -= 1) {
@@ -45,16 +54,14 @@ Samples sample_triangles(const TriangleMesh& mesh, double per_square_metre) {
       if (s + t > 1) s = 1 - s, t = 1 - t;
       samples.cloud.points.push_back(a + s * ab + t * ac);
       samples.cloud.normals.push_back(cross.normalized());
-      samples.places.push_back({samples.cloud.points.back(), static_cast<std::uint32_t>(k)});
+      samples.triangles.push_back(k);
       if (mesh.colors.empty()) continue;
-      std::array<std::uint8_t, 3> color{};
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float c0 = mesh.colors[triangle[0]][c];
-        const float c1 = mesh.colors[triangle[1]][c];
-        const float c2 = mesh.colors[triangle[2]][c];
-        color[c] = static_cast<std::uint8_t>(c0 + s * (c1 - c0) + t * (c2 - c0));
+      std::array<std::uint8_t, 3>& color = samples.cloud.colors.emplace_back();
+      for (int c = 0; c < 3; ++c) {
+        const float from = mesh.colors[first][c];
+        color[c] = static_cast<std::uint8_t>(from + s * (mesh.colors[second][c] - from) +
+                                             t * (mesh.colors[third][c] - from));
       }
-      samples.cloud.colors.push_back(color);
     }
   }
   return samples;
@@ -62,15 +69,152 @@ Samples sample_triangles(const TriangleMesh& mesh, double per_square_metre) {
 
 double surface_area(const TriangleMesh& mesh) {
   double area = 0;
-  for (const auto& triangle : mesh.triangles) {
-    const Eigen::Vector3f a = mesh.vertices[triangle[0]];
-    area +=
-        0.5 * static_cast<double>(
-                  (mesh.vertices[triangle[1]] - a).cross(mesh.vertices[triangle[2]] - a).norm());
-  }
+  for (std::size_t k = 0; k < mesh.triangles.size(); ++k) area += 0.5 * cross_of(mesh, k).norm();
   return area;
 }
 
+// Visibility. Each direction has an orthographic image of the mesh in which every pixel knows the
+// triangle seen at its centre. A point is compared with the plane of that triangle right where the
+// point is, not at the pixel's centre, so that the size of pixels hardly matters.
+constexpr int kNumSeenFrom = 120;       // directions, spread evenly over the sphere
+constexpr float kGrazing = 0.26f;       // sine of 15 degrees
+constexpr float kTolerance = 0.00001f;  // metres
+
+// A triangle as seen along z: a corner, and the sides from there to the others.
+struct SeenTriangle {
+  Eigen::Vector3f corner, second, third;
+
+  float area() const { return second.x() * third.y() - second.y() * third.x(); }  // times two
+  // The barycentric weights of the other two corners.
+  Eigen::Vector2f weights(float x, float y) const {
+    const float u = x - corner.x(), v = y - corner.y();
+    return {(u * third.y() - v * third.x()) / area(), (second.x() * v - second.y() * u) / area()};
+  }
+  bool flat() const { return std::abs(area()) < 1e-14f; }
+};
+
+// The mesh as seen along one direction: x and y in the image plane, z toward the viewer.
+class TriangleImage {
+ public:
+  TriangleImage(const std::vector<Eigen::Vector3f>& vertices, const TriangleMesh& mesh, float pixel)
+      : vertices_(vertices), mesh_(mesh), pixel_(pixel) {
+    Eigen::AlignedBox2f box;
+    for (const Eigen::Vector3f& v : vertices) box.extend(v.head<2>());
+    low_ = box.min();
+    width_ = static_cast<int>(box.sizes().x() / pixel) + 1;
+    height_ = static_cast<int>(box.sizes().y() / pixel) + 1;
+    nearest_.assign(width_ * height_, -std::numeric_limits<float>::infinity());
+    triangle_.assign(width_ * height_, -1);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) draw(t);
+  }
+
+  // Whether triangles hide a point that lies on triangle `own`.
+  bool hides(const Eigen::Vector3f& p, int own) const {
+    const int x = static_cast<int>((p.x() - low_.x()) / pixel_);
+    const int y = static_cast<int>((p.y() - low_.y()) / pixel_);
+    float farthest = std::numeric_limits<float>::infinity();
+    int last = own;
+    for (int v = std::max(0, y - 1); v <= std::min(height_ - 1, y + 1); ++v) {
+      for (int u = std::max(0, x - 1); u <= std::min(width_ - 1, x + 1); ++u) {
+        const int i = v * width_ + u;
+        farthest = std::min(farthest, nearest_[i]);
+        if (triangle_[i] == last) continue;
+        last = triangle_[i];
+        if (last >= 0 && last != own && covers(last, p)) return true;
+      }
+    }
+    // Triangles smaller than pixels are not all in the image, but where the whole neighbourhood is
+    // covered, so is the point.
+    return farthest > p.z() + 4 * pixel_;
+  }
+
+ private:
+  SeenTriangle seen(int triangle) const {
+    const auto& [a, b, c] = mesh_.triangles[triangle];
+    return {vertices_[a], vertices_[b] - vertices_[a], vertices_[c] - vertices_[a]};
+  }
+
+  // Whether a triangle lies above p.
+  bool covers(int triangle, const Eigen::Vector3f& p) const {
+    const SeenTriangle t = seen(triangle);
+    if (t.flat()) return false;
+    const Eigen::Vector2f w = t.weights(p.x(), p.y());
+    constexpr float kSlack = 1e-3f;
+    return w.x() >= -kSlack && w.y() >= -kSlack && w.x() + w.y() <= 1 + kSlack &&
+           w.x() * t.second.z() + w.y() * t.third.z() > p.z() - t.corner.z() + kTolerance;
+  }
+
+  void draw(int triangle) {
+    const SeenTriangle t = seen(triangle);
+    if (t.flat()) return;
+    Eigen::AlignedBox3f box;
+    for (const std::uint32_t corner : mesh_.triangles[triangle]) box.extend(vertices_[corner]);
+    const auto first = [&](int axis) {
+      return std::max(0,
+                      static_cast<int>(std::ceil((box.min()[axis] - low_[axis]) / pixel_ - 0.5f)));
+    };
+    const auto last = [&](int axis, int size) {
+      return std::min(size - 1,
+                      static_cast<int>(std::floor((box.max()[axis] - low_[axis]) / pixel_ - 0.5f)));
+    };
+    for (int y = first(1); y <= last(1, height_); ++y) {
+      for (int x = first(0); x <= last(0, width_); ++x) {
+        const Eigen::Vector2f w =
+            t.weights(low_.x() + (x + 0.5f) * pixel_, low_.y() + (y + 0.5f) * pixel_);
+        if (w.x() < 0 || w.y() < 0 || w.x() + w.y() > 1) continue;
+        const float z = t.corner.z() + w.x() * t.second.z() + w.y() * t.third.z();
+        const int i = y * width_ + x;
+        if (z <= nearest_[i]) continue;
+        nearest_[i] = z;
+        triangle_[i] = triangle;
+      }
+    }
+  }
+
+  const std::vector<Eigen::Vector3f>& vertices_;
+  const TriangleMesh& mesh_;
+  float pixel_;
+  Eigen::Vector2f low_;
+  int width_ = 0, height_ = 0;
+  std::vector<float> nearest_;
+  std::vector<int> triangle_;
+};
+
+// From how many of the directions a point of a mesh is seen, on the side that its triangle's normal
+// points to and on the other.
+struct SidesSeen {
+  int front = 0;
+  int back = 0;
+};
+
+// Looks at the mesh from kNumSeenFrom directions far away: which of the samples are not hidden by
+// its triangles. Exact but for kTolerance, so that the two sides of a thin wall are told apart;
+// directions that graze a sample's tangent plane do not count.
+std::vector<SidesSeen> sides_seen(const TriangleMesh& mesh, const Samples& samples,
+                                  int num_threads) {
+  const PointCloud& cloud = samples.cloud;
+  std::vector<SidesSeen> seen(cloud.size());
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& v : mesh.vertices) box.extend(v);
+  const float pixel = std::max(1e-4f, box.diagonal().norm() / 240);
+  std::mutex mutex;  // counts are added up; the order does not matter
+  parallel_for(kNumSeenFrom, num_threads, [&](int k) {
+    const Eigen::Matrix3f axes = view_axes(sphere_direction(k, kNumSeenFrom).cast<float>());
+    std::vector<Eigen::Vector3f> turned;
+    for (const Eigen::Vector3f& v : mesh.vertices) turned.push_back(axes * v);
+    const TriangleImage image(turned, mesh, pixel);
+    std::vector<std::size_t> visible;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (std::abs(cloud.normals[i].dot(axes.row(2))) < kGrazing) continue;
+      if (!image.hides(axes * cloud.points[i], samples.triangles[i])) visible.push_back(i);
+    }
+    const std::lock_guard lock(mutex);
+    for (const std::size_t i : visible) {
+      (cloud.normals[i].dot(axes.row(2)) > 0 ? seen[i].front : seen[i].back) += 1;
+    }
+  });
+  return seen;
+}
 // What a camera outside can see of the samples, each side of a sheet for itself; how many normals
 // were turned, and how many samples lie inside.
 struct VisibleSurface {
@@ -101,12 +245,10 @@ std::vector<Sides> confirmed(const PointCloud& cloud, float radius, const std::v
   std::vector<Sides> out(sides.size());
   parallel_for(
       static_cast<int>(sides.size()), num_threads,
-      [&](int index) {
-        const auto i = static_cast<std::size_t>(index);
+      [&](int i) {
         const Eigen::Vector3f& normal = cloud.normals[i];
         int front = 0, back = 0, all = 0;
-        grid.for_each_neighbor(cloud.points[i], [&](int neighbour, float) {
-          const auto j = static_cast<std::size_t>(neighbour);
+        grid.for_each_neighbor(cloud.points[i], [&](int j, float) {
           const float cosine = normal.dot(cloud.normals[j]);
           const float off = normal.dot(cloud.points[j] - cloud.points[i]);
           if (std::abs(cosine) < 0.9f || std::abs(off) > kSameSurface) return;
@@ -123,15 +265,16 @@ std::vector<Sides> confirmed(const PointCloud& cloud, float radius, const std::v
 VisibleSurface visible_surface(const TriangleMesh& mesh, const Samples& samples, float spacing,
                                int num_threads) {
   std::vector<Sides> sides;
-  for (const SidesSeen& seen : sides_seen(mesh, samples.places, num_threads)) {
+  for (const SidesSeen& seen : sides_seen(mesh, samples, num_threads)) {
     sides.push_back(decide(seen));
   }
   sides = confirmed(samples.cloud, spacing, sides, num_threads);
   VisibleSurface out;
+  std::vector<int> shown;
+  std::vector<float> sign;
   const auto add = [&](std::size_t i, float side) {
-    out.cloud.points.push_back(samples.cloud.points[i]);
-    out.cloud.normals.push_back(side * samples.cloud.normals[i]);
-    if (!samples.cloud.colors.empty()) out.cloud.colors.push_back(samples.cloud.colors[i]);
+    shown.push_back(i);
+    sign.push_back(side);
   };
   for (std::size_t i = 0; i < sides.size(); ++i) {
     if (sides[i].front) add(i, 1);
@@ -140,6 +283,8 @@ VisibleSurface visible_surface(const TriangleMesh& mesh, const Samples& samples,
     out.flipped += sides[i].back && !sides[i].front;
     out.two_sided += sides[i].front && sides[i].back;
   }
+  out.cloud = select(samples.cloud, shown);
+  for (std::size_t i = 0; i < sign.size(); ++i) out.cloud.normals[i] *= sign[i];
   return out;
 }
 
@@ -148,7 +293,7 @@ std::vector<std::string> mesh_warnings(const VisibleSurface& visible, std::size_
   constexpr double kMany = 0.02;
   std::vector<std::string> warnings;
   const auto warn = [&](std::size_t count, const char* text) {
-    const double share = static_cast<double>(count) / static_cast<double>(samples);
+    const double share = static_cast<double>(count) / samples;
     if (share < kMany) return;
     warnings.push_back(std::to_string(std::lround(100 * share)) + " % of the mesh " + text);
   };
@@ -177,13 +322,12 @@ double largest_distance(const std::vector<Eigen::Vector3f>& points) {
   std::vector<Eigen::Vector3f> extremes;
   for (int i = 0; i < kDirections; ++i) {
     const Eigen::Vector3f direction = sphere_direction(i, kDirections).cast<float>();
-    extremes.push_back(*std::max_element(points.begin(), points.end(), [&](auto& a, auto& b) {
-      return a.dot(direction) < b.dot(direction);
-    }));
+    extremes.push_back(
+        *std::ranges::max_element(points, {}, [&](const auto& p) { return p.dot(direction); }));
   }
   double best = 0;
   for (const auto& a : extremes) {
-    for (const auto& b : extremes) best = std::max(best, static_cast<double>((a - b).norm()));
+    for (const auto& b : extremes) best = std::max<double>(best, (a - b).norm());
   }
   return best;
 }
@@ -221,14 +365,13 @@ Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::
   // Small objects are sampled more finely, so that they too have about 2000 points.
   const double spacing = std::min(options.spacing_m, std::sqrt(area / 2000));
   const Samples samples = sample_triangles(mesh, 6 / (spacing * spacing));
-  VisibleSurface visible =
-      visible_surface(mesh, samples, static_cast<float>(spacing), options.num_threads);
+  const VisibleSurface visible = visible_surface(mesh, samples, spacing, options.num_threads);
   if (visible.cloud.size() < 100) {
     return invalid_argument("model " + name + " has no surface that can be seen from outside");
   }
-  ModelSource source = make_source(downsample(visible.cloud, static_cast<float>(spacing)), name,
-                                   number, options.num_threads);
-  for (std::string& warning : mesh_warnings(visible, samples.places.size())) {
+  ModelSource source =
+      make_source(downsample(visible.cloud, spacing), name, number, options.num_threads);
+  for (std::string& warning : mesh_warnings(visible, samples.triangles.size())) {
     source.warnings.push_back(std::move(warning));
   }
   return source;
@@ -243,14 +386,13 @@ Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std:
   }
   if (Status s = check_size(name, largest_distance(cloud.points)); !s.ok()) return s;
   const auto spacing = static_cast<float>(options.spacing_m);
-  if (!cloud.normals.empty()) {
-    return make_source(downsample(cloud, spacing), name, number, options.num_threads);
-  }
-  // One view of an object, in its camera's frame: normals point to the origin.
   PointCloud even = downsample(cloud, spacing);
-  estimate_normals(even, 4 * spacing, Eigen::Vector3f::Zero(), options.num_threads);
+  if (cloud.normals.empty()) {
+    // One view of an object, in its camera's frame: normals point to the origin.
+    estimate_normals(even, 4 * spacing, Eigen::Vector3f::Zero(), options.num_threads);
+  }
   ModelSource source = make_source(std::move(even), name, number, options.num_threads);
-  source.complete = false;
+  source.complete = !cloud.normals.empty();
   return source;
 }
 

@@ -7,10 +7,56 @@
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/model/view_sphere.hpp"
 #include "core/modeling/posed_view.hpp"
+#include "core/modeling/private/select.hpp"
 #include "core/modeling/trace_occupancy.hpp"
 
 namespace bpa {
 namespace {
+
+constexpr float kLeastCell = 0.003f;  // metres
+constexpr std::size_t kFewest = 100;  // points that a model needs
+constexpr double kMuchUnseen = 0.03;  // share of the surface
+constexpr float kSameSide = 0.5f;     // cosine between normals
+
+// How large a pixel is on the object, and how far it is, on average.
+struct Resolution {
+  double pixel = 0, depth = 0;  // metres
+};
+
+Resolution resolution_of(const std::vector<PosedView>& views) {
+  double pixels = 0, depths = 0, count = 0;
+  for (const PosedView& view : views) {
+    for (std::size_t i = 0; i < view.map.size(); ++i) {
+      if (!view.object[i] || !(view.map.depth[i] > 0)) continue;
+      pixels += view.map.depth[i] / view.map.camera.fx;
+      depths += view.map.depth[i];
+      ++count;
+    }
+  }
+  return count > 0 ? Resolution{pixels / count, depths / count} : Resolution{};
+}
+
+// For each point of the surface, the normal variance that the measured sheet beside it gives; -1
+// where there is none.
+std::vector<float> measured_variance(const PointCloud& surface, const GridSurface& measured,
+                                     float reach, float most_off) {
+  const NeighborGrid near(measured.points.points, reach);
+  std::vector<float> out(surface.size(), -1);
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    const Eigen::Vector3f &p = surface.points[i], &n = surface.normals[i];
+    float sum = 0, total = 0;
+    near.for_each_neighbor(p, [&](int j, float squared) {
+      const float cosine = n.dot(measured.points.normals[j]);
+      if (cosine < kSameSide || std::abs(n.dot(measured.points.points[j] - p)) > most_off) return;
+      const float bias = std::acos(std::min(1.0f, cosine));
+      const float weight = 1.0001f - squared / (reach * reach);
+      sum += weight * (measured.normal_variance[j] + bias * bias);
+      total += weight;
+    });
+    if (total > 0) out[i] = sum / total;
+  }
+  return out;
+}
 
 // The share of the object's outline, over all view angles, where one looks at the back of the
 // surface: through a part that was never seen; and in the view from the worst `direction` alone.
@@ -21,20 +67,19 @@ struct Unseen {
 };
 
 Unseen unseen_part(const PointCloud& surface, int num_threads) {
-  PointCloud turned = surface;
-  for (Eigen::Vector3f& n : turned.normals) n = -n;
   // Both sides compete for being seen.
-  PointCloud both = surface;
-  both.points.insert(both.points.end(), turned.points.begin(), turned.points.end());
-  both.normals.insert(both.normals.end(), turned.normals.begin(), turned.normals.end());
-  both.colors.clear();
+  PointCloud both;
+  for (const float side : {1.0f, -1.0f}) {
+    both.points.insert(both.points.end(), surface.points.begin(), surface.points.end());
+    for (const Eigen::Vector3f& n : surface.normals) both.normals.emplace_back(side * n);
+  }
   // The back of a wall is not to be seen where its other side is there too.
   constexpr float kThickest = 0.010f;  // metres
   const NeighborGrid grid(surface.points, kThickest);
   std::vector<std::uint8_t> backed(surface.size(), 0);
   for (std::size_t i = 0; i < surface.size(); ++i) {
     grid.for_each_neighbor(surface.points[i], [&](int j, float) {
-      backed[i] |= surface.normals[static_cast<std::size_t>(j)].dot(surface.normals[i]) < -0.3f;
+      backed[i] |= surface.normals[j].dot(surface.normals[i]) < -0.3f;
     });
   }
   const auto views = render_views(both, 0.004f, num_threads);
@@ -43,7 +88,7 @@ Unseen unseen_part(const PointCloud& surface, int num_threads) {
   for (const ModelView& view : views) {
     double own_front = 0, own_back = 0;
     for (const std::uint32_t i : view.visible) {
-      const double area = static_cast<double>(both.normals[i].dot(view.direction));
+      const double area = both.normals[i].dot(view.direction);
       if (area < 0.3) continue;
       if (i >= surface.size() && backed[i - surface.size()]) continue;
       (i < surface.size() ? own_front : own_back) += area;
@@ -113,6 +158,34 @@ void center_object(std::vector<PosedView>& views) {
   if (box.isEmpty()) return;
   const Pose old_from_new{Eigen::Quaterniond::Identity(), box.center()};
   for (PosedView& view : views) view.camera_from_object = view.camera_from_object * old_from_new;
+}
+
+void keep_measured(ModelSource& source, const std::vector<PosedView>& views, int num_threads) {
+  const Resolution resolution = resolution_of(views);
+  auto grid = std::make_shared<OccupancyGrid>(
+      trace_occupancy(views, std::max<float>(kLeastCell, resolution.pixel), num_threads));
+  const GridSurface measured = surface_of(*grid, grid->cell, num_threads);
+  const float most_off = std::max(0.004f, 3 * depth_noise(resolution.depth));
+  const std::vector<float> variance =
+      measured_variance(source.surface, measured, 2.2f * grid->cell, most_off);
+  const auto unseen = std::ranges::count_if(variance, [](float v) { return v < 0; });
+  const double share = static_cast<double>(unseen) / variance.size();
+  source.occupancy = std::move(grid);
+  if (variance.size() - unseen < kFewest) {
+    source.warnings.push_back(
+        "a sensor hardly sees it: too small, too thin or too dark; the whole "
+        "surface is kept");
+  } else {
+    if (share > kMuchUnseen) {
+      source.warnings.push_back(std::to_string(std::lround(100 * share)) +
+                                " % of the surface was measured in no view and was left out");
+    }
+    source.surface = select(source.surface, [&](int i) { return variance[i] >= 0; });
+    source.normal_variance = variance;
+    std::erase_if(source.normal_variance, [](float v) { return v < 0; });
+    source.diameter = largest_distance(source.surface.points);
+  }
+  learn_noise(source, views, num_threads);
 }
 
 }  // namespace bpa

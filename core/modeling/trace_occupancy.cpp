@@ -12,6 +12,7 @@
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/model/view_sphere.hpp"
+#include "core/modeling/private/select.hpp"
 
 namespace bpa {
 namespace {
@@ -80,17 +81,15 @@ std::vector<CellSums> sum_endings(const std::vector<PosedView>& views, Lookup& l
     }
   };
   for_each([&](std::int64_t number, const Eigen::Vector3f&, const Eigen::Vector3f& n, float) {
-    std::int32_t& slot = lookup.slot[static_cast<std::size_t>(number)];
+    std::int32_t& slot = lookup.slot[number];
     if (slot < 0) {
       slot = static_cast<std::int32_t>(sums.size());
       sums.emplace_back();
       grid.cells.push_back({lookup.place(number), {}});
     }
-    sums[static_cast<std::size_t>(slot)].scatter += n * n.transpose();
+    sums[slot].scatter += n * n.transpose();
   });
-  const auto of = [&](std::int64_t number) -> CellSums& {
-    return sums[static_cast<std::size_t>(lookup.slot[static_cast<std::size_t>(number)])];
-  };
+  const auto of = [&](std::int64_t number) -> CellSums& { return sums[lookup.slot[number]]; };
   for (CellSums& s : sums) {
     s.axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>(s.scatter).eigenvectors().col(2);
   }
@@ -139,7 +138,7 @@ void march(const OccupancyGrid& grid, const Eigen::Vector3f& from, const Eigen::
     c[a] = std::clamp(static_cast<int>(std::floor(start[a])), 0, grid.size[a] - 1);
     step[a] = direction[a] > 0 ? 1 : -1;
     const bool moves = std::abs(direction[a]) >= 1e-9f;
-    const float border = grid.low[a] + grid.cell * static_cast<float>(c[a] + (step[a] > 0 ? 1 : 0));
+    const float border = grid.low[a] + grid.cell * (c[a] + (step[a] > 0 ? 1 : 0));
     next[a] = moves ? (border - from[a]) / direction[a] : std::numeric_limits<float>::infinity();
     delta[a] = moves ? grid.cell / std::abs(direction[a]) : next[a];
   }
@@ -161,7 +160,7 @@ void count_passing(const PosedView& view, const Lookup& lookup, const std::vecto
   const SurfaceMap& map = view.map;
   for (int v = 0; v < map.height(); ++v) {
     for (int u = 0; u < map.width(); ++u) {
-      const auto i = static_cast<std::size_t>(v * map.width() + u);
+      const int i = v * map.width() + u;
       if (!(map.depth[i] > 0)) continue;
       const Eigen::Vector3f ray = map.camera.unproject(u, v, 1).cast<float>();
       const Eigen::Vector3f direction = pose.rotation * ray;
@@ -170,9 +169,9 @@ void count_passing(const PosedView& view, const Lookup& lookup, const std::vecto
           std::max(3 * depth_noise(map.depth[i]), 1.8f * lookup.grid.cell) / std::sqrt(cosine);
       march(lookup.grid, pose.translation, direction, map.depth[i] - margin,
             [&](std::int64_t number) {
-              const std::int32_t slot = lookup.slot[static_cast<std::size_t>(number)];
+              const std::int32_t slot = lookup.slot[number];
               if (slot < 0) return;
-              const auto s = static_cast<std::size_t>(slot);
+              const int s = slot;
               for (std::size_t b = 0; b < 2; ++b) {
                 if (sums[s].rays[b] == 0) continue;
                 if (sums[s].normal[b].dot(direction) < -kMinCosine * direction.norm()) {
@@ -195,12 +194,10 @@ void draw_together(GridSurface& surface, const std::vector<float>& weight, float
     std::vector<Eigen::Vector3f> moved = cloud.points;
     parallel_for(
         static_cast<int>(cloud.size()), num_threads,
-        [&](int index) {
-          const auto i = static_cast<std::size_t>(index);
+        [&](int i) {
           const Eigen::Vector3f& n = cloud.normals[i];
           float sum = 0, total = 0;
-          neighbors.for_each_neighbor(cloud.points[i], [&](int neighbor, float squared) {
-            const auto j = static_cast<std::size_t>(neighbor);
+          neighbors.for_each_neighbor(cloud.points[i], [&](int j, float squared) {
             const float cosine = n.dot(cloud.normals[j]);
             if (cosine < kSameSheet) return;
             const float near = 1 - squared / (radius * radius);
@@ -229,7 +226,7 @@ OccupiedBuckets occupied_buckets(const OccupancyGrid& grid) {
       all.surface.points.points.push_back(bucket.position);
       all.surface.points.normals.push_back(bucket.normal);
       all.surface.normal_variance.push_back(bucket.normal_variance);
-      all.rays.push_back(static_cast<float>(bucket.rays));
+      all.rays.push_back(bucket.rays);
     }
   }
   return all;
@@ -241,13 +238,7 @@ PointCloud seen_from_outside(const PointCloud& cloud, float spacing, int num_thr
   for (const ModelView& view : render_views(cloud, spacing, num_threads)) {
     for (const std::uint32_t i : view.visible) outside[i] = 1;
   }
-  PointCloud seen;
-  for (std::size_t i = 0; i < outside.size(); ++i) {
-    if (!outside[i]) continue;
-    seen.points.push_back(cloud.points[i]);
-    seen.normals.push_back(cloud.normals[i]);
-  }
-  return seen;
+  return select(cloud, [&outside](int i) { return outside[i] != 0; });
 }
 
 }  // namespace
@@ -267,13 +258,13 @@ OccupancyGrid trace_occupancy(const std::vector<PosedView>& views, float cell, i
     grid.size = (box.sizes() / grid.cell).array().floor().cast<int>() + 3;
     if (grid.size.cast<double>().prod() <= kMaxCells) break;
   }
-  Lookup lookup{grid, std::vector<std::int32_t>(static_cast<std::size_t>(grid.size.prod()), -1)};
+  Lookup lookup{grid, std::vector<std::int32_t>(grid.size.prod(), -1)};
   const std::vector<CellSums> sums = sum_endings(views, lookup, grid);
   std::vector<std::int32_t> passing(2 * sums.size(), 0);
   std::mutex mutex;  // counts are added up; the order does not matter
   parallel_for(static_cast<int>(views.size()), num_threads, [&](int k) {
     std::vector<std::int32_t> own(passing.size(), 0);
-    count_passing(views[static_cast<std::size_t>(k)], lookup, sums, own);
+    count_passing(views[k], lookup, sums, own);
     const std::lock_guard lock(mutex);
     for (std::size_t i = 0; i < own.size(); ++i) passing[i] += own[i];
   });
@@ -281,8 +272,8 @@ OccupancyGrid trace_occupancy(const std::vector<PosedView>& views, float cell, i
     for (std::size_t b = 0; b < 2; ++b) {
       const int rays = sums[s].rays[b];
       if (rays == 0) continue;
-      const auto count = static_cast<float>(rays);
-      grid.cells[s].buckets[b] = {count / (count + static_cast<float>(passing[2 * s + b])), rays,
+      const float count = rays;
+      grid.cells[s].buckets[b] = {count / (count + passing[2 * s + b]), rays,
                                   sums[s].position[b] / sums[s].weight[b], sums[s].normal[b],
                                   sums[s].squared_angles[b] / count};
     }
@@ -303,8 +294,7 @@ GridSurface surface_of(const OccupancyGrid& grid, float spacing, int num_threads
   const NeighborGrid neighbors(cloud.points, spacing);
   for (std::size_t i = 0; i < out.points.size(); ++i) {
     float sum = 0, total = 0;
-    neighbors.for_each_neighbor(out.points.points[i], [&](int neighbor, float) {
-      const auto j = static_cast<std::size_t>(neighbor);
+    neighbors.for_each_neighbor(out.points.points[i], [&](int j, float) {
       const float cosine = cloud.normals[j].dot(out.points.normals[i]);
       if (cosine < 0.5f) return;
       const float bias = std::acos(std::min(1.0f, cosine));

@@ -15,6 +15,7 @@
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/geometry/fast_pose.hpp"
+#include "core/modeling/private/select.hpp"
 #include "core/modeling/turntable.hpp"
 
 namespace bpa {
@@ -25,7 +26,7 @@ constexpr double kDegree = M_PI / 180;
 // The object's points of one view, on the table: z is the height.
 struct Scan {
   int step = 0;
-  std::vector<Eigen::Vector3f> points, normals;
+  PointCloud cloud;
 };
 
 // Where the axis is and how far the table turns with each step.
@@ -57,25 +58,20 @@ Turn moved(const Turn& turn, const Parameters& p) {
 
 Pose camera_from_table(const Plane& plane) {
   const Eigen::Vector3d z = plane.normal.cast<double>().normalized();
+  const Eigen::Vector3d x = z.unitOrthogonal();
   Eigen::Matrix3d axes;
-  axes.col(0) = z.unitOrthogonal();
-  axes.col(1) = z.cross(axes.col(0));
-  axes.col(2) = z;
-  return Pose::from_matrix(axes, static_cast<double>(plane.offset) * z);
+  axes << x, z.cross(x), z;
+  return Pose::from_matrix(axes, plane.offset * z);
 }
 
 // At most `count` points of each scan, evenly taken.
 std::vector<Scan> thinned(const std::vector<Scan>& scans, std::size_t count, std::size_t stride) {
   std::vector<Scan> out;
   for (std::size_t s = 0; s < scans.size(); s += stride) {
-    Scan scan{scans[s].step, {}, {}};
-    const std::size_t n = scans[s].points.size();
-    const std::size_t kept = std::min(count, n);
-    for (std::size_t i = 0; i < kept; ++i) {
-      scan.points.push_back(scans[s].points[i * n / kept]);
-      scan.normals.push_back(scans[s].normals[i * n / kept]);
-    }
-    out.push_back(std::move(scan));
+    const std::size_t n = scans[s].cloud.size(), kept = std::min(count, n);
+    std::vector<int> chosen(kept);
+    for (std::size_t i = 0; i < kept; ++i) chosen[i] = i * n / kept;
+    out.push_back({scans[s].step, select(scans[s].cloud, chosen)});
   }
   return out;
 }
@@ -86,13 +82,12 @@ struct Merged {
   std::vector<std::uint16_t> scan;
 
   Merged(const std::vector<Scan>& scans, const Turn& turn) {
-    for (std::size_t s = 0; s < scans.size(); ++s) {
-      const FastPose pose = to_fast(turn.first_from_view(scans[s].step));
-      for (std::size_t i = 0; i < scans[s].points.size(); ++i) {
-        points.push_back(pose * scans[s].points[i]);
-        normals.emplace_back(pose.rotation * scans[s].normals[i]);
-        scan.push_back(static_cast<std::uint16_t>(s));
-      }
+    std::uint16_t number = 0;
+    for (const auto& [step, cloud] : scans) {
+      const FastPose pose = to_fast(turn.first_from_view(step));
+      for (const Eigen::Vector3f& p : cloud.points) points.push_back(pose * p);
+      for (const Eigen::Vector3f& n : cloud.normals) normals.emplace_back(pose.rotation * n);
+      scan.insert(scan.end(), cloud.size(), number++);
     }
   }
 };
@@ -107,12 +102,11 @@ struct Nearest {
   void search(const Merged& all, const NeighborGrid& grid, std::size_t i, float radius) {
     std::fill(squared.begin(), squared.end(), radius * radius);
     std::fill(index.begin(), index.end(), -1);
-    grid.for_each_neighbor(all.points[i], [&](int j, float d) {
-      const auto k = static_cast<std::size_t>(j);
+    grid.for_each_neighbor(all.points[i], [&](int k, float d) {
       const std::uint16_t s = all.scan[k];
       if (s == all.scan[i] || d >= squared[s] || all.normals[i].dot(all.normals[k]) < 0.5f) return;
       squared[s] = d;
-      index[s] = j;
+      index[s] = k;
     });
   }
 };
@@ -124,9 +118,9 @@ double cost_of(const std::vector<Scan>& scans, const Turn& turn, float radius) {
   double sum = 0;
   for (std::size_t i = 0; i < all.points.size(); ++i) {
     nearest.search(all, grid, i, radius);
-    for (const float d : nearest.squared) sum += static_cast<double>(d);
+    for (const float d : nearest.squared) sum += d;
   }
-  return sum / (static_cast<double>(all.points.size()) * static_cast<double>(scans.size()));
+  return sum / (static_cast<double>(all.points.size()) * scans.size());
 }
 
 struct Trial {
@@ -147,18 +141,12 @@ Trial search(const std::vector<Scan>& scans, double step, const Lattice& lattice
   const int n = static_cast<int>(std::ceil(lattice.reach / lattice.spacing));
   for (int y = -n; y <= n; ++y) {
     for (int x = -n; x <= n; ++x) {
-      Trial trial;
-      trial.turn.centre = lattice.middle + lattice.spacing * Eigen::Vector2d(x, y);
-      trial.turn.step = step;
-      trials.push_back(trial);
+      trials.push_back({{lattice.middle + lattice.spacing * Eigen::Vector2d(x, y), step}});
     }
   }
-  parallel_for(static_cast<int>(trials.size()), num_threads, [&](int k) {
-    Trial& trial = trials[static_cast<std::size_t>(k)];
-    trial.cost = cost_of(scans, trial.turn, radius);
-  });
-  return *std::min_element(trials.begin(), trials.end(),
-                           [](const Trial& l, const Trial& r) { return l.cost < r.cost; });
+  parallel_for(static_cast<int>(trials.size()), num_threads,
+               [&](int k) { trials[k].cost = cost_of(scans, trials[k].turn, radius); });
+  return *std::ranges::min_element(trials, {}, &Trial::cost);
 }
 
 // How the pose of each view changes with each parameter: p -> rotation * p + translation.
@@ -174,8 +162,8 @@ std::vector<std::array<Slope, 5>> slopes_of(const std::vector<Scan>& scans, cons
     for (int k = 0; k < 5; ++k) {
       const Pose a = moved(turn, kStep * Parameters::Unit(k)).first_from_view(scans[s].step);
       const Pose b = moved(turn, -kStep * Parameters::Unit(k)).first_from_view(scans[s].step);
-      slopes[s][static_cast<std::size_t>(k)] = {(a.matrix() - b.matrix()) / (2 * kStep),
-                                                (a.translation - b.translation) / (2 * kStep)};
+      slopes[s][k] = {(a.matrix() - b.matrix()) / (2 * kStep),
+                      (a.translation - b.translation) / (2 * kStep)};
     }
   }
   return slopes;
@@ -195,20 +183,19 @@ StepEquations pair_equations(const std::vector<Scan>& scans, float radius, const
   const NeighborGrid grid(all.points, radius);
   const auto slopes = slopes_of(scans, turn);
   std::vector<Eigen::Vector3f> measured;  // as all.points, before turning
-  for (const Scan& scan : scans) {
-    measured.insert(measured.end(), scan.points.begin(), scan.points.end());
+  for (const auto& [step, cloud] : scans) {
+    measured.insert(measured.end(), cloud.points.begin(), cloud.points.end());
   }
   const auto slope_at = [&](std::size_t i, int k) -> Eigen::Vector3d {
-    const Slope& s = slopes[all.scan[i]][static_cast<std::size_t>(k)];
+    const Slope& s = slopes[all.scan[i]][k];
     return s.rotation * measured[i].cast<double>() + s.translation;
   };
   StepEquations out;
   Nearest nearest(scans.size());
   for (std::size_t i = 0; i < all.points.size(); ++i) {
     nearest.search(all, grid, i, radius);
-    for (const int found : nearest.index) {
-      if (found < 0) continue;
-      const auto j = static_cast<std::size_t>(found);
+    for (const int j : nearest.index) {
+      if (j < 0) continue;
       const Eigen::Vector3d n = all.normals[j].cast<double>();
       const double r = n.dot((all.points[i] - all.points[j]).cast<double>());
       const double weight = std::abs(r) < kHuber ? 1 : kHuber / std::abs(r);
@@ -234,8 +221,7 @@ double refine(const std::vector<Scan>& scans, float radius, const Turn& start, b
   constexpr double kStepSigma = 0.03, kTiltSigma = 0.15 * kDegree;
   auto [hessian, gradient, pairs] = pair_equations(scans, radius, turn);
   if (pairs < kLeastPairs) return 0;
-  const double worth =
-      kIndependent * static_cast<double>(scans.size() * scans.size()) / pairs / (kSigma * kSigma);
+  const double worth = kIndependent * (scans.size() * scans.size()) / pairs / (kSigma * kSigma);
   hessian *= worth;
   gradient *= worth;
   const double step_prior = step_known ? 1e12 : 1 / (kStepSigma * kStepSigma);
@@ -254,16 +240,17 @@ double refine(const std::vector<Scan>& scans, float radius, const Turn& start, b
 std::array<Trial, 2> find_turns(const std::vector<Scan>& scans, const ScanOptions& options) {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   float reach = 0;
-  for (const Scan& scan : scans) {
+  for (const auto& [step, cloud] : scans) {
     Eigen::Vector2f mean = Eigen::Vector2f::Zero();
-    for (const Eigen::Vector3f& p : scan.points) mean += p.head<2>();
-    mean /= static_cast<float>(scan.points.size());
-    for (const Eigen::Vector3f& p : scan.points)
+    for (const Eigen::Vector3f& p : cloud.points) mean += p.head<2>();
+    mean /= cloud.size();
+    for (const Eigen::Vector3f& p : cloud.points) {
       reach = std::max(reach, (p.head<2>() - mean).norm());
-    middle += mean.cast<double>() / static_cast<double>(scans.size());
+    }
+    middle += mean.cast<double>() / scans.size();
   }
   // The side that is seen is nearer to the camera than the middle; the object is off the centre.
-  const double window = 0.06 + 0.5 * static_cast<double>(reach);
+  const double window = 0.06 + 0.5 * reach;
   const std::size_t stride = std::max<std::size_t>(1, scans.size() / 12);
   const std::vector<Scan> few = thinned(scans, 70, stride), more = thinned(scans, 150, stride);
   std::array<Trial, 2> best;
@@ -301,14 +288,13 @@ std::vector<Scan> scans_of(const std::vector<PosedView>& views, const std::vecto
   const FastPose pose = to_fast(table_from_camera);
   std::vector<Scan> scans;
   for (std::size_t v = 0; v < views.size(); ++v) {
-    const PosedView& view = views[v];
-    Scan scan{steps[v], {}, {}};
-    for (std::size_t i = 0; i < view.map.size(); ++i) {
-      if (!well_seen(view, i)) continue;
-      scan.points.push_back(pose * view.map.points[i]);
-      scan.normals.emplace_back(pose.rotation * view.map.normals[i]);
+    const SurfaceMap& map = views[v].map;
+    PointCloud& cloud = scans.emplace_back(Scan{steps[v], {}}).cloud;
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      if (!well_seen(views[v], i)) continue;
+      cloud.points.push_back(pose * map.points[i]);
+      cloud.normals.emplace_back(pose.rotation * map.normals[i]);
     }
-    scans.push_back(std::move(scan));
   }
   return scans;
 }

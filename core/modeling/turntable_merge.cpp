@@ -4,12 +4,15 @@
 // onto that of the first are tried (registration.hpp); the right one is that which no view
 // contradicts: nothing floats in front of what a view measured, nothing is below the table, and
 // colours agree.
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
+#include "core/geometry/fast_pose.hpp"
 #include "core/modeling/registration.hpp"
 #include "core/modeling/trace_occupancy.hpp"
 #include "core/modeling/turntable.hpp"
@@ -32,7 +35,7 @@ float nearest_about(const SurfaceMap& map, int x, int y) {
   float nearest = std::numeric_limits<float>::infinity();
   for (int v = std::max(0, y - 1); v <= std::min(map.height() - 1, y + 1); ++v) {
     for (int u = std::max(0, x - 1); u <= std::min(map.width() - 1, x + 1); ++u) {
-      const float depth = map.depth[static_cast<std::size_t>(v * map.width() + u)];
+      const float depth = map.depth[v * map.width() + u];
       if (depth > 0) nearest = std::min(nearest, depth);
     }
   }
@@ -56,7 +59,7 @@ Objection objection(const PointCloud& points, const Pose& object_from_points,
     const Eigen::Vector3d p = object_from_points * points.points[i].cast<double>();
     const Eigen::Vector3d n = object_from_points.rotation * points.normals[i].cast<double>();
     // The table hides what is under it from every view.
-    if (p.z() < -static_cast<double>(kBelowTable)) {
+    if (p.z() < -kBelowTable) {
       compared += 3, free += 3;
       continue;
     }
@@ -68,7 +71,7 @@ Objection objection(const PointCloud& points, const Pose& object_from_points,
       const auto x = static_cast<int>(std::lround(pixel.x()));
       const auto y = static_cast<int>(std::lround(pixel.y()));
       if (x < 0 || y < 0 || x >= view.map.width() || y >= view.map.height()) continue;
-      const auto k = static_cast<std::size_t>(y * view.map.width() + x);
+      const int k = y * view.map.width() + x;
       const float depth = view.map.depth[k];
       if (!(depth > 0)) continue;
       ++compared;
@@ -78,7 +81,7 @@ Objection objection(const PointCloud& points, const Pose& object_from_points,
       const bool faces = (view.camera_from_object.rotation * n).dot(q) < -0.5 * q.norm();
       if (!faces || std::abs(gap) > kFree || points.colors.empty() || view.colors.empty()) continue;
       for (std::size_t c = 0; c < 3; ++c) {
-        color += std::abs(static_cast<double>(view.colors[k][c]) - points.colors[i][c]) / (3 * 255);
+        color += std::abs(view.colors[k][c] - points.colors[i][c]) / (3 * 255.0);
       }
       ++colored;
     }
@@ -99,8 +102,7 @@ Choice best_way(const PointCloud& source, const RestingPosition& source_position
   // same, both scans might as well be of the same end.
   constexpr double kSameSideDown = 0.4, kSameUp = 0.9;
   std::vector<Choice> choices(ways.size());
-  parallel_for(static_cast<int>(ways.size()), num_threads, [&](int k) {
-    const auto i = static_cast<std::size_t>(k);
+  parallel_for(static_cast<int>(ways.size()), num_threads, [&](int i) {
     const Pose& pose = ways[i].target_from_source;
     const Objection there = objection(source, pose, target_position.views);
     const Objection back = objection(target, pose.inverse(), source_position.views);
@@ -110,14 +112,104 @@ Choice best_way(const PointCloud& source, const RestingPosition& source_position
                          (up > kSameUp ? kSameSideDown : 0);
     choices[i] = {pose, score, ways[i].overlap, free};
   });
-  Choice best;
-  for (const Choice& c : choices) {
-    if (c.score > best.score) best = c;
+  const auto best = std::ranges::max_element(choices, {}, &Choice::score);
+  return best == choices.end() ? Choice() : *best;
+}
+
+// An object stands on its table in every resting position. What one scan shows of the face that the
+// object stands on in the other one must lie on that one's table: of a can upside down, nothing
+// else says how far it is from one end to the other, since its side slides along itself.
+constexpr float kReach = 0.005f;  // metres: what counts as the same surface
+
+// How high above its table the face that the object stands on is, by points of another scan that
+// are moved there; nothing where they do not show such a face.
+std::optional<double> standing_height(const PointCloud& points, const Pose& table_from_points) {
+  constexpr double kDown = -0.9, kThickness = 0.003, kHighest = 0.015;
+  std::vector<double> heights;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d n = table_from_points.rotation * points.normals[i].cast<double>();
+    if (n.z() > kDown) continue;
+    heights.push_back((table_from_points * points.points[i].cast<double>()).z());
   }
-  return best;
+  const std::size_t fewest = std::max<std::size_t>(20, points.size() / 50);
+  if (heights.size() < fewest) return std::nullopt;
+  // It may be hollow in the middle: its lowest tenth is what it stands on.
+  const auto tenth = heights.begin() + heights.size() / 10;
+  std::nth_element(heights.begin(), tenth, heights.end());
+  const double height = *tenth;
+  const std::size_t face =
+      std::ranges::count_if(heights, [&](double h) { return std::abs(h - height) < kThickness; });
+  if (face < fewest || std::abs(height) > kHighest) return std::nullopt;
+  return height;
+}
+
+// Sums of a least-squares problem for a shift of the source.
+struct ShiftSums {
+  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  double squares = 0, count = 0;
+
+  // A shift by `off` along `direction` is what is wanted.
+  void add(const Eigen::Vector3d& direction, double off, double weight) {
+    hessian += weight * direction * direction.transpose();
+    gradient += weight * off * direction;
+  }
+  double rms() const { return count > 0 ? std::sqrt(squares / count) : 0; }
+};
+
+// Point to plane, over the points of the source that lie on the target, facing the same way.
+ShiftSums overlap_sums(const PointCloud& source, const PointCloud& target, const NeighborGrid& near,
+                       const Pose& pose) {
+  constexpr float kSameSide = 0.7f;  // cosine between normals
+  ShiftSums sums;
+  const FastPose fast = to_fast(pose);
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    const Eigen::Vector3f p = fast * source.points[i];
+    const Eigen::Vector3f n = fast.rotation * source.normals[i];
+    float best = kReach * kReach;
+    int found = -1;
+    near.for_each_neighbor(p, [&](int j, float squared) {
+      if (n.dot(target.normals[j]) < kSameSide || squared > best) return;
+      best = squared;
+      found = j;
+    });
+    if (found < 0) continue;
+    const double off = target.normals[found].dot(target.points[found] - p);
+    sums.add(target.normals[found].cast<double>(), off, 1);
+    sums.squares += off * off;
+    ++sums.count;
+  }
+  return sums;
 }
 
 }  // namespace
+
+Pose settle_on_tables(const PointCloud& source, const PointCloud& target,
+                      const Pose& target_from_source) {
+  constexpr int kRounds = 10;
+  constexpr double kWeight = 0.2;      // of a table beside the overlap
+  constexpr double kMostWorse = 3e-4;  // what the overlap may lose, metres
+  const NeighborGrid near(target.points, kReach);
+  Pose pose = target_from_source;
+  double before = 0;
+  for (int round = 0; round <= kRounds; ++round) {
+    ShiftSums sums = overlap_sums(source, target, near, pose);
+    if (round == 0) before = sums.rms();
+    if (sums.count < 12 || sums.rms() > before + kMostWorse) return target_from_source;
+    if (round == kRounds) break;
+    const std::optional<double> there = standing_height(source, pose);
+    const std::optional<double> back = standing_height(target, pose.inverse());
+    if (!there && !back) break;
+    const double weight = kWeight * sums.count;
+    if (there) sums.add(Eigen::Vector3d::UnitZ(), -*there, weight);
+    if (back) sums.add(pose.rotation * Eigen::Vector3d::UnitZ(), *back, weight);
+    sums.hessian += 1e-3 * sums.count * Eigen::Matrix3d::Identity();
+    const Eigen::Vector3d shift = sums.hessian.ldlt().solve(sums.gradient);
+    pose.translation += shift;
+    if (shift.norm() < 1e-5) break;
+  }
+  return pose;
+}
 
 std::vector<std::string> merge_resting_positions(std::vector<RestingPosition>& positions,
                                                  const ScanOptions& options) {
