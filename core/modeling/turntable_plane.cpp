@@ -7,21 +7,29 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <queue>
+
+#include <opencv2/imgproc.hpp>
 
 #include "core/base/random.hpp"
+#include "core/modeling/private/select.hpp"
 #include "core/modeling/turntable.hpp"
 
 namespace bpa {
 namespace {
 
-float noise_of(float depth) { return depth_noise(depth); }
-
 // The scene without the object, as far as it can be seen, and where the object was seen.
 struct Background {
-  std::vector<Eigen::Vector3f> points, normals;  // of valid pixels
-  std::vector<Eigen::Vector3f> moving;           // measured in front of the background
+  PointCloud still;                     // of valid pixels
+  std::vector<Eigen::Vector3f> moving;  // measured in front of it
 };
+
+// The value that a share `q` of the values lies below.
+template <class Value>
+Value quantile(std::vector<Value>& values, double q) {
+  const auto place = values.begin() + static_cast<int>(q * (values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
 
 Background look_behind(const std::vector<ScanView>& views) {
   Background out;
@@ -36,15 +44,13 @@ Background look_behind(const std::vector<ScanView>& views) {
     if (depths.size() < 2) continue;
     std::sort(depths.begin(), depths.end());
     // Neither the farthest nor nearest measurement is to be trusted.
-    const auto far_place =
-        depths.begin() + static_cast<std::ptrdiff_t>(0.85 * static_cast<double>(depths.size() - 1));
-    const SurfaceMap& map = views[far_place->second].view.map;
-    const float far = far_place->first;
+    const auto [far, far_view] = depths[static_cast<std::size_t>(0.85 * (depths.size() - 1))];
+    const SurfaceMap& map = views[far_view].view.map;
     if (map.normals[i].squaredNorm() > 0.5f) {
-      out.points.push_back(map.points[i]);
-      out.normals.push_back(map.normals[i]);
+      out.still.points.push_back(map.points[i]);
+      out.still.normals.push_back(map.normals[i]);
     }
-    const float least = std::max(0.015f, 8 * noise_of(far));
+    const float least = std::max(0.015f, 8 * depth_noise(far));
     // Ragged edges of what does not move change too: take what is seen to come and go repeatedly.
     if (depths.size() >= 3 && depths[1].first < far - least) {
       for (const auto& [z, v] : depths) {
@@ -55,21 +61,25 @@ Background look_behind(const std::vector<ScanView>& views) {
   return out;
 }
 
-bool on_plane(const Plane& plane, const Eigen::Vector3f& p, const Eigen::Vector3f& n) {
-  const float tolerance = std::max(0.005f, 2.5f * noise_of(p.z()));
-  return std::abs(plane.normal.dot(p) - plane.offset) < tolerance && plane.normal.dot(n) > 0.94f;
+float height(const Plane& plane, const Eigen::Vector3f& p) {
+  return plane.normal.dot(p) - plane.offset;
 }
 
-Plane refit(const Plane& start, const std::vector<Eigen::Vector3f>& points,
-            const std::vector<Eigen::Vector3f>& normals) {
+bool on_plane(const Plane& plane, const PointCloud& cloud, std::size_t i) {
+  const float tolerance = std::max(0.005f, 2.5f * depth_noise(cloud.points[i].z()));
+  return std::abs(height(plane, cloud.points[i])) < tolerance &&
+         plane.normal.dot(cloud.normals[i]) > 0.94f;
+}
+
+Plane refit(const Plane& start, const PointCloud& cloud) {
   Plane plane = start;
   for (int round = 0; round < 3; ++round) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
     double count = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (!on_plane(plane, points[i], normals[i])) continue;
-      const Eigen::Vector3d p = points[i].cast<double>();
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (!on_plane(plane, cloud, i)) continue;
+      const Eigen::Vector3d p = cloud.points[i].cast<double>();
       mean += p;
       squares += p * p.transpose();
       ++count;
@@ -89,46 +99,32 @@ Plane refit(const Plane& start, const std::vector<Eigen::Vector3f>& points,
 std::vector<Plane> find_planes(const Background& background, std::uint64_t seed) {
   constexpr int kPlanes = 8, kDraws = 200;
   constexpr std::size_t kLeast = 400;  // pixels
-  std::vector<Eigen::Vector3f> points = background.points, normals = background.normals;
+  PointCloud rest = background.still;
   std::vector<Plane> planes;
-  for (int k = 0; k < kPlanes && points.size() >= kLeast; ++k) {
-    RandomStream random(seed, static_cast<std::uint64_t>(k));
+  for (int k = 0; k < kPlanes && rest.size() >= kLeast; ++k) {
+    RandomStream random(seed, k);
     Plane best;
-    int best_count = 0;
-    const std::size_t step = std::max<std::size_t>(1, points.size() / 4000);
+    std::size_t best_count = 0;
+    const std::size_t step = std::max<std::size_t>(1, rest.size() / 4000);
     for (int draw = 0; draw < kDraws; ++draw) {
-      const auto i = static_cast<std::size_t>(random.index(static_cast<int>(points.size())));
-      const Plane plane{normals[i], normals[i].dot(points[i])};
-      int count = 0;
-      for (std::size_t j = 0; j < points.size(); j += step) {
-        count += on_plane(plane, points[j], normals[j]);
-      }
+      const int i = random.index(static_cast<int>(rest.size()));
+      const Plane plane{rest.normals[i], rest.normals[i].dot(rest.points[i])};
+      std::size_t count = 0;
+      for (std::size_t j = 0; j < rest.size(); j += step) count += on_plane(plane, rest, j);
       if (count <= best_count) continue;
       best_count = count;
       best = plane;
     }
-    if (static_cast<std::size_t>(best_count) * step < kLeast) break;
-    best = refit(best, points, normals);
-    std::vector<Eigen::Vector3f> rest_points, rest_normals;
-    for (std::size_t j = 0; j < points.size(); ++j) {
-      if (on_plane(best, points[j], normals[j])) continue;
-      rest_points.push_back(points[j]);
-      rest_normals.push_back(normals[j]);
-    }
-    points = std::move(rest_points);
-    normals = std::move(rest_normals);
-    planes.push_back(best);
+    if (best_count * step < kLeast) break;
+    planes.push_back(refit(best, rest));
+    rest = select(rest, [&](int j) { return !on_plane(planes.back(), rest, j); });
   }
   return planes;
 }
 
-float height(const Plane& plane, const Eigen::Vector3f& p) {
-  return plane.normal.dot(p) - plane.offset;
-}
-
 bool near_plane(const std::vector<Plane>& planes, const Eigen::Vector3f& p) {
   return std::any_of(planes.begin(), planes.end(), [&](const Plane& plane) {
-    return std::abs(height(plane, p)) < std::max(0.006f, 3 * noise_of(p.z()));
+    return std::abs(height(plane, p)) < std::max(0.006f, 3 * depth_noise(p.z()));
   });
 }
 
@@ -140,14 +136,8 @@ const Plane* carrier(const std::vector<Plane>& planes, const std::vector<Eigen::
   for (const Plane& plane : planes) {
     std::vector<float> heights;
     for (const Eigen::Vector3f& p : points) heights.push_back(height(plane, p));
-    const auto quantile = [&heights](double q) {
-      const auto place = heights.begin() +
-                         static_cast<std::ptrdiff_t>(q * static_cast<double>(heights.size() - 1));
-      std::nth_element(heights.begin(), place, heights.end());
-      return *place;
-    };
-    if (quantile(0.02) < -0.006f) continue;
-    const float gap = quantile(0.08);
+    if (quantile(heights, 0.02) < -0.006f) continue;
+    const float gap = quantile(heights, 0.08);
     if (gap >= lowest) continue;
     lowest = gap;
     best = &plane;
@@ -161,16 +151,14 @@ bool surrounds(const Plane& plane, const Background& background, const Eigen::Ve
   constexpr int kSectors = 8, kLeast = 10;  // the object may hide what is behind it
   const Eigen::Vector3f x = plane.normal.unitOrthogonal(), y = plane.normal.cross(x);
   std::array<int, kSectors> count{};
-  for (std::size_t i = 0; i < background.points.size(); ++i) {
-    const Eigen::Vector3f d = background.points[i] - middle;
+  for (std::size_t i = 0; i < background.still.size(); ++i) {
+    const Eigen::Vector3f d = background.still.points[i] - middle;
     const float u = d.dot(x), v = d.dot(y);
-    if (u * u + v * v < radius * radius) continue;
-    if (!on_plane(plane, background.points[i], background.normals[i])) continue;
+    if (u * u + v * v < radius * radius || !on_plane(plane, background.still, i)) continue;
     const double turn = std::atan2(v, u) / (2 * M_PI) + 0.5;
     ++count[static_cast<std::size_t>(turn * kSectors) % kSectors];
   }
-  return std::count_if(count.begin(), count.end(), [](int c) { return c >= kLeast; }) >=
-         kSectors - 1;
+  return std::ranges::count_if(count, [](int c) { return c >= kLeast; }) >= kSectors - 1;
 }
 
 // The same where little but ragged edges changes: the object looks alike from all sides, and so
@@ -192,12 +180,11 @@ const Plane* highest_carrier(const std::vector<Plane>& planes, const Background&
       stands |= h < kMostGap;
     }
     if (2 * feet.size() < points.size() || !stands) continue;
-    middle /= static_cast<float>(feet.size());
+    middle /= feet.size();
     std::vector<float> squared;
     for (const Eigen::Vector3f& p : feet) squared.push_back((p - middle).squaredNorm());
-    const auto half = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
-    std::nth_element(squared.begin(), half, squared.end());
-    if (!surrounds(plane, background, middle, std::sqrt(*half))) continue;
+    std::ranges::nth_element(squared, squared.begin() + squared.size() / 2);
+    if (!surrounds(plane, background, middle, std::sqrt(squared[squared.size() / 2]))) continue;
     if (best == nullptr || height(*best, middle) > 0) best = &plane;
   }
   return best;
@@ -213,8 +200,7 @@ bool is_above(const Plane& plane, const Plane& other, const Eigen::Vector3f& p) 
 std::vector<Eigen::Vector3f> standing_in_the_middle(const Background& background,
                                                     const std::vector<Plane>& planes) {
   std::vector<Eigen::Vector3f> points;
-  for (std::size_t i = 0; i < background.points.size(); ++i) {
-    const Eigen::Vector3f& p = background.points[i];
+  for (const Eigen::Vector3f& p : background.still.points) {
     if (std::max(std::abs(p.x()), std::abs(p.y())) > 0.2f * p.z()) continue;
     if (!near_plane(planes, p)) points.push_back(p);
   }
@@ -224,62 +210,47 @@ std::vector<Eigen::Vector3f> standing_in_the_middle(const Background& background
 // The ground covered by what rises above the plane, in cells of a centimetre.
 class Footprint {
  public:
-  Footprint(const Plane& plane, const Eigen::Vector3f& origin) : origin_(origin) {
-    x_ = plane.normal.unitOrthogonal();
-    y_ = plane.normal.cross(x_);
-    cells_.assign(kSide * kSide, 0);
-  }
+  Footprint(const Plane& plane, const Eigen::Vector3f& origin)
+      : origin_(origin), x_(plane.normal.unitOrthogonal()), y_(plane.normal.cross(x_)) {}
 
-  int cell_of(const Eigen::Vector3f& p) const {
-    const Eigen::Vector3f d = p - origin_;
-    const int u = static_cast<int>(std::floor(d.dot(x_) / kCell)) + kSide / 2;
-    const int v = static_cast<int>(std::floor(d.dot(y_) / kCell)) + kSide / 2;
-    return u < 0 || v < 0 || u >= kSide || v >= kSide ? -1 : v * kSide + u;
-  }
-  void count(const Eigen::Vector3f& p) {
-    if (const int c = cell_of(p); c >= 0) ++cells_[static_cast<std::size_t>(c)];
-  }
+  void count(const Eigen::Vector3f& p) { vote(p, counts_); }
   bool belongs(const Eigen::Vector3f& p) const {
-    const int c = cell_of(p);
-    return c >= 0 && object_[static_cast<std::size_t>(c)];
+    const cv::Point c = cell_of(p);
+    return inside(c) && object_(c);
   }
 
   // Everything connected with the cells of the seeds, over gaps of a cell.
   void grow(const std::vector<Eigen::Vector3f>& seeds, int least) {
-    object_.assign(cells_.size(), 0);
-    std::vector<int> votes(cells_.size(), 0);
-    for (const Eigen::Vector3f& p : seeds) {
-      if (const int c = cell_of(p); c >= 0) ++votes[static_cast<std::size_t>(c)];
-    }
-    std::queue<int> open;
-    const int most = *std::max_element(votes.begin(), votes.end());
-    for (std::size_t c = 0; c < votes.size(); ++c) {
-      if (4 * votes[c] < most || cells_[c] < least) continue;
-      object_[c] = 1;
-      open.push(static_cast<int>(c));
-    }
-    while (!open.empty()) {
-      const int c = open.front();
-      open.pop();
-      for (int dv = -2; dv <= 2; ++dv) {
-        for (int du = -2; du <= 2; ++du) {
-          const int u = c % kSide + du, v = c / kSide + dv;
-          if (u < 0 || v < 0 || u >= kSide || v >= kSide) continue;
-          const auto n = static_cast<std::size_t>(v * kSide + u);
-          if (object_[n] || cells_[n] < least) continue;
-          object_[n] = 1;
-          open.push(static_cast<int>(n));
-        }
-      }
+    cv::Mat_<int> votes = cv::Mat_<int>::zeros(kSide, kSide);
+    for (const Eigen::Vector3f& p : seeds) vote(p, votes);
+    double most = 0;
+    cv::minMaxLoc(votes, nullptr, &most);
+    const cv::Mat_<std::uint8_t> covered = counts_ >= least;
+    cv::Mat_<std::uint8_t> grown = (4 * votes >= most) & covered;
+    while (cv::countNonZero(grown != object_) > 0) {
+      object_ = grown.clone();
+      cv::dilate(object_, grown, cv::Mat::ones(5, 5, CV_8U));
+      grown &= covered;
     }
   }
 
  private:
   static constexpr int kSide = 160;
   static constexpr float kCell = 0.01f;
+
+  cv::Point cell_of(const Eigen::Vector3f& p) const {
+    const Eigen::Vector3f d = p - origin_;
+    return {static_cast<int>(std::floor(d.dot(x_) / kCell)) + kSide / 2,
+            static_cast<int>(std::floor(d.dot(y_) / kCell)) + kSide / 2};
+  }
+  static bool inside(const cv::Point& c) { return cv::Rect(0, 0, kSide, kSide).contains(c); }
+  void vote(const Eigen::Vector3f& p, cv::Mat_<int>& votes) const {
+    if (const cv::Point c = cell_of(p); inside(c)) ++votes(c);
+  }
+
   Eigen::Vector3f origin_, x_, y_;
-  std::vector<int> cells_;
-  std::vector<std::uint8_t> object_;
+  cv::Mat_<int> counts_ = cv::Mat_<int>::zeros(kSide, kSide);
+  cv::Mat_<std::uint8_t> object_ = cv::Mat_<std::uint8_t>::zeros(kSide, kSide);
 };
 
 }  // namespace
@@ -311,7 +282,7 @@ Result<Plane> segment_object(std::vector<ScanView>& views, const ScanOptions& op
   Footprint footprint(*table, middle);
   const auto rises = [&](const SurfaceMap& map, std::size_t i) {
     const float h = map.depth[i] > 0 ? height(*table, map.points[i]) : 0;
-    return h > std::max(0.004f, 2.7f * noise_of(map.depth[i])) &&
+    return h > std::max(0.004f, 2.7f * depth_noise(map.depth[i])) &&
            h < static_cast<float>(options.max_height_m);
   };
   for (const ScanView& scan : views) {
