@@ -12,29 +12,21 @@
 namespace bpa::sim {
 namespace {
 
-using Texture = Color (*)(const Eigen::Vector3d& p);
+using Texture = std::function<Color(const Eigen::Vector3d& p)>;
 
 Color wood(const Eigen::Vector3d& p) {
   const double grain = smooth_noise({p.x() * 0.08, p.y(), 1}, 0.008);
   const double board = lattice_noise(static_cast<int>(std::floor(p.y() / 0.11)), 3, 5);
   return mix(Color(0.55, 0.38, 0.22), Color(0.4, 0.26, 0.14), 0.6 * grain + 0.4 * board);
 }
-Color laminate(const Eigen::Vector3d& p) {
-  return mix(Color(0.78, 0.77, 0.74), Color(0.7, 0.69, 0.67), smooth_noise(p, 0.006));
-}
-Color slate(const Eigen::Vector3d& p) {
-  return mix(Color(0.2, 0.21, 0.23), Color(0.27, 0.28, 0.3), smooth_noise(p, 0.02));
-}
 Color cloth(const Eigen::Vector3d& p) {
   const double x = p.x() / 0.05, y = p.y() / 0.05;
   const double bands = (x - std::floor(x) < 0.5) + (y - std::floor(y) < 0.5);
   return mix(Color(0.85, 0.83, 0.78), Color(0.55, 0.2, 0.22), 0.5 * bands);
 }
-Color carpet(const Eigen::Vector3d& p) {
-  return mix(Color(0.35, 0.31, 0.26), Color(0.55, 0.5, 0.42), smooth_noise(p, 0.03));
-}
-Color plaster(const Eigen::Vector3d& p) {
-  return mix(Color(0.72, 0.71, 0.68), Color(0.78, 0.77, 0.75), smooth_noise(p, 0.3));
+// Two colours in spots of about `scale` metres.
+Texture mottled(const Color& a, const Color& b, double scale) {
+  return [=](const Eigen::Vector3d& p) { return mix(a, b, smooth_noise(p, scale)); };
 }
 
 // A rectangle spanned by u and v from a corner, as a grid of steps_u x steps_v cells.
@@ -43,7 +35,7 @@ struct Sheet {
   int steps_u = 1, steps_v = 1;
 };
 
-void add_sheet(const Sheet& sheet, Texture texture, TriangleMesh& mesh) {
+void add_sheet(const Sheet& sheet, const Texture& texture, TriangleMesh& mesh) {
   const auto& [corner, u, v, steps_u, steps_v] = sheet;
   const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
   const Eigen::Vector3f normal = u.cross(v).normalized().cast<float>();
@@ -68,7 +60,7 @@ void add_sheet(const Sheet& sheet, Texture texture, TriangleMesh& mesh) {
   }
 }
 
-SimulatedObject make_table(Texture texture, const Material& material) {
+SimulatedObject make_table(const Texture& texture, const Material& material) {
   constexpr double kThickness = 0.03;
   const Eigen::Vector3d x(2 * kTableHalfX, 0, 0), y(0, 2 * kTableHalfY, 0), down(0, 0, -kThickness);
   const Eigen::Vector3d corner(-kTableHalfX, -kTableHalfY, 0);
@@ -155,6 +147,8 @@ Shape distractor(std::uint64_t index) {
 }  // namespace
 
 std::vector<SimulatedObject> make_tables() {
+  const Texture laminate = mottled({0.78, 0.77, 0.74}, {0.7, 0.69, 0.67}, 0.006);
+  const Texture slate = mottled({0.2, 0.21, 0.23}, {0.27, 0.28, 0.3}, 0.02);
   return {make_table(wood, {0.6, 0.1}), make_table(laminate, {0.75, 0.2}),
           make_table(slate, {0.45, 0.1}), make_table(cloth, {0.75, 0.0})};
 }
@@ -164,6 +158,8 @@ SimulatedObject make_room() {
   const Eigen::Vector3d x(2 * kHalf, 0, 0), y(0, 2 * kHalf, 0), up(0, 0, kHeight);
   const Eigen::Vector3d corner(-kHalf, -kHalf, kFloorHeight);
   SimulatedObject room{"room", {}, {0.55, 0}, {}, {}};
+  const Texture carpet = mottled({0.35, 0.31, 0.26}, {0.55, 0.5, 0.42}, 0.03);
+  const Texture plaster = mottled({0.72, 0.71, 0.68}, {0.78, 0.77, 0.75}, 0.3);
   add_sheet({corner, x, y, 200, 200}, carpet, room.mesh);
   add_sheet({corner, up, x, 10, 20}, plaster, room.mesh);
   add_sheet({corner + y, x, up, 20, 10}, plaster, room.mesh);
