@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/oni_records.hpp"
 #include "core/base/status.hpp"
 
 // The .oni files of OpenNI2: what is needed to check one and to write one. Playing them is left to
@@ -77,20 +78,18 @@ class OniWriter {
   std::uint32_t frames(std::size_t index) const;
 
  private:
-  struct FrameEntry {
-    std::uint64_t stamp_us;
-    std::uint64_t position;
-  };
   struct Stream {
     OniStreamFormat format;
+    std::uint32_t node = 0;
     std::uint64_t added_position = 0;
-    std::vector<FrameEntry> frames;
+    std::uint64_t table_position = 0;                         ///< 0: not written yet.
+    std::vector<oni::SeekEntry> frames = {oni::SeekEntry()};  ///< By number; they count from 1.
   };
 
   OniWriter(std::string path, std::ofstream file)
       : path_(std::move(path)), file_(std::move(file)) {}
-  std::string node_added(std::size_t index, std::uint64_t table_position) const;
-  void write_properties(std::size_t index, bool registered);
+  static std::string node_added(const Stream& stream);
+  void write_properties(const Stream& stream, bool registered);
   void append(const std::string& bytes);
   Status state() const;
 

@@ -12,8 +12,6 @@ namespace bpa::camera::oni {
 
 inline constexpr char kIdentity[] = "NI10";
 inline constexpr std::size_t kFileHeaderBytes = 24;
-inline constexpr std::uint32_t kMagic = 0x0052494E;  // "NIR"
-inline constexpr std::size_t kRecordHeaderBytes = 28;
 /// What OpenNI2's player has room for.
 inline constexpr std::uint32_t kMaxFrameBytes = 1600 * 1200 * 3;
 inline constexpr std::uint32_t kMaxFieldBytes = 1U << 20U;
@@ -33,51 +31,58 @@ enum class RecordType : std::uint32_t {
   node_added = 0x0D,
   seek_table = 0x0E,
 };
-inline constexpr std::uint32_t kFirstType = 0x02, kLastType = 0x0E;
+inline constexpr RecordType kFirstType{0x02}, kLastType = RecordType::seek_table;
 
+// As they lie in a file; the project runs on little-endian machines only.
+#pragma pack(push, 1)
 struct RecordHeader {
+  static constexpr std::uint32_t kMagic = 0x0052494E;  // "NIR"
   std::uint32_t magic = kMagic;
-  std::uint32_t type = 0;
+  RecordType type{};
   std::uint32_t node = 0;
   std::uint32_t field_bytes = 0;  ///< Of this header and the fields.
   std::uint32_t payload_bytes = 0;
   std::uint64_t undo_position = 0;
 };
+/// Fields of node_added after the name.
+struct NodeFields {
+  std::uint32_t kind = 0;
+  std::uint32_t codec = kUncompressed;
+  std::uint32_t frames = 0;
+  std::uint64_t first_us = 0;
+  std::uint64_t last_us = 0;
+  std::uint64_t table_position = 0;
+};
+/// Fields of new_data.
+struct FrameFields {
+  std::uint64_t stamp_us = 0;
+  std::uint32_t number = 0;  ///< From 1.
+};
+/// One entry of the payload of seek_table.
+struct SeekEntry {
+  std::uint64_t stamp_us = 0;
+  std::uint32_t configuration = 0;
+  std::uint64_t position = 0;
+};
+/// The value of kModeProperty.
+struct ModeValue {
+  std::uint32_t width = 0, height = 0, fps = 0;
+};
+#pragma pack(pop)
 
-/// Appends a value as it lies in memory; the project runs on little-endian machines only.
+/// Appends a value as it lies in memory.
 template <class T>
 void put(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// Takes a value off `bytes` at `offset`, which moves on; zero and false past the end.
+/// Takes a value off `bytes` at `offset`, which moves on; false past the end.
 template <class T>
 bool get(const std::string& bytes, std::size_t& offset, T& value) {
   if (bytes.size() < offset + sizeof value) return false;
-  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  std::memcpy(static_cast<void*>(&value), bytes.data() + offset, sizeof value);
   offset += sizeof value;
   return true;
-}
-
-inline void put_header(std::string& bytes, const RecordHeader& header) {
-  put(bytes, header.magic);
-  put(bytes, header.type);
-  put(bytes, header.node);
-  put(bytes, header.field_bytes);
-  put(bytes, header.payload_bytes);
-  put(bytes, header.undo_position);
-}
-
-inline RecordHeader get_header(const std::string& bytes) {
-  RecordHeader header;
-  std::size_t offset = 0;
-  get(bytes, offset, header.magic);
-  get(bytes, offset, header.type);
-  get(bytes, offset, header.node);
-  get(bytes, offset, header.field_bytes);
-  get(bytes, offset, header.payload_bytes);
-  get(bytes, offset, header.undo_position);
-  return header;
 }
 
 /// A text field: its length with the final zero, and the text with it.

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <limits>
 
 #include "camera/oni_file.hpp"
-#include "camera/oni_records.hpp"
 
 namespace bpa::camera {
 namespace {
@@ -12,37 +13,17 @@ namespace {
 using namespace oni;
 
 /// A record with these fields and, after them, `payload_bytes` of payload.
-std::string record(RecordType type, std::size_t stream, const std::string& fields = "",
+std::string record(RecordType type, std::uint32_t node, const std::string& fields = "",
                    std::uint64_t undo_position = 0, std::size_t payload_bytes = 0) {
   RecordHeader header;
-  header.type = static_cast<std::uint32_t>(type);
-  header.node = static_cast<std::uint32_t>(stream + 1);
-  header.field_bytes = static_cast<std::uint32_t>(kRecordHeaderBytes + fields.size());
+  header.type = type;
+  header.node = node;
+  header.field_bytes = static_cast<std::uint32_t>(sizeof header + fields.size());
   header.payload_bytes = static_cast<std::uint32_t>(payload_bytes);
   header.undo_position = undo_position;
   std::string bytes;
-  put_header(bytes, header);
+  put(bytes, header);
   return bytes + fields;
-}
-
-std::string property(RecordType type, std::size_t stream, const char* name,
-                     const std::string& value) {
-  std::string fields;
-  put_text(fields, name);
-  put(fields, static_cast<std::uint32_t>(value.size()));
-  return record(type, stream, fields + value);
-}
-
-std::string number_property(std::size_t stream, const char* name, std::uint64_t number) {
-  std::string value;
-  put(value, number);
-  return property(RecordType::int_property, stream, name, value);
-}
-
-std::string real_property(std::size_t stream, const char* name, double number) {
-  std::string value;
-  put(value, number);
-  return property(RecordType::real_property, stream, name, value);
 }
 
 /// OpenNI 1's number for an image's format, which players ask for, too.
@@ -74,63 +55,64 @@ Result<OniWriter> OniWriter::create(const std::string& path,
   writer.append(header);
   // Players take all streams whose NODE_ADDED comes before the first STATE_READY.
   for (const OniStreamFormat& format : streams) {
-    writer.streams_.push_back({format, writer.position_, {}});
-    const std::size_t index = writer.streams_.size() - 1;
-    writer.append(writer.node_added(index, 0));
-    writer.write_properties(index, registered);
+    const auto node = static_cast<std::uint32_t>(writer.streams_.size() + 1);
+    const Stream& stream = writer.streams_.emplace_back(Stream{format, node, writer.position_});
+    writer.append(node_added(stream));
+    writer.write_properties(stream, registered);
   }
   std::string begin;
   put(begin, std::numeric_limits<std::uint32_t>::max());
   put(begin, std::numeric_limits<std::uint64_t>::max());
-  for (std::size_t i = 0; i < streams.size(); ++i) {
-    writer.append(record(RecordType::state_ready, i));
-  }
-  for (std::size_t i = 0; i < streams.size(); ++i) {
-    writer.append(record(RecordType::data_begin, i, begin));
+  for (const Stream& s : writer.streams_) writer.append(record(RecordType::state_ready, s.node));
+  for (const Stream& s : writer.streams_) {
+    writer.append(record(RecordType::data_begin, s.node, begin));
   }
   if (Status status = writer.state(); !status.ok()) return status;
   return writer;
 }
 
-std::string OniWriter::node_added(std::size_t index, std::uint64_t table_position) const {
-  const Stream& stream = streams_[index];
-  const bool depth = stream.format.kind == OniStreamInfo::Kind::depth;
-  std::string fields;
-  put_text(fields, depth ? "Depth" : "Image");
-  put(fields, static_cast<std::uint32_t>(stream.format.kind));
-  put(fields, kUncompressed);
+std::string OniWriter::node_added(const Stream& stream) {
+  NodeFields node;
+  node.kind = static_cast<std::uint32_t>(stream.format.kind);
   // Not known before the end, when the table is written.
-  put(fields, table_position > 0 ? static_cast<std::uint32_t>(stream.frames.size())
-                                 : std::numeric_limits<std::uint32_t>::max());
-  put(fields, std::uint64_t{0});
-  put(fields, stream.frames.empty() ? std::uint64_t{0} : stream.frames.back().stamp_us);
-  put(fields, table_position);
-  return record(RecordType::node_added, index, fields);
+  node.frames = stream.table_position > 0 ? static_cast<std::uint32_t>(stream.frames.size() - 1)
+                                          : std::numeric_limits<std::uint32_t>::max();
+  node.last_us = stream.frames.back().stamp_us;
+  node.table_position = stream.table_position;
+  std::string fields;
+  put_text(fields, stream.format.kind == OniStreamInfo::Kind::depth ? "Depth" : "Image");
+  put(fields, node);
+  return record(RecordType::node_added, stream.node, fields);
 }
 
-void OniWriter::write_properties(std::size_t index, bool registered) {
-  const OniStreamFormat& format = streams_[index].format;
-  append(number_property(index, "oniRequiredFrameSize", format.frame_bytes));
-  append(number_property(index, "xnIsGenerating", 1));
-  if (format.max_depth > 0) append(number_property(index, "xnDeviceMaxDepth", format.max_depth));
-  append(number_property(index, "xnSupportedMapOutputModesCount", 1));
-  std::string mode;
-  put(mode, format.width);
-  put(mode, format.height);
-  put(mode, format.fps);
-  append(property(RecordType::general_property, index, "xnSupportedMapOutputModes", mode));
-  append(property(RecordType::general_property, index, kModeProperty, mode));
-  append(number_property(index, "xnPixelFormat", old_pixel_format(format)));
-  append(number_property(index, "oniPixelFormat", format.pixel_format));
-  std::string fov;
-  put(fov, format.horizontal_fov);
-  put(fov, format.vertical_fov);
-  append(property(RecordType::general_property, index, "xnFOV", fov));
-  append(property(RecordType::general_property, index, "xnCropping", std::string(12, '\0')));
-  append(number_property(index, "xnMirror", format.mirrored ? 1 : 0));
-  if (format.baseline_cm > 0) append(real_property(index, "DCRCDIS", format.baseline_cm));
+void OniWriter::write_properties(const Stream& stream, bool registered) {
+  const OniStreamFormat& format = stream.format;
+  const auto add = [&](RecordType type, const char* name, const auto& value) {
+    std::string fields;
+    put_text(fields, name);
+    put(fields, static_cast<std::uint32_t>(sizeof value));
+    put(fields, value);
+    append(record(type, stream.node, fields));
+  };
+  const auto add_number = [&](const char* name, std::uint64_t number) {
+    add(RecordType::int_property, name, number);
+  };
+  add_number("oniRequiredFrameSize", format.frame_bytes);
+  add_number("xnIsGenerating", 1);
+  if (format.max_depth > 0) add_number("xnDeviceMaxDepth", format.max_depth);
+  add_number("xnSupportedMapOutputModesCount", 1);
+  const ModeValue mode{format.width, format.height, format.fps};
+  add(RecordType::general_property, "xnSupportedMapOutputModes", mode);
+  add(RecordType::general_property, kModeProperty, mode);
+  add_number("xnPixelFormat", old_pixel_format(format));
+  add_number("oniPixelFormat", format.pixel_format);
+  add(RecordType::general_property, "xnFOV",
+      std::array{format.horizontal_fov, format.vertical_fov});
+  add(RecordType::general_property, "xnCropping", std::array<char, 12>{});
+  add_number("xnMirror", format.mirrored ? 1 : 0);
+  if (format.baseline_cm > 0) add(RecordType::real_property, "DCRCDIS", format.baseline_cm);
   if (format.kind == OniStreamInfo::Kind::depth) {
-    append(number_property(index, kRegisteredProperty, registered ? 1 : 0));
+    add_number(kRegisteredProperty, registered ? 1 : 0);
   }
 }
 
@@ -144,42 +126,28 @@ Status OniWriter::add(std::size_t index, std::int64_t stamp_us, const void* data
   if (first_us_ < 0) first_us_ = stamp_us;
   const auto stamp = static_cast<std::uint64_t>(std::max<std::int64_t>(0, stamp_us - first_us_));
   std::string fields;
-  put(fields, stamp);
-  put(fields, static_cast<std::uint32_t>(stream.frames.size() + 1));
-  const std::uint64_t previous = stream.frames.empty() ? 0 : stream.frames.back().position;
-  stream.frames.push_back({stamp, position_});
-  append(record(RecordType::new_data, index, fields, previous, size));
+  put(fields, FrameFields{stamp, static_cast<std::uint32_t>(stream.frames.size())});
+  const std::uint64_t previous = stream.frames.back().position;
+  stream.frames.push_back({stamp, 0, position_});
+  append(record(RecordType::new_data, stream.node, fields, previous, size));
   file_.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
   position_ += size;
   return state();
 }
 
 Status OniWriter::finish() {
-  std::vector<std::uint64_t> tables;
-  for (std::size_t i = 0; i < streams_.size(); ++i) {
-    append(record(RecordType::node_removed, i, "", streams_[i].added_position));
-    tables.push_back(position_);
+  for (Stream& stream : streams_) {
+    append(record(RecordType::node_removed, stream.node, "", stream.added_position));
+    stream.table_position = position_;
     std::string table;
-    const auto entry = [&table](std::uint64_t stamp, std::uint64_t position) {
-      put(table, stamp);
-      put(table, std::uint32_t{0});  // the streams' settings never change
-      put(table, position);
-    };
-    entry(0, 0);  // frames count from 1
-    for (const FrameEntry& frame : streams_[i].frames) entry(frame.stamp_us, frame.position);
-    append(record(RecordType::seek_table, i, "", 0, table.size()));
-    append(table);
+    for (const SeekEntry& frame : stream.frames) put(table, frame);
+    append(record(RecordType::seek_table, stream.node, "", 0, table.size()) + table);
   }
-  RecordHeader end;
-  end.type = static_cast<std::uint32_t>(RecordType::end);
-  end.field_bytes = kRecordHeaderBytes;
-  std::string bytes;
-  put_header(bytes, end);
-  append(bytes);
+  append(record(RecordType::end, 0));
   // Again, now with the number of frames.
-  for (std::size_t i = 0; i < streams_.size(); ++i) {
-    file_.seekp(static_cast<std::streamoff>(streams_[i].added_position));
-    const std::string added = node_added(i, tables[i]);
+  for (const Stream& stream : streams_) {
+    file_.seekp(static_cast<std::streamoff>(stream.added_position));
+    const std::string added = node_added(stream);
     file_.write(added.data(), static_cast<std::streamsize>(added.size()));
   }
   file_.close();
@@ -187,7 +155,8 @@ Status OniWriter::finish() {
 }
 
 std::uint32_t OniWriter::frames(std::size_t index) const {
-  return index < streams_.size() ? static_cast<std::uint32_t>(streams_[index].frames.size()) : 0;
+  return index < streams_.size() ? static_cast<std::uint32_t>(streams_[index].frames.size() - 1)
+                                 : 0;
 }
 
 void OniWriter::append(const std::string& bytes) {
