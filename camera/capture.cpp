@@ -34,20 +34,135 @@ class Capture::Impl {
         ready_(std::move(ready)),
         open_(std::move(open)) {}
 
-  void run();
-  void watch();
+  void run() {
+    bool ended = false;
+    while (!stopping() && !ended) {
+      std::unique_ptr<CameraDevice> camera = open();
+      if (camera) {
+        ended = stream(*camera);
+        if (recording_until_) (void)end_recording(camera.get());
+        note_call("closing the device");
+        camera.reset();
+        note_call(nullptr);
+      }
+      work_on_tasks(nullptr);
+      if (!stopping() && !ended) sleep(times_.retry);
+    }
+    while (!stopping()) {
+      sleep(times_.retry);
+      work_on_tasks(nullptr);
+    }
+    note_call("shutting the driver down");
+    open_ = nullptr;
+    note_call(nullptr);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    finished_ = true;
+    wake_.notify_all();
+  }
+
+  void watch() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!stopping_) {
+      const bool reported = hangs();
+      if (reported) {
+        const std::string text = hang_text();
+        lock.unlock();
+        set_state(LogLevel::error, text);
+        refuse_tasks(Status(StatusCode::unavailable, text));
+        lock.lock();
+      }
+      // A call that has not begun yet hangs no earlier than this.
+      const TimePoint since = call_ != nullptr && !reported ? call_began_ : clock_->now();
+      if (!stopping_) clock_->wait_until(wake_, lock, since + times_.timeout);
+    }
+  }
+
   /// Waits kPatienceAtEnd for the capture thread's end; the owner's functions are not called after.
-  void stop();
+  void stop() {
+    bool in_time = false;
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      stopping_ = true;
+      wake_.notify_all();
+      const TimePoint until = clock_->now() + kPatienceAtEnd;
+      while (!finished_ && clock_->now() < until) clock_->wait_until(wake_, lock, until);
+      in_time = finished_;
+    }
+    {
+      const std::lock_guard<std::mutex> lock(deliver_mutex_);
+      on_images_ = nullptr;
+      ready_ = nullptr;
+    }
+    refuse_tasks(Status(StatusCode::unavailable, "the server is stopping"));
+    if (!in_time) {
+      log(log_, LogLevel::error, "capture: the driver does not return; it is left behind");
+    }
+  }
 
   /// Something to do with the open camera, on the capture thread; nullptr when none is open.
   struct Task {
     std::function<Result<RecordingSummary>(CameraDevice*)> work;
     Recorded done;
   };
-  void post(Task task);
+  void post(Task task) {
+    std::optional<Status> refused;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (stopping_) refused = Status(StatusCode::unavailable, "the server is stopping");
+      if (hangs()) refused = Status(StatusCode::unavailable, hang_text());
+      if (!refused) tasks_.push_back(std::move(task));
+    }
+    if (refused) {
+      task.done(*refused);
+    } else {
+      wake_.notify_all();
+    }
+  }
+
   Result<RecordingSummary> begin_recording(CameraDevice* camera, const std::string& path,
-                                           std::chrono::milliseconds limit);
-  Result<RecordingSummary> end_recording(CameraDevice* camera);
+                                           std::chrono::milliseconds limit) {
+    if (camera == nullptr) {
+      return Status(StatusCode::unavailable, "there is no camera to record: " + status().text);
+    }
+    if (recording_until_) {
+      return Status(StatusCode::busy, status().recording + " is being recorded; stop that first");
+    }
+    std::error_code error;
+    if (std::filesystem::exists(path, error)) {
+      return invalid_argument(path + " is there already; recordings replace no file");
+    }
+    if (Status s = camera->start_recording(path); !s.ok()) return s;
+    recording_until_ = clock_->now() + limit;
+    recorded_.reset();
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      status_.recording = path;
+    }
+    log(log_, LogLevel::info, "capture: recording to " + path);
+    return RecordingSummary{path, 0, 0};
+  }
+
+  Result<RecordingSummary> end_recording(CameraDevice* camera) {
+    if (recording_until_ && camera != nullptr) {
+      recording_until_.reset();
+      Result<RecordingSummary> summary = camera->stop_recording();
+      std::string path;
+      {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        path.swap(status_.recording);
+      }
+      if (!summary.ok()) {
+        log(log_, LogLevel::error,
+            "capture: recording to " + path + " failed: " + summary.status().message);
+        return summary;
+      }
+      log(log_, LogLevel::info,
+          "capture: recorded " + std::to_string(summary->frames) + " frames to " + summary->path);
+      recorded_ = *summary;
+    }
+    if (!recorded_) return Status(StatusCode::not_found, "nothing is being recorded");
+    return *recorded_;
+  }
 
   CaptureStatus status() const {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -55,31 +170,117 @@ class Capture::Impl {
   }
 
  private:
-  /// Names the call into the driver that runs while it lives, for the watchdog.
-  class Call {
-   public:
-    Call(Impl& impl, const char* name) : impl_(impl) {
-      const std::lock_guard<std::mutex> lock(impl_.mutex_);
-      impl_.call_ = name;
-      impl_.call_began_ = impl_.clock_->now();
-    }
-    ~Call() {
-      const std::lock_guard<std::mutex> lock(impl_.mutex_);
-      impl_.call_ = nullptr;
-    }
+  /// Names the call into the driver that begins, for the watchdog; nullptr: it has returned.
+  void note_call(const char* name) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    call_ = name;
+    call_began_ = clock_->now();
+  }
 
-   private:
-    Impl& impl_;
-  };
+  std::unique_ptr<CameraDevice> open() {
+    note_call("opening the device");
+    Result<std::unique_ptr<CameraDevice>> camera = open_();
+    note_call(nullptr);
+    bool lost = false;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      status_.last_attempt = camera.status().message;
+      lost = reported_ && status_.level == LogLevel::error;
+      if (camera.ok()) {
+        status_.device = (*camera)->name();
+        ++status_.opened;
+      }
+    }
+    if (camera.ok()) return std::move(camera).value();
+    // A camera that is gone is not there: that was said when it went.
+    if (!lost || camera.status().code != StatusCode::unavailable) {
+      set_state(LogLevel::error, camera.status().message);
+    }
+    return nullptr;
+  }
 
-  std::unique_ptr<CameraDevice> open();
-  bool stream(CameraDevice& camera);
-  void deliver(SensorImages&& images);
-  std::vector<Task> take_tasks();
-  void work_on_tasks(CameraDevice* camera);
-  void refuse_tasks(const Status& status);
-  std::string hang_text() const;
-  void set_state(LogLevel level, const std::string& text);
+  /// Until the camera is lost or the server stops; true when a recording came to its end.
+  bool stream(CameraDevice& camera) {
+    auto last_frame = clock_->now();
+    while (!stopping()) {
+      work_on_tasks(&camera);
+      if (recording_until_ && clock_->now() >= *recording_until_) (void)end_recording(&camera);
+      bool wanted = true;
+      {
+        const std::lock_guard<std::mutex> lock(deliver_mutex_);
+        if (ready_) wanted = ready_();
+      }
+      if (!wanted) {
+        last_frame = clock_->now();
+        sleep(kReadyPoll);
+        continue;
+      }
+      note_call("waiting for a frame");
+      Result<DeviceOutput> output = camera.next(std::min(kWait, times_.timeout / 2));
+      note_call(nullptr);
+      if (!output.ok()) {
+        set_state(LogLevel::error, camera.name() + " " + output.status().message);
+        return false;
+      }
+      if (output->ended) {
+        set_state(LogLevel::info, camera.name() + " has come to its end");
+        return true;
+      }
+      if (output->images) {
+        last_frame = clock_->now();
+        const std::string complaint = camera.complaint();
+        set_state(complaint.empty() ? LogLevel::info : LogLevel::warning,
+                  complaint.empty() ? "images come from " + camera.name()
+                                    : camera.name() + ": " + complaint);
+        deliver(*std::move(output->images));
+      } else if (output->busy) {
+        last_frame = clock_->now();
+      } else if (clock_->now() - last_frame > times_.timeout) {
+        set_state(LogLevel::error, camera.name() + " delivers no frames any more (none for " +
+                                       std::to_string(times_.timeout.count()) +
+                                       " ms); it is opened again until it does");
+        return false;
+      }
+    }
+    return false;
+  }
+
+  void deliver(SensorImages&& images) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      ++status_.frames;
+    }
+    const std::lock_guard<std::mutex> lock(deliver_mutex_);
+    if (on_images_) on_images_(std::move(images));
+  }
+
+  void set_state(LogLevel level, const std::string& text) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (reported_ && status_.level == level && status_.text == text) return;
+      reported_ = true;
+      status_.level = level;
+      status_.text = text;
+      if (stopping_) return;
+    }
+    log(log_, level, "capture: " + text);
+  }
+
+  std::vector<Task> take_tasks() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::exchange(tasks_, {});
+  }
+  void work_on_tasks(CameraDevice* camera) {
+    for (const Task& task : take_tasks()) task.done(task.work(camera));
+  }
+  void refuse_tasks(const Status& status) {
+    for (const Task& task : take_tasks()) task.done(status);
+  }
+
+  std::string hang_text() const {
+    return std::string("the driver does not return from ") + call_ + " (" +
+           std::to_string(times_.timeout.count()) + " ms so far)";
+  }
   bool stopping() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return stopping_;
@@ -118,240 +319,6 @@ class Capture::Impl {
   CaptureStatus status_;
   std::vector<Task> tasks_;
 };
-
-void Capture::Impl::set_state(LogLevel level, const std::string& text) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (reported_ && status_.level == level && status_.text == text) return;
-    reported_ = true;
-    status_.level = level;
-    status_.text = text;
-    if (stopping_) return;
-  }
-  log(log_, level, "capture: " + text);
-}
-
-void Capture::Impl::run() {
-  bool ended = false;
-  while (!stopping() && !ended) {
-    std::unique_ptr<CameraDevice> camera = open();
-    if (camera) {
-      ended = stream(*camera);
-      if (recording_until_) (void)end_recording(camera.get());
-      const Call call(*this, "closing the device");
-      camera.reset();
-    }
-    work_on_tasks(nullptr);
-    if (!stopping() && !ended) sleep(times_.retry);
-  }
-  while (!stopping()) {
-    sleep(times_.retry);
-    work_on_tasks(nullptr);
-  }
-  {
-    const Call call(*this, "shutting the driver down");
-    open_ = nullptr;
-  }
-  const std::lock_guard<std::mutex> lock(mutex_);
-  finished_ = true;
-  wake_.notify_all();
-}
-
-std::unique_ptr<CameraDevice> Capture::Impl::open() {
-  Result<std::unique_ptr<CameraDevice>> camera = [this] {
-    const Call call(*this, "opening the device");
-    return open_();
-  }();
-  bool lost = false;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    status_.last_attempt = camera.status().message;
-    lost = reported_ && status_.level == LogLevel::error;
-    if (camera.ok()) {
-      status_.device = (*camera)->name();
-      ++status_.opened;
-    }
-  }
-  if (camera.ok()) return std::move(camera).value();
-  // A camera that is gone is not there: that was said when it went.
-  if (!lost || camera.status().code != StatusCode::unavailable) {
-    set_state(LogLevel::error, camera.status().message);
-  }
-  return nullptr;
-}
-
-/// Until the camera is lost or the server stops; true when a recording came to its end.
-bool Capture::Impl::stream(CameraDevice& camera) {
-  auto last_frame = clock_->now();
-  while (!stopping()) {
-    work_on_tasks(&camera);
-    if (recording_until_ && clock_->now() >= *recording_until_) (void)end_recording(&camera);
-    bool wanted = true;
-    {
-      const std::lock_guard<std::mutex> lock(deliver_mutex_);
-      if (ready_) wanted = ready_();
-    }
-    if (!wanted) {
-      last_frame = clock_->now();
-      sleep(kReadyPoll);
-      continue;
-    }
-    Result<DeviceOutput> output = [&] {
-      const Call call(*this, "waiting for a frame");
-      return camera.next(std::min(kWait, times_.timeout / 2));
-    }();
-    if (!output.ok()) {
-      set_state(LogLevel::error, camera.name() + " " + output.status().message);
-      return false;
-    }
-    if (output->ended) {
-      set_state(LogLevel::info, camera.name() + " has come to its end");
-      return true;
-    }
-    if (output->images) {
-      last_frame = clock_->now();
-      const std::string complaint = camera.complaint();
-      set_state(complaint.empty() ? LogLevel::info : LogLevel::warning,
-                complaint.empty() ? "images come from " + camera.name()
-                                  : camera.name() + ": " + complaint);
-      deliver(*std::move(output->images));
-    } else if (output->busy) {
-      last_frame = clock_->now();
-    } else if (clock_->now() - last_frame > times_.timeout) {
-      set_state(LogLevel::error, camera.name() + " delivers no frames any more (none for " +
-                                     std::to_string(times_.timeout.count()) +
-                                     " ms); it is opened again until it does");
-      return false;
-    }
-  }
-  return false;
-}
-
-void Capture::Impl::deliver(SensorImages&& images) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ++status_.frames;
-  }
-  const std::lock_guard<std::mutex> lock(deliver_mutex_);
-  if (on_images_) on_images_(std::move(images));
-}
-
-void Capture::Impl::post(Task task) {
-  std::optional<Status> refused;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (stopping_) refused = Status(StatusCode::unavailable, "the server is stopping");
-    if (hangs()) refused = Status(StatusCode::unavailable, hang_text());
-    if (!refused) tasks_.push_back(std::move(task));
-  }
-  if (refused) {
-    task.done(*refused);
-  } else {
-    wake_.notify_all();
-  }
-}
-
-std::vector<Capture::Impl::Task> Capture::Impl::take_tasks() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return std::exchange(tasks_, {});
-}
-
-void Capture::Impl::work_on_tasks(CameraDevice* camera) {
-  for (const Task& task : take_tasks()) task.done(task.work(camera));
-}
-
-void Capture::Impl::refuse_tasks(const Status& status) {
-  for (const Task& task : take_tasks()) task.done(status);
-}
-
-Result<RecordingSummary> Capture::Impl::begin_recording(CameraDevice* camera,
-                                                        const std::string& path,
-                                                        std::chrono::milliseconds limit) {
-  if (camera == nullptr) {
-    return Status(StatusCode::unavailable, "there is no camera to record: " + status().text);
-  }
-  if (recording_until_) {
-    return Status(StatusCode::busy, status().recording + " is being recorded; stop that first");
-  }
-  std::error_code error;
-  if (std::filesystem::exists(path, error)) {
-    return invalid_argument(path + " is there already; recordings replace no file");
-  }
-  if (Status s = camera->start_recording(path); !s.ok()) return s;
-  recording_until_ = clock_->now() + limit;
-  recorded_.reset();
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    status_.recording = path;
-  }
-  log(log_, LogLevel::info, "capture: recording to " + path);
-  return RecordingSummary{path, 0, 0};
-}
-
-Result<RecordingSummary> Capture::Impl::end_recording(CameraDevice* camera) {
-  if (recording_until_ && camera != nullptr) {
-    recording_until_.reset();
-    Result<RecordingSummary> summary = camera->stop_recording();
-    std::string path;
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      path.swap(status_.recording);
-    }
-    if (!summary.ok()) {
-      log(log_, LogLevel::error,
-          "capture: recording to " + path + " failed: " + summary.status().message);
-      return summary;
-    }
-    log(log_, LogLevel::info,
-        "capture: recorded " + std::to_string(summary->frames) + " frames to " + summary->path);
-    recorded_ = *summary;
-  }
-  if (!recorded_) return Status(StatusCode::not_found, "nothing is being recorded");
-  return *recorded_;
-}
-
-std::string Capture::Impl::hang_text() const {
-  return std::string("the driver does not return from ") + call_ + " (" +
-         std::to_string(times_.timeout.count()) + " ms so far)";
-}
-
-void Capture::Impl::watch() {
-  std::unique_lock<std::mutex> lock(mutex_);
-  while (!stopping_) {
-    const bool reported = hangs();
-    if (reported) {
-      const std::string text = hang_text();
-      lock.unlock();
-      set_state(LogLevel::error, text);
-      refuse_tasks(Status(StatusCode::unavailable, text));
-      lock.lock();
-    }
-    // A call that has not begun yet hangs no earlier than this.
-    const TimePoint since = call_ != nullptr && !reported ? call_began_ : clock_->now();
-    if (!stopping_) clock_->wait_until(wake_, lock, since + times_.timeout);
-  }
-}
-
-void Capture::Impl::stop() {
-  bool in_time = false;
-  {
-    std::unique_lock<std::mutex> lock(mutex_);
-    stopping_ = true;
-    wake_.notify_all();
-    const TimePoint until = clock_->now() + kPatienceAtEnd;
-    while (!finished_ && clock_->now() < until) clock_->wait_until(wake_, lock, until);
-    in_time = finished_;
-  }
-  {
-    const std::lock_guard<std::mutex> lock(deliver_mutex_);
-    on_images_ = nullptr;
-    ready_ = nullptr;
-  }
-  refuse_tasks(Status(StatusCode::unavailable, "the server is stopping"));
-  if (!in_time) {
-    log(log_, LogLevel::error, "capture: the driver does not return; it is left behind");
-  }
-}
 
 Capture::Capture(OpenCamera open, const CaptureTimes& times,
                  std::function<void(SensorImages&&)> on_images, std::function<bool()> ready,
