@@ -1,134 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <atomic>
 #include <chrono>
 #include <cstdio>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <utility>
-#include <vector>
 
-#include "camera/openni2_sim/sim_stream.hpp"
+#include "camera/openni2_sim/sim_device.hpp"
 
 namespace bpa::sim_driver {
 namespace {
 
 constexpr const char* kUri = "bpa-sim";
 
-/// The opened device: two streams and the thread that shows them the frames at 30 Hz.
-class SimDevice : public oni::driver::DeviceBase {
- public:
-  SimDevice(SimFrames frames, const SimConfig& config)
-      : frames_(std::move(frames)),
-        config_(config),
-        depth_modes_(modes_of(ONI_SENSOR_DEPTH, frames_.depth, config.fine_depth)),
-        color_modes_(modes_of(ONI_SENSOR_COLOR, frames_.color, config.fine_depth)),
-        thread_([this] { run(); }) {}
-  ~SimDevice() override {
-    stopping_ = true;
-    thread_.join();
-  }
-
-  OniStatus getSensorInfoList(OniSensorInfo** sensors, int* count) override {
-    config_.pass();
-    *sensors = sensors_;
-    *count = config_.color_sensor ? 2 : 1;
-    return ONI_STATUS_OK;
-  }
-
-  oni::driver::StreamBase* createStream(OniSensorType sensor) override {
-    config_.pass();
-    const bool depth = sensor == ONI_SENSOR_DEPTH;
-    if (!depth && !(sensor == ONI_SENSOR_COLOR && config_.color_sensor)) return nullptr;
-    auto* stream =
-        new SimStream(sensor, depth ? depth_modes_ : color_modes_, frames_, config_, registering_);
-    const std::lock_guard<std::mutex> lock(mutex_);
-    streams_.push_back(stream);
-    return stream;
-  }
-
-  void destroyStream(oni::driver::StreamBase* stream) override {
-    config_.pass();
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      std::erase(streams_, stream);
-    }
-    delete stream;
-  }
-
-  OniStatus setProperty(int id, const void* data, int size) override {
-    config_.pass();
-    if (id != ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION) return ONI_STATUS_NOT_SUPPORTED;
-    OniImageRegistrationMode mode{};
-    const OniStatus status = take(data, size, mode);
-    if (status != ONI_STATUS_OK) return status;
-    if (isImageRegistrationModeSupported(mode) == FALSE) return ONI_STATUS_NOT_SUPPORTED;
-    registering_ = mode == ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR;
-    return ONI_STATUS_OK;
-  }
-
-  OniStatus getProperty(int id, void* data, int* size) override {
-    config_.pass();
-    switch (id) {
-      case ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION:
-        return give(
-            registering_ ? ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR : ONI_IMAGE_REGISTRATION_OFF, data,
-            size);
-      case ONI_DEVICE_PROPERTY_DRIVER_VERSION:
-        return give(OniVersion{1, 0, 0, 0}, data, size);
-      default:
-        return ONI_STATUS_NOT_SUPPORTED;
-    }
-  }
-
-  OniBool isPropertySupported(int id) override {
-    return id == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION || id == ONI_DEVICE_PROPERTY_DRIVER_VERSION;
-  }
-
-  OniBool isImageRegistrationModeSupported(OniImageRegistrationMode mode) override {
-    config_.pass();
-    return mode == ONI_IMAGE_REGISTRATION_OFF || config_.can_register;
-  }
-
-  OniStatus tryManualTrigger() override {
-    config_.pass();
-    return ONI_STATUS_OK;
-  }
-
- private:
-  void run() {
-    const auto start = std::chrono::steady_clock::now();
-    for (std::uint64_t tick = 0; !stopping_; ++tick) {
-      const auto since_start = std::chrono::microseconds(tick * 1'000'000 / 30);
-      std::this_thread::sleep_until(start + since_start);
-      if (!config_.deliver || config_.wedged || !config_.plugged) continue;
-      const std::lock_guard<std::mutex> lock(mutex_);
-      // Depth first, as most devices do; the device's clock started before.
-      const auto stamp = static_cast<std::uint64_t>(since_start.count()) + 5'000'000;
-      for (SimStream* stream : streams_) stream->show(tick, stamp);
-    }
-  }
-
-  const SimFrames frames_;
-  const SimConfig& config_;
-  std::vector<OniVideoMode> depth_modes_;
-  std::vector<OniVideoMode> color_modes_;
-  OniSensorInfo sensors_[2] = {
-      {ONI_SENSOR_DEPTH, static_cast<int>(depth_modes_.size()), depth_modes_.data()},
-      {ONI_SENSOR_COLOR, static_cast<int>(color_modes_.size()), color_modes_.data()}};
-  std::atomic<bool> registering_{false};
-  std::mutex mutex_;  ///< Guards the list; held while frames are shown.
-  std::vector<SimStream*> streams_;
-  std::atomic<bool> stopping_{false};
-  std::thread thread_;  ///< Last: starts when all else is there.
-};
-
 /// Announces the device while it is plugged in, opens and closes it.
 class SimDriver : public oni::driver::DriverBase {
  public:
   explicit SimDriver(OniDriverServices* services) : DriverBase(services) {}
-  ~SimDriver() override { shutdown(); }
 
   OniStatus initialize(oni::driver::DeviceConnectedCallback connected,
                        oni::driver::DeviceDisconnectedCallback disconnected,
@@ -137,8 +25,8 @@ class SimDriver : public oni::driver::DriverBase {
     const OniStatus status = DriverBase::initialize(connected, disconnected, state_changed, cookie);
     if (status != ONI_STATUS_OK || config_.scenes.empty()) return status;
     follow();
-    thread_ = std::thread([this] {
-      while (!stopping_) {
+    thread_ = std::jthread([this](const std::stop_token& stop) {
+      while (!stop.stop_requested()) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         config_.refresh();
         follow();
@@ -155,7 +43,7 @@ class SimDriver : public oni::driver::DriverBase {
       getServices().errorLoggerAppend("%s", frames.status().message.c_str());
       return nullptr;
     }
-    return new SimDevice(std::move(frames).value(), config_);
+    return new_sim_device(std::move(frames).value(), config_);
   }
 
   void deviceClose(oni::driver::DeviceBase* device) override {
@@ -170,10 +58,7 @@ class SimDriver : public oni::driver::DriverBase {
   }
   void disableFrameSync(void*) override { config_.pass(); }
 
-  void shutdown() override {
-    stopping_ = true;
-    if (thread_.joinable()) thread_.join();
-  }
+  void shutdown() override { thread_ = {}; }
 
  private:
   /// Tells OpenNI2 when the device came or went.
@@ -193,8 +78,7 @@ class SimDriver : public oni::driver::DriverBase {
 
   SimConfig config_;
   bool announced_ = false;
-  std::atomic<bool> stopping_{false};
-  std::thread thread_;
+  std::jthread thread_;  ///< Last: runs while all else is there.
 };
 
 }  // namespace

@@ -108,7 +108,7 @@ TEST_F(Playback, ExposureGainAndWhiteBalanceAreSettings) {
   };
   const Eigen::Vector3d usual = mean_color({});
   ASSERT_GT(usual.minCoeff(), 20);
-  // What the device does with them is in openni2_sim/sim_stream.cpp; values are cut to whole ones.
+  // What the device does with them is in openni2_sim/sim_device.cpp; values are cut to whole ones.
   const auto expect_parts = [&](const Eigen::Vector3d& color, const Eigen::Vector3d& parts) {
     const Eigen::Vector3d is = color.cwiseQuotient(usual);
     EXPECT_LT((is - parts).cwiseAbs().maxCoeff(), 0.02) << is.transpose();
