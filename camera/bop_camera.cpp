@@ -1,13 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/bop_camera.hpp"
-
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <thread>
 
+#include "camera/open_camera.hpp"
 #include "core/base/clock.hpp"
 #include "core/io/bop_dataset.hpp"
 
@@ -52,19 +49,14 @@ class BopCamera : public CameraDevice {
 
  private:
   SensorImages images_of(Frame frame) const {
+    const int width = frame.camera.width, height = frame.camera.height;
     SensorImages images;
     images.stamp_ns = unix_time_ns();
     images.camera = frame.camera;
-    const auto image = [&](PixelFormat format) {
-      return Image{format, frame.camera.width, frame.camera.height, {}};
-    };
     // Metres keep the data set's depth to the last bit, whatever its unit is.
-    images.depth = image(PixelFormat::depth_m);
-    images.depth.bytes.resize(sizeof(float) * frame.depth.size());
-    std::memcpy(images.depth.bytes.data(), frame.depth.data(), images.depth.bytes.size());
+    images.depth = {PixelFormat::depth_m, width, height, bytes_of(frame.depth)};
     if (options_.color && !frame.color.empty()) {
-      images.color = image(PixelFormat::rgb);
-      images.color->bytes = std::move(frame.color);
+      images.color = Image{PixelFormat::rgb, width, height, std::move(frame.color)};
     }
     return images;
   }

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/options.hpp"
 #include "core/base/status.hpp"
@@ -86,5 +88,20 @@ struct CameraOptions {
 /// The rules that visit_fields cannot say: the words of source, modes and registration. Messages
 /// name the field as the server does, "capture.source".
 Status check(const CameraOptions& options);
+
+/// Size and rate of a stream, as settings write it: 640x480@30.
+struct VideoMode {
+  int width = 0;
+  int height = 0;
+  int fps = 0;
+
+  bool operator==(const VideoMode&) const = default;
+};
+
+/// Reads "640x480@30"; nothing when it does not read so or a number is not in 1 to 8192.
+std::optional<VideoMode> parse_video_mode(const std::string& text);
+std::string to_string(const VideoMode& mode);
+/// "640x480@30, 320x240@30": each once, in this order.
+std::string list_of(const std::vector<VideoMode>& modes);
 
 }  // namespace bpa::camera

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "camera/camera_device.hpp"
 #include "camera/camera_options.hpp"
 #include "core/base/log.hpp"
@@ -14,5 +16,19 @@ Result<OpenCamera> camera_of(const CameraOptions& options, const LogHook& log);
 
 /// Whether capture.every_frame applies: recordings and data sets wait, sensors do not.
 bool is_paced(const CameraOptions& options);
+/// Whether a source is a recording of OpenNI2, a file *.oni.
+bool is_recording(const std::string& source);
+
+/// Opens and starts a device of OpenNI2: modes, no mirroring, depth and colour in step, depth
+/// registered to colour. `uri` is empty for the first that is found, and a path for a recording,
+/// which is checked before OpenNI2 sees it. OpenNI2 is loaded first if it is not. `unavailable`
+/// when the device is not there, `invalid_argument` when a setting does not fit it, `corrupt` for a
+/// damaged recording.
+OpenCamera openni2_camera(const std::string& uri, const CameraOptions& options, LogHook log);
+
+/// The frames of a data set in the BOP layout (its split "test"; FOLDER:SPLIT names another), in
+/// order, 30 a second times capture.speed.
+Result<std::unique_ptr<CameraDevice>> open_bop_camera(const std::string& folder,
+                                                      const CameraOptions& options);
 
 }  // namespace bpa::camera

@@ -1,17 +1,66 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include <openni2/OpenNI.h>
+#include <unistd.h>
 
-#include "camera/openni2_device.hpp"
-#include "camera/openni2_library.hpp"
-#include "camera/openni2_streams.hpp"
-#include "camera/usb_sensors.hpp"
-#include "camera/video_mode.hpp"
+#include "camera/list_devices.hpp"
+#include "camera/openni2.hpp"
 
 namespace bpa::camera {
 namespace {
+
+namespace fs = std::filesystem;
+
+struct Known {
+  const char* vendor;
+  const char* product;  ///< nullptr: any.
+  const char* name;
+  bool openni2;
+  const char* how;
+};
+
+constexpr const char* kFreenect =
+    "needs the freenect driver for OpenNI2 (libFreenectDriver.so of libfreenect) in "
+    "OpenNI2/Drivers";
+constexpr const char* kStock = "works with OpenNI2's own driver";
+constexpr const char* kRos = "has no OpenNI2 driver; run its ROS 2 node and use the camera topics";
+
+constexpr Known kKnown[] = {
+    {"045e", "02ae", "Kinect v1", true, kFreenect},
+    {"045e", "02bf", "Kinect for Windows v1", true, kFreenect},
+    {"045e", "02c4", "Kinect v2", false, kRos},
+    {"045e", "02d8", "Kinect v2", false, kRos},
+    {"045e", "097c", "Azure Kinect", false, kRos},
+    {"1d27", nullptr, "PrimeSense or Xtion sensor", true, kStock},
+    {"2bc5", nullptr, "Orbbec sensor", true,
+     "needs Orbbec's driver for OpenNI2, or its ROS 2 node"},
+    {"8086", "0ad3", "RealSense D415", false, kRos},
+    {"8086", "0b07", "RealSense D435", false, kRos},
+    {"8086", "0b3a", "RealSense D435i", false, kRos},
+    {"8086", "0b5c", "RealSense D455", false, kRos},
+};
+
+std::string word_of(const fs::path& path) {
+  std::ifstream file(path);
+  std::string word;
+  file >> word;
+  return word;
+}
+
+bool permitted(const fs::path& entry, const std::string& devices) {
+  char place[32];
+  std::snprintf(place, sizeof place, "/%03d/%03d", std::atoi(word_of(entry / "busnum").c_str()),
+                std::atoi(word_of(entry / "devnum").c_str()));
+  const std::string file = devices + place;
+  return access(file.c_str(), F_OK) != 0 || access(file.c_str(), R_OK | W_OK) == 0;
+}
 
 /// The modes of one sensor that we can read; what is wrong with it goes to `wrong`.
 void describe_sensor(openni::Device& device, openni::SensorType type, const char* what,
@@ -74,8 +123,25 @@ void describe_usb(const std::vector<UsbSensor>& sensors, int served, std::ostrea
 
 }  // namespace
 
+std::vector<UsbSensor> usb_sensors(const std::string& sysfs, const std::string& devices) {
+  std::vector<UsbSensor> sensors;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(sysfs, error)) {
+    const std::string vendor = word_of(entry.path() / "idVendor");
+    const std::string product = word_of(entry.path() / "idProduct");
+    const Known* known = std::ranges::find_if(kKnown, [&](const Known& one) {
+      return vendor == one.vendor && (one.product == nullptr || product == one.product);
+    });
+    if (known == std::end(kKnown)) continue;
+    sensors.push_back({entry.path().filename().string(), vendor + ":" + product, known->name,
+                       known->how, known->openni2, permitted(entry.path(), devices)});
+  }
+  std::ranges::sort(sensors, {}, &UsbSensor::place);
+  return sensors;
+}
+
 Result<std::string> list_devices() {
-  auto library = Openni2Library::load();
+  const auto library = load_openni2();
   if (!library.ok()) return library.status();
   openni::Array<openni::DeviceInfo> found;
   openni::OpenNI::enumerateDevices(&found);

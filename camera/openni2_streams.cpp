@@ -1,16 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/openni2_streams.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include <openni2/PS1080.h>
 
-#include "camera/openni2_library.hpp"
-#include "camera/video_mode.hpp"
-#include "core/io/camera_file.hpp"
+#include "camera/openni2.hpp"
 
 namespace bpa::camera {
 namespace {
@@ -30,52 +26,54 @@ VideoMode plain(const openni::VideoMode& mode) {
 }
 
 /// The rows of a frame without padding, its pixels in reverse order in each if `mirror`.
-void copy_rows(const openni::VideoFrameRef& frame, bool mirror, void* to) {
+template <class Value>
+std::vector<Value> rows_of(const openni::VideoFrameRef& frame, bool mirror) {
   const std::size_t bytes = pixel_bytes(frame.getVideoMode().getPixelFormat());
-  const auto width = static_cast<std::size_t>(frame.getWidth());
+  const std::size_t row = bytes * static_cast<std::size_t>(frame.getWidth());
+  std::vector<Value> values(row * static_cast<std::size_t>(frame.getHeight()) / sizeof(Value));
   const auto* from = static_cast<const std::uint8_t*>(frame.getData());
-  auto* out = static_cast<std::uint8_t*>(to);
-  for (int v = 0; v < frame.getHeight(); ++v) {
+  auto* to = reinterpret_cast<std::uint8_t*>(values.data());
+  for (int v = 0; v < frame.getHeight(); ++v, from += frame.getStrideInBytes(), to += row) {
     if (!mirror) {
-      std::memcpy(out, from, width * bytes);
-    } else {
-      for (std::size_t u = 0; u < width; ++u) {
-        std::memcpy(out + u * bytes, from + (width - 1 - u) * bytes, bytes);
-      }
+      std::memcpy(to, from, row);
+      continue;
     }
-    from += frame.getStrideInBytes();
-    out += width * bytes;
+    for (std::size_t u = 0; u < row; u += bytes) std::memcpy(to + u, from + row - bytes - u, bytes);
   }
-}
-
-Status fit(const std::string& path, const openni::VideoMode& mode, Intrinsics& intrinsics) {
-  Camera& camera = intrinsics.camera;
-  const double scale = static_cast<double>(mode.getResolutionX()) / camera.width;
-  if (mode.getResolutionY() != std::lround(camera.height * scale)) {
-    return invalid_argument(path + " is for " + std::to_string(camera.width) + "x" +
-                            std::to_string(camera.height) + "; images of " +
-                            to_string(plain(mode)) + " have another shape");
-  }
-  camera.width = mode.getResolutionX();
-  camera.height = mode.getResolutionY();
-  camera.fx *= scale;
-  camera.fy *= scale;
-  camera.cx = (camera.cx + 0.5) * scale - 0.5;
-  camera.cy = (camera.cy + 0.5) * scale - 0.5;
-  return {};
+  return values;
 }
 
 }  // namespace
 
-bool readable(openni::PixelFormat format) {
-  return std::find(std::begin(kFormats), std::end(kFormats), format) != std::end(kFormats);
+Result<std::shared_ptr<void>> load_openni2() {
+  const std::shared_ptr<void> library(nullptr, [](void*) { openni::OpenNI::shutdown(); });
+  if (openni::OpenNI::initialize() == openni::STATUS_OK) return library;
+  return Status(StatusCode::unavailable, "OpenNI2 cannot start: " + openni2_error());
 }
 
-Status choose_mode(openni::VideoStream& stream, const openni::SensorInfo& sensor,
-                   const std::string& field, const std::string& wanted) {
+std::string openni2_error() {
+  std::string text;
+  for (const char* c = openni::OpenNI::getExtendedError(); *c != '\0'; ++c) {
+    const bool space = *c == '\n' || *c == '\t' || *c == '\r';
+    if (!space) {
+      text += *c;
+    } else if (!text.empty() && text.back() != ' ') {
+      text += c[1] != '\0' ? "; " : "";
+    }
+  }
+  while (!text.empty() && (text.back() == ' ' || text.back() == ';')) text.pop_back();
+  return text.empty() ? "OpenNI2 does not say why" : text;
+}
+
+bool readable(openni::PixelFormat format) {
+  return std::ranges::find(kFormats, format) != std::end(kFormats);
+}
+
+Status choose_mode(openni::VideoStream& stream, const std::string& field,
+                   const std::string& wanted) {
   const auto mode = parse_video_mode(wanted);
   if (!mode) return invalid_argument(field + " is \"" + wanted + "\"; it must read 640x480@30");
-  const auto& modes = sensor.getSupportedVideoModes();
+  const auto& modes = stream.getSensorInfo().getSupportedVideoModes();
   std::vector<VideoMode> known;
   for (const openni::PixelFormat format : kFormats) {
     for (int i = 0; i < modes.getSize(); ++i) {
@@ -119,33 +117,40 @@ void set_exposure(openni::VideoStream& color, const CameraOptions& options, cons
   if (options.gain > 0) check(settings->setGain(options.gain), "gain");
 }
 
-Result<Intrinsics> intrinsics_of(openni::VideoStream& stream, const std::string& path,
-                                 const std::string& what) {
-  const openni::VideoMode mode = stream.getVideoMode();
-  Intrinsics intrinsics;
-  Camera& camera = intrinsics.camera;
-  if (!path.empty()) {
-    const auto file = io::read_camera(path);
-    if (!file.ok()) return file.status();
-    intrinsics.camera = file->camera;
-    intrinsics.distortion = file->distortion;
-    if (camera.width <= 0) return invalid_argument(path + " does not say the size of its images");
-    if (Status status = fit(path, mode, intrinsics); !status.ok()) return status;
-    return intrinsics;
+Result<io::CameraFile> intrinsics_of(openni::VideoStream& stream, const std::string& path,
+                                     const std::string& what) {
+  const VideoMode mode = plain(stream.getVideoMode());
+  if (path.empty()) {
+    const double horizontal = stream.getHorizontalFieldOfView();
+    const double vertical = stream.getVerticalFieldOfView();
+    if (!(horizontal > 0.1 && horizontal < 3 && vertical > 0.1 && vertical < 3)) {
+      return invalid_argument("the device does not say the field of view of its " + what +
+                              "; give a calibration file (capture.calibration)");
+    }
+    const double fx = mode.width / (2 * std::tan(horizontal / 2));
+    const double fy = mode.height / (2 * std::tan(vertical / 2));
+    io::CameraFile told;
+    told.camera = {
+        mode.width, mode.height, fx, fy, (mode.width - 1) / 2.0, (mode.height - 1) / 2.0};
+    return told;
   }
-  const double horizontal = stream.getHorizontalFieldOfView();
-  const double vertical = stream.getVerticalFieldOfView();
-  if (!(horizontal > 0.1 && horizontal < 3 && vertical > 0.1 && vertical < 3)) {
-    return invalid_argument("the device does not say the field of view of its " + what +
-                            "; give a calibration file (capture.calibration)");
+  auto file = io::read_camera(path);
+  if (!file.ok()) return file.status();
+  Camera& c = file->camera;
+  if (c.width <= 0) return invalid_argument(path + " does not say the size of its images");
+  const double scale = static_cast<double>(mode.width) / c.width;
+  if (mode.height != std::lround(c.height * scale)) {
+    return invalid_argument(path + " is for " + std::to_string(c.width) + "x" +
+                            std::to_string(c.height) + "; images of " + to_string(mode) +
+                            " have another shape");
   }
-  camera.width = mode.getResolutionX();
-  camera.height = mode.getResolutionY();
-  camera.fx = camera.width / (2 * std::tan(horizontal / 2));
-  camera.fy = camera.height / (2 * std::tan(vertical / 2));
-  camera.cx = (camera.width - 1) / 2.0;
-  camera.cy = (camera.height - 1) / 2.0;
-  return intrinsics;
+  c = {mode.width,
+       mode.height,
+       c.fx * scale,
+       c.fy * scale,
+       (c.cx + 0.5) * scale - 0.5,
+       (c.cy + 0.5) * scale - 0.5};
+  return file;
 }
 
 double baseline_of(openni::VideoStream& depth) {
@@ -158,24 +163,17 @@ double baseline_of(openni::VideoStream& depth) {
   return usable ? centimetres / 100 : 0;
 }
 
-std::vector<std::uint16_t> depth_pixels(const openni::VideoFrameRef& frame,
-                                        const StreamFormat& format) {
-  std::vector<std::uint16_t> pixels(static_cast<std::size_t>(frame.getWidth()) *
-                                    static_cast<std::size_t>(frame.getHeight()));
-  copy_rows(frame, format.mirrored, pixels.data());
-  if (format.max_value <= 0) return pixels;
-  for (std::uint16_t& z : pixels) {
-    if (z > format.max_value) z = 0;
-  }
+std::vector<std::uint16_t> depth_pixels(const openni::VideoFrameRef& frame, bool mirror,
+                                        int max_value) {
+  std::vector<std::uint16_t> pixels = rows_of<std::uint16_t>(frame, mirror);
+  if (max_value > 0)
+    std::ranges::replace_if(
+        pixels, [=](int z) { return z > max_value; }, 0);
   return pixels;
 }
 
 std::vector<std::uint8_t> pixel_bytes_of(const openni::VideoFrameRef& frame, bool mirror) {
-  std::vector<std::uint8_t> bytes(pixel_bytes(frame.getVideoMode().getPixelFormat()) *
-                                  static_cast<std::size_t>(frame.getWidth()) *
-                                  static_cast<std::size_t>(frame.getHeight()));
-  copy_rows(frame, mirror, bytes.data());
-  return bytes;
+  return rows_of<std::uint8_t>(frame, mirror);
 }
 
 OniStreamFormat recorded_format(openni::VideoStream& stream, OniStreamInfo::Kind kind) {
@@ -196,12 +194,6 @@ OniStreamFormat recorded_format(openni::VideoStream& stream, OniStreamInfo::Kind
     format.baseline_cm = 100 * baseline_of(stream);
   }
   return format;
-}
-
-Status record_frame(OniWriter& writer, std::size_t index, const openni::VideoFrameRef& frame) {
-  const std::vector<std::uint8_t> bytes = pixel_bytes_of(frame, false);
-  return writer.add(index, static_cast<std::int64_t>(frame.getTimestamp()), bytes.data(),
-                    bytes.size());
 }
 
 }  // namespace bpa::camera

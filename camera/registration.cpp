@@ -13,14 +13,11 @@ namespace {
 
 /// A corner of a depth pixel's square as a pixel of the colour image.
 Eigen::Vector2d carried(const DeviceGeometry& g, double u, double v, double z) {
-  double x = (u - g.depth.cx) / g.depth.fx - g.baseline / z;
-  double y = (v - g.depth.cy) / g.depth.fy;
-  if (!g.color_distortion.empty()) {
-    const Eigen::Vector2d bent = distort(g.color_distortion, x, y);
-    x = bent.x();
-    y = bent.y();
-  }
-  return {g.color.fx * x + g.color.cx, g.color.fy * y + g.color.cy};
+  const double x = (u - g.depth.cx) / g.depth.fx - g.baseline / z;
+  const double y = (v - g.depth.cy) / g.depth.fy;
+  const Eigen::Vector2d seen =
+      g.color_distortion.empty() ? Eigen::Vector2d(x, y) : distort(g.color_distortion, x, y);
+  return {g.color.fx * seen.x() + g.color.cx, g.color.fy * seen.y() + g.color.cy};
 }
 
 void close_gaps(const Camera& camera, std::vector<std::uint16_t>& depth) {

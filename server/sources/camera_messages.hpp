@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "camera/sensor_images.hpp"
+#include "camera/camera_device.hpp"
 #include "core/cloud/frame.hpp"
 #include "server/convert/frames.hpp"
 

@@ -6,11 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "camera/bop_camera.hpp"
-#include "camera/frame_pairs.hpp"
-#include "camera/host_clock.hpp"
-#include "camera/usb_sensors.hpp"
-#include "camera/video_mode.hpp"
+#include "camera/list_devices.hpp"
+#include "camera/open_camera.hpp"
+#include "camera/stamps.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace bpa::camera {

@@ -2,11 +2,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <utility>
 
+// The time stamps of a device: on the host's clock, and of frames that belong together.
+
 namespace bpa::camera {
+
+/// Maps the time stamps of a device to the host's clock.
+///
+/// A frame arrives some time after its exposure, never before: arrival = stamp + offset + delay.
+/// The smallest difference seen is the offset with the least delay, so it is kept; since clocks
+/// drift apart, it may grow by 100 millionths of the time that passes (crystals are within 50). The
+/// remaining error is the shortest delay of the device (its exposure and transfer time), which
+/// cannot be seen from here. Stamps stay as evenly spaced as the device made them, whatever load
+/// delays their arrival.
+class HostClock {
+ public:
+  /// The host's time of a device stamp that arrived at `arrival_ns`. A stamp that goes back, or is
+  /// off by more than 2 s, means a new start (a recording that repeats, a device plugged in again).
+  std::int64_t map(std::int64_t device_us, std::int64_t arrival_ns) {
+    const std::int64_t device_ns = device_us * 1000;
+    const std::int64_t difference = arrival_ns - device_ns;
+    const bool again =
+        !offset_ns_ || device_ns < last_device_ns_ || difference - *offset_ns_ > kRestartNs;
+    if (again || difference < *offset_ns_) {
+      offset_ns_ = difference;
+    } else {
+      offset_ns_ = std::min(difference, *offset_ns_ + (device_ns - last_device_ns_) / 10000);
+    }
+    last_device_ns_ = device_ns;
+    return device_ns + *offset_ns_;
+  }
+
+ private:
+  static constexpr std::int64_t kRestartNs = 2'000'000'000;
+  std::optional<std::int64_t> offset_ns_;
+  std::int64_t last_device_ns_ = 0;
+};
 
 /// Puts the depth and colour frames of one device together by its own time stamps. Holds one frame
 /// of each kind: a newer one takes the place of one that found no partner. `Image` is cheap to
@@ -33,15 +68,12 @@ class FramePairs {
   std::optional<Pair> take() {
     if (!depth_ || !color_) return std::nullopt;
     const std::int64_t apart = depth_->second - color_->second;
-    if (apart > tolerance_us_) {
-      color_.reset();
-      return std::nullopt;
-    }
+    if (apart > tolerance_us_) color_.reset();
     if (apart < -tolerance_us_) {
       depth_.reset();
       ++unpaired_depth_;
-      return std::nullopt;
     }
+    if (!depth_ || !color_) return std::nullopt;
     Pair pair{std::move(depth_->first), depth_->second, std::move(color_->first)};
     clear();
     return pair;
