@@ -24,7 +24,7 @@
 #include "server/result_publisher.hpp"
 #include "server/services/services.hpp"
 #include "server/settings.hpp"
-#include "server/sources/camera_source.hpp"
+#include "server/sources/frame_source.hpp"
 #include "server/sources/topic_source.hpp"
 #include "server/statistics.hpp"
 #include "server/worker.hpp"

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/sources/camera_source.hpp"
-
 #include <cmath>
 #include <condition_variable>
 #include <mutex>
@@ -14,9 +12,11 @@
 #include "idl/wire/messages.hpp"
 #include "idl/wire/time.hpp"
 #include "server/convert/results.hpp"
+#include "server/options.hpp"
 #include "server/output.hpp"
 #include "server/services/services.hpp"
 #include "server/sources/camera_messages.hpp"
+#include "server/sources/frame_source.hpp"
 #include "server/worker.hpp"
 
 namespace bpa::server {

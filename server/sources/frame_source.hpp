@@ -3,12 +3,17 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <vector>
 
+#include "core/base/log.hpp"
+#include "core/base/status.hpp"
 #include "idl/wire/msg/diagnostic_msgs.hpp"
+#include "idl/wire/participant.hpp"
 
 namespace bpa::server {
 
+struct CaptureOptions;
 struct IncomingFrame;
 
 /// Takes a frame, on a thread of its source.
@@ -26,5 +31,13 @@ class FrameSource {
   /// From any thread, at any time.
   virtual std::vector<SourceReport> reports() const = 0;
 };
+
+/// The server's own camera: its frames go to the search and to camera topics, it can be recorded by
+/// a service, and diagnostics say how it is. `on_frame` and `idle` (whether no frame waits for the
+/// search) are called on the capture thread.
+Result<std::unique_ptr<FrameSource>> open_camera_source(const wire::Participant& participant,
+                                                        const CaptureOptions& options,
+                                                        OnFrame on_frame,
+                                                        std::function<bool()> idle, LogHook log);
 
 }  // namespace bpa::server

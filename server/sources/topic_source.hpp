@@ -41,7 +41,10 @@ class TopicSource : public FrameSource {
   /// Publishers of the topic of whole frames that are matched now; 0 without that topic.
   std::size_t frame_publishers() const { return frames_.open() ? frames_.publishers() : 0; }
   /// What became of the camera's messages.
-  SyncCounts sync_counts() const;
+  SyncCounts sync_counts() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return synchronizer_.counts();
+  }
 
  private:
   /// A subscription to messages of any type.
@@ -75,7 +78,10 @@ class TopicSource : public FrameSource {
   SourceReport whole_report(const std::string& what, const Topic& topic) const;
   SourceReport camera_report() const;
   std::string camera_trouble() const;
-  double longest_silence() const;
+  double longest_silence() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return options_.silence_s;
+  }
 
   const wire::Participant& participant_;
   const OnFrame on_frame_;
