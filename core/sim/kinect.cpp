@@ -8,6 +8,8 @@
 #include <limits>
 #include <numbers>
 
+#include <opencv2/imgproc.hpp>
+
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/geometry/fast_pose.hpp"
@@ -208,24 +210,20 @@ float measure(const Measurement& m, const Noise& noise, const KinectOptions& opt
 std::vector<float> without_specks(const std::vector<float>& depth, const Camera& camera,
                                   double pixels_per_inverse) {
   constexpr int kEnoughNeighbours = 5;  // of 8
+  const cv::Mat measured(camera.height, camera.width, CV_32F, const_cast<float*>(depth.data()));
+  cv::Mat missing_far = measured.clone(), answers;
+  missing_far.setTo(std::numeric_limits<float>::max(), measured <= 0);
+  cv::Mat_<float> nearest, farthest;
+  cv::erode(missing_far, nearest, {});  // of 3 x 3 pixels each
+  cv::dilate(measured, farthest, {});
+  cv::boxFilter((measured > 0) & 1, answers, CV_8U, {3, 3}, {-1, -1}, false);
   std::vector<float> result = depth;
   for (int y = 1; y + 1 < camera.height; ++y) {
     for (int x = 1; x + 1 < camera.width; ++x) {
-      const int i = y * camera.width + x;
-      if (depth[i] > 0) continue;
-      int answers = 0;
-      float nearest = std::numeric_limits<float>::max(), farthest = 0;
-      for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) {
-          const float z = depth[i + dy * camera.width + dx];
-          if (z <= 0) continue;
-          ++answers;
-          nearest = std::min(nearest, z);
-          farthest = std::max(farthest, z);
-        }
-      }
-      if (answers < kEnoughNeighbours) continue;
-      if (pixels_per_inverse * (1 / nearest - 1 / farthest) <= kSameDisparity) result[i] = nearest;
+      const float near = nearest(y, x);
+      if (measured.at<float>(y, x) > 0 || answers.at<uchar>(y, x) < kEnoughNeighbours) continue;
+      if (pixels_per_inverse * (1 / near - 1 / farthest(y, x)) > kSameDisparity) continue;
+      result[y * camera.width + x] = near;
     }
   }
   return result;
@@ -284,19 +282,14 @@ std::vector<std::uint8_t> photograph(const std::vector<std::uint8_t>& ideal, con
     return noise_field(camera.width, camera.height, 1, shot_seed(random(), shot), num_threads);
   };
   const std::array<std::vector<float>, 3> noise{draw_field(), draw_field(), draw_field()};
+  cv::Mat blurred;
+  cv::Mat(camera.height, camera.width, CV_8UC3, const_cast<std::uint8_t*>(ideal.data()))
+      .convertTo(blurred, CV_32F);
+  cv::GaussianBlur(blurred, blurred, {3, 3}, 0, 0, cv::BORDER_REPLICATE);  // binomial: exact
   std::vector<std::uint8_t> image(ideal.size());
   for_each_pixel(camera, num_threads, [&](int x, int y, int i) {
     for (int c = 0; c < 3; ++c) {
-      double sum = 0;  // the 3 x 3 binomial
-      for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) {
-          const int u = std::clamp(x + dx, 0, camera.width - 1);
-          const int v = std::clamp(y + dy, 0, camera.height - 1);
-          sum += (2 - std::abs(dx)) * (2 - std::abs(dy)) * ideal[3 * (v * camera.width + u) + c] /
-                 16.0;
-        }
-      }
-      const double light = gain[c] * sum;
+      const double light = gain[c] * blurred.at<cv::Vec3f>(y, x)[c];
       const double sigma = options.color_noise * std::sqrt(6 + 0.12 * light);
       const double value = light + sigma * noise[c][i];
       image[3 * i + c] = static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 #if __has_include(<embree4/rtcore.h>)  // Debian 13
@@ -24,43 +24,38 @@ RTCRay ray_of(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, f
       far,        kMask,      0,          0};
 }
 
-void intersect(RTCScene scene, RTCRayHit& query) {
+/// rtcIntersect1 or rtcOccluded1 by either version's signature.
+template <auto Function, class Query>
+void ask(RTCScene scene, Query& query) {
 #if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(scene, &query);
+  Function(scene, &query, nullptr);
 #else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcIntersect1(scene, &context, &query);
+  Function(scene, &context, &query);
 #endif
 }
 
-/// Afterwards tfar is negative if something is in the way.
-void find_any_hit(RTCScene scene, RTCRay& ray) {
-#if RTC_VERSION_MAJOR >= 4
-  rtcOccluded1(scene, &ray);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(scene, &context, &ray);
-#endif
+bool hits_anything(RTCScene scene, RTCRay ray) {
+  ask<rtcOccluded1>(scene, ray);
+  return ray.tfar < 0;
+}
+
+/// Three numbers of four bytes for each item.
+template <class Item>
+void set_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format,
+                const std::vector<Item>& items) {
+  static_assert(sizeof(Item) == 12);
+  void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Item), items.size());
+  std::copy(items.begin(), items.end(), static_cast<Item*>(buffer));
 }
 
 RTCScene scene_of(RTCDevice device, const TriangleMesh& mesh) {
   RTCScene scene = rtcNewScene(device);
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                               mesh.vertices.size()));
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    for (int a = 0; a < 3; ++a) vertices[3 * i + a] = mesh.vertices[i][a];
-  }
-  auto* triangles = static_cast<unsigned*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                              3 * sizeof(unsigned), mesh.triangles.size()));
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    for (int a = 0; a < 3; ++a) triangles[3 * i + a] = mesh.triangles[i][a];
-  }
+  set_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.vertices);
+  set_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);
   rtcReleaseGeometry(geometry);
@@ -80,9 +75,8 @@ RayMeshes::RayMeshes(const std::vector<const TriangleMesh*>& meshes)
 
 bool RayMeshes::hits(int mesh, const Eigen::Vector3f& origin,
                      const Eigen::Vector3f& direction) const {
-  RTCRay ray = ray_of(origin, direction, 0, std::numeric_limits<float>::infinity());
-  find_any_hit(scenes_[mesh].get(), ray);
-  return ray.tfar < 0;
+  return hits_anything(scenes_[mesh].get(),
+                       ray_of(origin, direction, 0, std::numeric_limits<float>::infinity()));
 }
 
 RayScene::RayScene(const RayMeshes& meshes, std::vector<PosedMesh> instances)
@@ -112,7 +106,7 @@ std::optional<RayHit> RayScene::cast(const Eigen::Vector3f& origin,
   query.ray = ray_of(origin, direction, 0, std::numeric_limits<float>::infinity());
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  intersect(scene_.get(), query);
+  ask<rtcIntersect1>(scene_.get(), query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   RayHit hit;
@@ -148,9 +142,7 @@ std::optional<RayHit> RayScene::cast(const Eigen::Vector3f& origin,
 bool RayScene::blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
   const Eigen::Vector3f direction = to - from;
   const float margin = 2e-4f / direction.norm();
-  RTCRay ray = ray_of(from, direction, margin, 1 - margin);
-  find_any_hit(scene_.get(), ray);
-  return ray.tfar < 0;
+  return hits_anything(scene_.get(), ray_of(from, direction, margin, 1 - margin));
 }
 
 }  // namespace bpa::sim

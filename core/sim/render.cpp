@@ -66,32 +66,19 @@ RenderedImage render(const RayScene& scene, const Camera& camera, const Pose& wo
 namespace {
 
 // The pixels a mesh's corners span, at most one image beyond each border.
-struct PixelBox {
-  int left = 0, top = 0, right = -1, bottom = -1;
-};
-
-PixelBox box_of(const TriangleMesh& mesh, const Pose& camera_from_mesh, const Camera& camera) {
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
-  bool behind = false;
+Eigen::AlignedBox2i box_of(const TriangleMesh& mesh, const Pose& camera_from_mesh,
+                           const Camera& camera) {
+  const Eigen::Vector2d size(camera.width, camera.height);
+  const Eigen::AlignedBox2d all(-size, 2 * size - Eigen::Vector2d::Ones());
+  Eigen::AlignedBox2d box;
   for (const Eigen::Vector3f& vertex : mesh.vertices) {
     const Eigen::Vector3d p = camera_from_mesh * vertex.cast<double>();
-    if (p.z() < 1e-3) {
-      behind = true;
-      continue;
-    }
-    const Eigen::Vector2d pixel = camera.project(p);
-    low = low.cwiseMin(pixel);
-    high = high.cwiseMax(pixel);
+    if (p.z() < 1e-3) return {all.min().cast<int>(), all.max().cast<int>()};
+    box.extend(camera.project(p));
   }
-  if (behind) {
-    low = Eigen::Vector2d::Constant(-1e9);
-    high = -low;
-  }
-  const double width = camera.width, height = camera.height;
-  return {static_cast<int>(std::floor(std::max(low.x(), -width))),
-          static_cast<int>(std::floor(std::max(low.y(), -height))),
-          static_cast<int>(std::ceil(std::min(high.x(), 2 * width - 1))),
-          static_cast<int>(std::ceil(std::min(high.y(), 2 * height - 1)))};
+  if (box.isEmpty()) return {};
+  box.clamp(all);
+  return {box.min().array().floor().cast<int>(), box.max().array().ceil().cast<int>()};
 }
 
 }  // namespace
@@ -106,12 +93,12 @@ std::vector<InstanceVisibility> visibility(const RayScene& scene, const Rendered
   parallel_for(num_instances, num_threads, [&](int i) {
     const PosedMesh& posed = scene.instances()[i];
     const Pose mesh_from_camera = posed.world_from_mesh.inverse() * world_from_camera;
-    const PixelBox box =
+    const Eigen::AlignedBox2i box =
         box_of(scene.meshes().mesh(posed.mesh), mesh_from_camera.inverse(), camera);
     const Eigen::Matrix3f rotation = mesh_from_camera.matrix().cast<float>();
     const Eigen::Vector3f origin = mesh_from_camera.translation.cast<float>();
-    for (int y = box.top; y <= box.bottom; ++y) {
-      for (int x = box.left; x <= box.right; ++x) {
+    for (int y = box.min().y(); y <= box.max().y(); ++y) {
+      for (int x = box.min().x(); x <= box.max().x(); ++x) {
         const Eigen::Vector3f direction = rotation * camera.unproject(x, y, 1).cast<float>();
         result[i].all_pixels += scene.meshes().hits(posed.mesh, origin, direction);
       }
