@@ -37,14 +37,6 @@ std::vector<double> scores_of(const Estimates& estimates) {
   return scores;
 }
 
-/// Costs above a threshold become "not correct".
-Costs below(Costs costs, double threshold) {
-  for (auto& row : costs) {
-    for (double& cost : row) cost = cost < threshold ? cost : kNoMatch;
-  }
-  return costs;
-}
-
 /// The paper's criterion: both errors relative to their limits, the larger one.
 double paper_cost(const EvalObjects& objects, const EvaluationOptions& options,
                   const Pose& estimate, const io::BopInstance& truth) {
@@ -128,7 +120,7 @@ BopCase bop_case(const Estimates& estimates, const Instances& truth, double min_
 }
 
 int matched(const std::vector<double>& scores, const Costs& costs, double threshold) {
-  const std::vector<int> truth_of = match_greedily(scores, below(costs, threshold));
+  const std::vector<int> truth_of = match_greedily(scores, costs, threshold);
   return static_cast<int>(std::ranges::count_if(truth_of, [](int t) { return t >= 0; }));
 }
 
@@ -207,9 +199,7 @@ void add_rmse(const io::BopFrame& frame, const EvalObjects& objects, const Estim
         nearest_symmetric_pose(t.camera_from_object, e.camera_from_object, object.symmetry);
     return rms_distance(object.mesh.vertices, e.camera_from_object, nearest, {Pose{}});
   });
-  const std::vector<int> truth_of =
-      match_greedily(scores_of(estimates), below(costs, options.rmse_m));
-  for (const int t : truth_of) {
+  for (const int t : match_greedily(scores_of(estimates), costs, options.rmse_m)) {
     TruthOutcome* truth = t >= 0 ? &outcome.truth[static_cast<std::size_t>(t)] : nullptr;
     if (truth != nullptr && !truth->counts) continue;
     ++outcome.rmse_reported;

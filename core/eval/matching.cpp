@@ -24,14 +24,14 @@ bool is_right_about_any(const Pose& estimate, const ObjectModel& model,
 }
 
 std::vector<int> match_greedily(const std::vector<double>& scores,
-                                const std::vector<std::vector<double>>& costs) {
+                                const std::vector<std::vector<double>>& costs, double limit) {
   std::vector<std::size_t> order(scores.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater(), [&](std::size_t e) { return scores[e]; });
   std::vector<int> truth_of(scores.size(), -1);
   std::vector<bool> taken(costs.empty() ? 0 : costs.front().size(), false);
   for (const std::size_t e : order) {
-    double best = kNoMatch;
+    double best = limit;
     for (std::size_t t = 0; t < taken.size(); ++t) {
       if (taken[t] || !(costs[e][t] < best)) continue;
       best = costs[e][t];

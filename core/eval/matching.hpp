@@ -24,9 +24,10 @@ bool is_right_about_any(const Pose& estimate, const ObjectModel& model,
                         const std::vector<io::BopInstance>& truth);
 
 /// Greedy one-to-one matching, as BOP does it: estimates by falling score (by index where equal)
-/// each take the free truth of the smallest cost. costs[e][t] is kNoMatch where the estimate is not
-/// correct for the truth. Returns the truth of each estimate, -1 for none.
+/// each take the free truth of the smallest cost below `limit`. costs[e][t] is kNoMatch where the
+/// estimate is not correct for the truth. Returns the truth of each estimate, -1 for none.
 std::vector<int> match_greedily(const std::vector<double>& scores,
-                                const std::vector<std::vector<double>>& costs);
+                                const std::vector<std::vector<double>>& costs,
+                                double limit = kNoMatch);
 
 }  // namespace bpa::eval
