@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/model/distance_transform.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace bpa {
 namespace {
@@ -24,37 +25,34 @@ struct Line {
   explicit Line(std::size_t n)
       : height(n), site(n), place(n), border(n + 1), old_height(n), old_site(n) {}
 
+  // Where the parabola of q begins to be lower than that of v < q.
+  float crossing(int v, int q) const {
+    const float at_q = q, at_v = v;
+    return 0.5f * ((height[q] + at_q * at_q) - (height[v] + at_v * at_v)) / (at_q - at_v);
+  }
+
   void transform(int n) {
     int count = 0;
     for (int q = 0; q < n; ++q) {
-      const int i = q;
-      if (height[i] >= kFar) continue;
+      if (height[q] >= kFar) continue;
       float begin = -std::numeric_limits<float>::infinity();
-      while (count > 0) {
-        const int v = place[count - 1];
-        const float hv = height[v];
-        begin = 0.5f *
-                ((height[i] + static_cast<float>(q) * static_cast<float>(q)) -
-                 (hv + static_cast<float>(v) * static_cast<float>(v))) /
-                static_cast<float>(q - v);
+      for (; count > 0; --count) {
+        begin = crossing(place[count - 1], q);
         if (begin > border[count - 1]) break;
-        --count;
         begin = -std::numeric_limits<float>::infinity();
       }
       place[count] = q;
-      border[count] = begin;
-      ++count;
+      border[count++] = begin;
     }
     if (count == 0) return;
     old_height = height;
     old_site = site;
     int k = 0;
     for (int q = 0; q < n; ++q) {
-      while (k + 1 < count && border[k + 1] < static_cast<float>(q)) ++k;
-      const int v = place[k];
-      const auto d = static_cast<float>(q - v);
-      height[q] = old_height[v] + d * d;
-      site[q] = old_site[v];
+      while (k + 1 < count && border[k + 1] < q) ++k;
+      const float d = q - place[k];
+      height[q] = old_height[place[k]] + d * d;
+      site[q] = old_site[place[k]];
     }
   }
 };
@@ -106,27 +104,21 @@ std::vector<std::int32_t> nearest_marked_cells(const std::vector<std::uint8_t>& 
     site[i] = static_cast<std::int32_t>(i);
     height[i] = 0;
   }
-  Line line(static_cast<std::size_t>(std::max(1, size.maxCoeff())));
-  const std::size_t stride[3] = {
-      1, static_cast<std::size_t>(size.x()),
-      static_cast<std::size_t>(size.x()) * static_cast<std::size_t>(size.y())};
+  Line line(std::max(1, size.maxCoeff()));
+  const std::size_t width = size.x(), layer = width * size.y(), stride[3] = {1, width, layer};
   for (int axis = 0; axis < 3; ++axis) {
-    const int n = size[axis];
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     for (int b = 0; b < size[v]; ++b) {
       for (int a = 0; a < size[u]; ++a) {
-        const std::size_t begin =
-            static_cast<std::size_t>(a) * stride[u] + static_cast<std::size_t>(b) * stride[v];
-        for (int q = 0; q < n; ++q) {
-          const std::size_t i = begin + static_cast<std::size_t>(q) * stride[axis];
-          line.height[q] = height[i];
-          line.site[q] = site[i];
+        const std::size_t begin = a * stride[u] + b * stride[v];
+        for (int q = 0; q < size[axis]; ++q) {
+          line.height[q] = height[begin + q * stride[axis]];
+          line.site[q] = site[begin + q * stride[axis]];
         }
-        line.transform(n);
-        for (int q = 0; q < n; ++q) {
-          const std::size_t i = begin + static_cast<std::size_t>(q) * stride[axis];
-          height[i] = line.height[q];
-          site[i] = line.site[q];
+        line.transform(size[axis]);
+        for (int q = 0; q < size[axis]; ++q) {
+          height[begin + q * stride[axis]] = line.height[q];
+          site[begin + q * stride[axis]] = line.site[q];
         }
       }
     }
@@ -138,32 +130,25 @@ DistanceTransform distance_transform(std::span<const Eigen::Vector3f> points, fl
                                      float margin, int max_cells) {
   DistanceTransform t;
   if (points.empty()) return t;
-  Eigen::Vector3f low = points[0], high = points[0];
-  for (const Eigen::Vector3f& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  t.low = low.array() - margin;
-  const Eigen::Vector3f extent = (high - low).array() + 2 * margin;
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : points) box.extend(p);
+  t.low = box.min().array() - margin;
+  const Eigen::Vector3f extent = box.sizes().array() + 2 * margin;
   for (t.cell = cell;; t.cell *= 1.1f) {
     t.size = (extent / t.cell).array().floor().cast<int>() + 1;
     if (t.size.cast<double>().prod() <= max_cells) break;
   }
-  const std::size_t count = static_cast<std::size_t>(t.size.prod());
-  // The points of each cell, by counting.
+  const std::size_t count = t.size.prod();
   std::vector<std::uint32_t> first(count + 1, 0);
   std::vector<std::uint8_t> marked(count, 0);
-  std::vector<std::size_t> cell_of(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    cell_of[i] = static_cast<std::size_t>(t.cell_of(points[i]));
-    ++first[cell_of[i] + 1];
-    marked[cell_of[i]] = 1;
+  for (const Eigen::Vector3f& p : points) {
+    ++first[t.cell_of(p) + 1];
+    marked[t.cell_of(p)] = 1;
   }
-  for (std::size_t c = 0; c < count; ++c) first[c + 1] += first[c];
-  std::vector<std::uint32_t> order(points.size()), next(first.begin(), first.end() - 1);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    order[next[cell_of[i]]++] = static_cast<std::uint32_t>(i);
-  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return t.cell_of(points[i]); });
   t.nearest.assign(count, 0);
   refine(points, order, first, nearest_marked_cells(marked, t.size), t);
   return t;

@@ -17,10 +17,8 @@ Status ModelLibrary::add(std::shared_ptr<const ObjectModel> model) {
                               " has already; numbers must differ");
     }
   }
-  const auto place =
-      std::lower_bound(models_.begin(), models_.end(), model,
-                       [](const auto& a, const auto& b) { return a->number < b->number; });
-  models_.insert(place, std::move(model));
+  models_.insert(std::ranges::lower_bound(models_, model->number, {}, &ObjectModel::number),
+                 std::move(model));
   return {};
 }
 
@@ -32,8 +30,7 @@ Status ModelLibrary::remove(const std::string& name) {
 }
 
 std::shared_ptr<const ObjectModel> ModelLibrary::find(const std::string& name) const {
-  const auto found = std::find_if(models_.begin(), models_.end(),
-                                  [&](const auto& model) { return model->name == name; });
+  const auto found = std::ranges::find(models_, name, &ObjectModel::name);
   return found == models_.end() ? nullptr : *found;
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/geometry/fast_pose.hpp"
 
@@ -80,15 +81,11 @@ class SelfFit {
     for (const std::uint32_t i : surface_.sample) {
       const Eigen::Vector3f p = fast * surface_.points[i];
       const Eigen::Vector3f n = fast.rotation * surface_.normals[i];
-      const int found = nearest(p, n);
-      if (found < 0) continue;
-      const int j = found;
-      const auto off = static_cast<double>((p - surface_.points[j]).dot(surface_.normals[j]));
-      const double beside = static_cast<double>((p - surface_.points[j]).norm());
-      if (std::abs(off) > gate ||
-          beside > 2 * gate + static_cast<double>(surface_.distances.cell)) {
-        continue;
-      }
+      const int j = nearest(p, n);
+      if (j < 0) continue;
+      const Eigen::Vector3f d = p - surface_.points[j];
+      const double off = d.dot(surface_.normals[j]), reach = 2 * gate + surface_.distances.cell;
+      if (std::abs(off) > gate || d.norm() > reach) continue;
       visit(p.cast<double>(), surface_.normals[j].cast<double>(), off);
     }
   }
@@ -97,9 +94,7 @@ class SelfFit {
   int nearest(const Eigen::Vector3f& p, const Eigen::Vector3f& n) const {
     for (const float step : {0.0f, 0.004f}) {
       const int found = surface_.distances.nearest_to(p + step * n);
-      if (found >= 0 && surface_.normals[found].dot(n) > kFacing) {
-        return found;
-      }
+      if (found >= 0 && surface_.normals[found].dot(n) > kFacing) return found;
     }
     return -1;
   }
@@ -118,10 +113,8 @@ std::vector<Pose> near_symmetries(const SelfSurface& surface, const SymmetryGrou
   for (int k = 0; k < 3; ++k) {
     for (const Eigen::Vector3d& axis :
          {Eigen::Vector3d(principal.col(k)), Eigen::Vector3d(Eigen::Vector3d::Unit(k))}) {
-      const bool known = std::any_of(axes.begin(), axes.end(), [&](const Eigen::Vector3d& a) {
-        return std::abs(a.dot(axis)) > std::cos(0.05);
-      });
-      if (!known) axes.push_back(axis);
+      const auto alike = [&](const auto& a) { return std::abs(a.dot(axis)) > std::cos(0.05); };
+      if (std::ranges::none_of(axes, alike)) axes.push_back(axis);
     }
   }
   const double tolerance = 0.03 * surface.diameter;
@@ -140,13 +133,12 @@ std::vector<Pose> near_symmetries(const SelfSurface& surface, const SymmetryGrou
       if (share >= kShare && !same(motion, Pose())) found.push_back({share, motion});
     }
   }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::ranges::stable_sort(found, std::greater(), &std::pair<double, Pose>::first);
   std::vector<Pose> out;
-  for (const auto& [share, motion] : found) {
-    const bool known =
-        std::any_of(out.begin(), out.end(), [&](const Pose& other) { return same(motion, other); });
-    if (!known) out.push_back(motion);
+  for (const auto& entry : found) {
+    const Pose& motion = entry.second;
+    const auto alike = [&](const Pose& other) { return same(motion, other); };
+    if (std::ranges::none_of(out, alike)) out.push_back(motion);
     if (out.size() == kMostMotions) break;
   }
   return out;

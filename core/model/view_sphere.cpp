@@ -27,6 +27,7 @@ struct DepthBuffer {
 
   int column(float x) const { return static_cast<int>((x - origin.x()) / cell); }
   int row(float y) const { return static_cast<int>((y - origin.y()) / cell); }
+  std::size_t cell_of(const Eigen::Vector3f& p) const { return row(p.y()) * width + column(p.x()); }
   float at(int x, int y) const {
     if (x < 0 || y < 0 || x >= width || y >= height) return kNothing;
     return nearest[y * width + x];
@@ -37,21 +38,16 @@ struct DepthBuffer {
 DepthBuffer draw(const std::vector<Eigen::Vector3f>& points, float cell) {
   DepthBuffer buffer;
   buffer.cell = cell;
-  Eigen::Vector2f low = points.front().head<2>();
-  Eigen::Vector2f high = low;
-  for (const Eigen::Vector3f& p : points) {
-    low = low.cwiseMin(p.head<2>());
-    high = high.cwiseMax(p.head<2>());
-  }
-  buffer.origin = low.array() - 2 * cell;
-  buffer.width = buffer.column(high.x()) + 3;
-  buffer.height = buffer.row(high.y()) + 3;
-  buffer.nearest.assign(static_cast<std::size_t>(buffer.width * buffer.height), kNothing);
+  Eigen::AlignedBox2f box;
+  for (const Eigen::Vector3f& p : points) box.extend(p.head<2>());
+  buffer.origin = box.min().array() - 2 * cell;
+  buffer.width = buffer.column(box.max().x()) + 3;
+  buffer.height = buffer.row(box.max().y()) + 3;
+  buffer.nearest.assign(buffer.width * buffer.height, kNothing);
   for (const Eigen::Vector3f& p : points) {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
-        float& value =
-            buffer.nearest[(buffer.row(p.y()) + dy) * buffer.width + buffer.column(p.x()) + dx];
+        float& value = buffer.nearest[buffer.cell_of(p) + dy * buffer.width + dx];
         value = std::max(value, p.z());
       }
     }
@@ -86,7 +82,7 @@ class EdgeDistance {
     for (const std::uint32_t i : visible) {
       const Eigen::Vector3f& p = points[i];
       if (!ends_beside(p)) continue;
-      const std::size_t cell = cell_of(p);
+      const std::size_t cell = buffer.cell_of(p);
       edge_[cell] += p.head<2>();
       ++count[cell];
     }
@@ -99,15 +95,12 @@ class EdgeDistance {
   }
 
   float operator()(const Eigen::Vector3f& p) const {
-    const std::int32_t cell = nearest_[cell_of(p)];
+    const std::int32_t cell = nearest_[buffer_.cell_of(p)];
     if (cell < 0) return kMaxEdgeDistance;
     return std::min(kMaxEdgeDistance, (edge_[cell] - p.head<2>()).norm());
   }
 
  private:
-  std::size_t cell_of(const Eigen::Vector3f& p) const {
-    return static_cast<std::size_t>(buffer_.row(p.y()) * buffer_.width + buffer_.column(p.x()));
-  }
   // Whether the surface on which p lies ends in p's cell: draw() covers one cell more.
   bool ends_beside(const Eigen::Vector3f& p) const {
     const int x = buffer_.column(p.x()), y = buffer_.row(p.y());
@@ -143,9 +136,9 @@ ModelView render_view(const SeenPoints& all, const Eigen::Matrix3f& axes, float 
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const float cosine = all.cosine[i];
     if (cosine <= 0.05f) continue;
-    const float nearest = buffer.at(buffer.column(seen[i].x()), buffer.row(seen[i].y()));
+    const float nearest = buffer.nearest[buffer.cell_of(seen[i])];
     if (seen[i].z() < nearest - spacing * (1 + 2 * slope_of(cosine))) continue;
-    view.visible.push_back(static_cast<std::uint32_t>(i));
+    view.visible.push_back(i);
   }
   const EdgeDistance edge_distance(buffer, seen, view.visible);
   for (const std::uint32_t i : view.visible) {
