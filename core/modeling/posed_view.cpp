@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/geometry/fast_pose.hpp"
 #include "core/model/view_sphere.hpp"
@@ -121,11 +122,9 @@ struct PointSums {
 
 PosedView make_posed_view(const Frame& frame, const std::vector<std::uint8_t>& object,
                           const Pose& camera_from_object) {
+  const SurfaceMapOptions options{
+      .max_range_m = 20, .max_width = std::max(1, frame.camera.width / 2), .num_threads = 1};
   PosedView view;
-  SurfaceMapOptions options;
-  options.max_width = std::max(1, frame.camera.width / 2);
-  options.max_range_m = 20;
-  options.num_threads = 1;
   view.map = surface_map(frame, options);
   view.camera_from_object = camera_from_object;
   view.object.assign(view.map.size(), 1);
@@ -220,10 +219,9 @@ void learn_noise(ModelSource& source, const std::vector<PosedView>& views, int n
   if (source.surface.colors.empty()) source.surface.colors = seen.colors;
   const double share = static_cast<double>(never) / seen.seen.size();
   if (share > 0.03) {
-    source.warnings.push_back(
-        std::to_string(std::lround(100 * share)) +
-        " % of the surface was measured in no view: too thin, too deep inside, "
-        "or out of sight");
+    source.warnings.push_back(concat(
+        std::lround(100 * share),
+        " % of the surface was measured in no view: too thin, too deep inside, or out of sight"));
   }
 }
 

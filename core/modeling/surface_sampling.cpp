@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <sstream>
 
+#include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/cloud/curvature.hpp"
@@ -65,12 +65,6 @@ Samples sample_triangles(const TriangleMesh& mesh, double per_square_metre) {
     }
   }
   return samples;
-}
-
-double surface_area(const TriangleMesh& mesh) {
-  double area = 0;
-  for (std::size_t k = 0; k < mesh.triangles.size(); ++k) area += 0.5 * cross_of(mesh, k).norm();
-  return area;
 }
 
 // Visibility. Each direction has an orthographic image of the mesh in which every pixel knows the
@@ -147,18 +141,14 @@ class TriangleImage {
   void draw(int triangle) {
     const SeenTriangle t = seen(triangle);
     if (t.flat()) return;
-    Eigen::AlignedBox3f box;
-    for (const std::uint32_t corner : mesh_.triangles[triangle]) box.extend(vertices_[corner]);
-    const auto first = [&](int axis) {
-      return std::max(0,
-                      static_cast<int>(std::ceil((box.min()[axis] - low_[axis]) / pixel_ - 0.5f)));
-    };
-    const auto last = [&](int axis, int size) {
-      return std::min(size - 1,
-                      static_cast<int>(std::floor((box.max()[axis] - low_[axis]) / pixel_ - 0.5f)));
-    };
-    for (int y = first(1); y <= last(1, height_); ++y) {
-      for (int x = first(0); x <= last(0, width_); ++x) {
+    Eigen::AlignedBox2f box;
+    for (const std::uint32_t c : mesh_.triangles[triangle]) box.extend(vertices_[c].head<2>());
+    const Eigen::Array2f from = (box.min() - low_) / pixel_, to = (box.max() - low_) / pixel_;
+    const Eigen::Array2i first = (from - 0.5f).ceil().cast<int>().max(0);
+    const Eigen::Array2i last =
+        (to - 0.5f).floor().cast<int>().min(Eigen::Array2i(width_ - 1, height_ - 1));
+    for (int y = first.y(); y <= last.y(); ++y) {
+      for (int x = first.x(); x <= last.x(); ++x) {
         const Eigen::Vector2f w =
             t.weights(low_.x() + (x + 0.5f) * pixel_, low_.y() + (y + 0.5f) * pixel_);
         if (w.x() < 0 || w.y() < 0 || w.x() + w.y() > 1) continue;
@@ -180,20 +170,18 @@ class TriangleImage {
   std::vector<int> triangle_;
 };
 
-// From how many of the directions a point of a mesh is seen, on the side that its triangle's normal
-// points to and on the other.
-struct SidesSeen {
-  int front = 0;
-  int back = 0;
+// From how many of the directions a point of a mesh is seen, or whether it is, on the side that its
+// triangle's normal points to and on the other.
+struct Sides {
+  int front = 0, back = 0;
 };
 
 // Looks at the mesh from kNumSeenFrom directions far away: which of the samples are not hidden by
 // its triangles. Exact but for kTolerance, so that the two sides of a thin wall are told apart;
 // directions that graze a sample's tangent plane do not count.
-std::vector<SidesSeen> sides_seen(const TriangleMesh& mesh, const Samples& samples,
-                                  int num_threads) {
+std::vector<Sides> sides_seen(const TriangleMesh& mesh, const Samples& samples, int num_threads) {
   const PointCloud& cloud = samples.cloud;
-  std::vector<SidesSeen> seen(cloud.size());
+  std::vector<Sides> seen(cloud.size());
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& v : mesh.vertices) box.extend(v);
   const float pixel = std::max(1e-4f, box.diagonal().norm() / 240);
@@ -222,11 +210,7 @@ struct VisibleSurface {
   std::size_t flipped = 0, hidden = 0, two_sided = 0;
 };
 
-struct Sides {
-  bool front = false, back = false;
-};
-
-Sides decide(const SidesSeen& seen) {
+Sides decide(const Sides& seen) {
   // A few glances through a crack do not make a surface, nor do they turn one over.
   constexpr int kGlance = kNumSeenFrom / 40;
   const auto counts = [](int here, int other) {
@@ -264,24 +248,20 @@ std::vector<Sides> confirmed(const PointCloud& cloud, float radius, const std::v
 
 VisibleSurface visible_surface(const TriangleMesh& mesh, const Samples& samples, float spacing,
                                int num_threads) {
-  std::vector<Sides> sides;
-  for (const SidesSeen& seen : sides_seen(mesh, samples, num_threads)) {
-    sides.push_back(decide(seen));
-  }
+  std::vector<Sides> sides = sides_seen(mesh, samples, num_threads);
+  std::ranges::transform(sides, sides.begin(), decide);
   sides = confirmed(samples.cloud, spacing, sides, num_threads);
   VisibleSurface out;
   std::vector<int> shown;
   std::vector<float> sign;
-  const auto add = [&](std::size_t i, float side) {
-    shown.push_back(i);
-    sign.push_back(side);
-  };
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    if (sides[i].front) add(i, 1);
-    if (sides[i].back) add(i, -1);
-    out.hidden += !sides[i].front && !sides[i].back;
-    out.flipped += sides[i].back && !sides[i].front;
-    out.two_sided += sides[i].front && sides[i].back;
+    const auto [front, back] = sides[i];
+    shown.insert(shown.end(), front + back, i);
+    if (front) sign.push_back(1);
+    if (back) sign.push_back(-1);
+    out.hidden += !front && !back;
+    out.flipped += back && !front;
+    out.two_sided += front && back;
   }
   out.cloud = select(samples.cloud, shown);
   for (std::size_t i = 0; i < sign.size(); ++i) out.cloud.normals[i] *= sign[i];
@@ -334,12 +314,10 @@ double largest_distance(const std::vector<Eigen::Vector3f>& points) {
 
 Status check_size(const std::string& name, double diameter) {
   if (diameter >= kMinDiameter && diameter <= kMaxDiameter) return {};
-  std::ostringstream text;
-  text << "model " << name << " has a diameter of " << diameter
-       << " m; it must be between 0.005 and 3 m";
-  if (diameter > kMaxDiameter) text << " (a mesh in millimetres? try --scale 0.001)";
-  if (diameter < kMinDiameter && diameter > 0) text << " (try --scale 1000)";
-  return invalid_argument(text.str());
+  return invalid_argument(
+      "model ", name, " has a diameter of ", diameter, " m; it must be between 0.005 and 3 m",
+      diameter > kMaxDiameter ? " (a mesh in millimetres? try --scale 0.001)" : "",
+      diameter < kMinDiameter && diameter > 0 ? " (try --scale 1000)" : "");
 }
 
 std::vector<std::string> shape_warnings(const PointCloud& surface) {
@@ -357,7 +335,8 @@ std::vector<std::string> shape_warnings(const PointCloud& surface) {
 Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::string& name,
                                            int number, const ModelOptions& options) {
   if (Status status = validate(options); !status.ok()) return status;
-  const double area = surface_area(mesh);
+  double area = 0;
+  for (std::size_t k = 0; k < mesh.triangles.size(); ++k) area += 0.5 * cross_of(mesh, k).norm();
   if (mesh.vertices.empty() || !(area > 0) || !std::isfinite(area)) {
     return invalid_argument("model " + name + " has no surface; the mesh must have triangles");
   }
@@ -371,9 +350,8 @@ Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::
   }
   ModelSource source =
       make_source(downsample(visible.cloud, spacing), name, number, options.num_threads);
-  for (std::string& warning : mesh_warnings(visible, samples.triangles.size())) {
-    source.warnings.push_back(std::move(warning));
-  }
+  std::ranges::move(mesh_warnings(visible, samples.triangles.size()),
+                    std::back_inserter(source.warnings));
   return source;
 }
 
@@ -381,7 +359,7 @@ Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std:
                                              int number, const ModelOptions& options) {
   if (Status status = validate(options); !status.ok()) return status;
   if (cloud.size() < 100) {
-    return invalid_argument("model " + name + " has " + std::to_string(cloud.size()) +
+    return invalid_argument("model ", name, " has ", cloud.size(),
                             " points; it must have at least 100");
   }
   if (Status s = check_size(name, largest_distance(cloud.points)); !s.ok()) return s;

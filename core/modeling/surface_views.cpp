@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/concat.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/model/view_sphere.hpp"
 #include "core/modeling/posed_view.hpp"
@@ -18,12 +19,8 @@ constexpr std::size_t kFewest = 100;  // points that a model needs
 constexpr double kMuchUnseen = 0.03;  // share of the surface
 constexpr float kSameSide = 0.5f;     // cosine between normals
 
-// How large a pixel is on the object, and how far it is, on average.
-struct Resolution {
-  double pixel = 0, depth = 0;  // metres
-};
-
-Resolution resolution_of(const std::vector<PosedView>& views) {
+// How large a pixel is on the object, and how far it is, on average, in metres.
+std::pair<double, double> pixel_and_depth(const std::vector<PosedView>& views) {
   double pixels = 0, depths = 0, count = 0;
   for (const PosedView& view : views) {
     for (std::size_t i = 0; i < view.map.size(); ++i) {
@@ -33,7 +30,7 @@ Resolution resolution_of(const std::vector<PosedView>& views) {
       ++count;
     }
   }
-  return count > 0 ? Resolution{pixels / count, depths / count} : Resolution{};
+  return {pixels / std::max(1.0, count), depths / std::max(1.0, count)};
 }
 
 // For each point of the surface, the normal variance that the measured sheet beside it gives; -1
@@ -61,8 +58,7 @@ std::vector<float> measured_variance(const PointCloud& surface, const GridSurfac
 // The share of the object's outline, over all view angles, where one looks at the back of the
 // surface: through a part that was never seen; and in the view from the worst `direction` alone.
 struct Unseen {
-  double share = 0;
-  double worst = 0;
+  double share = 0, worst = 0;
   Eigen::Vector3f direction = Eigen::Vector3f::UnitZ();
 };
 
@@ -121,9 +117,8 @@ Result<ModelSource> model_source_from_views(std::vector<PosedView> views, const 
       std::make_shared<OccupancyGrid>(trace_occupancy(views, spacing, options.num_threads));
   GridSurface fused = surface_of(*grid, spacing, options.num_threads);
   if (fused.points.size() < 100) {
-    return invalid_argument("model " + name + " has " + std::to_string(fused.points.size()) +
-                            " surface points in " + std::to_string(views.size()) +
-                            " views; it must have at least 100");
+    return invalid_argument("model ", name, " has ", fused.points.size(), " surface points in ",
+                            views.size(), " views; it must have at least 100");
   }
   ModelSource source;
   source.name = name;
@@ -139,9 +134,10 @@ Result<ModelSource> model_source_from_views(std::vector<PosedView> views, const 
   constexpr double kMuch = 0.04, kMuchOfOneView = 0.3;
   const Unseen unseen = unseen_part(source.surface, options.num_threads);
   if (unseen.share > kMuch || unseen.worst > kMuchOfOneView) {
-    source.warnings.push_back("about " + std::to_string(std::lround(100 * unseen.share)) +
-                              " % of the object was never seen, most of it from " +
-                              name_of(unseen.direction) + ": scan it in one more resting position");
+    source.warnings.push_back(concat("about ", std::lround(100 * unseen.share),
+                                     " % of the object was never seen, most of it from ",
+                                     name_of(unseen.direction),
+                                     ": scan it in one more resting position"));
   }
   return source;
 }
@@ -161,11 +157,11 @@ void center_object(std::vector<PosedView>& views) {
 }
 
 void keep_measured(ModelSource& source, const std::vector<PosedView>& views, int num_threads) {
-  const Resolution resolution = resolution_of(views);
+  const auto [pixel, depth] = pixel_and_depth(views);
   auto grid = std::make_shared<OccupancyGrid>(
-      trace_occupancy(views, std::max<float>(kLeastCell, resolution.pixel), num_threads));
+      trace_occupancy(views, std::max<float>(kLeastCell, pixel), num_threads));
   const GridSurface measured = surface_of(*grid, grid->cell, num_threads);
-  const float most_off = std::max(0.004f, 3 * depth_noise(resolution.depth));
+  const float most_off = std::max(0.004f, 3 * depth_noise(depth));
   const std::vector<float> variance =
       measured_variance(source.surface, measured, 2.2f * grid->cell, most_off);
   const auto unseen = std::ranges::count_if(variance, [](float v) { return v < 0; });

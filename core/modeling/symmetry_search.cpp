@@ -5,10 +5,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <numeric>
 #include <optional>
+
+#include <opencv2/core.hpp>
 
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
@@ -41,10 +42,7 @@ class SelfMatch {
         distances_(distance_transform(surface.points, 0.003f, 0.02f)),
         // No point of an evenly sampled surface is farther from the samples.
         neighbors_(surface.points, tolerance + 2 * mean_spacing(surface, kSameSide)) {
-    mean_.setZero();
-    for (const Eigen::Vector3f& p : surface.points) {
-      mean_ += p.cast<double>() / surface.size();
-    }
+    for (const Eigen::Vector3f& p : surface.points) mean_ += p.cast<double>() / surface.size();
     for (const Eigen::Vector3f& p : surface.points) {
       radius_ = std::max(radius_, (p.cast<double>() - mean_).norm());
     }
@@ -127,7 +125,7 @@ class SelfMatch {
   float tolerance_;
   DistanceTransform distances_;
   NeighborGrid neighbors_;
-  Eigen::Vector3d mean_;
+  Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();
   double radius_ = 0;
 };
 
@@ -327,22 +325,18 @@ SymmetryGroup find_symmetries(const PointCloud& surface, double diameter, int nu
 std::string describe(const SymmetryGroup& group) {
   if (group.trivial()) return "none";
   std::string text;
-  char line[160];
-  for (const ContinuousSymmetry& c : group.continuous) {
-    const Eigen::Vector3d p = 1000 * (c.point - c.axis * c.axis.dot(c.point));
-    std::snprintf(
-        line, sizeof line, "%sany turn about (%.2f, %.2f, %.2f) through (%.1f, %.1f, %.1f) mm",
-        text.empty() ? "" : "; ", c.axis.x(), c.axis.y(), c.axis.z(), p.x(), p.y(), p.z());
-    text += line;
+  for (const auto& [a, point] : group.continuous) {
+    const Eigen::Vector3d p = 1000 * (point - a * a.dot(point));
+    text += cv::format("; any turn about (%.2f, %.2f, %.2f) through (%.1f, %.1f, %.1f) mm", a.x(),
+                       a.y(), a.z(), p.x(), p.y(), p.z());
   }
   for (const Pose& pose : group.discrete) {
     const Eigen::Vector3d v = vector_from_rotation(pose.rotation);
-    const Eigen::Vector3d axis = upright(v.normalized());
-    std::snprintf(line, sizeof line, "%s%.0f degrees about (%.2f, %.2f, %.2f)",
-                  text.empty() ? "" : "; ", v.norm() * 180 / M_PI, axis.x(), axis.y(), axis.z());
-    text += line;
+    const Eigen::Vector3d a = upright(v.normalized());
+    text += cv::format("; %.0f degrees about (%.2f, %.2f, %.2f)", v.norm() * 180 / M_PI, a.x(),
+                       a.y(), a.z());
   }
-  return text;
+  return text.substr(2);
 }
 
 }  // namespace bpa

@@ -25,15 +25,16 @@ FastPose object_from_camera(const PosedView& view) {
 
 // Calls visit(point, normal, weight), in the object's frame, for every pixel of the object that is
 // seen well enough.
-template <class Visit>
-void for_each_measurement(const PosedView& view, const Visit& visit) {
-  const FastPose pose = object_from_camera(view);
-  for (std::size_t i = 0; i < view.map.size(); ++i) {
-    if (!view.object[i] || !(view.map.depth[i] > 0)) continue;
-    const Eigen::Vector3f& normal = view.map.normals[i];
-    const float cosine = -normal.dot(view.map.points[i].normalized());
-    if (!(cosine > kMinCosine)) continue;
-    visit(pose * view.map.points[i], Eigen::Vector3f(pose.rotation * normal), cosine * cosine);
+void for_each_measurement(const std::vector<PosedView>& views, const auto& visit) {
+  for (const PosedView& view : views) {
+    const FastPose pose = object_from_camera(view);
+    for (std::size_t i = 0; i < view.map.size(); ++i) {
+      if (!view.object[i] || !(view.map.depth[i] > 0)) continue;
+      const Eigen::Vector3f& normal = view.map.normals[i];
+      const float cosine = -normal.dot(view.map.points[i].normalized());
+      if (!(cosine > kMinCosine)) continue;
+      visit(pose * view.map.points[i], Eigen::Vector3f(pose.rotation * normal), cosine * cosine);
+    }
   }
 }
 
@@ -64,23 +65,15 @@ struct CellSums {
   std::array<Eigen::Vector3f, 2> normal{Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
   std::array<float, 2> weight{0, 0}, squared_angles{0, 0};
   std::array<int, 2> rays{0, 0};
-
-  std::size_t bucket(const Eigen::Vector3f& n) const { return n.dot(axis) >= 0 ? 0 : 1; }
 };
 
 // The cells where rays end, with the means of their buckets.
 std::vector<CellSums> sum_endings(const std::vector<PosedView>& views, Lookup& lookup,
                                   OccupancyGrid& grid) {
   std::vector<CellSums> sums;
-  const auto for_each = [&](const auto& visit) {
-    for (const PosedView& view : views) {
-      for_each_measurement(view, [&](const Eigen::Vector3f& p, const Eigen::Vector3f& n, float w) {
-        const std::int64_t number = lookup.number(p);
-        if (number >= 0) visit(number, p, n, w);
-      });
-    }
-  };
-  for_each([&](std::int64_t number, const Eigen::Vector3f&, const Eigen::Vector3f& n, float) {
+  for_each_measurement(views, [&](const auto& p, const auto& n, float) {
+    const std::int64_t number = lookup.number(p);
+    if (number < 0) return;
     std::int32_t& slot = lookup.slot[number];
     if (slot < 0) {
       slot = static_cast<std::int32_t>(sums.size());
@@ -89,24 +82,28 @@ std::vector<CellSums> sum_endings(const std::vector<PosedView>& views, Lookup& l
     }
     sums[slot].scatter += n * n.transpose();
   });
-  const auto of = [&](std::int64_t number) -> CellSums& { return sums[lookup.slot[number]]; };
+  // Calls visit(sums, bucket, point, normal, weight).
+  const auto for_each = [&](const auto& visit) {
+    for_each_measurement(views, [&](const auto& p, const auto& n, float w) {
+      const std::int64_t number = lookup.number(p);
+      if (number < 0) return;
+      CellSums& s = sums[lookup.slot[number]];
+      visit(s, n.dot(s.axis) >= 0 ? 0 : 1, p, n, w);
+    });
+  };
   for (CellSums& s : sums) {
     s.axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>(s.scatter).eigenvectors().col(2);
   }
-  for_each([&](std::int64_t number, const Eigen::Vector3f& p, const Eigen::Vector3f& n, float w) {
-    CellSums& s = of(number);
-    const std::size_t b = s.bucket(n);
+  for_each([](CellSums& s, int b, const auto& p, const auto& n, float w) {
     s.position[b] += w * p;
     s.normal[b] += w * n;
     s.weight[b] += w;
     ++s.rays[b];
   });
   for (CellSums& s : sums) {
-    for (std::size_t b = 0; b < 2; ++b) s.normal[b].normalize();
+    for (Eigen::Vector3f& normal : s.normal) normal.normalize();
   }
-  for_each([&](std::int64_t number, const Eigen::Vector3f&, const Eigen::Vector3f& n, float) {
-    CellSums& s = of(number);
-    const std::size_t b = s.bucket(n);
+  for_each([](CellSums& s, int b, const auto&, const auto& n, float) {
     const float angle = std::acos(std::clamp(n.dot(s.normal[b]), -1.0f, 1.0f));
     s.squared_angles[b] += angle * angle;
   });
@@ -115,9 +112,8 @@ std::vector<CellSums> sum_endings(const std::vector<PosedView>& views, Lookup& l
 
 // Calls visit(cell number) for every cell of the grid on the way from `from` to `from` + `length` *
 // `direction` (Amanatides and Woo, "A fast voxel traversal algorithm for ray tracing", 1987).
-template <class Visit>
 void march(const OccupancyGrid& grid, const Eigen::Vector3f& from, const Eigen::Vector3f& direction,
-           float length, const Visit& visit) {
+           float length, const auto& visit) {
   const Eigen::Vector3f high = grid.low + grid.cell * grid.size.cast<float>();
   float t = 0, end = length;
   for (int a = 0; a < 3; ++a) {
@@ -125,10 +121,10 @@ void march(const OccupancyGrid& grid, const Eigen::Vector3f& from, const Eigen::
       if (from[a] < grid.low[a] || from[a] >= high[a]) return;
       continue;
     }
-    const float t0 = (grid.low[a] - from[a]) / direction[a],
-                t1 = (high[a] - from[a]) / direction[a];
-    t = std::max(t, std::min(t0, t1));
-    end = std::min(end, std::max(t0, t1));
+    const auto [enter, leave] =
+        std::minmax({(grid.low[a] - from[a]) / direction[a], (high[a] - from[a]) / direction[a]});
+    t = std::max(t, enter);
+    end = std::min(end, leave);
   }
   if (t >= end) return;
   const Eigen::Vector3f start = (from + t * direction - grid.low) / grid.cell;
@@ -169,9 +165,8 @@ void count_passing(const PosedView& view, const Lookup& lookup, const std::vecto
           std::max(3 * depth_noise(map.depth[i]), 1.8f * lookup.grid.cell) / std::sqrt(cosine);
       march(lookup.grid, pose.translation, direction, map.depth[i] - margin,
             [&](std::int64_t number) {
-              const std::int32_t slot = lookup.slot[number];
-              if (slot < 0) return;
-              const int s = slot;
+              const std::int32_t s = lookup.slot[number];
+              if (s < 0) return;
               for (std::size_t b = 0; b < 2; ++b) {
                 if (sums[s].rays[b] == 0) continue;
                 if (sums[s].normal[b].dot(direction) < -kMinCosine * direction.norm()) {
@@ -184,11 +179,10 @@ void count_passing(const PosedView& view, const Lookup& lookup, const std::vecto
 }
 
 // Draws points along their normals to the sheet that they and their neighbours scatter about.
-void draw_together(GridSurface& surface, const std::vector<float>& weight, float radius,
+void draw_together(PointCloud& cloud, const std::vector<float>& weight, float radius,
                    int num_threads) {
   constexpr float kSameSheet = 0.8f;  // cosine between normals
   constexpr int kRounds = 3;
-  PointCloud& cloud = surface.points;
   for (int round = 0; round < kRounds; ++round) {
     const NeighborGrid neighbors(cloud.points, radius);
     std::vector<Eigen::Vector3f> moved = cloud.points;
@@ -212,26 +206,6 @@ void draw_together(GridSurface& surface, const std::vector<float>& weight, float
   }
 }
 
-// The occupied buckets as one cloud, and how many rays each stands for.
-struct OccupiedBuckets {
-  GridSurface surface;
-  std::vector<float> rays;
-};
-
-OccupiedBuckets occupied_buckets(const OccupancyGrid& grid) {
-  OccupiedBuckets all;
-  for (const OccupancyCell& cell : grid.cells) {
-    for (const ViewBucket& bucket : cell.buckets) {
-      if (!occupied(bucket)) continue;
-      all.surface.points.points.push_back(bucket.position);
-      all.surface.points.normals.push_back(bucket.normal);
-      all.surface.normal_variance.push_back(bucket.normal_variance);
-      all.rays.push_back(bucket.rays);
-    }
-  }
-  return all;
-}
-
 // The points that some view angle sees; the others are inside.
 PointCloud seen_from_outside(const PointCloud& cloud, float spacing, int num_threads) {
   std::vector<std::uint8_t> outside(cloud.size(), 0);
@@ -247,10 +221,7 @@ OccupancyGrid trace_occupancy(const std::vector<PosedView>& views, float cell, i
   constexpr double kMaxCells = 3e7;
   OccupancyGrid grid;
   Eigen::AlignedBox3f box;
-  for (const PosedView& view : views) {
-    for_each_measurement(
-        view, [&box](const Eigen::Vector3f& p, const Eigen::Vector3f&, float) { box.extend(p); });
-  }
+  for_each_measurement(views, [&](const auto& p, const auto&, float) { box.extend(p); });
   grid.cell = cell;
   if (box.isEmpty()) return grid;
   for (;; grid.cell *= 1.2f) {
@@ -282,11 +253,20 @@ OccupancyGrid trace_occupancy(const std::vector<PosedView>& views, float cell, i
 }
 
 GridSurface surface_of(const OccupancyGrid& grid, float spacing, int num_threads) {
-  OccupiedBuckets all = occupied_buckets(grid);
-  if (all.rays.empty()) return all.surface;
-  draw_together(all.surface, all.rays, std::max(0.006f, 2.2f * grid.cell), num_threads);
-  const PointCloud& cloud = all.surface.points;
+  PointCloud cloud;  // of the occupied buckets
+  std::vector<float> rays, normal_variance;
+  for (const OccupancyCell& cell : grid.cells) {
+    for (const ViewBucket& bucket : cell.buckets) {
+      if (!occupied(bucket)) continue;
+      cloud.points.push_back(bucket.position);
+      cloud.normals.push_back(bucket.normal);
+      normal_variance.push_back(bucket.normal_variance);
+      rays.push_back(bucket.rays);
+    }
+  }
   GridSurface out;
+  if (cloud.empty()) return out;
+  draw_together(cloud, rays, std::max(0.006f, 2.2f * grid.cell), num_threads);
   out.points = downsample(seen_from_outside(cloud, std::max(0.003f, 1.2f * grid.cell), num_threads),
                           spacing);
   // About the normal of a point: the mean of those it was made of, about theirs, and what lies
@@ -298,8 +278,8 @@ GridSurface surface_of(const OccupancyGrid& grid, float spacing, int num_threads
       const float cosine = cloud.normals[j].dot(out.points.normals[i]);
       if (cosine < 0.5f) return;
       const float bias = std::acos(std::min(1.0f, cosine));
-      sum += all.rays[j] * (all.surface.normal_variance[j] + bias * bias);
-      total += all.rays[j];
+      sum += rays[j] * (normal_variance[j] + bias * bias);
+      total += rays[j];
     });
     out.normal_variance.push_back(total > 0 ? sum / total : 0);
   }

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/geometry/fast_pose.hpp"
@@ -322,7 +323,7 @@ void find_axis(RestingPosition& position, int sense, const ScanOptions& options)
 Result<RestingPosition> align_resting_position(std::vector<ScanView> views,
                                                const ScanOptions& options) {
   constexpr std::size_t kLeastPixels = 60, kLeastViews = 3;
-  if (views.empty()) return Status(StatusCode::not_found, "there are no views");
+  if (views.empty()) return not_found("there are no views");
   RestingPosition out;
   const Result<Plane> plane = segment_object(views, options);
   if (!plane.ok()) return plane.status();
@@ -337,9 +338,8 @@ Result<RestingPosition> align_resting_position(std::vector<ScanView> views,
   }
   out.missed = static_cast<int>(views.size() - out.views.size());
   if (out.views.size() < kLeastViews) {
-    return Status(StatusCode::not_found,
-                  "the object is seen in " + std::to_string(out.views.size()) + " of " +
-                      std::to_string(views.size()) + " views; it must be seen in at least 3");
+    return not_found("the object is seen in ", out.views.size(), " of ", views.size(),
+                     " views; it must be seen in at least 3");
   }
   find_axis(out, 0, options);
   return out;

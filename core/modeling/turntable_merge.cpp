@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/geometry/fast_pose.hpp"
@@ -134,9 +135,8 @@ std::optional<double> standing_height(const PointCloud& points, const Pose& tabl
   const std::size_t fewest = std::max<std::size_t>(20, points.size() / 50);
   if (heights.size() < fewest) return std::nullopt;
   // It may be hollow in the middle: its lowest tenth is what it stands on.
-  const auto tenth = heights.begin() + heights.size() / 10;
-  std::nth_element(heights.begin(), tenth, heights.end());
-  const double height = *tenth;
+  std::ranges::nth_element(heights, heights.begin() + heights.size() / 10);
+  const double height = heights[heights.size() / 10];
   const std::size_t face =
       std::ranges::count_if(heights, [&](double h) { return std::abs(h - height) < kThickness; });
   if (face < fewest || std::abs(height) > kHighest) return std::nullopt;
@@ -220,18 +220,18 @@ std::vector<std::string> merge_resting_positions(std::vector<RestingPosition>& p
   for (const RestingPosition& p : positions) {
     surfaces.push_back(surface_of_position(p, options.num_threads));
   }
-  RegistrationOptions registration;
-  registration.kept = 160;  // a can has dozens of ways to stand, and as many upside down
-  registration.seed = options.seed;
-  registration.num_threads = options.num_threads;
+  const RegistrationOptions registration{
+      .kept = 160,  // a can has dozens of ways to stand, and as many upside down
+      .seed = options.seed,
+      .num_threads = options.num_threads};
   for (std::size_t k = 1; k < positions.size(); ++k) {
     const std::vector<Registration> ways =
         register_surfaces(surfaces[k], surfaces[0], registration);
     const Choice best =
         best_way(surfaces[k], positions[k], surfaces[0], positions[0], ways, options.num_threads);
     if (best.overlap < kLeastOverlap || best.free_space > kMostFree) {
-      problems.push_back("resting position " + std::to_string(k + 1) +
-                         " could not be laid onto the first one and was left out");
+      problems.push_back(concat("resting position ", k + 1,
+                                " could not be laid onto the first one and was left out"));
       positions[k].views.clear();
       continue;
     }
@@ -258,8 +258,8 @@ Result<AlignedScan> align_scan(std::vector<std::vector<ScanView>> positions,
       continue;
     }
     if (position->missed > 0) {
-      out.warnings.push_back(std::to_string(position->missed) + " of " + std::to_string(count) +
-                             " views of " + name + " do not show the object");
+      out.warnings.push_back(
+          concat(position->missed, " of ", count, " views of ", name, " do not show the object"));
     }
     aligned.push_back(std::move(*position));
   }
@@ -270,11 +270,9 @@ Result<AlignedScan> align_scan(std::vector<std::vector<ScanView>> positions,
   for (RestingPosition& position : aligned) {
     if (position.step_deg * sense < 0) find_axis(position, sense, options);
   }
-  for (std::string& problem : merge_resting_positions(aligned, options)) {
-    out.warnings.push_back(std::move(problem));
-  }
+  std::ranges::move(merge_resting_positions(aligned, options), std::back_inserter(out.warnings));
   for (RestingPosition& position : aligned) {
-    for (PosedView& view : position.views) out.views.push_back(std::move(view));
+    std::ranges::move(position.views, std::back_inserter(out.views));
     position.views.clear();
     out.positions.push_back(std::move(position));
   }

@@ -123,7 +123,7 @@ std::vector<Plane> find_planes(const Background& background, std::uint64_t seed)
 }
 
 bool near_plane(const std::vector<Plane>& planes, const Eigen::Vector3f& p) {
-  return std::any_of(planes.begin(), planes.end(), [&](const Plane& plane) {
+  return std::ranges::any_of(planes, [&](const Plane& plane) {
     return std::abs(height(plane, p)) < std::max(0.006f, 3 * depth_noise(p.z()));
   });
 }
