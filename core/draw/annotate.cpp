@@ -66,9 +66,8 @@ cv::Rect free_place(cv::Rect wished, cv::Size image, const std::vector<cv::Rect>
     cv::Rect place = wished;
     place.y += (step % 2 == 0 ? 1 : -1) * ((step + 1) / 2) * 2;
     if (place.y < 0 || place.y + place.height > image.height) continue;
-    const bool free = std::none_of(taken.begin(), taken.end(),
-                                   [&](const cv::Rect& t) { return (t & place).area() > 0; });
-    if (free) return place;
+    const auto overlaps = [&](const cv::Rect& t) { return (t & place).area() > 0; };
+    if (std::ranges::none_of(taken, overlaps)) return place;
   }
   return wished;
 }
@@ -139,13 +138,10 @@ DrawnObject placed(const Placement& placement, const ObjectModel& model) {
 
 io::ColorImage annotate(const Frame& frame, const Interpretation& interpretation,
                         const ModelLibrary& library) {
-  std::vector<DrawnObject> drawn;
-  std::vector<std::shared_ptr<const ObjectModel>> keep;
+  std::vector<DrawnObject> drawn;  // of models that the library keeps
   for (const Placement& placement : interpretation.placements) {
     const std::shared_ptr<const ObjectModel> model = library.find(placement.model);
-    if (!model) continue;
-    keep.push_back(model);
-    drawn.push_back(placed(placement, *model));
+    if (model) drawn.push_back(placed(placement, *model));
   }
   return objects(frame, drawn);
 }

@@ -38,8 +38,7 @@ Eigen::Vector3f heat(float t) {
 class Look {
  public:
   Look(const ObjectModel& model, const Eigen::Vector3f& direction) : model_(model) {
-    Eigen::Vector3f up = std::abs(direction.z()) > 0.9f ? Eigen::Vector3f::UnitY().eval()
-                                                        : Eigen::Vector3f::UnitZ().eval();
+    const Eigen::Vector3f up = Eigen::Vector3f::Unit(std::abs(direction.z()) > 0.9f ? 1 : 2);
     axes_.row(2) = direction;
     axes_.row(0) = up.cross(direction).normalized();
     axes_.row(1) = direction.cross(Eigen::Vector3f(axes_.row(0)));
@@ -65,22 +64,18 @@ class Look {
       const float z = (axes_ * model_.surface.points[i]).z();
       const Eigen::Vector3f rgb = 255 * (0.35f + 0.65f * n.z()) * paint(i);
       const cv::Point at = place(model_.surface.points[i]);
-      for (int y = at.y - radius; y <= at.y + radius; ++y) {
-        for (int x = at.x - radius; x <= at.x + radius; ++x) {
-          if (x < 0 || y < 0 || x >= kTile || y >= kTile || depth.at<float>(y, x) >= z) continue;
-          depth.at<float>(y, x) = z;
-          for (int c = 0; c < 3; ++c) {
-            tile.at<cv::Vec3b>(y, x)[c] = cv::saturate_cast<std::uint8_t>(rgb[c]);
-          }
-        }
-      }
+      const cv::Rect cell(at.x - radius, at.y - radius, 2 * radius + 1, 2 * radius + 1);
+      const cv::Rect inside = cell & cv::Rect(0, 0, kTile, kTile);
+      if (inside.empty()) continue;
+      const cv::Mat nearer = depth(inside) < z;
+      depth(inside).setTo(z, nearer);
+      tile(inside).setTo(cv::Scalar(rgb[0], rgb[1], rgb[2]), nearer);
     }
     return tile;
   }
 
   void draw_edges(cv::Mat& tile) const {
-    const auto& views = model_.index->views;
-    const ModelView& view = nearest_view(views, Eigen::Vector3f(axes_.row(2)));
+    const ModelView& view = nearest_view(model_.index->views, Eigen::Vector3f(axes_.row(2)));
     for (std::size_t k = 0; k < view.visible.size(); ++k) {
       if (view.edge_distance[k] > 0.002f) continue;
       cv::circle(tile, place(model_.surface.points[view.visible[k]]), 1, kEdge, cv::FILLED);

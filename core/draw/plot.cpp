@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <opencv2/imgproc.hpp>
 
@@ -19,12 +18,6 @@ const cv::Scalar kColors[] = {{31, 119, 180}, {214, 39, 40}, {44, 160, 44}, {148
 
 void write_centred(cv::Mat& image, const std::string& text, cv::Point at, double size = 0.45) {
   write(image, text, at.x - text_width(text, size) / 2, at.y, size);
-}
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
 }
 
 /// The next of 1, 1.5, 2, 3, 5 and 7.5 times a power of ten that is not smaller; 1 for 0.
@@ -68,8 +61,8 @@ void draw_axes(cv::Mat& image, const Mapping& map) {
     const double y = axes.y_min + (axes.y_max - axes.y_min) * i / 5;
     cv::line(image, map(x, axes.y_min), map(x, axes.y_max), kGrid);
     cv::line(image, map(axes.x_min, y), map(axes.x_max, y), kGrid);
-    write_centred(image, number(x), map(x, axes.y_min) + cv::Point(0, 18), 0.4);
-    write_centred(image, number(y), map(axes.x_min, y) + cv::Point(-22, 4), 0.4);
+    write_centred(image, cv::format("%.3g", x), map(x, axes.y_min) + cv::Point(0, 18), 0.4);
+    write_centred(image, cv::format("%.3g", y), map(axes.x_min, y) + cv::Point(-22, 4), 0.4);
   }
   cv::rectangle(image, map.area, kInk);
   if (axes.diagonal) {

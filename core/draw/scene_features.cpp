@@ -22,8 +22,7 @@ void set(io::ColorImage& image, int u, int v, const Rgb& color) {
 }
 
 // Calls visit(u, v, index) for every pixel of the picture that lies in a pixel of a map.
-template <class T, class Visit>
-void for_each_pixel(const io::ColorImage& picture, const Image<T>& map, const Visit& visit) {
+void for_each_pixel(const io::ColorImage& picture, const auto& map, const auto& visit) {
   if (map.empty()) return;
   const int reduction = std::max(1, picture.width / map.width);
   for (int v = 0; v < std::min(picture.height, map.height * reduction); ++v) {
@@ -65,14 +64,10 @@ Rgb shade(const Eigen::Vector3f& normal) {
 bool is_boundary(const Segmentation& segmentation, std::int32_t a, std::int32_t b) {
   if (a < 0 || b < 0) return true;
   const auto [first, second] = std::minmax(a, b);
-  const auto found = std::lower_bound(
-      segmentation.pairs.begin(), segmentation.pairs.end(), std::pair(first, second),
-      [](const SegmentPair& pair, const std::pair<int, int>& wanted) {
-        return std::pair(pair.first, pair.second) < wanted;
-      });
-  const bool touching =
-      found != segmentation.pairs.end() && found->first == first && found->second == second;
-  return !touching || found->affinity < 0.5f;
+  const auto key = [](const SegmentPair& pair) { return std::pair(pair.first, pair.second); };
+  const std::pair wanted(first, second);
+  const auto found = std::ranges::lower_bound(segmentation.pairs, wanted, {}, key);
+  return found == segmentation.pairs.end() || key(*found) != wanted || found->affinity < 0.5f;
 }
 
 }  // namespace
@@ -126,12 +121,10 @@ io::ColorImage segment_matches(const Frame& frame, const Segmentation& segmentat
                                const std::vector<SegmentMatch>& matches) {
   io::ColorImage picture = dimmed(frame);
   std::vector<double> probability(segmentation.segments.size(), -1);
-  for (const SegmentMatch& match : matches) {
-    probability[static_cast<std::size_t>(match.segment)] = match.probability;
-  }
+  for (const SegmentMatch& match : matches) probability[match.segment] = match.probability;
   for_each_pixel(picture, segmentation.labels, [&](int u, int v, std::size_t i) {
     const std::int32_t label = segmentation.labels[i];
-    const double p = label < 0 ? -1 : probability[static_cast<std::size_t>(label)];
+    const double p = label < 0 ? -1 : probability[label];
     if (p < 0) return;
     const double tint[3] = {1 - p, p, 0};
     std::uint8_t* pixel = picture.pixels.data() + 3 * (v * picture.width + u);
@@ -151,7 +144,7 @@ io::ColorImage segment_means(const Frame& frame, const Segmentation& segmentatio
   io::ColorImage picture = black(frame);
   for_each_pixel(picture, segmentation.labels, [&](int u, int v, std::size_t i) {
     const std::int32_t label = segmentation.labels[i];
-    if (label >= 0) set(picture, u, v, colors[static_cast<std::size_t>(label)]);
+    if (label >= 0) set(picture, u, v, colors[label]);
   });
   return picture;
 }

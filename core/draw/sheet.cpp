@@ -56,23 +56,19 @@ io::ColorImage beside(const io::ColorImage& left, const io::ColorImage& right) {
 
 io::ColorImage contact_sheet(const std::vector<io::ColorImage>& pictures, int columns,
                              int cell_width) {
-  std::vector<cv::Mat> cells;
-  int height = 1;
-  for (const io::ColorImage& picture : pictures) {
+  const int count = static_cast<int>(pictures.size());
+  const auto size_of = [cell_width](const io::ColorImage& picture) {
     const double scale = static_cast<double>(cell_width) / picture.width;
-    cv::Mat cell;
-    cv::resize(to_mat(picture), cell, {cell_width, cvRound(scale * picture.height)}, 0, 0,
-               cv::INTER_AREA);
-    height = std::max(height, cell.rows);
-    cells.push_back(cell);
-  }
-  const int rows = (static_cast<int>(cells.size()) + columns - 1) / columns;
-  cv::Mat sheet(std::max(rows, 1) * (height + 4), columns * (cell_width + 4), CV_8UC3,
-                cv::Scalar::all(255));
-  for (int i = 0; i < static_cast<int>(cells.size()); ++i) {
-    const cv::Mat& cell = cells[static_cast<std::size_t>(i)];
-    cell.copyTo(sheet(cv::Rect((i % columns) * (cell_width + 4), (i / columns) * (height + 4),
-                               cell.cols, cell.rows)));
+    return cv::Size(cell_width, cvRound(scale * picture.height));
+  };
+  int height = 1;
+  for (const io::ColorImage& picture : pictures) height = std::max(height, size_of(picture).height);
+  const int rows = std::max(1, (count + columns - 1) / columns);
+  cv::Mat sheet(rows * (height + 4), columns * (cell_width + 4), CV_8UC3, cv::Scalar::all(255));
+  for (int i = 0; i < count; ++i) {
+    const cv::Point corner((i % columns) * (cell_width + 4), (i / columns) * (height + 4));
+    const cv::Size size = size_of(pictures[i]);
+    cv::resize(to_mat(pictures[i]), sheet(cv::Rect(corner, size)), size, 0, 0, cv::INTER_AREA);
   }
   return to_image(sheet);
 }
