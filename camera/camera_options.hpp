@@ -32,56 +32,51 @@ struct CameraOptions {
   double timeout_ms = 3000;
   double retry_ms = 1000;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("source", source,
-          FieldRule{0, 0,
-                    "openni2 (the first sensor), openni2:URI, a recording FILE.oni, or a data set "
-                    "bop:FOLDER; empty: none. Camera topics are not subscribed to then."});
-    visit("depth_mode", depth_mode, FieldRule{0, 0, "WIDTHxHEIGHT@RATE of a sensor's depth."});
-    visit("color_mode", color_mode, FieldRule{0, 0, "WIDTHxHEIGHT@RATE of a sensor's colour."});
-    visit("color", color, FieldRule{0, 0, "Take colour images beside depth."});
+          {0, 0,
+           "openni2 (the first sensor), openni2:URI, a recording FILE.oni, or a data set "
+           "bop:FOLDER; empty: none. Camera topics are not subscribed to then."});
+    visit("depth_mode", depth_mode, {0, 0, "WIDTHxHEIGHT@RATE of a sensor's depth."});
+    visit("color_mode", color_mode, {0, 0, "WIDTHxHEIGHT@RATE of a sensor's colour."});
+    visit("color", color, {0, 0, "Take colour images beside depth."});
     visit("registration", registration,
-          FieldRule{0, 0,
-                    "Who registers depth to colour: auto (the device, and if it does not, the "
-                    "server), device, software, off."});
+          {0, 0,
+           "Who registers depth to colour: auto (the device, and if it does not, the "
+           "server), device, software, off."});
     visit("baseline_mm", baseline_mm,
-          FieldRule{0, 200,
-                    "Distance in mm from the depth camera to the colour camera on its right, where "
-                    "the device does not tell it; for software registration."});
+          {0, 200,
+           "Distance in mm from the depth camera to the colour camera on its right, where "
+           "the device does not tell it; for software registration."});
     visit("calibration", calibration,
-          FieldRule{0, 0,
-                    "ROS camera_info YAML of the colour camera; empty: from the device's field of "
-                    "view."});
+          {0, 0,
+           "ROS camera_info YAML of the colour camera; empty: from the device's field of "
+           "view."});
     visit("depth_calibration", depth_calibration,
-          FieldRule{0, 0,
-                    "ROS camera_info YAML of the depth camera, for software registration; empty: "
-                    "from the device's field of view."});
-    visit("auto_exposure", auto_exposure, FieldRule{0, 0, "The sensor sets its exposure."});
-    visit("auto_white_balance", auto_white_balance,
-          FieldRule{0, 0, "The sensor sets its white balance."});
+          {0, 0,
+           "ROS camera_info YAML of the depth camera, for software registration; empty: "
+           "from the device's field of view."});
+    visit("auto_exposure", auto_exposure, {0, 0, "The sensor sets its exposure."});
+    visit("auto_white_balance", auto_white_balance, {0, 0, "The sensor sets its white balance."});
     visit("exposure", exposure,
-          FieldRule{0, 1e6, "In the sensor's unit, without auto_exposure; 0: unchanged."});
-    visit("gain", gain,
-          FieldRule{0, 1e6, "In the sensor's unit, without auto_exposure; 0: unchanged."});
-    visit(
-        "speed", speed,
-        FieldRule{0.01, 100,
-                  "Playback rate of recordings and data sets; 1: as recorded (data sets: 30 Hz)."});
-    visit("loop", loop, FieldRule{0, 0, "Repeat recordings and data sets at their end."});
+          {0, 1e6, "In the sensor's unit, without auto_exposure; 0: unchanged."});
+    visit("gain", gain, {0, 1e6, "In the sensor's unit, without auto_exposure; 0: unchanged."});
+    visit("speed", speed,
+          {0.01, 100,
+           "Playback rate of recordings and data sets; 1: as recorded (data sets: 30 Hz)."});
+    visit("loop", loop, {0, 0, "Repeat recordings and data sets at their end."});
     visit("start_frame", start_frame,
-          FieldRule{0, 1e9, "First frame of a recording or data set to show; they count from 1."});
+          {0, 1e9, "First frame of a recording or data set to show; they count from 1."});
     visit("every_frame", every_frame,
-          FieldRule{0, 0,
-                    "Recordings and data sets wait until a frame has been taken up by the search "
-                    "before they show the next."});
+          {0, 0,
+           "Recordings and data sets wait until a frame has been taken up by the search "
+           "before they show the next."});
     visit("timeout_ms", timeout_ms,
-          FieldRule{100, 60000,
-                    "Milliseconds without frames after which a sensor is opened again; a call into "
-                    "the driver that takes as long is reported."});
-    visit(
-        "retry_ms", retry_ms,
-        FieldRule{10, 60000, "Milliseconds between attempts to open a sensor that is not there."});
+          {100, 60000,
+           "Milliseconds without frames after which a sensor is opened again; a call into "
+           "the driver that takes as long is reported."});
+    visit("retry_ms", retry_ms,
+          {10, 60000, "Milliseconds between attempts to open a sensor that is not there."});
   }
 };
 

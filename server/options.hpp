@@ -23,8 +23,7 @@ struct NodeOptions {
   std::string ros_namespace = "/bpa";
   std::vector<std::string> remaps;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("name", name, {0, 0, "How ROS 2 tools show the server in its namespace."});
     visit("namespace", ros_namespace,
           {0, 0, "Goes in front of every name below that has no leading '/'."});
@@ -40,8 +39,7 @@ struct NetworkOptions {
   std::string graph_layout = "automatic";
   std::string profiles;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("domain", domain, {-1, 232, "DDS domain; -1 takes ROS_DOMAIN_ID, else 0."});
     visit("range", range,
           {0, 0,
@@ -79,8 +77,7 @@ struct InputOptions {
   int sync_queue = 10;
   double silence_s = 2;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("frames", frames, {0, 0, "Topic of bpa_msgs/RgbdFrame; empty: none."});
     visit("frames_reliable", frames_reliable,
           {0, 0, "Ask for reliable delivery; best-effort publishers then do not match."});
@@ -122,8 +119,7 @@ struct CaptureOptions : camera::CameraOptions {
   std::string depth_info_topic = "/camera/aligned_depth_to_color/camera_info";
   std::string points_topic = "/camera/depth/color/points";
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     CameraOptions::visit_fields(visit);
     visit("frame_id", frame_id, {0, 0, "Frame id of this camera's messages."});
     visit("search", search, {0, 0, "Search its frames; false: only publish them."});
@@ -145,8 +141,7 @@ struct QueueOptions {
   int frames = 1;
   int requests = 8;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("frames", frames,
           at_run_time({1, 100, "Frames that may wait; a newer one displaces the oldest."}));
     visit("requests", requests,
@@ -165,8 +160,7 @@ struct OutputOptions {
   std::string rosout = "/rosout";
   double marker_lifetime_s = 0;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("interpretations", interpretations,
           {0, 0, "bpa_msgs/SceneInterpretations: everything, ranked."});
     visit("detections", detections,
@@ -198,8 +192,7 @@ struct DetectionOptions {
   int threads = 0;
   double request_timeout_ms = 30000;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("library", library, {0, 0, "Folder of the model library."});
     visit("detector", detector,
           {0, 0, "File with settings of the detector (detector.yaml); empty: defaults."});
@@ -223,8 +216,7 @@ struct DetectionOptions {
 struct LogOptions {
   std::string level = "info";
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("level", level, at_run_time({0, 0, "debug, info, warning or error."}));
   }
 };
@@ -241,8 +233,7 @@ struct ServerOptions {
   /// How objects are found; config/detector.yaml shows them all.
   DetectorOptions detector;
 
-  template <class Visitor>
-  void visit_groups(Visitor&& visit) {
+  void visit_groups(auto&& visit) {
     visit("node", node, "Names.");
     visit("network", network, "Discovery and transport.");
     visit("input", input, "Where frames come from.");

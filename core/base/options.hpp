@@ -15,10 +15,10 @@
 // Options are trees of structs of defaults. A struct describes its fields once, and the structs
 // inside of it once, in
 //
-//   template <class Visitor> void visit_fields(Visitor&& visit) {
-//     visit("max_range_m", max_range_m, FieldRule{0.1, 20, "Surface further away is ignored."});
+//   void visit_fields(auto&& visit) {
+//     visit("max_range_m", max_range_m, {0.1, 20, "Surface further away is ignored."});
 //   }
-//   template <class Visitor> void visit_groups(Visitor&& visit) {
+//   void visit_groups(auto&& visit) {
 //     visit("refinement", refinement, "Gradient-based alignment.");
 //   }
 //
@@ -72,9 +72,7 @@ std::vector<Option> options_of(Options& options, const std::string& prefix = "")
   }
   if constexpr (requires { options.visit_groups(detail::AnyVisitor()); }) {
     options.visit_groups([&](const char* name, auto& group, const char* description) {
-      FieldRule rule;
-      rule.description = description;
-      out.push_back({prefix + name, rule, std::monostate()});
+      out.push_back({prefix + name, {.description = description}, std::monostate()});
       for (Option& option : options_of(group, prefix + name + "."))
         out.push_back(std::move(option));
     });

@@ -25,16 +25,14 @@ struct PlaneOptions {
   int num_samples = 300;
   std::uint64_t seed = 0;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
-    visit("label_planes", label_planes,
-          FieldRule{0, 1, "Label large planes (table, wall) as background."});
+  void visit_fields(auto&& visit) {
+    visit("label_planes", label_planes, {0, 1, "Label large planes (table, wall) as background."});
     visit("plane_min_extent_m", min_extent_m,
-          FieldRule{0.1, 10, "Smaller planes may be faces of objects and are kept, metres."});
+          {0.1, 10, "Smaller planes may be faces of objects and are kept, metres."});
     visit("min_fraction", min_fraction,
-          FieldRule{0, 1, "Share of the valid pixels that a plane must hold."});
-    visit("max_planes", max_planes, FieldRule{0, 100, "Planes that are labelled at most."});
-    visit("num_samples", num_samples, FieldRule{1, 100000, "RANSAC samples for each plane."});
+          {0, 1, "Share of the valid pixels that a plane must hold."});
+    visit("max_planes", max_planes, {0, 100, "Planes that are labelled at most."});
+    visit("num_samples", num_samples, {1, 100000, "RANSAC samples for each plane."});
   }
 };
 

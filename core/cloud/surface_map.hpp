@@ -36,14 +36,13 @@ struct SurfaceMapOptions {
   int max_width = 400;
   int num_threads = 0;  ///< 0: one per core. Does not change the result.
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("max_range_m", max_range_m,
-          FieldRule{0.2, 20, "Surface further away than this is ignored, metres."});
+          {0.2, 20, "Surface further away than this is ignored, metres."});
     visit("normal_radius_m", normal_radius_m,
-          FieldRule{0.003, 0.05, "Radius of the window a surface normal is fitted in, metres."});
+          {0.003, 0.05, "Radius of the window a surface normal is fitted in, metres."});
     visit("max_width", max_width,
-          FieldRule{64, 8192, "Wider frames are halved until they are not wider, pixels."});
+          {64, 8192, "Wider frames are halved until they are not wider, pixels."});
   }
 };
 

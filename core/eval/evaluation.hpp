@@ -27,15 +27,14 @@ struct EvaluationOptions {
   bool bop_errors = true;
   int num_threads = 0;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
-    visit("position_m", position_m, FieldRule{0.001, 1, "Largest position error of a find."});
-    visit("angle_rad", angle_rad, FieldRule{0.001, 3.2, "Largest orientation error of a find."});
-    visit("rmse_m", rmse_m, FieldRule{0.001, 1, "Largest RMSE of a find by that criterion."});
+  void visit_fields(auto&& visit) {
+    visit("position_m", position_m, {0.001, 1, "Largest position error of a find."});
+    visit("angle_rad", angle_rad, {0.001, 3.2, "Largest orientation error of a find."});
+    visit("rmse_m", rmse_m, {0.001, 1, "Largest RMSE of a find by that criterion."});
     visit("min_visible_fraction", min_visible_fraction,
-          FieldRule{0, 1, "Instances less visible are neither required nor false."});
-    visit("bop_errors", bop_errors, FieldRule{0, 1, "Also compute ADD, VSD, MSSD and MSPD."});
-    visit("num_threads", num_threads, FieldRule{0, 256, "0 = one per core."});
+          {0, 1, "Instances less visible are neither required nor false."});
+    visit("bop_errors", bop_errors, {0, 1, "Also compute ADD, VSD, MSSD and MSPD."});
+    visit("num_threads", num_threads, {0, 256, "0 = one per core."});
   }
 };
 

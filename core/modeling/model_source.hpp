@@ -17,10 +17,9 @@ struct ModelOptions {
   double spacing_m = 0.0025;  ///< Distance of neighbouring surface points.
   int num_threads = 0;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
-    visit("spacing_m", spacing_m, FieldRule{0.0005, 0.02, "Distance of surface points."});
-    visit("num_threads", num_threads, FieldRule{0, 256, "0 = one per core."});
+  void visit_fields(auto&& visit) {
+    visit("spacing_m", spacing_m, {0.0005, 0.02, "Distance of surface points."});
+    visit("num_threads", num_threads, {0, 256, "0 = one per core."});
   }
 };
 

@@ -22,8 +22,7 @@ struct DetectorOptions {
   DetectOptions detect;  ///< Its groups are listed as the detector's own.
   InterpretationOptions scene;
 
-  template <class Visitor>
-  void visit_groups(Visitor&& visit) {
+  void visit_groups(auto&& visit) {
     visit("surface", surface, "The surface in the depth image.");
     visit("planes", planes, "Background planes.");
     visit("features", features, "What is computed once for all models.");

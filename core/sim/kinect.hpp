@@ -57,8 +57,7 @@ struct KinectOptions {
   double min_range = 0.4;
   double max_range = 4.5;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("baseline", baseline, {0, 0.5, "Infrared camera to projector, metres."});
     visit("disparity_step", disparity_step, {0, 4, "Steps of disparity, pixels; 0 = none."});
     visit("infrared_focal", infrared_focal,

@@ -42,8 +42,7 @@ struct SceneOptions {
   Camera camera{640, 480, 525, 525, 319.5, 239.5};  ///< Of the colour image and the frame.
   KinectOptions kinect;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("min_objects", min_objects, {0, 100, "Fewest objects in a pile."});
     visit("max_objects", max_objects, {0, 100, "Most objects in a pile."});
     visit("min_clutter", min_clutter, {0, 1, "0 = apart on the table, 1 = a heap."});

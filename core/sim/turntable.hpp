@@ -24,8 +24,7 @@ struct TurntableOptions {
   Camera camera{640, 480, 525, 525, 319.5, 239.5};
   KinectOptions kinect;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("resting_positions", resting_positions, {1, 6, "Ways the object is put down."});
     visit("step_deg", step_deg, {1, 90, "Turn of the plate between views, degrees."});
     visit("max_views", max_views, {3, 2000, "Views in all; shared among the resting positions."});
