@@ -16,20 +16,22 @@ inline std::int64_t unix_time_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
 }
 
-/// A monotonic clock that threads can wait on. Tests pass one that they move by hand.
+/// std::chrono::steady_clock as a clock that threads can wait on. Tests pass one that they move by
+/// hand.
 class WaitableClock {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
   virtual ~WaitableClock() = default;
 
-  virtual TimePoint now() const = 0;
+  virtual TimePoint now() const { return std::chrono::steady_clock::now(); }
   /// Waits until `wake` is notified or `until` is reached; may return earlier, so call it in a loop
   /// that checks its condition. `lock` is held.
   virtual void wait_until(std::condition_variable& wake, std::unique_lock<std::mutex>& lock,
-                          TimePoint until) = 0;
+                          TimePoint until) {
+    wake.wait_until(lock, until);
+  }
 };
 
-/// std::chrono::steady_clock.
-std::shared_ptr<WaitableClock> steady_clock();
+inline std::shared_ptr<WaitableClock> steady_clock() { return std::make_shared<WaitableClock>(); }
 
 }  // namespace bpa

@@ -14,6 +14,8 @@ enum class LogLevel { debug, info, warning, error };
 using LogHook = std::function<void(LogLevel, std::string_view message)>;
 
 /// Calls the hook if there is one.
-void log(const LogHook& hook, LogLevel level, std::string_view message);
+inline void log(const LogHook& hook, LogLevel level, std::string_view message) {
+  if (hook) hook(level, message);
+}
 
 }  // namespace bpa

@@ -2,30 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/status.hpp"
 
+#include <iterator>
+
 namespace bpa {
 
 const char* to_string(StatusCode code) {
-  switch (code) {
-    case StatusCode::ok:
-      return "ok";
-    case StatusCode::invalid_argument:
-      return "invalid_argument";
-    case StatusCode::not_found:
-      return "not_found";
-    case StatusCode::corrupt:
-      return "corrupt";
-    case StatusCode::unavailable:
-      return "unavailable";
-    case StatusCode::busy:
-      return "busy";
-    case StatusCode::timeout:
-      return "timeout";
-    case StatusCode::unsupported:
-      return "unsupported";
-    case StatusCode::internal:
-      return "internal";
-  }
-  return "unknown";
+  constexpr const char* kNames[] = {"ok",      "invalid_argument", "not_found",
+                                    "corrupt", "unavailable",      "busy",
+                                    "timeout", "unsupported",      "internal"};
+  const auto k = static_cast<std::size_t>(code);
+  return k < std::size(kNames) ? kNames[k] : "unknown";
 }
 
 }  // namespace bpa
