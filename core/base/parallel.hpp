@@ -17,11 +17,14 @@ int resolve_num_threads(int num_threads);
 void parallel_for_pieces(int count, int grain, int num_threads,
                          const std::function<void(int first, int last, int thread)>& body);
 
-/// Calls `body(index)` for every index in [0, count); see parallel_for_pieces.
-template <class Body>
-void parallel_for(int count, int num_threads, const Body& body, int grain = 1) {
-  parallel_for_pieces(count, grain, num_threads, [&body](int first, int last, int) {
-    for (int i = first; i < last; ++i) body(i);
+/// Calls `body(index)` for every index in [0, count), in pieces of some sixteen for each thread;
+/// see parallel_for_pieces.
+template <class Index, class Body>
+void parallel_for(Index count, int num_threads, const Body& body) {
+  const int items = static_cast<int>(count);
+  const int grain = items / (16 * resolve_num_threads(num_threads));
+  parallel_for_pieces(items, grain, num_threads, [&body](int first, int last, int) {
+    for (int i = first; i < last; ++i) body(static_cast<Index>(i));
   });
 }
 

@@ -35,30 +35,27 @@ void blur(const float* in, int width, int height, int channels, const std::vecto
           int num_threads, float* out) {
   const int row = width * channels;
   const int radius = static_cast<int>(weights.size() / 2), margin = radius * channels;
-  std::vector<float> between(static_cast<std::size_t>(row * height), 0.0f);
+  std::vector<float> between(row * height, 0.0f);
   parallel_for_pieces(height, kRowsPerPiece, num_threads, [&](int first, int last, int) {
-    std::vector<float> padded(static_cast<std::size_t>(row + 2 * margin));
+    std::vector<float> padded(row + 2 * margin);
     for (int v = first; v < last; ++v) {
       const float* const from = in + v * row;
       std::copy(from, from + row, padded.begin() + margin);
       for (int j = 0; j < margin; ++j) {
-        padded[static_cast<std::size_t>(j)] = from[j % channels];
-        padded[static_cast<std::size_t>(margin + row + j)] = from[row - channels + j % channels];
+        padded[j] = from[j % channels];
+        padded[margin + row + j] = from[row - channels + j % channels];
       }
       for (int k = 0; k <= 2 * radius; ++k) {
-        add_row(padded.data() + k * channels, weights[static_cast<std::size_t>(k)], row,
-                between.data() + v * row);
+        add_row(padded.data() + k * channels, weights[k], row, between.data() + v * row);
       }
     }
   });
-  const auto down = [&](int v) {
+  parallel_for(height, num_threads, [&](int v) {
     for (int k = -radius; k <= radius; ++k) {
       const int from = std::clamp(v + k, 0, height - 1);
-      add_row(between.data() + from * row, weights[static_cast<std::size_t>(k + radius)], row,
-              out + v * row);
+      add_row(between.data() + from * row, weights[k + radius], row, out + v * row);
     }
-  };
-  parallel_for(height, num_threads, down, kRowsPerPiece);
+  });
 }
 
 }  // namespace

@@ -60,29 +60,23 @@ Image<Eigen::Vector3f> reduced_color(const Frame& frame, const SurfaceMap& map, 
   Image<Eigen::Vector3f> out(map.width(), map.height(), Eigen::Vector3f::Zero());
   const int reduction = map.reduction;
   const float share = 1.0f / static_cast<float>(reduction * reduction);
-  const auto average = [&](int v) {
+  parallel_for(out.height, num_threads, [&](int v) {
     for (int u = 0; u < out.width; ++u) {
-      int sum[3] = {0, 0, 0};
-      for (int y = 0; y < reduction; ++y) {
-        const auto first = static_cast<std::size_t>((v * reduction + y) * frame.camera.width);
-        const std::uint8_t* pixel =
-            frame.color.data() + 3 * (first + static_cast<std::size_t>(u * reduction));
+      Eigen::Vector3i sum = Eigen::Vector3i::Zero();
+      for (int y = v * reduction; y < (v + 1) * reduction; ++y) {
+        const auto* pixel = &frame.color[3 * (y * frame.camera.width + u * reduction)];
         for (int x = 0; x < 3 * reduction; ++x) sum[x % 3] += pixel[x];
       }
-      out.at(u, v) = share * Eigen::Vector3i(sum[0], sum[1], sum[2]).cast<float>();
+      out.at(u, v) = share * sum.cast<float>();
     }
-  };
-  parallel_for(out.height, num_threads, average, 16);
+  });
   return out;
 }
 
 Image<Eigen::Vector3f> cielab(const Image<Eigen::Vector3f>& rgb, int num_threads) {
   Image<Eigen::Vector3f> out = rgb;
   const CielabConverter convert;
-  const auto convert_row = [&](int v) {
-    for (int u = 0; u < out.width; ++u) out.at(u, v) = convert(rgb.at(u, v));
-  };
-  parallel_for(out.height, num_threads, convert_row, 16);
+  parallel_for(out.size(), num_threads, [&](std::size_t i) { out[i] = convert(rgb[i]); });
   return out;
 }
 

@@ -35,14 +35,13 @@ void estimate_curvature(PointCloud& cloud, float radius, int num_threads) {
   const NeighborGrid grid(cloud.points, radius);
   cloud.principal_directions.resize(cloud.size());
   cloud.curvatures.resize(cloud.size());
-  const auto estimate = [&](int index) {
-    const auto i = static_cast<std::size_t>(index);
+  parallel_for(cloud.size(), num_threads, [&](std::size_t i) {
     const Eigen::Vector3f normal = cloud.normals[i];
     const Eigen::Vector3f u = normal.unitOrthogonal();
     const Eigen::Vector3f v = normal.cross(u);
     TangentCovariance covariance;
     grid.for_each_neighbor(cloud.points[i], [&](int j, float) {
-      const Eigen::Vector3f& other = cloud.normals[static_cast<std::size_t>(j)];
+      const Eigen::Vector3f& other = cloud.normals[j];
       if (other.dot(normal) < kMinCosine) return;
       const float a = other.dot(u);
       const float b = other.dot(v);
@@ -54,21 +53,19 @@ void estimate_curvature(PointCloud& cloud, float radius, int num_threads) {
     Eigen::Vector2f direction;
     decompose(covariance, cloud.curvatures[i], direction);
     cloud.principal_directions[i] = (direction.x() * u + direction.y() * v).normalized();
-  };
-  parallel_for(static_cast<int>(cloud.size()), num_threads, estimate, 64);
+  });
 }
 
 void estimate_normals(PointCloud& cloud, float radius, const Eigen::Vector3f& viewpoint,
                       int num_threads) {
   const NeighborGrid grid(cloud.points, radius);
   cloud.normals.assign(cloud.size(), Eigen::Vector3f::Zero());
-  const auto estimate = [&](int index) {
-    const auto i = static_cast<std::size_t>(index);
+  parallel_for(cloud.size(), num_threads, [&](std::size_t i) {
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
     int count = 0;
     grid.for_each_neighbor(cloud.points[i], [&](int j, float) {
-      const Eigen::Vector3f d = cloud.points[static_cast<std::size_t>(j)] - cloud.points[i];
+      const Eigen::Vector3f d = cloud.points[j] - cloud.points[i];
       sum += d;
       squares += d * d.transpose();
       ++count;
@@ -79,8 +76,7 @@ void estimate_normals(PointCloud& cloud, float radius, const Eigen::Vector3f& vi
     Eigen::Vector3f normal = solver.eigenvectors().col(0);
     if (normal.dot(viewpoint - cloud.points[i]) < 0) normal = -normal;
     cloud.normals[i] = normal;
-  };
-  parallel_for(static_cast<int>(cloud.size()), num_threads, estimate, 64);
+  });
 }
 
 }  // namespace bpa

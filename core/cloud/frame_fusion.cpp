@@ -41,7 +41,7 @@ float fuse_pixel(const std::deque<std::vector<float>>& depths, std::size_t i,
   if (found == 0) return 0;
   if (newest > 0 && found == 1) return newest;
   const AgreedDepth agreed = agreed_depth(scratch);
-  const auto agreeing = static_cast<std::size_t>(agreed.agreeing);
+  const std::size_t agreeing = agreed.agreeing;
   if (newest <= 0) {
     return 2 * found >= depths.size() && 2 * agreeing > found ? agreed.mean : 0;
   }
@@ -54,7 +54,7 @@ float fuse_pixel(const std::deque<std::vector<float>>& depths, std::size_t i,
 }  // namespace
 
 AgreedDepth agreed_depth(std::span<float> depths) {
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>((depths.size() - 1) / 2);
+  const auto middle = depths.begin() + (depths.size() - 1) / 2;
   std::nth_element(depths.begin(), middle, depths.end());
   AgreedDepth out;
   out.median = *middle;
@@ -70,7 +70,7 @@ AgreedDepth agreed_depth(std::span<float> depths) {
 }
 
 void FrameFusion::set_max_frames(int max_frames) {
-  max_frames_ = static_cast<std::size_t>(std::max(1, max_frames));
+  max_frames_ = std::max(1, max_frames);
   const std::size_t kept = max_frames_ == 1 ? 0 : max_frames_;
   while (depths_.size() > kept) depths_.pop_front();
 }
@@ -109,12 +109,11 @@ FusedFrame FrameFusion::add(Frame frame, int num_threads) {
 
   constexpr int kRow = 4096;  // pixels of a piece
   const std::size_t size = out.frame.depth.size();
-  const auto pieces = static_cast<int>((size + kRow - 1) / kRow);
+  const std::size_t pieces = (size + kRow - 1) / kRow;
   std::vector<float> fused(size);
-  std::vector<MovedPixels> counts(static_cast<std::size_t>(pieces));
-  parallel_for(pieces, num_threads, [&](int piece) {
+  std::vector<MovedPixels> counts(pieces);
+  parallel_for(pieces, num_threads, [&](std::size_t p) {
     std::vector<float> scratch;
-    const auto p = static_cast<std::size_t>(piece);
     for (std::size_t i = p * kRow; i < std::min(size, (p + 1) * kRow); ++i) {
       fused[i] = fuse_pixel(depths_, i, scratch, counts[p]);
     }

@@ -37,9 +37,7 @@ std::vector<std::uint64_t> keys_of(std::span<const Eigen::Vector3f> points, floa
 std::vector<std::uint32_t> sort_by_key(const std::vector<std::uint64_t>& keys) {
   std::vector<std::uint32_t> order(keys.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return keys[a] != keys[b] ? keys[a] < keys[b] : a < b;
-  });
+  std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::pair(keys[i], i); });
   return order;
 }
 
@@ -53,7 +51,7 @@ struct Mean {
     point += cloud.points[i];
     if (!cloud.normals.empty()) normal += cloud.normals[i];
     if (!cloud.colors.empty()) {
-      for (int k = 0; k < 3; ++k) color[k] += cloud.colors[i][static_cast<std::size_t>(k)];
+      for (int k = 0; k < 3; ++k) color[k] += cloud.colors[i][k];
     }
     count += 1;
   }
@@ -88,11 +86,10 @@ Eigen::Vector3i NeighborGrid::cell_of(const Eigen::Vector3f& point) const {
   return cell_at(point, inverse_cell_);
 }
 
-std::pair<std::size_t, std::size_t> NeighborGrid::row(int x, int y, int z) const {
+std::pair<std::ptrdiff_t, std::ptrdiff_t> NeighborGrid::row(int x, int y, int z) const {
   const auto first = std::lower_bound(keys_.begin(), keys_.end(), key_of(x, y, z));
   const auto last = std::upper_bound(first, keys_.end(), key_of(x + 2, y, z));
-  return {static_cast<std::size_t>(first - keys_.begin()),
-          static_cast<std::size_t>(last - keys_.begin())};
+  return {first - keys_.begin(), last - keys_.begin()};
 }
 
 PointCloud downsample(const PointCloud& cloud, float spacing) {

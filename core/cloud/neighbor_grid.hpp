@@ -20,14 +20,13 @@ class NeighborGrid {
 
   /// Calls visit(index, squared_distance) for every point within the radius of `query`, in an order
   /// that depends on the points alone.
-  template <class Visit>
-  void for_each_neighbor(const Eigen::Vector3f& query, const Visit& visit) const {
+  void for_each_neighbor(const Eigen::Vector3f& query, const auto& visit) const {
     const Eigen::Vector3i cell = cell_of(query);
     for (int dz = -1; dz <= 1; ++dz) {
       for (int dy = -1; dy <= 1; ++dy) {
         // The three cells along x have consecutive keys.
         const auto [first, last] = row(cell.x() - 1, cell.y() + dy, cell.z() + dz);
-        for (std::size_t i = first; i < last; ++i) {
+        for (auto i = first; i < last; ++i) {
           const float squared = (points_[i] - query).squaredNorm();
           if (squared <= radius_squared_) visit(static_cast<int>(order_[i]), squared);
         }
@@ -37,7 +36,7 @@ class NeighborGrid {
 
  private:
   Eigen::Vector3i cell_of(const Eigen::Vector3f& point) const;
-  std::pair<std::size_t, std::size_t> row(int x, int y, int z) const;
+  std::pair<std::ptrdiff_t, std::ptrdiff_t> row(int x, int y, int z) const;
 
   float inverse_cell_ = 1;
   float radius_squared_ = 0;

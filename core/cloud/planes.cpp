@@ -65,8 +65,7 @@ PlaneFit best_plane(const SurfaceMap& map, const Indices& candidates, const Plan
   int best_count = -1;
   const std::size_t step = std::max<std::size_t>(1, candidates.size() / kCountedPixels);
   for (int draw = 0; draw < options.num_samples; ++draw) {
-    const auto drawn = static_cast<std::size_t>(random.index(static_cast<int>(candidates.size())));
-    const std::size_t i = candidates[drawn];
+    const std::size_t i = candidates[random.index(static_cast<int>(candidates.size()))];
     const Plane plane{map.normals[i], map.normals[i].dot(map.points[i])};
     int count = 0;
     for (std::size_t k = 0; k < candidates.size(); k += step) {

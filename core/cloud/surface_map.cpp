@@ -33,11 +33,10 @@ Camera reduced_camera(const Camera& camera, int reduction) {
 
 // Calls visit(u, v, depth) for the pixels of the frame that pixel (column, row) of the map stands
 // for.
-template <class Visit>
-void for_each_of_block(const Frame& frame, int column, int row, int reduction, const Visit& visit) {
+void for_each_of_block(const Frame& frame, int column, int row, int reduction, const auto& visit) {
   for (int v = row * reduction; v < (row + 1) * reduction; ++v) {
     for (int u = column * reduction; u < (column + 1) * reduction; ++u) {
-      visit(u, v, frame.depth[static_cast<std::size_t>(v * frame.camera.width + u)]);
+      visit(u, v, frame.depth[v * frame.camera.width + u]);
     }
   }
 }
@@ -68,7 +67,7 @@ bool pixel_searched(const Frame& frame, int u, int v) {
       (u < roi.x || v < roi.y || u >= roi.x + roi.width || v >= roi.y + roi.height)) {
     return false;
   }
-  const auto index = static_cast<std::size_t>(v * frame.camera.width + u);
+  const int index = v * frame.camera.width + u;
   if (!frame.mask.empty() && frame.mask[index] == 0) return false;
   return frame.background.empty() || frame.background[index] == 0;
 }
@@ -90,15 +89,15 @@ bool block_searched(const Frame& frame, int column, int row, int reduction, floa
 // than kMinNormalPoints do.
 Eigen::Vector3f fit_normal(const SurfaceMap& map, int u, int v, int radius) {
   const int width = map.width();
-  const float z0 = map.depth[static_cast<std::size_t>(v * width + u)];
-  const Eigen::Vector3f centre = map.points[static_cast<std::size_t>(v * width + u)];
+  const float z0 = map.depth[v * width + u];
+  const Eigen::Vector3f centre = map.points[v * width + u];
   const float gate = same_surface_gate(z0) + kGatePerPixel * static_cast<float>(radius);
   const int step = radius > kDenseWindow ? 2 : 1;
   float sx = 0, sy = 0, sz = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
   int count = 0;
   for (int y = std::max(0, v - radius); y <= std::min(map.height() - 1, v + radius); y += step) {
     for (int x = std::max(0, u - radius); x <= std::min(width - 1, u + radius); x += step) {
-      const auto index = static_cast<std::size_t>(y * width + x);
+      const int index = y * width + x;
       if (map.depth[index] <= 0 || std::abs(map.depth[index] - z0) > gate) continue;
       const Eigen::Vector3f d = map.points[index] - centre;
       sx += d.x(), sy += d.y(), sz += d.z();
@@ -131,32 +130,30 @@ SurfaceMap surface_map(const Frame& frame, const SurfaceMapOptions& options) {
   }
   map.camera = reduced_camera(frame.camera, map.reduction);
   const int width = map.width();
-  const auto size = static_cast<std::size_t>(width * map.height());
+  const int size = width * map.height();
   map.depth.resize(size);
   map.points.resize(size);
   map.normals.assign(size, Eigen::Vector3f::Zero());
   map.searched.assign(size, 0);
-  const auto measure = [&](int v) {
+  parallel_for(map.height(), options.num_threads, [&](int v) {
     for (int u = 0; u < width; ++u) {
-      const auto i = static_cast<std::size_t>(v * width + u);
+      const int i = v * width + u;
       const float z = block_depth(frame, u, v, map.reduction);
       map.depth[i] = z;
       map.points[i] = map.camera.unproject(u, v, z).cast<float>();
       map.searched[i] = z > 0 && z <= static_cast<float>(options.max_range_m) &&
                         block_searched(frame, u, v, map.reduction, z);
     }
-  };
-  parallel_for(map.height(), options.num_threads, measure, 16);
-  const auto fit_normals = [&](int v) {
+  });
+  parallel_for(map.height(), options.num_threads, [&](int v) {
     for (int u = 0; u < width; ++u) {
-      const auto i = static_cast<std::size_t>(v * width + u);
+      const int i = v * width + u;
       if (map.depth[i] <= 0) continue;
       const double pixels = options.normal_radius_m * map.camera.fx / map.depth[i];
       const int radius = std::clamp(static_cast<int>(std::lround(pixels)), kMinWindow, kMaxWindow);
       map.normals[i] = fit_normal(map, u, v, radius);
     }
-  };
-  parallel_for(map.height(), options.num_threads, fit_normals, 8);
+  });
   return map;
 }
 

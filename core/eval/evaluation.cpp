@@ -295,8 +295,7 @@ Result<EvaluationReport> evaluate(const std::vector<io::BopFrame>& frames,
   std::vector<std::optional<Result<FrameOutcome>>> outcomes(frames.size());
   std::mutex mutex;
   int done = 0;
-  parallel_for(static_cast<int>(frames.size()), options.num_threads, [&](int index) {
-    const auto i = static_cast<std::size_t>(index);
+  parallel_for(frames.size(), options.num_threads, [&](std::size_t i) {
     outcomes[i] = evaluate_frame(frames[i], objects, (*assigned)[i], options);
     const std::lock_guard lock(mutex);
     ++done;

@@ -51,9 +51,7 @@ Result<std::string> read_checked(const fs::path& folder, const char* name,
                                  const ModelDescription& description) {
   const std::string path = (folder / name).string();
   const auto record = description.files.find(name);
-  if (record == description.files.end()) {
-    return corrupt(path, " is not in ", kModelFile);
-  }
+  if (record == description.files.end()) return corrupt(path, " is not in ", kModelFile);
   Result<std::string> bytes = read_file(path);
   if (!bytes.ok()) return bytes.status();
   const auto& [size, checksum] = record->second;
@@ -168,9 +166,7 @@ Status save_model(const std::string& library, const ModelSource& source, int num
   fs::remove_all(old, error);
   if (fs::exists(target)) fs::rename(target, old, error);
   if (!error) fs::rename(fresh, target, error);
-  if (error) {
-    return unavailable(target.string(), " cannot be written: ", error.message());
-  }
+  if (error) return unavailable(target.string(), " cannot be written: ", error.message());
   fs::remove_all(old, error);
   return {};
 }
@@ -217,15 +213,11 @@ std::vector<std::string> list_models(const std::string& library) {
 
 Result<LibraryContents> read_library(const std::string& library, int num_threads) {
   std::error_code error;
-  if (!fs::is_directory(library, error)) {
-    return not_found("library ", library, " is not there");
-  }
+  if (!fs::is_directory(library, error)) return not_found("library ", library, " is not there");
   const std::vector<std::string> names = list_models(library);
   std::vector<Result<ModelSource>> loaded(names.size(), Result<ModelSource>(ModelSource{}));
-  parallel_for(static_cast<int>(names.size()), num_threads, [&](int i) {
-    const auto k = static_cast<std::size_t>(i);
-    loaded[k] = load_model(library, names[k]);
-  });
+  parallel_for(names.size(), num_threads,
+               [&](std::size_t k) { loaded[k] = load_model(library, names[k]); });
   LibraryContents contents;
   std::map<int, std::string> owners;  // of numbers
   for (std::size_t k = 0; k < names.size(); ++k) {

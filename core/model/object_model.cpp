@@ -63,17 +63,14 @@ PointCloud coarse_points(const PointCloud& surface, double diameter) {
 std::vector<Eigen::Vector3f> soften_normals(const PointCloud& surface, int num_threads) {
   const NeighborGrid grid(surface.points, kFitRadius);
   std::vector<Eigen::Vector3f> soft(surface.size());
-  parallel_for(
-      static_cast<int>(surface.size()), num_threads,
-      [&](int i) {
-        Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-        grid.for_each_neighbor(surface.points[i], [&](int j, float) {
-          const Eigen::Vector3f& other = surface.normals[j];
-          if (other.dot(surface.normals[i]) > -0.2f) sum += other;
-        });
-        soft[i] = sum.normalized();
-      },
-      64);
+  parallel_for(surface.size(), num_threads, [&](std::size_t i) {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    grid.for_each_neighbor(surface.points[i], [&](int j, float) {
+      const Eigen::Vector3f& other = surface.normals[j];
+      if (other.dot(surface.normals[i]) > -0.2f) sum += other;
+    });
+    soft[i] = sum.normalized();
+  });
   return soft;
 }
 
@@ -117,21 +114,18 @@ float mean_spacing(const PointCloud& surface, float least_cosine) {
 std::vector<float> geometric_normal_variance(const PointCloud& surface, int num_threads) {
   const NeighborGrid grid(surface.points, kFitRadius);
   std::vector<float> variance(surface.size());
-  parallel_for(
-      static_cast<int>(surface.size()), num_threads,
-      [&](int i) {
-        float sum = 0;
-        int count = 0;
-        grid.for_each_neighbor(surface.points[i], [&](int j, float) {
-          const float cosine = surface.normals[j].dot(surface.normals[i]);
-          if (cosine <= -0.2f) return;
-          const float angle = std::acos(std::min(1.0f, cosine));
-          sum += angle * angle;
-          ++count;
-        });
-        variance[i] = count > 0 ? sum / static_cast<float>(count) : 0;
-      },
-      64);
+  parallel_for(surface.size(), num_threads, [&](std::size_t i) {
+    float sum = 0;
+    int count = 0;
+    grid.for_each_neighbor(surface.points[i], [&](int j, float) {
+      const float cosine = surface.normals[j].dot(surface.normals[i]);
+      if (cosine <= -0.2f) return;
+      const float angle = std::acos(std::min(1.0f, cosine));
+      sum += angle * angle;
+      ++count;
+    });
+    variance[i] = count > 0 ? sum / static_cast<float>(count) : 0;
+  });
   return variance;
 }
 

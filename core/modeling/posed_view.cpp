@@ -158,8 +158,8 @@ SurfaceObservations observe_surface(const PointCloud& surface, const std::vector
                                     int num_threads) {
   constexpr float kSpacing = 0.003f;  // of the buffers that say what is hidden
   std::vector<std::vector<Comparison>> comparisons(views.size());
-  parallel_for(static_cast<int>(views.size()), num_threads,
-               [&](int i) { comparisons[i] = compare(surface, views[i], kSpacing); });
+  parallel_for(views.size(), num_threads,
+               [&](std::size_t i) { comparisons[i] = compare(surface, views[i], kSpacing); });
   std::vector<PointSums> sums(surface.size());
   Bins range{}, normal{};
   double depth = 0, count = 0;

@@ -227,22 +227,19 @@ std::vector<Sides> confirmed(const PointCloud& cloud, float radius, const std::v
   constexpr float kSameSurface = 0.0004f;  // metres off the tangent plane
   const NeighborGrid grid(cloud.points, radius);
   std::vector<Sides> out(sides.size());
-  parallel_for(
-      static_cast<int>(sides.size()), num_threads,
-      [&](int i) {
-        const Eigen::Vector3f& normal = cloud.normals[i];
-        int front = 0, back = 0, all = 0;
-        grid.for_each_neighbor(cloud.points[i], [&](int j, float) {
-          const float cosine = normal.dot(cloud.normals[j]);
-          const float off = normal.dot(cloud.points[j] - cloud.points[i]);
-          if (std::abs(cosine) < 0.9f || std::abs(off) > kSameSurface) return;
-          front += cosine > 0 ? sides[j].front : sides[j].back;
-          back += cosine > 0 ? sides[j].back : sides[j].front;
-          ++all;
-        });
-        out[i] = {sides[i].front && 2 * front > all, sides[i].back && 2 * back > all};
-      },
-      256);
+  parallel_for(sides.size(), num_threads, [&](std::size_t i) {
+    const Eigen::Vector3f& normal = cloud.normals[i];
+    int front = 0, back = 0, all = 0;
+    grid.for_each_neighbor(cloud.points[i], [&](int j, float) {
+      const float cosine = normal.dot(cloud.normals[j]);
+      const float off = normal.dot(cloud.points[j] - cloud.points[i]);
+      if (std::abs(cosine) < 0.9f || std::abs(off) > kSameSurface) return;
+      front += cosine > 0 ? sides[j].front : sides[j].back;
+      back += cosine > 0 ? sides[j].back : sides[j].front;
+      ++all;
+    });
+    out[i] = {sides[i].front && 2 * front > all, sides[i].back && 2 * back > all};
+  });
   return out;
 }
 

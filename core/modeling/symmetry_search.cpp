@@ -183,13 +183,10 @@ std::vector<Axis> axes_of(const SelfMatch& match, const std::vector<double>& ang
                           int num_threads) {
   constexpr int kDirections = 900, kTried = 24;
   std::vector<std::pair<double, Axis>> tried(kDirections);
-  parallel_for(
-      kDirections, num_threads,
-      [&](int i) {
-        const Axis axis{sphere_direction(i, 2 * kDirections), match.mean()};  // half the sphere
-        tried[i] = {match.share(axis, angles.front(), 150), axis};
-      },
-      16);
+  parallel_for(kDirections, num_threads, [&](int i) {
+    const Axis axis{sphere_direction(i, 2 * kDirections), match.mean()};  // half the sphere
+    tried[i] = {match.share(axis, angles.front(), 150), axis};
+  });
   std::ranges::stable_sort(tried, std::greater(), &std::pair<double, Axis>::first);
   const auto apart = [](const std::vector<Axis>& axes, const Axis& axis) {
     return std::ranges::none_of(axes, [&](const Axis& a) {
@@ -202,7 +199,7 @@ std::vector<Axis> axes_of(const SelfMatch& match, const std::vector<double>& ang
     if (apart(starts, axis)) starts.push_back(axis);
   }
   std::vector<double> score(starts.size());
-  parallel_for(static_cast<int>(starts.size()), num_threads, [&](int i) {
+  parallel_for(starts.size(), num_threads, [&](std::size_t i) {
     score[i] = climb(match, angles, starts[i]);
     if (score[i] >= kPromising) score[i] = worst_share(match, starts[i], angles);
   });

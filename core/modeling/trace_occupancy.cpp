@@ -186,22 +186,19 @@ void draw_together(PointCloud& cloud, const std::vector<float>& weight, float ra
   for (int round = 0; round < kRounds; ++round) {
     const NeighborGrid neighbors(cloud.points, radius);
     std::vector<Eigen::Vector3f> moved = cloud.points;
-    parallel_for(
-        static_cast<int>(cloud.size()), num_threads,
-        [&](int i) {
-          const Eigen::Vector3f& n = cloud.normals[i];
-          float sum = 0, total = 0;
-          neighbors.for_each_neighbor(cloud.points[i], [&](int j, float squared) {
-            const float cosine = n.dot(cloud.normals[j]);
-            if (cosine < kSameSheet) return;
-            const float near = 1 - squared / (radius * radius);
-            const float w = weight[j] * near * near;
-            sum += w * n.dot(cloud.points[j] - cloud.points[i]);
-            total += w;
-          });
-          if (total > 0) moved[i] += sum / total * n;
-        },
-        64);
+    parallel_for(cloud.size(), num_threads, [&](std::size_t i) {
+      const Eigen::Vector3f& n = cloud.normals[i];
+      float sum = 0, total = 0;
+      neighbors.for_each_neighbor(cloud.points[i], [&](int j, float squared) {
+        const float cosine = n.dot(cloud.normals[j]);
+        if (cosine < kSameSheet) return;
+        const float near = 1 - squared / (radius * radius);
+        const float w = weight[j] * near * near;
+        sum += w * n.dot(cloud.points[j] - cloud.points[i]);
+        total += w;
+      });
+      if (total > 0) moved[i] += sum / total * n;
+    });
     cloud.points = std::move(moved);
   }
 }
@@ -233,7 +230,7 @@ OccupancyGrid trace_occupancy(const std::vector<PosedView>& views, float cell, i
   const std::vector<CellSums> sums = sum_endings(views, lookup, grid);
   std::vector<std::int32_t> passing(2 * sums.size(), 0);
   std::mutex mutex;  // counts are added up; the order does not matter
-  parallel_for(static_cast<int>(views.size()), num_threads, [&](int k) {
+  parallel_for(views.size(), num_threads, [&](std::size_t k) {
     std::vector<std::int32_t> own(passing.size(), 0);
     count_passing(views[k], lookup, sums, own);
     const std::lock_guard lock(mutex);

@@ -145,8 +145,8 @@ Trial search(const std::vector<Scan>& scans, double step, const Lattice& lattice
       trials.push_back({{lattice.middle + lattice.spacing * Eigen::Vector2d(x, y), step}});
     }
   }
-  parallel_for(static_cast<int>(trials.size()), num_threads,
-               [&](int k) { trials[k].cost = cost_of(scans, trials[k].turn, radius); });
+  parallel_for(trials.size(), num_threads,
+               [&](std::size_t k) { trials[k].cost = cost_of(scans, trials[k].turn, radius); });
   return *std::ranges::min_element(trials, {}, &Trial::cost);
 }
 

@@ -103,7 +103,7 @@ Choice best_way(const PointCloud& source, const RestingPosition& source_position
   // same, both scans might as well be of the same end.
   constexpr double kSameSideDown = 0.4, kSameUp = 0.9;
   std::vector<Choice> choices(ways.size());
-  parallel_for(static_cast<int>(ways.size()), num_threads, [&](int i) {
+  parallel_for(ways.size(), num_threads, [&](std::size_t i) {
     const Pose& pose = ways[i].target_from_source;
     const Objection there = objection(source, pose, target_position.views);
     const Objection back = objection(target, pose.inverse(), source_position.views);

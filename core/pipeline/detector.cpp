@@ -49,11 +49,9 @@ Result<Models> chosen_models(const ModelLibrary& library, const DetectRequest& r
   Models chosen;
   for (const std::string& name : request.models) {
     auto model = library.find(name);
-    if (!model) {
-      return not_found("the library holds no model named \"", name, "\"");
-    }
-    if (std::find(chosen.begin(), chosen.end(), model) != chosen.end()) continue;  // named twice
-    chosen.push_back(std::move(model));
+    if (!model) return not_found("the library holds no model named \"", name, "\"");
+    const bool named_twice = std::ranges::count(chosen, model) > 0;
+    if (!named_twice) chosen.push_back(std::move(model));
   }
   return chosen;
 }
@@ -95,8 +93,7 @@ struct ModelSearch {
     std::atomic<int> waiting{static_cast<int>(models.size())};
     const int threads = std::min(resolve_num_threads(request.num_threads), waiting.load());
     if (traces) traces->resize(models.size());
-    parallel_for(static_cast<int>(models.size()), request.num_threads, [&](int m) {
-      const auto i = static_cast<std::size_t>(m);
+    parallel_for(models.size(), request.num_threads, [&](std::size_t i) {
       Search search(scene, *models[i], options, layers, request.priors, request.seed);
       search.deadline = deadline.part(std::min(1.0, static_cast<double>(threads) / waiting--));
       search.cut = &late[i];
@@ -173,7 +170,7 @@ std::vector<Interpretation> Detector::interpret_scene(const SceneFeatures& scene
   const auto& searched = scene.map.searched;
   const auto observed = static_cast<int>(std::count(searched.begin(), searched.end(), 1));
   std::vector<Interpretation> ranked = interpret(candidates, overlaps, observed, options);
-  keep_best(ranked, static_cast<std::size_t>(request.top_k));
+  keep_best(ranked, request.top_k);
   return ranked;
 }
 

@@ -63,8 +63,8 @@ std::vector<Eigen::Vector3f> outermost(const std::vector<Eigen::Vector3f>& point
 
 std::vector<SimulatedObject> build_objects(const std::vector<Shape>& shapes, int num_threads) {
   std::vector<SimulatedObject> objects(shapes.size());
-  parallel_for(static_cast<int>(shapes.size()), num_threads,
-               [&](int i) { objects[i] = build_object(shapes[i]); });
+  parallel_for(shapes.size(), num_threads,
+               [&](std::size_t i) { objects[i] = build_object(shapes[i]); });
   return objects;
 }
 

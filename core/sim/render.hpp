@@ -104,12 +104,10 @@ struct Shading {
 };
 
 /// Calls visit(x, y, index) for every pixel of a row-major image; threads share its rows.
-template <class Visit>
-void for_each_pixel(const Camera& camera, int num_threads, const Visit& visit) {
-  const auto visit_row = [&](int y) {
+void for_each_pixel(const Camera& camera, int num_threads, const auto& visit) {
+  parallel_for(camera.height, num_threads, [&](int y) {
     for (int x = 0; x < camera.width; ++x) visit(x, y, y * camera.width + x);
-  };
-  parallel_for(camera.height, num_threads, visit_row, 8);
+  });
 }
 
 /// One ray through every pixel centre. The same for any number of threads.

@@ -17,8 +17,7 @@ class ParallelFor : public testing::TestWithParam<int> {};
 TEST_P(ParallelFor, VisitsEveryIndexOnce) {
   for (int count : {0, 1, 2, 17, 1000}) {
     std::vector<int> visits(static_cast<std::size_t>(count), 0);
-    parallel_for(
-        count, GetParam(), [&](int i) { ++visits[static_cast<std::size_t>(i)]; }, 3);
+    parallel_for(count, GetParam(), [&](int i) { ++visits[static_cast<std::size_t>(i)]; });
     for (int visit : visits) ASSERT_EQ(visit, 1);
   }
 }
@@ -42,13 +41,10 @@ TEST_P(ParallelFor, TheExceptionOfTheLowestIndexReachesTheCaller) {
     std::vector<char> visited(1000, 0);
     std::string caught;
     try {
-      parallel_for(
-          1000, GetParam(),
-          [&](int i) {
-            visited[static_cast<std::size_t>(i)] = 1;
-            if (i == 700 || i == 300 || i == 303) throw std::runtime_error(std::to_string(i));
-          },
-          3);
+      parallel_for(1000, GetParam(), [&](int i) {
+        visited[static_cast<std::size_t>(i)] = 1;
+        if (i == 700 || i == 300 || i == 303) throw std::runtime_error(std::to_string(i));
+      });
     } catch (const std::runtime_error& error) {
       caught = error.what();
     }
