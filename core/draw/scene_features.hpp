@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/cloud/frame.hpp"
-#include "core/features/edge_image.hpp"
+#include "core/features/edges.hpp"
 #include "core/io/image_file.hpp"
 #include "core/score/segment_scores.hpp"
 #include "core/segment/super_pixels.hpp"

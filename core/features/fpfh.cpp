@@ -5,9 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wall"
+#pragma GCC diagnostic ignored "-Wextra"
+#pragma GCC diagnostic ignored "-Wold-style-cast"
+#pragma GCC diagnostic ignored "-Wshadow"
+#include <flann/flann.hpp>
+#pragma GCC diagnostic pop
 
 namespace bpa {
 namespace {
@@ -38,17 +47,16 @@ bool add_pair(const Eigen::Vector3f& p, const Eigen::Vector3f& np, const Eigen::
   const float theta = std::atan2(w.dot(target), source.dot(target));
   const float alpha = v.dot(target);
   constexpr float kInverseTwoPi = 0.15915494f;
-  histogram[static_cast<std::size_t>(bin_of(theta * kInverseTwoPi + 0.5f))] += 1;
-  histogram[static_cast<std::size_t>(kBins + bin_of(0.5f * (alpha + 1)))] += 1;
-  histogram[static_cast<std::size_t>(2 * kBins + bin_of(0.5f * (phi + 1)))] += 1;
+  histogram[bin_of(theta * kInverseTwoPi + 0.5f)] += 1;
+  histogram[kBins + bin_of(0.5f * (alpha + 1))] += 1;
+  histogram[2 * kBins + bin_of(0.5f * (phi + 1))] += 1;
   return true;
 }
 
 Fpfh simplified(const PointCloud& cloud, const NeighborGrid& grid, std::size_t i) {
   Fpfh histogram{};
   int pairs = 0;
-  grid.for_each_neighbor(cloud.points[i], [&](int other, float) {
-    const auto j = static_cast<std::size_t>(other);
+  grid.for_each_neighbor(cloud.points[i], [&](std::size_t j, float) {
     if (j == i) return;
     pairs +=
         add_pair(cloud.points[i], cloud.normals[i], cloud.points[j], cloud.normals[j], histogram);
@@ -60,13 +68,10 @@ Fpfh simplified(const PointCloud& cloud, const NeighborGrid& grid, std::size_t i
 }
 
 void normalize(Fpfh& histogram) {
-  for (int part = 0; part < 3; ++part) {
-    float sum = 0;
-    for (int k = 0; k < kBins; ++k) sum += histogram[static_cast<std::size_t>(part * kBins + k)];
+  for (auto part = histogram.begin(); part != histogram.end(); part += kBins) {
+    const float sum = std::accumulate(part, part + kBins, 0.0f);
     if (sum <= 0) continue;
-    for (int k = 0; k < kBins; ++k) {
-      histogram[static_cast<std::size_t>(part * kBins + k)] *= 100 / sum;
-    }
+    std::for_each(part, part + kBins, [sum](float& value) { value *= 100 / sum; });
   }
 }
 
@@ -76,38 +81,73 @@ std::vector<Fpfh> compute_fpfh(const PointCloud& cloud, std::span<const int> ind
                                int num_threads) {
   const NeighborGrid grid(cloud.points, radius);
   std::vector<std::uint8_t> needed(cloud.size(), 0);
-  for (int index : indices) {
-    grid.for_each_neighbor(cloud.points[static_cast<std::size_t>(index)],
-                           [&](int j, float) { needed[static_cast<std::size_t>(j)] = 1; });
+  for (const int index : indices) {
+    grid.for_each_neighbor(cloud.points[index], [&](int j, float) { needed[j] = 1; });
   }
   std::vector<Fpfh> histograms(cloud.size());
-  parallel_for(
-      static_cast<int>(cloud.size()), num_threads,
-      [&](int i) {
-        const auto k = static_cast<std::size_t>(i);
-        if (needed[k]) histograms[k] = simplified(cloud, grid, k);
-      },
-      64);
+  parallel_for(cloud.size(), num_threads, [&](std::size_t i) {
+    if (needed[i]) histograms[i] = simplified(cloud, grid, i);
+  });
 
   std::vector<Fpfh> features(indices.size());
-  parallel_for(
-      static_cast<int>(indices.size()), num_threads,
-      [&](int k) {
-        const auto i = static_cast<std::size_t>(indices[static_cast<std::size_t>(k)]);
-        Fpfh feature{};
-        grid.for_each_neighbor(cloud.points[i], [&](int j, float squared) {
-          const Fpfh& other = histograms[static_cast<std::size_t>(j)];
-          if (squared <= 0) return;
-          const float weight = 1 / std::sqrt(squared);
-          for (std::size_t b = 0; b < feature.size(); ++b) feature[b] += weight * other[b];
-        });
-        normalize(feature);
-        for (std::size_t b = 0; b < feature.size(); ++b) feature[b] += histograms[i][b];
-        normalize(feature);
-        features[static_cast<std::size_t>(k)] = feature;
-      },
-      64);
+  parallel_for(indices.size(), num_threads, [&](std::size_t k) {
+    const int i = indices[k];
+    Fpfh& feature = features[k];
+    grid.for_each_neighbor(cloud.points[i], [&](int j, float squared) {
+      if (squared <= 0) return;
+      const float weight = 1 / std::sqrt(squared);
+      for (std::size_t b = 0; b < feature.size(); ++b) feature[b] += weight * histograms[j][b];
+    });
+    normalize(feature);
+    for (std::size_t b = 0; b < feature.size(); ++b) feature[b] += histograms[i][b];
+    normalize(feature);
+  });
   return features;
+}
+
+struct FeatureTree::Index {
+  using Tree = flann::KDTreeSingleIndex<flann::L2<float>>;
+
+  explicit Index(std::span<const Fpfh> features)
+      : data(features.begin(), features.end()),
+        tree(flann::Matrix<float>(data.empty() ? nullptr : data.front().data(), data.size(), 33),
+             flann::KDTreeSingleIndexParams(15)) {
+    if (!data.empty()) tree.buildIndex();
+  }
+
+  std::vector<Fpfh> data;
+  mutable Tree tree;  // queries are const in fact, not in FLANN's signature
+};
+
+FeatureTree::FeatureTree(std::span<const Fpfh> features)
+    : index_(std::make_shared<const Index>(features)) {}
+
+std::vector<FeatureTree::Match> FeatureTree::nearest(std::span<const Fpfh> queries, int count,
+                                                     int num_threads) const {
+  const auto per_query = static_cast<std::size_t>(count);
+  std::vector<Match> matches(queries.size() * per_query);
+  const std::size_t available = std::min(per_query, index_->data.size());
+  if (available == 0) return matches;
+  const auto match_piece = [&](int first, int last, int) {
+    const std::size_t rows = last - first;
+    std::vector<Fpfh> piece(queries.begin() + first, queries.begin() + last);
+    std::vector<std::size_t> indices(rows * available);
+    std::vector<float> distances(rows * available);
+    flann::Matrix<std::size_t> index_matrix(indices.data(), rows, available);
+    flann::Matrix<float> distance_matrix(distances.data(), rows, available);
+    flann::SearchParams exact(flann::FLANN_CHECKS_UNLIMITED);
+    exact.cores = 1;
+    index_->tree.knnSearch(flann::Matrix<float>(piece.front().data(), rows, 33), index_matrix,
+                           distance_matrix, available, exact);
+    for (std::size_t q = 0; q < rows; ++q) {
+      for (std::size_t k = 0; k < available; ++k) {
+        matches[(first + q) * per_query + k] = {static_cast<int>(index_matrix[q][k]),
+                                                distance_matrix[q][k]};
+      }
+    }
+  };
+  parallel_for_pieces(static_cast<int>(queries.size()), 64, num_threads, match_piece);
+  return matches;
 }
 
 }  // namespace bpa

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/features/pair_voting.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +11,43 @@
 
 namespace bpa {
 namespace {
+
+constexpr float kPi = 3.14159265f;
+constexpr float kAngleStep = kPi / kPairAngleBins;
+constexpr float kFixingAngle = 0.35f;  // radians, 20 degrees; chosen by hand
+constexpr float kOuterPart = 0.25f;    // of a bin, from which the next bin is searched too
+
+float safe_acos(float cosine) { return std::acos(std::clamp(cosine, -1.0f, 1.0f)); }
+
+// The bins a value is found in: its own, and the next one where it lies in the outer quarter.
+struct Bins {
+  int first = 0, last = 0;
+};
+
+Bins bins_of(float scaled, int count) {
+  const int own = std::min(static_cast<int>(scaled), count - 1);
+  const float inside = scaled - static_cast<float>(own);
+  return {inside < kOuterPart ? std::max(0, own - 1) : own,
+          inside > 1 - kOuterPart ? std::min(count - 1, own + 1) : own};
+}
+
+// Calls visit(key) for every cell that the feature is found in.
+void for_each_key(const PointPairFeature& f, float inverse_step, const auto& visit) {
+  const Bins d = bins_of(f.distance * inverse_step, 1 << 20);
+  const Bins a = bins_of(f.angle_first / kAngleStep, kPairAngleBins);
+  const Bins b = bins_of(f.angle_second / kAngleStep, kPairAngleBins);
+  const Bins c = bins_of(f.angle_normals / kAngleStep, kPairAngleBins);
+  for (int i = d.first; i <= d.last; ++i) {
+    for (int j = a.first; j <= a.last; ++j) {
+      for (int k = b.first; k <= b.last; ++k) {
+        for (int l = c.first; l <= c.last; ++l) {
+          visit(static_cast<std::uint32_t>(
+              ((i * kPairAngleBins + j) * kPairAngleBins + k) * kPairAngleBins + l));
+        }
+      }
+    }
+  }
+}
 
 constexpr int kTurnBins = 32;
 constexpr int kStepsPerBin = kTurnSteps / kTurnBins;
@@ -34,10 +72,81 @@ float turn_between(const std::uint16_t* bins, int bin) {
   const float here = bins[bin];
   const float after = bins[(bin + 1) % kTurnBins];
   const float middle = static_cast<float>(bin) + after / std::max(1.0f, here + after);
-  return (middle * kStepsPerBin + 0.5f * (kStepsPerBin - 1)) * (2 * 3.14159265f / kTurnSteps);
+  return (middle * kStepsPerBin + 0.5f * (kStepsPerBin - 1)) * (2 * kPi / kTurnSteps);
 }
 
 }  // namespace
+
+PointPairFeature point_pair_feature(const Eigen::Vector3f& p, const Eigen::Vector3f& np,
+                                    const Eigen::Vector3f& q, const Eigen::Vector3f& nq) {
+  const Eigen::Vector3f line = q - p;
+  const float distance = line.norm();
+  const float inverse = distance > 1e-9f ? 1 / distance : 0;
+  return {distance, safe_acos(np.dot(line) * inverse), safe_acos(nq.dot(line) * inverse),
+          safe_acos(np.dot(nq))};
+}
+
+bool fixes_pose(const PointPairFeature& f) {
+  return f.angle_normals > kFixingAngle || std::abs(f.angle_first - 0.5f * kPi) > kFixingAngle;
+}
+
+Eigen::Matrix3f basis_of(const Eigen::Vector3f& normal) {
+  const Eigen::Vector3f helper =
+      std::abs(normal.x()) < 0.6f ? Eigen::Vector3f::UnitX() : Eigen::Vector3f::UnitY();
+  Eigen::Matrix3f basis;
+  basis.col(0) = (helper - normal * normal.dot(helper)).normalized();
+  basis.col(1) = normal.cross(basis.col(0));
+  basis.col(2) = normal;
+  return basis;
+}
+
+std::uint16_t pair_angle_key(const PointPairFeature& f) {
+  const auto bin = [](float angle) {
+    return std::min(static_cast<int>(angle / kAngleStep), kPairAngleBins - 1);
+  };
+  return static_cast<std::uint16_t>((bin(f.angle_first) * kPairAngleBins + bin(f.angle_second)) *
+                                        kPairAngleBins +
+                                    bin(f.angle_normals));
+}
+
+std::uint8_t turn_of(const Eigen::Matrix3f& basis, const Eigen::Vector3f& line) {
+  const float angle = std::atan2(basis.col(1).dot(line), basis.col(0).dot(line));
+  const float steps = angle * (kTurnSteps / (2 * kPi));
+  return static_cast<std::uint8_t>(static_cast<int>(std::floor(steps + 0.5f)) & (kTurnSteps - 1));
+}
+
+PointPairTable::PointPairTable(const PointCloud& points, float distance_step)
+    : inverse_step_(1 / distance_step) {
+  const std::size_t count = std::min<std::size_t>(points.size(), 65535);
+  std::vector<Eigen::Matrix3f> bases(count);
+  for (std::size_t i = 0; i < count; ++i) bases[i] = basis_of(points.normals[i]);
+  // Twice over the pairs: how many there are of each key, then where each goes.
+  const auto for_each_pair = [&](const auto& visit) {
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = 0; j < count; ++j) {
+        if (i == j) continue;
+        const PointPairFeature feature = point_pair_feature(points.points[i], points.normals[i],
+                                                            points.points[j], points.normals[j]);
+        if (feature.distance >= distance_step && fixes_pose(feature)) visit(i, j, feature);
+      }
+    }
+  };
+  for_each_pair([&](std::size_t, std::size_t, const PointPairFeature& feature) {
+    max_distance_ = std::max(max_distance_, feature.distance);
+    for_each_key(feature, inverse_step_, [&](std::uint32_t key) {
+      if (key + 2 > first_.size()) first_.resize(key + 2, 0);
+      ++first_[key + 1];
+    });
+  });
+  for (std::size_t k = 1; k < first_.size(); ++k) first_[k] += first_[k - 1];
+  entries_.resize(first_.empty() ? 0 : first_.back());
+  std::vector<std::uint32_t> next = first_;
+  for_each_pair([&](std::size_t i, std::size_t j, const PointPairFeature& feature) {
+    const Entry entry{static_cast<std::uint16_t>(i),
+                      turn_of(bases[i], points.points[j] - points.points[i])};
+    for_each_key(feature, inverse_step_, [&](std::uint32_t key) { entries_[next[key]++] = entry; });
+  });
+}
 
 ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, float reach,
                        int num_threads) {
@@ -47,26 +156,19 @@ ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, flo
   if (out.references.empty()) return out;
   const NeighborGrid grid(cloud.points, reach);
   std::vector<std::vector<ScenePairs::Partner>> partners(out.references.size());
-  parallel_for(
-      static_cast<int>(out.references.size()), num_threads,
-      [&](int r) {
-        const auto index = static_cast<std::size_t>(r);
-        const auto i = static_cast<std::size_t>(out.references[index]);
-        const Eigen::Matrix3f basis = basis_of(cloud.normals[i]);
-        auto& own = partners[index];
-        grid.for_each_neighbor(cloud.points[i], [&](int neighbor, float) {
-          const auto j = static_cast<std::size_t>(neighbor);
-          if (i == j || (i + j) % 2 != 0) return;  // half of them
-          const PointPairFeature feature = point_pair_feature(cloud.points[i], cloud.normals[i],
-                                                              cloud.points[j], cloud.normals[j]);
-          if (!fixes_pose(feature)) return;
-          own.push_back({feature.distance, pair_angle_key(feature),
-                         turn_of(basis, cloud.points[j] - cloud.points[i])});
-        });
-        std::stable_sort(own.begin(), own.end(),
-                         [](const auto& a, const auto& b) { return a.distance < b.distance; });
-      },
-      16);
+  parallel_for(out.references.size(), num_threads, [&](std::size_t r) {
+    const std::size_t i = out.references[r];
+    const Eigen::Matrix3f basis = basis_of(cloud.normals[i]);
+    grid.for_each_neighbor(cloud.points[i], [&](std::size_t j, float) {
+      if (i == j || (i + j) % 2 != 0) return;  // half of them
+      const PointPairFeature feature =
+          point_pair_feature(cloud.points[i], cloud.normals[i], cloud.points[j], cloud.normals[j]);
+      if (!fixes_pose(feature)) return;
+      partners[r].push_back({feature.distance, pair_angle_key(feature),
+                             turn_of(basis, cloud.points[j] - cloud.points[i])});
+    });
+    std::ranges::stable_sort(partners[r], {}, &ScenePairs::Partner::distance);
+  });
   for (std::size_t r = 0; r < partners.size(); ++r) {
     out.partners.insert(out.partners.end(), partners[r].begin(), partners[r].end());
     out.first[r + 1] = static_cast<std::uint32_t>(out.partners.size());
@@ -77,7 +179,7 @@ ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, flo
 std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable& table,
                                   int num_model_points, int peaks) {
   std::vector<VotedPose> out;
-  std::vector<std::uint16_t> votes(static_cast<std::size_t>(num_model_points) * kTurnBins);
+  std::vector<std::uint16_t> votes(num_model_points * kTurnBins);
   std::vector<Peak> best;
   for (std::size_t r = 0; r < pairs.references.size(); ++r) {
     std::fill(votes.begin(), votes.end(), std::uint16_t{0});
@@ -86,26 +188,21 @@ std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable&
       if (partner.distance > table.max_distance()) break;
       for (const auto& entry : table.lookup(partner.distance, partner.angle_key)) {
         const auto turn = static_cast<std::uint8_t>(partner.turn - entry.turn);
-        ++votes[static_cast<std::size_t>(entry.point * kTurnBins + turn / kStepsPerBin)];
+        ++votes[entry.point * kTurnBins + turn / kStepsPerBin];
       }
     }
     best.clear();
     for (int i = 0; i < num_model_points; ++i) {
-      const Peak peak = best_turn(&votes[static_cast<std::size_t>(i * kTurnBins)], i);
+      const Peak peak = best_turn(&votes[i * kTurnBins], i);
       if (peak.votes >= kMinVotes) best.push_back(peak);
     }
-    const auto keep = std::min(best.size(), static_cast<std::size_t>(peaks));
-    std::partial_sort(best.begin(), best.begin() + static_cast<std::ptrdiff_t>(keep), best.end(),
-                      [](const Peak& a, const Peak& b) {
-                        return a.votes != b.votes ? a.votes > b.votes
-                                                  : a.model_point < b.model_point;
-                      });
-    for (std::size_t k = 0; k < keep; ++k) {
-      const Peak& peak = best[k];
-      out.push_back(
-          {pairs.references[r], peak.model_point,
-           turn_between(&votes[static_cast<std::size_t>(peak.model_point * kTurnBins)], peak.bin),
-           peak.votes});
+    const std::size_t keep = std::min<std::size_t>(best.size(), peaks);
+    std::ranges::partial_sort(best, best.begin() + keep, {}, [](const Peak& peak) {
+      return std::pair(-peak.votes, peak.model_point);
+    });
+    for (const Peak& peak : std::span(best).first(keep)) {
+      out.push_back({pairs.references[r], peak.model_point,
+                     turn_between(&votes[peak.model_point * kTurnBins], peak.bin), peak.votes});
     }
   }
   return out;

@@ -3,11 +3,72 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "core/features/point_pairs.hpp"
+#include "core/cloud/point_cloud.hpp"
 
 namespace bpa {
+
+/// The four rigid invariants of two oriented points (Drost et al., "Model Globally, Match Locally",
+/// CVPR 2010).
+struct PointPairFeature {
+  float distance = 0;       ///< Metres.
+  float angle_first = 0;    ///< Between the first normal and the line to the second, radians.
+  float angle_second = 0;   ///< Between the second normal and that line.
+  float angle_normals = 0;  ///< Between the normals.
+};
+
+PointPairFeature point_pair_feature(const Eigen::Vector3f& p, const Eigen::Vector3f& np,
+                                    const Eigen::Vector3f& q, const Eigen::Vector3f& nq);
+
+/// True when the pair fixes a pose: normals that differ by 20 degrees or more, or points that are
+/// not in one another's tangent plane.
+bool fixes_pose(const PointPairFeature& feature);
+
+constexpr int kPairAngleBins = 12;  ///< 15 degrees each.
+constexpr int kTurnSteps = 256;     ///< Of a full turn about a normal.
+
+/// A basis whose third axis is `normal` (unit length); the other two follow from it alone. Turns
+/// about a normal are measured from the first axis toward the second.
+Eigen::Matrix3f basis_of(const Eigen::Vector3f& normal);
+
+/// All ordered pairs of a model's points that fix a pose, found by their quantised feature. A pair
+/// whose feature lies in the outer quarter of a bin is found from the bin next to it as well, so
+/// that noise seldom hides it.
+class PointPairTable {
+ public:
+  /// `distance_step` in metres.
+  PointPairTable(const PointCloud& points, float distance_step);
+
+  /// One pair: its first point, and where the second lies about the first's normal.
+  struct Entry {
+    std::uint16_t point = 0;
+    std::uint8_t turn = 0;  ///< In kTurnSteps.
+  };
+  /// The pairs found under a distance and three angles quantised by pair_angle_key().
+  std::span<const Entry> lookup(float distance, std::uint16_t angle_key) const {
+    if (!(distance <= max_distance_ + 1 / inverse_step_)) return {};
+    const auto bin = static_cast<std::uint32_t>(distance * inverse_step_);
+    const std::size_t key = bin * kAngleKeys + angle_key;
+    if (key + 1 >= first_.size()) return {};
+    return {entries_.data() + first_[key], first_[key + 1] - first_[key]};
+  }
+  float max_distance() const { return max_distance_; }
+
+  static constexpr std::uint32_t kAngleKeys = kPairAngleBins * kPairAngleBins * kPairAngleBins;
+
+ private:
+  float inverse_step_ = 1;
+  float max_distance_ = 0;
+  std::vector<std::uint32_t> first_;  // first_[key]..first_[key + 1] is the cell
+  std::vector<Entry> entries_;
+};
+
+/// The three angles, quantised.
+std::uint16_t pair_angle_key(const PointPairFeature& feature);
+/// Where `line` points about the normal that `basis` (basis_of) stands on, in kTurnSteps.
+std::uint8_t turn_of(const Eigen::Matrix3f& basis, const Eigen::Vector3f& line);
 
 /// Pairs of a scene's points about some reference points; made once, looked up in every model.
 struct ScenePairs {

@@ -6,9 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/features/feature_tree.hpp"
 #include "core/features/fpfh.hpp"
-#include "core/features/point_pairs.hpp"
+#include "core/features/pair_voting.hpp"
 #include "core/model/distance_transform.hpp"
 #include "core/model/object_model.hpp"
 #include "core/model/view_sphere.hpp"

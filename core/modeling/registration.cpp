@@ -11,7 +11,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/cloud/neighbor_grid.hpp"
-#include "core/features/point_pairs.hpp"
+#include "core/features/pair_voting.hpp"
 #include "core/geometry/fast_pose.hpp"
 #include "core/geometry/symmetry.hpp"
 #include "core/model/distance_transform.hpp"
@@ -221,7 +221,7 @@ std::vector<Registration> refine_all(const PointCloud& source, const Target& tar
                                      const std::vector<FastPose>& starts,
                                      const RegistrationOptions& options) {
   std::vector<Registration> refined(starts.size());
-  parallel_for(static_cast<int>(starts.size()), options.num_threads, [&](int i) {
+  parallel_for(starts.size(), options.num_threads, [&](std::size_t i) {
     refined[i] = refine(source, target, starts[i], static_cast<float>(options.tolerance_m));
   });
   std::ranges::stable_sort(refined, std::greater(), &Registration::overlap);

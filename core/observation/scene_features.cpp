@@ -29,9 +29,9 @@ std::vector<int> choose(std::size_t available, int wanted, std::uint64_t seed) {
   std::iota(all.begin(), all.end(), 0);
   RandomStream random(seed, Stream::keypoints);
   for (std::size_t i = all.size(); i > 1; --i) {
-    std::swap(all[i - 1], all[static_cast<std::size_t>(random.index(static_cast<int>(i)))]);
+    std::swap(all[i - 1], all[random.index(static_cast<int>(i))]);
   }
-  if (all.size() > static_cast<std::size_t>(wanted)) all.resize(static_cast<std::size_t>(wanted));
+  all.resize(std::min<std::size_t>(all.size(), wanted));
   return all;
 }
 

@@ -7,7 +7,7 @@
 #include "core/cloud/planes.hpp"
 #include "core/cloud/point_cloud.hpp"
 #include "core/cloud/surface_map.hpp"
-#include "core/features/edge_image.hpp"
+#include "core/features/edges.hpp"
 #include "core/features/fpfh.hpp"
 #include "core/features/pair_voting.hpp"
 #include "core/observation/check_image.hpp"
@@ -42,21 +42,19 @@ struct SceneFeatureOptions {
   std::uint64_t seed = 0;
   int num_threads = 0;  ///< 0: one per core. Does not change the result.
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("max_keypoints", max_keypoints,
-          FieldRule{10, 100000, "Scene points whose features are matched with the models."});
+          {10, 100000, "Scene points whose features are matched with the models."});
     visit("max_references", max_references,
-          FieldRule{0, 100000, "Scene points whose pairs with others vote for poses."});
+          {0, 100000, "Scene points whose pairs with others vote for poses."});
     visit("coarse_spacing_m", coarse_spacing_m,
-          FieldRule{0.002, 0.1, "Spacing of the points that make pairs, metres."});
-    visit("pair_reach_m", pair_reach_m, FieldRule{0.01, 5, "Length of the longest pairs, metres."});
-    visit("use_color", use_color, FieldRule{0, 1, "Use the frame's colours; false ignores them."});
+          {0.002, 0.1, "Spacing of the points that make pairs, metres."});
+    visit("pair_reach_m", pair_reach_m, {0.01, 5, "Length of the longest pairs, metres."});
+    visit("use_color", use_color, {0, 1, "Use the frame's colours; false ignores them."});
     visit("color_blur_px", color_blur_px,
-          FieldRule{0, 10, "Standard deviation of the blur of the colours, pixels."});
+          {0, 10, "Standard deviation of the blur of the colours, pixels."});
   }
-  template <class Visitor>
-  void visit_groups(Visitor&& visit) {
+  void visit_groups(auto&& visit) {
     visit("edges", edges, "The edge image.");
     visit("segments", segments, "Super-pixels.");
   }

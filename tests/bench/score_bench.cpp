@@ -7,7 +7,7 @@
 
 #include "core/base/random.hpp"
 #include "core/cloud/cielab.hpp"
-#include "core/features/edge_image.hpp"
+#include "core/features/edges.hpp"
 #include "core/modeling/model_source.hpp"
 #include "core/score/boundary_scores.hpp"
 #include "core/score/color_score.hpp"

@@ -8,7 +8,7 @@
 #include "core/base/random.hpp"
 #include "core/cloud/blur.hpp"
 #include "core/cloud/cielab.hpp"
-#include "core/features/edge_image.hpp"
+#include "core/features/edges.hpp"
 #include "core/segment/super_pixels.hpp"
 
 namespace bpa {

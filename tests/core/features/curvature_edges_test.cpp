@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/features/curvature_edges.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "core/features/edges.hpp"
 #include "tests/support/solid_scene.hpp"
 
 namespace bpa {

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/features/edge_image.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "core/cloud/cielab.hpp"
+#include "core/features/edges.hpp"
 #include "tests/support/posed_models.hpp"
 
 namespace bpa {

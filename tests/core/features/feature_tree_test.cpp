@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/features/feature_tree.hpp"
-
 #include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
+#include "core/features/fpfh.hpp"
 
 namespace bpa {
 namespace {

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/features/image_edges.hpp"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
+#include "core/features/edges.hpp"
 
 namespace bpa {
 namespace {

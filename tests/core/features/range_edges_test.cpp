@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/features/range_edges.hpp"
-
 #include <gtest/gtest.h>
 
+#include "core/features/edges.hpp"
 #include "tests/support/solid_scene.hpp"
 
 namespace bpa {

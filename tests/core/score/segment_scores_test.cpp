@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/features/edge_image.hpp"
+#include "core/features/edges.hpp"
 #include "core/score/likelihood.hpp"
 #include "tests/support/posed_models.hpp"
 

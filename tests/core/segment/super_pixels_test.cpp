@@ -12,7 +12,7 @@
 
 #include "core/cloud/cielab.hpp"
 #include "core/cloud/surface_break.hpp"
-#include "core/features/edge_image.hpp"
+#include "core/features/edges.hpp"
 #include "tests/support/solid_scene.hpp"
 
 namespace bpa {
