@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "core/cloud/surface_break.hpp"
@@ -10,6 +11,8 @@
 
 namespace bpa::detail {
 namespace {
+
+using Pixels = std::vector<std::int32_t>;  // indices
 
 constexpr std::int32_t kNone = -1;
 
@@ -19,36 +22,29 @@ class PixelSets {
   explicit PixelSets(std::size_t size) : parent_(size) {
     std::iota(parent_.begin(), parent_.end(), 0);
   }
-  std::int32_t root(std::size_t i) {
-    auto at = static_cast<std::int32_t>(i);
-    while (parent(at) != at) {
-      parent(at) = parent(parent(at));
-      at = parent(at);
-    }
-    return at;
+  std::int32_t root(std::int32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
   }
-  void unite(std::size_t a, std::size_t b) {
-    const std::int32_t first = root(a), second = root(b);
-    parent(std::max(first, second)) = std::min(first, second);
+  void unite(std::int32_t a, std::int32_t b) {
+    const auto [first, second] = std::minmax({root(a), root(b)});
+    parent_[second] = first;
   }
 
  private:
-  std::int32_t& parent(std::int32_t i) { return parent_[static_cast<std::size_t>(i)]; }
   std::vector<std::int32_t> parent_;
 };
 
-class Connector {
- public:
-  Connector(const SurfaceMap& map, const PixelFeatures& features, const Image<float>& edges,
-            const Image<std::int32_t>& clusters, const SuperPixelOptions& options)
-      : map_(map),
-        features_(features),
-        edges_(edges),
-        clusters_(clusters),
-        options_(options),
-        strong_(static_cast<float>(options.strong_edge)),
-        sets_(map.size()),
-        labelled_(map.size(), 0) {}
+struct Connector {
+  const SurfaceMap& map;
+  const PixelFeatures& features;
+  const Image<float>& edges;
+  const Image<std::int32_t>& clusters;
+  const SuperPixelOptions& options;
+  const float strong_edge = static_cast<float>(options.strong_edge);
+  const std::int32_t size = static_cast<std::int32_t>(map.size());
+  PixelSets sets{map.size()};
+  std::vector<std::uint8_t> labelled = std::vector<std::uint8_t>(map.size());
 
   Image<std::int32_t> run() {
     unite_cores();
@@ -58,33 +54,29 @@ class Connector {
     return numbered();
   }
 
- private:
-  bool valid(std::size_t i) const { return features_[i].valid(); }
-  bool strong(std::size_t i) const { return edges_[i] >= strong_; }
-  float difference(std::size_t a, std::size_t b) const {
-    return distance(features_[a], features_[b],
-                    inverse_spacing_squared(map_, options_, map_.depth[a]));
+  bool valid(std::int32_t i) const { return features[i].valid(); }
+  bool strong(std::int32_t i) const { return edges[i] >= strong_edge; }
+  float difference(std::int32_t a, std::int32_t b) const {
+    return distance(features[a], features[b], inverse_spacing_squared(map, options, map.depth[a]));
   }
 
   // Calls visit(neighbour) for the four neighbours that have a normal.
-  template <class Visit>
-  void for_each_neighbor(std::size_t i, const Visit& visit) const {
-    const auto width = static_cast<std::size_t>(map_.width());
-    const std::size_t u = i % width;
+  void for_each_neighbor(std::int32_t i, const auto& visit) const {
+    const std::int32_t width = map.width(), u = i % width;
     if (u > 0 && valid(i - 1)) visit(i - 1);
     if (u + 1 < width && valid(i + 1)) visit(i + 1);
     if (i >= width && valid(i - width)) visit(i - width);
-    if (i + width < map_.size() && valid(i + width)) visit(i + width);
+    if (i + width < size && valid(i + width)) visit(i + width);
   }
 
   // Pixels off the strong edges, as far as they hang together.
   void unite_cores() {
-    for (std::size_t i = 0; i < map_.size(); ++i) {
+    for (std::int32_t i = 0; i < size; ++i) {
       if (!valid(i) || strong(i)) continue;
-      labelled_[i] = 1;
-      for_each_neighbor(i, [&](std::size_t j) {
-        const bool ahead = j > i && !strong(j) && clusters_[i] == clusters_[j];
-        if (ahead && !surface_breaks(map_, i, j)) sets_.unite(i, j);
+      labelled[i] = 1;
+      for_each_neighbor(i, [&](std::int32_t j) {
+        const bool ahead = j > i && !strong(j) && clusters[i] == clusters[j];
+        if (ahead && !surface_breaks(map, i, j)) sets.unite(i, j);
       });
     }
   }
@@ -93,34 +85,34 @@ class Connector {
   // than of another, layer by layer from the edges' borders. What no layer reaches hangs together
   // by clusters.
   void attach_strong_pixels() {
-    std::vector<std::size_t> open;
-    for (std::size_t i = 0; i < map_.size(); ++i) {
+    Pixels open;
+    for (std::int32_t i = 0; i < size; ++i) {
       if (valid(i) && strong(i)) open.push_back(i);
     }
-    std::vector<std::array<std::size_t, 2>> joins;
+    std::vector<std::array<std::int32_t, 2>> joins;
     do {
       joins.clear();
-      for (const std::size_t i : open) {
+      for (const std::int32_t i : open) {
         float best = std::numeric_limits<float>::max();
-        std::size_t partner = i;
-        for_each_neighbor(i, [&](std::size_t j) {
-          if (!labelled_[j] || surface_breaks(map_, i, j)) return;
-          const float other_cluster = clusters_[i] == clusters_[j] ? 0.0f : 1.0f;
+        std::int32_t partner = i;
+        for_each_neighbor(i, [&](std::int32_t j) {
+          if (!labelled[j] || surface_breaks(map, i, j)) return;
+          const float other_cluster = clusters[i] == clusters[j] ? 0.0f : 1.0f;
           const float far = difference(i, j) + other_cluster;
           if (far < best) best = far, partner = j;
         });
         if (partner != i) joins.push_back({i, partner});
       }
       for (const auto& [pixel, partner] : joins) {
-        sets_.unite(pixel, partner);
-        labelled_[pixel] = 1;
+        sets.unite(pixel, partner);
+        labelled[pixel] = 1;
       }
-      std::erase_if(open, [&](std::size_t i) { return labelled_[i] != 0; });
+      std::erase_if(open, [&](std::int32_t i) { return labelled[i] != 0; });
     } while (!joins.empty());
-    for (const std::size_t i : open) {
-      for_each_neighbor(i, [&](std::size_t j) {
-        const bool together = !labelled_[j] && clusters_[i] == clusters_[j];
-        if (together && !surface_breaks(map_, i, j)) sets_.unite(i, j);
+    for (const std::int32_t i : open) {
+      for_each_neighbor(i, [&](std::int32_t j) {
+        const bool together = !labelled[j] && clusters[i] == clusters[j];
+        if (together && !surface_breaks(map, i, j)) sets.unite(i, j);
       });
     }
   }
@@ -132,15 +124,13 @@ class Connector {
     float difference = 0;  // sum
   };
 
-  std::int32_t best_partner(const std::vector<std::size_t>& pixels, std::int32_t own,
-                            const std::vector<int>& core) {
+  std::int32_t best_partner(const Pixels& pixels, std::int32_t own, const std::vector<int>& core) {
     std::vector<Contact> contacts;
-    for (const std::size_t i : pixels) {
-      for_each_neighbor(i, [&](std::size_t j) {
-        const std::int32_t other = sets_.root(j);
-        if (other == own || surface_breaks(map_, i, j)) return;
-        const bool fringe =
-            core[static_cast<std::size_t>(own)] == 0 || core[static_cast<std::size_t>(other)] == 0;
+    for (const std::int32_t i : pixels) {
+      for_each_neighbor(i, [&](std::int32_t j) {
+        const std::int32_t other = sets.root(j);
+        if (other == own || surface_breaks(map, i, j)) return;
+        const bool fringe = core[own] == 0 || core[other] == 0;
         if (!fringe && (strong(i) || strong(j))) return;
         auto found = std::find_if(contacts.begin(), contacts.end(),
                                   [other](const Contact& c) { return c.root == other; });
@@ -160,60 +150,41 @@ class Connector {
 
   // One round; whether anything was joined.
   bool join_small_segments() {
-    std::vector<int> size(map_.size(), 0), core(map_.size(), 0);
-    for (std::size_t i = 0; i < map_.size(); ++i) {
+    std::vector<int> pixel_count(size, 0), core(size, 0);  // of the segment with that root
+    for (std::int32_t i = 0; i < size; ++i) {
       if (!valid(i)) continue;
-      const auto root = static_cast<std::size_t>(sets_.root(i));
-      ++size[root];
-      core[root] += !strong(i);
+      ++pixel_count[sets.root(i)];
+      core[sets.root(i)] += !strong(i);
     }
-    std::vector<std::vector<std::size_t>> small;
-    std::vector<std::int32_t> place(map_.size(), kNone);
-    for (std::size_t i = 0; i < map_.size(); ++i) {
-      if (!valid(i)) continue;
-      const auto root = static_cast<std::size_t>(sets_.root(i));
-      if (size[root] >= options_.min_pixels) continue;
-      if (place[root] == kNone) {
-        place[root] = static_cast<std::int32_t>(small.size());
-        small.emplace_back();
-      }
-      small[static_cast<std::size_t>(place[root])].push_back(i);
+    std::map<std::int32_t, Pixels> small;  // by root
+    for (std::int32_t i = 0; i < size; ++i) {
+      if (valid(i) && pixel_count[sets.root(i)] < options.min_pixels)
+        small[sets.root(i)].push_back(i);
     }
     bool joined = false;
-    for (const std::vector<std::size_t>& pixels : small) {
-      const std::int32_t own = sets_.root(pixels.front());
+    for (const auto& [root, pixels] : small) {
       // It may have been joined by a smaller one before; then the next round looks at it.
-      if (static_cast<std::size_t>(own) != pixels.front()) continue;
-      const std::int32_t partner = best_partner(pixels, own, core);
+      if (sets.root(root) != root) continue;
+      const std::int32_t partner = best_partner(pixels, root, core);
       if (partner == kNone) continue;
-      const int cores =
-          core[static_cast<std::size_t>(own)] + core[static_cast<std::size_t>(partner)];
-      sets_.unite(pixels.front(), static_cast<std::size_t>(partner));
-      core[static_cast<std::size_t>(sets_.root(pixels.front()))] = cores;
+      const int cores = core[root] + core[partner];
+      sets.unite(root, partner);
+      core[sets.root(root)] = cores;
       joined = true;
     }
     return joined;
   }
 
   Image<std::int32_t> numbered() {
-    Image<std::int32_t> labels(map_.width(), map_.height(), kNone);
+    Image<std::int32_t> labels(map.width(), map.height(), kNone);
     std::int32_t next = 0;
-    for (std::size_t i = 0; i < map_.size(); ++i) {
+    for (std::int32_t i = 0; i < size; ++i) {
       if (!valid(i)) continue;
-      const auto root = static_cast<std::size_t>(sets_.root(i));
+      const std::int32_t root = sets.root(i);
       labels[i] = root == i ? next++ : labels[root];
     }
     return labels;
   }
-
-  const SurfaceMap& map_;
-  const PixelFeatures& features_;
-  const Image<float>& edges_;
-  const Image<std::int32_t>& clusters_;
-  const SuperPixelOptions& options_;
-  const float strong_;
-  PixelSets sets_;
-  std::vector<std::uint8_t> labelled_;
 };
 
 }  // namespace
@@ -221,7 +192,7 @@ class Connector {
 Image<std::int32_t> connect(const SurfaceMap& map, const PixelFeatures& features,
                             const Image<float>& edges, const Image<std::int32_t>& clusters,
                             const SuperPixelOptions& options) {
-  return Connector(map, features, edges, clusters, options).run();
+  return Connector{map, features, edges, clusters, options}.run();
 }
 
 }  // namespace bpa::detail

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/cloud/surface_break.hpp"
 #include "core/segment/pixel_features.hpp"
@@ -18,12 +19,10 @@ constexpr float kBulgeAngle = 2 * kHollowAngle;
 
 std::vector<Segment> describe(const SurfaceMap& map, const Image<Eigen::Vector3f>& lab,
                               const Image<std::int32_t>& labels) {
-  const std::int32_t count =
-      labels.empty() ? 0 : 1 + *std::max_element(labels.pixels.begin(), labels.pixels.end());
-  std::vector<Segment> segments(static_cast<std::size_t>(count));
+  std::vector<Segment> segments(labels.empty() ? 0 : 1 + std::ranges::max(labels.pixels));
   for (std::size_t i = 0; i < labels.size(); ++i) {
     if (labels[i] < 0) continue;
-    Segment& segment = segments[static_cast<std::size_t>(labels[i])];
+    Segment& segment = segments[labels[i]];
     segment.pixels.push_back(static_cast<std::uint32_t>(i));
     segment.mean_position += map.points[i];
     segment.mean_normal += map.normals[i];
@@ -45,49 +44,32 @@ std::vector<Segment> describe(const SurfaceMap& map, const Image<Eigen::Vector3f
   return segments;
 }
 
-class PairCounter {
- public:
-  PairCounter(const SurfaceMap& map, const Image<std::int32_t>& labels, const Image<float>& edges,
-              std::size_t num_segments)
-      : map_(map), labels_(labels), edges_(edges), by_first_(num_segments) {}
-
-  std::vector<SegmentPair> run() {
-    const auto width = static_cast<std::size_t>(labels_.width);
-    for (std::size_t i = 0; i < labels_.size(); ++i) {
-      if (labels_[i] < 0) continue;
-      if (i % width + 1 < width) add(i, i + 1);
-      if (i + width < labels_.size()) add(i, i + width);
-    }
-    std::vector<SegmentPair> pairs;
-    for (std::vector<SegmentPair>& some : by_first_) {
-      std::sort(some.begin(), some.end(),
-                [](const SegmentPair& a, const SegmentPair& b) { return a.second < b.second; });
-      for (SegmentPair& pair : some) {
-        pair.edge /= static_cast<float>(pair.contact);
-        pairs.push_back(pair);
-      }
-    }
-    return pairs;
-  }
-
- private:
-  void add(std::size_t i, std::size_t j) {
-    const int first = std::min(labels_[i], labels_[j]), second = std::max(labels_[i], labels_[j]);
+std::vector<SegmentPair> touching_pairs(const SurfaceMap& map, const Image<std::int32_t>& labels,
+                                        const Image<float>& edges) {
+  std::map<std::pair<int, int>, SegmentPair> found;
+  const auto add = [&](int i, int j) {
+    const auto [first, second] = std::minmax(labels[i], labels[j]);
     if (first < 0 || first == second) return;
-    std::vector<SegmentPair>& pairs = by_first_[static_cast<std::size_t>(first)];
-    auto found = std::find_if(pairs.begin(), pairs.end(),
-                              [second](const SegmentPair& p) { return p.second == second; });
-    if (found == pairs.end()) found = pairs.insert(found, SegmentPair{first, second, 0, 0, 0, 0});
-    ++found->contact;
-    found->breaks += surface_breaks(map_, i, j);
-    found->edge += std::max(edges_[i], edges_[j]);
+    SegmentPair& pair =
+        found.try_emplace({first, second}, SegmentPair{first, second}).first->second;
+    ++pair.contact;
+    pair.breaks += surface_breaks(map, i, j);
+    pair.edge += std::max(edges[i], edges[j]);
+  };
+  for (int v = 0; v < labels.height; ++v) {
+    for (int u = 0; u < labels.width; ++u) {
+      const int i = v * labels.width + u;
+      if (u + 1 < labels.width) add(i, i + 1);
+      if (v + 1 < labels.height) add(i, i + labels.width);
+    }
   }
-
-  const SurfaceMap& map_;
-  const Image<std::int32_t>& labels_;
-  const Image<float>& edges_;
-  std::vector<std::vector<SegmentPair>> by_first_;
-};
+  std::vector<SegmentPair> pairs;
+  for (auto& [segments, pair] : found) {
+    pair.edge /= static_cast<float>(pair.contact);
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
 
 float squared(float x) { return x * x; }
 
@@ -121,10 +103,9 @@ Segmentation super_pixels(const SurfaceMap& map, const Image<Eigen::Vector3f>& l
   out.labels = detail::connect(map, features, edges, detail::cluster(map, features, edges, options),
                                options);
   out.segments = describe(map, lab, out.labels);
-  out.pairs = PairCounter(map, out.labels, edges, out.segments.size()).run();
+  out.pairs = touching_pairs(map, out.labels, edges);
   for (SegmentPair& pair : out.pairs) {
-    pair.affinity = segment_affinity(out.segments[static_cast<std::size_t>(pair.first)],
-                                     out.segments[static_cast<std::size_t>(pair.second)], pair);
+    pair.affinity = segment_affinity(out.segments[pair.first], out.segments[pair.second], pair);
   }
   return out;
 }

@@ -24,19 +24,17 @@ struct SuperPixelOptions {
   double strong_edge = 0.8;
   int num_threads = 0;  ///< 0: one for each core.
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("spacing_px", spacing_px,
-          FieldRule{3, 64, "Spacing of the first centres: the size of a super-pixel, pixels."});
-    visit("iterations", iterations, FieldRule{1, 50, "Iterations of k-means."});
+          {3, 64, "Spacing of the first centres: the size of a super-pixel, pixels."});
+    visit("iterations", iterations, {1, 50, "Iterations of k-means."});
     visit("min_pixels", min_pixels,
-          FieldRule{1, 1000, "Smaller super-pixels join a neighbour if no edge is between."});
+          {1, 1000, "Smaller super-pixels join a neighbour if no edge is between."});
     visit("angle_deg", angle_deg,
-          FieldRule{1, 360, "Angle of normals that counts as one spacing, degrees."});
-    visit("color", color, FieldRule{0.1, 1000, "CIELAB distance that counts as one spacing."});
-    visit("edge", edge, FieldRule{0.01, 100, "Edge likelihood that counts as one spacing."});
-    visit("strong_edge", strong_edge,
-          FieldRule{0.01, 1, "Edge likelihood that no super-pixel crosses."});
+          {1, 360, "Angle of normals that counts as one spacing, degrees."});
+    visit("color", color, {0.1, 1000, "CIELAB distance that counts as one spacing."});
+    visit("edge", edge, {0.01, 100, "Edge likelihood that counts as one spacing."});
+    visit("strong_edge", strong_edge, {0.01, 1, "Edge likelihood that no super-pixel crosses."});
   }
 };
 
