@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/geometry/distortion.hpp"
+#include "core/geometry/camera.hpp"
 
 namespace bpa::camera {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace bpa {
 namespace {
@@ -22,6 +21,16 @@ Pose best_turn(const Pose& pose, const Pose& reference, const ContinuousSymmetry
   return pose * rotation_about(symmetry, 2 * half);
 }
 
+// The poses that look the same, each turned about the axis of revolution to be nearest `reference`.
+std::vector<Pose> equivalents(const Pose& pose, const Pose& reference, const SymmetryGroup& group) {
+  std::vector<Pose> poses = discrete_elements(group);
+  for (Pose& each : poses) {
+    each = pose * each;
+    if (!group.continuous.empty()) each = best_turn(each, reference, group.continuous.front());
+  }
+  return poses;
+}
+
 }  // namespace
 
 PoseError pose_error(const Pose& a, const Pose& b) {
@@ -35,40 +44,22 @@ std::vector<Pose> discrete_elements(const SymmetryGroup& group) {
 }
 
 Pose nearest_symmetric_pose(const Pose& pose, const Pose& reference, const SymmetryGroup& group) {
-  Pose best = pose;
-  double best_cost = std::numeric_limits<double>::infinity();
-  for (const Pose& element : discrete_elements(group)) {
-    Pose candidate = pose * element;
-    if (!group.continuous.empty()) {
-      candidate = best_turn(candidate, reference, group.continuous.front());
-    }
+  const std::vector<Pose> poses = equivalents(pose, reference, group);
+  return *std::ranges::min_element(poses, {}, [&](const Pose& candidate) {
     const PoseError error = pose_error(candidate, reference);
-    const double cost = error.angle + 1e-3 * error.position;
-    if (cost < best_cost) {
-      best_cost = cost;
-      best = candidate;
-    }
-  }
-  return best;
+    return error.angle + 1e-3 * error.position;
+  });
 }
 
 PoseError pose_error(const Pose& estimate, const Pose& truth, const SymmetryGroup& group,
                      double position_scale, double angle_scale) {
-  PoseError best;
-  double best_cost = std::numeric_limits<double>::infinity();
-  for (const Pose& element : discrete_elements(group)) {
-    Pose candidate = truth * element;
-    if (!group.continuous.empty()) {
-      candidate = best_turn(candidate, estimate, group.continuous.front());
-    }
-    const PoseError error = pose_error(estimate, candidate);
-    const double cost = std::max(error.position / position_scale, error.angle / angle_scale);
-    if (cost < best_cost) {
-      best_cost = cost;
-      best = error;
-    }
+  std::vector<PoseError> errors;
+  for (const Pose& pose : equivalents(truth, estimate, group)) {
+    errors.push_back(pose_error(estimate, pose));
   }
-  return best;
+  return *std::ranges::min_element(errors, {}, [&](const PoseError& error) {
+    return std::max(error.position / position_scale, error.angle / angle_scale);
+  });
 }
 
 }  // namespace bpa

@@ -11,7 +11,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/cloud/frame.hpp"
-#include "core/geometry/distortion.hpp"
+#include "core/geometry/camera.hpp"
 
 namespace bpa::server {
 namespace {

@@ -6,8 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/geometry/distortion.hpp"
-
 namespace bpa {
 namespace {
 
