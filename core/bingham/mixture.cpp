@@ -7,15 +7,7 @@
 #include <limits>
 
 namespace bpa {
-namespace {
-
-using Eigen::Matrix4d;
-using Eigen::Quaterniond;
-using Component = BinghamMixture::Component;
-
-}  // namespace
-
-double BinghamMixture::log_density(const Quaterniond& q) const {
+double BinghamMixture::log_density(const Eigen::Quaterniond& q) const {
   double largest = -std::numeric_limits<double>::infinity();
   for (const Component& c : components) {
     largest = std::max(largest, std::log(c.weight) + c.bingham.log_density(q));
@@ -27,13 +19,13 @@ double BinghamMixture::log_density(const Quaterniond& q) const {
   return largest + std::log(sum);
 }
 
-Matrix4d BinghamMixture::scatter() const {
-  Matrix4d sum = Matrix4d::Zero();
+Eigen::Matrix4d BinghamMixture::scatter() const {
+  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
   for (const Component& c : components) sum += c.weight * c.bingham.scatter();
   return sum;
 }
 
-Quaterniond BinghamMixture::sample(RandomStream& random) const {
+Eigen::Quaterniond BinghamMixture::sample(RandomStream& random) const {
   double left = random.uniform();
   for (const Component& c : components) {
     left -= c.weight;

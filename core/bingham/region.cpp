@@ -24,8 +24,7 @@ constexpr double kWeights[8] = {0.1894506104550685, 0.1826034150449236, 0.169156
                                 0.1495959888165767, 0.1246289712555339, 0.0951585116824928,
                                 0.0622535239386479, 0.0271524594117541};
 
-template <class Function>
-double integrate(double from, double to, int pieces, const Function& f) {
+double integrate(double from, double to, int pieces, const auto& f) {
   const double half = 0.5 * (to - from) / pieces;
   double sum = 0;
   for (int piece = 0; piece < pieces; ++piece) {
@@ -39,8 +38,7 @@ double integrate(double from, double to, int pieces, const Function& f) {
 
 // Where the increasing function f reaches `target`, between lower and upper (false position with
 // the Illinois rule, bisecting when that is slow).
-template <class Function>
-double solve_increasing(double lower, double upper, double target, const Function& f) {
+double solve_increasing(double lower, double upper, double target, const auto& f) {
   double f_lower = f(lower) - target, f_upper = f(upper) - target;
   if (f_lower >= 0) return lower;
   if (f_upper <= 0) return upper;
@@ -104,8 +102,7 @@ struct CredibleIntegral {
 
 // Calls `add(φ, weight)` at the nodes of a rule for ∫ ... dφ from 0 to `end` ≤ π/2, whose pieces
 // double in length from the scale of the largest concentration.
-template <class Function>
-void for_half_angles(const Bingham& bingham, double end, const Function& add) {
+void for_half_angles(const Bingham& bingham, double end, const auto& add) {
   const Vector4d& lambda = bingham.concentrations();
   double from = 0;
   double to = std::min(end, 1 / std::sqrt(1 - lambda[3]));
