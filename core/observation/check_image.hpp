@@ -44,6 +44,23 @@ struct CheckImage {
   }
 };
 
-CheckImage make_check_image(const SurfaceMap& map);
+inline CheckImage make_check_image(const SurfaceMap& map) {
+  CheckImage image{.width = map.width(),
+                   .height = map.height(),
+                   .fx = static_cast<float>(map.camera.fx),
+                   .fy = static_cast<float>(map.camera.fy),
+                   .cx = static_cast<float>(map.camera.cx),
+                   .cy = static_cast<float>(map.camera.cy),
+                   .pixels = std::vector<CheckPixel>(map.size())};
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    CheckPixel& pixel = image.pixels[i];
+    pixel.depth = map.depth[i];
+    pixel.searched = map.searched[i];
+    for (int k = 0; k < 3; ++k) {
+      pixel.normal[k] = static_cast<std::int8_t>(std::lround(127 * map.normals[i][k]));
+    }
+  }
+  return image;
+}
 
 }  // namespace bpa
