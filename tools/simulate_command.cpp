@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "core/base/random.hpp"
-#include "core/io/bop_writer.hpp"
+#include "core/io/bop_dataset.hpp"
 #include "core/io/mesh_file.hpp"
 #include "core/sim/scenes.hpp"
 #include "core/sim/turntable.hpp"

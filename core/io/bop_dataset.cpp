@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <set>
 
-#include "core/io/frame_file.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/private/json_file.hpp"
 

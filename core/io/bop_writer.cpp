@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/io/bop_writer.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 
+#include "core/io/bop_dataset.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/mesh_file.hpp"
 #include "core/io/private/json_file.hpp"
@@ -43,7 +42,7 @@ Json model_json(const BopMesh& model) {
 Json box_json(const std::vector<std::uint8_t>& mask, int width) {
   Eigen::AlignedBox2i box;
   for (int i = 0; i < static_cast<int>(mask.size()); ++i) {
-    if (mask[static_cast<std::size_t>(i)]) box.extend(Eigen::Vector2i(i % width, i / width));
+    if (mask[i]) box.extend(Eigen::Vector2i(i % width, i / width));
   }
   if (box.isEmpty()) return {-1, -1, -1, -1};
   const Eigen::Vector2i size = box.sizes() + Eigen::Vector2i::Ones();

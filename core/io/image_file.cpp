@@ -58,8 +58,7 @@ Status check_png_chunks(const std::string& path, std::string_view bytes) {
 
 /// Decodes a PNG whose header passes check(size); with `jpeg_too`, a JPEG, whose header is not
 /// read.
-template <class Check>
-Result<cv::Mat> read_image(const std::string& path, int flags, bool jpeg_too, const Check& check) {
+Result<cv::Mat> read_image(const std::string& path, int flags, bool jpeg_too, const auto& check) {
   const Result<std::string> bytes = read_file(path);
   if (!bytes.ok()) return bytes.status();
   if (!jpeg_too || !bytes->starts_with("\xff\xd8\xff")) {
@@ -155,6 +154,38 @@ Status write_gray_png(const std::string& path, const GrayImage& image) {
 Status write_mask_png(const std::string& path, int width, int height,
                       const std::vector<std::uint8_t>& mask) {
   return encode(path, width, height, CV_8U, 1, mask);
+}
+
+Result<Frame> read_frame(const std::string& depth_path, const std::string& color_path,
+                         const Camera& camera, double depth_scale_mm) {
+  const Result<GrayImage> depth = read_gray_png(depth_path);
+  if (!depth.ok()) return depth.status();
+  Frame frame;
+  frame.camera = camera;
+  if (camera.width == 0 && camera.height == 0) {
+    frame.camera.width = depth->width;
+    frame.camera.height = depth->height;
+  }
+  if (Status status = validate(frame.camera); !status.ok()) return status;
+  if (depth->width != frame.camera.width || depth->height != frame.camera.height) {
+    return invalid_argument("depth image ", depth_path, " is ", depth->width, "x", depth->height,
+                            "; it must be ", frame.camera.width, "x", frame.camera.height,
+                            " as the camera");
+  }
+  if (!color_path.empty()) {
+    Result<ColorImage> color = read_color_image(color_path);
+    if (!color.ok()) return color.status();
+    if (color->width != depth->width || color->height != depth->height) {
+      return invalid_argument("depth image ", depth_path, " is ", depth->width, "x", depth->height,
+                              "; it must have the size of the colour image, ", color->width, "x",
+                              color->height);
+    }
+    frame.color = std::move(color->pixels);
+  }
+  for (const std::uint16_t units : depth->pixels) {
+    frame.depth.push_back(static_cast<float>(units * depth_scale_mm * 0.001));
+  }
+  return frame;
 }
 
 }  // namespace bpa::io

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/status.hpp"
+#include "core/cloud/frame.hpp"
 
 namespace bpa::io {
 
@@ -48,5 +49,12 @@ Status write_gray_png(const std::string& path, const GrayImage& image);
 /// 8 bits a pixel.
 Status write_mask_png(const std::string& path, int width, int height,
                       const std::vector<std::uint8_t>& mask);
+
+/// Reads one RGB-D frame: a 16-bit depth PNG registered to an 8-bit colour image of the same size.
+/// `color_path` may be empty: no colour. A camera without a size takes the depth image's. Checks
+/// sizes and camera (messages name the file, the field and the rule), not how much depth there is:
+/// that is validate(Frame).
+Result<Frame> read_frame(const std::string& depth_path, const std::string& color_path,
+                         const Camera& camera, double depth_scale_mm);
 
 }  // namespace bpa::io

@@ -90,9 +90,8 @@ namespace {
 
 constexpr std::string_view kIndexMagic = "bpaindex";
 
-// Calls visit(array) for every array of the file. `Index` is const when writing.
-template <class Index, class Visit>
-void for_each_array(Index& index, const Visit& visit) {
+// Calls visit(array) for every array of the file. `index` is const when writing.
+void for_each_array(auto& index, const auto& visit) {
   visit(index.soft_normals);
   for (auto* cloud : {&index.features, &index.coarse}) {
     visit(cloud->points);
@@ -197,7 +196,7 @@ ViewBucket restored(const StoredBucket& in, const Eigen::Vector3f& corner, float
 bool read_cells(ByteReader& reader, std::uint64_t count, OccupancyGrid& grid) {
   constexpr std::size_t kSmallestCell = 3 * sizeof(std::uint16_t) + 1;
   if (count > reader.left() / kSmallestCell) return false;
-  grid.cells.resize(static_cast<std::size_t>(count));
+  grid.cells.resize(count);
   for (OccupancyCell& cell : grid.cells) {
     for (int a = 0; a < 3; ++a) cell.place[a] = reader.next<std::uint16_t>();
     if ((cell.place.array() >= grid.size.array()).any()) return false;

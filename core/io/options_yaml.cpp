@@ -150,9 +150,7 @@ struct ValueWriter {
 }  // namespace
 
 Status read_options(const std::string& path, const OptionsReading& reading) {
-  if (!std::filesystem::is_regular_file(path)) {
-    return not_found(path, ": there is no such file");
-  }
+  if (!std::filesystem::is_regular_file(path)) return not_found(path, ": there is no such file");
   try {
     return apply(path, reading, "", YAML::LoadFile(path));
   } catch (const YAML::Exception& error) {
@@ -177,7 +175,7 @@ std::string options_yaml(const std::vector<Option>& options, bool hidden) {
   out << std::setprecision(12) << std::boolalpha;
   for (const Option& option : options) {
     const auto depth = std::count(option.path.begin(), option.path.end(), '.');
-    const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
+    const std::string indent(2 * depth, ' ');
     if (option.is_group()) out << (depth == 0 ? "\n" : "");
     out << indent << "# " << option.rule.description;
     const std::size_t kind = option.value.index();

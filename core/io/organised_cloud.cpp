@@ -16,28 +16,26 @@ constexpr double kMaxMeanResidual = 2.0;  // pixels
 
 /// Least squares of pixel = f * slope + c over points with slope = x / z: one image axis.
 struct AxisFit {
-  double sum_s = 0, sum_ss = 0, sum_p = 0, sum_sp = 0, count = 0;
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d products = Eigen::Vector2d::Zero();
 
   void add(double slope, double pixel) {
-    sum_s += slope;
-    sum_ss += slope * slope;
-    sum_p += pixel;
-    sum_sp += slope * pixel;
-    ++count;
+    const Eigen::Vector2d row(slope, 1);
+    squares += row * row.transpose();
+    products += pixel * row;
   }
   bool solve(double& focal, double& centre) const {
-    const double det = count * sum_ss - sum_s * sum_s;
-    if (!(det > 1e-9 * count * count)) return false;
-    focal = (count * sum_sp - sum_s * sum_p) / det;
-    centre = (sum_p - focal * sum_s) / count;
+    if (!(squares.determinant() > 1e-9 * squares(1, 1) * squares(1, 1))) return false;
+    const Eigen::Vector2d solution = squares.inverse() * products;
+    focal = solution[0];
+    centre = solution[1];
     return true;
   }
 };
 
 /// Where point i of a cloud of that width is stored.
 Eigen::Vector2d pixel_of(std::size_t i, int width) {
-  const auto columns = static_cast<std::size_t>(width);
-  return {static_cast<double>(i % columns), static_cast<double>(i / columns)};
+  return {static_cast<double>(i % width), static_cast<double>(i / width)};
 }
 
 Result<Camera> fit_camera(const PcdCloud& cloud, const std::vector<Eigen::Vector3f>& points) {

@@ -179,7 +179,7 @@ Columns find_columns(const Element& element) {
   for (std::size_t p = 0; p < element.properties.size(); ++p) {
     const auto name = std::find(std::begin(kNames), std::end(kNames), element.properties[p].name);
     if (name == std::end(kNames) || element.properties[p].count_type) continue;
-    columns[static_cast<std::size_t>(name - std::begin(kNames))] = static_cast<int>(p);
+    columns[name - std::begin(kNames)] = static_cast<int>(p);
   }
   return columns;
 }
@@ -194,9 +194,7 @@ void add_vertex(const Element& element, const Columns& columns, const Row& row, 
   const auto has = [&](std::size_t first) {
     return std::all_of(&columns[first], &columns[first] + 3, [](int p) { return p >= 0; });
   };
-  const auto number = [&](std::size_t k) {
-    return columns[k] < 0 ? 0.0 : row[static_cast<std::size_t>(columns[k])].front();
-  };
+  const auto number = [&](std::size_t k) { return columns[k] < 0 ? 0.0 : row[columns[k]].front(); };
   mesh.vertices.push_back(
       Eigen::Vector3d(scale * number(0), scale * number(1), scale * number(2)).cast<float>());
   if (has(3)) {
@@ -206,7 +204,7 @@ void add_vertex(const Element& element, const Columns& columns, const Row& row, 
   if (!has(6)) return;
   std::array<std::uint8_t, 3>& color = mesh.colors.emplace_back();
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto p = static_cast<std::size_t>(columns[6 + k]);
+    const int p = columns[6 + k];
     color[k] = color_byte(row[p].front(), *element.properties[p].type);
   }
 }

@@ -15,15 +15,14 @@ Status check_keys(const Json& prior, const std::string& where) {
       "model",   "pose",  "position_sigma_m", "position_covariance_m2", "rotation_sigma_deg",
       "bingham", "weight"};
   for (const auto& [key, value] : prior.items()) {
-    if (!known.contains(key)) {
-      return corrupt(where, ": unknown field \"", key, "\"");
+    if (!known.contains(key)) return corrupt(where, ": unknown field \"", key, "\"");
+  }
+  const std::pair<const char*, const char*> alternatives[] = {
+      {"position_sigma_m", "position_covariance_m2"}, {"rotation_sigma_deg", "bingham"}};
+  for (const auto& [one, other] : alternatives) {
+    if (prior.contains(one) && prior.contains(other)) {
+      return corrupt(where, ": give ", one, " or ", other, ", not both");
     }
-  }
-  if (prior.contains("position_sigma_m") && prior.contains("position_covariance_m2")) {
-    return corrupt(where, ": give position_sigma_m or position_covariance_m2, not both");
-  }
-  if (prior.contains("rotation_sigma_deg") && prior.contains("bingham")) {
-    return corrupt(where, ": give rotation_sigma_deg or bingham, not both");
   }
   return {};
 }

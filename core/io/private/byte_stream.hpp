@@ -15,9 +15,8 @@ namespace bpa::io {
 
 static_assert(std::endian::native == std::endian::little, "values are written as they are");
 
-template <class T>
-void append(std::string& bytes, const T& value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+inline void append(std::string& bytes, const auto& value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 /// An array as its length (u64) and its values.
@@ -35,10 +34,7 @@ class ByteReader {
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
 
   /// Leaves `out` as it is past the end.
-  template <class T>
-  void value(T& out) {
-    copy(&out, 1);
-  }
+  void value(auto& out) { copy(&out, 1); }
   /// The next number; 0 past the end.
   template <class T>
   T next() {
@@ -52,7 +48,7 @@ class ByteReader {
     const auto count = next<std::uint64_t>();
     ok_ = ok_ && count <= bytes_.size() / sizeof(T);
     if (!ok_) return;
-    out.resize(static_cast<std::size_t>(count));
+    out.resize(count);
     copy(out.data(), out.size());
   }
   std::size_t left() const { return bytes_.size(); }

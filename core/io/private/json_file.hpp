@@ -27,7 +27,7 @@ struct nlohmann::adl_serializer<Eigen::Matrix<double, kRows, kCols>> {
   static void from_json(const json& in, Matrix& matrix) {
     const auto values = in.get<std::array<double, kRows * kCols>>();
     for (int i = 0; i < kRows * kCols; ++i) {
-      matrix(i / kCols, i % kCols) = values[static_cast<std::size_t>(i)];
+      matrix(i / kCols, i % kCols) = values[i];
     }
   }
 };
@@ -55,16 +55,13 @@ inline Result<Json> read_json(const std::string& path) {
   const Result<std::string> bytes = read_file(path);
   if (!bytes.ok()) return bytes.status();
   Json json = Json::parse(*bytes, nullptr, false);
-  if (json.is_discarded()) {
-    return corrupt(path, " is truncated or not JSON");
-  }
+  if (json.is_discarded()) return corrupt(path, " is truncated or not JSON");
   return json;
 }
 
 /// Runs body(), which reads values out of JSON and returns a Status or a Result; what is missing or
 /// of the wrong type becomes a corrupt status that names the file.
-template <class Body>
-auto with_json(const std::string& path, const Body& body) -> decltype(body()) {
+auto with_json(const std::string& path, const auto& body) -> decltype(body()) {
   try {
     return body();
   } catch (const std::exception& error) {
@@ -75,8 +72,7 @@ auto with_json(const std::string& path, const Body& body) -> decltype(body()) {
 }
 
 /// Reads a file and runs body(json) as with_json does.
-template <class Body>
-auto read_json(const std::string& path, const Body& body) -> decltype(body(Json())) {
+auto read_json(const std::string& path, const auto& body) -> decltype(body(Json())) {
   const Result<Json> json = read_json(path);
   if (!json.ok()) return json.status();
   return with_json(path, [&]() { return body(*json); });

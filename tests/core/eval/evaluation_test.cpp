@@ -11,7 +11,7 @@
 
 #include "core/eval/matching.hpp"
 #include "core/eval/report.hpp"
-#include "core/io/bop_writer.hpp"
+#include "core/io/bop_dataset.hpp"
 #include "core/io/image_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 

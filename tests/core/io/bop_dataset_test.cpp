@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/io/bop_writer.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/mesh_file.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/io/frame_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace bpa::io {

@@ -13,7 +13,7 @@
 
 #include "core/base/random.hpp"
 #include "core/eval/depth_render.hpp"
-#include "core/io/bop_writer.hpp"
+#include "core/io/bop_dataset.hpp"
 #include "core/io/camera_file.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/mesh_file.hpp"

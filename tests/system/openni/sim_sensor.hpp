@@ -23,7 +23,7 @@
 #include <bpa/client.hpp>
 
 #include "core/cloud/frame.hpp"
-#include "core/io/bop_writer.hpp"
+#include "core/io/bop_dataset.hpp"
 #include "core/io/camera_file.hpp"
 #include "core/io/image_file.hpp"
 #include "idl/wire/messages.hpp"
