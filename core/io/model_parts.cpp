@@ -9,7 +9,7 @@
 
 #include "core/io/model_file.hpp"
 #include "core/io/private/byte_stream.hpp"
-#include "core/io/private/json_fields.hpp"
+#include "core/io/private/json_file.hpp"
 
 namespace bpa {
 

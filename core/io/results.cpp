@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "core/io/private/json_fields.hpp"
+#include "core/io/private/json_file.hpp"
 
 /// The components as an object: name -> value.
 template <>
