@@ -4,11 +4,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <set>
 
 #include "core/io/image_file.hpp"
+#include "core/io/mesh_file.hpp"
 #include "core/io/private/json_file.hpp"
 
 namespace bpa::io {
@@ -16,6 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kMetres = 0.001;
+constexpr double kMillimetres = 1000;
 
 SymmetryGroup read_symmetry(const Json& info) {
   SymmetryGroup group;
@@ -157,6 +160,153 @@ Result<Frame> load_bop_frame(const BopFrame& frame) {
     loaded->frame_id = std::to_string(frame.scene_id) + "/" + std::to_string(frame.im_id);
   }
   return loaded;
+}
+
+namespace {
+
+Json model_json(const BopMesh& model) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& vertex : model.mesh.vertices) box.extend(vertex);
+  const Eigen::Vector3d low = kMillimetres * box.min().cast<double>();
+  const Eigen::Vector3d size = kMillimetres * box.sizes().cast<double>();
+  Json info = {{"name", model.name}, {"diameter", kMillimetres * model.diameter},
+               {"min_x", low.x()},   {"min_y", low.y()},
+               {"min_z", low.z()},   {"size_x", size.x()},
+               {"size_y", size.y()}, {"size_z", size.z()}};
+  for (const Pose& pose : model.symmetry.discrete) {
+    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+    matrix.topLeftCorner<3, 3>() = pose.matrix();
+    matrix.topRightCorner<3, 1>() = kMillimetres * pose.translation;
+    info["symmetries_discrete"].push_back(matrix);
+  }
+  for (const ContinuousSymmetry& symmetry : model.symmetry.continuous) {
+    info["symmetries_continuous"].push_back(
+        {{"axis", symmetry.axis}, {"offset", Eigen::Vector3d(kMillimetres * symmetry.point)}});
+  }
+  return info;
+}
+
+/// x, y, width and height of the pixels of a mask, as the toolkit does.
+Json box_json(const std::vector<std::uint8_t>& mask, int width) {
+  Eigen::AlignedBox2i box;
+  for (int i = 0; i < static_cast<int>(mask.size()); ++i) {
+    if (mask[i]) box.extend(Eigen::Vector2i(i % width, i / width));
+  }
+  if (box.isEmpty()) return {-1, -1, -1, -1};
+  const Eigen::Vector2i size = box.sizes() + Eigen::Vector2i::Ones();
+  return {box.min().x(), box.min().y(), size.x(), size.y()};
+}
+
+Json info_json(const BopInstanceRecord& instance, const Frame& frame) {
+  const auto count = [](const auto& mask) {
+    return mask.size() - static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 0));
+  };
+  const std::size_t seen = count(instance.mask_visible);
+  Json info = {{"bbox_visib", box_json(instance.mask_visible, frame.camera.width)},
+               {"px_count_visib", seen},
+               {"visib_fract", instance.visible_fraction}};
+  if (instance.mask.empty()) return info;
+  const std::size_t all = count(instance.mask);
+  int valid = 0;
+  for (std::size_t i = 0; i < instance.mask.size(); ++i) {
+    valid += instance.mask[i] != 0 && frame.depth[i] > 0;
+  }
+  info["bbox_obj"] = box_json(instance.mask, frame.camera.width);
+  info["px_count_all"] = all;
+  info["px_count_valid"] = valid;
+  info["visib_fract"] = all > 0 ? static_cast<double>(seen) / static_cast<double>(all) : 0.0;
+  return info;
+}
+
+Status write_mask(const std::string& path, const Frame& frame, const char* field,
+                  const std::vector<std::uint8_t>& mask) {
+  if (mask.empty()) return {};
+  if (mask.size() != frame.depth.size()) {
+    return invalid_argument(field, " has ", mask.size(),
+                            " values; it must have one for each pixel of the frame");
+  }
+  std::vector<std::uint8_t> bytes = mask;
+  for (std::uint8_t& value : bytes) value = value != 0 ? 255 : 0;
+  return write_mask_png(path, frame.camera.width, frame.camera.height, bytes);
+}
+
+Status write_images(const fs::path& folder, int im_id, const Frame& frame, double depth_scale_mm) {
+  GrayImage depth{frame.camera.width, frame.camera.height, {}};
+  for (const float z : frame.depth) {
+    const double units = std::round(z * kMillimetres / depth_scale_mm);
+    depth.pixels.push_back(static_cast<std::uint16_t>(units > 0 && units <= 65535 ? units : 0.0));
+  }
+  const std::string name = bop_number(im_id) + ".png";
+  if (Status s = write_gray_png((folder / "depth" / name).string(), depth); !s.ok()) return s;
+  if (frame.color.empty()) return {};
+  return write_color_png((folder / "rgb" / name).string(),
+                         {frame.camera.width, frame.camera.height, frame.color});
+}
+
+}  // namespace
+
+Status write_bop_models(const std::string& dataset, const std::vector<BopMesh>& meshes) {
+  const fs::path folder = fs::path(dataset) / "models";
+  Json info = Json::object();
+  for (const BopMesh& model : meshes) {
+    const std::string path = (folder / (bop_object_name(model.obj_id) + ".ply")).string();
+    if (Status s = write_ply(path, model.mesh, kMillimetres); !s.ok()) return s;
+    info[std::to_string(model.obj_id)] = model_json(model);
+  }
+  return write_file((folder / "models_info.json").string(), info.dump(1) + "\n");
+}
+
+struct BopSceneWriter::Records {
+  Json camera = Json::object();
+  Json gt = Json::object();
+  Json info = Json::object();
+};
+
+BopSceneWriter::BopSceneWriter(const std::string& dataset, const std::string& split, int scene_id,
+                               double depth_scale_mm)
+    : folder_((fs::path(dataset) / split / bop_number(scene_id)).string()),
+      depth_scale_mm_(depth_scale_mm),
+      records_(std::make_unique<Records>()) {}
+
+BopSceneWriter::~BopSceneWriter() = default;
+
+Status BopSceneWriter::add(int im_id, const Frame& frame,
+                           const std::vector<BopInstanceRecord>& instances) {
+  const fs::path folder(folder_);
+  if (Status s = write_images(folder, im_id, frame, depth_scale_mm_); !s.ok()) return s;
+  Json gt = Json::array();
+  Json info = Json::array();
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    const BopInstanceRecord& instance = instances[i];
+    const std::string name = bop_number(im_id) + "_" + bop_number(static_cast<int>(i)) + ".png";
+    Status s = write_mask((folder / "mask_visib" / name).string(), frame, "mask_visible",
+                          instance.mask_visible);
+    if (s.ok()) s = write_mask((folder / "mask" / name).string(), frame, "mask", instance.mask);
+    if (!s.ok()) return s;
+    gt.push_back(
+        {{"obj_id", instance.obj_id},
+         {"cam_R_m2c", instance.camera_from_object.matrix()},
+         {"cam_t_m2c", Eigen::Vector3d(kMillimetres * instance.camera_from_object.translation)}});
+    info.push_back(info_json(instance, frame));
+  }
+  const std::string key = std::to_string(im_id);
+  const Camera& c = frame.camera;
+  records_->camera[key] = {{"cam_K", {c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0}},
+                           {"depth_scale", depth_scale_mm_}};
+  records_->gt[key] = gt;
+  records_->info[key] = info;
+  return {};
+}
+
+Status BopSceneWriter::finish() {
+  const std::pair<const char*, const Json&> files[] = {{"scene_camera.json", records_->camera},
+                                                       {"scene_gt.json", records_->gt},
+                                                       {"scene_gt_info.json", records_->info}};
+  for (const auto& [name, json] : files) {
+    const std::string path = (fs::path(folder_) / name).string();
+    if (Status s = write_file(path, json.dump(1) + "\n"); !s.ok()) return s;
+  }
+  return {};
 }
 
 }  // namespace bpa::io
