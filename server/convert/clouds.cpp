@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/concat.hpp"
 #include "core/io/pcd_file.hpp"
 #include "idl/wire/time.hpp"
 #include "server/convert/frames.hpp"
@@ -23,8 +24,7 @@ constexpr std::uint32_t kFieldBytes = 4;
 
 Status check_layout(const PointCloud2& cloud) {
   if (cloud.height < 2) {
-    return invalid_argument("cloud is " + std::to_string(cloud.width) + "x" +
-                            std::to_string(cloud.height) +
+    return invalid_argument("cloud is ", cloud.width, "x", cloud.height,
                             ": it must be organised, one row of points for each row of pixels");
   }
   if (Status status = check_size("cloud", cloud.width, cloud.height); !status.ok()) return status;
@@ -32,13 +32,12 @@ Status check_layout(const PointCloud2& cloud) {
     return Status(StatusCode::unsupported, "cloud is_bigendian is true; it must be false");
   }
   if (std::uint64_t{cloud.point_step} * cloud.width > cloud.row_step) {
-    return invalid_argument("cloud row_step is " + std::to_string(cloud.row_step) +
+    return invalid_argument("cloud row_step is ", cloud.row_step,
                             "; it must be at least width * point_step");
   }
   const std::uint64_t needed = std::uint64_t{cloud.row_step} * cloud.height;
   if (cloud.data.size() == needed) return {};
-  return invalid_argument("cloud data has " + std::to_string(cloud.data.size()) +
-                          " bytes; it must have " + std::to_string(needed) +
+  return invalid_argument("cloud data has ", cloud.data.size(), " bytes; it must have ", needed,
                           " (row_step * height)");
 }
 

@@ -8,6 +8,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "core/base/concat.hpp"
 #include "server/convert/images.hpp"
 
 namespace bpa::server {
@@ -53,8 +54,7 @@ Result<Size> size_of(const char* field, ByteView file) {
   } else if (file.size >= 4 && file.data[0] == 0xff && file.data[1] == 0xd8) {
     size = jpeg_size(file);
   } else {
-    return Status(StatusCode::unsupported,
-                  std::string(field) + " data is neither a PNG nor a JPEG file");
+    return Status(StatusCode::unsupported, concat(field, " data is neither a PNG nor a JPEG file"));
   }
   const Status status = check_size(std::string(field) + " image", size.width, size.height);
   if (!status.ok()) return status;
@@ -74,7 +74,7 @@ Result<cv::Mat> decode_file(const char* field, ByteView file, int mode) {
     pixels.release();
   }
   if (pixels.empty()) {
-    return Status(StatusCode::corrupt, std::string(field) + " data is a damaged image file");
+    return corrupt(field, " data is a damaged image file");
   }
   return pixels;
 }
@@ -85,7 +85,7 @@ Result<Decoded<std::uint16_t>> decode_png16(const char* field, ByteView file) {
   if (pixels->type() != CV_16UC1) {
     return Status(
         StatusCode::unsupported,
-        std::string(field) + " data is no PNG of 16 bits and one channel, so it holds no depth");
+        concat(field, " data is no PNG of 16 bits and one channel, so it holds no depth"));
   }
   return Decoded<std::uint16_t>{static_cast<std::uint32_t>(pixels->cols),
                                 static_cast<std::uint32_t>(pixels->rows),
@@ -101,16 +101,83 @@ Result<Decoded<std::uint16_t>> decode_rvl_image(const char* field, ByteView stre
   Decoded<std::uint16_t> decoded{size[0], size[1], {}};
   const std::size_t count = std::size_t{size[0]} * size[1];
   if (!decode_rvl(stream.data + sizeof size, stream.size - sizeof size, count, decoded.pixels)) {
-    return Status(StatusCode::corrupt, std::string(field) + " data is a damaged RVL stream");
+    return corrupt(field, " data is a damaged RVL stream");
   }
   return decoded;
 }
+
+/// Reads numbers of groups of four bits.
+class Groups {
+ public:
+  Groups(const std::uint8_t* data, std::size_t size) : data_(data), left_(size / 4) {}
+
+  bool ok() const { return ok_; }
+
+  std::uint32_t number() {
+    std::uint32_t value = 0;
+    for (int shift = 0; shift < 32; shift += 3) {
+      const std::uint32_t group = next();
+      value |= (group & 7U) << static_cast<unsigned>(shift);
+      if ((group & 8U) == 0) return value;
+    }
+    ok_ = false;  // more groups than a number has
+    return 0;
+  }
+
+ private:
+  std::uint32_t next() {
+    if (in_word_ == 0) {
+      if (left_ == 0) {
+        ok_ = false;
+        return 0;
+      }
+      std::memcpy(&word_, data_, 4);
+      data_ += 4;
+      --left_;
+      in_word_ = 8;
+    }
+    const std::uint32_t group = word_ >> 28U;
+    word_ <<= 4U;
+    --in_word_;
+    return group;
+  }
+
+  const std::uint8_t* data_;
+  std::size_t left_;  ///< Words.
+  std::uint32_t word_ = 0;
+  int in_word_ = 0;
+  bool ok_ = true;
+};
 
 bool has(std::string_view text, std::string_view word) {
   return text.find(word) != std::string_view::npos;
 }
 
 }  // namespace
+
+bool decode_rvl(const std::uint8_t* data, std::size_t size, std::size_t count,
+                std::vector<std::uint16_t>& values) {
+  values.clear();
+  // A group is half a byte and two numbers of one group may stand for any run of zeros, so memory
+  // is taken for what the caller's size says.
+  values.reserve(count);
+  Groups groups(data, size);
+  std::uint32_t last = 0;
+  while (values.size() < count) {
+    const std::uint32_t zeros = groups.number();
+    const std::uint32_t others = groups.number();
+    const std::size_t left = count - values.size();
+    if (!groups.ok() || zeros > left || others > left - zeros || zeros + others == 0) return false;
+    values.insert(values.end(), zeros, std::uint16_t{0});
+    for (std::uint32_t i = 0; i < others; ++i) {
+      const std::uint32_t zigzag = groups.number();
+      if (!groups.ok()) return false;
+      last += (zigzag >> 1U) ^ (~(zigzag & 1U) + 1U);
+      values.push_back(static_cast<std::uint16_t>(last));
+    }
+  }
+  return true;
+}
 
 Result<Decoded<std::uint8_t>> decode_color(const char* field, const CompressedImage& image) {
   // IMREAD_COLOR gives blue, green, red; alpha and more than 8 bits go.
@@ -136,15 +203,14 @@ Result<Decoded<float>> decode_depth(const char* field, const CompressedImage& im
       image.format.rfind("16UC1", 0) == 0 || image.format.rfind("mono16", 0) == 0;
   if (!inverse && !millimetres) {
     return Status(StatusCode::unsupported,
-                  std::string(field) + " format is \"" + image.format +
-                      "\"; it must begin with 16UC1, or be compressedDepth of 32FC1");
+                  concat(field, " format is \"", image.format,
+                         "\"; it must begin with 16UC1, or be compressedDepth of 32FC1"));
   }
   ByteView file{image.data.data(), image.data.size()};
   float quantum[2] = {};
   if (plugin) {
     if (file.size < kDepthHeader) {
-      return Status(StatusCode::corrupt,
-                    std::string(field) + " data has no compressedDepth header");
+      return corrupt(field, " data has no compressedDepth header");
     }
     std::memcpy(quantum, file.data + 4, sizeof quantum);
     file = {file.data + kDepthHeader, file.size - kDepthHeader};

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 #include <utility>
 
+#include "core/base/concat.hpp"
 #include "idl/wire/time.hpp"
 #include "server/convert/images.hpp"
 
@@ -18,9 +18,10 @@ namespace sensor = wire::sensor_msgs;
 
 Status check_distortion(const std::vector<double>& d) {
   if (d.size() <= 8) return {};
-  return Status(StatusCode::unsupported, "distortion d has " + std::to_string(d.size()) +
-                                             " coefficients; at most 8 are supported (plumb_bob, "
-                                             "rational_polynomial): rectify the images");
+  return Status(StatusCode::unsupported,
+                concat("distortion d has ", d.size(),
+                       " coefficients; at most 8 are supported (plumb_bob, rational_polynomial): "
+                       "rectify the images"));
 }
 
 /// Held by an int; validate() refuses what is larger.
@@ -28,14 +29,12 @@ int clamped(std::uint32_t pixels) { return static_cast<int>(std::min(pixels, 1U 
 
 /// The camera of a row-major 3x3 matrix whose rows are `stride` long.
 Camera camera_of(std::uint32_t width, std::uint32_t height, const double* k, std::size_t stride) {
-  Camera camera;
-  camera.width = clamped(width);
-  camera.height = clamped(height);
-  camera.fx = k[0];
-  camera.fy = k[stride + 1];
-  camera.cx = k[2];
-  camera.cy = k[stride + 2];
-  return camera;
+  return {.width = clamped(width),
+          .height = clamped(height),
+          .fx = k[0],
+          .fy = k[stride + 1],
+          .cx = k[2],
+          .cy = k[stride + 2]};
 }
 
 template <class Pixel, std::size_t kChannels>
@@ -53,7 +52,7 @@ void remap(const std::vector<std::int32_t>& map, std::vector<Pixel>& pixels) {
 }
 
 void undistort(const std::vector<double>& distortion, Frame& frame) {
-  if (std::all_of(distortion.begin(), distortion.end(), [](double c) { return c == 0; })) return;
+  if (std::ranges::all_of(distortion, [](double c) { return c == 0; })) return;
   const std::vector<std::int32_t> map = undistortion_map(frame.camera, distortion);
   remap<float, 1>(map, frame.depth);
   remap<std::uint8_t, 3>(map, frame.color);
@@ -96,10 +95,9 @@ Status check_same_size(const char* what, std::uint32_t width, std::uint32_t heig
       height == static_cast<std::uint32_t>(camera.height)) {
     return {};
   }
-  std::ostringstream text;
-  text << what << " is " << width << "x" << height << " but the camera info is of " << camera.width
-       << "x" << camera.height << "; they must be equal (depth registered to colour)";
-  return invalid_argument(text.str());
+  return invalid_argument(what, " is ", width, "x", height, " but the camera info is of ",
+                          camera.width, "x", camera.height,
+                          "; they must be equal (depth registered to colour)");
 }
 
 /// Pixels of an image that is as large as the camera's. `from_raw` and `from_compressed` make them.
@@ -130,6 +128,32 @@ Result<std::vector<std::uint8_t>> take_color(msgs::RgbdFrame& message) {
                            message.color.data(), message.color.size()});
 }
 
+OrientationUncertainty orientation_from(const msgs::Bingham& message) {
+  OrientationUncertainty orientation;
+  orientation.axes = Eigen::Matrix<double, 4, 3>::Map(message.axes.data());
+  orientation.concentrations = Eigen::Vector3d::Map(message.concentrations.data());
+  return orientation;
+}
+
+/// The exponent of the density at q, 0 at its most probable values.
+double exponent_at(const OrientationUncertainty& orientation, const Eigen::Vector4d& q) {
+  return orientation.concentrations.dot((orientation.axes.transpose() * q).cwiseAbs2());
+}
+
+PosePrior prior_from(const msgs::PosePrior& message) {
+  PosePrior prior;
+  prior.model = message.model;
+  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  const RowMajor covariance = RowMajor::Map(message.position_covariance.data());
+  if ((covariance.array() != 0).any()) {
+    const auto& p = message.pose.position;
+    prior.position = PositionPrior{{p.x, p.y, p.z}, covariance};
+  }
+  prior.orientation = orientation_from(message.orientation);
+  if (message.weight != 0) prior.weight = message.weight;
+  return prior;
+}
+
 }  // namespace
 
 DecodedFrame frame_from_message(msgs::RgbdFrame message) {
@@ -150,16 +174,34 @@ DecodedFrame frame_from_message(msgs::RgbdFrame message) {
 Status restrict_frame(const msgs::RgbdFrame& message, Frame& frame) {
   const std::string& frame_id = message.header.frame_id;
   if (!message.priors.empty() && !frame_id.empty() && frame_id != frame.frame_id) {
-    return invalid_argument("header.frame_id is \"" + frame_id +
-                            "\", which priors are in; it must be "
-                            "empty or that of the camera, \"" +
-                            frame.frame_id + "\"");
+    return invalid_argument("header.frame_id is \"", frame_id,
+                            "\", which priors are in; it must be empty or that of the camera, \"",
+                            frame.frame_id, "\"");
   }
   const RegionOfInterest roi = roi_of(message.roi);
   if (roi.empty() && message.mask.empty()) return {};
   if (!roi.empty()) frame.roi = roi;
   if (!message.mask.empty()) frame.mask = message.mask;
   return validate(frame);
+}
+
+Result<std::vector<PosePrior>> priors_from_messages(const std::vector<msgs::PosePrior>& messages) {
+  constexpr double kOffMode = -0.5;  // of the exponent: one standard deviation
+  std::vector<PosePrior> priors;
+  for (const msgs::PosePrior& message : messages) {
+    PosePrior prior = prior_from(message);
+    const auto& q = message.pose.orientation;
+    // Not for numbers that the detector will refuse.
+    if (prior.orientation.concentrations.maxCoeff() <= 0 &&
+        exponent_at(prior.orientation, {q.w, q.x, q.y, q.z}) < kOffMode) {
+      return invalid_argument(
+          "priors[", priors.size(),
+          "].pose.orientation is not the most probable one of its orientation's "
+          "distribution; it must be (axes are in the order w, x, y, z)");
+    }
+    priors.push_back(std::move(prior));
+  }
+  return priors;
 }
 
 DecodedFrame frame_from_images(const CameraImages& images, bool rectified) {

@@ -6,10 +6,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <sstream>
 
 #include <opencv2/imgproc.hpp>
 
+#include "core/base/concat.hpp"
 #include "core/cloud/frame.hpp"
 #include "core/geometry/camera.hpp"
 
@@ -22,20 +22,17 @@ static_assert(std::endian::native == std::endian::little, "pixels are copied as 
 Result<std::size_t> checked_step(const ImageView& image, std::size_t pixel_bytes) {
   const Status status = check_size(std::string(image.field) + " image", image.width, image.height);
   if (!status.ok()) return status;
-  std::ostringstream text;
   const std::size_t row = image.width * pixel_bytes;
   const std::size_t step = image.step > 0 ? image.step : row;
   if (step < row) {
-    text << image.field << " step is " << step << "; it must be at least " << row << " ("
-         << image.width << " pixels of " << image.encoding << ")";
-    return invalid_argument(text.str());
+    return invalid_argument(image.field, " step is ", step, "; it must be at least ", row, " (",
+                            image.width, " pixels of ", image.encoding, ")");
   }
   const std::size_t needed = step * image.height;
   if (image.size == needed) return step;
-  text << image.field << " data has " << image.size << " bytes; it must have " << needed << " ("
-       << image.height << " rows of " << step << " for " << image.width << "x" << image.height
-       << " " << image.encoding << ")";
-  return invalid_argument(text.str());
+  return invalid_argument(image.field, " data has ", image.size, " bytes; it must have ", needed,
+                          " (", image.height, " rows of ", step, " for ", image.width, "x",
+                          image.height, " ", image.encoding, ")");
 }
 
 template <class Raw>
@@ -80,8 +77,8 @@ constexpr ColorLayout kColorLayouts[] = {{"rgb8", CV_8UC3, -1},
 Status check_size(const std::string& what, std::uint32_t width, std::uint32_t height) {
   constexpr std::uint32_t kMaxSide = 8192;
   if (width > 0 && height > 0 && width <= kMaxSide && height <= kMaxSide) return {};
-  return invalid_argument(what + " is " + std::to_string(width) + "x" + std::to_string(height) +
-                          "; each side must be between 1 and " + std::to_string(kMaxSide));
+  return invalid_argument(what, " is ", width, "x", height, "; each side must be between 1 and ",
+                          kMaxSide);
 }
 
 Result<std::vector<float>> depth_from_image(const ImageView& image) {
@@ -92,9 +89,8 @@ Result<std::vector<float>> depth_from_image(const ImageView& image) {
   if (image.encoding == "32FC1") {
     return read_depth<float>(image, [](float z) { return z > 0 && std::isfinite(z) ? z : 0.0f; });
   }
-  return Status(StatusCode::unsupported, std::string(image.field) + " encoding is \"" +
-                                             image.encoding +
-                                             "\"; it must be 16UC1 (mm) or 32FC1 (m)");
+  return Status(StatusCode::unsupported, concat(image.field, " encoding is \"", image.encoding,
+                                                "\"; it must be 16UC1 (mm) or 32FC1 (m)"));
 }
 
 Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image) {
@@ -113,9 +109,9 @@ Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image) {
     }
     return rgb;
   }
-  return Status(StatusCode::unsupported, std::string(image.field) + " encoding is \"" +
-                                             image.encoding +
-                                             "\"; it must be rgb8, bgr8, rgba8, bgra8 or mono8");
+  return Status(StatusCode::unsupported,
+                concat(image.field, " encoding is \"", image.encoding,
+                       "\"; it must be rgb8, bgr8, rgba8, bgra8 or mono8"));
 }
 
 std::vector<std::int32_t> undistortion_map(const Camera& camera,

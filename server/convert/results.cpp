@@ -22,12 +22,15 @@ wire::std_msgs::Header header(std::int64_t stamp_ns, const std::string& frame_id
   return {wire::builtin_interfaces::from_ns(stamp_ns), frame_id};
 }
 
+/// A message of three numbers, such as a Point or a Vector3.
+template <class Message>
+Message xyz(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
 geometry::Pose pose_message(const Pose& pose) {
-  geometry::Pose message;
-  message.position = {pose.translation.x(), pose.translation.y(), pose.translation.z()};
-  message.orientation = {pose.rotation.x(), pose.rotation.y(), pose.rotation.z(),
-                         pose.rotation.w()};
-  return message;
+  const auto& q = pose.rotation;
+  return {xyz<geometry::Point>(pose.translation), {q.x(), q.y(), q.z(), q.w()}};
 }
 
 geometry::PoseWithCovariance pose_with_covariance(const Placement& placement) {
@@ -46,21 +49,21 @@ msgs::Bingham bingham_message(const OrientationUncertainty& orientation) {
 }
 
 msgs::Placement placement_message(const Placement& placement, std::uint32_t instance) {
-  msgs::Placement message;
-  message.model = placement.model;
-  message.model_number = static_cast<std::uint32_t>(placement.model_number);
-  message.instance = instance;
-  message.pose = pose_with_covariance(placement);
-  message.orientation = bingham_message(placement.orientation);
-  message.score = placement.score;
-  message.probability = placement.probability;
-  message.visible_fraction = placement.visible_fraction;
-  for (const ScoreComponent& component : placement.components) {
-    message.score_components.push_back({component.name, component.value});
+  msgs::Placement message{.model = placement.model,
+                          .model_number = static_cast<std::uint32_t>(placement.model_number),
+                          .instance = instance,
+                          .pose = pose_with_covariance(placement),
+                          .orientation = bingham_message(placement.orientation),
+                          .score = placement.score,
+                          .probability = placement.probability,
+                          .visible_fraction = placement.visible_fraction,
+                          .score_components = {},
+                          .alternatives = {}};
+  for (const auto& [name, value] : placement.components) {
+    message.score_components.push_back({name, value});
   }
-  for (const PoseAlternative& alternative : placement.alternatives) {
-    message.alternatives.push_back(
-        {pose_message(alternative.camera_from_object), alternative.weight});
+  for (const auto& [pose, weight] : placement.alternatives) {
+    message.alternatives.push_back({pose_message(pose), weight});
   }
   return message;
 }
@@ -91,7 +94,7 @@ vision::BoundingBox3D box_message(const Placement& placement, const Models& mode
     if (model->number != placement.model_number) continue;
     const Eigen::AlignedBox3d box = box_of(*model);
     center.translation = center * box.center();
-    message.size = {box.sizes().x(), box.sizes().y(), box.sizes().z()};
+    message.size = xyz<geometry::Vector3>(box.sizes());
   }
   message.center = pose_message(center);
   return message;
@@ -113,6 +116,12 @@ msgs::Status to_message(const Status& status) {
   return {static_cast<std::uint8_t>(status.code), status.message};
 }
 
+std::vector<msgs::StageTiming> to_message(const std::vector<StageTiming>& timings) {
+  std::vector<msgs::StageTiming> messages;
+  for (const auto& [stage, milliseconds] : timings) messages.push_back({stage, milliseconds});
+  return messages;
+}
+
 msgs::SceneInterpretations interpretations_message(const Result<SceneInterpretations>& result,
                                                    const ResultContext& context) {
   msgs::SceneInterpretations message;
@@ -122,19 +131,17 @@ msgs::SceneInterpretations interpretations_message(const Result<SceneInterpretat
   message.seed = context.seed;
   if (!result.ok()) return message;
   for (const Interpretation& interpretation : result->interpretations) {
-    msgs::Interpretation ranked;
-    ranked.rank = static_cast<std::uint32_t>(interpretation.rank);
-    ranked.score = interpretation.score;
-    ranked.probability = interpretation.probability;
+    msgs::Interpretation ranked{static_cast<std::uint32_t>(interpretation.rank),
+                                interpretation.score,
+                                interpretation.probability,
+                                {}};
     std::map<std::string, std::uint32_t> instances;
     for (const Placement& placement : interpretation.placements) {
       ranked.placements.push_back(placement_message(placement, instances[placement.model]++));
     }
     message.interpretations.push_back(std::move(ranked));
   }
-  for (const StageTiming& timing : result->timings) {
-    message.stage_timings.push_back({timing.stage, timing.milliseconds});
-  }
+  message.stage_timings = to_message(result->timings);
   message.total_ms = result->total_milliseconds;
   message.budget_exhausted = result->budget_exhausted;
   message.fused_frames = static_cast<std::uint32_t>(result->fused_frames);
@@ -146,13 +153,11 @@ vision::Detection3DArray detections_message(const SceneInterpretations& result,
   vision::Detection3DArray message;
   message.header = header(result.stamp_ns, result.frame_id);
   for_each_best(result, [&](const Placement& placement, const std::string& name) {
-    vision::Detection3D detection;
-    detection.header = message.header;
-    detection.results.push_back(
-        {{placement.model, placement.probability}, pose_with_covariance(placement)});
-    detection.bbox = box_message(placement, models);
-    detection.id = name;
-    message.detections.push_back(std::move(detection));
+    message.detections.push_back(
+        {message.header,
+         {{{placement.model, placement.probability}, pose_with_covariance(placement)}},
+         box_message(placement, models),
+         name});
   });
   return message;
 }
@@ -195,45 +200,41 @@ wire::tf2_msgs::TFMessage transforms_message(const SceneInterpretations& result,
                                              const std::string& prefix) {
   wire::tf2_msgs::TFMessage message;
   for_each_best(result, [&](const Placement& placement, const std::string& name) {
-    geometry::TransformStamped transform;
-    transform.header = header(result.stamp_ns, result.frame_id);
-    transform.child_frame_id = prefix + "/" + name;
-    const geometry::Pose pose = pose_message(placement.camera_from_object);
-    transform.transform.translation = {pose.position.x, pose.position.y, pose.position.z};
-    transform.transform.rotation = pose.orientation;
-    message.transforms.push_back(std::move(transform));
+    const Pose& pose = placement.camera_from_object;
+    message.transforms.push_back(
+        {header(result.stamp_ns, result.frame_id),
+         prefix + "/" + name,
+         {xyz<geometry::Vector3>(pose.translation), pose_message(pose).orientation}});
   });
   return message;
 }
 
 wire::sensor_msgs::Image image_message(const SceneInterpretations& result, int width, int height,
                                        std::vector<std::uint8_t> rgb) {
-  wire::sensor_msgs::Image message;
-  message.header = header(result.stamp_ns, result.frame_id);
-  message.width = static_cast<std::uint32_t>(width);
-  message.height = static_cast<std::uint32_t>(height);
-  message.encoding = "rgb8";
-  message.step = 3 * message.width;
-  message.data = std::move(rgb);
-  return message;
+  return {.header = header(result.stamp_ns, result.frame_id),
+          .height = static_cast<std::uint32_t>(height),
+          .width = static_cast<std::uint32_t>(width),
+          .encoding = "rgb8",
+          .step = 3 * static_cast<std::uint32_t>(width),
+          .data = std::move(rgb)};
 }
 
 msgs::ModelInfo model_message(const ObjectModel& model) {
-  msgs::ModelInfo message;
-  message.name = model.name;
-  message.number = static_cast<std::uint32_t>(model.number);
-  message.diameter = model.diameter;
   const Eigen::AlignedBox3d box = box_of(model);
-  message.box_min = {box.min().x(), box.min().y(), box.min().z()};
-  message.box_max = {box.max().x(), box.max().y(), box.max().z()};
-  message.point_count = static_cast<std::uint32_t>(model.surface.size());
+  msgs::ModelInfo message{.name = model.name,
+                          .number = static_cast<std::uint32_t>(model.number),
+                          .diameter = model.diameter,
+                          .box_min = xyz<geometry::Point>(box.min()),
+                          .box_max = xyz<geometry::Point>(box.max()),
+                          .point_count = static_cast<std::uint32_t>(model.surface.size()),
+                          .discrete_symmetries = {},
+                          .continuous_symmetries = {}};
   for (const Pose& pose : model.symmetry.discrete) {
     message.discrete_symmetries.push_back(pose_message(pose));
   }
   for (const ContinuousSymmetry& symmetry : model.symmetry.continuous) {
     message.continuous_symmetries.push_back(
-        {{symmetry.axis.x(), symmetry.axis.y(), symmetry.axis.z()},
-         {symmetry.point.x(), symmetry.point.y(), symmetry.point.z()}});
+        {xyz<geometry::Vector3>(symmetry.axis), xyz<geometry::Point>(symmetry.point)});
   }
   return message;
 }

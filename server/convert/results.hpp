@@ -32,6 +32,7 @@ struct ResultContext {
 };
 
 wire::bpa_msgs::Status to_message(const Status& status);
+std::vector<wire::bpa_msgs::StageTiming> to_message(const std::vector<StageTiming>& timings);
 
 /// All interpretations; `status` not ok and none when the frame could not be searched.
 wire::bpa_msgs::SceneInterpretations interpretations_message(

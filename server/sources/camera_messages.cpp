@@ -16,14 +16,14 @@ constexpr const char* kEncodings[] = {"16UC1", "32FC1", "rgb8", "mono8"};
 
 std::shared_ptr<const AnyImage> image_message(camera::Image image,
                                               const wire::std_msgs::Header& header) {
-  wire::sensor_msgs::Image message;
-  message.header = header;
-  message.width = static_cast<std::uint32_t>(image.width);
-  message.height = static_cast<std::uint32_t>(image.height);
-  message.encoding = kEncodings[static_cast<std::size_t>(image.format)];
-  message.step = static_cast<std::uint32_t>(camera::bytes_per_pixel(image.format)) * message.width;
-  message.data = std::move(image.bytes);
-  return std::make_shared<const AnyImage>(std::move(message));
+  const auto width = static_cast<std::uint32_t>(image.width);
+  return std::make_shared<const AnyImage>(wire::sensor_msgs::Image{
+      .header = header,
+      .height = static_cast<std::uint32_t>(image.height),
+      .width = width,
+      .encoding = kEncodings[static_cast<std::size_t>(image.format)],
+      .step = static_cast<std::uint32_t>(camera::bytes_per_pixel(image.format)) * width,
+      .data = std::move(image.bytes)});
 }
 
 }  // namespace
