@@ -6,6 +6,8 @@
 #include <exception>
 #include <utility>
 
+#include "core/base/concat.hpp"
+
 namespace bpa::server {
 namespace {
 
@@ -42,7 +44,7 @@ void Worker::stop() {
   }
   wake_.notify_all();
   if (thread_.joinable()) thread_.join();
-  const Status status(StatusCode::unavailable, "the server is stopping");
+  const Status status = unavailable("the server is stopping");
   while (const auto job = requests_.pop()) job->done(*job, nullptr, status);
   for (const DetectJob& job : std::exchange(awaiting_frame_, {})) job.done(job, nullptr, status);
 }
@@ -50,23 +52,19 @@ void Worker::stop() {
 void Worker::push(IncomingFrame frame) {
   std::optional<IncomingFrame> displaced;  // freed outside the lock
   statistics_.add_frame();
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!frames_.empty() && frames_.size() >= options_.frame_capacity) {
-      displaced = std::move(frames_.front());
-      frames_.pop_front();
-    }
-    frames_.push_back(std::move(frame));
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!frames_.empty() && frames_.size() >= options_.frame_capacity) {
+    displaced = std::move(frames_.front());
+    frames_.pop_front();
+    statistics_.add(&Counts::frames_dropped);
   }
-  if (displaced) statistics_.add(&Counts::frames_dropped);
+  frames_.push_back(std::move(frame));
   wake_.notify_one();
 }
 
 void Worker::set_options(const WorkerOptions& options) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    options_ = options;
-  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  options_ = options;
   wake_.notify_one();
 }
 
@@ -87,50 +85,46 @@ double Worker::wait_ms(const DetectJob& job) const {
 }
 
 Status Worker::push(DetectJob job) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (stopping_) return Status(StatusCode::unavailable, "the server is stopping");
-    const std::size_t waiting = requests_.size() + awaiting_frame_.size();
-    if (waiting >= options_.request_capacity) {
-      return Status(StatusCode::busy, std::to_string(waiting) +
-                                          " requests are waiting, as many as may "
-                                          "(queue.requests); try again later");
-    }
-    if (job.decode) {
-      job.position = requests_.ahead_of_next(job.client);
-      // Frames of the stream have every other turn.
-      const bool streaming = options_.continuous && !frames_.empty();
-      if (streaming) job.position += job.position + (frame_was_last_ ? 0 : 1);
-    } else {
-      job.position = awaiting_frame_.size();
-    }
-    job.deadline = clock_->now() + job.timeout;
-    const double wait = wait_ms(job);
-    if (std::chrono::duration<double, std::milli>(wait) > job.timeout) {
-      return Status(StatusCode::timeout,
-                    "its answer would come in about " + std::to_string(static_cast<long>(wait)) +
-                        " ms, after its time-out; allow more time or try again later");
-    }
-    if (job.decode) {
-      const wire::Guid client = job.client;
-      requests_.push(client, std::move(job));
-    } else {
-      awaiting_frame_.push_back(std::move(job));
-    }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (stopping_) return unavailable("the server is stopping");
+  const std::size_t waiting = requests_.size() + awaiting_frame_.size();
+  if (waiting >= options_.request_capacity) {
+    return Status(StatusCode::busy, concat(waiting,
+                                           " requests are waiting, as many as may "
+                                           "(queue.requests); try again later"));
+  }
+  if (job.decode) {
+    job.position = requests_.ahead_of_next(job.client);
+    // Frames of the stream have every other turn.
+    const bool streaming = options_.continuous && !frames_.empty();
+    if (streaming) job.position += job.position + (frame_was_last_ ? 0 : 1);
+  } else {
+    job.position = awaiting_frame_.size();
+  }
+  job.deadline = clock_->now() + job.timeout;
+  const double wait = wait_ms(job);
+  if (std::chrono::duration<double, std::milli>(wait) > job.timeout) {
+    return Status(StatusCode::timeout,
+                  concat("its answer would come in about ", static_cast<long>(wait),
+                         " ms, after its time-out; allow more time or try again later"));
+  }
+  if (job.decode) {
+    const wire::Guid client = job.client;
+    requests_.push(client, std::move(job));
+  } else {
+    awaiting_frame_.push_back(std::move(job));
   }
   wake_.notify_one();
   return {};
 }
 
 Status Worker::run_later(std::function<void()> task) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (tasks_.size() >= options_.request_capacity) {
-      return Status(StatusCode::busy, std::to_string(tasks_.size()) +
-                                          " changes of the library are waiting, as many as may");
-    }
-    tasks_.push_back(std::move(task));
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (tasks_.size() >= options_.request_capacity) {
+    return Status(StatusCode::busy,
+                  concat(tasks_.size(), " changes of the library are waiting, as many as may"));
   }
+  tasks_.push_back(std::move(task));
   wake_.notify_one();
   return {};
 }
