@@ -19,10 +19,7 @@ using wire::rcl_interfaces::Log;
 
 constexpr std::size_t kMaxWaiting = 256;
 
-std::uint8_t ros_level(LogLevel level) {
-  constexpr std::uint8_t kLevels[] = {Log::kDebug, Log::kInfo, Log::kWarn, Log::kError};
-  return kLevels[static_cast<std::size_t>(level)];
-}
+constexpr std::uint8_t kRosLevels[] = {Log::kDebug, Log::kInfo, Log::kWarn, Log::kError};
 
 /// "/bpa/server" -> "bpa.server".
 std::string logger_name(std::string node) {
@@ -45,16 +42,14 @@ struct LogRelay::State {
     log(sink, level, text);
     Log message;
     message.stamp = wire::builtin_interfaces::from_ns(unix_time_ns());
-    message.level = ros_level(level);
+    message.level = kRosLevels[static_cast<std::size_t>(level)];
     message.msg = text;
-    {
-      const std::lock_guard<std::mutex> lock(mutex);
-      if (waiting.size() >= kMaxWaiting) {
-        waiting.pop_front();
-        ++lost;
-      }
-      waiting.push_back(std::move(message));
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (waiting.size() >= kMaxWaiting) {
+      waiting.pop_front();
+      ++lost;
     }
+    waiting.push_back(std::move(message));
     changed.notify_one();
   }
 };
@@ -70,12 +65,10 @@ LogHook LogRelay::hook() const {
 
 void LogRelay::set_level(LogLevel least) { state_->least = least; }
 
-Status LogRelay::connect(const wire::Participant& participant, const std::string& topic) {
-  Status status = rosout_.open(participant, topic, wire::qos::rosout());
-  if (!status.ok()) return status;
+void LogRelay::connect(const wire::Participant& participant, const std::string& topic) {
+  rosout_.open(participant, topic, wire::qos::rosout());
   logger_ = logger_name(participant.node().full());
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
-  return {};
 }
 
 void LogRelay::run(const std::stop_token& stop) {

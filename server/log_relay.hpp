@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "core/base/log.hpp"
-#include "core/base/status.hpp"
 #include "idl/wire/msg/rcl_interfaces.hpp"
 #include "idl/wire/participant.hpp"
 #include "server/output.hpp"
@@ -29,8 +28,8 @@ class LogRelay {
   LogHook hook() const;
   void set_level(LogLevel least);
 
-  /// Starts to publish, what has been said so far first.
-  Status connect(const wire::Participant& participant, const std::string& topic);
+  /// Starts to publish, what has been said so far first. Throws a Failure.
+  void connect(const wire::Participant& participant, const std::string& topic);
 
  private:
   struct State;

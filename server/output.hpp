@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "core/base/failure.hpp"
 #include "core/base/log.hpp"
-#include "core/base/status.hpp"
 #include "idl/wire/participant.hpp"
 #include "idl/wire/publisher.hpp"
 
@@ -16,16 +16,10 @@ namespace bpa::server {
 template <class T>
 class Output {
  public:
-  /// An empty topic leaves it switched off.
-  Status open(const wire::Participant& participant, const std::string& topic,
-              const wire::Qos& qos) {
-    if (topic.empty()) return {};
-    wire::PublisherOptions options;
-    options.qos = qos;
-    auto publisher = wire::Publisher<T>::create(participant, topic, options);
-    if (!publisher.ok()) return publisher.status();
-    publisher_.emplace(std::move(publisher).value());
-    return {};
+  /// An empty topic leaves it switched off. Throws a Failure.
+  void open(const wire::Participant& participant, const std::string& topic, const wire::Qos& qos) {
+    if (topic.empty()) return;
+    publisher_.emplace(or_throw(wire::Publisher<T>::create(participant, topic, {.qos = qos})));
   }
   bool is_open() const { return publisher_.has_value(); }
   /// Whether a subscriber is matched: otherwise the message need not be made.

@@ -5,12 +5,15 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 
+#include "core/base/clock.hpp"
 #include "core/base/log.hpp"
-#include "core/base/status.hpp"
 #include "core/cloud/frame.hpp"
 #include "idl/wire/messages.hpp"
 #include "idl/wire/participant.hpp"
+#include "idl/wire/time.hpp"
+#include "server/convert/results.hpp"
 #include "server/output.hpp"
 #include "server/recognition.hpp"
 #include "server/settings.hpp"
@@ -22,13 +25,51 @@ class ResultPublisher {
  public:
   /// Opens the topics; `settings` outlives it. Throws a Failure.
   ResultPublisher(const wire::Participant& participant, const Settings& settings,
-                  std::shared_ptr<const Recognition> recognition, LogHook log);
+                  std::shared_ptr<const Recognition> recognition, LogHook log)
+      : settings_(settings), recognition_(std::move(recognition)), log_(std::move(log)) {
+    tf_prefix_ = participant.node().node_namespace.substr(1);
+    if (tf_prefix_.empty()) tf_prefix_ = participant.node().name;
+    const OutputOptions options = settings.get()->output;
+    const wire::Qos results = wire::qos::results();
+    interpretations_.open(participant, options.interpretations, results);
+    detections_.open(participant, options.detections, results);
+    annotated_.open(participant, options.annotated, results);
+    markers_.open(participant, options.markers, results);
+    vision_info_.open(participant, options.vision_info, wire::qos::latched());
+    tf_.open(participant, options.tf, wire::qos::transforms());
+  }
 
   /// `frame` is null when the frame broke a rule; then only the failed interpretations go out.
   void publish(const Frame* frame, const Result<SceneInterpretations>& result,
-               const ResultContext& context);
+               const ResultContext& context) {
+    if (interpretations_.is_open()) {
+      interpretations_.send(interpretations_message(result, context), log_);
+    }
+    if (frame == nullptr || !result.ok()) return;
+    const Models models = recognition_->models();
+    if (detections_.wanted()) detections_.send(detections_message(*result, models), log_);
+    if (markers_.wanted()) {
+      const double lifetime_s = settings_.get()->output.marker_lifetime_s;
+      markers_.send(markers_message(*result, models, lifetime_s), log_);
+    }
+    if (tf_.wanted()) tf_.send(transforms_message(*result, tf_prefix_), log_);
+    if (!annotated_.wanted()) return;
+    const Interpretation best =
+        result->interpretations.empty() ? Interpretation() : result->interpretations.front();
+    annotated_.send(image_message(*result, frame->camera.width, frame->camera.height,
+                                  recognition_->annotate(*frame, best)),
+                    log_);
+  }
+
   /// The latched vision_info: again after each change of the library.
-  void publish_vision_info();
+  void publish_vision_info() {
+    wire::vision_msgs::VisionInfo info;
+    info.header.stamp = wire::builtin_interfaces::from_ns(unix_time_ns());
+    info.method = "Bingham Procrustean Alignment";
+    info.database_location = recognition_->library();
+    info.database_version = recognition_->version();
+    vision_info_.send(info, log_);
+  }
 
  private:
   const Settings& settings_;

@@ -7,7 +7,6 @@
 #include <condition_variable>
 #include <mutex>
 #include <optional>
-#include <sstream>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "core/base/clock.hpp"
+#include "core/base/concat.hpp"
 #include "core/base/failure.hpp"
 #include "idl/wire/participant.hpp"
 #include "server/diagnostics.hpp"
@@ -25,7 +25,6 @@
 #include "server/services/services.hpp"
 #include "server/settings.hpp"
 #include "server/sources/frame_source.hpp"
-#include "server/sources/topic_source.hpp"
 #include "server/statistics.hpp"
 #include "server/worker.hpp"
 
@@ -96,7 +95,7 @@ class Running : public Server {
     join(options);
     publisher_ = std::make_unique<ResultPublisher>(*participant_, settings_, recognition_, log_);
     publisher_->publish_vision_info();
-    or_throw(diagnostics_.open(*participant_, options.output.diagnostics, wire::qos::results()));
+    diagnostics_.open(*participant_, options.output.diagnostics, wire::qos::results());
 
     worker_ = std::make_unique<Worker>(
         recognition_, worker_options(options), statistics_,
@@ -126,28 +125,25 @@ class Running : public Server {
     }
     participant_.emplace(or_throw(wire::Participant::create(std::move(seat))));
     const std::string& rosout = options.output.rosout;
-    if (!rosout.empty()) or_throw(relay_.connect(*participant_, rosout));
+    if (!rosout.empty()) relay_.connect(*participant_, rosout);
   }
 
   void start_sources(const ServerOptions& options) {
     const auto on_frame = [this](IncomingFrame&& frame) { worker_->push(std::move(frame)); };
     ServerOptions topics = options;
     if (!options.capture.source.empty()) topics.input.depth.clear();  // they may be our own
-    auto source = or_throw(TopicSource::create(*participant_, topics, on_frame, log_));
+    auto source = open_topic_source(*participant_, topics, on_frame, log_);
     topics_ = source.get();
     sources_.push_back(std::move(source));
     if (options.capture.source.empty()) return;
     const auto idle = [this] { return worker_->queue_length() == 0; };
-    sources_.push_back(
-        or_throw(open_camera_source(*participant_, options.capture, on_frame, idle, log_)));
+    sources_.push_back(open_camera_source(*participant_, options.capture, on_frame, idle, log_));
   }
 
   Status apply(const ServerOptions& before, const ServerOptions& after) {
     const auto changed = changed_parameters(before, after);
-    const bool detector_changed =
-        std::any_of(changed.begin(), changed.end(),
-                    [](const auto& parameter) { return parameter.name.starts_with("detector."); });
-    if (detector_changed) {
+    if (std::ranges::any_of(changed,
+                            [](const auto& p) { return p.name.starts_with("detector."); })) {
       if (Status status = recognition_->set_options(after.detector); !status.ok()) return status;
       statistics_.forget_timings();
     }
@@ -170,8 +166,8 @@ class Running : public Server {
     services_.emplace(*participant_, log_);
     add_detect(context, *services_);
     add_library_services(context, *services_);
-    or_throw(services_->add_quick<msgs::GetStatus>(
-        "get_status", [this](const msgs::GetStatus_Request&) { return status(); }));
+    services_->add_quick<msgs::GetStatus>(
+        "get_status", [this](const msgs::GetStatus_Request&) { return status(); });
   }
 
   void on_result(const IncomingFrame& incoming, const Frame* frame,
@@ -181,13 +177,11 @@ class Running : public Server {
         frame, result,
         {incoming.stamp_ns, incoming.frame_id, models, settings_.get()->detection.seed});
     if (!result.ok()) return log_failure(result.status());
-    std::ostringstream text;
-    const std::size_t found =
-        result->interpretations.empty() ? 0 : result->interpretations.front().placements.size();
-    text << "frame " << incoming.stamp_ns << ": " << found << " objects, "
-         << result->interpretations.size() << " interpretations, "
-         << static_cast<long>(result->total_milliseconds) << " ms";
-    log(log_, LogLevel::debug, text.str());
+    const auto& found = result->interpretations;
+    log(log_, LogLevel::debug,
+        concat("frame ", incoming.stamp_ns, ": ", found.empty() ? 0 : found[0].placements.size(),
+               " objects, ", found.size(), " interpretations, ",
+               static_cast<long>(result->total_milliseconds), " ms"));
   }
 
   void log_failure(const Status& status) {
@@ -202,34 +196,32 @@ class Running : public Server {
   msgs::GetStatus_Response status() const {
     const Counts counts = statistics_.counts();
     const Settings::Snapshot options = settings_.get();
-    msgs::GetStatus_Response response;
-    response.success = true;
-    response.version = BPA_VERSION;
     const std::optional<double> silence = statistics_.seconds_since_frame();
     const bool idle = !silence || *silence > options->input.silence_s;
-    response.state = !options->detection.continuous ? msgs::GetStatus_Response::kPaused
-                     : idle                         ? msgs::GetStatus_Response::kIdle
-                                                    : msgs::GetStatus_Response::kRunning;
-    response.uptime_s = std::chrono::duration<double>(Clock::now() - started_).count();
-    response.frames_received = counts.frames_received;
-    response.frames_processed = counts.frames_processed;
-    response.frames_dropped = counts.frames_dropped;
-    response.frames_rejected = counts.frames_rejected;
-    response.requests_served = counts.requests_served;
-    response.requests_refused = counts.requests_refused;
-    response.queue_length = static_cast<std::uint32_t>(worker_->queue_length());
-    response.queue_capacity =
-        static_cast<std::uint32_t>(frame_capacity(*options) + options->queue.requests);
-    response.model_count = static_cast<std::uint32_t>(recognition_->models().size());
-    response.library = recognition_->library();
-    response.database_version = recognition_->version();
-    response.memory_bytes = resident_bytes();
-    for (const StageTiming& timing : statistics_.median_timings()) {
-      response.stage_timings.push_back({timing.stage, timing.milliseconds});
-    }
-    response.details = details();
-    response.frame_publishers = static_cast<std::uint32_t>(topics_->frame_publishers());
-    return response;
+    const std::uint8_t state = !options->detection.continuous ? msgs::GetStatus_Response::kPaused
+                               : idle                         ? msgs::GetStatus_Response::kIdle
+                                                              : msgs::GetStatus_Response::kRunning;
+    return {.success = true,
+            .status = {},
+            .version = BPA_VERSION,
+            .state = state,
+            .uptime_s = std::chrono::duration<double>(Clock::now() - started_).count(),
+            .frames_received = counts.frames_received,
+            .frames_processed = counts.frames_processed,
+            .frames_dropped = counts.frames_dropped,
+            .frames_rejected = counts.frames_rejected,
+            .requests_served = counts.requests_served,
+            .requests_refused = counts.requests_refused,
+            .queue_length = static_cast<std::uint32_t>(worker_->queue_length()),
+            .queue_capacity =
+                static_cast<std::uint32_t>(frame_capacity(*options) + options->queue.requests),
+            .model_count = static_cast<std::uint32_t>(recognition_->models().size()),
+            .library = recognition_->library(),
+            .database_version = recognition_->version(),
+            .memory_bytes = resident_bytes(),
+            .stage_timings = to_message(statistics_.median_timings()),
+            .details = details(),
+            .frame_publishers = static_cast<std::uint32_t>(topics_->frame_publishers())};
   }
 
   std::vector<std::pair<std::string, std::uint64_t>> drops() const {
@@ -293,18 +285,16 @@ class Running : public Server {
     // Says it at 10, 100, 1000 ... so that a camera that never fits is heard, and not for ever.
     if (losses < 10 || losses < 10 * losses_reported_) return;
     losses_reported_ = losses;
-    std::ostringstream text;
-    const Settings::Snapshot options = settings_.get();
-    text << losses << " depth images had no partner: " << sync.depth_without_color
-         << " without a colour image, " << sync.depth_without_info << " without a camera info";
-    if (sync.nearest_miss_ns > 0) {
-      text << "; the nearest one was " << static_cast<double>(sync.nearest_miss_ns) * 1e-6
-           << " ms away (input.sync_tolerance_ms is " << options->input.sync_tolerance_ms << ")";
-    } else {
-      text << "; are " << options->input.color << " and " << options->input.camera_info
-           << " published?";
-    }
-    log(log_, LogLevel::warning, text.str());
+    const InputOptions input = settings_.get()->input;
+    const std::string cause =
+        sync.nearest_miss_ns > 0
+            ? concat("the nearest one was ", static_cast<double>(sync.nearest_miss_ns) * 1e-6,
+                     " ms away (input.sync_tolerance_ms is ", input.sync_tolerance_ms, ")")
+            : concat("are ", input.color, " and ", input.camera_info, " published?");
+    log(log_, LogLevel::warning,
+        concat(losses, " depth images had no partner: ", sync.depth_without_color,
+               " without a colour image, ", sync.depth_without_info, " without a camera info; ",
+               cause));
   }
 
   Settings settings_;

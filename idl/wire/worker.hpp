@@ -38,15 +38,15 @@ class Worker {
     }
   }
 
-  void run_at(Clock::time_point time, std::function<void()> task) {
-    decltype(State::tasks)::node_type dropped;  // destroyed outside the lock
-    {
-      const std::lock_guard<std::mutex> lock(state_->mutex);
-      auto& tasks = state_->tasks;
-      tasks.emplace(time, std::move(task));
-      if (tasks.size() > max_waiting_) dropped = tasks.extract(tasks.begin());
-    }
+  /// False when another task was dropped for this one.
+  bool run_at(Clock::time_point time, std::function<void()> task) {
+    decltype(State::tasks)::node_type dropped;  // destroyed after the lock
+    const std::lock_guard<std::mutex> lock(state_->mutex);
+    auto& tasks = state_->tasks;
+    tasks.emplace(time, std::move(task));
+    if (tasks.size() > max_waiting_) dropped = tasks.extract(tasks.begin());
     state_->wake.notify_all();
+    return dropped.empty();
   }
 
  private:

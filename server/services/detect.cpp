@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "core/base/failure.hpp"
+#include "core/base/concat.hpp"
 #include "server/convert/frames.hpp"
 #include "server/convert/results.hpp"
 #include "server/services/services.hpp"
@@ -24,7 +24,7 @@ msgs::Detect_Response refusal(const Status& status) {
 Result<DetectRequest> search_of(const msgs::Detect_Request& request,
                                 const DetectionOptions& options) {
   if (request.top_k > 100) {
-    return invalid_argument("top_k is " + std::to_string(request.top_k) +
+    return invalid_argument("top_k is ", request.top_k,
                             "; it must be between 1 and 100, or 0 for the server's setting");
   }
   if (!(request.time_budget_ms >= 0 && request.time_budget_ms <= 1e6)) {
@@ -73,7 +73,7 @@ DetectJob job_of(std::shared_ptr<msgs::Detect_Request> request, const DetectRequ
 }  // namespace
 
 void add_detect(const ServiceContext& context, ServiceSet& services) {
-  or_throw(services.add<msgs::Detect>(
+  services.add<msgs::Detect>(
       "detect", [context](msgs::Detect_Request&& message, const Reply<msgs::Detect>& reply) {
         const auto refuse = [&](const Status& status) {
           context.statistics.add(&Counts::requests_refused);
@@ -102,7 +102,7 @@ void add_detect(const ServiceContext& context, ServiceSet& services) {
         };
         const Status accepted = context.worker.push(std::move(job));
         if (!accepted.ok()) refuse(accepted);
-      }));
+      });
 }
 
 }  // namespace bpa::server

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/failure.hpp"
 #include "server/convert/results.hpp"
 #include "server/services/services.hpp"
 
@@ -54,10 +53,10 @@ void finish(const ServiceContext& context, const char* what, const Status& statu
 /// A service that changes the library: `change(request, response)`. Loading takes seconds, so it
 /// waits for its turn on the worker.
 template <class Service, class Change>
-Status add_change(const ServiceContext& context, const char* name, Change change,
-                  ServiceSet& services) {
-  return services.add<Service>(name, [context, name, change](typename Service::Request&& request,
-                                                             const Reply<Service>& reply) {
+void add_change(const ServiceContext& context, const char* name, Change change,
+                ServiceSet& services) {
+  services.add<Service>(name, [context, name, change](typename Service::Request&& request,
+                                                      const Reply<Service>& reply) {
     const Status queued =
         context.worker.run_later([context, name, change, reply, request = std::move(request)] {
           typename Service::Response response;
@@ -87,9 +86,9 @@ void add_library_services(const ServiceContext& context, ServiceSet& services) {
                                     msgs::UnloadModel_Response&) {
     return recognition->unload(request.name);
   };
-  or_throw(services.add_quick<msgs::ListModels>("list_models", list_models));
-  or_throw(add_change<msgs::LoadModel>(context, "load_model", load, services));
-  or_throw(add_change<msgs::UnloadModel>(context, "unload_model", unload, services));
+  services.add_quick<msgs::ListModels>("list_models", list_models);
+  add_change<msgs::LoadModel>(context, "load_model", load, services);
+  add_change<msgs::UnloadModel>(context, "unload_model", unload, services);
 }
 
 }  // namespace bpa::server

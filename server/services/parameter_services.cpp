@@ -70,39 +70,39 @@ void add_parameter_services(const wire::Participant& participant, Settings& sett
                             const LogHook& hook, ServiceSet& services) {
   const auto self =
       std::make_shared<Parameters>(Parameters{participant.node().full(), settings, hook, {}});
-  or_throw(self->events.open(participant, "/parameter_events", wire::qos::parameters()));
-  or_throw(services.add_quick<rcl::ListParameters>(
+  self->events.open(participant, "/parameter_events", wire::qos::parameters());
+  services.add_quick<rcl::ListParameters>(
       "~/list_parameters", [](const rcl::ListParameters_Request& request) {
         return rcl::ListParameters_Response{list_parameters(request.prefixes, request.depth)};
-      }));
-  or_throw(services.add_quick<rcl::GetParameters>(
+      });
+  services.add_quick<rcl::GetParameters>(
       "~/get_parameters", [self](const rcl::GetParameters_Request& request) {
         const Settings::Snapshot options = self->settings.get();
         return each(request.names, &rcl::GetParameters_Response::values,
                     [&](const std::string& name) { return parameter(*options, name); });
-      }));
-  or_throw(services.add_quick<rcl::GetParameterTypes>(
+      });
+  services.add_quick<rcl::GetParameterTypes>(
       "~/get_parameter_types", [](const rcl::GetParameterTypes_Request& request) {
         return each(request.names, &rcl::GetParameterTypes_Response::types,
                     [](const std::string& name) { return describe_parameter(name).type; });
-      }));
-  or_throw(services.add_quick<rcl::DescribeParameters>(
+      });
+  services.add_quick<rcl::DescribeParameters>(
       "~/describe_parameters", [](const rcl::DescribeParameters_Request& request) {
         return each(request.names, &rcl::DescribeParameters_Response::descriptors,
                     describe_parameter);
-      }));
-  or_throw(services.add_quick<rcl::SetParameters>(
+      });
+  services.add_quick<rcl::SetParameters>(
       "~/set_parameters", [self](const rcl::SetParameters_Request& request) {
         rcl::SetParameters_Response response;
         for (const rcl::Parameter& parameter : request.parameters) {
           response.results.push_back(self->set({parameter}));
         }
         return response;
-      }));
-  or_throw(services.add_quick<rcl::SetParametersAtomically>(
+      });
+  services.add_quick<rcl::SetParametersAtomically>(
       "~/set_parameters_atomically", [self](const rcl::SetParametersAtomically_Request& request) {
         return rcl::SetParametersAtomically_Response{self->set(request.parameters)};
-      }));
+      });
   rcl::ParameterEvent event = self->new_event();
   event.new_parameters = all_parameters(*settings.get());
   or_throw(self->events.publish(event));

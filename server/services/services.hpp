@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/failure.hpp"
 #include "core/base/log.hpp"
-#include "core/base/status.hpp"
 #include "idl/wire/participant.hpp"
 #include "idl/wire/qos.hpp"
 #include "idl/wire/service.hpp"
@@ -52,24 +52,23 @@ class ServiceSet {
       : participant_(participant), log_(std::move(log)), qos_(qos) {}
 
   /// `handle(request, reply)` runs on a DDS thread and must not block; the reply may come later.
+  /// Throws a Failure, as add_quick() does.
   template <class Service, class Handle>
-  Status add(const std::string& name, Handle handle) {
-    auto server = wire::ServiceServer<Service>::create(
+  void add(const std::string& name, Handle handle) {
+    auto server = or_throw(wire::ServiceServer<Service>::create(
         participant_, name,
         [name, handle = std::move(handle), log = log_](typename Service::Request&& request,
                                                        wire::ReplyToken<Service> token) {
           handle(std::move(request), Reply<Service>(std::move(token), name, log));
         },
-        qos_);
-    if (!server.ok()) return server.status();
-    servers_.push_back(std::make_shared<wire::ServiceServer<Service>>(std::move(server).value()));
-    return {};
+        qos_));
+    servers_.push_back(std::make_shared<wire::ServiceServer<Service>>(std::move(server)));
   }
   /// `answer(request)` gives the response at once.
   template <class Service, class Answer>
-  Status add_quick(const std::string& name, Answer answer) {
-    return add<Service>(name, [answer = std::move(answer)](typename Service::Request&& request,
-                                                           const Reply<Service>& reply) {
+  void add_quick(const std::string& name, Answer answer) {
+    add<Service>(name, [answer = std::move(answer)](typename Service::Request&& request,
+                                                    const Reply<Service>& reply) {
       reply.send(answer(std::move(request)));
     });
   }

@@ -7,14 +7,16 @@
 #include <vector>
 
 #include "core/base/log.hpp"
-#include "core/base/status.hpp"
 #include "idl/wire/msg/diagnostic_msgs.hpp"
 #include "idl/wire/participant.hpp"
+#include "server/sources/synchronizer.hpp"
 
 namespace bpa::server {
 
 struct CaptureOptions;
 struct IncomingFrame;
+struct InputOptions;
+struct ServerOptions;
 
 /// Takes a frame, on a thread of its source.
 using OnFrame = std::function<void(IncomingFrame&&)>;
@@ -32,12 +34,29 @@ class FrameSource {
   virtual std::vector<SourceReport> reports() const = 0;
 };
 
+/// Frames from topics: whole ones (bpa_msgs/RgbdFrame), organised clouds, and the images of a ROS 2
+/// camera, put together by their stamps.
+class TopicSource : public FrameSource {
+ public:
+  /// Takes over what may change at run time: rectified, sync_tolerance_ms, sync_queue, silence_s.
+  virtual void set_options(const InputOptions& options) = 0;
+  /// Publishers of the topic of whole frames that are matched now; 0 without that topic.
+  virtual std::size_t frame_publishers() const = 0;
+  /// What became of the camera's messages.
+  virtual SyncCounts sync_counts() const = 0;
+};
+
+/// Subscribes to what the options name. `on_frame` runs on DDS threads; `participant` outlives the
+/// source. Throws a Failure.
+std::unique_ptr<TopicSource> open_topic_source(const wire::Participant& participant,
+                                               const ServerOptions& options, OnFrame on_frame,
+                                               LogHook log);
+
 /// The server's own camera: its frames go to the search and to camera topics, it can be recorded by
 /// a service, and diagnostics say how it is. `on_frame` and `idle` (whether no frame waits for the
-/// search) are called on the capture thread.
-Result<std::unique_ptr<FrameSource>> open_camera_source(const wire::Participant& participant,
-                                                        const CaptureOptions& options,
-                                                        OnFrame on_frame,
-                                                        std::function<bool()> idle, LogHook log);
+/// search) are called on the capture thread. Throws a Failure.
+std::unique_ptr<FrameSource> open_camera_source(const wire::Participant& participant,
+                                                const CaptureOptions& options, OnFrame on_frame,
+                                                std::function<bool()> idle, LogHook log);
 
 }  // namespace bpa::server

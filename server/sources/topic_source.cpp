@@ -1,12 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/sources/topic_source.hpp"
-
+#include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <mutex>
+#include <optional>
 #include <utility>
 
-#include "server/convert/frames.hpp"
+#include "core/base/failure.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/subscriber.hpp"
+#include "server/options.hpp"
+#include "server/sources/frame_source.hpp"
+#include "server/worker.hpp"
 
 namespace bpa::server {
 namespace {
@@ -48,11 +54,8 @@ IncomingFrame incoming(RgbdFrame message) {
 
 IncomingFrame incoming(CameraImages images, bool rectified) {
   const wire::std_msgs::Header& header = header_of(*images.depth);
-  IncomingFrame frame{{}, to_ns(header.stamp), header.frame_id};
-  frame.decode = [images = std::move(images), rectified] {
-    return frame_from_images(images, rectified);
-  };
-  return frame;
+  return {[images, rectified] { return frame_from_images(images, rectified); }, to_ns(header.stamp),
+          header.frame_id};
 }
 
 using Values = std::vector<wire::diagnostic_msgs::KeyValue>;
@@ -67,216 +70,237 @@ std::string seconds(double value) {
   return text;
 }
 
+/// A subscription to messages of any type.
+struct Topic {
+  std::string name;  ///< Resolved.
+  std::function<std::size_t()> publishers;
+  std::function<wire::ReaderStatistics()> statistics;
+  std::shared_ptr<void> subscriber;
+  std::atomic<std::int64_t> last_ns{0};  ///< When the last message came (steady_clock); 0: none.
+
+  bool open() const { return subscriber != nullptr; }
+  /// Seconds since the last message; nothing before the first. Reports tell by it that a camera is
+  /// gone: publishers on Eclipse Cyclone DDS count as matched for seconds after they went.
+  std::optional<double> silence() const {
+    if (last_ns == 0) return std::nullopt;
+    const std::int64_t now_ns = std::chrono::steady_clock::now().time_since_epoch().count();
+    return 1e-9 * static_cast<double>(now_ns - last_ns);
+  }
+};
+
+/// DDS threads only sort messages; decoding them is left to the worker.
+class Topics : public TopicSource {
+ public:
+  Topics(const wire::Participant& participant, const ServerOptions& options, OnFrame on_frame,
+         LogHook hook)
+      : participant_(participant),
+        on_frame_(std::move(on_frame)),
+        log_(std::move(hook)),
+        options_(options.input),
+        synchronizer_(synchronizer_options(options.input)) {
+    const auto shared_bytes = static_cast<std::size_t>(options.network.shared_frame_mb) << 20U;
+    wire::SubscriberOptions whole{wire::qos::frames(), shared_bytes};
+    if (!options_.frames_reliable) whole.qos.reliability = wire::Reliability::best_effort;
+    if (!options_.frames.empty()) {
+      subscribe<RgbdFrame>(
+          options_.frames, whole,
+          [this](RgbdFrame&& message) { on_frame_(incoming(std::move(message))); }, frames_);
+      log(log_, LogLevel::info, "frames are taken from " + frames_.name);
+    }
+    const wire::SubscriberOptions camera{options_.reliable ? wire::qos::reliable_input()
+                                                           : wire::qos::sensor_input()};
+    if (!options_.cloud.empty()) {
+      const auto take = [this](PointCloud2&& message) {
+        on_frame_(incoming(std::move(message), frame_from_cloud));
+      };
+      subscribe<PointCloud2>(options_.cloud, camera, take, cloud_);
+      log(log_, LogLevel::info, "clouds are taken from " + cloud_.name);
+    }
+    if (!options_.depth.empty()) subscribe_camera(camera);
+  }
+
+  void set_options(const InputOptions& options) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    options_.rectified = options.rectified;
+    options_.sync_tolerance_ms = options.sync_tolerance_ms;
+    options_.sync_queue = options.sync_queue;
+    options_.silence_s = options.silence_s;
+    synchronizer_.set_options(synchronizer_options(options_));
+  }
+
+  std::vector<SourceReport> reports() const override {
+    std::vector<SourceReport> reports;
+    if (frames_.open()) reports.push_back(whole_report("frames", frames_));
+    if (cloud_.open()) reports.push_back(whole_report("clouds", cloud_));
+    if (depth_.open()) reports.push_back(camera_report());
+    return reports;
+  }
+
+  std::size_t frame_publishers() const override {
+    return frames_.open() ? frames_.publishers() : 0;
+  }
+
+  SyncCounts sync_counts() const override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return synchronizer_.counts();
+  }
+
+ private:
+  template <class T, class OnMessage>
+  void subscribe(const std::string& topic, const wire::SubscriberOptions& options,
+                 OnMessage on_message, Topic& place) {
+    const auto subscriber = std::make_shared<Subscriber<T>>(or_throw(Subscriber<T>::create(
+        participant_, topic, options, [&place, on_message](T&& message, const wire::SampleMeta&) {
+          place.last_ns = std::chrono::steady_clock::now().time_since_epoch().count();
+          on_message(std::move(message));
+        })));
+    place.name = subscriber->topic();
+    place.publishers = [raw = subscriber.get()] { return raw->matched_count(); };
+    place.statistics = [raw = subscriber.get()] { return raw->statistics(); };
+    place.subscriber = subscriber;
+  }
+
+  /// Adds a message of the camera and hands on the images that it completes.
+  template <class Message>
+  void synchronize(void (Synchronizer::*add)(Message&&), Message message) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    (synchronizer_.*add)(std::move(message));
+    std::vector<CameraImages> complete;
+    while (auto images = synchronizer_.next()) complete.push_back(*std::move(images));
+    const bool rectified = options_.rectified;
+    lock.unlock();
+    for (CameraImages& images : complete) on_frame_(incoming(std::move(images), rectified));
+  }
+
+  /// Does nothing when the topic is empty.
+  void subscribe_images(const std::string& topic, const std::string& transport,
+                        const wire::SubscriberOptions& options,
+                        void (Synchronizer::*add)(AnyImage&&), Topic& place) {
+    if (topic.empty()) return;
+    const auto take = [this, add](auto&& image) { synchronize(add, AnyImage(std::move(image))); };
+    if (transport == "raw") return subscribe<Image>(topic, options, take, place);
+    // As image_transport does it, the base topic is remapped first.
+    const std::string base = or_throw(participant_.resolve(topic));
+    subscribe<CompressedImage>(base + "/" + transport, options, take, place);
+  }
+
+  void subscribe_camera(const wire::SubscriberOptions& options) {
+    subscribe_images(options_.color, options_.color_transport, options, &Synchronizer::add_color,
+                     color_);
+    subscribe_images(options_.depth, options_.depth_transport, options, &Synchronizer::add_depth,
+                     depth_);
+    subscribe<CameraInfo>(
+        options_.camera_info, options,
+        [this](CameraInfo&& info) { synchronize(&Synchronizer::add_info, std::move(info)); },
+        info_);
+    log(log_, LogLevel::info,
+        "camera images are taken from " + depth_.name +
+            (color_.open() ? ", " + color_.name : " (without colour)") + " and " + info_.name);
+  }
+
+  SourceReport whole_report(const std::string& what, const Topic& topic) const {
+    SourceReport report;
+    report.name = what;
+    report.hardware_id = topic.name;
+    const std::size_t publishers = topic.publishers();
+    const auto silence = topic.silence();
+    if (!silence) {
+      report.message = publishers > 0 ? "a publisher is there and has sent nothing yet" : "unused";
+    } else if (*silence > longest_silence()) {
+      report.level = SourceReport::kWarn;
+      report.message = "nothing has come for " + seconds(*silence);
+    } else {
+      report.message = "they come";
+    }
+    const wire::ReaderStatistics statistics = topic.statistics();
+    add(report.values, "publishers of " + what, publishers);
+    add(report.values, "messages of " + what, statistics.received);
+    add(report.values, "messages malformed of " + what, statistics.malformed);
+    add(report.values, "messages lost by DDS of " + what, statistics.lost);
+    return report;
+  }
+
+  /// What is wrong with the camera's topics, or an empty text.
+  std::string camera_trouble() const {
+    const double limit = longest_silence();
+    std::string trouble;
+    bool alive = false, seen = false;
+    const auto judge = [&](const char* what, const Topic& topic) {
+      if (!topic.open()) return;
+      const auto silence = topic.silence();
+      seen = seen || silence;
+      if (silence && *silence <= limit) {
+        alive = true;
+        return;
+      }
+      trouble += (trouble.empty() ? "no " : "; no ") + std::string(what) + " on " + topic.name +
+                 (silence ? " for " + seconds(*silence) : " so far") +
+                 (topic.publishers() == 0 ? ", nobody publishes it" : "");
+    };
+    judge("colour image", color_);
+    judge("depth image", depth_);
+    judge("camera info", info_);
+    if (!seen) return "";
+    return alive || trouble.empty() ? trouble : "the camera is gone: " + trouble;
+  }
+
+  SourceReport camera_report() const {
+    SourceReport report;
+    report.name = "camera";
+    report.hardware_id = depth_.name;
+    const std::string trouble = camera_trouble();
+    if (!trouble.empty()) {
+      report.level = SourceReport::kError;
+      report.message = trouble;
+    } else {
+      report.message = depth_.silence() ? "images come" : "unused";
+    }
+    const SyncCounts sync = sync_counts();
+    Values& values = report.values;
+    add(values, "publishers of colour images", color_.open() ? color_.publishers() : 0);
+    add(values, "publishers of depth images", depth_.publishers());
+    add(values, "publishers of camera infos", info_.publishers());
+    add(values, "camera sets with equal stamps", sync.exact);
+    add(values, "camera sets with near stamps", sync.approximate);
+    add(values, "depth images without a colour image", sync.depth_without_color);
+    add(values, "depth images without a camera info", sync.depth_without_info);
+    add(values, "colour images unused", sync.color_unused);
+    add(values, "camera clock restarts", sync.restarts);
+    wire::ReaderStatistics sum;
+    for (const Topic* topic : {&color_, &depth_, &info_}) {
+      if (!topic->open()) continue;
+      const wire::ReaderStatistics one = topic->statistics();
+      sum.received += one.received;
+      sum.malformed += one.malformed;
+      sum.lost += one.lost;
+    }
+    add(values, "messages of the camera", sum.received);
+    add(values, "messages malformed of the camera", sum.malformed);
+    add(values, "messages lost by DDS of the camera", sum.lost);
+    return report;
+  }
+
+  double longest_silence() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return options_.silence_s;
+  }
+
+  const wire::Participant& participant_;
+  const OnFrame on_frame_;
+  const LogHook log_;
+  mutable std::mutex mutex_;  ///< Guards the options and the synchronizer.
+  InputOptions options_;
+  Synchronizer synchronizer_;
+  // Last: they call into the members above until they are destroyed.
+  Topic frames_, cloud_, color_, depth_, info_;
+};
+
 }  // namespace
 
-TopicSource::TopicSource(const wire::Participant& participant, const InputOptions& options,
-                         OnFrame on_frame, LogHook log)
-    : participant_(participant),
-      on_frame_(std::move(on_frame)),
-      log_(std::move(log)),
-      options_(options),
-      synchronizer_(synchronizer_options(options)) {}
-
-Result<std::unique_ptr<TopicSource>> TopicSource::create(const wire::Participant& participant,
-                                                         const ServerOptions& options,
-                                                         OnFrame on_frame, LogHook log) {
-  std::unique_ptr<TopicSource> source(
-      new TopicSource(participant, options.input, std::move(on_frame), std::move(log)));
-  const auto shared_bytes = static_cast<std::size_t>(options.network.shared_frame_mb) << 20U;
-  if (Status status = source->subscribe_frames(shared_bytes); !status.ok()) return status;
-  if (Status status = source->subscribe_cloud(); !status.ok()) return status;
-  if (Status status = source->subscribe_camera(); !status.ok()) return status;
-  return source;
-}
-
-void TopicSource::set_options(const InputOptions& options) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  options_.rectified = options.rectified;
-  options_.sync_tolerance_ms = options.sync_tolerance_ms;
-  options_.sync_queue = options.sync_queue;
-  options_.silence_s = options.silence_s;
-  synchronizer_.set_options(synchronizer_options(options_));
-}
-
-template <class T, class OnMessage>
-Status TopicSource::subscribe(const std::string& topic, const wire::SubscriberOptions& options,
-                              OnMessage on_message, Topic& place) {
-  auto made = Subscriber<T>::create(
-      participant_, topic, options, [&place, on_message](T&& message, const wire::SampleMeta&) {
-        place.last_ns = std::chrono::steady_clock::now().time_since_epoch().count();
-        on_message(std::move(message));
-      });
-  if (!made.ok()) return made.status();
-  const auto subscriber = std::make_shared<Subscriber<T>>(std::move(made).value());
-  place.name = subscriber->topic();
-  place.publishers = [raw = subscriber.get()] { return raw->matched_count(); };
-  place.statistics = [raw = subscriber.get()] { return raw->statistics(); };
-  place.subscriber = subscriber;
-  return {};
-}
-
-Status TopicSource::subscribe_frames(std::size_t shared_bytes) {
-  if (options_.frames.empty()) return {};
-  wire::SubscriberOptions subscription{wire::qos::frames(), shared_bytes};
-  if (!options_.frames_reliable) subscription.qos.reliability = wire::Reliability::best_effort;
-  Status status = subscribe<RgbdFrame>(
-      options_.frames, subscription,
-      [this](RgbdFrame&& message) { on_frame_(incoming(std::move(message))); }, frames_);
-  if (status.ok()) log(log_, LogLevel::info, "frames are taken from " + frames_.name);
-  return status;
-}
-
-wire::SubscriberOptions TopicSource::camera_subscription() const {
-  return {options_.reliable ? wire::qos::reliable_input() : wire::qos::sensor_input()};
-}
-
-Status TopicSource::subscribe_cloud() {
-  if (options_.cloud.empty()) return {};
-  Status status = subscribe<PointCloud2>(
-      options_.cloud, camera_subscription(),
-      [this](PointCloud2&& message) { on_frame_(incoming(std::move(message), frame_from_cloud)); },
-      cloud_);
-  if (status.ok()) log(log_, LogLevel::info, "clouds are taken from " + cloud_.name);
-  return status;
-}
-
-template <class Message>
-void TopicSource::synchronize(void (Synchronizer::*add)(Message&&), Message message) {
-  std::unique_lock<std::mutex> lock(mutex_);
-  (synchronizer_.*add)(std::move(message));
-  std::vector<CameraImages> complete;
-  while (auto images = synchronizer_.next()) complete.push_back(*std::move(images));
-  const bool rectified = options_.rectified;
-  lock.unlock();
-  for (CameraImages& images : complete) on_frame_(incoming(std::move(images), rectified));
-}
-
-Status TopicSource::subscribe_images(const std::string& topic, const std::string& transport,
-                                     void (Synchronizer::*add)(AnyImage&&), Topic& place) {
-  if (topic.empty()) return {};
-  const auto take = [this, add](auto&& image) { synchronize(add, AnyImage(std::move(image))); };
-  if (transport == "raw") return subscribe<Image>(topic, camera_subscription(), take, place);
-  // As image_transport does it, the base topic is remapped first.
-  const Result<std::string> base = participant_.resolve(topic);
-  if (!base.ok()) return base.status();
-  return subscribe<CompressedImage>(*base + "/" + transport, camera_subscription(), take, place);
-}
-
-Status TopicSource::subscribe_camera() {
-  if (options_.depth.empty()) return {};
-  Status status =
-      subscribe_images(options_.color, options_.color_transport, &Synchronizer::add_color, color_);
-  if (!status.ok()) return status;
-  status =
-      subscribe_images(options_.depth, options_.depth_transport, &Synchronizer::add_depth, depth_);
-  if (!status.ok()) return status;
-  status = subscribe<CameraInfo>(
-      options_.camera_info, camera_subscription(),
-      [this](CameraInfo&& info) { synchronize(&Synchronizer::add_info, std::move(info)); }, info_);
-  if (!status.ok()) return status;
-  log(log_, LogLevel::info,
-      "camera images are taken from " + depth_.name +
-          (color_.open() ? ", " + color_.name : " (without colour)") + " and " + info_.name);
-  return {};
-}
-
-// Reports tell by its silence that a camera is gone: publishers on Eclipse Cyclone DDS count as
-// matched for seconds after they went.
-
-std::optional<double> TopicSource::Topic::silence() const {
-  if (last_ns == 0) return std::nullopt;
-  const std::int64_t now_ns = std::chrono::steady_clock::now().time_since_epoch().count();
-  return 1e-9 * static_cast<double>(now_ns - last_ns);
-}
-
-std::vector<SourceReport> TopicSource::reports() const {
-  std::vector<SourceReport> reports;
-  if (frames_.open()) reports.push_back(whole_report("frames", frames_));
-  if (cloud_.open()) reports.push_back(whole_report("clouds", cloud_));
-  if (depth_.open()) reports.push_back(camera_report());
-  return reports;
-}
-
-SourceReport TopicSource::whole_report(const std::string& what, const Topic& topic) const {
-  SourceReport report;
-  report.name = what;
-  report.hardware_id = topic.name;
-  const std::size_t publishers = topic.publishers();
-  const auto silence = topic.silence();
-  if (!silence) {
-    report.message = publishers > 0 ? "a publisher is there and has sent nothing yet" : "unused";
-  } else if (*silence > longest_silence()) {
-    report.level = SourceReport::kWarn;
-    report.message = "nothing has come for " + seconds(*silence);
-  } else {
-    report.message = "they come";
-  }
-  const wire::ReaderStatistics statistics = topic.statistics();
-  add(report.values, "publishers of " + what, publishers);
-  add(report.values, "messages of " + what, statistics.received);
-  add(report.values, "messages malformed of " + what, statistics.malformed);
-  add(report.values, "messages lost by DDS of " + what, statistics.lost);
-  return report;
-}
-
-/// What is wrong with the camera's topics, or an empty text.
-std::string TopicSource::camera_trouble() const {
-  const double limit = longest_silence();
-  std::string trouble;
-  bool alive = false, seen = false;
-  const auto judge = [&](const char* what, const Topic& topic) {
-    if (!topic.open()) return;
-    const auto silence = topic.silence();
-    seen = seen || silence;
-    if (silence && *silence <= limit) {
-      alive = true;
-      return;
-    }
-    trouble += (trouble.empty() ? "no " : "; no ") + std::string(what) + " on " + topic.name +
-               (silence ? " for " + seconds(*silence) : " so far") +
-               (topic.publishers() == 0 ? ", nobody publishes it" : "");
-  };
-  judge("colour image", color_);
-  judge("depth image", depth_);
-  judge("camera info", info_);
-  if (!seen) return "";
-  return alive || trouble.empty() ? trouble : "the camera is gone: " + trouble;
-}
-
-SourceReport TopicSource::camera_report() const {
-  SourceReport report;
-  report.name = "camera";
-  report.hardware_id = depth_.name;
-  const std::string trouble = camera_trouble();
-  if (!trouble.empty()) {
-    report.level = SourceReport::kError;
-    report.message = trouble;
-  } else {
-    report.message = depth_.silence() ? "images come" : "unused";
-  }
-  const SyncCounts sync = sync_counts();
-  Values& values = report.values;
-  add(values, "publishers of colour images", color_.open() ? color_.publishers() : 0);
-  add(values, "publishers of depth images", depth_.publishers());
-  add(values, "publishers of camera infos", info_.publishers());
-  add(values, "camera sets with equal stamps", sync.exact);
-  add(values, "camera sets with near stamps", sync.approximate);
-  add(values, "depth images without a colour image", sync.depth_without_color);
-  add(values, "depth images without a camera info", sync.depth_without_info);
-  add(values, "colour images unused", sync.color_unused);
-  add(values, "camera clock restarts", sync.restarts);
-  wire::ReaderStatistics sum;
-  for (const Topic* topic : {&color_, &depth_, &info_}) {
-    if (!topic->open()) continue;
-    const wire::ReaderStatistics one = topic->statistics();
-    sum.received += one.received;
-    sum.malformed += one.malformed;
-    sum.lost += one.lost;
-  }
-  add(values, "messages of the camera", sum.received);
-  add(values, "messages malformed of the camera", sum.malformed);
-  add(values, "messages lost by DDS of the camera", sum.lost);
-  return report;
+std::unique_ptr<TopicSource> open_topic_source(const wire::Participant& participant,
+                                               const ServerOptions& options, OnFrame on_frame,
+                                               LogHook log) {
+  return std::make_unique<Topics>(participant, options, std::move(on_frame), std::move(log));
 }
 
 }  // namespace bpa::server
