@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/concat.hpp"
+
 namespace bpa::camera {
 namespace {
 
@@ -68,7 +70,7 @@ class Capture::Impl {
         const std::string text = hang_text();
         lock.unlock();
         set_state(LogLevel::error, text);
-        refuse_tasks(Status(StatusCode::unavailable, text));
+        refuse_tasks(unavailable(text));
         lock.lock();
       }
       // A call that has not begun yet hangs no earlier than this.
@@ -93,7 +95,7 @@ class Capture::Impl {
       on_images_ = nullptr;
       ready_ = nullptr;
     }
-    refuse_tasks(Status(StatusCode::unavailable, "the server is stopping"));
+    refuse_tasks(unavailable("the server is stopping"));
     if (!in_time) {
       log(log_, LogLevel::error, "capture: the driver does not return; it is left behind");
     }
@@ -105,24 +107,20 @@ class Capture::Impl {
     Recorded done;
   };
   void post(Task task) {
-    std::optional<Status> refused;
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (stopping_) refused = Status(StatusCode::unavailable, "the server is stopping");
-      if (hangs()) refused = Status(StatusCode::unavailable, hang_text());
-      if (!refused) tasks_.push_back(std::move(task));
-    }
-    if (refused) {
-      task.done(*refused);
-    } else {
-      wake_.notify_all();
-    }
+    std::unique_lock<std::mutex> lock(mutex_);
+    Status refused;
+    if (stopping_) refused = unavailable("the server is stopping");
+    if (hangs()) refused = unavailable(hang_text());
+    if (refused.ok()) tasks_.push_back(std::move(task));
+    wake_.notify_all();
+    lock.unlock();
+    if (!refused.ok()) task.done(refused);
   }
 
   Result<RecordingSummary> begin_recording(CameraDevice* camera, const std::string& path,
                                            std::chrono::milliseconds limit) {
     if (camera == nullptr) {
-      return Status(StatusCode::unavailable, "there is no camera to record: " + status().text);
+      return unavailable("there is no camera to record: ", status().text);
     }
     if (recording_until_) {
       return Status(StatusCode::busy, status().recording + " is being recorded; stop that first");
@@ -157,7 +155,7 @@ class Capture::Impl {
         return summary;
       }
       log(log_, LogLevel::info,
-          "capture: recorded " + std::to_string(summary->frames) + " frames to " + summary->path);
+          concat("capture: recorded ", summary->frames, " frames to ", summary->path));
       recorded_ = *summary;
     }
     if (!recorded_) return Status(StatusCode::not_found, "nothing is being recorded");
@@ -236,9 +234,9 @@ class Capture::Impl {
       } else if (output->busy) {
         last_frame = clock_->now();
       } else if (clock_->now() - last_frame > times_.timeout) {
-        set_state(LogLevel::error, camera.name() + " delivers no frames any more (none for " +
-                                       std::to_string(times_.timeout.count()) +
-                                       " ms); it is opened again until it does");
+        set_state(LogLevel::error,
+                  concat(camera.name(), " delivers no frames any more (none for ",
+                         times_.timeout.count(), " ms); it is opened again until it does"));
         return false;
       }
     }
@@ -278,8 +276,8 @@ class Capture::Impl {
   }
 
   std::string hang_text() const {
-    return std::string("the driver does not return from ") + call_ + " (" +
-           std::to_string(times_.timeout.count()) + " ms so far)";
+    return concat("the driver does not return from ", call_, " (", times_.timeout.count(),
+                  " ms so far)");
   }
   bool stopping() const {
     const std::lock_guard<std::mutex> lock(mutex_);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "core/base/concat.hpp"
+
 namespace bpa::camera {
 namespace {
 
@@ -23,13 +25,13 @@ class Inspector {
     }
     for (const Node& node : nodes_) {
       if (node.seen != node.stream.frames) {
-        return corrupt("its " + std::to_string(node.stream.frames) + " frames of stream " +
-                       std::to_string(node.stream.node) + " are " + std::to_string(node.seen));
+        return damaged("its ", node.stream.frames, " frames of stream ", node.stream.node, " are ",
+                       node.seen);
       }
       info_.streams.push_back(node.stream);
     }
     if (info_.find(OniStreamInfo::Kind::depth) == nullptr) {
-      return corrupt("it holds no depth stream");
+      return damaged("it holds no depth stream");
     }
     return info_;
   }
@@ -41,15 +43,15 @@ class Inspector {
     std::uint32_t seen = 0;  ///< Frame records so far.
   };
 
-  Status corrupt(const std::string& why) const {
-    return Status(StatusCode::corrupt, path_ + " is damaged: " + why);
+  template <class... Parts>
+  Status damaged(const Parts&... why) const {
+    return corrupt(path_, " is damaged: ", why...);
   }
   Status truncated() const {
     std::uint32_t frames = 0;
     for (const Node& node : nodes_) frames = std::max(frames, node.seen);
-    return Status(StatusCode::corrupt,
-                  path_ + " is truncated: it ends at byte " + std::to_string(size_) + ", after " +
-                      std::to_string(frames) + " frames, without the records that end a recording");
+    return corrupt(path_, " is truncated: it ends at byte ", size_, ", after ", frames,
+                   " frames, without the records that end a recording");
   }
 
   /// The next bytes of the file; false past its end.
@@ -64,12 +66,10 @@ class Inspector {
   Status check_header() {
     std::string bytes;
     if (!read(bytes, kFileHeaderBytes) || !bytes.starts_with(kIdentity)) {
-      return Status(StatusCode::corrupt,
-                    path_ + " is no OpenNI recording: it does not begin with NI10");
+      return corrupt(path_, " is no OpenNI recording: it does not begin with NI10");
     }
-    const std::string version = std::to_string(static_cast<unsigned char>(bytes[4])) + "." +
-                                std::to_string(static_cast<unsigned char>(bytes[5])) + "." +
-                                std::to_string(static_cast<unsigned char>(bytes[6]));
+    const auto part = [&](std::size_t i) { return int{static_cast<unsigned char>(bytes[i])}; };
+    const std::string version = concat(part(4), ".", part(5), ".", part(6));
     if (version != "1.0.1") {
       return Status(StatusCode::unsupported,
                     path_ + " has the format " + version +
@@ -84,16 +84,16 @@ class Inspector {
     RecordHeader header;
     std::size_t offset = 0;
     if (!read(bytes, sizeof header) || !get(bytes, offset, header)) return truncated();
-    const std::string place = "the record at byte " + std::to_string(position_);
+    const std::string place = concat("the record at byte ", position_);
     if (header.magic != RecordHeader::kMagic || header.type < kFirstType ||
         header.type > kLastType || header.field_bytes < sizeof header ||
         header.field_bytes > kMaxFieldBytes ||
         (header.type == RecordType::new_data && header.payload_bytes > kMaxFrameBytes)) {
-      return corrupt(place + " is none");
+      return damaged(place, " is none");
     }
     const std::uint64_t record_bytes = std::uint64_t{header.field_bytes} + header.payload_bytes;
     if (size_ - position_ < record_bytes || !read(bytes, header.field_bytes)) return truncated();
-    if (!take(header, bytes, offset)) return corrupt(place + " has wrong fields");
+    if (!take(header, bytes, offset)) return damaged(place, " has wrong fields");
     position_ += record_bytes;
     return {};
   }
@@ -179,10 +179,10 @@ const OniStreamInfo* OniFileInfo::find(OniStreamInfo::Kind kind) const {
 Result<OniFileInfo> inspect_oni_file(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
-    return Status(StatusCode::not_found, path + ": there is no such file");
+    return not_found(path, ": there is no such file");
   }
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) return Status(StatusCode::unavailable, path + ": " + error.message());
+  if (error) return unavailable(path, ": ", error.message());
   return Inspector(path, size).inspect();
 }
 

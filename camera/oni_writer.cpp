@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "camera/oni_file.hpp"
+#include "core/base/concat.hpp"
 
 namespace bpa::camera {
 namespace {
@@ -15,14 +16,13 @@ using namespace oni;
 /// A record with these fields and, after them, `payload_bytes` of payload.
 std::string record(RecordType type, std::uint32_t node, const std::string& fields = "",
                    std::uint64_t undo_position = 0, std::size_t payload_bytes = 0) {
-  RecordHeader header;
-  header.type = type;
-  header.node = node;
-  header.field_bytes = static_cast<std::uint32_t>(sizeof header + fields.size());
-  header.payload_bytes = static_cast<std::uint32_t>(payload_bytes);
-  header.undo_position = undo_position;
   std::string bytes;
-  put(bytes, header);
+  put(bytes,
+      RecordHeader{.type = type,
+                   .node = node,
+                   .field_bytes = static_cast<std::uint32_t>(sizeof(RecordHeader) + fields.size()),
+                   .payload_bytes = static_cast<std::uint32_t>(payload_bytes),
+                   .undo_position = undo_position});
   return bytes + fields;
 }
 
@@ -38,14 +38,14 @@ Result<OniWriter> OniWriter::create(const std::string& path,
                                     const std::vector<OniStreamFormat>& streams, bool registered) {
   for (const OniStreamFormat& format : streams) {
     if (format.frame_bytes <= kMaxFrameBytes) continue;
-    return Status(StatusCode::unsupported,
-                  "frames of " + std::to_string(format.frame_bytes) +
-                      " bytes cannot be recorded; players of .oni files have room for " +
-                      std::to_string(kMaxFrameBytes));
+    return Status(
+        StatusCode::unsupported,
+        concat("frames of ", format.frame_bytes,
+               " bytes cannot be recorded; players of .oni files have room for ", kMaxFrameBytes));
   }
   OniWriter writer(path, std::ofstream(path, std::ios::binary | std::ios::trunc));
   if (!writer.file_) {
-    return Status(StatusCode::unavailable, path + " cannot be written: " + std::strerror(errno));
+    return unavailable(path, " cannot be written: ", std::strerror(errno));
   }
   std::string header(kIdentity);
   header += {1, 0, 1, 0};  // version 1.0.1
@@ -120,8 +120,8 @@ Status OniWriter::add(std::size_t index, std::int64_t stamp_us, const void* data
                       std::size_t size) {
   Stream& stream = streams_[index];
   if (size != stream.format.frame_bytes) {
-    return invalid_argument("a frame to record has " + std::to_string(size) +
-                            " bytes; it must have " + std::to_string(stream.format.frame_bytes));
+    return invalid_argument("a frame to record has ", size, " bytes; it must have ",
+                            stream.format.frame_bytes);
   }
   if (first_us_ < 0) first_us_ = stamp_us;
   const auto stamp = static_cast<std::uint64_t>(std::max<std::int64_t>(0, stamp_us - first_us_));
@@ -166,8 +166,7 @@ void OniWriter::append(const std::string& bytes) {
 
 Status OniWriter::state() const {
   if (file_) return {};
-  return Status(StatusCode::unavailable,
-                path_ + " cannot be written any further: is the disk full?");
+  return unavailable(path_, " cannot be written any further: is the disk full?");
 }
 
 }  // namespace bpa::camera

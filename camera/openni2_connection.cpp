@@ -5,6 +5,7 @@
 
 #include "camera/open_camera.hpp"
 #include "camera/openni2.hpp"
+#include "core/base/concat.hpp"
 
 namespace bpa::camera {
 namespace {
@@ -40,7 +41,7 @@ Status Openni2Connection::bring_up() {
 }
 
 Status Openni2Connection::failed(const std::string& what) const {
-  return Status(StatusCode::unavailable, name + what + ": " + openni2_error());
+  return unavailable(name, what, ": ", openni2_error());
 }
 
 Status Openni2Connection::connect() {
@@ -55,7 +56,7 @@ Status Openni2Connection::connect() {
     openni::Array<openni::DeviceInfo> found;
     openni::OpenNI::enumerateDevices(&found);
     if (found.getSize() == 0) {
-      return Status(StatusCode::unavailable, "no OpenNI2 sensor is connected");
+      return unavailable("no OpenNI2 sensor is connected");
     }
     uri_ = found[0].getUri();
   }
@@ -96,9 +97,8 @@ Status Openni2Connection::open_depth() {
   }
   const openni::PixelFormat format = depth.getVideoMode().getPixelFormat();
   if (!readable(format)) {
-    return Status(StatusCode::unsupported, name + " gives depth in the format " +
-                                               std::to_string(format) +
-                                               "; it must be in 1 mm (100) or 0.1 mm (101)");
+    return Status(StatusCode::unsupported, concat(name, " gives depth in the format ", format,
+                                                  "; it must be in 1 mm (100) or 0.1 mm (101)"));
   }
   depth_mirrored = still_mirrored(depth);
   max_depth = depth.getMaxPixelValue();
@@ -153,8 +153,8 @@ Status Openni2Connection::start_playback() {
   const OniStreamInfo* stream = file->find(OniStreamInfo::Kind::depth);
   const int count = stream != nullptr ? static_cast<int>(stream->frames) : 0;
   if (options_.start_frame > 1 && options_.start_frame > count) {
-    return invalid_argument("capture.start_frame is " + std::to_string(options_.start_frame) +
-                            "; " + name + " has " + std::to_string(count) + " frames");
+    return invalid_argument("capture.start_frame is ", options_.start_frame, "; ", name, " has ",
+                            count, " frames");
   }
   openni::PlaybackControl* playback = device.getPlaybackControl();
   if (playback == nullptr) return failed(" cannot be played");

@@ -10,7 +10,7 @@
 #include <openni2/OpenNI.h>
 #include <unistd.h>
 
-#include "camera/list_devices.hpp"
+#include "camera/open_camera.hpp"
 #include "camera/openni2.hpp"
 
 namespace bpa::camera {

@@ -7,6 +7,7 @@
 #include <openni2/PS1080.h>
 
 #include "camera/openni2.hpp"
+#include "core/base/concat.hpp"
 
 namespace bpa::camera {
 namespace {
@@ -48,7 +49,7 @@ std::vector<Value> rows_of(const openni::VideoFrameRef& frame, bool mirror) {
 Result<std::shared_ptr<void>> load_openni2() {
   const std::shared_ptr<void> library(nullptr, [](void*) { openni::OpenNI::shutdown(); });
   if (openni::OpenNI::initialize() == openni::STATUS_OK) return library;
-  return Status(StatusCode::unavailable, "OpenNI2 cannot start: " + openni2_error());
+  return unavailable("OpenNI2 cannot start: ", openni2_error());
 }
 
 std::string openni2_error() {
@@ -84,8 +85,7 @@ Status choose_mode(openni::VideoStream& stream, const std::string& field,
       const bool is_set = plain(now) == *mode && now.getPixelFormat() == format;
       // Drivers of one mode (Debian's DummyDevice) refuse to set even that.
       if (is_set || stream.setVideoMode(modes[i]) == openni::STATUS_OK) return {};
-      return Status(StatusCode::unavailable,
-                    "the device refuses its mode " + wanted + ": " + openni2_error());
+      return unavailable("the device refuses its mode ", wanted, ": ", openni2_error());
     }
   }
   return invalid_argument(field + " is " + wanted + "; the device has " + list_of(known));
@@ -140,16 +140,11 @@ Result<io::CameraFile> intrinsics_of(openni::VideoStream& stream, const std::str
   if (c.width <= 0) return invalid_argument(path + " does not say the size of its images");
   const double scale = static_cast<double>(mode.width) / c.width;
   if (mode.height != std::lround(c.height * scale)) {
-    return invalid_argument(path + " is for " + std::to_string(c.width) + "x" +
-                            std::to_string(c.height) + "; images of " + to_string(mode) +
-                            " have another shape");
+    return invalid_argument(path, " is for ", c.width, "x", c.height, "; images of ",
+                            to_string(mode), " have another shape");
   }
-  c = {mode.width,
-       mode.height,
-       c.fx * scale,
-       c.fy * scale,
-       (c.cx + 0.5) * scale - 0.5,
-       (c.cy + 0.5) * scale - 0.5};
+  const double cx = (c.cx + 0.5) * scale - 0.5, cy = (c.cy + 0.5) * scale - 0.5;
+  c = {mode.width, mode.height, c.fx * scale, c.fy * scale, cx, cy};
   return file;
 }
 

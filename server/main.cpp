@@ -7,7 +7,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "camera/list_devices.hpp"
+#include "camera/open_camera.hpp"
 #include "core/base/failure.hpp"
 #include "core/pipeline/detector_options.hpp"
 #include "server/options.hpp"

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/openni2_sim/sim_device.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -13,7 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include <openni2/Driver/OniDriverAPI.h>
 #include <openni2/PS1080.h>
+
+#include "camera/openni2_sim/sim_scenes.hpp"
 
 namespace bpa::sim_driver {
 namespace {

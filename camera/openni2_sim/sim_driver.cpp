@@ -6,7 +6,9 @@
 #include <thread>
 #include <utility>
 
-#include "camera/openni2_sim/sim_device.hpp"
+#include <openni2/Driver/OniDriverAPI.h>
+
+#include "camera/openni2_sim/sim_scenes.hpp"
 
 namespace bpa::sim_driver {
 namespace {

@@ -27,6 +27,10 @@
 //
 // Without BPA_SIM there is no device.
 
+namespace oni::driver {
+class DeviceBase;
+}
+
 namespace bpa::sim_driver {
 
 /// The settings now. Thread-safe; those that are no atomics do not change after the first reading.
@@ -76,5 +80,9 @@ struct SimFrames {
 /// with the camera of DATASET/camera_ir.json where they are there; otherwise it is made by moving
 /// the registered depth, with the colour camera's intrinsics. Frames must have one size and camera.
 Result<SimFrames> load_sim_frames(const std::string& dataset, const std::string& split);
+
+/// The opened device: a depth and a colour stream, and the thread that shows them the frames at
+/// 30 Hz. The caller deletes it; `config` outlives it.
+oni::driver::DeviceBase* new_sim_device(SimFrames frames, const SimConfig& config);
 
 }  // namespace bpa::sim_driver

@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "camera/list_devices.hpp"
 #include "camera/open_camera.hpp"
 #include "camera/stamps.hpp"
 #include "tests/support/temporary_folder.hpp"
