@@ -8,11 +8,9 @@
 namespace bpa::wire::detail {
 
 void Matches::update(const Guid& peer, int change) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (change > 0) peers_.insert(peer);
-    if (change < 0) peers_.erase(peer);
-  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (change > 0) peers_.insert(peer);
+  if (change < 0) peers_.erase(peer);
   changed_.notify_all();
 }
 

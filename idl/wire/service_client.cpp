@@ -45,8 +45,7 @@ class Client : public RawClient {
       const std::lock_guard<std::mutex> lock(mutex_);
       ++writing_;
     }
-    SampleId related;
-    related.writer = replies_->guid();
+    const SampleId related{replies_->guid()};
     SampleId written;
     const Status status = requests_->write(request, &related, &written);
 
@@ -54,9 +53,7 @@ class Client : public RawClient {
     --writing_;
     if (!status.ok()) return status;
     Bytes& reply = calls_[written.sequence];
-    if (const auto early = early_.find(written.sequence); early != early_.end()) {
-      reply = std::move(early->second);
-    }
+    if (auto early = early_.extract(written.sequence)) reply = std::move(early.mapped());
     if (writing_ == 0) early_.clear();
     const bool answered = answered_.wait_until(lock, deadline, [&] { return !reply.empty(); });
     Bytes result = std::move(reply);
@@ -72,16 +69,14 @@ class Client : public RawClient {
   }
 
   void on_reply(Bytes bytes, const SampleMeta& meta) {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      const Guid& addressee = meta.related.writer;
-      if (std::find(our_ids_.begin(), our_ids_.end(), addressee) == our_ids_.end()) return;
-      const auto call = calls_.find(meta.related.sequence);
-      if (call != calls_.end()) {
-        call->second = std::move(bytes);
-      } else if (writing_ > 0) {  // perhaps of a request whose write has not returned yet
-        early_[meta.related.sequence] = std::move(bytes);
-      }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const Guid& addressee = meta.related.writer;
+    if (std::find(our_ids_.begin(), our_ids_.end(), addressee) == our_ids_.end()) return;
+    const auto call = calls_.find(meta.related.sequence);
+    if (call != calls_.end()) {
+      call->second = std::move(bytes);
+    } else if (writing_ > 0) {  // perhaps of a request whose write has not returned yet
+      early_[meta.related.sequence] = std::move(bytes);
     }
     answered_.notify_all();
   }

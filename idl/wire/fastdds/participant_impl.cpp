@@ -5,7 +5,9 @@
 #include <cstring>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
 
+#include "core/base/concat.hpp"
 #include "idl/wire/fastdds/dds_qos.hpp"
 #include "idl/wire/fastdds/raw_type.hpp"
 #include "idl/wire/msg/rmw_dds_common.hpp"
@@ -15,7 +17,8 @@
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 #endif
 
-namespace bpa::wire::detail {
+namespace bpa::wire {
+namespace detail {
 
 namespace {
 
@@ -132,9 +135,8 @@ Status ParticipantImpl::start() {
   participant_ = factory->create_participant(static_cast<dds::DomainId_t>(discovery_.domain_id),
                                              *qos, listener_.get(), dds::StatusMask::none());
   if (participant_ == nullptr) {
-    return Status(StatusCode::unavailable, "cannot join DDS domain " +
-                                               std::to_string(discovery_.domain_id) +
-                                               ": no UDP port or no network interface is free");
+    return unavailable("cannot join DDS domain ", discovery_.domain_id,
+                       ": no UDP port or no network interface is free");
   }
   publisher_ = participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   subscriber_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
@@ -178,9 +180,9 @@ Status ParticipantImpl::open(const EndpointSpec& spec, bool is_reader,
   const Guid guid = topic == nullptr ? Guid{} : make(topic);
   if (guid == Guid{}) {
     if (topic != nullptr) release_topic(spec.dds_topic);
-    return Status(StatusCode::internal, std::string("cannot ") +
-                                            (is_reader ? "subscribe to " : "publish on ") +
-                                            spec.dds_topic + ": " + error);
+    return Status(StatusCode::internal,
+                  concat("cannot ", is_reader ? "subscribe to " : "publish on ", spec.dds_topic,
+                         ": ", error));
   }
   if (!spec.in_graph) return {};
   {
@@ -265,10 +267,10 @@ void ParticipantImpl::publish_graph() {
 
 void ParticipantImpl::check_type(const Peer& peer, const std::string& ours) const {
   if (ours.empty() || ours == peer.type) return;
-  log(LogLevel::warning, "topic " + peer.topic + ": a peer's " +
-                             (peer.is_reader ? "subscriber" : "publisher") + " has type " +
-                             peer.type + ", ours is " + ours +
-                             "; they will not talk: remap one of them or correct its type");
+  log(LogLevel::warning,
+      concat("topic ", peer.topic, ": a peer's ", peer.is_reader ? "subscriber" : "publisher",
+             " has type ", peer.type, ", ours is ", ours,
+             "; they will not talk: remap one of them or correct its type"));
 }
 
 void ParticipantImpl::on_peer(const Peer& peer) {
@@ -293,4 +295,69 @@ void ParticipantImpl::on_peer(const Peer& peer) {
   worker_.run_at(Worker::Clock::now(), [this] { publish_graph(); });
 }
 
-}  // namespace bpa::wire::detail
+}  // namespace detail
+
+namespace {
+
+using eprosima::fastdds::dds::Log;
+using eprosima::fastdds::dds::LogConsumer;
+
+class Bridge : public LogConsumer {
+ public:
+  explicit Bridge(LogHook hook) : hook_(std::move(hook)) {}
+
+  void Consume(const Log::Entry& entry) override {
+    const bool error = entry.kind == Log::Kind::Error;
+    log(hook_, error ? LogLevel::warning : LogLevel::debug, "Fast DDS: " + entry.message);
+  }
+
+ private:
+  LogHook hook_;
+};
+
+/// Takes Fast DDS's own messages, which it would print, to a hook: its errors as warnings, its
+/// warnings as debug. Fast DDS has one log a process; the hook of the last participant gets it.
+void bridge_log(const LogHook& hook) {
+  Log::ClearConsumers();
+  if (!hook) return;
+  Log::SetVerbosity(Log::Kind::Warning);
+  Log::RegisterConsumer(std::make_unique<Bridge>(hook));
+}
+
+}  // namespace
+
+Participant::Participant(std::shared_ptr<detail::ParticipantImpl> impl) : impl_(std::move(impl)) {}
+
+Result<Participant> Participant::create(ParticipantOptions options) {
+  if (Status s = validate_full_name(options.node.full()); !s.ok()) return s;
+  if (options.node.name.find('/') != std::string::npos) {
+    return invalid_argument("node name '" + options.node.name + "' must not have a slash");
+  }
+  const Result<Discovery> discovery =
+      options.discovery ? *options.discovery : discovery_from_environment();
+  if (!discovery.ok()) return discovery.status();
+  bridge_log(options.log);
+  auto impl = std::make_shared<detail::ParticipantImpl>(std::move(options), *discovery);
+  if (Status s = impl->start(); !s.ok()) return s;
+  return Participant(std::move(impl));
+}
+
+const NodeName& Participant::node() const { return impl_->options().node; }
+
+int Participant::domain_id() const { return impl_->domain_id(); }
+
+Result<std::string> Participant::resolve(std::string_view name) const {
+  return resolve_name(name, node(), impl_->options().remaps);
+}
+
+GraphLayout Participant::graph_layout() const { return impl_->graph_layout(); }
+
+const LogHook& detail::participant_log(const Participant& participant) {
+  return participant.impl()->options().log;
+}
+
+Worker& detail::participant_worker(const Participant& participant) {
+  return participant.impl()->worker();
+}
+
+}  // namespace bpa::wire
