@@ -74,8 +74,7 @@ class CameraDevice {
 
   /// For people.
   virtual const std::string& name() const = 0;
-  /// The next images, waiting no longer than `wait` for them. Fails when the camera is lost: close
-  /// it and open it again.
+  /// The next images, after `wait` at most. Fails when the camera is lost: open it again then.
   virtual Result<DeviceOutput> next(std::chrono::milliseconds wait) = 0;
   /// What is wrong while images still come ("depth comes without colour"); empty: nothing.
   virtual std::string complaint() const { return {}; }

@@ -28,8 +28,7 @@ struct CaptureStatus {
 };
 
 struct CaptureTimes {
-  /// A camera without frames for this long is opened again; a call into the driver that takes as
-  /// long is reported.
+  /// Without frames for this long, a camera is opened again; a driver's call this long is reported.
   std::chrono::milliseconds timeout{3000};
   std::chrono::milliseconds retry{1000};  ///< Between attempts to open.
 };
@@ -52,9 +51,8 @@ class Capture {
   CaptureStatus status() const;
 
   using Recorded = std::function<void(const Result<RecordingSummary>&)>;
-  /// Starts to record to a file of this machine, for `limit` at most. `done` is called once, from
-  /// another thread: fails with `busy` while a recording runs, `unavailable` without a camera or
-  /// when the driver hangs.
+  /// Records to a file of this machine, for `limit` at most. `done` is called once, from another
+  /// thread: `busy` while a recording runs, `unavailable` without a camera or when it hangs.
   void start_recording(const std::string& path, std::chrono::milliseconds limit, Recorded done);
   /// Ends it; also gives the summary of one that ended by itself since. Otherwise `not_found`.
   void stop_recording(Recorded done);

@@ -163,8 +163,7 @@ class OniWriter {
 
   /// Adds a frame to stream `index`. Stamps of one stream grow; the first of all counts as 0.
   Status add(std::size_t index, std::int64_t stamp_us, const void* data, std::size_t size);
-  /// Completes the file. A writer that is destroyed before leaves one that inspect_oni_file
-  /// refuses.
+  /// Completes the file. Without it, inspect_oni_file refuses the file.
   Status finish();
 
   const std::string& path() const { return path_; }

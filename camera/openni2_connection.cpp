@@ -105,8 +105,7 @@ Status Openni2Connection::open_depth() {
   return {};
 }
 
-/// Makes the colour stream, unless none is wanted or there is none that can be read: then
-/// `complaint` says why.
+/// Makes the colour stream if it is wanted; `complaint` says why there is none that can be read.
 Status Openni2Connection::open_color() {
   if (!options_.color) return {};
   if (device.getSensorInfo(openni::SENSOR_COLOR) == nullptr) {
@@ -178,8 +177,7 @@ std::vector<std::uint16_t> Openni2Connection::depth_after(int frames) {
   return depth_pixels(frame, depth_mirrored, max_depth);
 }
 
-/// Asks the device to register and compares its depth before and after; up to three times while the
-/// view changes.
+/// Compares depth from before and after the device is asked to register; three times at most.
 Result<Alignment> Openni2Connection::ask_device_to_register() {
   constexpr int kTries = 3;
   const auto mode = openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR;

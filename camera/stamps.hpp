@@ -16,9 +16,8 @@ namespace bpa::camera {
 /// A frame arrives some time after its exposure, never before: arrival = stamp + offset + delay.
 /// The smallest difference seen is the offset with the least delay, so it is kept; since clocks
 /// drift apart, it may grow by 100 millionths of the time that passes (crystals are within 50). The
-/// remaining error is the shortest delay of the device (its exposure and transfer time), which
-/// cannot be seen from here. Stamps stay as evenly spaced as the device made them, whatever load
-/// delays their arrival.
+/// remaining error is the device's shortest delay (exposure, transfer), which is not seen here.
+/// Stamps stay as evenly spaced as the device made them, whatever load delays their arrival.
 class HostClock {
  public:
   /// The host's time of a device stamp that arrived at `arrival_ns`. A stamp that goes back, or is
@@ -44,8 +43,7 @@ class HostClock {
 };
 
 /// Puts the depth and colour frames of one device together by its own time stamps. Holds one frame
-/// of each kind: a newer one takes the place of one that found no partner. `Image` is cheap to
-/// move.
+/// of each kind: a newer one takes the place of one without a partner. `Image` is cheap to move.
 template <class Image>
 class FramePairs {
  public:

@@ -25,9 +25,8 @@ wire::rcl_interfaces::ParameterValue parameter(const ServerOptions& options,
 /// What is known of a parameter; of type kNotSet when there is none of that name.
 wire::rcl_interfaces::ParameterDescriptor describe_parameter(const std::string& name);
 
-/// Sets one field. `not_found` without such a parameter; `unsupported` when it is read-only;
-/// `invalid_argument` for another type (an integer will do for a double). Ranges are left to
-/// validate().
+/// Sets one field; ranges are left to validate(). `not_found` without such a parameter,
+/// `unsupported` when it is read-only, `invalid_argument` for another type but integer for double.
 Status set_parameter(const wire::rcl_interfaces::Parameter& parameter, ServerOptions& options);
 
 /// The names below any of the prefixes (none: all), at most `depth` levels deep (0: no limit), and

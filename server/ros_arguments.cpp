@@ -88,8 +88,7 @@ Status load_file(const std::string& path, ServerOptions& options) {
   }
 }
 
-/// Names first: files and parameters are looked up by them. A remap may be for one node alone,
-/// NODE:from:=to.
+/// Names first: files and parameters are looked up by them. NODE:from:=to is for one node alone.
 void set_names(const std::vector<std::string>& remaps, ServerOptions& options) {
   std::vector<wire::Remap> others;
   for (const std::string& text : remaps) {

@@ -308,8 +308,7 @@ class Running : public Server {
   Clock::time_point last_logged_;  ///< when one was logged: the same is said once in 10 s.
   std::uint64_t losses_reported_ = 0;
 
-  // In the order in which they come up; destroyed from the last to the first, so that nothing calls
-  // into what is gone.
+  // In the order in which they come up; destroyed in reverse: nothing calls into what is gone.
   std::optional<wire::Participant> participant_;
   std::unique_ptr<ResultPublisher> publisher_;
   Output<wire::diagnostic_msgs::DiagnosticArray> diagnostics_;

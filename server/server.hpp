@@ -16,8 +16,7 @@ namespace bpa::server {
 /// a rule is reported and forgotten.
 class Server {
  public:
-  /// Fails with `invalid_argument` on options that break a rule, `unavailable` when DDS cannot
-  /// start.
+  /// `invalid_argument` for options that break a rule, `unavailable` when DDS cannot start.
   static Result<std::unique_ptr<Server>> create(const ServerOptions& options,
                                                 std::shared_ptr<Recognition> recognition,
                                                 LogHook log);

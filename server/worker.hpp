@@ -64,8 +64,7 @@ struct WorkerOptions {
 
 class Worker {
  public:
-  /// `on_result` runs on the worker for every frame of the stream; `frame` is null when the frame
-  /// broke a rule.
+  /// `on_result` runs on the worker for every frame of the stream; `frame` is null if illegal.
   using OnResult = std::function<void(const IncomingFrame& incoming, const Frame* frame,
                                       const Result<SceneInterpretations>& result)>;
 

@@ -72,8 +72,7 @@ std::uint16_t to_units(double metres) {
   return units > 0 && units <= 65535 ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
 }
 
-/// The depth camera's view of what the colour camera sees; the nearer surface hides the farther
-/// one.
+/// The depth camera's view of what the colour camera sees; a nearer surface hides a farther one.
 std::vector<std::uint16_t> moved(const std::vector<std::uint16_t>& registered,
                                  const Camera& camera) {
   std::vector<std::uint16_t> depth(registered.size(), 0);

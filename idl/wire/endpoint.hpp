@@ -20,8 +20,7 @@
 #include "idl/wire/participant.hpp"
 #include "idl/wire/qos.hpp"
 
-// Writers and readers of bytes, on which the typed publishers, subscribers and services are built.
-// Use those.
+// Writers and readers of bytes, below the typed publishers, subscribers and services: use those.
 
 namespace bpa::wire {
 
@@ -107,8 +106,7 @@ EndpointSpec endpoint_spec(std::string dds_topic, const Qos& qos, std::size_t sh
 /// The remote endpoints that one of ours is matched with.
 class Matches {
  public:
-  /// Adds a peer if `change`, DDS's change of the number of matches, is positive; removes it if
-  /// that is negative.
+  /// Adds a peer if `change`, DDS's change of the number of matches, is positive, else removes it.
   void update(const Guid& peer, int change);
   std::size_t count() const;
   /// Whether there are `count` of them or more, or were before the time was over.

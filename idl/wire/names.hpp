@@ -21,8 +21,7 @@ std::string dds_reply_topic_name(std::string_view full_name);
 /// "sensor_msgs/msg/Image" -> "sensor_msgs::msg::dds_::Image_".
 std::string dds_type_name(std::string_view type);
 
-/// Whether a fully qualified name, such as "/bpa/detect", keeps ROS's rules; the message says which
-/// rule it breaks.
+/// Whether a full name, such as "/bpa/detect", keeps ROS's rules; the message says which it breaks.
 Status validate_full_name(std::string_view name);
 
 /// "from:=to" on a ROS command line; both as a user writes them, relative names allowed.

@@ -19,8 +19,7 @@ namespace detail {
 class ParticipantImpl;
 }
 
-/// The size of ids in ros_discovery_info: what Humble reads, Iron and later misread, and the
-/// reverse.
+/// The size of ids in ros_discovery_info: Humble misreads that of Iron and later, and the reverse.
 enum class GraphLayout {
   automatic,  ///< iron16, and humble24 while every ROS 2 peer that was discovered is a Humble one.
   iron16,

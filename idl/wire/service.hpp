@@ -16,9 +16,8 @@
 // Requests and replies as ROS 2 makes them. A `Service` is a struct with the types Request and
 // Response, such as bpa_msgs::Detect.
 //
-// A server serves both framings at once: that of rmw_fastrtps, where the request's identity travels
-// beside the payload, and that of rmw_cyclonedds, where 16 bytes in front of it do. A client of
-// ours speaks the first.
+// A server serves both framings at once: that of rmw_fastrtps, with the request's identity beside
+// the payload, and that of rmw_cyclonedds, with 16 bytes in front of it. Our client: the first.
 
 namespace bpa::wire {
 
@@ -82,9 +81,8 @@ class ReplyToken {
   explicit ReplyToken(std::shared_ptr<detail::PendingReply> pending)
       : pending_(std::move(pending)) {}
 
-  /// Never blocks: the reply is sent now, or as soon as the client can hear it. `unavailable` when
-  /// the server object is gone, `busy` when too many replies wait, `invalid_argument` on the second
-  /// call.
+  /// Never blocks: the reply is sent as soon as the client can hear it. `unavailable` when the
+  /// server is gone, `busy` when too many replies wait, `invalid_argument` on the second call.
   Status reply(const typename Service::Response& response) const {
     if (pending_->answered.exchange(true)) {
       return invalid_argument("this request has been answered already");
@@ -98,8 +96,7 @@ class ReplyToken {
   std::shared_ptr<detail::PendingReply> pending_;
 };
 
-/// Offers a service, until its last copy is destroyed; after that the handler is not running and
-/// will not run.
+/// Offers a service until its last copy is destroyed; after that the handler does not run.
 template <class Service>
 class ServiceServer {
  public:

@@ -42,9 +42,8 @@ class DecodedFrame : public Result<Frame> {
 /// (nearest pixel). Move the message in: pixels that are as a Frame has them are not copied then.
 DecodedFrame frame_from_message(wire::bpa_msgs::RgbdFrame message);
 
-/// Puts the region of interest and the mask of a message on a frame that has been checked; a
-/// message without them changes nothing. Fails where it has priors in another frame_id than the
-/// frame's.
+/// Puts the region of interest and the mask of a message, if it has any, on a frame that has been
+/// checked. Fails where the message has priors in another frame_id than the frame's.
 Status restrict_frame(const wire::bpa_msgs::RgbdFrame& message, Frame& frame);
 
 /// The priors of a message as the detector takes them, which also checks their numbers: camera

@@ -31,13 +31,11 @@ struct ImageView {
   std::size_t size = 0;
 };
 
-/// Row-major metres, 0 where there is no depth. From "16UC1" and "mono16" (millimetres) and "32FC1"
-/// (metres); NaN, infinite, negative and too large depths become 0. `unsupported` for other
-/// encodings.
+/// Row-major metres, 0 where there is no depth. From 16UC1 and mono16 (mm) and 32FC1 (m); NaN,
+/// infinite, negative and too large depths become 0. `unsupported` for other encodings.
 Result<std::vector<float>> depth_from_image(const ImageView& image);
 
-/// Row-major rgb, 3 bytes a pixel. From "rgb8", "bgr8", "rgba8", "bgra8" and "mono8"; `unsupported`
-/// for other encodings.
+/// Row-major rgb, 3 bytes a pixel. From rgb8, bgr8, rgba8, bgra8 and mono8, else `unsupported`.
 Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image);
 
 /// For every pixel of the image without distortion, the index of the nearest pixel of the distorted
@@ -63,8 +61,7 @@ Result<Decoded<std::uint8_t>> decode_color(const char* field,
 
 /// Row-major metres, 0 where there is no depth. From the plugin `compressed` (a 16-bit PNG) and
 /// from `compressedDepth`: 12 bytes (format, two floats a and b), then a PNG or an RVL stream of
-/// 16-bit values, which are millimetres ("16UC1; ...") or inverse depths ("32FC1; ...": z = a / (v
-/// - b)).
+/// 16-bit values: millimetres ("16UC1; ...") or inverse depths ("32FC1; ...": z = a / (v - b)).
 Result<Decoded<float>> decode_depth(const char* field,
                                     const wire::sensor_msgs::CompressedImage& image);
 

@@ -11,8 +11,7 @@
 namespace bpa::server {
 
 /// The images of the server's own camera as messages in the frame `frame_id`: 16UC1 or 32FC1 depth,
-/// rgb8 or mono8 colour. At most 5 coefficients of distortion are a plumb_bob, more a
-/// rational_polynomial.
+/// rgb8 or mono8 colour. Up to 5 coefficients of distortion: plumb_bob; more: rational_polynomial.
 CameraImages image_messages(camera::SensorImages images, const std::string& frame_id);
 
 /// A frame as an organised cloud: x y z in metres and rgb, 16 bytes a point; NaN where there is no

@@ -19,9 +19,8 @@
 namespace bpa::wire::detail {
 
 /// UDP over IPv4 alone, with large buffers; discovery as rmw_fastrtps sets it up; the user data by
-/// which ROS 2 knows one of its own. `base` is the participant profile of the user, which then says
-/// which transports and time-outs there are; null: none. `invalid_argument` when a static peer's
-/// name is unknown.
+/// which ROS 2 knows one of its own. `base` is the user's participant profile, which then says the
+/// transports and time-outs; null: none. `invalid_argument` when a static peer's name is unknown.
 Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
                                                   int socket_buffer_bytes,
                                                   const dds::DomainParticipantQos* base);

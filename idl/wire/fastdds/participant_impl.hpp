@@ -92,8 +92,7 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
   std::set<Guid> readers_, writers_;
   std::unique_ptr<RawWriter> graph_writer_;
 
-  // What discovery callbacks read and write. They hold locks of Fast DDS, so whoever holds this one
-  // calls nothing of it.
+  // Of discovery callbacks, which hold locks of Fast DDS: who holds this one calls nothing of it.
   mutable std::mutex discovery_mutex_;
   GraphLayoutGuess guess_;
   std::map<std::string, std::string> our_types_;  // by DDS name of the topic
