@@ -35,8 +35,7 @@ void draw_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Came
       if (wb < 0 || wc < 0 || wb + wc > 1) continue;
       const double inverse =
           (1 - wb - wc) * a.inverse_depth + wb * b.inverse_depth + wc * c.inverse_depth;
-      float& z = depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) +
-                       static_cast<std::size_t>(u)];
+      float& z = depth[v * camera.width + u];
       const auto here = static_cast<float>(1 / inverse);
       if (z == 0 || here < z) z = here;
     }
@@ -47,8 +46,7 @@ void draw_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Came
 
 std::vector<float> render_depth(const TriangleMesh& mesh, const Pose& camera_from_object,
                                 const Camera& camera) {
-  std::vector<float> depth(
-      static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height), 0.0f);
+  std::vector<float> depth(camera.width * camera.height, 0.0f);
   std::vector<Vertex> vertices;
   const Eigen::Matrix3d rotation = camera_from_object.matrix();
   for (const Eigen::Vector3f& vertex : mesh.vertices) {

@@ -95,7 +95,7 @@ std::vector<Group> groups_of(const Rows& rows) {
 
 Group& group_of(std::vector<Group>& groups, const Rows& rows, double value) {
   const int row = static_cast<int>((value - rows.first) / rows.width + 1e-9);
-  return groups[static_cast<std::size_t>(std::clamp(row, 0, rows.count - 1))];
+  return groups[std::clamp(row, 0, rows.count - 1)];
 }
 
 std::vector<ReliabilityBin> empty_bins() {
@@ -105,8 +105,7 @@ std::vector<ReliabilityBin> empty_bins() {
 }
 
 void add_to_bins(std::vector<ReliabilityBin>& bins, double probability, bool right) {
-  ReliabilityBin& bin = bins[static_cast<std::size_t>(
-      std::clamp(static_cast<int>(probability * kBins), 0, kBins - 1))];
+  ReliabilityBin& bin = bins[std::clamp(static_cast<int>(probability * kBins), 0, kBins - 1)];
   bin.mean_probability += probability;
   count(bin.correct, right);
 }
@@ -191,8 +190,8 @@ void add_frame(const FrameOutcome& frame, Draft& draft) {
   bool free = true;
   for (const TruthOutcome& truth : frame.truth) {
     draft.visible_fractions.push_back(truth.visible_fraction);
-    const int tenth = std::clamp(static_cast<int>(10 * truth.visible_fraction + 1e-9), 0, 9);
-    ++report.visible_tenths[static_cast<std::size_t>(tenth)];
+    const int tenth = static_cast<int>(10 * truth.visible_fraction + 1e-9);
+    ++report.visible_tenths[std::clamp(tenth, 0, 9)];
     if (!truth.counts) continue;
     free = false;
     add_truth(truth, draft);
@@ -236,10 +235,8 @@ void add_time(EvaluationReport& report) {
   const std::vector<double> seconds = sorted_seconds(report);
   if (seconds.empty()) return;
   const double sum = std::accumulate(seconds.begin(), seconds.end(), 0.0);
-  report.time.frames = static_cast<int>(seconds.size());
-  report.time.mean = sum / report.time.frames;
-  report.time.median = median(seconds);
-  report.time.max = seconds.back();
+  const int frames = static_cast<int>(seconds.size());
+  report.time = {frames, sum / frames, median(seconds), seconds.back()};
 }
 
 void add_bop(EvaluationReport& report) {

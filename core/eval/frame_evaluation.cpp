@@ -53,10 +53,8 @@ std::vector<Twist> free_motions(const Pose& pose, const SymmetryGroup& symmetry)
   for (const ContinuousSymmetry& continuous : symmetry.continuous) {
     const Eigen::Vector3d axis = (pose.rotation * continuous.axis).normalized();
     point = pose.rotation * continuous.point;
-    const bool known = std::any_of(axes.begin(), axes.end(), [&axis](const Eigen::Vector3d& a) {
-      return std::abs(a.dot(axis)) > 1 - 1e-9;
-    });
-    if (!known) axes.push_back(axis);
+    const auto alike = [&](const auto& other) { return std::abs(other.dot(axis)) > 1 - 1e-9; };
+    if (std::ranges::none_of(axes, alike)) axes.push_back(axis);
   }
   // Two axes make a ball, which may turn in any way.
   if (axes.size() > 1) axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -80,9 +78,8 @@ void add_covariance_error(const Placement& estimate, const Pose& truth,
   const std::vector<Twist> motions = free_motions(pose, symmetry);
   const int free = static_cast<int>(motions.size());
   // Any linear map whose kernel is spanned by the free motions gives the same length.
-  Eigen::MatrixXd kernel(6, std::max(free, 1));
-  kernel.setZero();
-  for (int i = 0; i < free; ++i) kernel.col(i) = motions[static_cast<std::size_t>(i)];
+  Eigen::MatrixXd kernel = Eigen::MatrixXd::Zero(6, std::max(free, 1));
+  for (int i = 0; i < free; ++i) kernel.col(i) = motions[i];
   const Eigen::Matrix<double, 6, 6> basis =
       Eigen::HouseholderQR<Eigen::MatrixXd>(kernel).householderQ() *
       Eigen::Matrix<double, 6, 6>::Identity();
@@ -134,8 +131,7 @@ std::array<Costs, 10> vsd_costs(const BopCase& bop, const EvalObjects& objects,
   };
   for (std::size_t e = 0; e < bop.estimates.size(); ++e) {
     const Placement& estimate = bop.estimates[e];
-    const std::vector<float> at_estimate =
-        render(estimate.model_number, estimate.camera_from_object);
+    const auto at_estimate = render(estimate.model_number, estimate.camera_from_object);
     for (std::size_t t = 0; t < bop.truth.size(); ++t) {
       const io::BopInstance& truth = bop.truth[t];
       if (estimate.model_number != truth.obj_id) continue;
@@ -200,12 +196,11 @@ void add_rmse(const io::BopFrame& frame, const EvalObjects& objects, const Estim
     return rms_distance(object.mesh.vertices, e.camera_from_object, nearest, {Pose{}});
   });
   for (const int t : match_greedily(scores_of(estimates), costs, options.rmse_m)) {
-    TruthOutcome* truth = t >= 0 ? &outcome.truth[static_cast<std::size_t>(t)] : nullptr;
-    if (truth != nullptr && !truth->counts) continue;
+    if (t >= 0 && !outcome.truth[t].counts) continue;
     ++outcome.rmse_reported;
-    if (truth == nullptr) continue;
+    if (t < 0) continue;
     ++outcome.rmse_correct;
-    truth->found_rmse = true;
+    outcome.truth[t].found_rmse = true;
   }
 }
 
@@ -247,14 +242,14 @@ void add_estimates(const io::BopFrame& frame, const EvalObjects& objects,
     result.truth = truth_of[e];
     result.poses = open_poses(frame, objects, options, estimate);
     if (result.truth < 0) continue;
-    const auto t = static_cast<std::size_t>(result.truth);
     const EvalObject& object = objects.at(estimate.model_number);
-    const Pose& truth = frame.truth[t].camera_from_object;
+    const Pose& truth = frame.truth[result.truth].camera_from_object;
     const Pose nearest = nearest_symmetric_pose(truth, pose, object.symmetry);
-    outcome.truth[t].found = true;
-    outcome.truth[t].add = average_distance(object.mesh.vertices, pose, nearest);
-    outcome.truth[t].adds = average_nearest_distance(object.mesh.vertices, pose, truth);
-    result.ignored = !outcome.truth[t].counts;
+    TruthOutcome& found = outcome.truth[result.truth];
+    found.found = true;
+    found.add = average_distance(object.mesh.vertices, pose, nearest);
+    found.adds = average_nearest_distance(object.mesh.vertices, pose, truth);
+    result.ignored = !found.counts;
     add_covariance_error(estimate, nearest, object.symmetry, result);
   }
 }
@@ -284,9 +279,8 @@ Result<FrameOutcome> evaluate_frame(const io::BopFrame& frame, const EvalObjects
     const std::vector<int> truth_of =
         match_greedily(scores_of(estimates), pair_costs(estimates, frame.truth, cost));
     for (const int t : truth_of) {
-      if (t < 0) continue;
-      int& first = outcome.truth[static_cast<std::size_t>(t)].found_at_rank;
-      if (first == 0) first = static_cast<int>(rank) + 1;
+      if (t < 0 || outcome.truth[t].found_at_rank > 0) continue;
+      outcome.truth[t].found_at_rank = static_cast<int>(rank) + 1;
     }
     if (rank > 0) continue;
     add_estimates(frame, objects, estimates, truth_of, options, outcome);

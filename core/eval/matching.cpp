@@ -17,7 +17,7 @@ double right_cost(const Pose& estimate, const Pose& truth, const SymmetryGroup& 
 
 bool is_right_about_any(const Pose& estimate, const ObjectModel& model,
                         const std::vector<io::BopInstance>& truth) {
-  return std::any_of(truth.begin(), truth.end(), [&](const io::BopInstance& instance) {
+  return std::ranges::any_of(truth, [&](const io::BopInstance& instance) {
     return instance.obj_id == model.number &&
            is_right(estimate, instance.camera_from_object, model.symmetry);
   });
@@ -37,7 +37,7 @@ std::vector<int> match_greedily(const std::vector<double>& scores,
       best = costs[e][t];
       truth_of[e] = static_cast<int>(t);
     }
-    if (truth_of[e] >= 0) taken[static_cast<std::size_t>(truth_of[e])] = true;
+    if (truth_of[e] >= 0) taken[truth_of[e]] = true;
   }
   return truth_of;
 }

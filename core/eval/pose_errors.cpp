@@ -130,10 +130,8 @@ std::array<double, 10> visible_surface_discrepancy(const std::vector<float>& dep
   for (std::size_t i = 0; i < depth_measured.size(); ++i) {
     if (!(depth_estimate[i] > 0) && !(depth_truth[i] > 0)) continue;
     // Distances from the camera's centre, not depths.
-    const Eigen::Vector3d ray =
-        camera.unproject(static_cast<double>(i % static_cast<std::size_t>(camera.width)),
-                         static_cast<double>(i / static_cast<std::size_t>(camera.width)), 1);
-    const double length = ray.norm();
+    const int row = static_cast<int>(i) / camera.width, column = static_cast<int>(i) % camera.width;
+    const double length = camera.unproject(column, row, 1).norm();
     const double measured = length * depth_measured[i];
     const auto visible = [&](double distance) {
       return distance > 0 && (!(measured > 0) || distance - measured <= delta);
