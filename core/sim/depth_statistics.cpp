@@ -60,16 +60,12 @@ PlaneNoise plane_noise(double depth, double angle, const KinectOptions& options,
   measured.registered = false;
   const TriangleMesh wide = plate(-20, 20, 20);
   const KinectImage image = see_plate(wide, depth, angle, measured, seed, num_threads);
-  Moments error;
-  int missing = 0, all = 0;
+  Moments error, missing;
   for (std::size_t i = 0; i < image.frame.depth.size(); ++i) {
     if (!(std::abs(image.ideal.depth[i] / depth - 1) <= kBand)) continue;
-    ++all;
-    if (image.frame.depth[i] > 0) {
-      error.add(image.frame.depth[i] - image.ideal.depth[i]);
-    } else {
-      ++missing;
-    }
+    const float measured_depth = image.frame.depth[i];
+    missing.add(measured_depth > 0 ? 0 : 1);
+    if (measured_depth > 0) error.add(measured_depth - image.ideal.depth[i]);
   }
   // The edge's side away from the projector is a shadow's, so it is the right one that is measured.
   const TriangleMesh half = plate(-20, 0, 20);
@@ -82,7 +78,7 @@ PlaneNoise plane_noise(double depth, double angle, const KinectOptions& options,
     while (last >= 0 && row[last] == 0) --last;
     if (last >= 0) column.add(last);
   }
-  return {error.deviation(), column.deviation(), all > 0 ? static_cast<double>(missing) / all : 0};
+  return {error.deviation(), column.deviation(), missing.mean()};
 }
 
 namespace {
@@ -191,9 +187,8 @@ void add_roughness(const DepthImage& depth, double scale, DepthStatistics& stati
     }
   }
   if (roughness.empty()) return;
-  const auto middle = roughness.begin() + static_cast<std::ptrdiff_t>(roughness.size() / 2);
-  std::nth_element(roughness.begin(), middle, roughness.end());
-  statistics.roughness = *middle;
+  std::ranges::nth_element(roughness, roughness.begin() + roughness.size() / 2);
+  statistics.roughness = roughness[roughness.size() / 2];
   statistics.near_correlation = near / squares;
   statistics.far_correlation = far / squares;
 }

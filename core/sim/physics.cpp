@@ -135,7 +135,7 @@ double free_height(const std::vector<btRigidBody*>& placed) {
 }
 
 bool all_asleep(const std::vector<btRigidBody*>& bodies) {
-  return std::all_of(bodies.begin(), bodies.end(), [](const btRigidBody* b) {
+  return std::ranges::all_of(bodies, [](const btRigidBody* b) {
     return !b->isActive() || b->getWorldTransform().getOrigin().z() < -0.1 * kScale;
   });
 }

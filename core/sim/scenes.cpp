@@ -57,10 +57,9 @@ Eigen::Vector2d start_point(double radius, double clutter,
     for (const Eigen::Vector2d& other : taken) {
       distance = std::min(distance, (point - other).norm());
     }
-    if (distance > best_distance) {
-      best = point;
-      best_distance = distance;
-    }
+    if (distance <= best_distance) continue;
+    best = point;
+    best_distance = distance;
   }
   return best;
 }
@@ -111,12 +110,11 @@ std::vector<PosedMesh> make_pile(const Stage& stage, const SceneOptions& options
     const Eigen::Vector3d start(taken.back().x(), taken.back().y(), 0.05);
     bodies.push_back({&stage.body(mesh), {start_rotation(random), start}});
   }
-  DropOptions drop_options;
-  drop_options.table_half_x = kTableHalfX;
-  drop_options.table_half_y = kTableHalfY;
-  drop_options.fence_radius = in_bin ? kBinHalfY : std::max(radius + 0.07, 0.13);
-  if (in_bin) drop_options.fixture = &stage.scenery()[kBin];
-  const std::vector<RestingBody> resting = drop(bodies, drop_options);
+  const std::vector<RestingBody> resting =
+      drop(bodies, {.table_half_x = kTableHalfX,
+                    .table_half_y = kTableHalfY,
+                    .fence_radius = in_bin ? kBinHalfY : std::max(radius + 0.07, 0.13),
+                    .fixture = in_bin ? &stage.scenery()[kBin] : nullptr});
   std::vector<PosedMesh> pile;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     if (resting[i].on_table) pile.push_back({chosen[i], resting[i].world_from_object});

@@ -38,17 +38,14 @@ std::vector<Pose> resting_poses(const SimulatedObject& object, int count, std::u
   std::vector<Pose> candidates;
   for (int trial = 0; trial < kTrials; ++trial) {
     RandomStream random(seed, static_cast<std::uint64_t>(trial));
-    FallingBody body;
-    body.object = &object;
+    FallingBody body{&object, {}};
     // The first trial stands upright; the others are uniform over all orientations.
     if (trial > 0) {
       Eigen::Vector4d q;
       for (int i = 0; i < 4; ++i) q[i] = random.normal();
       body.world_from_object.rotation = from_wxyz(q);
     }
-    DropOptions options;
-    options.max_seconds = 6;
-    const RestingBody rest = drop({body}, options).front();
+    const RestingBody rest = drop({body}, {.max_seconds = 6}).front();
     if (!rest.on_table || rest.speed > kSlow || rest.turning > kSlow) continue;
     candidates.push_back(set_down(object, rest.world_from_object.rotation));
   }
@@ -59,12 +56,12 @@ std::vector<Pose> resting_poses(const SimulatedObject& object, int count, std::u
     double best_cosine = std::cos(kPi / 6);  // at least 30 degrees apart
     for (const Pose& candidate : candidates) {
       double cosine = -1;
-      for (const Pose& other : chosen)
+      for (const Pose& other : chosen) {
         cosine = std::max(cosine, up_of(candidate).dot(up_of(other)));
-      if (cosine < best_cosine) {
-        best_cosine = cosine;
-        best = &candidate;
       }
+      if (cosine >= best_cosine) continue;
+      best_cosine = cosine;
+      best = &candidate;
     }
     if (best == nullptr) break;
     chosen.push_back(*best);
