@@ -21,7 +21,7 @@
 
 namespace bpa::camera {
 
-/// The records, for oni_file.cpp and oni_writer.cpp.
+/// The records, for oni_file.cpp.
 namespace oni {
 
 inline constexpr char kIdentity[] = "NI10";
