@@ -92,8 +92,7 @@ Status Openni2Connection::open_depth() {
     return failed(" gives no depth");
   }
   if (!file) {
-    const Status s = choose_mode(depth, "capture.depth_mode", options_.depth_mode);
-    if (!s.ok()) return s;
+    if (Status s = choose_mode(depth, "capture.depth_mode", options_.depth_mode); !s.ok()) return s;
   }
   const openni::PixelFormat format = depth.getVideoMode().getPixelFormat();
   if (!readable(format)) {
@@ -116,8 +115,7 @@ Status Openni2Connection::open_color() {
     return failed(" gives no colour");
   }
   if (!file) {
-    const Status s = choose_mode(color, "capture.color_mode", options_.color_mode);
-    if (!s.ok()) return s;
+    if (Status s = choose_mode(color, "capture.color_mode", options_.color_mode); !s.ok()) return s;
   }
   if (!readable(color.getVideoMode().getPixelFormat())) {
     color.destroy();

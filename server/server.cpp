@@ -60,16 +60,13 @@ int frame_capacity(const ServerOptions& options) {
 }
 
 WorkerOptions worker_options(const ServerOptions& options) {
-  WorkerOptions worker;
-  worker.frame_capacity = static_cast<std::size_t>(frame_capacity(options));
-  worker.request_capacity = static_cast<std::size_t>(options.queue.requests);
-  worker.continuous = options.detection.continuous;
-  worker.fuse_frames = options.detection.fuse_frames;
-  worker.request.top_k = options.detection.top_k;
-  worker.request.budget_ms = options.detection.budget_ms;
-  worker.request.seed = options.detection.seed;
-  worker.request.num_threads = options.detection.threads;
-  return worker;
+  const DetectionOptions& detection = options.detection;
+  return {
+      .frame_capacity = static_cast<std::size_t>(frame_capacity(options)),
+      .request_capacity = static_cast<std::size_t>(options.queue.requests),
+      .continuous = detection.continuous,
+      .fuse_frames = detection.fuse_frames,
+      .request = {{}, {}, detection.top_k, detection.budget_ms, detection.seed, detection.threads}};
 }
 
 wire::GraphLayout graph_layout_of(const std::string& word) {
@@ -225,8 +222,8 @@ class Running : public Server {
   }
 
   std::vector<std::pair<std::string, std::uint64_t>> drops() const {
-    std::vector<std::pair<std::string, std::uint64_t>> drops;
-    drops.emplace_back("frames failed in the search", statistics_.counts().frames_failed);
+    std::vector<std::pair<std::string, std::uint64_t>> drops = {
+        {"frames failed in the search", statistics_.counts().frames_failed}};
     for (const auto& [cause, count] : statistics_.rejections()) {
       drops.emplace_back("rejected: " + cause, count);
     }

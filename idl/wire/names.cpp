@@ -39,8 +39,7 @@ Result<std::string> expand(std::string_view name, const NodeName& node) {
   } else {
     full = join(node.node_namespace, name);
   }
-  Status status = validate_full_name(full);
-  if (!status.ok()) return status;
+  if (Status s = validate_full_name(full); !s.ok()) return s;
   return full;
 }
 

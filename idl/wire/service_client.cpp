@@ -97,8 +97,7 @@ class Client : public RawClient {
 Result<std::unique_ptr<RawClient>> make_client(const Participant& participant,
                                                const ServiceSpec& spec) {
   auto client = std::make_unique<Client>();
-  Status status = client->open(participant, spec);
-  if (!status.ok()) return status;
+  if (Status s = client->open(participant, spec); !s.ok()) return s;
   return std::unique_ptr<RawClient>(std::move(client));
 }
 

@@ -211,8 +211,7 @@ class Server : public RawServer, public std::enable_shared_from_this<Server> {
 Result<std::shared_ptr<RawServer>> make_server(const Participant& participant,
                                                const ServiceSpec& spec, RequestDecode decode) {
   auto server = std::make_shared<Server>(participant, spec.request.dds_topic, std::move(decode));
-  Status status = server->open(spec);
-  if (!status.ok()) return status;
+  if (Status s = server->open(spec); !s.ok()) return s;
   // What waits on the worker may hold the server for longer than its owner does.
   return std::shared_ptr<RawServer>(server.get(), [server](RawServer*) { server->stop(); });
 }

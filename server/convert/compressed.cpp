@@ -96,8 +96,7 @@ Result<Decoded<std::uint16_t>> decode_png16(const char* field, ByteView file) {
 Result<Decoded<std::uint16_t>> decode_rvl_image(const char* field, ByteView stream) {
   std::uint32_t size[2] = {};
   if (stream.size >= sizeof size) std::memcpy(size, stream.data, sizeof size);
-  const Status status = check_size(std::string(field) + " image", size[0], size[1]);
-  if (!status.ok()) return status;
+  if (Status s = check_size(std::string(field) + " image", size[0], size[1]); !s.ok()) return s;
   Decoded<std::uint16_t> decoded{size[0], size[1], {}};
   const std::size_t count = std::size_t{size[0]} * size[1];
   if (!decode_rvl(stream.data + sizeof size, stream.size - sizeof size, count, decoded.pixels)) {

@@ -39,14 +39,13 @@ Result<DetectRequest> search_of(const msgs::Detect_Request& request,
   }
   auto priors = priors_from_messages(request.frame.priors);
   if (!priors.ok()) return priors.status();
-  DetectRequest search;
-  search.priors = std::move(priors).value();
-  search.models = request.models;
-  search.top_k = request.top_k > 0 ? static_cast<int>(request.top_k) : options.top_k;
-  search.budget_ms = request.time_budget_ms > 0 ? request.time_budget_ms : options.budget_ms;
-  search.seed = request.seed > 0 ? request.seed : options.seed;
-  search.num_threads = options.threads;
-  return search;
+  return DetectRequest{
+      .models = request.models,
+      .priors = std::move(priors).value(),
+      .top_k = request.top_k > 0 ? static_cast<int>(request.top_k) : options.top_k,
+      .budget_ms = request.time_budget_ms > 0 ? request.time_budget_ms : options.budget_ms,
+      .seed = request.seed > 0 ? request.seed : options.seed,
+      .num_threads = options.threads};
 }
 
 int models_searched(const Recognition& recognition, const DetectRequest& search) {
