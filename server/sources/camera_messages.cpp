@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/sources/camera_messages.hpp"
-
 #include <cstring>
 #include <limits>
 #include <utility>
 
 #include "idl/wire/time.hpp"
+#include "server/sources/frame_source.hpp"
 
 namespace bpa::server {
 namespace {

@@ -15,7 +15,6 @@
 #include "server/options.hpp"
 #include "server/output.hpp"
 #include "server/services/services.hpp"
-#include "server/sources/camera_messages.hpp"
 #include "server/sources/frame_source.hpp"
 #include "server/worker.hpp"
 

@@ -4,11 +4,15 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "camera/camera_device.hpp"
 #include "core/base/log.hpp"
+#include "core/cloud/frame.hpp"
 #include "idl/wire/msg/diagnostic_msgs.hpp"
 #include "idl/wire/participant.hpp"
+#include "server/convert/frames.hpp"
 #include "server/sources/synchronizer.hpp"
 
 namespace bpa::server {
@@ -58,5 +62,13 @@ std::unique_ptr<TopicSource> open_topic_source(const wire::Participant& particip
 std::unique_ptr<FrameSource> open_camera_source(const wire::Participant& participant,
                                                 const CaptureOptions& options, OnFrame on_frame,
                                                 std::function<bool()> idle, LogHook log);
+
+/// The images of the server's own camera as messages in the frame `frame_id`: 16UC1 or 32FC1 depth,
+/// rgb8 or mono8 colour. Up to 5 coefficients of distortion: plumb_bob; more: rational_polynomial.
+CameraImages image_messages(camera::SensorImages images, const std::string& frame_id);
+
+/// A frame as an organised cloud: x y z in metres and rgb, 16 bytes a point; NaN where there is no
+/// depth. Colour is black in a frame without.
+wire::sensor_msgs::PointCloud2 cloud_message(const Frame& frame);
 
 }  // namespace bpa::server

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // What the images of the server's own camera look like as messages.
-#include "server/sources/camera_messages.hpp"
-
 #include <cmath>
 #include <cstring>
 
 #include <gtest/gtest.h>
 
 #include "idl/wire/time.hpp"
+#include "server/sources/frame_source.hpp"
 
 namespace bpa::server {
 namespace {
