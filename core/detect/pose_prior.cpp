@@ -197,7 +197,10 @@ std::vector<Pose> ModelPriors::draw(const PointCloud& surface, int count,
           const std::size_t at = any_of(points);
           const double cosine = (pose.rotation * points.normals[at].cast<double>())
                                     .dot(surface.normals[on].cast<double>());
-          if (cosine > agreement) agreement = cosine, best = at;
+          if (cosine > agreement) {
+            agreement = cosine;
+            best = at;
+          }
         }
         pose.translation =
             surface.points[on].cast<double>() - pose.rotation * points.points[best].cast<double>();

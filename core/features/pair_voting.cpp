@@ -62,7 +62,10 @@ Peak best_turn(const std::uint16_t* bins, int model_point) {
   Peak best{model_point, 0, 0};
   for (int b = 0; b < kTurnBins; ++b) {
     const int votes = bins[b] + bins[(b + 1) % kTurnBins];
-    if (votes > best.votes) best.bin = b, best.votes = votes;
+    if (votes > best.votes) {
+      best.bin = b;
+      best.votes = votes;
+    }
   }
   return best;
 }

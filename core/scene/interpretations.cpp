@@ -131,7 +131,10 @@ void greedy(SubsetScore& state, const std::vector<std::size_t>& among, BestSubse
     for (const std::size_t& i : among) {
       if (state.chosen(i) || state.blocked(i)) continue;
       const double improved = state.worth(i);
-      if (improved > gain) gain = improved, pick = &i;
+      if (improved > gain) {
+        gain = improved;
+        pick = &i;
+      }
     }
     if (!pick) return;
     state.add(*pick);

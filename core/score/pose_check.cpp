@@ -8,8 +8,7 @@
 namespace bpa {
 namespace {
 
-// Facing points after which a pose is looked at, and given up if it is hopeless. Most poses are,
-// and go at the first look.
+// Facing points after which a hopeless pose is rejected. Most poses are rejected at the first look.
 constexpr int kFirstLook = 8;
 constexpr int kLastLook = 24;
 
@@ -56,7 +55,9 @@ __attribute__((target_clones("avx2", "default"))) void project_block(const Check
     out.v[k] = fy * y * inverse_z + cy;
     out.z[k] = z;
     out.facing[k] = a * x + b * y + c * z + 0.15f * z;
-    out.normal[0][k] = a, out.normal[1][k] = b, out.normal[2][k] = c;
+    out.normal[0][k] = a;
+    out.normal[1][k] = b;
+    out.normal[2][k] = c;
   }
 }
 
