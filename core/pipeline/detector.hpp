@@ -43,7 +43,7 @@ class Detector {
   /// Ranked interpretations of the frame. Fails with invalid_argument on a frame, request or
   /// library that breaks a rule (an empty library too), with not_found on the name of a model, also
   /// of a prior, that the library does not hold. An empty scene is a result, not an error. `trace`,
-  /// if given, receives what happened on the way.
+  /// if given, receives the candidates of each stage.
   Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request = {},
                                       FrameTrace* trace = nullptr) const;
 
@@ -52,7 +52,7 @@ class Detector {
   const ScoreLayers& score_layers() const { return layers_; }
 
  private:
-  /// Lets the candidates compete and explains the scene by them.
+  /// Lets the candidates compete and ranks interpretations of the scene.
   std::vector<Interpretation> interpret_scene(const SceneFeatures& scene, Candidates& candidates,
                                               const DetectRequest& request) const;
 

@@ -10,10 +10,10 @@
 
 namespace bpa {
 
-/// What detection went through in one frame, for training, experiments and pictures.
+/// Intermediate results of the detection in one frame, for training, experiments and pictures.
 struct FrameTrace {
   SceneFeatures scene;
-  std::vector<std::shared_ptr<const ObjectModel>> models;  ///< That were looked for.
+  std::vector<std::shared_ptr<const ObjectModel>> models;  ///< Searched for.
   std::vector<ObjectTrace> objects;                        ///< One for each model.
   std::vector<Candidate> candidates;                       ///< Of all models.
 };

@@ -9,10 +9,10 @@
 
 namespace bpa {
 
-/// The other poses in which the object of candidate `chosen` explains the same view (a handle that
-/// may be anywhere out of sight, a box of which one face is seen), by falling weight: its rivals of
-/// the same model, those of nearly the same pose as one. With the chosen pose's own weight they sum
-/// to 1; what weighs less than `min_weight` is left out. Empty when the view decides.
+/// The other poses in which the object of candidate `chosen` explains the same view, by falling
+/// weight: a mug with its handle out of sight, a box with one visible face. They are its rivals of
+/// the same model; nearly equal poses are merged. Their weights and the chosen pose's own sum to 1.
+/// Leaves out weights below `min_weight`. Empty if the view determines the pose.
 std::vector<PoseAlternative> alternatives_of(const std::vector<Candidate>& candidates,
                                              const Competition& competition, std::size_t chosen,
                                              double min_weight = 0.02);

@@ -52,21 +52,20 @@ struct InterpretationOptions {
   }
 };
 
-/// Replaces the candidates' probabilities, which know nothing of one another, by those of right
-/// placements among rivals (competing_probabilities).
+/// Replaces the probabilities of single candidates by those under competition with their rivals
+/// (competing_probabilities).
 void let_compete(std::vector<Candidate>& candidates,
                  const std::vector<std::vector<Overlap>>& overlaps);
 
 /// Explains the scene by subsets of the candidates (paper section VI): simulated annealing on the
-/// multi-object-placement score - single scores weighted by the part of its pixels that each
-/// placement has for itself, the ratio of explained to observed pixels, and a penalty per object -
-/// keeping the best distinct subsets met on the way. At least one, perhaps of no objects.
+/// multi-object-placement score. The score adds single scores, each weighted by the share of pixels
+/// that the placement has for itself, the ratio of explained to observed pixels, and a penalty per
+/// object. Returns the best distinct subsets met on the way: at least one, perhaps without objects.
 ///
-/// Ranked so that what differs comes before near-copies: first the best; then, as long as there is
-/// something to show, the best of those made of the most probable placements that no earlier one
-/// holds; then what is left by falling score. The probability says how likely each is among all of
-/// them. `overlaps` is find_overlaps() of the candidates; `observed_pixels` counts the searched
-/// pixels of the reduced image.
+/// Ranking: first the best; then, while new placements remain, interpretations of the most probable
+/// placements that no earlier one holds; then the rest by falling score. The probability of each is
+/// relative to all that are returned. `overlaps` is find_overlaps() of the candidates;
+/// `observed_pixels` counts the searched pixels of the reduced image.
 std::vector<Interpretation> interpret(const std::vector<Candidate>& candidates,
                                       const std::vector<std::vector<Overlap>>& overlaps,
                                       int observed_pixels, const InterpretationOptions& options);

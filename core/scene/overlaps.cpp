@@ -12,8 +12,8 @@ namespace {
 // Of a solid model it is known what is inside of it.
 bool solid(const Candidate& c) { return c.model->complete && c.model->index; }
 
-// Two solid things cannot have nearly the same place; but of two models a thing may lie on a plate,
-// where only their surfaces tell.
+// Two instances of one model cannot have nearly the same place. An object may lie on a plate, so
+// complete models of two objects are compared by their surfaces instead.
 bool same_place(const Candidate& a, const Candidate& b) {
   const double distance = (a.pose().translation - b.pose().translation).norm();
   const double smaller = std::min(a.model->diameter, b.model->diameter);

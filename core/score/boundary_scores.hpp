@@ -8,7 +8,7 @@
 #include "core/score/pose_check.hpp"
 #include "core/score/predicted_surface.hpp"
 
-// How well the boundaries that a placement predicts fit the observed edge image (paper section V).
+// How well the boundaries that a placement predicts fit the observed edge image (paper V.5, V.8).
 // `edges` is the edge image, of the size of `image`.
 
 namespace bpa {

@@ -14,9 +14,9 @@ namespace bpa {
 
 /// How far the predicted colours agree with the observed ones where the placement explains the
 /// depth (within 1 cm): the average truncated log-likelihood of their distance in CIELAB, standard
-/// deviation 12, in [-1, 0]. How much light falls on the object is not known: the model's colours
-/// are compared as they look under as much light as is seen at each place, and of lightness only
-/// how it varies over the placement counts, for a half. Both sides are averaged over 3x3 pixels.
+/// deviation 12, in [-1, 0]. The light on the object is unknown, so the model's colours are scaled
+/// to the light observed at each place. Of lightness only its variation over the placement counts,
+/// with weight one half. Both sides are averaged over 3x3 pixels.
 /// kNotKnown when nothing can be compared. `observed` is the frame's CIELAB at the
 /// image's size, `surface` the model's (ModelIndex::cielab); either may be empty.
 double color_score(const CheckImage& image, const Image<Eigen::Vector3f>& observed,

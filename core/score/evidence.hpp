@@ -26,7 +26,7 @@ class Evidence {
   const ObjectModel& model() const { return places_.model(); }
   const FeaturePlaces& places() const { return places_; }
   const Pose& pose() const { return pose_; }
-  /// The edge image (paper section V).
+  /// The edge image (paper V.2).
   const Image<float>& edges() const { return scene_.edges.likelihood; }
 
   const SurfaceAgreement& surface() {

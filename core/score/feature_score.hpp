@@ -27,7 +27,7 @@ class FeaturePlaces {
   NeighborGrid grid_;
 };
 
-/// FPFH score (paper section V): how well the observed features that lie on the model match the
+/// FPFH score (paper V.8): how well the observed features that lie on the model match the
 /// model's there. The average truncated log-likelihood of the distance of the histograms, in
 /// [-1, 0]; -1 when no feature lies on the model. `keypoints` index `surface` (camera frame, with
 /// normals), `fpfh` is theirs.

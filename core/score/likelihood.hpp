@@ -14,7 +14,7 @@ namespace bpa {
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 /// The log-likelihood of an error under a normal distribution, relative to that of no error, cut
-/// off at three standard deviations and scaled to [-1, 0] (paper section V: truncated, so as not to
+/// off at three standard deviations and scaled to [-1, 0] (paper V.5: truncated, so as not to
 /// over-penalise outliers).
 inline double truncated_log_normal(double error, double sigma) {
   const double z = error / (3 * sigma);
@@ -27,7 +27,7 @@ inline double truncated_log(double probability, double floor) {
 }
 
 /// The probability that a model point is visible: 1 where it is predicted in front of what was
-/// observed (or nothing was), else falling with sigma_vis = 1 cm (paper section V, footnote).
+/// observed (or nothing was), else falling with sigma_vis = 1 cm (paper V.5, footnote).
 template <class Real>
 Real visibility_probability(Real observed_depth, Real predicted_depth) {
   constexpr Real kSigma = static_cast<Real>(0.01);

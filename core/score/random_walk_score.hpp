@@ -18,7 +18,7 @@ struct RandomWalkOptions {
   std::uint64_t seed = 0;
 };
 
-/// Random walk score (paper section V). Walks start at observed points that the placement explains
+/// Random walk score (paper V.8). Walks start at observed points that the placement explains
 /// (within 1 cm of the prediction, spread evenly over them) and go from pixel to neighbouring pixel
 /// of the observed surface; a step onto a pixel of edge likelihood e happens with probability
 /// (1 - e)^2, so that walks stay within predicted boundaries of objects. Where they end there

@@ -12,18 +12,17 @@
 
 namespace bpa {
 
-/// How much more likely one pose of an object makes the observed depths than another pose of the
-/// same object does: the sum of log-likelihood ratios over the pixels on which they disagree, those
-/// where one predicts surface and the other, within 6 mm beside, none of that depth. What a pose
-/// does not cover may have any depth, and what something hides says next to nothing. Positive for
-/// `first`. A handle in sight counts for the pose that has it there, and against the one that hides
-/// it.
+/// Log-likelihood ratio of the observed depths under two poses of one object; positive favours
+/// `first`. Sums over the pixels where the poses disagree: one predicts surface and the other,
+/// within 6 mm beside, none of that depth. A pixel that a pose does not cover may have any depth.
+/// Occluded pixels count for almost nothing. A visible handle favours the pose that predicts it
+/// there.
 double rival_evidence(const CheckImage& image, const PredictedSurface& first,
                       const PredictedSurface& second);
 
-/// By how much the evidence for each of some poses (camera_from_object) of a model that claim the
-/// same place is behind that for the best of them, from -500 to 0. Each is compared with the first
-/// one, which should be a good one.
+/// Log-likelihood of each pose (camera_from_object) minus that of the best, clamped to [-500, 0].
+/// All poses are of one model, in one place. Each is compared with the first, which should fit
+/// well.
 std::vector<double> behind_best(const CheckImage& image, const ObjectModel& model,
                                 std::span<const Pose> poses);
 

@@ -14,16 +14,15 @@
 
 namespace bpa {
 
-/// The learned score (paper section V): for each score component the log odds that it contributes,
-/// a piecewise linear function, and their sum, the log odds of the placement against nothing being
-/// there. What becomes of rivals for the same place follows from competing_probabilities().
+/// The learned score: each score component contributes log odds by a piecewise linear function.
+/// Their sum is the log odds of the placement against an empty place. README.md compares this with
+/// the paper. competing_probabilities() makes probabilities of the scores of rivals.
 struct ScoreLayer {
   static constexpr std::size_t kKnots = 8;
   struct Component {
     std::array<double, kKnots> place{};  ///< Rising values of the component.
-    std::array<double, kKnots> value{};  ///< What each contributes; others are interpolated, and
-                                         ///< count as the nearest beyond the ends. What is not
-                                         ///< known contributes nothing.
+    std::array<double, kKnots> value{};  ///< Log odds there; linear between, constant beyond
+                                         ///< the ends. An unknown component contributes 0.
     double at(double x) const;
   };
   std::array<Component, kScoreComponents.size()> components;  ///< In the order of the table.
@@ -39,7 +38,7 @@ struct ScoreLayers {
   ScoreLayer round_two;
   /// Of all components: what probabilities come from.
   ScoreLayer round_three;
-  /// The same where colours are not known, which are then missed: shapes have to say more.
+  /// Of all components, for frames or models without colour.
   ScoreLayer without_color;
 
   const ScoreLayer& last_for(const ScoreValues& values) const {
@@ -54,7 +53,7 @@ const ScoreLayers& default_score_layers();
 /// The probability of log odds.
 inline double probability_of(double log_odds) { return 1 / (1 + std::exp(-log_odds)); }
 
-/// The placements of a frame that training looks at.
+/// The placements of one training frame.
 struct ScoreFrame {
   struct Sample {
     ScoreValues values{};
@@ -69,7 +68,7 @@ struct ScoreFrame {
 /// of both kinds; otherwise fails with invalid_argument.
 Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames);
 
-/// How well probabilities agree with what happens.
+/// Calibration: how well probabilities agree with frequencies.
 struct Reliability {
   struct Bin {
     int count = 0;

@@ -10,7 +10,7 @@
 #include "core/score/predicted_surface.hpp"
 #include "core/segment/super_pixels.hpp"
 
-// How a placement fits the super-pixels (paper section V).
+// How a placement fits the super-pixels (paper V.8).
 
 namespace bpa {
 
@@ -25,12 +25,12 @@ struct SegmentMatch {
 };
 
 struct SegmentMatchOptions {
-  int points = 30;                        ///< Of a segment that are looked at, evenly spread.
+  int points = 30;                        ///< Evaluated in each segment, evenly spread.
   double max_angle = kPoseTolerance_rad;  ///< Radians, between normals (paper section V).
 };
 
 /// The super-pixels with a pixel that the placement explains, by index. This is step 1 of the
-/// paper's segment alignment too.
+/// paper's segment alignment too (V.6).
 std::vector<SegmentMatch> match_segments(const Segmentation& segmentation, const SurfaceMap& map,
                                          const ObjectModel& model, const Pose& camera_from_object,
                                          const PredictedSurface& predicted,
@@ -42,10 +42,9 @@ std::vector<SegmentMatch> match_segments(const Segmentation& segmentation, const
 double segment_score(const std::vector<SegmentMatch>& matches);
 
 /// Segment affinity score: how consistent the assigned segments are with the boundaries of objects.
-/// Two touching segments that both belong to the model should have a high affinity, two of which
-/// one does, a low one: the average log-likelihood of that over the contacts, each weighted by how
-/// probable it is that at least one side belongs to the model, in [-1, 0]; -1 where nothing belongs
-/// to the model.
+/// Two touching segments of the model should have a high affinity; a segment of the model and one
+/// of another object, a low one. The average log-likelihood over the contacts, each weighted by the
+/// probability that at least one side belongs to the model, in [-1, 0]; -1 if no segment does.
 double segment_affinity_score(const Segmentation& segmentation,
                               const std::vector<SegmentMatch>& matches);
 

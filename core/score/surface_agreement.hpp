@@ -13,8 +13,8 @@
 
 namespace bpa {
 
-/// How the surface and the edges that a placement predicts agree with the depth image (paper
-/// section V, round two). Log-likelihoods are truncated averages in [-1, 0]; 0 is exact agreement.
+/// How the surface and the edges that a placement predicts agree with the depth image (paper V.5,
+/// round two). Log-likelihoods are truncated averages in [-1, 0]; 0 is exact agreement.
 struct SurfaceAgreement {
   double range = -1;            ///< Range differences, weighted by visibility probability.
   double normal = -1;           ///< Normal differences, weighted by visibility probability.
