@@ -11,7 +11,7 @@
 
 namespace bpa {
 
-/// One alignment by BPA to sampled super-pixels (V.5). Up to RoundTwoOptions::max_pairs model
+/// One alignment by BPA to sampled super-pixels (V.6). Up to RoundTwoOptions::max_pairs model
 /// points that fall within `gate` metres of these are matched as oriented pairs, and half as many
 /// edge points as positions. Returns `start` where fewer than RoundTwoOptions::min_pairs match.
 Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,

@@ -19,7 +19,7 @@ enum class Source : std::uint8_t { feature, pairs, prior };
 /// the later fields.
 struct Candidate {
   const ObjectModel* model = nullptr;  ///< Lives as long as the library.
-  /// The pose (camera_from_object) and what the last alignment knew of it.
+  /// The pose (camera_from_object) with the information of the last alignment.
   Refinement refinement;
   Source found_by = Source::feature;
   int scene_point = -1;   ///< Of the correspondence: index into SceneFeatures::surface (feature) or

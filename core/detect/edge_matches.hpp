@@ -22,7 +22,7 @@ EdgePoint edge_point(const ObjectModel& model, const ModelView& view, const Fast
 /// How far outward of a model edge point the observed surface ends, metres, in [-reach, reach];
 /// none where it does not end within reach or something in front hides the end. The surface is
 /// followed from inside the model outward, pixel by pixel, until depth jumps back, is unknown or
-/// belongs to the labelled background (paper section V: alignment of edge points to edge points).
+/// belongs to the labelled background (V.6: edge points align to edge points).
 std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, float reach);
 
 }  // namespace bpa

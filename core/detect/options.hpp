@@ -5,9 +5,9 @@
 #include "core/base/options.hpp"
 #include "core/score/pose_check.hpp"
 
-// The settings of the search for one object, a group for each stage (see README.md here). "V.3" is
-// the third paragraph of the paper's section V. A number without a source was chosen by hand on
-// simulated piles (tests/accuracy).
+// The settings of the search for one object, a group for each stage. "V.3" is the third paragraph
+// of the paper's section V; README.md lists the paragraphs. A number without a source was chosen by
+// hand on simulated piles (tests/accuracy).
 
 namespace bpa {
 
@@ -106,12 +106,13 @@ struct CheckOptions {
     visit("points", points,
           FieldRule{1, 100000, "Model points that a pose is checked with. The paper has 500."});
     visit("hidden_points", hidden_points,
-          FieldRule{1, 100000, "Model points where fewer than few_seen are in sight."});
-    visit("few_seen", few_seen, FieldRule{0, 100000, "See hidden_points."});
+          FieldRule{1, 100000, "The same where fewer than few_seen are in sight."});
+    visit("few_seen", few_seen,
+          FieldRule{0, 100000, "Points in sight below which hidden_points are checked."});
     visit("min_seen", min_seen,
           FieldRule{0, 100000, "Poses with fewer points in sight are rejected."});
     visit("max_free_space", max_free_space,
-          FieldRule{0, 1, "Poses with a larger share of points in free space are rejected (V.2)."});
+          FieldRule{0, 1, "Poses with a larger share of points in free space are rejected (V.3)."});
     visit("min_check_score", min_check_score,
           FieldRule{-10, 10, "Poses with a lower check score are rejected."});
     visit("depth_share", depth_share,
@@ -121,7 +122,7 @@ struct CheckOptions {
     visit("free_depth_m", free_depth_m,
           FieldRule{1e-4, 1,
                     "A point this far in front of the surface is in free space, metres. The paper "
-                    "has 0.05 (V.2)."});
+                    "has 0.05 (V.3)."});
     visit("normal_cosine", normal_cosine,
           FieldRule{-1, 1, "Smallest cosine between the normals of model and surface."});
     visit("recheck_points", recheck_points,
@@ -130,10 +131,10 @@ struct CheckOptions {
     visit("max_kept_per_cell", max_kept_per_cell,
           FieldRule{1, 1000, "Poses that go on from one cell of 25 mm and 25 degrees."});
     visit("max_suggested", max_suggested,
-          FieldRule{0, 100000, "Poses drawn from priors that go on besides."});
+          FieldRule{0, 100000, "Poses drawn from priors that go on, beyond max_kept."});
     visit("rank_penalty", rank_penalty,
           FieldRule{0, 10,
-                    "What each better pose within the same 5 cm costs of the check score, when the "
+                    "Each better pose within the same 5 cm lowers the check score by this when the "
                     "poses that go on are chosen."});
   }
   template <class Visitor>
@@ -160,7 +161,8 @@ struct ClusterOptions {
     visit("max_clusters", max_clusters, FieldRule{1, 10000, "Clusters that go on to round two."});
     visit("suggested_share", suggested_share,
           FieldRule{0, 1, "Share of max_clusters kept for poses drawn from priors."});
-    visit("rank_penalty", rank_penalty, FieldRule{0, 10, "As in check."});
+    visit("rank_penalty", rank_penalty,
+          FieldRule{0, 10, "As check.rank_penalty, when the clusters that go on are chosen."});
   }
 };
 
@@ -177,15 +179,15 @@ struct RoundTwoOptions {
 
   template <class Visitor>
   void visit_fields(Visitor&& visit) {
-    visit("bpa_steps", bpa_steps, FieldRule{0, 100, "Alignments by BPA that are proposed (V.5)."});
+    visit("bpa_steps", bpa_steps, FieldRule{0, 100, "Alignments by BPA that are proposed (V.6)."});
     visit("max_pairs", max_pairs,
           FieldRule{4, 1000, "Surface correspondences of one alignment; half as many of edges."});
-    visit("min_pairs", min_pairs, FieldRule{3, 1000, "Fewer correspondences align nothing."});
+    visit("min_pairs", min_pairs, FieldRule{3, 1000, "With fewer correspondences the pose stays."});
     visit("segment_share", segment_share,
           FieldRule{0, 1, "Share of the super-pixels that one alignment uses."});
     visit("start_gate_m", start_gate_m,
           FieldRule{1e-4, 1, "Largest distance of correspondences in the first step, metres."});
-    visit("gate_decay", gate_decay, FieldRule{0.01, 1, "What each step multiplies the gate by."});
+    visit("gate_decay", gate_decay, FieldRule{0.01, 1, "Factor of the gate from step to step."});
     visit("check_points", check_points,
           FieldRule{1, 100000, "Model points that proposals are compared with."});
   }
@@ -275,8 +277,9 @@ struct SelectOptions {
     visit("max_placements", max_placements,
           FieldRule{1, 10000, "Placements of one model that are returned (section VI)."});
     visit("duplicate_m", duplicate_m,
-          FieldRule{0, 1, "Non-maximum suppression: largest distance of duplicates, metres, "});
-    visit("duplicate_rad", duplicate_rad, FieldRule{0, 3.2, "and largest turn, radians."});
+          FieldRule{0, 1, "Non-maximum suppression: largest distance of duplicates, metres."});
+    visit("duplicate_rad", duplicate_rad,
+          FieldRule{0, 3.2, "Non-maximum suppression: largest turn of duplicates, radians."});
   }
 };
 

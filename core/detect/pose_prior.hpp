@@ -15,12 +15,12 @@
 #include "core/model/object_model.hpp"
 #include "core/result/pose_prior.hpp"
 
-// What a caller knows beforehand of where an object is: from tracking, from touch, from where a
-// robot put it down. Such a prior is a Gaussian of the position times a Bingham of the orientation,
-// true with some probability, and it does two things. Poses drawn from it are looked at as those
-// that features suggest are, so that an object with few features is found near where the caller
-// says. And it multiplies in: with p the density of the pose under the prior and u that under the
-// uniform distribution of an object that may be anywhere, a placement gains the log odds
+// Pose priors: what a caller knows of an object's pose before the search, from tracking, touch or a
+// robot's own placing. A prior is a Gaussian of the position times a Bingham of the orientation. It
+// applies with probability `weight`. It has two effects. Poses drawn from it are hypotheses, as
+// those from features are, so that an object with few features is found too. And it is a factor of
+// the score: p is the density of the pose under the prior, u that under a uniform distribution, and
+// a placement gains the log odds
 //
 //   log((1 - weight) + weight p / u).
 
@@ -40,11 +40,10 @@ PosePrior transformed(const Pose& a_from_b, const PosePrior& prior);
 /// The uniform distribution that a prior is compared with has the object's origin anywhere in this
 /// volume, that over a table, and every orientation.
 constexpr double kBackgroundVolume = 1;  // m³
-/// The most that priors add to or take from the log odds of a placement (150 to 1): an image that
-/// clearly shows otherwise outweighs them.
+/// Largest log odds that priors add or subtract (150 to 1): a clear image outweighs a wrong prior.
 constexpr double kMostPriorEvidence = 5;
-/// A placement counts as right within 2.5 cm and π/16, and is off by some of that; priors are
-/// widened by half of it as the standard deviation of a placement's position and rotation.
+/// Standard deviations of a placement's position and rotation, which widen the priors: half of the
+/// tolerance within which a placement is right.
 constexpr double kPlacementSigma_m = 0.5 * kPoseTolerance_m;
 constexpr double kPlacementSigma_rad = 0.5 * kPoseTolerance_rad;
 
@@ -57,8 +56,7 @@ class ModelPriors {
 
   /// The log odds that a placement of the model gains, within ±kMostPriorEvidence; 0 without
   /// priors. Modulo the model's symmetry: p is the mean over the poses that look the same. Several
-  /// priors are of as many instances, and a placement is as likely to be any one of them: the mean
-  /// of what the logarithm is taken of.
+  /// priors are of different instances, each equally likely: the mean of the logarithm's argument.
   double evidence(const Pose& camera_from_object) const;
 
   /// `count` poses drawn from each prior. Where a prior leaves the position open, a point of the
@@ -84,7 +82,7 @@ class ModelPriors {
 
   const ObjectModel& model_;
   std::vector<Prior> priors_;
-  std::vector<Pose> same_;  ///< object_from_object: what the model looks the same under.
+  std::vector<Pose> same_;  ///< object_from_object: the motions of the symmetry.
 };
 
 }  // namespace bpa

@@ -24,9 +24,9 @@ void keep_first(const Search& search, int count, Candidates& candidates);
 /// The cube with an edge of 1 / `per_metre` that a position lies in.
 std::uint64_t position_cell(const Eigen::Vector3f& position, float per_metre);
 
-/// Keeps the `count` best by check score, and the best of each place: an object that is easily
-/// mistaken for this one must not crowd out a place where the fit is worse but true. Each better
-/// one within the same 5 cm costs `rank_penalty`. Leaves them sorted by check score.
+/// Rejects all but `count`, the best by check score less a penalty: each better candidate in the
+/// same cell of 5 cm costs `rank_penalty`. So a similar object with a better fit does not crowd out
+/// the true place. Sorts by check score.
 void keep_best_of_places(const Search& search, int count, double rank_penalty,
                          Candidates& candidates);
 

@@ -7,7 +7,7 @@
 
 #include "core/geometry/fast_pose.hpp"
 
-// What became of one model's poses, stage by stage, for training, experiments and pictures.
+// The candidates of one model after each stage, for training, experiments and pictures.
 
 namespace bpa {
 

@@ -18,7 +18,7 @@ struct PoseCheck {
   int agreeing = 0;    ///< On the observed surface with the same normal, where it is searched.
   int free_space = 0;  ///< Clearly in front of the observed surface: the ray went through.
 
-  /// Larger is better: the agreeing share of what should be seen, with doubt where little is.
+  /// Larger is better: the agreeing share of the visible points, lower where few are visible.
   float score() const {
     constexpr int kDoubt = 6;             // points without which a share says little
     constexpr float kHiddenWorth = 0.5f;  // what a pose keeps of its score when all is hidden
@@ -40,14 +40,14 @@ struct CheckTolerance {
     visit("free_depth_m", free_depth_m,
           FieldRule{1e-4, 1,
                     "A point this far in front of the surface is in free space, metres. The paper "
-                    "(section V) has 0.05."});
+                    "has 0.05 (V.3)."});
     visit("normal_cosine", normal_cosine,
           FieldRule{-1, 1, "Smallest cosine between the normals of model and surface."});
   }
 };
 
-/// Checks up to `count` of the model's points. Stops early, with few agreeing points, when the
-/// first ones disagree badly.
+/// Checks up to `count` of the model's points. Rejects early, with few agreeing points counted,
+/// when most of the first ones disagree.
 PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const FastPose& pose,
                      int count, const CheckTolerance& tolerance);
 
