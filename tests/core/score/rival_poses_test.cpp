@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/random.hpp"
 #include "tests/support/posed_models.hpp"
 
 namespace bpa {
@@ -24,25 +25,67 @@ CheckImage image_at(float depth) {
   return out;
 }
 
-// A square of 10 x 10 pixels at 0.8 m.
-PredictedSurface square_at(int u, int v) {
-  return {u, v, Image<float>(10, 10, 0.8f), Image<std::uint32_t>(10, 10, 0u)};
+// A rectangle of 10 rows and `width` columns, at `depth` metres.
+PredictedSurface rectangle_at(int u, int v, int width, float depth) {
+  return {u, v, Image<float>(width, 10, depth), Image<std::uint32_t>(width, 10, 0u)};
 }
 
-TEST(RivalEvidence, AgainstNothingEachPixelCountsItsLogLikelihoodRatio) {
-  // Seen: 0.7 of a normal density of 1.5 times the noise of sensor and model against one of 1 per
-  // metre; of a pixel on the rim a half may show what is behind.
-  const double noise = 0.0012 + 0.0019 * 0.4 * 0.4;
-  const double sigma = 1.5 * std::hypot(noise, 0.003);
-  const double peak = 0.7 / (std::sqrt(2 * M_PI) * sigma);
-  const double fit =
-      64 * std::log(0.95 * (peak + 0.02) + 0.05) + 36 * std::log(0.5 * (peak + 1.02));
-  EXPECT_NEAR(rival_evidence(image_at(0.8f), square_at(10, 10), {}), fit, 0.01);
-  const double through = 64 * std::log(0.95 * 0.02 + 0.05) + 36 * std::log(0.5 * 1.02);
-  EXPECT_NEAR(rival_evidence(image_at(1.2f), square_at(10, 10), {}), through, 0.01);
-  const double hidden = 64 * std::log(0.95 * 0.9 + 0.05) + 36 * std::log(0.5 * 1.9);
-  EXPECT_NEAR(rival_evidence(image_at(0.5f), square_at(10, 10), {}), hidden, 0.01);
-  EXPECT_EQ(rival_evidence(image_at(0), square_at(10, 10), {}), 0);
+// A square of 10 x 10 pixels at 0.8 m.
+PredictedSurface square_at(int u, int v) { return rectangle_at(u, v, 10, 0.8f); }
+
+// The standard deviation of a Kinect's depth at 0.8 m, in metres (Nguyen, Izadi and Lovell, 3DIMPVT
+// 2012).
+constexpr double kKinectSigma = 0.0012 + 0.0019 * (0.8 - 0.4) * (0.8 - 0.4);
+
+double against_nothing(float observed) {
+  return rival_evidence(image_at(observed), square_at(10, 10), {});
+}
+
+TEST(RivalEvidence, SurfaceIsEvidenceForAndFreeSpaceAgainstAndWhatIsHiddenSaysLittle) {
+  EXPECT_GT(against_nothing(0.8f), 200);   // 100 pixels, on average over e^2 times as likely
+  EXPECT_LT(against_nothing(1.2f), -100);  // on average under 1/e as likely
+  EXPECT_LE(against_nothing(0.5f), 0);
+  EXPECT_GT(against_nothing(0.5f), -20);
+  EXPECT_EQ(against_nothing(0), 0) << "no depth, no evidence";
+}
+
+TEST(RivalEvidence, FallsWithTheDistanceFromTheSurface) {
+  for (const float side : {-1.0f, 1.0f}) {
+    double nearer = against_nothing(0.8f);
+    for (int mm = 2; mm <= 14; mm += 2) {
+      const double farther = against_nothing(0.8f + side * 0.001f * static_cast<float>(mm));
+      EXPECT_LT(farther, nearer) << side * static_cast<float>(mm) << " mm";
+      nearer = farther;
+    }
+  }
+  // The sensor's noise alone keeps most of the evidence; ten times as much leaves none.
+  EXPECT_GT(against_nothing(static_cast<float>(0.8 + kKinectSigma)), 0.9 * against_nothing(0.8f));
+  EXPECT_LT(against_nothing(static_cast<float>(0.8 + 15 * kKinectSigma)), 0);
+}
+
+// Pixels are independent: ten more columns add the same, however many there are.
+TEST(RivalEvidence, IsASumOverPixels) {
+  for (const float observed : {0.8f, 0.81f, 0.5f, 1.2f}) {
+    const auto of_width = [&](int width) {
+      return rival_evidence(image_at(observed), rectangle_at(4, 10, width, 0.8f), {});
+    };
+    EXPECT_NEAR(of_width(30) - of_width(20), of_width(20) - of_width(10), 1e-3) << observed;
+  }
+}
+
+// Depths drawn with a Kinect's noise speak for the surface that they were drawn from.
+TEST(RivalEvidence, NoisyDepthsTellTheirSurfaceFromOneThreeCentimetresAway) {
+  RandomStream random(5);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    CheckImage image = image_at(0.8f);
+    for (CheckPixel& pixel : image.pixels) {
+      pixel.depth += static_cast<float>(kKinectSigma * random.normal());
+    }
+    for (const float offset : {-0.03f, 0.03f}) {
+      const PredictedSurface wrong = rectangle_at(10, 10, 10, 0.8f + offset);
+      EXPECT_GT(rival_evidence(image, square_at(10, 10), wrong), 100);
+    }
+  }
 }
 
 TEST(RivalEvidence, OnlyWhatPosesDisagreeAboutCounts) {

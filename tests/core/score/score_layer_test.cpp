@@ -2,9 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/score/score_layer.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "core/base/random.hpp"
 
@@ -154,8 +160,51 @@ TEST(ScoreLayer, NeedsBothKindsOfSamples) {
   EXPECT_NE(layer.status().message.find("0 right placements of 60"), std::string::npos);
 }
 
-TEST(ScoreLayer, TheBuiltInOneSaysWhereItComesFrom) {
-  EXPECT_NE(default_score_layers().round_three.provenance.find("bpa train"), std::string::npos);
+// Reads config/score_layers.json by itself, so that the library's reader and build are judged.
+TEST(ScoreLayer, TheBuiltInOnesAreTheCommittedFile) {
+  const nlohmann::json file =
+      nlohmann::json::parse(std::ifstream(BPA_SOURCE_DIR "/config/score_layers.json"));
+  const ScoreLayers& built_in = default_score_layers();
+  const std::pair<const char*, const ScoreLayer*> layers[] = {
+      {"round_two", &built_in.round_two},
+      {"round_three", &built_in.round_three},
+      {"without_color", &built_in.without_color}};
+  for (const auto& [name, layer] : layers) {
+    SCOPED_TRACE(name);
+    const nlohmann::json& json = file.at(name);
+    EXPECT_EQ(json.at("bias"), layer->bias);
+    EXPECT_EQ(json.at("provenance"), layer->provenance);
+    std::size_t learned = 0;
+    for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
+      if (!kScoreComponents[i].learned) continue;
+      const std::string component(kScoreComponents[i].name);
+      SCOPED_TRACE(component);
+      ASSERT_TRUE(json.at("components").contains(component));
+      EXPECT_EQ(json.at("components").at(component).at("place"), layer->components[i].place);
+      EXPECT_EQ(json.at("components").at(component).at("log_odds"), layer->components[i].value);
+      ++learned;
+    }
+    EXPECT_EQ(json.at("components").size(), learned);
+  }
+}
+
+TEST(ScoreLayer, TheBuiltInOnesHaveRisingPlacesAndKnowWhatTheirRoundKnows) {
+  const ScoreLayers& layers = default_score_layers();
+  for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
+    const ComponentType& type = kScoreComponents[i];
+    if (!type.learned) continue;
+    SCOPED_TRACE(std::string(type.name));
+    const auto says_something = [i](const ScoreLayer& layer) {
+      const auto& place = layer.components[i].place;
+      EXPECT_EQ(std::adjacent_find(place.begin(), place.end(), std::greater_equal<>()),
+                place.end());
+      const auto& value = layer.components[i].value;
+      return std::any_of(value.begin(), value.end(), [](double v) { return v != 0; });
+    };
+    EXPECT_EQ(says_something(layers.round_two), type.round == Round::two);
+    EXPECT_TRUE(says_something(layers.round_three));
+    EXPECT_EQ(says_something(layers.without_color), type.name != "color");
+  }
 }
 
 }  // namespace
