@@ -44,6 +44,8 @@ class StubServer {
   }
   void start() { process_ = std::make_unique<Process>(command_, log_path_); }
   Process& process() { return *process_; }
+  /// The command line without the program and its own option.
+  std::vector<std::string> words() const { return {command_.begin() + 3, command_.end()}; }
   std::string log() const { return read_text(log_path_); }
 
  private:

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 #include <condition_variable>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
 #include "idl/wire/messages.hpp"
 #include "idl/wire/service.hpp"
@@ -55,6 +57,76 @@ class ParametersOfAServer : public testing::Test {
   std::unique_ptr<support::StubServer> server;
   std::optional<wire::Participant> participant;
 };
+
+// The fields of a tree of settings, by their whole names.
+void add_fields(const YAML::Node& node, const std::string& name,
+                std::map<std::string, YAML::Node>& fields) {
+  if (!node.IsMap()) {
+    fields[name] = node;
+    return;
+  }
+  for (const auto& entry : node) {
+    const auto key = entry.first.as<std::string>();
+    add_fields(entry.second, name.empty() ? key : name + "." + key, fields);
+  }
+}
+
+void expect_same(const rcl::ParameterValue& value, const YAML::Node& field,
+                 const std::string& name) {
+  switch (value.type) {
+    case ParameterType::kBool:
+      EXPECT_EQ(value.bool_value, field.as<bool>()) << name;
+      break;
+    case ParameterType::kInteger:
+      EXPECT_EQ(value.integer_value, field.as<std::int64_t>()) << name;
+      break;
+    case ParameterType::kDouble:
+      EXPECT_EQ(value.double_value, field.as<double>()) << name;
+      break;
+    case ParameterType::kString:
+      EXPECT_EQ(value.string_value, field.as<std::string>()) << name;
+      break;
+    default:
+      ASSERT_EQ(value.type, ParameterType::kStringArray) << name;
+      EXPECT_EQ(value.string_array_value, field.as<std::vector<std::string>>()) << name;
+  }
+}
+
+// config/detector.yaml with every key in force.
+YAML::Node detector_yaml() {
+  std::string text = support::read_text(BPA_SOURCE_DIR "/config/detector.yaml");
+  for (std::size_t at = text.find('#'); at != std::string::npos; at = text.find('#', at + 1)) {
+    if (text[at + 1] != ' ') text.erase(at, 1);
+  }
+  return YAML::Load(text);
+}
+
+TEST_F(ParametersOfAServer, AgreeWithPrintConfigAndDetectorYaml) {
+  start({"--set", "network.range=localhost"});
+  std::vector<std::string> command{BPA_BINARY_DIR "/bin/bpa-server", "--print-config"};
+  for (const std::string& word : server->words()) command.push_back(word);
+  const std::string path = support::scratch_folder() + "/printed.yaml";
+  ASSERT_EQ(support::run(command, path), 0) << support::read_text(path);
+
+  std::map<std::string, YAML::Node> printed, documented;
+  add_fields(YAML::LoadFile(path), "", printed);
+  add_fields(detector_yaml(), "detector", documented);
+
+  const auto names = call<rcl::ListParameters>("list_parameters", {{}, 0}).result.names;
+  const auto values = call<rcl::GetParameters>("get_parameters", {names}).values;
+  ASSERT_EQ(values.size(), names.size());
+  EXPECT_EQ(names.size(), printed.size());
+  EXPECT_GT(documented.size(), 50U);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    ASSERT_EQ(printed.count(names[i]), 1U) << names[i];
+    expect_same(values[i], printed[names[i]], names[i]);
+    if (names[i].rfind("detector.", 0) != 0) continue;
+    ASSERT_EQ(documented.count(names[i]), 1U) << names[i];
+    expect_same(values[i], documented[names[i]], names[i]);
+    documented.erase(names[i]);
+  }
+  EXPECT_TRUE(documented.empty()) << documented.begin()->first << " is no parameter";
+}
 
 TEST_F(ParametersOfAServer, ListGetDescribeSetAndEvents) {
   start();
