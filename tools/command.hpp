@@ -51,8 +51,7 @@ struct OptionField {
 
 /// Adds an option for each of these fields. Texts and ranges are those of visit_fields; validate()
 /// checks the ranges when the command runs.
-template <class Options>
-void add_options(CLI::App& command, Options& options, std::initializer_list<OptionField> fields) {
+void add_options(CLI::App& command, auto& options, std::initializer_list<OptionField> fields) {
   for (const OptionField& wanted : fields) {
     bool known = false;
     options.visit_fields([&](std::string_view name, auto& value, const FieldRule& rule) {

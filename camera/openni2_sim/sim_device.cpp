@@ -30,8 +30,7 @@ int stride_of(const OniVideoMode& mode) {
 }
 
 /// Calls visit(index in the scene) for each pixel of a frame of a scene this wide.
-template <class Visit>
-void visit_pixels(const OniVideoMode& mode, bool mirrored, int width, Visit visit) {
+void visit_pixels(const OniVideoMode& mode, bool mirrored, int width, auto visit) {
   const int step = width / mode.resolutionX;
   for (int v = 0; v < mode.resolutionY; ++v) {
     for (int u = 0; u < mode.resolutionX; ++u) {

@@ -37,26 +37,24 @@ struct ConvergenceOptions {
   std::uint64_t seed = 0;
   int num_threads = 0;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
-    visit("starts", starts, FieldRule{1, 100000, "Noisy starts for each true placement."});
-    visit("iterations", iterations, FieldRule{1, 1000, "Alignment steps from each start."});
-    visit("points", points, FieldRule{3, 1000, "Scene points matched in a step."});
+  void visit_fields(auto&& visit) {
+    visit("starts", starts, {1, 100000, "Noisy starts for each true placement."});
+    visit("iterations", iterations, {1, 1000, "Alignment steps from each start."});
+    visit("points", points, {3, 1000, "Scene points matched in a step."});
     visit("start_position_m", start_position_m,
-          FieldRule{0, 1, "Standard deviation of a start's position per axis, metres."});
+          {0, 1, "Standard deviation of a start's position per axis, metres."});
     visit("start_angle_deg", start_angle_deg,
-          FieldRule{0, 180, "Standard deviation of a start's rotation per axis, degrees."});
-    visit("gate_m", gate_m, FieldRule{0.001, 1, "Largest distance of a match, metres."});
-    visit("patch_m", patch_m, FieldRule{0.001, 1, "Size of scene patches, metres."});
+          {0, 180, "Standard deviation of a start's rotation per axis, degrees."});
+    visit("gate_m", gate_m, {0.001, 1, "Largest distance of a match, metres."});
+    visit("patch_m", patch_m, {0.001, 1, "Size of scene patches, metres."});
     visit("assign_m", assign_m,
-          FieldRule{1e-4, 1, "Distance at which a scene point fits the model, metres."});
-    visit(
-        "assign_deg", assign_deg,
-        FieldRule{1, 180, "Angle between normals at which a scene point fits the model, degrees."});
+          {1e-4, 1, "Distance at which a scene point fits the model, metres."});
+    visit("assign_deg", assign_deg,
+          {1, 180, "Angle between normals at which a scene point fits the model, degrees."});
     visit("sigma_m", sigma_m,
-          FieldRule{1e-5, 1, "Standard deviation of a match's position for BPA, metres."});
-    visit("seed", seed, FieldRule{0, 1.8e19, "Same seed, same answer."});
-    visit("num_threads", num_threads, FieldRule{0, 256, "0 = one per core."});
+          {1e-5, 1, "Standard deviation of a match's position for BPA, metres."});
+    visit("seed", seed, {0, 1.8e19, "Same seed, same answer."});
+    visit("num_threads", num_threads, {0, 256, "0 = one per core."});
   }
 };
 

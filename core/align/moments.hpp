@@ -50,8 +50,7 @@ class CurvatureTerms {
   const CurvatureTerm& strongest() const { return strongest_; }
 
   /// Calls visit(term) for every pair with a curvature direction, in order.
-  template <class Visitor>
-  void for_each(const Correspondences& data, Visitor&& visit) const;
+  void for_each(const Correspondences& data, auto&& visit) const;
 
  private:
   std::array<CurvatureTerm, kCapacity> kept_;
@@ -77,8 +76,7 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v);
 /// The exponent whose value at q is trace(R(q) attitude): Horn's matrix (1987).
 Eigen::Matrix4d horn_matrix(const Eigen::Matrix3d& attitude);
 
-template <class Visitor>
-void CurvatureTerms::for_each(const Correspondences& data, Visitor&& visit) const {
+void CurvatureTerms::for_each(const Correspondences& data, auto&& visit) const {
   const int kept = count_ < kCapacity ? count_ : kCapacity;
   for (int i = 0; i < kept; ++i) visit(kept_[static_cast<std::size_t>(i)]);
   if (kept == count_) return;

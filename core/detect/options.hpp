@@ -19,16 +19,14 @@ struct RefinementOptions {
   double start_gate_m = 0.030;
   double end_gate_m = 0.010;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
-    visit("iterations", iterations, FieldRule{0, 100, "Gauss-Newton steps."});
-    visit("max_points", max_points, FieldRule{1, 100000, "Surface points of the model used."});
-    visit("max_edges", max_edges,
-          FieldRule{0, 100000, "Edge points of the model used; 0: surface alone."});
+  void visit_fields(auto&& visit) {
+    visit("iterations", iterations, {0, 100, "Gauss-Newton steps."});
+    visit("max_points", max_points, {1, 100000, "Surface points of the model used."});
+    visit("max_edges", max_edges, {0, 100000, "Edge points of the model used; 0: surface alone."});
     visit("start_gate_m", start_gate_m,
-          FieldRule{1e-4, 1, "Largest distance of correspondences in the first step, metres."});
+          {1e-4, 1, "Largest distance of correspondences in the first step, metres."});
     visit("end_gate_m", end_gate_m,
-          FieldRule{1e-4, 1, "Largest distance of correspondences in the last step, metres."});
+          {1e-4, 1, "Largest distance of correspondences in the last step, metres."});
   }
 };
 
@@ -38,16 +36,15 @@ struct AlignOptions {
   bool use_segments = true;
   bool use_edges = true;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("use_orientation", use_orientation,
-          FieldRule{0, 1,
-                    "Align with orientations (BPA); false: positions only (ICP, the paper's "
-                    "ablation)."});
+          {0, 1,
+           "Align with orientations (BPA); false: positions only (ICP, the paper's "
+           "ablation)."});
     visit("use_segments", use_segments,
-          FieldRule{0, 1, "Align to sampled super-pixels; false: to all surface."});
+          {0, 1, "Align to sampled super-pixels; false: to all surface."});
     visit("use_edges", use_edges,
-          FieldRule{0, 1, "Align model edges with observed edges; false: surface alone."});
+          {0, 1, "Align model edges with observed edges; false: surface alone."});
   }
 };
 
@@ -60,24 +57,22 @@ struct SampleOptions {
   double pair_sigma_m = 0.008;
   RefinementOptions prior_alignment{4, 100, 30, 0.050, 0.015};
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("matches_per_keypoint", matches_per_keypoint,
-          FieldRule{1, 20, "Nearest model features of each scene keypoint."});
+          {1, 20, "Nearest model features of each scene keypoint."});
     visit("draws_per_match", draws_per_match,
-          FieldRule{1, 50, "Poses drawn by BPA from each correspondence."});
+          {1, 50, "Poses drawn by BPA from each correspondence."});
     visit("peaks_per_reference", peaks_per_reference,
-          FieldRule{1, 100, "Voted poses of each scene reference point."});
-    visit("draws_per_prior", draws_per_prior, FieldRule{0, 100000, "Poses drawn from each prior."});
+          {1, 100, "Voted poses of each scene reference point."});
+    visit("draws_per_prior", draws_per_prior, {0, 100000, "Poses drawn from each prior."});
     visit("feature_sigma_m", feature_sigma_m,
-          FieldRule{1e-4, 0.1,
-                    "Position error of a feature correspondence, metres: about the spacing of the "
-                    "features. Depth noise is added."});
+          {1e-4, 0.1,
+           "Position error of a feature correspondence, metres: about the spacing of the "
+           "features. Depth noise is added."});
     visit("pair_sigma_m", pair_sigma_m,
-          FieldRule{1e-4, 0.1, "Position error of a point pair's correspondence, metres."});
+          {1e-4, 0.1, "Position error of a point pair's correspondence, metres."});
   }
-  template <class Visitor>
-  void visit_groups(Visitor&& visit) {
+  void visit_groups(auto&& visit) {
     visit("prior_alignment", prior_alignment, "Alignment of poses drawn from priors.");
   }
 };
@@ -101,44 +96,41 @@ struct CheckOptions {
   double rank_penalty = 0.02;
   RefinementOptions correction{2, 64, 24, 0.020, 0.012};
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("points", points,
-          FieldRule{1, 100000, "Model points that a pose is checked with. The paper has 500."});
+          {1, 100000, "Model points that a pose is checked with. The paper has 500."});
     visit("hidden_points", hidden_points,
-          FieldRule{1, 100000, "The same where fewer than few_seen are in sight."});
+          {1, 100000, "The same where fewer than few_seen are in sight."});
     visit("few_seen", few_seen,
-          FieldRule{0, 100000, "Points in sight below which hidden_points are checked."});
-    visit("min_seen", min_seen,
-          FieldRule{0, 100000, "Poses with fewer points in sight are rejected."});
+          {0, 100000, "Points in sight below which hidden_points are checked."});
+    visit("min_seen", min_seen, {0, 100000, "Poses with fewer points in sight are rejected."});
     visit("max_free_space", max_free_space,
-          FieldRule{0, 1, "Poses with a larger share of points in free space are rejected (V.3)."});
+          {0, 1, "Poses with a larger share of points in free space are rejected (V.3)."});
     visit("min_check_score", min_check_score,
-          FieldRule{-10, 10, "Poses with a lower check score are rejected."});
+          {-10, 10, "Poses with a lower check score are rejected."});
     visit("depth_share", depth_share,
-          FieldRule{0, 1, "Depth tolerance as a share of the model's diameter."});
-    visit("min_depth_m", min_depth_m, FieldRule{1e-4, 1, "Smallest depth tolerance, metres."});
-    visit("max_depth_m", max_depth_m, FieldRule{1e-4, 1, "Largest depth tolerance, metres."});
+          {0, 1, "Depth tolerance as a share of the model's diameter."});
+    visit("min_depth_m", min_depth_m, {1e-4, 1, "Smallest depth tolerance, metres."});
+    visit("max_depth_m", max_depth_m, {1e-4, 1, "Largest depth tolerance, metres."});
     visit("free_depth_m", free_depth_m,
-          FieldRule{1e-4, 1,
-                    "A point this far in front of the surface is in free space, metres. The paper "
-                    "has 0.05 (V.3)."});
+          {1e-4, 1,
+           "A point this far in front of the surface is in free space, metres. The paper "
+           "has 0.05 (V.3)."});
     visit("normal_cosine", normal_cosine,
-          FieldRule{-1, 1, "Smallest cosine between the normals of model and surface."});
+          {-1, 1, "Smallest cosine between the normals of model and surface."});
     visit("recheck_points", recheck_points,
-          FieldRule{1, 100000, "Model points of the second check, after the correction."});
-    visit("max_kept", max_kept, FieldRule{1, 1000000, "Poses that go on."});
+          {1, 100000, "Model points of the second check, after the correction."});
+    visit("max_kept", max_kept, {1, 1000000, "Poses that go on."});
     visit("max_kept_per_cell", max_kept_per_cell,
-          FieldRule{1, 1000, "Poses that go on from one cell of 25 mm and 25 degrees."});
+          {1, 1000, "Poses that go on from one cell of 25 mm and 25 degrees."});
     visit("max_suggested", max_suggested,
-          FieldRule{0, 100000, "Poses drawn from priors that go on, beyond max_kept."});
+          {0, 100000, "Poses drawn from priors that go on, beyond max_kept."});
     visit("rank_penalty", rank_penalty,
-          FieldRule{0, 10,
-                    "Each better pose within the same 5 cm lowers the check score by this when the "
-                    "poses that go on are chosen."});
+          {0, 10,
+           "Each better pose within the same 5 cm lowers the check score by this when the "
+           "poses that go on are chosen."});
   }
-  template <class Visitor>
-  void visit_groups(Visitor&& visit) {
+  void visit_groups(auto&& visit) {
     visit("correction", correction, "First small alignment of what passed the check.");
   }
 };
@@ -150,19 +142,18 @@ struct ClusterOptions {
   double suggested_share = 0.25;
   double rank_penalty = 0.04;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("min_features", min_features,
-          FieldRule{1, 100,
-                    "Clusters with fewer feature correspondences are rejected (V.3). A voted pose "
-                    "stands for many pairs and is kept alone."});
+          {1, 100,
+           "Clusters with fewer feature correspondences are rejected (V.3). A voted pose "
+           "stands for many pairs and is kept alone."});
     visit("max_correspondences", max_correspondences,
-          FieldRule{1, 100, "Correspondences that a cluster is aligned with."});
-    visit("max_clusters", max_clusters, FieldRule{1, 10000, "Clusters that go on to round two."});
+          {1, 100, "Correspondences that a cluster is aligned with."});
+    visit("max_clusters", max_clusters, {1, 10000, "Clusters that go on to round two."});
     visit("suggested_share", suggested_share,
-          FieldRule{0, 1, "Share of max_clusters kept for poses drawn from priors."});
+          {0, 1, "Share of max_clusters kept for poses drawn from priors."});
     visit("rank_penalty", rank_penalty,
-          FieldRule{0, 10, "As check.rank_penalty, when the clusters that go on are chosen."});
+          {0, 10, "As check.rank_penalty, when the clusters that go on are chosen."});
   }
 };
 
@@ -177,22 +168,20 @@ struct RoundTwoOptions {
   CheckTolerance tolerance{0.008, 0.020, 0.8};
   RefinementOptions refinement{4, 160, 60, 0.025, 0.012};
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
-    visit("bpa_steps", bpa_steps, FieldRule{0, 100, "Alignments by BPA that are proposed (V.6)."});
+  void visit_fields(auto&& visit) {
+    visit("bpa_steps", bpa_steps, {0, 100, "Alignments by BPA that are proposed (V.6)."});
     visit("max_pairs", max_pairs,
-          FieldRule{4, 1000, "Surface correspondences of one alignment; half as many of edges."});
-    visit("min_pairs", min_pairs, FieldRule{3, 1000, "With fewer correspondences the pose stays."});
+          {4, 1000, "Surface correspondences of one alignment; half as many of edges."});
+    visit("min_pairs", min_pairs, {3, 1000, "With fewer correspondences the pose stays."});
     visit("segment_share", segment_share,
-          FieldRule{0, 1, "Share of the super-pixels that one alignment uses."});
+          {0, 1, "Share of the super-pixels that one alignment uses."});
     visit("start_gate_m", start_gate_m,
-          FieldRule{1e-4, 1, "Largest distance of correspondences in the first step, metres."});
-    visit("gate_decay", gate_decay, FieldRule{0.01, 1, "Factor of the gate from step to step."});
+          {1e-4, 1, "Largest distance of correspondences in the first step, metres."});
+    visit("gate_decay", gate_decay, {0.01, 1, "Factor of the gate from step to step."});
     visit("check_points", check_points,
-          FieldRule{1, 100000, "Model points that proposals are compared with."});
+          {1, 100000, "Model points that proposals are compared with."});
   }
-  template <class Visitor>
-  void visit_groups(Visitor&& visit) {
+  void visit_groups(auto&& visit) {
     visit("tolerance", tolerance, "How proposals are compared.");
     visit("refinement", refinement, "The last proposal.");
   }
@@ -202,13 +191,11 @@ struct RefineOptions {
   int max_refined = 40;
   RefinementOptions refinement{8, 500, 60, 0.015, 0.008};
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("max_refined", max_refined,
-          FieldRule{1, 10000, "Placements that are aligned to the end and scored in full."});
+          {1, 10000, "Placements that are aligned to the end and scored in full."});
   }
-  template <class Visitor>
-  void visit_groups(Visitor&& visit) {
+  void visit_groups(auto&& visit) {
     visit("refinement", refinement, "Gradient-based alignment (V.7).");
   }
 };
@@ -220,17 +207,13 @@ struct ClimbOptions {
   double beside_rad = 0.17;
   RefinementOptions refinement{6, 200, 60, 0.020, 0.008};
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
-    visit("max_climbed", max_climbed,
-          FieldRule{0, 10000, "Best placements that climb the score; 0: none."});
-    visit("rounds", rounds, FieldRule{0, 100, "Rounds of twelve steps each."});
-    visit("step_m", step_m, FieldRule{1e-5, 0.1, "First step at the object's rim, metres."});
-    visit("beside_rad", beside_rad,
-          FieldRule{0, 3.2, "Turn of the six poses beside the start, radians."});
+  void visit_fields(auto&& visit) {
+    visit("max_climbed", max_climbed, {0, 10000, "Best placements that climb the score; 0: none."});
+    visit("rounds", rounds, {0, 100, "Rounds of twelve steps each."});
+    visit("step_m", step_m, {1e-5, 0.1, "First step at the object's rim, metres."});
+    visit("beside_rad", beside_rad, {0, 3.2, "Turn of the six poses beside the start, radians."});
   }
-  template <class Visitor>
-  void visit_groups(Visitor&& visit) {
+  void visit_groups(auto&& visit) {
     visit("refinement", refinement, "Alignment from beside the start.");
   }
 };
@@ -240,14 +223,13 @@ struct TurnOptions {
   int max_kept_turned = 12;
   double min_turned_score = -5;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("max_turned", max_turned,
-          FieldRule{0, 10000, "Best placements that are tried in near-symmetric poses; 0: none."});
+          {0, 10000, "Best placements that are tried in near-symmetric poses; 0: none."});
     visit("max_kept_turned", max_kept_turned,
-          FieldRule{0, 10000, "Near-symmetric poses that are aligned to the end."});
+          {0, 10000, "Near-symmetric poses that are aligned to the end."});
     visit("min_turned_score", min_turned_score,
-          FieldRule{-1000, 1000, "Placements of lower log odds are not turned."});
+          {-1000, 1000, "Placements of lower log odds are not turned."});
   }
 };
 
@@ -255,12 +237,11 @@ struct RivalOptions {
   double max_behind = 6;
   double min_rival_score = -5;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("max_behind", max_behind,
-          FieldRule{0, 1000, "Placements this far behind the best in log odds are no rivals."});
+          {0, 1000, "Placements this far behind the best in log odds are no rivals."});
     visit("min_rival_score", min_rival_score,
-          FieldRule{-1000, 1000, "Places whose best has lower log odds are not compared."});
+          {-1000, 1000, "Places whose best has lower log odds are not compared."});
   }
 };
 
@@ -270,16 +251,14 @@ struct SelectOptions {
   double duplicate_m = 0.008;
   double duplicate_rad = 0.1;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
-    visit("min_score", min_score,
-          FieldRule{-1e9, 1e9, "Placements of lower log odds are rejected."});
+  void visit_fields(auto&& visit) {
+    visit("min_score", min_score, {-1e9, 1e9, "Placements of lower log odds are rejected."});
     visit("max_placements", max_placements,
-          FieldRule{1, 10000, "Placements of one model that are returned (section VI)."});
+          {1, 10000, "Placements of one model that are returned (section VI)."});
     visit("duplicate_m", duplicate_m,
-          FieldRule{0, 1, "Non-maximum suppression: largest distance of duplicates, metres."});
+          {0, 1, "Non-maximum suppression: largest distance of duplicates, metres."});
     visit("duplicate_rad", duplicate_rad,
-          FieldRule{0, 3.2, "Non-maximum suppression: largest turn of duplicates, radians."});
+          {0, 3.2, "Non-maximum suppression: largest turn of duplicates, radians."});
   }
 };
 
@@ -287,14 +266,13 @@ struct ScoreOptions {
   bool use_round_three = true;
   int quick_points = 200;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("use_round_three", use_round_three,
-          FieldRule{0, 1,
-                    "Score with edges, random walks, segments, features, colours and rivals; false "
-                    "leaves these components unknown."});
+          {0, 1,
+           "Score with edges, random walks, segments, features, colours and rivals; false "
+           "leaves these components unknown."});
     visit("quick_points", quick_points,
-          FieldRule{1, 100000, "Surface points that round two scores a placement with."});
+          {1, 100000, "Surface points that round two scores a placement with."});
   }
 };
 
@@ -312,8 +290,7 @@ struct DetectOptions {
   RivalOptions rivals;
   SelectOptions select;
 
-  template <class Visitor>
-  void visit_groups(Visitor&& visit) {
+  void visit_groups(auto&& visit) {
     visit("align", align, "What alignments use.");
     visit("score", score, "What placements are scored with.");
     visit("sample", sample, "Poses from features, point pairs and priors.");

@@ -23,8 +23,7 @@ Status broken(const std::string& name, const std::string& field, double value,
   return invalid_argument(text.str());
 }
 
-template <class Matrix>
-Status check_finite(const std::string& name, const std::string& field, const Matrix& values) {
+Status check_finite(const std::string& name, const std::string& field, const auto& values) {
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values(i))) return broken(name, field, values(i), "finite");
   }

@@ -25,30 +25,28 @@ struct InterpretationOptions {
   int max_interpretations = 100;
   std::uint64_t seed = 0;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("min_probability", min_probability,
-          FieldRule{0, 1,
-                    "Placements less probable than this are not part of the best "
-                    "interpretation."});
+          {0, 1,
+           "Placements less probable than this are not part of the best "
+           "interpretation."});
     visit("object_penalty", object_penalty,
-          FieldRule{0, 100, "Log odds that each further object of an interpretation costs."});
+          {0, 100, "Log odds that each further object of an interpretation costs."});
     visit("explained_weight", explained_weight,
-          FieldRule{0, 1000, "Weight of the ratio of explained to observed surface."});
+          {0, 1000, "Weight of the ratio of explained to observed surface."});
     visit("max_shared", max_shared,
-          FieldRule{0, 1, "Share of the smaller one's pixels that two placements may share."});
+          {0, 1, "Share of the smaller one's pixels that two placements may share."});
     visit("annealing_steps", annealing_steps,
-          FieldRule{0, 10000000, "Moves of simulated annealing (paper section VI)."});
+          {0, 10000000, "Moves of simulated annealing (paper section VI)."});
     visit("start_temperature", start_temperature,
-          FieldRule{0, 1000, "Temperature of the first move, in units of the score."});
+          {0, 1000, "Temperature of the first move, in units of the score."});
     visit("end_temperature", end_temperature,
-          FieldRule{1e-6, 1000, "What the temperature has fallen to at the last move."});
-    visit("min_shown", min_shown,
-          FieldRule{0, 1, "Less probable placements are in no interpretation."});
+          {1e-6, 1000, "What the temperature has fallen to at the last move."});
+    visit("min_shown", min_shown, {0, 1, "Less probable placements are in no interpretation."});
     visit("max_different", max_different,
-          FieldRule{1, 100, "Interpretations that show something new, with the best."});
+          {1, 100, "Interpretations that show something new, with the best."});
     visit("max_interpretations", max_interpretations,
-          FieldRule{1, 100, "Best interpretations kept (paper section VI: 100)."});
+          {1, 100, "Best interpretations kept (paper section VI: 100)."});
   }
 };
 

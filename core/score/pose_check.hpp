@@ -33,16 +33,15 @@ struct CheckTolerance {
   double free_depth_m = 0.030;
   double normal_cosine = 0.75;
 
-  template <class Visitor>
-  void visit_fields(Visitor&& visit) {
+  void visit_fields(auto&& visit) {
     visit("depth_m", depth_m,
-          FieldRule{1e-4, 1, "Depth difference of a model point on the surface, metres."});
+          {1e-4, 1, "Depth difference of a model point on the surface, metres."});
     visit("free_depth_m", free_depth_m,
-          FieldRule{1e-4, 1,
-                    "A point this far in front of the surface is in free space, metres. The paper "
-                    "has 0.05 (V.3)."});
+          {1e-4, 1,
+           "A point this far in front of the surface is in free space, metres. The paper "
+           "has 0.05 (V.3)."});
     visit("normal_cosine", normal_cosine,
-          FieldRule{-1, 1, "Smallest cosine between the normals of model and surface."});
+          {-1, 1, "Smallest cosine between the normals of model and surface."});
   }
 };
 

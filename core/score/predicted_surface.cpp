@@ -30,9 +30,8 @@ struct DrawnPoint {
 };
 
 // Of the points with these indices.
-template <class Indices>
 std::vector<DrawnPoint> facing_points(const CheckImage& image, const ObjectModel& model,
-                                      const Indices& indices, const FastPose& pose) {
+                                      const auto& indices, const FastPose& pose) {
   std::vector<DrawnPoint> drawn;
   drawn.reserve(indices.size());
   for (const std::uint32_t i : indices) {

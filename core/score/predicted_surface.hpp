@@ -26,8 +26,7 @@ struct PredictedSurface {
   }
   /// Calls visit(u, v, depth, point) for every pixel of the image that the model covers, row by
   /// row.
-  template <class Visit>
-  void for_each(const Visit& visit) const {
+  void for_each(const auto& visit) const {
     for (int y = 0; y < depth.height; ++y) {
       for (int x = 0; x < depth.width; ++x) {
         if (depth.at(x, y) > 0) visit(u0 + x, v0 + y, depth.at(x, y), point.at(x, y));

@@ -64,9 +64,8 @@ float log_likelihood(const PredictedSurface& predicted, int u, int v, float obse
 }
 
 // Over the pixels of `first` where `second` disagrees.
-template <class Visit>
 void for_each_difference(const CheckImage& image, const PredictedSurface& first,
-                         const PredictedSurface& second, const Visit& visit) {
+                         const PredictedSurface& second, const auto& visit) {
   first.for_each([&](int u, int v, float depth, std::uint32_t) {
     if (!agrees(second, u, v, depth, tolerance(image, depth))) visit(u, v);
   });

@@ -69,8 +69,7 @@ msgs::Placement placement_message(const Placement& placement, std::uint32_t inst
 }
 
 /// Calls visit(placement, "MODEL_INSTANCE") for the best interpretation.
-template <class Visit>
-void for_each_best(const SceneInterpretations& result, Visit visit) {
+void for_each_best(const SceneInterpretations& result, auto visit) {
   if (result.interpretations.empty()) return;
   std::map<std::string, int> instances;
   for (const Placement& placement : result.interpretations.front().placements) {
