@@ -3,7 +3,6 @@
 #include "core/pipeline/score_layer_file.hpp"
 
 #include "core/io/file_bytes.hpp"
-#include "core/score/score_layer_json.hpp"
 
 namespace bpa {
 

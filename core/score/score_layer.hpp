@@ -50,6 +50,14 @@ struct ScoreLayers {
 /// A library may have layers of its own (`bpa train`).
 const ScoreLayers& default_score_layers();
 
+/// The layers as JSON, each component by its name.
+std::string to_json(const ScoreLayers& layers);
+
+/// Fails with corrupt (naming `where` and what is wrong) on a text that is not JSON, is of another
+/// version, lacks a layer or names an unknown score component. A component that a layer lacks adds
+/// nothing to its log odds.
+Result<ScoreLayers> score_layers_from_json(const std::string& text, const std::string& where);
+
 /// The probability of log odds.
 inline double probability_of(double log_odds) { return 1 / (1 + std::exp(-log_odds)); }
 

@@ -1,13 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/score/score_layer_json.hpp"
-
 #include <algorithm>
+#include <cassert>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
 
+#include "core/score/score_layer.hpp"
+
 namespace bpa {
+
+// The text of config/score_layers.json when the library was built; CMakeLists.txt writes it.
+extern const char* const kBuiltInLayers;
+
 namespace {
 
 constexpr int kVersion = 4;
@@ -67,6 +72,15 @@ Result<ScoreLayers> score_layers_from_json(const std::string& text, const std::s
   } catch (const std::exception& error) {
     return corrupt(where, std::string("does not have the expected content: ") + error.what());
   }
+}
+
+const ScoreLayers& default_score_layers() {
+  static const ScoreLayers layers = [] {
+    Result<ScoreLayers> read = score_layers_from_json(kBuiltInLayers, "the built-in score layers");
+    assert(read.ok());
+    return *read;
+  }();
+  return layers;
 }
 
 }  // namespace bpa
