@@ -21,7 +21,8 @@ function(bpa_compile_options target)
     -Woverloaded-virtual -Werror
     -fno-math-errno -fno-trapping-math)
   if(BPA_SANITIZE_ADDRESS)
-    target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-omit-frame-pointer)
+    target_compile_options(${target} PRIVATE
+      -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
   endif()
   if(BPA_SANITIZE_THREAD)
