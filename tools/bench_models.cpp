@@ -10,7 +10,7 @@
 
 #include "core/base/stopwatch.hpp"
 #include "core/cloud/neighbor_grid.hpp"
-#include "core/geometry/fast_pose.hpp"
+#include "core/geometry/pose.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/mesh_file.hpp"
 #include "core/io/model_file.hpp"

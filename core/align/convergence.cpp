@@ -9,7 +9,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/cloud/neighbor_grid.hpp"
-#include "core/geometry/fast_pose.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace bpa::align {
 namespace {

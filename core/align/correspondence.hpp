@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/align/oriented_point.hpp"
-#include "core/geometry/position_prior.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace bpa::align {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-#include "core/geometry/fast_pose.hpp"
+#include "core/geometry/pose.hpp"
 #include "core/model/model_index.hpp"
 #include "core/observation/scene_features.hpp"
 

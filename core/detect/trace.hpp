@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/geometry/fast_pose.hpp"
+#include "core/geometry/pose.hpp"
 
 // The candidates of one model after each stage, for training, experiments and pictures.
 

@@ -7,7 +7,7 @@
 
 #include "core/cloud/frame.hpp"
 #include "core/draw/annotate.hpp"
-#include "core/geometry/fast_pose.hpp"
+#include "core/geometry/pose.hpp"
 #include "core/io/image_file.hpp"
 
 namespace bpa::draw {

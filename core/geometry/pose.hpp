@@ -48,4 +48,27 @@ Eigen::Vector3d vector_from_rotation(const Eigen::Quaterniond& q);
 /// True when rotation and translation are finite and the quaternion has unit length within 1e-6.
 bool is_valid(const Pose& pose);
 
+/// A rigid transform in single precision, as a matrix, for inner loops.
+struct FastPose {
+  Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();
+  Eigen::Vector3f translation = Eigen::Vector3f::Zero();  ///< Metres.
+
+  Eigen::Vector3f operator*(const Eigen::Vector3f& point) const {
+    return rotation * point + translation;
+  }
+};
+
+inline FastPose to_fast(const Pose& pose) {
+  return {pose.matrix().cast<float>(), pose.translation.cast<float>()};
+}
+inline Pose to_pose(const FastPose& pose) {
+  return Pose::from_matrix(pose.rotation.cast<double>(), pose.translation.cast<double>());
+}
+
+/// A Gaussian of a position: where an object's origin is in the camera frame.
+struct PositionPrior {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();            ///< Metres.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< m².
+};
+
 }  // namespace bpa

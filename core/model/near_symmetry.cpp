@@ -8,7 +8,7 @@
 #include <cmath>
 #include <functional>
 
-#include "core/geometry/fast_pose.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace bpa {
 namespace {

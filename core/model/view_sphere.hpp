@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/cloud/point_cloud.hpp"
-#include "core/geometry/fast_pose.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace bpa {
 

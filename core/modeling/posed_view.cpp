@@ -9,7 +9,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
-#include "core/geometry/fast_pose.hpp"
+#include "core/geometry/pose.hpp"
 #include "core/model/view_sphere.hpp"
 
 namespace bpa {

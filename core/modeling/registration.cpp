@@ -12,7 +12,7 @@
 #include "core/base/random.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/features/pair_voting.hpp"
-#include "core/geometry/fast_pose.hpp"
+#include "core/geometry/pose.hpp"
 #include "core/geometry/symmetry.hpp"
 #include "core/model/distance_transform.hpp"
 #include "core/modeling/private/select.hpp"

@@ -15,7 +15,7 @@
 #include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
-#include "core/geometry/fast_pose.hpp"
+#include "core/geometry/pose.hpp"
 #include "core/modeling/private/select.hpp"
 #include "core/modeling/turntable.hpp"
 

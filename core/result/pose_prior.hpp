@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/geometry/position_prior.hpp"
+#include "core/geometry/pose.hpp"
 #include "core/result/placement.hpp"
 
 namespace bpa {

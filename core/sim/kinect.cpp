@@ -12,7 +12,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
-#include "core/geometry/fast_pose.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace bpa::sim {
 namespace {
