@@ -19,8 +19,7 @@ bool agree(float depth, float median) {
   return std::abs(depth - median) <= kFusionAgreement * depth_noise(median);
 }
 
-template <class T>
-std::string changed(const char* field, const T& from, const T& to) {
+std::string changed(const char* field, const auto& from, const auto& to) {
   return concat(field, " changed from ", from, " to ", to);
 }
 

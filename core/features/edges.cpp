@@ -9,7 +9,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/cloud/blur.hpp"
-#include "core/cloud/surface_break.hpp"
+#include "core/cloud/surface_map.hpp"
 
 namespace bpa {
 namespace {

@@ -27,7 +27,7 @@ struct RangeEdgeOptions {
   }
 };
 
-/// Depth discontinuities (paper section V), from each pixel to the next one with a depth in the
+/// Depth discontinuities (paper, V.2), from each pixel to the next one with a depth in the
 /// four directions of the grid. See surface_breaks() for what is one. Sensors with a projector see
 /// nothing beside an edge; the gap does not count, unless it is longer than max_gap_px.
 Image<RangeEdge> range_edges(const SurfaceMap& map, const RangeEdgeOptions& options = {});
@@ -78,7 +78,7 @@ struct HollowMap {
 constexpr int kHollowDirections[4][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}};
 HollowMap hollow_map(const SurfaceMap& map, const CurvatureEdgeOptions& options = {});
 
-/// High negative curvature (paper section V), where objects touch: 1 along the bottom of a hollow,
+/// High negative curvature (paper, V.2), where objects touch: 1 along the bottom of a hollow,
 /// which is where the lowest curvature is lower than on either side, else 0.
 Image<std::uint8_t> curvature_edges(const SurfaceMap& map,
                                     const CurvatureEdgeOptions& options = {});
@@ -110,7 +110,7 @@ struct SceneEdges {
   Image<float> likelihood;        ///< The edge image, in [0, 1].
 };
 
-/// The edge image (paper section V): the spatially blurred, weighted average of the three masks,
+/// The edge image (paper, V.2): the spatially blurred, weighted average of the three masks,
 /// the relative likelihood that a pixel is on the boundary of an object. In units of the strongest
 /// evidence: 1 (where it is cut off) on a straight line that is an edge of the kind of the largest
 /// weight.

@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-#include "core/cloud/surface_break.hpp"
+#include "core/cloud/surface_map.hpp"
 #include "core/segment/pixel_features.hpp"
 
 namespace bpa::detail {
@@ -132,8 +132,7 @@ struct Connector {
         if (other == own || surface_breaks(map, i, j)) return;
         const bool fringe = core[own] == 0 || core[other] == 0;
         if (!fringe && (strong(i) || strong(j))) return;
-        auto found = std::find_if(contacts.begin(), contacts.end(),
-                                  [other](const Contact& c) { return c.root == other; });
+        auto found = std::ranges::find(contacts, other, &Contact::root);
         if (found == contacts.end()) found = contacts.insert(found, {other, 0, 0});
         ++found->count;
         found->difference += difference(i, j);

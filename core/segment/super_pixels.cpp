@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/cloud/surface_break.hpp"
+#include "core/cloud/surface_map.hpp"
 #include "core/segment/pixel_features.hpp"
 
 namespace bpa {

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/cloud/surface_break.hpp"
-
 #include <gtest/gtest.h>
 
+#include "core/cloud/surface_map.hpp"
 #include "tests/support/solid_scene.hpp"
 
 namespace bpa {

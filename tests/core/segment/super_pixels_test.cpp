@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "core/cloud/cielab.hpp"
-#include "core/cloud/surface_break.hpp"
+#include "core/cloud/surface_map.hpp"
 #include "core/features/edges.hpp"
 #include "tests/support/solid_scene.hpp"
 
