@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/align/align.hpp"
-#include "core/bingham/mixture.hpp"
+#include "core/bingham/bingham.hpp"
 
 namespace bpa::align {
 

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/bingham/bingham.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/bingham/normalizer.hpp"
 
@@ -85,15 +87,11 @@ double Bingham::entropy() const {
 }
 
 Bingham Bingham::rotated_left(const Quaterniond& r) const {
-  Bingham result = *this;
-  result.axes_ = left_product(r) * axes_;
-  return result;
+  return Bingham({lambda_, left_product(r) * axes_});
 }
 
 Bingham Bingham::rotated_right(const Quaterniond& r) const {
-  Bingham result = *this;
-  result.axes_ = right_product(r) * axes_;
-  return result;
+  return Bingham({lambda_, right_product(r) * axes_});
 }
 
 Bingham Bingham::inverse() const {
@@ -162,6 +160,33 @@ Matrix4d right_product(const Quaterniond& r) {
       r.y(), -r.z(), r.w(), r.x(),     //
       r.z(), r.y(), -r.x(), r.w();
   return m;
+}
+
+double BinghamMixture::log_density(const Eigen::Quaterniond& q) const {
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const Component& c : components) {
+    largest = std::max(largest, std::log(c.weight) + c.bingham.log_density(q));
+  }
+  double sum = 0;
+  for (const Component& c : components) {
+    sum += std::exp(std::log(c.weight) + c.bingham.log_density(q) - largest);
+  }
+  return largest + std::log(sum);
+}
+
+Eigen::Matrix4d BinghamMixture::scatter() const {
+  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+  for (const Component& c : components) sum += c.weight * c.bingham.scatter();
+  return sum;
+}
+
+Eigen::Quaterniond BinghamMixture::sample(RandomStream& random) const {
+  double left = random.uniform();
+  for (const Component& c : components) {
+    left -= c.weight;
+    if (left < 0) return c.bingham.sample(random);
+  }
+  return components.empty() ? Bingham().sample(random) : components.back().bingham.sample(random);
 }
 
 }  // namespace bpa

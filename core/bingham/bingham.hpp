@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <span>
+#include <vector>
 
 #include "core/base/random.hpp"
 #include "core/bingham/eigen4.hpp"
@@ -86,5 +87,18 @@ Eigen::Vector4d sample_diagonal_bingham(const Eigen::Vector4d& lambda, RandomStr
 /// The 4x4 matrices of multiplication: left_product(r) q = r ∘ q and right_product(r) q = q ∘ r.
 Eigen::Matrix4d left_product(const Eigen::Quaterniond& r);
 Eigen::Matrix4d right_product(const Eigen::Quaterniond& r);
+
+/// A weighted sum of Binghams: orientations that a view cannot decide between.
+struct BinghamMixture {
+  struct Component {
+    double weight = 1;  ///< Positive; the weights of a mixture sum to 1.
+    Bingham bingham;
+  };
+  std::vector<Component> components;
+
+  double log_density(const Eigen::Quaterniond& q) const;
+  Eigen::Matrix4d scatter() const;
+  Eigen::Quaterniond sample(RandomStream& random) const;
+};
 
 }  // namespace bpa
