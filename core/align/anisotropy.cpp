@@ -234,11 +234,6 @@ RefinedPose refine(const Correspondences& data, const PositionModel& positions, 
   return result;
 }
 
-bool is_isotropic(const Correspondences& data, const Anisotropy& anisotropy) {
-  return anisotropy.oriented.empty() && anisotropy.positions.empty() &&
-         data.position_prior == nullptr;
-}
-
 // The isotropic mixture and, for each of its components, a Bingham with the covariance of the true
 // posterior's maximum nearby; half of the weight each.
 BinghamMixture orientation_proposal(const Correspondences& data, const Posterior& isotropic,
@@ -257,23 +252,18 @@ BinghamMixture orientation_proposal(const Correspondences& data, const Posterior
   return mixture;
 }
 
-// (Σ w)² / Σ w²: how many equally weighted draws the samples are worth.
-double effective_sample_size(const std::vector<WeightedPose>& samples) {
-  double sum = 0, squares = 0;
-  for (const WeightedPose& s : samples) {
-    sum += s.weight;
-    squares += s.weight * s.weight;
-  }
-  return squares > 0 ? sum * sum / squares : 0;
-}
-
-// Turns log weights, kept in `weight`, into weights that sum to 1.
+// Turns log weights, kept in `weight`, into weights that sum to 1; and says what they are worth.
 void normalize_log_weights(SampledPosterior& result) {
   double largest = -INFINITY, sum = 0;
   for (const WeightedPose& s : result.samples) largest = std::max(largest, s.weight);
   for (WeightedPose& s : result.samples) sum += (s.weight = std::exp(s.weight - largest));
-  for (WeightedPose& s : result.samples) s.weight /= sum;
-  result.effective_sample_size = effective_sample_size(result.samples);
+  double share = 0, squares = 0;
+  for (WeightedPose& s : result.samples) {
+    s.weight /= sum;
+    share += s.weight;
+    squares += s.weight * s.weight;
+  }
+  result.effective_sample_size = squares > 0 ? share * share / squares : 0;
 }
 
 }  // namespace
@@ -288,11 +278,12 @@ SampledPosterior sample_posterior(const Correspondences& data, const Anisotropy&
                                   const PosteriorOptions& options) {
   const Posterior isotropic = posterior(data, options);
   const PositionModel positions(position_terms(data, anisotropy));
-  const BinghamMixture proposal = is_isotropic(data, anisotropy)
-                                      ? isotropic.orientation
-                                      : orientation_proposal(data, isotropic, positions);
+  const bool exact =
+      anisotropy.oriented.empty() && anisotropy.positions.empty() && data.position_prior == nullptr;
+  const BinghamMixture proposal =
+      exact ? isotropic.orientation : orientation_proposal(data, isotropic, positions);
   SampledPosterior result;
-  result.samples.resize(static_cast<std::size_t>(std::max(0, count)));
+  result.samples.resize(std::max(0, count));
   for (WeightedPose& s : result.samples) {
     Pose& pose = s.camera_from_object;
     pose.rotation = proposal.sample(random);

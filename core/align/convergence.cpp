@@ -14,19 +14,6 @@
 namespace bpa::align {
 namespace {
 
-OrientedPoint oriented_point(const PointCloud& cloud, std::size_t i, bool curvature) {
-  OrientedPoint out;
-  out.point = cloud.points[i].cast<double>();
-  const Eigen::Vector3d normal = cloud.normals[i].cast<double>();
-  if (!curvature || cloud.principal_directions.empty() || cloud.curvatures.empty()) {
-    out.orientation = feature_orientation(normal);
-    return out;
-  }
-  out.orientation = feature_orientation(normal, cloud.principal_directions[i].cast<double>());
-  out.lambda3 = curvature_concentration(cloud.curvatures[i].x(), cloud.curvatures[i].y());
-  return out;
-}
-
 // Finds correspondences of one placement.
 class Matcher {
  public:
@@ -64,8 +51,7 @@ class Matcher {
       const int size = static_cast<int>(patch.size());
       int fitting = 0;
       for (int k = 0; k < kFitSamples; ++k) {
-        const std::size_t i = patch[static_cast<std::size_t>(random.index(size))];
-        fitting += fits(object_from_camera, i) ? 1 : 0;
+        fitting += fits(object_from_camera, patch[random.index(size)]);
       }
       if (random.uniform() * kFitSamples < fitting) {
         assigned.insert(assigned.end(), patch.begin(), patch.end());
@@ -73,16 +59,14 @@ class Matcher {
     }
     if (assigned.empty()) return;
     for (int tries = 0; tries < 4 * options_.points; ++tries) {
-      const std::size_t i =
-          assigned[static_cast<std::size_t>(random.index(static_cast<int>(assigned.size())))];
+      const std::size_t i = assigned[random.index(static_cast<int>(assigned.size()))];
       const Eigen::Vector3f p = object_from_camera * scene_.points[i];
       const Eigen::Vector3f n = object_from_camera.rotation * scene_.normals[i];
       const int nearest = nearest_model_point(model_grid_, p, n);
       if (nearest < 0) continue;
-      matches.oriented.push_back(
-          {oriented_point(model_, static_cast<std::size_t>(nearest), curvature),
-           oriented_point(scene_, i, curvature), options_.sigma_m});
-      if (static_cast<int>(matches.oriented.size()) == options_.points) break;
+      matches.oriented.push_back({oriented_point(model_, nearest, curvature),
+                                  oriented_point(scene_, i, curvature), options_.sigma_m});
+      if (std::ssize(matches.oriented) == options_.points) break;
     }
   }
 
@@ -99,14 +83,14 @@ class Matcher {
       int nearest = -1;
       float least = INFINITY;
       grid.for_each_neighbor(near.points[k], [&](int c, float squared) {
-        const float facing = centres.normals[static_cast<std::size_t>(c)].dot(near.normals[k]);
+        const float facing = centres.normals[c].dot(near.normals[k]);
         const float cost = squared / (size * size) + 2 * (1 - facing);
         if (cost < least) {
           least = cost;
           nearest = c;
         }
       });
-      if (nearest >= 0) patches_[static_cast<std::size_t>(nearest)].push_back(indices[k]);
+      if (nearest >= 0) patches_[nearest].push_back(indices[k]);
     }
     std::erase_if(patches_, [](const std::vector<std::size_t>& p) { return p.size() < 3; });
   }
@@ -117,7 +101,7 @@ class Matcher {
     int nearest = -1;
     float least = INFINITY;
     grid.for_each_neighbor(p, [&](int index, float squared) {
-      if (squared < least && model_.normals[static_cast<std::size_t>(index)].dot(n) > 0) {
+      if (squared < least && model_.normals[index].dot(n) > 0) {
         least = squared;
         nearest = index;
       }
@@ -130,8 +114,7 @@ class Matcher {
     if (p.norm() > radius_ + static_cast<float>(options_.assign_m)) return false;
     const Eigen::Vector3f n = object_from_camera.rotation * scene_.normals[i];
     const int nearest = nearest_model_point(fit_grid_, p, n);
-    return nearest >= 0 &&
-           model_.normals[static_cast<std::size_t>(nearest)].dot(n) > fitting_cosine_;
+    return nearest >= 0 && model_.normals[nearest].dot(n) > fitting_cosine_;
   }
 
   const TruePlacement& placement_;
@@ -156,42 +139,59 @@ Pose disturb(const Pose& truth, const ConvergenceOptions& options, RandomStream&
 ConvergenceCurve run_trial(const Matcher& matcher, const Pose& start, Method method, bool curvature,
                            RandomStream random, int iterations) {
   const TruePlacement& placement = matcher.placement();
-  IterationOptions iteration;
-  iteration.method = method;
-  iteration.max_iterations = iterations;
   const MatchFunction match = [&](const Pose& pose, Matches& matches) {
     matcher.find(pose, curvature, random, matches);
   };
-  const IterationResult result = iterate(start, match, iteration);
+  std::vector<Pose> poses =
+      iterate(start, match, {.method = method, .max_iterations = iterations}).poses;
+  poses.insert(poses.begin(), start);
   ConvergenceCurve curve;
   double position = INFINITY, angle = INFINITY;
-  for (int k = 0; k <= iterations; ++k) {
-    const auto step = static_cast<std::size_t>(k);
-    if (step <= result.poses.size()) {
-      const PoseError error = pose_error(k == 0 ? start : result.poses[step - 1],
-                                         placement.camera_from_object, placement.symmetry);
-      position = std::min(position, error.position);
-      angle = std::min(angle, error.angle);
-    }
+  for (const Pose& pose : poses) {
+    const PoseError error = pose_error(pose, placement.camera_from_object, placement.symmetry);
+    position = std::min(position, error.position);
+    angle = std::min(angle, error.angle);
     curve.position_m.push_back(position);
     curve.angle_rad.push_back(angle);
   }
   return curve;
 }
 
-void add_mean(const std::vector<ConvergenceCurve>& curves, ConvergenceCurve& mean) {
-  const double share = 1.0 / static_cast<double>(curves.size());
-  for (const ConvergenceCurve& curve : curves) {
-    mean.position_m.resize(curve.position_m.size(), 0);
-    mean.angle_rad.resize(curve.angle_rad.size(), 0);
-    for (std::size_t k = 0; k < curve.position_m.size(); ++k) {
-      mean.position_m[k] += share * curve.position_m[k];
-      mean.angle_rad[k] += share * curve.angle_rad[k];
-    }
+void add(const ConvergenceCurve& curve, double share, ConvergenceCurve& mean) {
+  mean.position_m.resize(curve.position_m.size(), 0);
+  mean.angle_rad.resize(curve.angle_rad.size(), 0);
+  for (std::size_t k = 0; k < curve.position_m.size(); ++k) {
+    mean.position_m[k] += share * curve.position_m[k];
+    mean.angle_rad[k] += share * curve.angle_rad[k];
   }
 }
 
 }  // namespace
+
+IterationResult iterate(const Pose& start, const MatchFunction& match,
+                        const IterationOptions& options) {
+  IterationResult result;
+  result.estimate.camera_from_object = start;
+  Matches matches;
+  for (int step = 0; step < options.max_iterations && !result.converged; ++step) {
+    const Pose before = result.estimate.camera_from_object;
+    matches.oriented.clear();
+    matches.positions.clear();
+    match(before, matches);
+    if (std::ssize(matches.oriented) + std::ssize(matches.positions) < options.min_matches) {
+      result.poses.push_back(before);  // The next matches may be others.
+      continue;
+    }
+    const Correspondences data{.oriented = matches.oriented, .positions = matches.positions};
+    result.estimate = options.method == Method::bpa ? bpa_mode(data) : icp_mode(data);
+    const Pose& after = result.estimate.camera_from_object;
+    result.poses.push_back(after);
+    const double moved = (after.translation - before.translation).norm();
+    const double turned = rotation_angle(after.rotation, before.rotation);
+    result.converged = moved < options.position_tol_m && turned < options.angle_tol_rad;
+  }
+  return result;
+}
 
 ConvergenceResult run_convergence(const std::vector<TruePlacement>& placements,
                                   const ConvergenceOptions& options) {
@@ -199,27 +199,23 @@ ConvergenceResult run_convergence(const std::vector<TruePlacement>& placements,
   for (const TruePlacement& p : placements)
     matchers.push_back(std::make_unique<Matcher>(p, options));
   const int trials = static_cast<int>(placements.size()) * options.starts;
-  std::vector<ConvergenceCurve> bpa(static_cast<std::size_t>(trials));
-  std::vector<ConvergenceCurve> normals(bpa.size()), icp(bpa.size());
+  std::vector<ConvergenceResult> results(trials);
   parallel_for(trials, options.num_threads, [&](int trial) {
-    const auto t = static_cast<std::size_t>(trial);
-    const auto p = static_cast<std::size_t>(trial / options.starts);
-    RandomStream random(options.seed, t);
+    const int p = trial / options.starts;
+    RandomStream random(options.seed, static_cast<std::uint64_t>(trial));
     const Pose start = disturb(placements[p].camera_from_object, options, random);
     const auto run = [&](Method method, bool curvature) {
       return run_trial(*matchers[p], start, method, curvature, random, options.iterations);
     };
-    bpa[t] = run(Method::bpa, true);
-    normals[t] = run(Method::bpa, false);
-    icp[t] = run(Method::icp, false);
+    results[trial] = {run(Method::bpa, true), run(Method::bpa, false), run(Method::icp, false), 1};
   });
-  ConvergenceResult result;
-  result.trials = trials;
-  if (trials == 0) return result;
-  add_mean(bpa, result.bpa);
-  add_mean(normals, result.bpa_normals);
-  add_mean(icp, result.icp);
-  return result;
+  ConvergenceResult mean{.trials = trials};
+  for (const ConvergenceResult& result : results) {
+    add(result.bpa, 1.0 / trials, mean.bpa);
+    add(result.bpa_normals, 1.0 / trials, mean.bpa_normals);
+    add(result.icp, 1.0 / trials, mean.icp);
+  }
+  return mean;
 }
 
 }  // namespace bpa::align

@@ -3,12 +3,67 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <span>
 
-#include "core/align/oriented_point.hpp"
+#include "core/bingham/bingham.hpp"
+#include "core/cloud/point_cloud.hpp"
 #include "core/geometry/pose.hpp"
 
 namespace bpa::align {
+
+/// The paper's κ: the concentration of a feature's normal (appendix). A normal tilts by an angle of
+/// standard deviation sqrt(-1 / (2 κ)) * 2 = 8.1 degrees about each axis.
+inline constexpr double kNormalConcentration = -100;
+
+/// A point with an orientation: the rotation matrix [n p n×p] of its normal and its principal
+/// curvature direction (paper, appendix), both in the frame of `point`.
+///
+/// Its uncertainty is a Bingham in the feature's own frame: a deviation e = (ew, ex, ey, ez) has
+/// exponent lambda3 ex² + kappa (ey² + ez²): ex turns about the normal, ey and ez tilt it.
+struct OrientedPoint {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();                  ///< Metres.
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< Columns n, p, n×p.
+  double kappa = kNormalConcentration;  ///< Of the normal, ≤ 0; 0 = no orientation at all.
+  double lambda3 = 0;  ///< Of the curvature direction, in [kappa, 0]; 0 = only the normal counts.
+};
+
+/// The orientation [n p n×p] of a unit normal and a curvature direction; p is made orthogonal to n,
+/// and where it is parallel or not finite, any direction orthogonal to n takes its place.
+Eigen::Quaterniond feature_orientation(const Eigen::Vector3d& normal,
+                                       const Eigen::Vector3d& principal_direction);
+
+/// The same for a normal alone: an arbitrary but fixed direction orthogonal to it.
+Eigen::Quaterniond feature_orientation(const Eigen::Vector3d& normal);
+
+/// Point `index` of a cloud with normals; with its curvature direction where that is wanted and the
+/// cloud has them.
+OrientedPoint oriented_point(const PointCloud& cloud, std::size_t index, bool with_curvature);
+
+/// λ3 = max{10 (1 - c1 / c2), κ} of the principal curvatures c1 ≥ c2 ≥ 0 (eigenvalues of the
+/// covariance of the normals nearby; paper, appendix): 0 where the surface is flat or round, κ
+/// where it bends one way only. 0 when the ratio is not a number, as on a plane without noise.
+double curvature_concentration(double c1, double c2, double kappa = kNormalConcentration);
+
+/// The same normal with the curvature direction reversed, q ∘ i: (q1, q2, q3, q4) becomes
+/// (-q2, q1, q4, -q3) (paper, appendix).
+inline Eigen::Quaterniond reversed_curvature(const Eigen::Quaterniond& q) {
+  return Eigen::Quaterniond(-q.x(), q.w(), q.z(), -q.y());
+}
+
+/// The Bingham of a feature's true orientation given the observed one (paper, appendix).
+Bingham feature_bingham(const OrientedPoint& feature);
+
+/// Concentrations of the deviation between two features seen independently, each with its own.
+struct FeatureConcentration {
+  double kappa = 0;
+  double lambda3 = 0;
+};
+
+/// Both the model's and the scene's feature are uncertain, and q = q_scene ∘ q_model⁻¹ inherits
+/// both uncertainties. The result's second moments match those of the convolution: exactly where
+/// both are concentrated, uniform or zero, within 8 % of the concentration in between (README.md).
+FeatureConcentration compose(const OrientedPoint& model, const OrientedPoint& scene);
 
 /// A model point (object frame) and the scene point (camera frame) it is thought to be, whose
 /// distance under the true pose is Gaussian with standard deviation sigma along each axis. Metres.

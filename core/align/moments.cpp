@@ -22,23 +22,31 @@ Vector3d normal_of(const Quaterniond& q) {
           2 * (q.x() * q.z() - q.w() * q.y())};
 }
 
+// Calls visit(model, scene, weight, pair) for everything that has a position; `pair` is null where
+// it has no orientation.
+void for_each_position(const Correspondences& data, const auto& visit) {
+  for (const OrientedPair& pair : data.oriented) {
+    visit(pair.model.point, pair.scene.point, inverse_square(pair.sigma), &pair);
+  }
+  const OrientedPair* const none = nullptr;
+  for (const PositionPair& pair : data.positions) {
+    visit(pair.model, pair.scene, inverse_square(pair.sigma), none);
+  }
+  if (data.position_prior != nullptr) {  // A pair of the object's origin.
+    const PositionPrior& prior = *data.position_prior;
+    visit(Vector3d::Zero(), prior.mean, 1 / isotropic_variance(prior), none);
+  }
+}
+
 // Weighted centroids of everything that has a position.
 Moments centroids(const Correspondences& data) {
   Moments m;
-  const auto add = [&m](const Vector3d& model, const Vector3d& scene, double w) {
-    m.weight += w;
-    m.model_centroid += w * model;
-    m.scene_centroid += w * scene;
-  };
-  for (const OrientedPair& pair : data.oriented) {
-    add(pair.model.point, pair.scene.point, inverse_square(pair.sigma));
-  }
-  for (const PositionPair& pair : data.positions) {
-    add(pair.model, pair.scene, inverse_square(pair.sigma));
-  }
-  if (data.position_prior != nullptr) {  // A pair of the object's origin.
-    add(Vector3d::Zero(), data.position_prior->mean, 1 / isotropic_variance(*data.position_prior));
-  }
+  for_each_position(data,
+                    [&m](const Vector3d& model, const Vector3d& scene, double w, const void*) {
+                      m.weight += w;
+                      m.model_centroid += w * model;
+                      m.scene_centroid += w * scene;
+                    });
   if (m.weight > 0) {
     m.model_centroid /= m.weight;
     m.scene_centroid /= m.weight;
@@ -55,6 +63,7 @@ void add_position(const Vector3d& model, const Vector3d& scene, double weight, M
 void add_orientation(const OrientedPair& pair, Moments& m, CurvatureTerms& curvature) {
   // κ (ey² + ez²) = κ/2 (1 - cos n) and λ3 ex² = λ3/4 (1 + cos n - cos p - cos p'), where cos n is
   // the cosine between the two normals, turned by the pose.
+  if (!(pair.model.kappa * pair.scene.kappa > 0)) return;
   const FeatureConcentration c = compose(pair.model, pair.scene);
   const double weight = 0.25 * c.lambda3 - 0.5 * c.kappa;
   const Vector3d model_normal = normal_of(pair.model.orientation);
@@ -74,7 +83,7 @@ void add_orientation(const OrientedPair& pair, Moments& m, CurvatureTerms& curva
 }  // namespace
 
 void CurvatureTerms::add(const CurvatureTerm& term) {
-  if (count_ < kCapacity) kept_[static_cast<std::size_t>(count_)] = term;
+  if (count_ < kCapacity) kept_[count_] = term;
   ++count_;
   total_ += term.largest;
   if (term.largest > strongest_.largest) strongest_ = term;
@@ -82,17 +91,11 @@ void CurvatureTerms::add(const CurvatureTerm& term) {
 
 Moments accumulate(const Correspondences& data, CurvatureTerms& curvature) {
   Moments m = centroids(data);
-  for (const OrientedPair& pair : data.oriented) {
-    add_position(pair.model.point, pair.scene.point, inverse_square(pair.sigma), m);
-    if (pair.model.kappa * pair.scene.kappa > 0) add_orientation(pair, m, curvature);
-  }
-  for (const PositionPair& pair : data.positions) {
-    add_position(pair.model, pair.scene, inverse_square(pair.sigma), m);
-  }
-  if (data.position_prior != nullptr) {
-    add_position(Vector3d::Zero(), data.position_prior->mean,
-                 1 / isotropic_variance(*data.position_prior), m);
-  }
+  for_each_position(data, [&](const Vector3d& model, const Vector3d& scene, double weight,
+                              const OrientedPair* pair) {
+    add_position(model, scene, weight, m);
+    if (pair != nullptr) add_orientation(*pair, m, curvature);
+  });
   return m;
 }
 
@@ -100,19 +103,15 @@ Moments accumulate_positions(const Correspondences& data) {
   Correspondences bare = data;
   bare.position_prior = nullptr;
   Moments m = centroids(bare);
-  for (const OrientedPair& pair : data.oriented) {
-    add_position(pair.model.point, pair.scene.point, inverse_square(pair.sigma), m);
-  }
-  for (const PositionPair& pair : data.positions) {
-    add_position(pair.model, pair.scene, inverse_square(pair.sigma), m);
-  }
+  for_each_position(bare, [&m](const Vector3d& model, const Vector3d& scene, double weight,
+                               const void*) { add_position(model, scene, weight, m); });
   return m;
 }
 
 CurvatureTerm curvature_term(const OrientedPair& pair) {
   CurvatureTerms terms;
   Moments unused;
-  if (pair.model.kappa * pair.scene.kappa > 0) add_orientation(pair, unused, terms);
+  add_orientation(pair, unused, terms);
   return terms.strongest();
 }
 

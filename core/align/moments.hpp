@@ -78,7 +78,7 @@ Eigen::Matrix4d horn_matrix(const Eigen::Matrix3d& attitude);
 
 void CurvatureTerms::for_each(const Correspondences& data, auto&& visit) const {
   const int kept = count_ < kCapacity ? count_ : kCapacity;
-  for (int i = 0; i < kept; ++i) visit(kept_[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < kept; ++i) visit(kept_[i]);
   if (kept == count_) return;
   int seen = 0;
   for (const OrientedPair& pair : data.oriented) {

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/align/moments.hpp"
 #include "core/bingham/normalizer.hpp"
@@ -27,8 +28,6 @@ struct Hypothesis {
       : exponent(c), log_mass(bingham_log_normalizer(symmetric_eigen(c).values)) {}
 };
 
-bool heavier(const Hypothesis& a, const Hypothesis& b) { return a.log_mass > b.log_mass; }
-
 // Each curvature direction doubles the hypotheses; the light ones are dropped as we go.
 std::vector<Hypothesis> sign_hypotheses(const Correspondences& data, const Matrix4d& base,
                                         const CurvatureTerms& curvature,
@@ -42,13 +41,12 @@ std::vector<Hypothesis> sign_hypotheses(const Correspondences& data, const Matri
       next.emplace_back(h.exponent + exponent);
       next.emplace_back(h.exponent - exponent);
     }
-    std::stable_sort(next.begin(), next.end(), heavier);
-    std::size_t keep = 1;
-    while (keep < next.size() && keep < static_cast<std::size_t>(options.max_hypotheses) &&
-           next[keep].log_mass - next[0].log_mass > log_smallest) {
-      ++keep;
-    }
-    hypotheses.assign(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(keep));
+    std::ranges::stable_sort(next, std::greater(), &Hypothesis::log_mass);
+    const auto most = std::clamp<std::ptrdiff_t>(options.max_hypotheses, 1, next.size());
+    const auto light = [&](const Hypothesis& h) {
+      return !(h.log_mass - next[0].log_mass > log_smallest);
+    };
+    hypotheses.assign(next.begin(), std::find_if(next.begin() + 1, next.begin() + most, light));
   });
   return hypotheses;
 }

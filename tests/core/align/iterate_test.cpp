@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/align/iterate.hpp"
 
 #include <cmath>
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/align/oriented_point.hpp"
+#include "core/align/correspondence.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,14 +21,25 @@ Vector3d any_orthogonal(const Vector3d& n) {
 // Mises-Fisher densities on the sphere (tilt of the normal) combine by the product of their mean
 // resultant lengths. These forms have the right limits: a b / 2 and a b / 3 for small ones,
 // 1 / (1/a + 1/b) corrected to next order for large ones.
-double compose_twist(double a, double b) {
-  const double ab = a * b;
-  return ab / (a + b - 1 + 3 / (1 + 0.9 * std::sqrt(ab) + 0.42 * ab));
+struct Limits {
+  double at_zero, root, square;
+};
+constexpr Limits kTwist{3, 0.9, 0.42}, kTilt{4, 0.8, 0.06};
+
+// Of exponents λ of two features: on the circle exp(λ sin²(φ/2)) is von Mises with k = -λ / 2, and
+// so for the tilt. 0 where either is.
+double compose(double first, double second, const Limits& limits) {
+  if (!(first * second > 0)) return 0;
+  const double a = -0.5 * first, b = -0.5 * second, ab = a * b;
+  return -2 * (ab / (a + b - 1 +
+                     limits.at_zero / (1 + limits.root * std::sqrt(ab) + limits.square * ab)));
 }
 
-double compose_tilt(double a, double b) {
-  const double ab = a * b;
-  return ab / (a + b - 1 + 4 / (1 + 0.8 * std::sqrt(ab) + 0.06 * ab));
+// The rotation matrix [n p n×p] of two unit vectors at right angles.
+Quaterniond frame_of(const Vector3d& normal, const Vector3d& direction) {
+  Eigen::Matrix3d columns;
+  columns << normal, direction, normal.cross(direction);
+  return Quaterniond(columns).normalized();
 }
 
 }  // namespace
@@ -39,19 +50,24 @@ Quaterniond feature_orientation(const Vector3d& normal, const Vector3d& principa
   if (!(length > 1e-6 * principal_direction.norm()) || !std::isfinite(length)) {
     return feature_orientation(normal);
   }
-  Eigen::Matrix3d columns;
-  columns.col(0) = normal;
-  columns.col(1) = tangent / length;
-  columns.col(2) = normal.cross(columns.col(1));
-  return Quaterniond(columns).normalized();
+  return frame_of(normal, tangent / length);
 }
 
 Quaterniond feature_orientation(const Vector3d& normal) {
-  Eigen::Matrix3d columns;
-  columns.col(0) = normal;
-  columns.col(1) = any_orthogonal(normal);
-  columns.col(2) = normal.cross(columns.col(1));
-  return Quaterniond(columns).normalized();
+  return frame_of(normal, any_orthogonal(normal));
+}
+
+OrientedPoint oriented_point(const PointCloud& cloud, std::size_t index, bool with_curvature) {
+  OrientedPoint out;
+  out.point = cloud.points[index].cast<double>();
+  const Vector3d normal = cloud.normals[index].cast<double>();
+  if (!with_curvature || cloud.principal_directions.empty() || cloud.curvatures.empty()) {
+    out.orientation = feature_orientation(normal);
+    return out;
+  }
+  out.orientation = feature_orientation(normal, cloud.principal_directions[index].cast<double>());
+  out.lambda3 = curvature_concentration(cloud.curvatures[index].x(), cloud.curvatures[index].y());
+  return out;
 }
 
 double curvature_concentration(double c1, double c2, double kappa) {
@@ -68,13 +84,7 @@ Bingham feature_bingham(const OrientedPoint& feature) {
 }
 
 FeatureConcentration compose(const OrientedPoint& model, const OrientedPoint& scene) {
-  // On the circle exp(λ sin²(φ/2)) is von Mises with k = -λ / 2, and so for the tilt.
-  FeatureConcentration result;
-  const double tilt = model.kappa * scene.kappa;
-  if (tilt > 0) result.kappa = -2 * compose_tilt(-0.5 * model.kappa, -0.5 * scene.kappa);
-  const double twist = model.lambda3 * scene.lambda3;
-  if (twist > 0) result.lambda3 = -2 * compose_twist(-0.5 * model.lambda3, -0.5 * scene.lambda3);
-  return result;
+  return {compose(model.kappa, scene.kappa, kTilt), compose(model.lambda3, scene.lambda3, kTwist)};
 }
 
 }  // namespace bpa::align
