@@ -20,7 +20,7 @@ enum class Source : std::uint8_t { feature, pairs, prior };
 struct Candidate {
   const ObjectModel* model = nullptr;  ///< Lives as long as the library.
   /// The pose (camera_from_object) with the information of the last alignment.
-  Refinement refinement;
+  Refinement refinement = {};
   Source found_by = Source::feature;
   int scene_point = -1;   ///< Of the correspondence: index into SceneFeatures::surface (feature) or
                           ///< ::coarse (pairs); -1 for a prior.
@@ -31,7 +31,7 @@ struct Candidate {
   double prior = 0;        ///< Log odds that the caller's priors add; 0 without any.
   double score = 0;        ///< Log odds by the learned layer, with `prior`; since round_two.
   double probability = 0;  ///< Of that score, without rivals. Since refine.
-  std::vector<std::uint32_t> explained;  ///< Sorted pixels of the reduced image on the model.
+  std::vector<std::uint32_t> explained = {};  ///< Sorted pixels of the reduced image on the model.
 
   const Pose& pose() const { return refinement.camera_from_object; }
 };

@@ -1,28 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <unordered_map>
+#include <map>
 
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
-#include "core/model/model_index.hpp"
 
 namespace bpa {
 namespace {
 
-PoseCheck check(const Search& search, const Pose& pose, int points) {
-  return check_pose(search.scene.image, search.model.index->check, to_fast(pose), points,
-                    check_tolerance(search.options.check, search.model));
-}
-
 // Sets the check score; the reason to reject the pose, or null.
 const char* reason_to_reject(const Search& search, Candidate& candidate) {
   const CheckOptions& options = search.options.check;
-  PoseCheck result = check(search, candidate.pose(), options.points);
+  PoseCheck result = search.check(candidate.pose(), options.points);
   // Where most of the object is hidden, the few points in sight are too few to judge by.
   if (result.seen < options.few_seen && result.agreeing > 0 &&
       2 * result.free_space <= result.seen) {
-    result = check(search, candidate.pose(), options.hidden_points);
+    result = search.check(candidate.pose(), options.hidden_points);
   }
   candidate.check_score = result.score();
   if (result.free_space > 0 &&
@@ -54,47 +48,35 @@ std::uint64_t pose_cell(const SymmetryGroup& symmetry, const FastPose& pose) {
 }
 
 // The best few of each pose cell, so that an easy object does not crowd out a hard one.
-class PoseCells {
- public:
-  explicit PoseCells(const Search& search) : search_(search) {}
+struct PoseCells {
+  const Search& search;
+  std::map<std::uint64_t, Candidates> cells;
 
   void add(Candidate candidate) {
-    Candidates& cell = cells_[pose_cell(search_.model.symmetry, to_fast(candidate.pose()))];
-    if (cell.size() < static_cast<std::size_t>(search_.options.check.max_kept_per_cell)) {
+    Candidates& cell = cells[pose_cell(search.model.symmetry, to_fast(candidate.pose()))];
+    if (std::ssize(cell) < search.options.check.max_kept_per_cell) {
       cell.push_back(std::move(candidate));
       return;
     }
-    Candidate& worst = *std::min_element(
-        cell.begin(), cell.end(),
-        [](const Candidate& a, const Candidate& b) { return a.check_score < b.check_score; });
+    Candidate& worst = *std::ranges::min_element(cell, {}, &Candidate::check_score);
     if (candidate.check_score > worst.check_score) std::swap(worst, candidate);
-    search_.reject("better ones beside it", candidate.pose());
+    search.reject("better ones beside it", candidate.pose());
   }
 
   // Ordered by cell.
   Candidates take() {
-    std::vector<std::uint64_t> keys;
-    for (const auto& [key, cell] : cells_) keys.push_back(key);
-    std::sort(keys.begin(), keys.end());
     Candidates out;
-    for (const std::uint64_t key : keys) {
-      Candidates& cell = cells_[key];
-      std::move(cell.begin(), cell.end(), std::back_inserter(out));
-    }
+    for (auto& [key, cell] : cells) std::ranges::move(cell, std::back_inserter(out));
     return out;
   }
-
- private:
-  const Search& search_;
-  std::unordered_map<std::uint64_t, Candidates> cells_;
 };
 
 // A sampled pose is off by as much as the sampling of both surfaces is coarse.
 void correct(const Search& search, Candidate& candidate) {
   const CheckOptions& options = search.options.check;
   const Pose corrected = search.refine(candidate.pose(), options.correction).camera_from_object;
-  candidate.check_score = check(search, candidate.pose(), options.recheck_points).score();
-  const float score = check(search, corrected, options.recheck_points).score();
+  candidate.check_score = search.check(candidate.pose(), options.recheck_points).score();
+  const float score = search.check(corrected, options.recheck_points).score();
   if (score <= candidate.check_score) return;
   candidate.refinement.camera_from_object = corrected;
   candidate.check_score = score;
@@ -111,7 +93,7 @@ void correct_all(const Search& search, Candidates& candidates) {
 
 Candidates check_free_space(const Search& search, Candidates sampled) {
   const CheckOptions& options = search.options.check;
-  PoseCells cells(search);
+  PoseCells cells{search, {}};
   Candidates suggested;
   for (Candidate& candidate : sampled) {
     if (search.late()) break;
@@ -129,7 +111,7 @@ Candidates check_free_space(const Search& search, Candidates sampled) {
   correct_all(search, kept);
   keep_best_of_places(search, options.max_kept, options.rank_penalty, kept);
   correct_all(search, suggested);
-  std::move(suggested.begin(), suggested.end(), std::back_inserter(kept));
+  std::ranges::move(suggested, std::back_inserter(kept));
   sort_by_check_score(kept);
   return kept;
 }

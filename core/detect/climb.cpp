@@ -67,8 +67,8 @@ Candidates climb(const Search& search, Candidates refined) {
   RefinementOptions still = search.options.refine.refinement;  // only measures what is known
   still.iterations = 0;
   still.start_gate_m = still.end_gate_m;
-  const auto most = static_cast<std::size_t>(search.options.climb.max_climbed);
-  for (std::size_t i = 0; i < std::min(refined.size(), most); ++i) {
+  const auto most = std::min<std::size_t>(refined.size(), search.options.climb.max_climbed);
+  for (std::size_t i = 0; i < most; ++i) {
     if (search.late()) break;
     Best best{refined[i].pose(), search.quick_score(refined[i].pose())};
     align_from_beside(search, best);

@@ -3,10 +3,8 @@
 #include <algorithm>
 
 #include "core/align/align.hpp"
-#include "core/detect/correspondence_pairs.hpp"
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
-#include "core/model/model_index.hpp"
 
 namespace bpa {
 namespace {
@@ -22,7 +20,7 @@ std::vector<Cluster> group(const Search& search, const Candidates& candidates) {
   std::vector<Cluster> clusters;
   for (const Candidate& candidate : candidates) {
     const Pose& pose = candidate.pose();
-    const auto found = std::find_if(clusters.begin(), clusters.end(), [&](const Cluster& c) {
+    const auto found = std::ranges::find_if(clusters, [&](const Cluster& c) {
       if ((c.pose.translation - pose.translation).norm() > kFar) return false;
       const PoseError error = pose_error(pose, c.pose, search.model.symmetry);
       return error.position < kPoseTolerance_m && error.angle < kPoseTolerance_rad;
@@ -40,26 +38,19 @@ std::vector<Cluster> group(const Search& search, const Candidates& candidates) {
 // BPA from the cluster's correspondences, those of its best members first. The best member where
 // there are none, since priors suggested all.
 Pose aligned_pose(const Search& search, const Cluster& cluster) {
-  const auto most = static_cast<std::size_t>(search.options.cluster.max_correspondences);
   std::vector<align::OrientedPair> pairs;
   for (const Candidate* member : cluster.members) {
-    if (pairs.size() == most) break;
+    if (std::ssize(pairs) == search.options.cluster.max_correspondences) break;
     if (member->found_by != Source::prior) pairs.push_back(oriented_pair(search, *member));
   }
   if (pairs.empty()) return cluster.members.front()->pose();
-  align::Correspondences data;
-  data.oriented = pairs;
-  return align::bpa_mode(data).camera_from_object;
+  return align::bpa_mode({.oriented = pairs}).camera_from_object;
 }
 
 // The best member, or the cluster aligned again where that scores better.
 Candidate best_of(const Search& search, const Cluster& cluster) {
-  const CheckOptions& options = search.options.check;
-  const CheckTolerance tolerance = check_tolerance(options, search.model);
   const auto check_score = [&](const Pose& pose) {
-    return check_pose(search.scene.image, search.model.index->check, to_fast(pose),
-                      options.recheck_points, tolerance)
-        .score();
+    return search.check(pose, search.options.check.recheck_points).score();
   };
   Candidate best = *cluster.members.front();
   best.check_score = check_score(best.pose());
@@ -69,39 +60,36 @@ Candidate best_of(const Search& search, const Cluster& cluster) {
     best.refinement.camera_from_object = aligned;
     best.check_score = score;
   }
-  const bool suggested =
-      std::any_of(cluster.members.begin(), cluster.members.end(),
-                  [](const Candidate* member) { return member->found_by == Source::prior; });
-  if (suggested) best.found_by = Source::prior;
+  const auto of_prior = [](const Candidate* member) { return member->found_by == Source::prior; };
+  if (std::ranges::any_of(cluster.members, of_prior)) best.found_by = Source::prior;
   return best;
 }
 
 // The best; some places are kept for what priors suggested.
 void keep_clusters(const Search& search, Candidates& clusters) {
   const ClusterOptions& options = search.options.cluster;
-  const auto most_suggested =
-      static_cast<std::size_t>(options.suggested_share * options.max_clusters);
+  const int most_suggested = static_cast<int>(options.suggested_share * options.max_clusters);
   sort_by_check_score(clusters);
   Candidates suggested, others;
   for (Candidate& cluster : clusters) {
-    const bool first = cluster.found_by == Source::prior && suggested.size() < most_suggested;
+    const bool first = cluster.found_by == Source::prior && std::ssize(suggested) < most_suggested;
     (first ? suggested : others).push_back(std::move(cluster));
   }
   keep_best_of_places(search, options.max_clusters - static_cast<int>(suggested.size()),
                       options.rank_penalty, others);
   clusters = std::move(suggested);
-  std::move(others.begin(), others.end(), std::back_inserter(clusters));
+  std::ranges::move(others, std::back_inserter(clusters));
   sort_by_check_score(clusters);
 }
 
 }  // namespace
 
 Candidates cluster(const Search& search, Candidates checked) {
-  const auto min_features = static_cast<std::size_t>(search.options.cluster.min_features);
   Candidates out;
   for (const Cluster& group_of_poses : group(search, checked)) {
     const Candidate& first = *group_of_poses.members.front();
-    if (group_of_poses.members.size() < min_features && first.found_by == Source::feature) {
+    const bool few = std::ssize(group_of_poses.members) < search.options.cluster.min_features;
+    if (few && first.found_by == Source::feature) {
       search.reject("too few feature matches", first.pose());
     } else {
       out.push_back(best_of(search, group_of_poses));

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/detect/detect_object.hpp"
 
 #include <algorithm>
 
@@ -63,8 +62,7 @@ Candidates detect_object(Search search, ObjectTrace* trace) {
 }
 
 void TraceStage::reject(std::string_view reason, const FastPose& pose) {
-  auto found = std::find_if(rejected.begin(), rejected.end(),
-                            [&](const Rejected& r) { return r.reason == reason; });
+  auto found = std::ranges::find(rejected, reason, &Rejected::reason);
   if (found == rejected.end()) found = rejected.insert(found, {reason, {}});
   found->poses.push_back(pose);
 }

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <sstream>
 
+#include "core/base/concat.hpp"
 #include "core/model/model_index.hpp"
 
 namespace bpa {
@@ -18,9 +18,7 @@ constexpr double kQuaternionArea = 2 * M_PI * M_PI;  // of S3, which densities r
 
 Status broken(const std::string& name, const std::string& field, double value,
               const std::string& rule) {
-  std::ostringstream text;
-  text << name << "." << field << " is " << value << "; it must be " << rule;
-  return invalid_argument(text.str());
+  return invalid_argument(name, ".", field, " is ", value, "; it must be ", rule);
 }
 
 Status check_finite(const std::string& name, const std::string& field, const auto& values) {
@@ -36,9 +34,8 @@ Status check_position(const PositionPrior& position, const std::string& name) {
   if (Status s = check_finite(name, "position covariance", c); !s.ok()) return s;
   const bool symmetric = (c - c.transpose()).norm() <= 1e-6 * c.norm();
   if (!symmetric || c.llt().info() != Eigen::Success) {
-    return invalid_argument(name +
-                            ".position covariance is not symmetric and positive definite; it must "
-                            "be");
+    return invalid_argument(
+        name, ".position covariance is not symmetric and positive definite; it must be");
   }
   return {};
 }
@@ -53,7 +50,7 @@ Status check_orientation(const OrientationUncertainty& orientation, const std::s
   if (Status s = check_finite(name, "orientation axes", orientation.axes); !s.ok()) return s;
   const Eigen::Matrix3d products = orientation.axes.transpose() * orientation.axes;
   if ((products - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > 1e-3) {
-    return invalid_argument(name +
+    return invalid_argument(name,
                             ".orientation axes are not three unit quaternions at right angles to "
                             "one another; they must be");
   }
@@ -136,9 +133,9 @@ ModelPriors::Prior ModelPriors::prepare(const PosePrior& prior) {
   out.widened = widen(out.orientation);
   out.log_orientation_peak = std::log(kQuaternionArea) - out.widened.log_normalizer();
   if (!prior.position) return out;
-  const Eigen::Matrix3d covariance = prior.position->covariance + kPlacementSigma_m *
-                                                                      kPlacementSigma_m *
-                                                                      Eigen::Matrix3d::Identity();
+  constexpr double kVariance = kPlacementSigma_m * kPlacementSigma_m;
+  const Eigen::Matrix3d covariance =
+      prior.position->covariance + kVariance * Eigen::Matrix3d::Identity();
   out.information = covariance.inverse();
   out.log_position_peak = std::log(kBackgroundVolume) - 1.5 * std::log(2 * M_PI) -
                           0.5 * std::log(covariance.determinant());
@@ -174,7 +171,7 @@ std::vector<Pose> ModelPriors::draw(const PointCloud& surface, int count,
                                     RandomStream& random) const {
   const PointCloud& points = model_.index->coarse;
   const auto any_of = [&random](const PointCloud& cloud) {
-    return static_cast<std::size_t>(random.index(static_cast<int>(cloud.size())));
+    return random.index(static_cast<int>(cloud.size()));
   };
   std::vector<Pose> out;
   for (const Prior& prior : priors_) {
@@ -189,11 +186,11 @@ std::vector<Pose> ModelPriors::draw(const PointCloud& surface, int count,
       } else {
         // The model point whose normal agrees best, of a few.
         constexpr int kTries = 16;
-        const std::size_t on = any_of(surface);
-        std::size_t best = 0;
+        const int on = any_of(surface);
+        int best = 0;
         double agreement = -2;
         for (int t = 0; t < kTries; ++t) {
-          const std::size_t at = any_of(points);
+          const int at = any_of(points);
           const double cosine = (pose.rotation * points.normals[at].cast<double>())
                                     .dot(surface.normals[on].cast<double>());
           if (cosine > agreement) {

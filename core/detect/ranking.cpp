@@ -3,24 +3,16 @@
 #include "core/detect/ranking.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <unordered_map>
 
 namespace bpa {
-namespace {
-
-constexpr const char* kEnough = "better ones are enough";
-
-}  // namespace
-
 void sort_by_score(Candidates& candidates) {
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  std::ranges::stable_sort(candidates, std::greater(), &Candidate::score);
 }
 
 void sort_by_check_score(Candidates& candidates) {
-  std::stable_sort(
-      candidates.begin(), candidates.end(),
-      [](const Candidate& a, const Candidate& b) { return a.check_score > b.check_score; });
+  std::ranges::stable_sort(candidates, std::greater(), &Candidate::check_score);
 }
 
 bool duplicates(const Search& search, const Pose& a, const Pose& b) {
@@ -35,7 +27,7 @@ void suppress_duplicates(const Search& search, Candidates& candidates) {
   sort_by_score(candidates);
   Candidates kept;
   for (Candidate& candidate : candidates) {
-    const bool seen = std::any_of(kept.begin(), kept.end(), [&](const Candidate& other) {
+    const bool seen = std::ranges::any_of(kept, [&](const Candidate& other) {
       return duplicates(search, candidate.pose(), other.pose());
     });
     if (seen) {
@@ -48,11 +40,10 @@ void suppress_duplicates(const Search& search, Candidates& candidates) {
 }
 
 void keep_first(const Search& search, int count, Candidates& candidates) {
-  const auto end = static_cast<std::size_t>(count);
-  for (std::size_t i = end; i < candidates.size(); ++i) {
-    search.reject(kEnough, candidates[i].pose());
-  }
-  if (candidates.size() > end) candidates.erase(candidates.begin() + count, candidates.end());
+  if (std::ssize(candidates) <= count) return;
+  const auto end = candidates.begin() + count;
+  for (auto c = end; c != candidates.end(); ++c) search.reject("better ones are enough", c->pose());
+  candidates.erase(end, candidates.end());
 }
 
 std::uint64_t position_cell(const Eigen::Vector3f& position, float per_metre) {
@@ -66,7 +57,7 @@ void keep_best_of_places(const Search& search, int count, double rank_penalty,
                          Candidates& candidates) {
   constexpr float kPlacesPerMetre = 20;
   sort_by_check_score(candidates);
-  if (candidates.size() <= static_cast<std::size_t>(count)) return;
+  if (std::ssize(candidates) <= count) return;
   std::unordered_map<std::uint64_t, int> met;
   std::vector<std::pair<float, std::size_t>> order;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -76,15 +67,12 @@ void keep_best_of_places(const Search& search, int count, double rank_penalty,
         {-candidates[i].check_score + static_cast<float>(rank_penalty) * static_cast<float>(rank),
          i});
   }
-  std::stable_sort(order.begin(), order.end());
-  for (auto o = order.begin() + count; o != order.end(); ++o) {
-    search.reject(kEnough, candidates[o->second].pose());
-  }
-  order.resize(static_cast<std::size_t>(count));
-  Candidates kept;
-  for (const auto& [penalised, i] : order) kept.push_back(std::move(candidates[i]));
-  sort_by_check_score(kept);
-  candidates = std::move(kept);
+  std::ranges::sort(order);
+  Candidates ordered;
+  for (const auto& [penalised, i] : order) ordered.push_back(std::move(candidates[i]));
+  candidates = std::move(ordered);
+  keep_first(search, count, candidates);
+  sort_by_check_score(candidates);
 }
 
 }  // namespace bpa

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/detect/edge_matches.hpp"
-#include "core/detect/surface_match.hpp"
+#include "core/detect/matches.hpp"
 #include "core/model/model_index.hpp"
 
 namespace bpa {
@@ -20,6 +19,15 @@ struct NormalEquations {
   Matrix6f information = Matrix6f::Zero();
   Vector6f gradient = Vector6f::Zero();
   int count = 0;
+
+  // One residual along `direction` of a point `lever` away from the centre of rotation.
+  void add(const Eigen::Vector3f& direction, const Eigen::Vector3f& lever, float residual,
+           float weight) {
+    Vector6f row;
+    row << direction, lever.cross(direction);
+    information.noalias() += weight * row * row.transpose();
+    gradient += weight * residual * row;
+  }
 };
 
 // Tukey's biweight of a residual that is cut off at `gate`, over its variance.
@@ -31,11 +39,11 @@ float weight_of(float residual, float gate, float sigma) {
 
 // One alignment problem. Unknowns: translation, then rotation about the object's origin; both along
 // the camera's axes.
-class Problem {
- public:
-  Problem(const SceneFeatures& scene, const ObjectModel& model, const ModelView& view,
-          const RefinementOptions& options)
-      : scene_(scene), model_(model), view_(view), options_(options) {}
+struct Problem {
+  const SceneFeatures& scene;
+  const ObjectModel& model;
+  const ModelView& view;
+  const RefinementOptions& options;
 
   NormalEquations build(const Pose& pose, float gate) const {
     NormalEquations equations;
@@ -46,23 +54,18 @@ class Problem {
     return equations;
   }
 
- private:
   void add_surface(const FastPose& pose, const Eigen::Vector3f& centre, float gate,
                    NormalEquations& equations) const {
     constexpr float kModelSigma = 0.001f;  // metres, beside the sensor's noise
-    const CheckPoints& points = model_.index->check;
-    const auto last = std::min(points.points.size(), static_cast<std::size_t>(options_.max_points));
+    const CheckPoints& points = model.index->check;
+    const auto last = std::min<std::size_t>(points.points.size(), options.max_points);
     SurfaceMatch match;
     for (std::size_t i = 0; i < last; ++i) {
-      if (!match_surface(scene_, points, i, pose, gate, match)) continue;
+      if (!match_surface(scene, points, i, pose, gate, match)) continue;
       const float residual = match.scene_normal.dot(match.model_point - match.scene_point);
       const float sigma = depth_noise(match.scene_point.z()) + kModelSigma;
       const float weight = weight_of(residual, gate, sigma);
-      Vector6f row;
-      row.head<3>() = match.scene_normal;
-      row.tail<3>() = (match.model_point - centre).cross(match.scene_normal);
-      equations.information.noalias() += weight * row * row.transpose();
-      equations.gradient += weight * residual * row;
+      equations.add(match.scene_normal, match.model_point - centre, residual, weight);
       ++equations.count;
     }
   }
@@ -73,27 +76,17 @@ class Problem {
                  NormalEquations& equations) const {
     // Of the edges of the nearest of 66 views; a pixel's half width is added.
     constexpr float kEdgeSigma = 0.004f;
-    if (options_.max_edges == 0 || view_.edges.empty()) return;
-    const std::size_t step =
-        std::max<std::size_t>(1, view_.edges.size() / static_cast<std::size_t>(options_.max_edges));
-    for (std::size_t k = 0; k < view_.edges.size(); k += step) {
-      const EdgePoint edge = edge_point(model_, view_, pose, k);
-      const std::optional<float> offset = match_edge(scene_.image, edge, gate);
+    if (options.max_edges == 0 || view.edges.empty()) return;
+    const std::size_t step = std::max<std::size_t>(1, view.edges.size() / options.max_edges);
+    for (std::size_t k = 0; k < view.edges.size(); k += step) {
+      const EdgePoint edge = edge_point(model, view, pose, k);
+      const std::optional<float> offset = match_edge(scene.image, edge, gate);
       if (!offset) continue;
-      const float sigma = kEdgeSigma + 0.5f * edge.point.z() / scene_.image.fx;
+      const float sigma = kEdgeSigma + 0.5f * edge.point.z() / scene.image.fx;
       const float weight = weight_of(*offset, gate, sigma);
-      Vector6f row;
-      row.head<3>() = edge.outward;
-      row.tail<3>() = (edge.point - centre).cross(edge.outward);
-      equations.information.noalias() += weight * row * row.transpose();
-      equations.gradient -= weight * *offset * row;
+      equations.add(edge.outward, edge.point - centre, -*offset, weight);
     }
   }
-
-  const SceneFeatures& scene_;
-  const ObjectModel& model_;
-  const ModelView& view_;
-  const RefinementOptions& options_;
 };
 
 // Keeps directions that no correspondence sees where they were.
@@ -114,7 +107,8 @@ Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, con
   Refinement out;
   Pose pose = start;
   const Matrix6f prior = damping(model.diameter);
-  const Problem problem(scene, model, nearest_view(model.index->views, to_fast(start)), options);
+  const ModelView& view = nearest_view(model.index->views, to_fast(start));
+  const Problem problem{scene, model, view, options};
   const auto start_gate = static_cast<float>(options.start_gate_m);
   const auto end_gate = static_cast<float>(options.end_gate_m);
   for (int k = 0; k <= options.iterations; ++k) {

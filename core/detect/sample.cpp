@@ -4,35 +4,12 @@
 
 #include "core/align/align.hpp"
 #include "core/base/random.hpp"
-#include "core/detect/correspondence_pairs.hpp"
 #include "core/detect/stages.hpp"
 #include "core/features/pair_voting.hpp"
 #include "core/model/model_index.hpp"
 
 namespace bpa {
 namespace {
-
-align::OrientedPoint oriented_point(const PointCloud& cloud, int index, bool with_curvature) {
-  const auto i = static_cast<std::size_t>(index);
-  align::OrientedPoint out;
-  out.point = cloud.points[i].cast<double>();
-  const Eigen::Vector3d normal = cloud.normals[i].cast<double>();
-  if (with_curvature) {
-    out.orientation =
-        align::feature_orientation(normal, cloud.principal_directions[i].cast<double>());
-    out.lambda3 = align::curvature_concentration(cloud.curvatures[i].x(), cloud.curvatures[i].y());
-  } else {
-    out.orientation = align::feature_orientation(normal);
-  }
-  return out;
-}
-
-Candidate candidate_of(const Search& search, Source found_by) {
-  Candidate out;
-  out.model = &search.model;
-  out.found_by = found_by;
-  return out;
-}
 
 // One-correspondence poses by BPA from FPFH matches.
 void from_features(const Search& search, Candidates& out) {
@@ -44,10 +21,10 @@ void from_features(const Search& search, Candidates& out) {
   for (std::size_t k = 0; k < matches.size(); ++k) {
     if (matches[k].index < 0) continue;
     if (search.late()) return;
-    Candidate candidate = candidate_of(search, Source::feature);
-    candidate.scene_point =
-        scene.keypoints[k / static_cast<std::size_t>(options.matches_per_keypoint)];
-    candidate.model_point = matches[k].index;
+    Candidate candidate{.model = &search.model,
+                        .found_by = Source::feature,
+                        .scene_point = scene.keypoints[k / options.matches_per_keypoint],
+                        .model_point = matches[k].index};
     const align::OrientedPair pair = oriented_pair(search, candidate);
     for (int draw = 0; draw < options.draws_per_match; ++draw) {
       candidate.refinement.camera_from_object = align::bpa_sample_one(pair, random);
@@ -65,17 +42,16 @@ void from_pairs(const Search& search, Candidates& out) {
   for (const VotedPose& voted :
        vote_poses(search.scene.pairs, index.pairs, static_cast<int>(index.coarse.size()),
                   search.options.sample.peaks_per_reference)) {
-    const auto s = static_cast<std::size_t>(voted.reference);
-    const auto m = static_cast<std::size_t>(voted.model_point);
-    Candidate candidate = candidate_of(search, Source::pairs);
-    candidate.scene_point = voted.reference;
-    candidate.model_point = voted.model_point;
+    const int s = voted.reference, m = voted.model_point;
     FastPose pose;
     pose.rotation = basis_of(coarse.normals[s]) *
                     Eigen::AngleAxisf(voted.turn, Eigen::Vector3f::UnitZ()) * bases[m].transpose();
     pose.translation = coarse.points[s] - pose.rotation * index.coarse.points[m];
-    candidate.refinement.camera_from_object = to_pose(pose);
-    out.push_back(candidate);
+    out.push_back({.model = &search.model,
+                   .refinement = {.camera_from_object = to_pose(pose)},
+                   .found_by = Source::pairs,
+                   .scene_point = s,
+                   .model_point = m});
   }
 }
 
@@ -86,11 +62,10 @@ void from_priors(const Search& search, Candidates& out) {
   for (const Pose& pose :
        search.priors.draw(search.scene.coarse, options.draws_per_prior, random)) {
     if (search.late()) return;
-    Candidate candidate = candidate_of(search, Source::prior);
-    candidate.refinement.camera_from_object = pose;
-    out.push_back(candidate);
-    candidate.refinement = search.refine(pose, options.prior_alignment);
-    out.push_back(candidate);
+    for (const Refinement& tried :
+         {Refinement{pose}, search.refine(pose, options.prior_alignment)}) {
+      out.push_back({.model = &search.model, .refinement = tried, .found_by = Source::prior});
+    }
   }
 }
 
@@ -101,10 +76,10 @@ align::OrientedPair oriented_pair(const Search& search, const Candidate& candida
   const ModelIndex& model = *search.model.index;
   const SampleOptions& options = search.options.sample;
   align::OrientedPair pair;
-  pair.scene = oriented_point(feature ? search.scene.surface : search.scene.coarse,
-                              candidate.scene_point, feature);
-  pair.model =
-      oriented_point(feature ? model.features : model.coarse, candidate.model_point, feature);
+  pair.scene = align::oriented_point(feature ? search.scene.surface : search.scene.coarse,
+                                     candidate.scene_point, feature);
+  pair.model = align::oriented_point(feature ? model.features : model.coarse, candidate.model_point,
+                                     feature);
   pair.sigma = (feature ? options.feature_sigma_m : options.pair_sigma_m) +
                static_cast<double>(depth_noise(static_cast<float>(pair.scene.point.z())));
   return pair;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/model/model_index.hpp"
+
 namespace bpa {
 
 Search::Search(const SceneFeatures& s, const ObjectModel& m, const DetectOptions& o,
@@ -27,10 +29,7 @@ double Search::quick_score(const Pose& pose) const {
 }
 
 Candidate Search::scored(Refinement refinement, Source found_by) const {
-  Candidate out;
-  out.model = &model;
-  out.found_by = found_by;
-  out.refinement = std::move(refinement);
+  Candidate out{.model = &model, .refinement = refinement, .found_by = found_by};
   Evidence evidence(scene, places, out.pose());
   out.values = measure(evidence, options.score.use_round_three ? Round::three : Round::two);
   out.explained = explained_pixels(scene.image, model, out.pose());
@@ -50,10 +49,14 @@ void Search::reject(std::string_view reason, const Pose& pose) const {
   if (tracing) tracing->reject(reason, to_fast(pose));
 }
 
-CheckTolerance check_tolerance(const CheckOptions& options, const ObjectModel& model) {
-  const double depth =
-      std::clamp(options.depth_share * model.diameter, options.min_depth_m, options.max_depth_m);
-  return {depth, options.free_depth_m, options.normal_cosine};
+PoseCheck Search::check(const Pose& pose, int points, const CheckTolerance& tolerance) const {
+  return check_pose(scene.image, model.index->check, to_fast(pose), points, tolerance);
+}
+
+PoseCheck Search::check(const Pose& pose, int points) const {
+  const CheckOptions& o = options.check;
+  const double depth = std::clamp(o.depth_share * model.diameter, o.min_depth_m, o.max_depth_m);
+  return check(pose, points, {depth, o.free_depth_m, o.normal_cosine});
 }
 
 }  // namespace bpa

@@ -5,17 +5,40 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "core/base/deadline.hpp"
 #include "core/detect/candidate.hpp"
 #include "core/detect/options.hpp"
 #include "core/detect/pose_prior.hpp"
-#include "core/detect/trace.hpp"
 #include "core/observation/scene_features.hpp"
 #include "core/score/feature_score.hpp"
 #include "core/score/score_layer.hpp"
 
 namespace bpa {
+
+// The candidates of one model after each stage, for training, experiments and pictures.
+
+/// Poses that one stage rejected for one reason.
+struct Rejected {
+  std::string_view reason;
+  std::vector<FastPose> poses;
+};
+
+struct TraceStage {
+  std::string_view name;
+  std::string_view title;       ///< For people.
+  std::string_view text;        ///< What the stage does, for people.
+  std::vector<FastPose> poses;  ///< The candidates after the stage.
+  double milliseconds = 0;
+  std::vector<Rejected> rejected;
+
+  void reject(std::string_view reason, const FastPose& pose);
+};
+
+struct ObjectTrace {
+  std::vector<TraceStage> stages;  ///< In the order of detection_stages().
+};
 
 /// The search for one model in one scene: what every stage reads. Keeps references to
 /// scene, model and layers.
@@ -46,11 +69,12 @@ struct Search {
   Candidate scored(Refinement refinement, Source found_by) const;
   /// Sets score and probability from values and prior.
   void apply_layer(Candidate& candidate) const;
+  /// Compares `points` of the model's points at a pose with the depth image; without a tolerance,
+  /// with that of CheckOptions, whose depth follows the model's size.
+  PoseCheck check(const Pose& pose, int points, const CheckTolerance& tolerance) const;
+  PoseCheck check(const Pose& pose, int points) const;
   /// Notes a rejected pose in the trace.
   void reject(std::string_view reason, const Pose& pose) const;
 };
-
-/// The depth tolerance follows the model's size.
-CheckTolerance check_tolerance(const CheckOptions& options, const ObjectModel& model);
 
 }  // namespace bpa

@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "core/align/correspondence.hpp"
 #include "core/detect/search.hpp"
 
 // The stages of the search for one object; README.md says what each does, why, and how to add one.
@@ -17,6 +18,9 @@ namespace bpa {
 /// Ignores its candidates.
 Candidates sample(const Search& search, Candidates none);
 
+/// The oriented pair behind a candidate that a feature or a point pair suggested.
+align::OrientedPair oriented_pair(const Search& search, const Candidate& candidate);
+
 /// Rejects poses that hang in free space or find no surface (V.3); keeps the best of each place.
 Candidates check_free_space(const Search& search, Candidates sampled);
 
@@ -27,6 +31,12 @@ Candidates cluster(const Search& search, Candidates checked);
 /// Aligns each candidate with BPA to sampled super-pixels (V.6) and scores it (V.5). Rejects
 /// nothing unless the deadline passes.
 Candidates round_two(const Search& search, Candidates clusters);
+
+/// One alignment by BPA to sampled super-pixels (V.6). Up to RoundTwoOptions::max_pairs model
+/// points that fall within `gate` metres of these are matched as oriented pairs, and half as many
+/// edge points as positions. Returns `start` where fewer than RoundTwoOptions::min_pairs match.
+Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
+                      float gate, std::uint64_t seed, const DetectOptions& options = {});
 
 /// Non-maximum suppression (V.7); aligns the best by gradients (V.7) and scores them with all
 /// components (V.8).
@@ -54,5 +64,10 @@ struct Stage {
 
 /// The stages in their order.
 std::span<const Stage> detection_stages();
+
+/// Runs the stages: the best placements of one model in the scene (paper section V), best first.
+/// Deterministic unless the search's deadline passes: then the best so far. `trace`, if given,
+/// receives each stage.
+Candidates detect_object(Search search, ObjectTrace* trace = nullptr);
 
 }  // namespace bpa

@@ -12,16 +12,16 @@ namespace {
 // The best candidates in near-symmetric poses, each with its quick score.
 Candidates near_symmetric(const Search& search, const Candidates& candidates) {
   const TurnOptions& options = search.options.turn;
-  const auto most = std::min(candidates.size(), static_cast<std::size_t>(options.max_turned));
+  const auto most = std::min<std::size_t>(candidates.size(), options.max_turned);
   Candidates out;
   for (std::size_t i = 0; i < most && candidates[i].score > options.min_turned_score; ++i) {
     if (search.late()) break;
     for (const Pose& motion : search.model.index->near_symmetries) {
-      Candidate& turned = out.emplace_back();
-      turned.model = &search.model;
-      turned.found_by = candidates[i].found_by;
-      turned.refinement.camera_from_object = candidates[i].pose() * motion;
-      turned.score = search.quick_score(turned.pose());
+      const Pose turned = candidates[i].pose() * motion;
+      out.push_back({.model = &search.model,
+                     .refinement = {.camera_from_object = turned},
+                     .found_by = candidates[i].found_by,
+                     .score = search.quick_score(turned)});
     }
   }
   return out;
@@ -34,9 +34,8 @@ Candidates try_turned(const Search& search, Candidates climbed) {
   Candidates turned = near_symmetric(search, climbed);
   suppress_duplicates(search, turned);
   std::erase_if(turned, [&](const Candidate& t) {
-    const bool known = std::any_of(climbed.begin(), climbed.end(), [&](const Candidate& c) {
-      return duplicates(search, t.pose(), c.pose());
-    });
+    const bool known = std::ranges::any_of(
+        climbed, [&](const Candidate& c) { return duplicates(search, t.pose(), c.pose()); });
     if (known) search.reject("there already", t.pose());
     return known;
   });

@@ -9,7 +9,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/cloud/cielab.hpp"
-#include "core/detect/detect_object.hpp"
+#include "core/detect/stages.hpp"
 #include "core/io/options_yaml.hpp"
 #include "core/pipeline/frame_trace.hpp"
 #include "core/scene/interpretations.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/detect/candidate.hpp"
-#include "core/detect/trace.hpp"
+#include "core/detect/search.hpp"
 
 namespace bpa {
 

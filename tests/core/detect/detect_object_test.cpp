@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/detect/detect_object.hpp"
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
@@ -10,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/detect/stages.hpp"
 #include "core/model/model_index.hpp"
 #include "core/score/rival_poses.hpp"
 #include "tests/support/l_scene.hpp"

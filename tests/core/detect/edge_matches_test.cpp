@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/detect/edge_matches.hpp"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "core/detect/matches.hpp"
 #include "core/detect/refinement.hpp"
 #include "core/model/model_index.hpp"
 #include "tests/support/posed_models.hpp"

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/detect/detect_object.hpp"
+#include "core/detect/stages.hpp"
 #include "tests/support/l_scene.hpp"
 
 namespace bpa {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/detect/bpa_alignment.hpp"
+#include "core/detect/stages.hpp"
 #include "core/model/model_index.hpp"
 #include "tests/support/l_scene.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/detect/edge_matches.hpp"
+#include "core/detect/matches.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,19 +12,18 @@ constexpr float kJump = 0.012f;     // metres between neighbouring pixels of one
 constexpr float kOnModel = 0.025f;  // metres between the model and the surface that is followed
 constexpr int kShadow = 8;          // pixels without depth beside an edge, at most
 
-// A walk over the image, one pixel a step.
-class Walk {
- public:
-  Walk(const CheckImage& image, float u, float v, float du, float dv)
-      : image_(image), u_(u), v_(v), du_(du), dv_(dv) {}
+// A walk over the image, one pixel a step, from (u0, v0).
+struct Walk {
+  const CheckImage& image;
+  float u0, v0, du, dv;
 
   // The pixel `step` steps outward; null outside of the image.
   const CheckPixel* at(int step) const {
-    const float u = u_ + static_cast<float>(step) * du_, v = v_ + static_cast<float>(step) * dv_;
+    const float u = u0 + static_cast<float>(step) * du, v = v0 + static_cast<float>(step) * dv;
     if (!(u >= 0 && v >= 0)) return nullptr;
     const int x = static_cast<int>(u), y = static_cast<int>(v);
-    if (x >= image_.width || y >= image_.height) return nullptr;
-    return &image_.pixels[static_cast<std::size_t>(y * image_.width + x)];
+    if (x >= image.width || y >= image.height) return nullptr;
+    return &image.pixels[y * image.width + x];
   }
 
   // True when what follows the last pixel of a surface of depth `depth` lies behind it.
@@ -36,13 +35,27 @@ class Walk {
     }
     return true;
   }
-
- private:
-  const CheckImage& image_;
-  float u_, v_, du_, dv_;
 };
 
 }  // namespace
+
+bool match_surface(const SceneFeatures& scene, const CheckPoints& points, std::size_t i,
+                   const FastPose& pose, float gate, SurfaceMatch& match) {
+  constexpr float kMinFacing = 0.1f;  // cosine between normal and optical axis, seen from far
+  constexpr float kMinCosine = 0.6f;  // between the normals of model and surface
+  match.model_normal = pose.rotation * points.normals[i];
+  match.model_point = pose * points.points[i];
+  const Eigen::Vector3f& p = match.model_point;
+  if (match.model_normal.dot(p) > -kMinFacing * p.z()) return false;
+  const int pixel = scene.image.pixel_of(p);
+  if (pixel < 0) return false;
+  match.pixel = static_cast<std::size_t>(pixel);
+  if (!scene.map.searched[match.pixel]) return false;
+  match.scene_point = scene.map.points[match.pixel];
+  match.scene_normal = scene.map.normals[match.pixel];
+  return (match.scene_point - p).squaredNorm() < gate * gate &&
+         match.scene_normal.dot(match.model_normal) > kMinCosine;
+}
 
 EdgePoint edge_point(const ObjectModel& model, const ModelView& view, const FastPose& pose,
                      std::size_t k) {
@@ -61,7 +74,7 @@ std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, 
   if (!(pixels_per_metre > 1)) return std::nullopt;
   const float step = 1 / pixels_per_metre;
   const Eigen::Vector2f at = image.project(p);
-  const Walk walk(image, at.x() + 0.5f, at.y() + 0.5f, du * step, dv * step);
+  const Walk walk{image, at.x() + 0.5f, at.y() + 0.5f, du * step, dv * step};
   const int steps = std::max(1, static_cast<int>(reach * pixels_per_metre));
   const float jump = kJump + 2 * depth_noise(p.z());
   int k = -steps;
@@ -75,13 +88,11 @@ std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, 
     if (!next) return std::nullopt;
     const bool goes_on =
         next->depth > 0 && next->searched && std::abs(next->depth - here->depth) < jump;
-    if (goes_on) {
-      here = next;
-      continue;
-    }
-    if (!walk.ends_after(k, here->depth, jump)) return std::nullopt;
-    return (static_cast<float>(k) + 0.5f) * step;
+    if (!goes_on) break;
+    here = next;
   }
+  if (k < steps && walk.ends_after(k, here->depth, jump))
+    return (static_cast<float>(k) + 0.5f) * step;
   return std::nullopt;
 }
 

@@ -5,9 +5,24 @@
 #include <optional>
 
 #include "core/model/view_sphere.hpp"
+#include "core/observation/scene_features.hpp"
 #include "core/score/pose_check.hpp"
 
+// Points and edges of a model at a pose, matched with what is observed there.
+
 namespace bpa {
+
+/// A model point and the observed surface at the pixel that it falls on. Camera frame, metres.
+struct SurfaceMatch {
+  Eigen::Vector3f model_point, model_normal;
+  Eigen::Vector3f scene_point, scene_normal;
+  std::size_t pixel = 0;
+};
+
+/// Matches the i-th of `points` at a pose. False where it faces away, leaves the image or falls on
+/// background, or the surface is `gate` metres away or turned by more than 53 degrees.
+bool match_surface(const SceneFeatures& scene, const CheckPoints& points, std::size_t i,
+                   const FastPose& pose, float gate, SurfaceMatch& match);
 
 /// A point of a model's silhouette at some pose. Camera frame.
 struct EdgePoint {
