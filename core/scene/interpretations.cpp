@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "core/base/random.hpp"
-#include "core/scene/alternatives.hpp"
+#include "core/scene/overlaps.hpp"
 
 namespace bpa {
 namespace {
@@ -31,8 +32,7 @@ double single_worth(const Candidate& c, const InterpretationOptions& options) {
 // placement has overlaps.
 class SubsetScore {
  public:
-  SubsetScore(const std::vector<Candidate>& candidates,
-              const std::vector<std::vector<Overlap>>& overlaps, int observed_pixels,
+  SubsetScore(const Candidates& candidates, const Overlaps& overlaps, int observed_pixels,
               const InterpretationOptions& options)
       : candidates_(candidates),
         options_(options),
@@ -47,7 +47,7 @@ class SubsetScore {
 
   /// True when some chosen placement lies on the same pixels.
   bool blocked(std::size_t i) const {
-    return std::any_of(overlaps_[i].begin(), overlaps_[i].end(), [&](const Overlap& overlap) {
+    return std::ranges::any_of(overlaps_[i], [&](const Overlap& overlap) {
       return overlap.conflicting && chosen_[overlap.other];
     });
   }
@@ -82,10 +82,10 @@ class SubsetScore {
   }
 
  private:
-  const std::vector<Candidate>& candidates_;
+  const Candidates& candidates_;
   const InterpretationOptions& options_;
   double per_pixel_;
-  const std::vector<std::vector<Overlap>>& overlaps_;
+  const Overlaps& overlaps_;
   std::vector<bool> chosen_;
   double total_ = 0;
 };
@@ -99,20 +99,16 @@ class BestSubsets {
     if (best_.size() >= capacity_ && score <= best_.rbegin()->negated_score * -1) return;
     if (!known_.insert(subset).second) return;
     best_.insert({-score, subset});
-    if (best_.size() > capacity_) {
-      const auto last = std::prev(best_.end());
-      known_.erase(last->subset);
-      best_.erase(last);
-    }
+    if (best_.size() <= capacity_) return;
+    const auto last = std::prev(best_.end());
+    known_.erase(last->subset);
+    best_.erase(last);
   }
 
   struct Entry {
     double negated_score;
     std::vector<bool> subset;
-    bool operator<(const Entry& other) const {
-      return negated_score != other.negated_score ? negated_score < other.negated_score
-                                                  : subset < other.subset;
-    }
+    auto operator<=>(const Entry&) const = default;
   };
   const std::set<Entry>& entries() const { return best_; }
 
@@ -151,8 +147,7 @@ void anneal(SubsetScore& state, const std::vector<std::size_t>& among,
     const double temperature =
         options.start_temperature * (1 - static_cast<double>(step) / options.annealing_steps) +
         options.end_temperature;
-    const std::size_t i =
-        among[static_cast<std::size_t>(random.index(static_cast<int>(among.size())))];
+    const std::size_t i = among[random.index(static_cast<int>(among.size()))];
     std::vector<std::size_t> removed;
     const bool was_chosen = state.chosen(i);
     if (was_chosen) {
@@ -185,22 +180,20 @@ using Entry = BestSubsets::Entry;
 // What no interpretation has shown yet, by falling probability.
 class Unshown {
  public:
-  Unshown(const std::vector<Candidate>& candidates, const Competition& competition,
+  Unshown(const Candidates& candidates, const Competition& competition,
           const std::vector<std::size_t>& among)
       : competition_(competition), by_probability_(among) {
-    std::stable_sort(by_probability_.begin(), by_probability_.end(),
-                     [&](std::size_t a, std::size_t b) {
-                       return candidates[a].probability > candidates[b].probability;
-                     });
+    std::ranges::stable_sort(by_probability_, std::greater(),
+                             [&](std::size_t i) { return candidates[i].probability; });
   }
   const std::vector<std::size_t>& left() const { return by_probability_; }
   // Nearly the same pose of the same model counts as shown as well.
   void show(const std::vector<bool>& subset) {
     std::erase_if(by_probability_, [&](std::size_t i) {
-      return subset[i] || std::any_of(competition_.rivals[i].begin(), competition_.rivals[i].end(),
-                                      [&](const Competition::Rival& rival) {
-                                        return rival.same_pose > 0.5 && subset[rival.other];
-                                      });
+      const auto shown = [&](const Competition::Rival& rival) {
+        return rival.same_pose > 0.5 && subset[rival.other];
+      };
+      return subset[i] || std::ranges::any_of(competition_.rivals[i], shown);
     });
   }
 
@@ -214,8 +207,7 @@ std::vector<Entry> rank(SubsetScore& state, const std::vector<std::size_t>& amon
                         BestSubsets& best, const InterpretationOptions& options) {
   std::vector<Entry> ranked{*best.entries().begin()};
   unshown.show(ranked.front().subset);
-  while (ranked.size() < static_cast<std::size_t>(options.max_different) &&
-         !unshown.left().empty()) {
+  while (std::ssize(ranked) < options.max_different && !unshown.left().empty()) {
     state.clear();
     for (std::size_t i : unshown.left()) {
       if (!state.blocked(i)) state.add(i);
@@ -227,7 +219,7 @@ std::vector<Entry> rank(SubsetScore& state, const std::vector<std::size_t>& amon
   std::set<std::vector<bool>> known;
   for (const Entry& entry : ranked) known.insert(entry.subset);
   for (const Entry& entry : best.entries()) {
-    if (ranked.size() >= static_cast<std::size_t>(options.max_interpretations)) break;
+    if (std::ssize(ranked) >= options.max_interpretations) break;
     if (known.insert(entry.subset).second) ranked.push_back(entry);
   }
   return ranked;
@@ -235,19 +227,15 @@ std::vector<Entry> rank(SubsetScore& state, const std::vector<std::size_t>& amon
 
 }  // namespace
 
-void let_compete(std::vector<Candidate>& candidates,
-                 const std::vector<std::vector<Overlap>>& overlaps) {
+void let_compete(Candidates& candidates, const Overlaps& overlaps) {
   std::vector<double> scores;
   for (const Candidate& candidate : candidates) scores.push_back(candidate.score);
   const std::vector<double> probabilities =
       competing_probabilities(scores, competition_of(candidates, overlaps));
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    candidates[i].probability = probabilities[i];
-  }
+  for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].probability = probabilities[i];
 }
 
-std::vector<Interpretation> interpret(const std::vector<Candidate>& candidates,
-                                      const std::vector<std::vector<Overlap>>& overlaps,
+std::vector<Interpretation> interpret(const Candidates& candidates, const Overlaps& overlaps,
                                       int observed_pixels, const InterpretationOptions& options) {
   std::vector<std::size_t> among;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -262,20 +250,17 @@ std::vector<Interpretation> interpret(const std::vector<Candidate>& candidates,
   std::vector<Interpretation> out;
   double total = 0, top = 0;
   for (const Entry& entry : rank(state, among, unshown, best, options)) {
-    Interpretation interpretation;
-    interpretation.rank = static_cast<int>(out.size()) + 1;
-    interpretation.score = -entry.negated_score;
-    if (out.empty()) top = interpretation.score;
-    interpretation.probability = std::exp(interpretation.score - top);
+    const double score = -entry.negated_score;
+    if (out.empty()) top = score;
+    Interpretation& interpretation = out.emplace_back(
+        Interpretation{static_cast<int>(out.size()) + 1, score, std::exp(score - top), {}});
     total += interpretation.probability;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       if (!entry.subset[i]) continue;
       interpretation.placements.push_back(to_placement(candidates[i]));
       interpretation.placements.back().alternatives = alternatives_of(candidates, competition, i);
     }
-    std::stable_sort(interpretation.placements.begin(), interpretation.placements.end(),
-                     [](const auto& a, const auto& b) { return a.probability > b.probability; });
-    out.push_back(std::move(interpretation));
+    std::ranges::stable_sort(interpretation.placements, std::greater(), &Placement::probability);
   }
   for (Interpretation& interpretation : out) interpretation.probability /= total;
   return out;

@@ -52,8 +52,7 @@ struct InterpretationOptions {
 
 /// Replaces the probabilities of single candidates by those under competition with their rivals
 /// (competing_probabilities).
-void let_compete(std::vector<Candidate>& candidates,
-                 const std::vector<std::vector<Overlap>>& overlaps);
+void let_compete(Candidates& candidates, const Overlaps& overlaps);
 
 /// Explains the scene by subsets of the candidates (paper section VI): simulated annealing on the
 /// multi-object-placement score. The score adds single scores, each weighted by the share of pixels
@@ -64,8 +63,7 @@ void let_compete(std::vector<Candidate>& candidates,
 /// placements that no earlier one holds; then the rest by falling score. The probability of each is
 /// relative to all that are returned. `overlaps` is find_overlaps() of the candidates;
 /// `observed_pixels` counts the searched pixels of the reduced image.
-std::vector<Interpretation> interpret(const std::vector<Candidate>& candidates,
-                                      const std::vector<std::vector<Overlap>>& overlaps,
+std::vector<Interpretation> interpret(const Candidates& candidates, const Overlaps& overlaps,
                                       int observed_pixels, const InterpretationOptions& options);
 
 }  // namespace bpa

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
+#include <span>
 
 namespace bpa {
 namespace {
@@ -35,8 +37,7 @@ double share_inside(const Candidate& a, const Candidate& b) {
     const Eigen::Vector3f point = a_in_b * points[k];
     const int nearest = b.model->index->distances.nearest_to(point);
     if (nearest < 0) continue;
-    const auto i = static_cast<std::size_t>(nearest);
-    inside += (point - surface.points[i]).dot(surface.normals[i]) < -kDepth;
+    inside += (point - surface.points[nearest]).dot(surface.normals[nearest]) < -kDepth;
   }
   return count > 0 ? inside / static_cast<double>(count) : 0;
 }
@@ -59,7 +60,7 @@ double same_pose(const Candidate& a, const Candidate& b) {
 
 // How many pixels each two candidates share, row by row; counted through an index from pixels to
 // the candidates that explain them.
-std::vector<int> common_pixels(const std::vector<Candidate>& candidates,
+std::vector<int> common_pixels(const Candidates& candidates,
                                const std::vector<std::uint32_t>& running) {
   std::uint32_t num_pixels = 0;
   for (std::uint32_t i : running) {
@@ -86,16 +87,27 @@ std::vector<int> common_pixels(const std::vector<Candidate>& candidates,
   return common;
 }
 
+// Candidates of nearly one pose.
+struct PoseGroup {
+  std::size_t best = 0;
+  double weight = 0;
+};
+
+bool nearly_same_pose(const Competition& competition, std::size_t a, std::size_t b) {
+  return std::ranges::any_of(competition.rivals[a], [b](const Competition::Rival& rival) {
+    return rival.other == b && rival.same_pose >= 0.5;
+  });
+}
+
 }  // namespace
 
-std::vector<std::vector<Overlap>> find_overlaps(const std::vector<Candidate>& candidates,
-                                                double max_shared) {
+Overlaps find_overlaps(const Candidates& candidates, double max_shared) {
   std::vector<std::uint32_t> running;
   for (std::uint32_t i = 0; i < candidates.size(); ++i) {
     if (candidates[i].score >= kHopelessScore) running.push_back(i);
   }
   const std::vector<int> common = common_pixels(candidates, running);
-  std::vector<std::vector<Overlap>> overlaps(candidates.size());
+  Overlaps overlaps(candidates.size());
   for (std::size_t a = 0; a < running.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       const Candidate& first = candidates[running[a]];
@@ -110,15 +122,11 @@ std::vector<std::vector<Overlap>> find_overlaps(const std::vector<Candidate>& ca
       overlaps[running[b]].push_back({running[a], shared, conflicting});
     }
   }
-  for (auto& of_one : overlaps) {
-    std::sort(of_one.begin(), of_one.end(),
-              [](const Overlap& a, const Overlap& b) { return a.other < b.other; });
-  }
+  for (auto& of_one : overlaps) std::ranges::sort(of_one, {}, &Overlap::other);
   return overlaps;
 }
 
-Competition competition_of(const std::vector<Candidate>& candidates,
-                           const std::vector<std::vector<Overlap>>& overlaps) {
+Competition competition_of(const Candidates& candidates, const Overlaps& overlaps) {
   Competition out;
   out.rivals.resize(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -127,6 +135,45 @@ Competition competition_of(const std::vector<Candidate>& candidates,
       out.rivals[i].push_back({overlap.other, same_pose(candidates[i], candidates[overlap.other])});
     }
   }
+  return out;
+}
+
+std::vector<PoseAlternative> alternatives_of(const Candidates& candidates,
+                                             const Competition& competition, std::size_t chosen,
+                                             double min_weight) {
+  std::vector<int> rivals;
+  for (const Competition::Rival& rival : competition.rivals[chosen]) {
+    if (candidates[rival.other].model == candidates[chosen].model) rivals.push_back(rival.other);
+  }
+  std::ranges::stable_sort(rivals, std::greater(), [&](int i) { return candidates[i].score; });
+  double largest = candidates[chosen].score;
+  if (!rivals.empty()) largest = std::max(largest, candidates[rivals.front()].score);
+  const auto odds = [&](std::size_t i) { return std::exp(candidates[i].score - largest); };
+  std::vector<PoseGroup> groups{{chosen, odds(chosen)}};
+  for (const int i : rivals) {
+    const auto found = std::ranges::find_if(groups, [&](const PoseGroup& group) {
+      return nearly_same_pose(competition, group.best, i);
+    });
+    if (found == groups.end()) {
+      groups.push_back({static_cast<std::size_t>(i), odds(i)});
+    } else {
+      found->weight += odds(i);
+    }
+  }
+  const auto total = [&groups] {
+    double sum = 0;
+    for (const PoseGroup& group : groups) sum += group.weight;
+    return sum;
+  };
+  std::erase_if(groups, [&, least = min_weight * total()](const PoseGroup& group) {
+    return group.best != chosen && group.weight < least;
+  });
+  const double sum = total();  // of those that are left
+  std::vector<PoseAlternative> out;
+  for (const PoseGroup& group : std::span(groups).subspan(1)) {
+    out.push_back({candidates[group.best].pose(), group.weight / sum});
+  }
+  std::ranges::stable_sort(out, std::greater(), &PoseAlternative::weight);
   return out;
 }
 

@@ -16,6 +16,7 @@ struct Overlap {
   int common = 0;            ///< Observed pixels that both explain.
   bool conflicting = false;  ///< They cannot both be there.
 };
+using Overlaps = std::vector<std::vector<Overlap>>;  ///< Of each candidate.
 
 /// Candidates of lower log odds are ignored: they are no rivals of others.
 constexpr double kHopelessScore = -8;
@@ -24,11 +25,17 @@ constexpr double kHopelessScore = -8;
 /// with it, by rising `other`. Two conflict when they share more than `max_shared` of what the
 /// smaller one explains, when their origins are too near for two solid objects, or when more than a
 /// tenth of the one's surface lies over 1 cm deep inside of the other.
-std::vector<std::vector<Overlap>> find_overlaps(const std::vector<Candidate>& candidates,
-                                                double max_shared);
+Overlaps find_overlaps(const Candidates& candidates, double max_shared);
 
 /// The rivals of each candidate: those that it conflicts with.
-Competition competition_of(const std::vector<Candidate>& candidates,
-                           const std::vector<std::vector<Overlap>>& overlaps);
+Competition competition_of(const Candidates& candidates, const Overlaps& overlaps);
+
+/// The other poses in which the object of candidate `chosen` explains the same view, by falling
+/// weight: a mug with its handle out of sight, a box with one visible face. They are its rivals of
+/// the same model; nearly equal poses are merged. Their weights and the chosen pose's own sum to 1.
+/// Leaves out weights below `min_weight`. Empty if the view determines the pose.
+std::vector<PoseAlternative> alternatives_of(const Candidates& candidates,
+                                             const Competition& competition, std::size_t chosen,
+                                             double min_weight = 0.02);
 
 }  // namespace bpa
