@@ -8,7 +8,7 @@
 
 #include "core/draw/annotate.hpp"
 #include "core/io/model_file.hpp"
-#include "core/pipeline/score_layer_file.hpp"
+#include "core/pipeline/detector.hpp"
 #include "server/recognition.hpp"
 
 namespace bpa::server {

@@ -7,7 +7,7 @@
 
 #include "core/cloud/frame.hpp"
 #include "core/io/bop_dataset.hpp"
-#include "core/pipeline/frame_trace.hpp"
+#include "core/pipeline/detector.hpp"
 #include "core/result/interpretation.hpp"
 #include "core/score/score_layer.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/io/model_file.hpp"
-#include "core/pipeline/score_layer_file.hpp"
+#include "core/pipeline/detector.hpp"
 #include "tools/progress.hpp"
 
 namespace bpa::cli {

@@ -8,7 +8,6 @@
 
 #include "core/io/bop_dataset.hpp"
 #include "core/pipeline/detector.hpp"
-#include "core/pipeline/frame_trace.hpp"
 #include "tools/command.hpp"
 
 namespace bpa::cli {

@@ -6,7 +6,7 @@
 
 #include "core/eval/matching.hpp"
 #include "core/io/file_bytes.hpp"
-#include "core/pipeline/score_layer_file.hpp"
+#include "core/pipeline/detector.hpp"
 #include "core/scene/interpretations.hpp"
 #include "core/scene/overlaps.hpp"
 #include "tools/command.hpp"

@@ -10,8 +10,8 @@
 #include "core/base/stopwatch.hpp"
 #include "core/cloud/cielab.hpp"
 #include "core/detect/stages.hpp"
+#include "core/io/file_bytes.hpp"
 #include "core/io/options_yaml.hpp"
-#include "core/pipeline/frame_trace.hpp"
 #include "core/scene/interpretations.hpp"
 
 namespace bpa {
@@ -115,6 +115,19 @@ void keep_best(std::vector<Interpretation>& interpretations, std::size_t count) 
   for (Interpretation& interpretation : interpretations) interpretation.probability /= sum;
 }
 
+// Lets the candidates compete and ranks interpretations of the scene.
+std::vector<Interpretation> interpret_scene(const SceneFeatures& scene, Candidates& candidates,
+                                            const DetectRequest& request,
+                                            InterpretationOptions options) {
+  options.seed = request.seed;
+  const auto overlaps = find_overlaps(candidates, options.max_shared);
+  let_compete(candidates, overlaps);
+  const auto observed = static_cast<int>(std::ranges::count(scene.map.searched, 1));
+  std::vector<Interpretation> ranked = interpret(candidates, overlaps, observed, options);
+  keep_best(ranked, request.top_k);
+  return ranked;
+}
+
 }  // namespace
 
 Result<DetectorOptions> load_detector_options(const std::string& path) {
@@ -149,7 +162,7 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
       *models, trace ? &trace->objects : nullptr, out.budget_exhausted);
   out.timings.push_back({"objects", stage.lap_milliseconds()});
 
-  out.interpretations = interpret_scene(scene, candidates, request);
+  out.interpretations = interpret_scene(scene, candidates, request, options_.scene);
   out.timings.push_back({"interpretations", stage.lap_milliseconds()});
   out.total_milliseconds = total.milliseconds();
   if (trace) {
@@ -160,18 +173,24 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   return out;
 }
 
-std::vector<Interpretation> Detector::interpret_scene(const SceneFeatures& scene,
-                                                      Candidates& candidates,
-                                                      const DetectRequest& request) const {
-  InterpretationOptions options = options_.scene;
-  options.seed = request.seed;
-  const auto overlaps = find_overlaps(candidates, options.max_shared);
-  let_compete(candidates, overlaps);
-  const auto& searched = scene.map.searched;
-  const auto observed = static_cast<int>(std::count(searched.begin(), searched.end(), 1));
-  std::vector<Interpretation> ranked = interpret(candidates, overlaps, observed, options);
-  keep_best(ranked, request.top_k);
-  return ranked;
+std::string score_layer_path(const std::string& library_folder) {
+  return library_folder + "/score_layer.json";
+}
+
+Status write_score_layers(const std::string& path, const ScoreLayers& layers) {
+  return io::write_file(path, to_json(layers));
+}
+
+Result<ScoreLayers> read_score_layers(const std::string& path) {
+  const Result<std::string> bytes = io::read_file(path);
+  if (!bytes.ok()) return bytes.status();
+  return score_layers_from_json(*bytes, path);
+}
+
+Result<ScoreLayers> library_score_layers(const std::string& library_folder) {
+  Result<ScoreLayers> layers = read_score_layers(score_layer_path(library_folder));
+  if (!layers.ok() && layers.status().code == StatusCode::not_found) return default_score_layers();
+  return layers;
 }
 
 }  // namespace bpa

@@ -10,7 +10,7 @@
 #include "core/base/log.hpp"
 #include "core/base/status.hpp"
 #include "core/cloud/frame.hpp"
-#include "core/detect/pose_prior.hpp"
+#include "core/detect/search.hpp"
 #include "core/model/library.hpp"
 #include "core/pipeline/detector_options.hpp"
 #include "core/result/interpretation.hpp"
@@ -18,7 +18,13 @@
 
 namespace bpa {
 
-struct FrameTrace;  // see frame_trace.hpp
+/// Intermediate results of the detection in one frame, for training, experiments and pictures.
+struct FrameTrace {
+  SceneFeatures scene;
+  std::vector<std::shared_ptr<const ObjectModel>> models;  ///< Searched for.
+  std::vector<ObjectTrace> objects;                        ///< One for each model.
+  std::vector<Candidate> candidates;                       ///< Of all models.
+};
 
 /// What to look for in one frame.
 struct DetectRequest {
@@ -52,13 +58,18 @@ class Detector {
   const ScoreLayers& score_layers() const { return layers_; }
 
  private:
-  /// Lets the candidates compete and ranks interpretations of the scene.
-  std::vector<Interpretation> interpret_scene(const SceneFeatures& scene, Candidates& candidates,
-                                              const DetectRequest& request) const;
-
   std::shared_ptr<const ModelLibrary> library_;
   DetectorOptions options_;
   ScoreLayers layers_;
 };
+
+/// The file of a library's own score layers: "FOLDER/score_layer.json".
+std::string score_layer_path(const std::string& library_folder);
+
+Status write_score_layers(const std::string& path, const ScoreLayers& layers);
+/// Fails with not_found, or as score_layers_from_json().
+Result<ScoreLayers> read_score_layers(const std::string& path);
+/// The layers of the library, or default_score_layers() where the library has none of its own.
+Result<ScoreLayers> library_score_layers(const std::string& library_folder);
 
 }  // namespace bpa

@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 
 #include "core/pipeline/detector.hpp"
-#include "core/pipeline/frame_trace.hpp"
 #include "tests/support/l_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/pipeline/frame_trace.hpp"
 #include "tests/support/l_scene.hpp"
 
 namespace bpa {

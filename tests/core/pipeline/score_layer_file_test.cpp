@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/pipeline/score_layer_file.hpp"
-
 #include <gtest/gtest.h>
 
+#include "core/pipeline/detector.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace bpa {
