@@ -75,8 +75,7 @@ class SelfFit {
  private:
   // Calls visit(point, normal of the surface there, how far off its plane) for each point of the
   // sample that the motion brings within `gate` metres of the surface.
-  template <class Visit>
-  void for_each_match(const Pose& motion, double gate, const Visit& visit) const {
+  void for_each_match(const Pose& motion, double gate, const auto& visit) const {
     const FastPose fast = to_fast(motion);
     for (const std::uint32_t i : surface_.sample) {
       const Eigen::Vector3f p = fast * surface_.points[i];

@@ -32,6 +32,18 @@ struct DepthBuffer {
     if (x < 0 || y < 0 || x >= width || y >= height) return kNothing;
     return nearest[y * width + x];
   }
+  // Calls visit(dx, dy) for the cells within the root of `squared_reach` of a point's, where the
+  // surface is farther from the camera than `limit`.
+  void for_each_behind(const Eigen::Vector3f& p, int squared_reach, float limit,
+                       const auto& visit) const {
+    const int x = column(p.x()), y = row(p.y()), reach = static_cast<int>(std::sqrt(squared_reach));
+    for (int dy = -reach; dy <= reach; ++dy) {
+      for (int dx = -reach; dx <= reach; ++dx) {
+        if (dx * dx + dy * dy > squared_reach) continue;
+        if (at(x + dx, y + dy) < limit) visit(dx, dy);
+      }
+    }
+  }
 };
 
 // Each point covers the 3x3 cells about it, so that the surface has no holes.
@@ -55,20 +67,11 @@ DepthBuffer draw(const std::vector<Eigen::Vector3f>& points, float cell) {
   return buffer;
 }
 
-// The direction in the view plane in which the surface ends within `reach` cells; zero if none.
+// The direction in the view plane in which the surface ends within three cells; zero if none.
 Eigen::Vector2f edge_direction(const DepthBuffer& buffer, const Eigen::Vector3f& p, float drop) {
-  constexpr int kReach = 3;
-  const int x = buffer.column(p.x());
-  const int y = buffer.row(p.y());
   Eigen::Vector2f outward = Eigen::Vector2f::Zero();
-  for (int dy = -kReach; dy <= kReach; ++dy) {
-    for (int dx = -kReach; dx <= kReach; ++dx) {
-      if (dx * dx + dy * dy > kReach * kReach) continue;
-      if (buffer.at(x + dx, y + dy) < p.z() - drop) {
-        outward += Eigen::Vector2f(static_cast<float>(dx), static_cast<float>(dy));
-      }
-    }
-  }
+  buffer.for_each_behind(p, 9, p.z() - drop,
+                         [&](int dx, int dy) { outward += Eigen::Vector2f(dx, dy); });
   return outward;
 }
 
@@ -103,14 +106,9 @@ class EdgeDistance {
  private:
   // Whether the surface on which p lies ends in p's cell: draw() covers one cell more.
   bool ends_beside(const Eigen::Vector3f& p) const {
-    const int x = buffer_.column(p.x()), y = buffer_.row(p.y());
-    for (int dy = -2; dy <= 2; ++dy) {
-      for (int dx = -2; dx <= 2; ++dx) {
-        if (dx * dx + dy * dy > 5) continue;
-        if (buffer_.at(x + dx, y + dy) < p.z() - kDrop - 2 * buffer_.cell) return true;
-      }
-    }
-    return false;
+    bool ends = false;
+    buffer_.for_each_behind(p, 5, p.z() - kDrop - 2 * buffer_.cell, [&](int, int) { ends = true; });
+    return ends;
   }
 
   const DepthBuffer& buffer_;
