@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // bpa detect: frames in, ranked interpretations out.
-#include <algorithm>
 #include <cstdio>
 #include <optional>
 

@@ -3,7 +3,6 @@
 #include "core/draw/poses.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <opencv2/imgproc.hpp>
 

@@ -3,8 +3,6 @@
 #include "core/draw/scene_features.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include <opencv2/imgproc.hpp>
 

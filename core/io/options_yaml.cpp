@@ -3,7 +3,6 @@
 #include "core/io/options_yaml.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iomanip>
 

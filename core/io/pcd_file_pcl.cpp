@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The only file of this room that sees PCL. PCDReader crashes on a header without DATA and prints
 // what it does not like, so the header is checked here first.
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <set>
 #include <sstream>
 

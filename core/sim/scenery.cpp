@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/sim/scenery.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
