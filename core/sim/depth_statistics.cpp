@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
@@ -50,38 +49,6 @@ KinectImage see_plate(const TriangleMesh& mesh, double depth, double angle,
   shading.materials.assign(1, {0.7, 0});
   return simulate_kinect({scene, shading, camera, Pose{}}, options, seed, 0, num_threads);
 }
-
-}  // namespace
-
-PlaneNoise plane_noise(double depth, double angle, const KinectOptions& options, std::uint64_t seed,
-                       int num_threads) {
-  constexpr double kBand = 0.03;  // of the depth
-  KinectOptions measured = options;
-  measured.registered = false;
-  const TriangleMesh wide = plate(-20, 20, 20);
-  const KinectImage image = see_plate(wide, depth, angle, measured, seed, num_threads);
-  Moments error, missing;
-  for (std::size_t i = 0; i < image.frame.depth.size(); ++i) {
-    if (!(std::abs(image.ideal.depth[i] / depth - 1) <= kBand)) continue;
-    const float measured_depth = image.frame.depth[i];
-    missing.add(measured_depth > 0 ? 0 : 1);
-    if (measured_depth > 0) error.add(measured_depth - image.ideal.depth[i]);
-  }
-  // The edge's side away from the projector is a shadow's, so it is the right one that is measured.
-  const TriangleMesh half = plate(-20, 0, 20);
-  const KinectImage edge = see_plate(half, depth, angle, measured, seed, num_threads);
-  const int width = edge.frame.camera.width;
-  Moments column;
-  for (int y = 0; y < edge.frame.camera.height; ++y) {
-    int last = width - 1;
-    const float* row = edge.frame.depth.data() + static_cast<std::size_t>(y) * width;
-    while (last >= 0 && row[last] == 0) --last;
-    if (last >= 0) column.add(last);
-  }
-  return {error.deviation(), column.deviation(), missing.mean()};
-}
-
-namespace {
 
 using DepthImage = cv::Mat_<float>;
 
@@ -194,6 +161,34 @@ void add_roughness(const DepthImage& depth, double scale, DepthStatistics& stati
 }
 
 }  // namespace
+
+PlaneNoise plane_noise(double depth, double angle, const KinectOptions& options, std::uint64_t seed,
+                       int num_threads) {
+  constexpr double kBand = 0.03;  // of the depth
+  KinectOptions measured = options;
+  measured.registered = false;
+  const TriangleMesh wide = plate(-20, 20, 20);
+  const KinectImage image = see_plate(wide, depth, angle, measured, seed, num_threads);
+  Moments error, missing;
+  for (std::size_t i = 0; i < image.frame.depth.size(); ++i) {
+    if (!(std::abs(image.ideal.depth[i] / depth - 1) <= kBand)) continue;
+    const float measured_depth = image.frame.depth[i];
+    missing.add(measured_depth > 0 ? 0 : 1);
+    if (measured_depth > 0) error.add(measured_depth - image.ideal.depth[i]);
+  }
+  // The edge's side away from the projector is a shadow's, so it is the right one that is measured.
+  const TriangleMesh half = plate(-20, 0, 20);
+  const KinectImage edge = see_plate(half, depth, angle, measured, seed, num_threads);
+  const int width = edge.frame.camera.width;
+  Moments column;
+  for (int y = 0; y < edge.frame.camera.height; ++y) {
+    int last = width - 1;
+    const float* row = edge.frame.depth.data() + static_cast<std::size_t>(y) * width;
+    while (last >= 0 && row[last] == 0) --last;
+    if (last >= 0) column.add(last);
+  }
+  return {error.deviation(), column.deviation(), missing.mean()};
+}
 
 DepthStatistics depth_statistics(const Frame& frame) {
   constexpr double kSmall = 20;  // square pixels

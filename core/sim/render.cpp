@@ -31,6 +31,22 @@ Eigen::Vector3f shade(const RayScene& scene, const Shading& shading, const Eigen
   return diffuse * hit.color + Eigen::Vector3f::Constant(highlight);
 }
 
+// The pixels a mesh's corners span, at most one image beyond each border.
+Eigen::AlignedBox2i box_of(const TriangleMesh& mesh, const Pose& camera_from_mesh,
+                           const Camera& camera) {
+  const Eigen::Vector2d size(camera.width, camera.height);
+  const Eigen::AlignedBox2d all(-size, 2 * size - Eigen::Vector2d::Ones());
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    const Eigen::Vector3d p = camera_from_mesh * vertex.cast<double>();
+    if (p.z() < 1e-3) return {all.min().cast<int>(), all.max().cast<int>()};
+    box.extend(camera.project(p));
+  }
+  if (box.isEmpty()) return {};
+  box.clamp(all);
+  return {box.min().array().floor().cast<int>(), box.max().array().ceil().cast<int>()};
+}
+
 }  // namespace
 
 RenderedImage render(const RayScene& scene, const Camera& camera, const Pose& world_from_camera,
@@ -62,26 +78,6 @@ RenderedImage render(const RayScene& scene, const Camera& camera, const Pose& wo
   });
   return image;
 }
-
-namespace {
-
-// The pixels a mesh's corners span, at most one image beyond each border.
-Eigen::AlignedBox2i box_of(const TriangleMesh& mesh, const Pose& camera_from_mesh,
-                           const Camera& camera) {
-  const Eigen::Vector2d size(camera.width, camera.height);
-  const Eigen::AlignedBox2d all(-size, 2 * size - Eigen::Vector2d::Ones());
-  Eigen::AlignedBox2d box;
-  for (const Eigen::Vector3f& vertex : mesh.vertices) {
-    const Eigen::Vector3d p = camera_from_mesh * vertex.cast<double>();
-    if (p.z() < 1e-3) return {all.min().cast<int>(), all.max().cast<int>()};
-    box.extend(camera.project(p));
-  }
-  if (box.isEmpty()) return {};
-  box.clamp(all);
-  return {box.min().array().floor().cast<int>(), box.max().array().ceil().cast<int>()};
-}
-
-}  // namespace
 
 std::vector<InstanceVisibility> visibility(const RayScene& scene, const RenderedImage& image,
                                            const Camera& camera, const Pose& world_from_camera,
