@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // bpa bench sensor: the simulated depth camera against published figures and against real frames.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <numbers>
 
 #include <nlohmann/json.hpp>
 
-#include "core/draw/number.hpp"
+#include "core/base/concat.hpp"
 #include "core/draw/sheet.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/image_file.hpp"
@@ -55,8 +54,7 @@ Json bench_planes(const SensorArguments& a) {
           sim::plane_noise(depth, angle, {}, a.common.seed, a.common.threads);
       const double nguyen = sim::published_axial_noise(depth, angle);
       // Khoshelham's figure is for surfaces that face the camera.
-      const std::string khoshelham =
-          degrees == 0 ? draw::fixed(1e3 * khoshelham_noise(depth), 2) : "";
+      const std::string khoshelham = degrees == 0 ? fixed(1e3 * khoshelham_noise(depth), 2) : "";
       std::printf("%3.1f m  %3.0f deg %8.2f %8.2f %10s %11.2f %8.2f %9.1f\n", depth, degrees,
                   1e3 * noise.axial, 1e3 * nguyen, khoshelham.c_str(), noise.lateral,
                   nguyen_lateral(angle), 100 * noise.missing);

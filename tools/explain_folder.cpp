@@ -3,13 +3,12 @@
 #include "tools/explain_folder.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <string_view>
 
+#include "core/base/concat.hpp"
 #include "core/base/failure.hpp"
 #include "core/detect/stages.hpp"
 #include "core/draw/html_page.hpp"
-#include "core/draw/number.hpp"
 #include "core/draw/poses.hpp"
 #include "core/draw/scene_features.hpp"
 #include "core/draw/sheet.hpp"
@@ -23,7 +22,6 @@ namespace bpa::cli {
 namespace {
 
 using draw::DrawnPoses;
-using draw::fixed;
 using draw::HtmlPage;
 using draw::LegendEntry;
 using draw::Rgb;
@@ -40,9 +38,7 @@ constexpr std::string_view kOutlines =
 constexpr std::string_view kDots = " A dot is the middle of the model at one pose.";
 
 std::string numbered(std::size_t number, std::string_view name) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%02zu_", number);
-  return text + std::string(name) + ".png";
+  return format("%02zu_", number) + std::string(name) + ".png";
 }
 
 /// A page and its pictures in a folder.

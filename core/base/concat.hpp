@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
 #include <sstream>
 
 #include "core/base/status.hpp"
@@ -16,6 +19,21 @@ std::string concat(const Parts&... parts) {
   std::ostringstream text;
   (text << ... << parts);
   return text.str();
+}
+
+/// The pattern filled in as printf does, cut after 255 characters.
+__attribute__((format(printf, 1, 2))) inline std::string format(const char* pattern, ...) {
+  char text[256];
+  va_list arguments;
+  va_start(arguments, pattern);
+  std::vsnprintf(text, sizeof text, pattern, arguments);
+  va_end(arguments);
+  return text;
+}
+
+/// "1.25" for (1.25, 2); "not known" for NaN. `digits` behind the point, 0 to 9.
+inline std::string fixed(double value, int digits) {
+  return std::isnan(value) ? "not known" : format("%.*f", digits, value);
 }
 
 /// The message is concat(first, parts...), in the functions below too.

@@ -8,8 +8,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "core/base/concat.hpp"
 #include "core/draw/canvas.hpp"
-#include "core/draw/number.hpp"
 #include "core/draw/silhouette.hpp"
 
 namespace bpa::draw {

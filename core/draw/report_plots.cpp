@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/draw/report_plots.hpp"
 
-#include "core/draw/number.hpp"
+#include "core/base/concat.hpp"
 #include "core/draw/plot.hpp"
 
 namespace bpa::draw {

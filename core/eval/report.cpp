@@ -1,11 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/eval/report.hpp"
-
-#include <cstdarg>
-#include <cstdio>
-
 #include <nlohmann/json.hpp>
+
+#include "core/base/concat.hpp"
+#include "core/eval/evaluation.hpp"
 
 namespace bpa::eval {
 
@@ -42,15 +40,6 @@ static void to_json(Json& json, const FrameOutcome& frame) {
 }
 
 namespace {
-
-__attribute__((format(printf, 1, 2))) std::string format(const char* pattern, ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
 
 std::string percent(const Ratio& ratio) {
   if (ratio.total == 0) return "      -          ";

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <set>
 
@@ -99,71 +98,6 @@ Status read_scene(const fs::path& folder, int scene_id, std::vector<BopFrame>& f
   });
 }
 
-}  // namespace
-
-std::string bop_number(int number) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%06d", number);
-  return text;
-}
-
-std::string bop_object_name(int obj_id) { return "obj_" + bop_number(obj_id); }
-
-Result<std::vector<BopModel>> read_bop_models(const std::string& dataset) {
-  const std::string path = (fs::path(dataset) / "models" / "models_info.json").string();
-  return read_json(path, [&](const Json& json) -> Result<std::vector<BopModel>> {
-    std::vector<BopModel> models;
-    for (const auto& [key, info] : json.items()) {
-      BopModel& model = models.emplace_back();
-      model.obj_id = std::stoi(key);
-      model.name = info.value("name", bop_object_name(model.obj_id));
-      model.path =
-          (fs::path(dataset) / "models" / (bop_object_name(model.obj_id) + ".ply")).string();
-      model.diameter = kMetres * info.at("diameter").get<double>();
-      model.symmetry = read_symmetry(info);
-    }
-    std::ranges::sort(models, {}, &BopModel::obj_id);
-    return models;
-  });
-}
-
-Result<std::vector<BopFrame>> read_bop_frames(const std::string& dataset, const std::string& split,
-                                              const std::vector<int>& scenes) {
-  const fs::path folder = fs::path(dataset) / split;
-  std::error_code error;
-  if (!fs::is_directory(folder, error)) {
-    return not_found(folder.string(), " is not there: the data set has no split \"", split, "\"");
-  }
-  std::set<int> found;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.size() == 6 && name.find_first_not_of("0123456789") == std::string::npos) {
-      found.insert(std::stoi(name));
-    }
-  }
-  for (const int scene : scenes) {
-    if (!found.contains(scene)) return not_found(folder.string(), " has no scene ", scene);
-  }
-  std::vector<BopFrame> frames;
-  for (const int scene : scenes.empty() ? found : std::set(scenes.begin(), scenes.end())) {
-    if (Status s = read_scene(folder / bop_number(scene), scene, frames); !s.ok()) return s;
-  }
-  if (frames.empty()) return not_found(folder.string(), " has no frames");
-  std::ranges::sort(frames, {}, [](const BopFrame& f) { return std::pair(f.scene_id, f.im_id); });
-  return frames;
-}
-
-Result<Frame> load_bop_frame(const BopFrame& frame) {
-  Result<Frame> loaded =
-      read_frame(frame.depth_path, frame.color_path, frame.camera, frame.depth_scale_mm);
-  if (loaded.ok()) {
-    loaded->frame_id = std::to_string(frame.scene_id) + "/" + std::to_string(frame.im_id);
-  }
-  return loaded;
-}
-
-namespace {
-
 Json model_json(const BopMesh& model) {
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& vertex : model.mesh.vertices) box.extend(vertex);
@@ -244,6 +178,63 @@ Status write_images(const fs::path& folder, int im_id, const Frame& frame, doubl
 }
 
 }  // namespace
+
+std::string bop_number(int number) { return format("%06d", number); }
+
+std::string bop_object_name(int obj_id) { return "obj_" + bop_number(obj_id); }
+
+Result<std::vector<BopModel>> read_bop_models(const std::string& dataset) {
+  const std::string path = (fs::path(dataset) / "models" / "models_info.json").string();
+  return read_json(path, [&](const Json& json) -> Result<std::vector<BopModel>> {
+    std::vector<BopModel> models;
+    for (const auto& [key, info] : json.items()) {
+      BopModel& model = models.emplace_back();
+      model.obj_id = std::stoi(key);
+      model.name = info.value("name", bop_object_name(model.obj_id));
+      model.path =
+          (fs::path(dataset) / "models" / (bop_object_name(model.obj_id) + ".ply")).string();
+      model.diameter = kMetres * info.at("diameter").get<double>();
+      model.symmetry = read_symmetry(info);
+    }
+    std::ranges::sort(models, {}, &BopModel::obj_id);
+    return models;
+  });
+}
+
+Result<std::vector<BopFrame>> read_bop_frames(const std::string& dataset, const std::string& split,
+                                              const std::vector<int>& scenes) {
+  const fs::path folder = fs::path(dataset) / split;
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    return not_found(folder.string(), " is not there: the data set has no split \"", split, "\"");
+  }
+  std::set<int> found;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() == 6 && name.find_first_not_of("0123456789") == std::string::npos) {
+      found.insert(std::stoi(name));
+    }
+  }
+  for (const int scene : scenes) {
+    if (!found.contains(scene)) return not_found(folder.string(), " has no scene ", scene);
+  }
+  std::vector<BopFrame> frames;
+  for (const int scene : scenes.empty() ? found : std::set(scenes.begin(), scenes.end())) {
+    if (Status s = read_scene(folder / bop_number(scene), scene, frames); !s.ok()) return s;
+  }
+  if (frames.empty()) return not_found(folder.string(), " has no frames");
+  std::ranges::sort(frames, {}, [](const BopFrame& f) { return std::pair(f.scene_id, f.im_id); });
+  return frames;
+}
+
+Result<Frame> load_bop_frame(const BopFrame& frame) {
+  Result<Frame> loaded =
+      read_frame(frame.depth_path, frame.color_path, frame.camera, frame.depth_scale_mm);
+  if (loaded.ok()) {
+    loaded->frame_id = std::to_string(frame.scene_id) + "/" + std::to_string(frame.im_id);
+  }
+  return loaded;
+}
 
 Status write_bop_models(const std::string& dataset, const std::vector<BopMesh>& meshes) {
   const fs::path folder = fs::path(dataset) / "models";

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/concat.hpp"
 #include "core/base/failure.hpp"
-#include "core/draw/number.hpp"
 #include "core/io/image_file.hpp"
 #include "core/pipeline/detector.hpp"
 #include "tests/support/posed_models.hpp"
@@ -110,13 +110,13 @@ TEST_F(Explain, OneModelIsOneFolderWhosePageAgreesWithTheTrace) {
     const std::size_t row = text.find("<tr>" + cell(name), table);
     ASSERT_NE(row, std::string::npos) << name;
     const std::string line = text.substr(row, text.find("</tr>", row) - row);
-    EXPECT_NE(line.find(cell(draw::fixed(best.values[i], 4))), std::string::npos) << line;
+    EXPECT_NE(line.find(cell(fixed(best.values[i], 4))), std::string::npos) << line;
     if (!kScoreComponents[i].learned) continue;
-    EXPECT_NE(line.find(cell(draw::fixed(part, 3))), std::string::npos) << line;
+    EXPECT_NE(line.find(cell(fixed(part, 3))), std::string::npos) << line;
   }
   EXPECT_NEAR(sum, best.score, 1e-9);
   const std::string sum_row = "<tr>" + cell("sum") + cell("") + cell("") + cell("");
-  EXPECT_NE(text.find(sum_row + cell(draw::fixed(best.score, 3))), std::string::npos);
+  EXPECT_NE(text.find(sum_row + cell(fixed(best.score, 3))), std::string::npos);
 }
 
 TEST_F(Explain, SeveralModelsHaveAFolderEach) {
