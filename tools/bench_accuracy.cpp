@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/eval/matching.hpp"
+#include "core/eval/pose_errors.hpp"
 #include "core/io/file_bytes.hpp"
 #include "tools/search.hpp"
 

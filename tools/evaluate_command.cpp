@@ -5,7 +5,6 @@
 
 #include "core/draw/report_plots.hpp"
 #include "core/eval/evaluation.hpp"
-#include "core/eval/report.hpp"
 #include "core/io/file_bytes.hpp"
 #include "tools/command.hpp"
 #include "tools/progress.hpp"

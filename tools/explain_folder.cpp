@@ -12,7 +12,7 @@
 #include "core/draw/poses.hpp"
 #include "core/draw/scene_features.hpp"
 #include "core/draw/sheet.hpp"
-#include "core/eval/matching.hpp"
+#include "core/eval/pose_errors.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/image_file.hpp"
 #include "core/score/predicted_surface.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "core/eval/matching.hpp"
+#include "core/eval/pose_errors.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/pipeline/detector.hpp"
 #include "core/scene/interpretations.hpp"

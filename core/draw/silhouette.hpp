@@ -19,7 +19,7 @@ struct Silhouette {
 };
 
 /// Draws the points of `surface` (object frame) as discs that reach their neighbours. Models hold
-/// points only; where there is a mesh, eval/depth_render is exact.
+/// points only; where there is a mesh, eval::render_depth is exact.
 Silhouette silhouette(const Camera& camera, const PointCloud& surface,
                       const Pose& camera_from_object);
 

@@ -10,7 +10,7 @@
 #include "core/base/concat.hpp"
 #include "core/draw/annotate.hpp"
 #include "core/draw/sheet.hpp"
-#include "core/eval/matching.hpp"
+#include "core/eval/pose_errors.hpp"
 
 namespace bpa::draw {
 namespace {

@@ -3,14 +3,13 @@
 #include "core/eval/evaluation.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <mutex>
 #include <numeric>
 #include <optional>
 
 #include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
-#include "core/eval/private/frame_evaluation.hpp"
+#include "core/io/mesh_file.hpp"
 
 namespace bpa::eval {
 namespace {
@@ -85,10 +84,10 @@ constexpr Rows kFractionRows{0.1, 0.1, 9, ""}, kDistanceRows{0.4, 0.2, 8, " m"};
 std::vector<Group> groups_of(const Rows& rows) {
   std::vector<Group> groups;
   for (int i = 0; i < rows.count; ++i) {
-    char name[64];
-    std::snprintf(name, sizeof name, "%.1f-%.1f%s", rows.first + i * rows.width,
-                  rows.first + (i + 1) * rows.width, rows.unit);
-    groups.push_back({name, {}, {}});
+    groups.push_back({format("%.1f-%.1f%s", rows.first + i * rows.width,
+                             rows.first + (i + 1) * rows.width, rows.unit),
+                      {},
+                      {}});
   }
   return groups;
 }

@@ -11,8 +11,6 @@
 #include "core/base/options.hpp"
 #include "core/base/status.hpp"
 #include "core/eval/pose_errors.hpp"
-#include "core/io/bop_dataset.hpp"
-#include "core/io/mesh_file.hpp"
 #include "core/io/results.hpp"
 
 namespace bpa::eval {
@@ -175,6 +173,11 @@ struct EvaluationReport {
 /// The times of the reported frames whose time is known, ascending.
 std::vector<double> sorted_seconds(const EvaluationReport& report);
 
+/// Evaluates one frame. `result` may be null: nothing was reported.
+Result<FrameOutcome> evaluate_frame(const io::BopFrame& frame, const EvalObjects& objects,
+                                    const io::FrameResult* result,
+                                    const EvaluationOptions& options);
+
 /// Called after each frame with the number of frames done, from one thread at a time.
 using EvaluationProgress = std::function<void(int)>;
 
@@ -190,5 +193,11 @@ Result<EvaluationReport> evaluate(const std::vector<io::BopFrame>& frames,
 /// Judges results of frames that hold no known object: whatever was reported is false.
 Result<EvaluationReport> evaluate_nothing_there(const std::vector<io::FrameResult>& results,
                                                 const EvaluationOptions& options = {});
+
+/// The report as tables for people.
+std::string report_text(const EvaluationReport& report);
+
+/// The report as JSON; every ratio with its counts.
+std::string report_json(const EvaluationReport& report);
 
 }  // namespace bpa::eval

@@ -1,14 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/eval/private/frame_evaluation.hpp"
-
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
 #include <functional>
 
-#include "core/eval/depth_render.hpp"
-#include "core/eval/matching.hpp"
+#include "core/eval/evaluation.hpp"
 
 namespace bpa::eval {
 namespace {

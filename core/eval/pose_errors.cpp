@@ -4,14 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
 #include <numbers>
+#include <numeric>
 
 namespace bpa::eval {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMaxQueries = 2000;
+constexpr double kNearest = 0.01;  // of a vertex that is rendered, metres
 
 Eigen::Matrix3Xd transformed(const Points& points, const Pose& pose) {
   const Eigen::Map<const Eigen::Matrix3Xf> all(reinterpret_cast<const float*>(points.data()), 3,
@@ -38,13 +40,78 @@ Eigen::Matrix2Xd projected(const Eigen::Matrix3Xd& points, const Camera& camera)
   return pixels;
 }
 
+struct Vertex {
+  Eigen::Vector2d pixel;
+  double inverse_depth = 0;  // linear in the image; 0 where the vertex is too near
+};
+
+void draw_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Camera& camera,
+                   std::vector<float>& depth) {
+  const Eigen::Vector2d ab = b.pixel - a.pixel;
+  const Eigen::Vector2d ac = c.pixel - a.pixel;
+  const double area = ab.x() * ac.y() - ab.y() * ac.x();
+  if (area == 0 || !std::isfinite(area)) return;
+  const Eigen::Vector2d low = a.pixel.cwiseMin(b.pixel).cwiseMin(c.pixel);
+  const Eigen::Vector2d high = a.pixel.cwiseMax(b.pixel).cwiseMax(c.pixel);
+  const int left = static_cast<int>(std::ceil(std::max(low.x(), 0.0)));
+  const int right = static_cast<int>(std::floor(std::min(high.x(), camera.width - 1.0)));
+  const int top = static_cast<int>(std::ceil(std::max(low.y(), 0.0)));
+  const int bottom = static_cast<int>(std::floor(std::min(high.y(), camera.height - 1.0)));
+  for (int v = top; v <= bottom; ++v) {
+    for (int u = left; u <= right; ++u) {
+      const Eigen::Vector2d p = Eigen::Vector2d(u, v) - a.pixel;
+      const double wb = (p.x() * ac.y() - p.y() * ac.x()) / area;
+      const double wc = (ab.x() * p.y() - ab.y() * p.x()) / area;
+      if (wb < 0 || wc < 0 || wb + wc > 1) continue;
+      const double inverse =
+          (1 - wb - wc) * a.inverse_depth + wb * b.inverse_depth + wc * c.inverse_depth;
+      float& z = depth[v * camera.width + u];
+      const auto here = static_cast<float>(1 / inverse);
+      if (z == 0 || here < z) z = here;
+    }
+  }
+}
+
 }  // namespace
+
+double right_cost(const Pose& estimate, const Pose& truth, const SymmetryGroup& symmetry,
+                  double position_m, double angle_rad) {
+  const PoseError error = pose_error(estimate, truth, symmetry, position_m, angle_rad);
+  const double cost = std::max(error.position / position_m, error.angle / angle_rad);
+  return cost <= 1 ? cost : kNoMatch;
+}
 
 bool is_right(const Pose& estimate, const Pose& truth, const SymmetryGroup& symmetry) {
   constexpr double kNowhereNear = 0.2;
   if ((estimate.translation - truth.translation).norm() > kNowhereNear) return false;
-  const PoseError error = pose_error(estimate, truth, symmetry);
-  return error.position < kPoseTolerance_m && error.angle < kPoseTolerance_rad;
+  return right_cost(estimate, truth, symmetry) < 1;
+}
+
+bool is_right_about_any(const Pose& estimate, const ObjectModel& model,
+                        const std::vector<io::BopInstance>& truth) {
+  return std::ranges::any_of(truth, [&](const io::BopInstance& instance) {
+    return instance.obj_id == model.number &&
+           is_right(estimate, instance.camera_from_object, model.symmetry);
+  });
+}
+
+std::vector<int> match_greedily(const std::vector<double>& scores,
+                                const std::vector<std::vector<double>>& costs, double limit) {
+  std::vector<std::size_t> order(scores.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t e) { return scores[e]; });
+  std::vector<int> truth_of(scores.size(), -1);
+  std::vector<bool> taken(costs.empty() ? 0 : costs.front().size(), false);
+  for (const std::size_t e : order) {
+    double best = limit;
+    for (std::size_t t = 0; t < taken.size(); ++t) {
+      if (taken[t] || !(costs[e][t] < best)) continue;
+      best = costs[e][t];
+      truth_of[e] = static_cast<int>(t);
+    }
+    if (truth_of[e] >= 0) taken[truth_of[e]] = true;
+  }
+  return truth_of;
 }
 
 std::vector<Pose> discretised_symmetries(const SymmetryGroup& group, double max_step) {
@@ -118,6 +185,25 @@ double max_projection_distance(const Points& points, const Pose& estimate, const
     best = std::min(best, max_squared_difference(at_estimate, at_truth, best));
   }
   return std::sqrt(best);
+}
+
+std::vector<float> render_depth(const TriangleMesh& mesh, const Pose& camera_from_object,
+                                const Camera& camera) {
+  std::vector<float> depth(camera.width * camera.height, 0.0f);
+  std::vector<Vertex> vertices;
+  const Eigen::Matrix3d rotation = camera_from_object.matrix();
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    const Eigen::Vector3d p = rotation * vertex.cast<double>() + camera_from_object.translation;
+    vertices.push_back(p.z() > kNearest ? Vertex{camera.project(p), 1 / p.z()} : Vertex{});
+  }
+  for (const auto& triangle : mesh.triangles) {
+    const Vertex& a = vertices[triangle[0]];
+    const Vertex& b = vertices[triangle[1]];
+    const Vertex& c = vertices[triangle[2]];
+    const bool visible = a.inverse_depth > 0 && b.inverse_depth > 0 && c.inverse_depth > 0;
+    if (visible) draw_triangle(a, b, c, camera, depth);
+  }
+  return depth;
 }
 
 std::array<double, 10> visible_surface_discrepancy(const std::vector<float>& depth_estimate,

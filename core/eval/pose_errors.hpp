@@ -4,23 +4,44 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <vector>
 
-#include "core/geometry/camera.hpp"
-#include "core/geometry/pose.hpp"
 #include "core/geometry/symmetry.hpp"
+#include "core/io/bop_dataset.hpp"
+#include "core/model/object_model.hpp"
 
 // How wrong a pose is, by the definitions of the BOP benchmark (Hodan et al. 2016, 2020) and of
-// Hinterstoisser et al. 2012. `points` are the vertices of the object's mesh. Metres and pixels.
+// Hinterstoisser et al. 2012, and which estimate is right about which instance. `points` are the
+// vertices of the object's mesh. Metres and pixels.
 
 namespace bpa::eval {
 
 using Points = std::vector<Eigen::Vector3f>;
 
+/// The cost of a pair that cannot be matched.
+constexpr double kNoMatch = std::numeric_limits<double>::infinity();
+
+/// The larger of position error / position_m and orientation error / angle_rad, modulo the symmetry
+/// (paper section VII): 0 to 1, and kNoMatch above 1.
+double right_cost(const Pose& estimate, const Pose& truth, const SymmetryGroup& symmetry,
+                  double position_m = kPoseTolerance_m, double angle_rad = kPoseTolerance_rad);
+
 /// Whether an estimate is within the paper's tolerance of the truth, modulo the symmetry. Cheap for
 /// estimates that are nowhere near: symmetries are taken to move the object's origin by less than
 /// 17 cm.
 bool is_right(const Pose& estimate, const Pose& truth, const SymmetryGroup& symmetry);
+
+/// Whether a pose of a model (camera_from_object) is_right() about one of these instances.
+bool is_right_about_any(const Pose& estimate, const ObjectModel& model,
+                        const std::vector<io::BopInstance>& truth);
+
+/// Greedy one-to-one matching, as BOP does it: estimates by falling score (by index where equal)
+/// each take the free truth of the smallest cost below `limit`. costs[e][t] is kNoMatch where the
+/// estimate is not correct for the truth. Returns the truth of each estimate, -1 for none.
+std::vector<int> match_greedily(const std::vector<double>& scores,
+                                const std::vector<std::vector<double>>& costs,
+                                double limit = kNoMatch);
 
 /// The discrete symmetries times the continuous one in steps so small that no vertex moves by more
 /// than `max_step` diameters (BOP: 0.01, which makes ceil(π / 0.01) steps). The identity is first.
@@ -44,6 +65,11 @@ double max_surface_distance(const Points& points, const Pose& estimate, const Po
 /// MSPD: the same after projection, in pixels. Vertices behind the camera make it infinite.
 double max_projection_distance(const Points& points, const Pose& estimate, const Pose& truth,
                                const std::vector<Pose>& symmetries, const Camera& camera);
+
+/// The depth of a mesh at a pose: row-major, metres along z at pixel centres; 0 where there is
+/// nothing. Triangles nearer than 1 cm are left out, both sides of the others are seen.
+std::vector<float> render_depth(const TriangleMesh& mesh, const Pose& camera_from_object,
+                                const Camera& camera);
 
 /// BOP's ten tolerances and thresholds of correctness: 0.05, 0.1, ... 0.5.
 constexpr std::array<double, 10> kBopThresholds = {0.05, 0.10, 0.15, 0.20, 0.25,

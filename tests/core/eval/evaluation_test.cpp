@@ -9,8 +9,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "core/eval/matching.hpp"
-#include "core/eval/report.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/image_file.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -8,8 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/eval/depth_render.hpp"
-
 namespace bpa::eval {
 namespace {
 

@@ -12,7 +12,7 @@
 #include <sys/wait.h>
 
 #include "core/base/random.hpp"
-#include "core/eval/depth_render.hpp"
+#include "core/eval/pose_errors.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/camera_file.hpp"
 #include "core/io/image_file.hpp"
