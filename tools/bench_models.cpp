@@ -18,8 +18,7 @@
 #include "core/modeling/model_source.hpp"
 #include "core/modeling/symmetry_search.hpp"
 #include "tools/bench_model_noise.hpp"
-#include "tools/command.hpp"
-#include "tools/scan_files.hpp"
+#include "tools/posed_views.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -15,10 +15,8 @@
 #include "core/modeling/model_source.hpp"
 #include "core/modeling/registration.hpp"
 #include "core/modeling/symmetry_search.hpp"
-#include "tools/command.hpp"
+#include "tools/posed_views.hpp"
 #include "tools/progress.hpp"
-#include "tools/scan_files.hpp"
-#include "tools/simulated_views.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Models of meshes are what a simulated camera sees of them.
-#include "tools/simulated_views.hpp"
-
 #include <gtest/gtest.h>
 
 #include "core/model/occupancy_grid.hpp"
 #include "core/modeling/model_source.hpp"
 #include "tests/support/meshes.hpp"
+#include "tools/posed_views.hpp"
 
 namespace bpa::cli {
 namespace {
