@@ -81,13 +81,7 @@ PointCloud in_sight(const PointCloud& surface, const std::vector<io::BopFrame>& 
       seen[i] |= surface.normals[i].dot((eye - surface.points[i]).normalized()) > 0.26f;
     }
   }
-  PointCloud out;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (!seen[i]) continue;
-    out.points.push_back(surface.points[i]);
-    out.normals.push_back(surface.normals[i]);
-  }
-  return out;
+  return select(surface, [&seen](int i) { return seen[i] != 0; });
 }
 
 /// How far the found centre of rotation is from the axis about which the truth turns.

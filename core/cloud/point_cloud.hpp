@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <vector>
 
@@ -24,6 +25,27 @@ struct PointCloud {
   std::size_t size() const { return points.size(); }
   bool empty() const { return points.empty(); }
 };
+
+/// The points of these indices, with normals and colours.
+inline PointCloud select(const PointCloud& cloud, const std::vector<int>& indices) {
+  PointCloud out;
+  for (const int i : indices) {
+    out.points.push_back(cloud.points[i]);
+    if (!cloud.normals.empty()) out.normals.push_back(cloud.normals[i]);
+    if (!cloud.colors.empty()) out.colors.push_back(cloud.colors[i]);
+  }
+  return out;
+}
+
+/// The points whose index meets a condition.
+template <std::predicate<int> Condition>
+PointCloud select(const PointCloud& cloud, const Condition& condition) {
+  std::vector<int> indices;
+  for (int i = 0; i < static_cast<int>(cloud.size()); ++i) {
+    if (condition(i)) indices.push_back(i);
+  }
+  return select(cloud, indices);
+}
 
 /// A triangle mesh. Metres once read by io.
 struct TriangleMesh {

@@ -102,9 +102,11 @@ Result<PointCloud> read_point_cloud(const std::string& path, double scale) {
   }
   Result<TriangleMesh> mesh = read_ply(path, scale);
   if (!mesh.ok()) return mesh.status();
-  return drop_invalid_points({.points = std::move(mesh->vertices),
-                              .normals = std::move(mesh->normals),
-                              .colors = std::move(mesh->colors)});
+  PointCloud cloud;
+  cloud.points = std::move(mesh->vertices);
+  cloud.normals = std::move(mesh->normals);
+  cloud.colors = std::move(mesh->colors);
+  return drop_invalid_points(cloud);
 }
 
 }  // namespace bpa::io

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Dense>
-#include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "core/base/concat.hpp"
@@ -146,14 +144,9 @@ Result<OrganisedFrame> frame_from_organised_cloud(const PcdCloud& cloud, const C
   return result;
 }
 
-PointCloud drop_invalid_points(const PcdCloud& cloud, double scale) {
-  PointCloud result;
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-    if (!cloud.points[i].allFinite()) continue;
-    result.points.push_back((scale * cloud.points[i].cast<double>()).cast<float>());
-    if (!cloud.normals.empty()) result.normals.push_back(cloud.normals[i]);
-    if (!cloud.colors.empty()) result.colors.push_back(cloud.colors[i]);
-  }
+PointCloud drop_invalid_points(const PointCloud& cloud, double scale) {
+  PointCloud result = select(cloud, [&](int i) { return cloud.points[i].allFinite(); });
+  for (Eigen::Vector3f& p : result.points) p = (scale * p.cast<double>()).cast<float>();
   return result;
 }
 

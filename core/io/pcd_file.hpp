@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
-#include <array>
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,12 +13,9 @@
 namespace bpa::io {
 
 /// A PCD file as it is: height 1 when not organised, NaN where an organised cloud has no point.
-struct PcdCloud {
+struct PcdCloud : PointCloud {
   int width = 0;
   int height = 0;
-  std::vector<Eigen::Vector3f> points;
-  std::vector<Eigen::Vector3f> normals;             ///< Empty when the file has none.
-  std::vector<std::array<std::uint8_t, 3>> colors;  ///< rgb; empty when the file has none.
 
   bool organised() const { return height > 1; }
 };
@@ -31,7 +25,7 @@ struct PcdCloud {
 Result<PcdCloud> read_pcd(const std::string& path);
 
 /// The finite points, scaled.
-PointCloud drop_invalid_points(const PcdCloud& cloud, double scale = 1.0);
+PointCloud drop_invalid_points(const PointCloud& cloud, double scale = 1.0);
 
 /// An organised cloud as a frame.
 struct OrganisedFrame {

@@ -15,7 +15,6 @@
 #include "core/geometry/pose.hpp"
 #include "core/geometry/symmetry.hpp"
 #include "core/model/distance_transform.hpp"
-#include "core/modeling/private/select.hpp"
 
 namespace bpa {
 namespace {

@@ -15,7 +15,6 @@
 #include "core/geometry/sphere_directions.hpp"
 #include "core/model/view_sphere.hpp"
 #include "core/modeling/model_source.hpp"
-#include "core/modeling/private/select.hpp"
 
 namespace bpa {
 namespace {

@@ -8,7 +8,6 @@
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/model/view_sphere.hpp"
 #include "core/modeling/posed_view.hpp"
-#include "core/modeling/private/select.hpp"
 #include "core/modeling/trace_occupancy.hpp"
 
 namespace bpa {

@@ -12,7 +12,6 @@
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/model/view_sphere.hpp"
-#include "core/modeling/private/select.hpp"
 
 namespace bpa {
 namespace {

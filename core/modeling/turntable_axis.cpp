@@ -10,13 +10,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/geometry/pose.hpp"
-#include "core/modeling/private/select.hpp"
 #include "core/modeling/turntable.hpp"
 
 namespace bpa {

@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/random.hpp"
-#include "core/modeling/private/select.hpp"
 #include "core/modeling/turntable.hpp"
 
 namespace bpa {
