@@ -8,7 +8,6 @@
 #include "core/cloud/frame_fusion.hpp"
 #include "core/draw/annotate.hpp"
 #include "core/draw/sheet.hpp"
-#include "core/draw/truth.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/pose_prior_file.hpp"
 #include "core/io/results.hpp"

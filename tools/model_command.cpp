@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "core/draw/model_sheet.hpp"
+#include "core/draw/sheet.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/mesh_file.hpp"

@@ -25,8 +25,7 @@ class HtmlPage {
   std::string finish() const;
 
   static std::string escape(std::string_view text);
-  /// A bar to the right for a positive value, to the left for a negative one, as HTML; 1 is 12
-  /// pixels long, and 10 and more are 120.
+  /// A bar as HTML, to the right if positive, else to the left: 12 pixels for 1, 120 from 10 on.
   static std::string bar(double value);
   static std::string link(std::string_view file, std::string_view text);
 

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/draw/model_sheet.hpp"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +10,7 @@
 
 #include "core/draw/canvas.hpp"
 #include "core/draw/plot.hpp"
+#include "core/draw/sheet.hpp"
 #include "core/model/model_index.hpp"
 
 namespace bpa::draw {

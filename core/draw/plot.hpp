@@ -25,8 +25,7 @@ struct PlotAxes {
 /// 640x480 rgb. Points outside the axes are left out.
 io::ColorImage line_plot(const PlotAxes& axes, const std::vector<Series>& series);
 
-/// Counts in equal bins over [x_min, x_max] as stacked bars, one colour for each series. The y axis
-/// fits the counts.
+/// Stacked bars: counts in equal bins over [x_min, x_max], a colour for each series. y fits them.
 io::ColorImage histogram_plot(const PlotAxes& axes, const std::vector<std::string>& names,
                               const std::vector<std::vector<int>>& counts);
 

@@ -8,7 +8,6 @@
 
 #include "core/draw/canvas.hpp"
 #include "core/draw/sheet.hpp"
-#include "core/draw/silhouette.hpp"
 
 namespace bpa::draw {
 namespace {

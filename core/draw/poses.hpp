@@ -39,8 +39,7 @@ io::ColorImage poses(const Frame& frame, const ObjectModel& model,
 io::ColorImage pose_from_near(const Frame& frame, const ObjectModel& model, const Pose& pose,
                               const std::vector<Pose>& truths);
 
-/// Part of a frame, with the camera that sees just that. Only depth, colour and camera are kept.
-/// `part` must lie in the frame.
+/// Part of a frame, which must lie in it, with the camera that sees it: depth and colour alone.
 Frame crop(const Frame& frame, const RegionOfInterest& part);
 
 }  // namespace bpa::draw

@@ -39,18 +39,17 @@ io::ColorImage recall_plot(const EvaluationReport& report) {
 io::ColorImage reliability_plot(const EvaluationReport& report) {
   Series series{"Brier score " + fixed(report.brier, 3), {}, {}};
   for (const auto& bin : report.reliability) add(series, bin.mean_probability, bin.correct);
-  PlotAxes axes{"calibration of probabilities", "probability said", "fraction right"};
-  axes.diagonal = true;
-  return line_plot(axes, {series});
+  return line_plot(
+      {"calibration of probabilities", "probability said", "fraction right", 0, 1, 0, 1, true},
+      {series});
 }
 
 io::ColorImage coverage_plot(const EvaluationReport& report) {
   Series series{"right placements", {}, {}};
   for (const auto& coverage : report.coverage) add(series, coverage.level, coverage.covered);
-  PlotAxes axes{"do credible regions of poses hold the truth?", "probability of the region",
-                "fraction that hold it"};
-  axes.diagonal = true;
-  return line_plot(axes, {series});
+  return line_plot({"do credible regions of poses hold the truth?", "probability of the region",
+                    "fraction that hold it", 0, 1, 0, 1, true},
+                   {series});
 }
 
 io::ColorImage reports_plot(const EvaluationReport& report) {

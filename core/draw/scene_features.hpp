@@ -25,13 +25,11 @@ io::ColorImage edge_image(const Frame& frame, const Image<float>& likelihood);
 /// where the affinity across the border is below one half.
 io::ColorImage segment_borders(const Frame& frame, const Segmentation& segmentation);
 
-/// The super-pixels that a placement touches over the dimmed colour image, from red (does not
-/// belong to the model) to green (does).
+/// The super-pixels that a placement touches over the dimmed image, from red (not its) to green.
 io::ColorImage segment_matches(const Frame& frame, const Segmentation& segmentation,
                                const std::vector<SegmentMatch>& matches);
 
-/// Every super-pixel in its mean colour (without colour: shaded by its mean normal); black where
-/// there is no surface.
+/// Every super-pixel in its mean colour, without colour by its mean normal; black: no surface.
 io::ColorImage segment_means(const Frame& frame, const Segmentation& segmentation);
 
 }  // namespace bpa::draw

@@ -31,6 +31,7 @@ std::vector<cv::Point> places(const std::vector<LegendEntry>& legend, int width)
 
 io::ColorImage with_words(const io::ColorImage& picture, const std::string& title,
                           const std::vector<LegendEntry>& legend) {
+  if (title.empty()) return picture;
   const std::vector<cv::Point> at = places(legend, picture.width);
   const int lines = at.empty() ? 0 : at.back().y + 1;
   const int header = kLine + 6, footer = lines > 0 ? kLine * lines + 6 : 0;

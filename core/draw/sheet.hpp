@@ -19,7 +19,7 @@ struct LegendEntry {
   std::string text;
 };
 
-/// The picture under a title and over its legend, if any.
+/// The picture under a title and over its legend, if any; the picture alone for an empty title.
 io::ColorImage with_words(const io::ColorImage& picture, const std::string& title,
                           const std::vector<LegendEntry>& legend = {});
 
@@ -33,5 +33,9 @@ io::ColorImage contact_sheet(const std::vector<io::ColorImage>& pictures, int co
 /// Colour (left) beside depth (right). Depth is red at 0.5 m and violet at 2.5 m; a band of
 /// brightness is 6 cm; pixels without depth are black.
 io::ColorImage color_beside_depth(const Frame& frame, const std::string& caption);
+
+/// A sheet that shows a model: six sides in its colours with range edges (cyan) and symmetry axes
+/// (blue), how curved it is and how much its normals vary, and its noise curves.
+io::ColorImage model_sheet(const ObjectModel& model);
 
 }  // namespace bpa::draw

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/draw/silhouette.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <opencv2/imgproc.hpp>
+
+#include "core/draw/annotate.hpp"
 
 namespace bpa::draw {
 namespace {

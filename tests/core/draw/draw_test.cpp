@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/draw/annotate.hpp"
 #include "core/draw/poses.hpp"
 #include "core/draw/scene_features.hpp"
-#include "core/draw/silhouette.hpp"
 
 namespace bpa::draw {
 namespace {

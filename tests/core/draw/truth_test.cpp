@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/draw/truth.hpp"
-
 #include <gtest/gtest.h>
+
+#include "core/draw/annotate.hpp"
 
 namespace bpa::draw {
 namespace {
