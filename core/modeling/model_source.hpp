@@ -23,19 +23,14 @@ struct ModelOptions {
   }
 };
 
-/// The evenly spaced, outwardly visible surface of a mesh or of a dense oriented point cloud.
-/// Fails with invalid_argument on an empty surface and on one larger than 3 m or smaller than 5 mm
-/// (with a hint about units).
+/// The evenly spaced, outwardly visible surface of a mesh or a dense oriented point cloud. Fails
+/// with invalid_argument on no surface, or one under 5 mm or over 3 m (with a hint about units).
 Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::string& name,
                                            int number, const ModelOptions& options = {});
 /// The same for points. Where the cloud has no normals they are estimated, and point to the origin:
 /// such a cloud is one view of the object, in its camera's frame, and the model is not complete.
 Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std::string& name,
                                              int number, const ModelOptions& options = {});
-
-/// The largest distance of two of the points, metres: exact over the extreme points of 200
-/// directions. `points` must not be empty.
-double largest_distance(const std::vector<Eigen::Vector3f>& points);
 
 /// Fails with invalid_argument, with a hint about units, for a diameter under 5 mm or over 3 m.
 Status check_size(const std::string& name, double diameter);

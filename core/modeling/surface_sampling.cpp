@@ -116,8 +116,7 @@ class TriangleImage {
         if (last >= 0 && last != own && covers(last, p)) return true;
       }
     }
-    // Triangles smaller than pixels are not all in the image, but where the whole neighbourhood is
-    // covered, so is the point.
+    // Triangles smaller than pixels may be missing in the image, but where it is covered, so is p.
     return farthest > p.z() + 4 * pixel_;
   }
 
@@ -169,8 +168,7 @@ class TriangleImage {
   std::vector<int> triangle_;
 };
 
-// From how many of the directions a point of a mesh is seen, or whether it is, on the side that its
-// triangle's normal points to and on the other.
+// How many directions see a point of a mesh, or whether any does: before and behind its triangle.
 struct Sides {
   int front = 0, back = 0;
 };
@@ -292,21 +290,6 @@ ModelSource make_source(PointCloud surface, const std::string& name, int number,
 }
 
 }  // namespace
-
-double largest_distance(const std::vector<Eigen::Vector3f>& points) {
-  constexpr int kDirections = 200;
-  std::vector<Eigen::Vector3f> extremes;
-  for (int i = 0; i < kDirections; ++i) {
-    const Eigen::Vector3f direction = sphere_direction(i, kDirections).cast<float>();
-    extremes.push_back(
-        *std::ranges::max_element(points, {}, [&](const auto& p) { return p.dot(direction); }));
-  }
-  double best = 0;
-  for (const auto& a : extremes) {
-    for (const auto& b : extremes) best = std::max<double>(best, (a - b).norm());
-  }
-  return best;
-}
 
 Status check_size(const std::string& name, double diameter) {
   if (diameter >= kMinDiameter && diameter <= kMaxDiameter) return {};

@@ -6,6 +6,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/cloud/neighbor_grid.hpp"
+#include "core/geometry/sphere_directions.hpp"
 #include "core/model/view_sphere.hpp"
 #include "core/modeling/posed_view.hpp"
 #include "core/modeling/trace_occupancy.hpp"
@@ -32,8 +33,7 @@ std::pair<double, double> pixel_and_depth(const std::vector<PosedView>& views) {
   return {pixels / std::max(1.0, count), depths / std::max(1.0, count)};
 }
 
-// For each point of the surface, the normal variance that the measured sheet beside it gives; -1
-// where there is none.
+// For each point of the surface, the normal variance of the measured sheet beside it; -1: none.
 std::vector<float> measured_variance(const PointCloud& surface, const GridSurface& measured,
                                      float reach, float most_off) {
   const NeighborGrid near(measured.points.points, reach);

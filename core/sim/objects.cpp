@@ -48,17 +48,6 @@ SimulatedObject build_object(const Shape& shape) {
   return object;
 }
 
-// The points that are farthest along each of `count` directions; none for no points.
-std::vector<Eigen::Vector3f> outermost(const std::vector<Eigen::Vector3f>& points, int count) {
-  std::vector<Eigen::Vector3f> out;
-  for (int i = 0; i < count && !points.empty(); ++i) {
-    const Eigen::Vector3f direction = sphere_direction(i, count).cast<float>();
-    out.push_back(
-        *std::ranges::max_element(points, {}, [&](const auto& p) { return p.dot(direction); }));
-  }
-  return out;
-}
-
 }  // namespace
 
 std::vector<SimulatedObject> build_objects(const std::vector<Shape>& shapes, int num_threads) {
@@ -102,14 +91,6 @@ SimulatedObject made_inexactly(SimulatedObject object, double error, std::uint64
   return object;
 }
 
-double diameter(const TriangleMesh& mesh) {
-  // The farthest pair lies among the vertices that are outermost along some direction.
-  const std::vector<Eigen::Vector3f> outer = outermost(mesh.vertices, 2000);
-  float squared = 0;
-  for (const Eigen::Vector3f& a : outer) {
-    for (const Eigen::Vector3f& b : outer) squared = std::max(squared, (a - b).squaredNorm());
-  }
-  return std::sqrt(squared);
-}
+double diameter(const TriangleMesh& mesh) { return largest_distance(mesh.vertices, 2000); }
 
 }  // namespace bpa::sim

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
+#include "core/geometry/sphere_directions.hpp"
 #include "core/modeling/trace_occupancy.hpp"
 
 namespace bpa {
