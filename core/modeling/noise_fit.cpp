@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/modeling/noise_fit.hpp"
-
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
+
+#include "core/modeling/posed_view.hpp"
 
 namespace bpa {
 namespace {
@@ -70,8 +70,7 @@ void linearise(std::span<const NoiseBin> bins, const Parameters& p, const Parame
 NoiseCurve fit_noise_curve(std::span<const NoiseBin> bins, const NoiseCurve& start) {
   constexpr double kMinCount = 30;
   constexpr int kMaxIterations = 100;
-  // Neighbouring errors resemble each other, and no bin is a perfect sigmoid: none may outweigh
-  // the rest.
+  // Neighbouring errors resemble each other, and no bin is a perfect sigmoid: none may dominate.
   constexpr double kMaxCount = 400;
   std::vector<NoiseBin> used;
   for (const NoiseBin& bin : bins) {

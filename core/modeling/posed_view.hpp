@@ -4,13 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/cloud/frame.hpp"
 #include "core/cloud/surface_map.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/modeling/model_source.hpp"
-#include "core/modeling/noise_fit.hpp"
 
 namespace bpa {
 
@@ -28,6 +28,14 @@ struct PosedView {
 PosedView make_posed_view(const Frame& frame, const std::vector<std::uint8_t>& object,
                           const Pose& camera_from_object);
 
+/// One bin of errors that were observed at nearly the same edge distance and surface angle.
+struct NoiseBin {
+  double edge_distance = 0;
+  double angle = 0;
+  double sigma = 0;  ///< Root mean square of the errors.
+  double count = 0;
+};
+
 /// What views say about each point of a surface.
 struct SurfaceObservations {
   std::vector<int> seen;               ///< Views in which the point was measured.
@@ -40,11 +48,15 @@ struct SurfaceObservations {
   double depth = 0;                   ///< Mean depth of what was measured, metres.
 };
 
-/// Compares a surface with what the views measured of it (paper section III). Points are compared
-/// where they should be visible; what is further off than 2 cm is another surface. The same for any
-/// number of threads.
+/// Compares a surface with what the views measured of it (paper section III), where its points
+/// should be visible and within 2 cm. The same for any number of threads.
 SurfaceObservations observe_surface(const PointCloud& surface, const std::vector<PosedView>& views,
                                     int num_threads);
+
+/// The curve under which the bins are most likely: weighted least squares on log(sigma), whose
+/// variance is 1 / (2 count), by Levenberg-Marquardt from `start`. Bins of less than 30 errors do
+/// not count. Returns `start` when fewer than 7 bins are left.
+NoiseCurve fit_noise_curve(std::span<const NoiseBin> bins, const NoiseCurve& start);
 
 /// Fills a model's noise curves from views of it, and colours and normal variances where it has
 /// none; warns when part of it was never measured.
@@ -57,9 +69,8 @@ void learn_noise(ModelSource& source, const std::vector<PosedView>& views, int n
 /// a surface that the views do not show at all stays whole, with another warning.
 void keep_measured(ModelSource& source, const std::vector<PosedView>& views, int num_threads);
 
-/// A model of what the views show: traced, thresholded and thinned (occupancy_grid.hpp), in the
-/// frame of their poses. Fails with invalid_argument when less than 100 surface points come out, or
-/// when the size cannot be right.
+/// A model of what the views show: traced, thresholded and thinned (occupancy_grid.hpp), in their
+/// poses' frame. Fails with invalid_argument on under 100 surface points or an impossible size.
 Result<ModelSource> model_source_from_views(std::vector<PosedView> views, const std::string& name,
                                             int number, const ModelOptions& options = {});
 

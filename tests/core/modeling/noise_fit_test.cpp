@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/modeling/noise_fit.hpp"
-
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
+#include "core/modeling/posed_view.hpp"
 
 namespace bpa {
 namespace {
