@@ -84,10 +84,8 @@ constexpr Rows kFractionRows{0.1, 0.1, 9, ""}, kDistanceRows{0.4, 0.2, 8, " m"};
 std::vector<Group> groups_of(const Rows& rows) {
   std::vector<Group> groups;
   for (int i = 0; i < rows.count; ++i) {
-    groups.push_back({format("%.1f-%.1f%s", rows.first + i * rows.width,
-                             rows.first + (i + 1) * rows.width, rows.unit),
-                      {},
-                      {}});
+    groups.emplace_back().name = format("%.1f-%.1f%s", rows.first + i * rows.width,
+                                        rows.first + (i + 1) * rows.width, rows.unit);
   }
   return groups;
 }

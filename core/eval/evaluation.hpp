@@ -159,9 +159,8 @@ struct EvaluationReport {
   double brier = 0;
   std::vector<ReliabilityBin> reliability;
   std::vector<Coverage> coverage;  ///< Of right placements with a covariance.
-  double normalised_square = 0;  ///< Their mean squared error in units of the covariance, for each
-                                 ///< degree of freedom: 1 if the covariances are right, less if
-                                 ///< they are too large.
+  /// Mean squared error over the covariance, for each degree of freedom: below 1 it is too large.
+  double normalised_square = 0;
   OpenPoses open_poses;
   FalseReports false_reports;
   std::array<int, 10> visible_tenths{};  ///< All instances by visible fraction.

@@ -27,9 +27,8 @@ constexpr double kNoMatch = std::numeric_limits<double>::infinity();
 double right_cost(const Pose& estimate, const Pose& truth, const SymmetryGroup& symmetry,
                   double position_m = kPoseTolerance_m, double angle_rad = kPoseTolerance_rad);
 
-/// Whether an estimate is within the paper's tolerance of the truth, modulo the symmetry. Cheap for
-/// estimates that are nowhere near: symmetries are taken to move the object's origin by less than
-/// 17 cm.
+/// Whether an estimate is within the paper's tolerance of the truth, modulo the symmetry. A fast no
+/// beyond 20 cm: symmetries are taken to move the object's origin by less than 17 cm.
 bool is_right(const Pose& estimate, const Pose& truth, const SymmetryGroup& symmetry);
 
 /// Whether a pose of a model (camera_from_object) is_right() about one of these instances.

@@ -97,8 +97,7 @@ class BopSceneWriter {
   BopSceneWriter(const BopSceneWriter&) = delete;
   BopSceneWriter& operator=(const BopSceneWriter&) = delete;
 
-  /// Fails with invalid_argument when a mask has another size than the frame, unavailable when a
-  /// file cannot be written.
+  /// Fails with invalid_argument when a mask is not of the frame's size, else with unavailable.
   Status add(int im_id, const Frame& frame, const std::vector<BopInstanceRecord>& instances);
   Status finish();
 

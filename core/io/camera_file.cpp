@@ -31,10 +31,7 @@ CameraFile from_json(const Json& json) {
   if (json.contains("cam_K")) {
     camera = camera_of(json.at("cam_K").get<std::array<double, 9>>());
   } else {
-    json.at("fx").get_to(camera.fx);
-    json.at("fy").get_to(camera.fy);
-    json.at("cx").get_to(camera.cx);
-    json.at("cy").get_to(camera.cy);
+    camera = {0, 0, json.at("fx"), json.at("fy"), json.at("cx"), json.at("cy")};
   }
   camera.width = json.value("width", 0);
   camera.height = json.value("height", 0);

@@ -56,8 +56,7 @@ Status check_png_chunks(const std::string& path, std::string_view bytes) {
   return corrupt(path, " is truncated");
 }
 
-/// Decodes a PNG whose header passes check(size); with `jpeg_too`, a JPEG, whose header is not
-/// read.
+/// Decodes a PNG whose header passes check(size), and with `jpeg_too` a JPEG, unchecked.
 Result<cv::Mat> read_image(const std::string& path, int flags, bool jpeg_too, const auto& check) {
   const Result<std::string> bytes = read_file(path);
   if (!bytes.ok()) return bytes.status();
@@ -83,8 +82,7 @@ template <class T>
 Status encode(const std::string& path, int width, int height, int type, int channels,
               const std::vector<T>& pixels) {
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
-      pixels.size() !=
-          static_cast<std::size_t>(width) * static_cast<std::size_t>(height * channels)) {
+      pixels.size() != static_cast<std::size_t>(width * height * channels)) {
     return invalid_argument(path, ": the image has ", pixels.size(), " values; it must have ",
                             channels, " x ", width, " x ", height);
   }

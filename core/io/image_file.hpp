@@ -32,9 +32,8 @@ struct ImageSize {
   int channels = 0;
 };
 
-/// Reads an 8-bit image of 1, 3 or 4 channels (PNG; JPEG too) as rgb; alpha is dropped. Every
-/// reader here fails with not_found, corrupt (truncated, altered: the message names the file) or
-/// invalid_argument (wrong kind of image).
+/// Reads an 8-bit PNG or JPEG of 1, 3 or 4 channels as rgb; alpha is dropped. All readers fail with
+/// not_found, corrupt (the message names the file) or invalid_argument (wrong kind of image).
 Result<ColorImage> read_color_image(const std::string& path);
 /// Reads a 1-channel PNG of 8 or 16 bits.
 Result<GrayImage> read_gray_png(const std::string& path);
@@ -51,9 +50,8 @@ Status write_mask_png(const std::string& path, int width, int height,
                       const std::vector<std::uint8_t>& mask);
 
 /// Reads one RGB-D frame: a 16-bit depth PNG registered to an 8-bit colour image of the same size.
-/// `color_path` may be empty: no colour. A camera without a size takes the depth image's. Checks
-/// sizes and camera (messages name the file, the field and the rule), not how much depth there is:
-/// that is validate(Frame).
+/// An empty `color_path` gives no colour. A camera without a size takes the depth image's. Checks
+/// sizes and camera (messages name file, field and rule); validate(Frame) checks the depths.
 Result<Frame> read_frame(const std::string& depth_path, const std::string& color_path,
                          const Camera& camera, double depth_scale_mm);
 

@@ -83,8 +83,8 @@ Result<TriangleMesh> read_mesh(const std::string& path, double scale) {
   }
   Result<TriangleMesh> mesh = ply ? read_ply(path, scale) : read_with_assimp(path, scale);
   if (!mesh.ok() || mesh->triangles.empty()) return mesh;
-  const bool finite = std::all_of(mesh->vertices.begin(), mesh->vertices.end(),
-                                  [](const Eigen::Vector3f& v) { return v.allFinite(); });
+  const bool finite =
+      std::ranges::all_of(mesh->vertices, [](const auto& v) { return v.allFinite(); });
   if (!finite) return corrupt(path, " has a vertex that is not finite");
   return mesh;
 }

@@ -15,8 +15,7 @@ namespace bpa::io {
 /// (truncated, damaged) or unsupported (another extension); the message names the file.
 Result<TriangleMesh> read_mesh(const std::string& path, double scale = 1.0);
 
-/// Reads the points of a PLY file (its faces are ignored) or a PCD file. Points that are not finite
-/// are dropped.
+/// Reads the finite points of a PLY file (its faces are ignored) or a PCD file.
 Result<PointCloud> read_point_cloud(const std::string& path, double scale = 1.0);
 
 /// Writes binary little-endian PLY, coordinates multiplied by `scale`: 1000 for millimetres.

@@ -107,8 +107,8 @@ Status set(const OptionsReading& reading, const std::string& path, const YAML::N
 }
 
 bool is_group(const OptionsReading& reading, const std::string& path) {
-  return std::any_of(reading.options.begin(), reading.options.end(),
-                     [&](const Option& o) { return o.is_group() && o.path == path; });
+  return std::ranges::any_of(reading.options,
+                             [&](const Option& o) { return o.is_group() && o.path == path; });
 }
 
 Status apply(const std::string& file, const OptionsReading& reading, const std::string& prefix,

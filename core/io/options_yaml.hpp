@@ -8,8 +8,7 @@
 
 #include "core/base/options.hpp"
 
-// Trees of options as YAML files. Problems are named with file, line, key, value and rule; an
-// unknown key is one.
+// Trees of options as YAML files. Problems, unknown keys too, name file, line, key, value and rule.
 
 namespace bpa::io {
 
@@ -28,8 +27,7 @@ Status read_options(const std::string& path, const OptionsReading& reading);
 /// Sets one field from text such as "queue.requests=4".
 Status set_option(const std::string& assignment, const OptionsReading& reading);
 
-/// The options as a YAML file, with the description and the rule of each in a comment. `hidden`
-/// puts a # in front of each value.
+/// The options as a YAML file, with description and rule in comments; # before values if `hidden`.
 std::string options_yaml(const std::vector<Option>& options, bool hidden = false);
 
 }  // namespace bpa::io

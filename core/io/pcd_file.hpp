@@ -39,9 +39,8 @@ struct OrganisedFrame {
 
 /// Makes a frame of an organised cloud. The camera is the pinhole that fits pixels and points best
 /// (least squares in u z = fx x + cx z and v z = fy y + cy z), or `camera` where given. Fails with
-/// invalid_argument when the cloud is not organised, has too few points (under 500 are finite), has
-/// points on both sides of the camera, or is not what one pinhole camera sees (residual over 2
-/// pixels in the mean).
+/// invalid_argument when the cloud is not organised, has under 500 finite points or points on both
+/// sides of the camera, or when no pinhole camera sees it so (mean residual over 2 pixels).
 Result<OrganisedFrame> frame_from_organised_cloud(const PcdCloud& cloud,
                                                   const Camera* camera = nullptr);
 

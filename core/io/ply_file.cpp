@@ -18,8 +18,7 @@
 namespace bpa::io {
 namespace {
 
-/// A type of number: its two names, its size, and how to read it from bytes of this machine's
-/// order.
+/// A type of number: its two names, its size, and how to read it in this machine's byte order.
 struct NumberType {
   std::string_view name, other_name;
   std::size_t size;

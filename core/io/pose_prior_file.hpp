@@ -21,9 +21,8 @@ namespace bpa::io {
 ///                            have it (the pose's rotation does not count then); neither: unknown;
 ///   "weight"                 probability that the prior applies, in (0, 1]; 0.95 if not given.
 ///
-/// An empty path gives no priors. Fails with not_found, or with corrupt (naming the file, the prior
-/// and what is wrong) on a file that is not JSON, on unknown, missing or wrong fields. validate()
-/// checks the numbers.
+/// An empty path gives no priors. Fails with not_found, or with corrupt (naming file, prior and
+/// problem) on what is not JSON or has unknown, missing or wrong fields. validate() checks numbers.
 Result<std::vector<PosePrior>> read_pose_priors(const std::string& path);
 
 }  // namespace bpa::io

@@ -29,13 +29,11 @@ struct FrameResult : SceneInterpretations {
   std::optional<ServerAnswer> server;
 };
 
-/// Writes the best interpretation of each frame; the score is the placement's probability. Fails
-/// with unavailable.
+/// Writes the best interpretations; a score is a placement's probability. Fails with unavailable.
 Status write_results_csv(const std::string& path, const std::vector<FrameResult>& results);
 
-/// Reads one interpretation per frame, frames by (scene_id, im_id). A frame in which nothing was
-/// found is not in a CSV. Scores outside [0, 1] are kept. Fails with not_found, or with corrupt
-/// naming file, line and column.
+/// Reads one interpretation per frame, frames by (scene_id, im_id); a CSV has no frame without
+/// finds. Keeps scores outside [0, 1]. Fails with not_found, or corrupt naming file, line, column.
 Result<std::vector<FrameResult>> read_results_csv(const std::string& path);
 
 /// Writes everything; numbers survive to the last bit. Fails with unavailable.

@@ -13,9 +13,8 @@ namespace bpa {
 /// A way of laying one surface onto another.
 struct Registration {
   Pose target_from_source;
-  double overlap =
-      0;           ///< Share of the source's points that lie on the target, facing the same way.
-  double rms = 0;  ///< Of these points' distances to the target's tangent planes, metres.
+  double overlap = 0;  ///< Share of the source's points on the target, facing the same way.
+  double rms = 0;      ///< Of these points' distances to the target's tangent planes, metres.
 };
 
 struct RegistrationOptions {

@@ -104,8 +104,7 @@ class SelfMatch {
   }
 
   // To the tangent plane of the surface near p that faces like n; large where there is none. In a
-  // thin wall the point nearest to p may be of the other side: one step outside it is not, unless
-  // the wall has no thickness.
+  // wall with thickness, the point nearest to p may be of the other side, but not one step outside.
   float distance_to(const Eigen::Vector3f& p, const Eigen::Vector3f& n) const {
     float other_side = 1;
     for (const float step : {0.0f, 0.003f}) {

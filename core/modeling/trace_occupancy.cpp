@@ -22,8 +22,7 @@ FastPose object_from_camera(const PosedView& view) {
   return to_fast(view.camera_from_object.inverse());
 }
 
-// Calls visit(point, normal, weight), in the object's frame, for every pixel of the object that is
-// seen well enough.
+// Calls visit(point, normal, weight), object frame, for the object's pixels that are seen well.
 void for_each_measurement(const std::vector<PosedView>& views, const auto& visit) {
   for (const PosedView& view : views) {
     const FastPose pose = object_from_camera(view);

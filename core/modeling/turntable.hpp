@@ -53,15 +53,13 @@ Result<RestingPosition> align_resting_position(std::vector<ScanView> views,
                                                const ScanOptions& options);
 
 /// Finds step, centre and axis, and with them the poses of the views, from the plane and the views.
-/// `sense` is 1 when the table turns counter-clockwise, -1 clockwise, 0 when that is to be found
-/// out as well, which cannot be done where an object looks alike from all sides and stands in the
-/// middle.
+/// `sense` is 1 when the table turns counter-clockwise, -1 clockwise, 0 to find it out, which fails
+/// where an object looks alike from all sides and stands in the middle.
 void find_axis(RestingPosition& position, int sense, const ScanOptions& options);
 
 /// Finds, for every resting position but the first, the rigid motion that brings its object onto
-/// that of the first, and applies it to the poses of its views. Where several motions fit, one that
-/// puts another side down is likelier. Returns one line for each position
-/// whose fit is poor (its views are left out).
+/// that of the first, and applies it to its views' poses. Of several that fit, one that puts
+/// another side down is likelier. Returns a line for each poor fit, whose views are left out.
 std::vector<std::string> merge_resting_positions(std::vector<RestingPosition>& positions,
                                                  const ScanOptions& options);
 

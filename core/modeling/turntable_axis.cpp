@@ -213,8 +213,7 @@ double refine(const std::vector<Scan>& scans, float radius, const Turn& start, b
               Turn& turn) {
   constexpr double kLeastPairs = 50;
   constexpr double kSigma = 0.002;  // of a distance, metres
-  // Neighbouring pixels share their errors: a scan is worth some 30 independent pairs with each
-  // other one, not thousands.
+  // Neighbouring pixels share their errors: a pair of scans is worth some 30 independent pairs.
   constexpr double kIndependent = 30;
   // What is known beforehand: the step within 3 %, the axis within 0.15 degrees of the normal.
   constexpr double kStepSigma = 0.03, kTiltSigma = 0.15 * kDegree;

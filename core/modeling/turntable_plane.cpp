@@ -159,9 +159,8 @@ bool surrounds(const Plane& plane, const Background& background, const Eigen::Ve
   return std::ranges::count_if(count, [](int c) { return c >= kLeast; }) >= kSectors - 1;
 }
 
-// The same where little but ragged edges changes: the object looks alike from all sides, and so
-// does a turning plate on a table, whose rim is below its top. Of the planes with most of the
-// points in their midst, the highest.
+// The same where only ragged edges change: the object looks alike from all sides, as does a turning
+// plate on a table, rim below its top. The highest plane with most of the points in its midst.
 const Plane* highest_carrier(const std::vector<Plane>& planes, const Background& background,
                              const std::vector<Eigen::Vector3f>& points) {
   constexpr float kMostGap = 0.05f, kLeastHeight = 0.006f, kMostHeight = 0.6f;
@@ -193,8 +192,7 @@ bool is_above(const Plane& plane, const Plane& other, const Eigen::Vector3f& p) 
   return height(other, p * (plane.offset / plane.normal.dot(p))) > 0;
 }
 
-// What an object that looks the same from all sides shows: whatever rises above a plane near the
-// middle of the image and belongs to no plane.
+// For an object that looks alike from all sides: what is on no plane near the image's middle.
 std::vector<Eigen::Vector3f> standing_in_the_middle(const Background& background,
                                                     const std::vector<Plane>& planes) {
   std::vector<Eigen::Vector3f> points;

@@ -33,10 +33,7 @@ struct Moments {
 TriangleMesh plate(double left, double right, double half_height) {
   const auto l = static_cast<float>(left), r = static_cast<float>(right);
   const auto h = static_cast<float>(half_height);
-  TriangleMesh mesh;
-  mesh.vertices = {{l, -h, 0}, {r, -h, 0}, {r, h, 0}, {l, h, 0}};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  return mesh;
+  return {{{l, -h, 0}, {r, -h, 0}, {r, h, 0}, {l, h, 0}}, {}, {}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
 KinectImage see_plate(const TriangleMesh& mesh, double depth, double angle,
@@ -66,8 +63,7 @@ DepthImage measured_part(const DepthImage& depth) {
   return depth(range(1), range(0));
 }
 
-// How many 4-connected regions without depth have at most `most` pixels; those that touch the
-// image's border do not count.
+// The 4-connected regions without depth, of at most `most` pixels, that do not touch the border.
 int count_holes(const DepthImage& depth, double most) {
   cv::Mat labels, centroids;
   cv::Mat_<int> regions;
@@ -82,8 +78,7 @@ int count_holes(const DepthImage& depth, double most) {
   return holes;
 }
 
-// Holes along the rows, between surfaces whose depths differ by more than 5 cm; `scale` times the
-// image's pixels.
+// Holes along the rows, between surfaces over 5 cm apart in depth; `scale` times the pixels.
 void add_gaps(const DepthImage& depth, double scale, Moments& left, Moments& right) {
   constexpr float kJump = 0.05f;
   constexpr int kLongest = 60;  // longer ones have other causes

@@ -7,8 +7,7 @@
 #include "core/cloud/frame.hpp"
 #include "core/sim/kinect.hpp"
 
-// Figures by which a simulated depth camera can be held against published ones and against real
-// frames.
+// Figures that compare a simulated depth camera with published ones and with real frames.
 
 namespace bpa::sim {
 
@@ -19,9 +18,8 @@ struct PlaneNoise {
   double missing = 0;  ///< Share of its pixels without depth.
 };
 
-/// Looks at a wide plane whose middle is `depth` metres away and whose normal is turned by `angle`
-/// radians about the image's vertical axis; depth as measured, before registration. Angles up to
-/// 80 degrees.
+/// Looks at a wide plane, `depth` metres away in the middle, its normal turned by `angle` radians
+/// (up to 80 degrees) about the image's vertical axis; depth as measured, before registration.
 PlaneNoise plane_noise(double depth, double angle, const KinectOptions& options,
                        std::uint64_t seed = 1, int num_threads = 0);
 
@@ -33,8 +31,7 @@ struct DepthStatistics {
   double small_holes = 0;  ///< Holes of at most 20 square pixels for each 10000 pixels.
   double left_gap = 0;     ///< Mean pixels without depth left of what stands out.
   double right_gap = 0;    ///< And right of it.
-  double roughness = 0;    ///< Median over patches of the rms residual about a plane, pixels of
-                           ///< disparity.
+  double roughness = 0;    ///< Median over patches of the rms residual about a plane, disparity px.
   double near_correlation = 0;  ///< Of those residuals, of points 1.5 pixels apart ...
   double far_correlation = 0;   ///< ... and of points 5 pixels apart.
 };

@@ -13,8 +13,7 @@
 
 namespace bpa::sim {
 
-/// The signed distance of a point, or a number of the same sign that is near it close to the
-/// surface.
+/// The signed distance of a point; away from the surface, a number of its sign will do.
 using DistanceField = std::function<double(const Eigen::Vector3d&)>;
 
 /// The 2-D outline of a solid of revolution: radius and height of its corners, in order.

@@ -96,9 +96,8 @@ std::vector<float> tent(int radius) {
   return weights;
 }
 
-// A row-major image of standard normal numbers, each pixel of variance 1. With `radius` > 0
-// neighbours resemble each other: white noise under a tent of half width `radius` + 1 pixels. The
-// same for any number of threads.
+// Row-major standard normal numbers, each of variance 1; with `radius` > 0 neighbours correlate:
+// white noise under a tent of half width `radius` + 1 pixels. The same for any number of threads.
 std::vector<float> noise_field(int width, int height, int radius, std::uint64_t seed,
                                int num_threads) {
   const std::vector<float> weights = tent(radius);

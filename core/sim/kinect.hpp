@@ -8,8 +8,7 @@
 #include "core/cloud/frame.hpp"
 #include "core/sim/render.hpp"
 
-// A depth camera with a projected dot pattern (Kinect v1, Xtion, PrimeSense), simulated step by
-// step:
+// A depth camera with a projected dot pattern (Kinect v1, Xtion, PrimeSense), simulated in steps:
 //
 //  1. Triangulation. An infrared camera sees what a projector 7.5 cm to its right lights: what the
 //     projector does not reach has no depth (shadows left of everything that stands out).

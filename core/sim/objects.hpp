@@ -42,8 +42,7 @@ std::vector<SimulatedObject> household_objects(int num_threads = 0);
 std::vector<SimulatedObject> household_objects(const std::vector<std::string>& names,
                                                int num_threads = 0);
 
-/// An object from a mesh of the user's, in the mesh's own frame; collides as the hull of its
-/// vertices. `mesh` must not be empty.
+/// An object from a user's mesh, not empty, in its own frame; collides as its vertices' hull.
 SimulatedObject object_from_mesh(std::string name, TriangleMesh mesh,
                                  const SymmetryGroup& symmetry = {});
 

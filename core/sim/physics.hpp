@@ -35,8 +35,7 @@ struct RestingBody {
   bool on_table = false;  ///< Not fallen off.
 };
 
-/// Lets the bodies fall, takes the walls away and waits until all lie still. Same input, same
-/// output.
+/// Lets the bodies fall, takes the walls away and waits until all lie still. Deterministic.
 std::vector<RestingBody> drop(const std::vector<FallingBody>& bodies, const DropOptions& options);
 
 /// Centre of mass of a closed mesh of even density.

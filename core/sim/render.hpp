@@ -23,16 +23,14 @@ namespace bpa::sim {
 
 /// Where a ray meets a surface first.
 struct RayHit {
-  float distance = 0;  ///< In units of the ray's direction vector.
-  int instance = -1;   ///< Index of the posed mesh.
-  Eigen::Vector3f
-      normal;  ///< Unit length, toward the ray's origin; smooth if the mesh has normals.
+  float distance = 0;           ///< In units of the ray's direction vector.
+  int instance = -1;            ///< Index of the posed mesh.
+  Eigen::Vector3f normal;       ///< Unit length, toward the ray's origin; smooth if the mesh's are.
   Eigen::Vector3f face_normal;  ///< Of the triangle, toward the ray's origin.
   Eigen::Vector3f color;        ///< rgb in [0, 1]; grey for a mesh without colours.
 };
 
-/// Meshes prepared for ray casting, to be posed in any number of scenes. The meshes must outlive
-/// it.
+/// Meshes prepared for ray casting, to be posed in any number of scenes. They must outlive it.
 class RayMeshes {
  public:
   explicit RayMeshes(const std::vector<const TriangleMesh*>& meshes);

@@ -39,8 +39,7 @@ struct TurntableOptions {
 /// One view; the frame's only instance is the object.
 struct TurntableView {
   int resting_position = 0;
-  double turn =
-      0;  ///< Radians since the first view of this position, counter-clockwise from above.
+  double turn = 0;  ///< Radians since the position's first view, counter-clockwise from above.
   SimulatedFrame frame;
 };
 
@@ -55,9 +54,8 @@ struct TurntableScan {
 TurntableScan simulate_turntable(const SimulatedObject& object, const TurntableOptions& options,
                                  std::uint64_t seed, int num_threads = 0);
 
-/// Different ways in which an object comes to lie on a level surface, found by letting it fall: at
-/// most `count`, the first one drawn first, then those whose upward direction differs most. Each
-/// puts the object on z = 0 about the origin.
+/// Ways in which an object comes to lie on a level surface, found by letting it fall: at most
+/// `count`, the first one drawn first, then the most different. Each on z = 0 about the origin.
 std::vector<Pose> resting_poses(const SimulatedObject& object, int count, std::uint64_t seed);
 
 }  // namespace bpa::sim

@@ -27,8 +27,7 @@ void append_array(std::string& bytes, const std::vector<T>& values) {
   bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
 }
 
-/// Reads what append() wrote. From the first read past the end on, ok() is false and nothing is
-/// read any more.
+/// Reads what append() wrote. A read past the end gives nothing; from then on ok() is false.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}

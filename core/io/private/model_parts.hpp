@@ -30,8 +30,7 @@ struct ModelDescription {
 
 std::string description_text(const ModelDescription& description);
 
-/// Fails with not_found, or with corrupt when the file is not JSON, lacks a field, or is of another
-/// version.
+/// Fails with not_found, or with corrupt: not JSON, without a field, or of another version.
 Result<ModelDescription> read_description(const std::string& path);
 
 /// index.bin. The index is null when it was written by another version of the program, whose
