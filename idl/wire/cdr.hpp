@@ -34,16 +34,6 @@ inline constexpr bool is_scalar_v = std::is_arithmetic_v<T> || std::is_same_v<T,
 template <class T>
 inline constexpr bool is_block_v = is_scalar_v<T> && !std::is_same_v<T, bool>;
 
-template <class T>
-struct is_vector : std::false_type {};
-template <class T>
-struct is_vector<std::vector<T>> : std::true_type {};
-
-template <class T>
-struct is_array : std::false_type {};
-template <class T, std::size_t N>
-struct is_array<std::array<T, N>> : std::true_type {};
-
 }  // namespace detail
 
 /// Writes fields into memory of fixed size, or only counts bytes when that memory is null.
@@ -61,25 +51,32 @@ class CdrWriter {
     write(value, bound);
   }
 
+  /// A scalar or a message.
   template <class T>
-  void write(const T& value, Bound bound = {}) {
+  void write(const T& value, Bound = {}) {
     if constexpr (detail::is_scalar_v<T>) {
       align(sizeof(T));
       block(&value, sizeof(T));
-    } else if constexpr (std::is_same_v<T, std::string>) {
-      length(value.size() + 1, bound.max == 0 ? 0 : bound.max + 1);
-      block(value.c_str(), value.size() + 1);
-    } else if constexpr (std::is_same_v<T, ByteView>) {
-      length(value.size, bound.max);
-      block(value.data, value.size);
-    } else if constexpr (detail::is_vector<T>::value) {
-      length(value.size(), bound.max);
-      elements(value);
-    } else if constexpr (detail::is_array<T>::value) {
-      elements(value);
     } else {
       T::fields(value, *this);
     }
+  }
+  void write(const std::string& value, Bound bound = {}) {
+    length(value.size() + 1, bound.max == 0 ? 0 : bound.max + 1);
+    block(value.c_str(), value.size() + 1);
+  }
+  void write(const ByteView& value, Bound bound = {}) {
+    length(value.size, bound.max);
+    block(value.data, value.size);
+  }
+  template <class T>
+  void write(const std::vector<T>& value, Bound bound = {}) {
+    length(value.size(), bound.max);
+    elements(value);
+  }
+  template <class T, std::size_t N>
+  void write(const std::array<T, N>& value, Bound = {}) {
+    elements(value);
   }
 
  private:
@@ -146,8 +143,9 @@ class CdrReader {
     if (!ok() && field_ == nullptr) field_ = name;
   }
 
+  /// A scalar or a message.
   template <class T>
-  void read(T& value, Bound bound = {}) {
+  void read(T& value, Bound = {}) {
     if (!ok()) return;
     if constexpr (std::is_same_v<T, bool>) {
       std::uint8_t byte = 0;
@@ -155,14 +153,49 @@ class CdrReader {
       value = byte != 0;
     } else if constexpr (detail::is_scalar_v<T>) {
       if (align(sizeof(T)) && need(sizeof(T))) scalars(&value, 1);
-    } else if constexpr (std::is_same_v<T, std::string>) {
-      read_string(value, bound.max);
-    } else if constexpr (detail::is_vector<T>::value) {
-      read_sequence(value, bound.max);
-    } else if constexpr (detail::is_array<T>::value) {
-      read_array(value);
     } else {
       T::fields(value, *this);
+    }
+  }
+  void read(std::string& value, Bound bound = {}) {
+    const std::uint32_t length = read_length(bound.max == 0 ? 0 : bound.max + 1, 1);
+    if (!ok()) return;
+    // Length 0 is not legal CDR, but some peers send it for an empty string.
+    const char* text = reinterpret_cast<const char*>(body_ + position_);
+    position_ += length;
+    if (length != 0 && text[length - 1] != '\0') return fail("the string does not end in NUL");
+    value.assign(text, length == 0 ? 0 : length - 1);
+  }
+  template <class T>
+  void read(std::vector<T>& value, Bound bound = {}) {
+    if (!ok()) return;
+    value.clear();
+    const std::uint32_t count = read_length(bound.max, detail::is_block_v<T> ? sizeof(T) : 1);
+    if constexpr (detail::is_block_v<T>) {
+      if (count == 0 || !align(sizeof(T)) || !need(count * sizeof(T))) return;
+      if constexpr (sizeof(T) == 1) {
+        const T* from = reinterpret_cast<const T*>(body_ + position_);
+        value.assign(from, from + count);  // unlike resize, does not write the memory twice
+        position_ += count;
+      } else {
+        value.resize(count);
+        scalars(value.data(), count);
+      }
+    } else {
+      // Grows as the elements come: what a length claims is not believed before they are there.
+      for (std::uint32_t i = 0; i < count && ok(); ++i) {
+        T element{};
+        read(element);
+        value.push_back(std::move(element));
+      }
+    }
+  }
+  template <class T, std::size_t N>
+  void read(std::array<T, N>& value, Bound = {}) {
+    if constexpr (detail::is_block_v<T>) {
+      if (ok() && align(sizeof(T)) && need(N * sizeof(T))) scalars(value.data(), N);
+    } else {
+      for (T& element : value) read(element);
     }
   }
 
@@ -210,50 +243,6 @@ class CdrReader {
     if (max != 0 && count > max) fail("it is longer than its bound");
     if (count > left() / least_bytes) fail("its length is more than the message holds");
     return ok() ? count : 0;
-  }
-
-  void read_string(std::string& value, std::size_t max) {
-    const std::uint32_t length = read_length(max == 0 ? 0 : max + 1, 1);
-    if (!ok()) return;
-    // Length 0 is not legal CDR, but some peers send it for an empty string.
-    const char* text = reinterpret_cast<const char*>(body_ + position_);
-    position_ += length;
-    if (length != 0 && text[length - 1] != '\0') return fail("the string does not end in NUL");
-    value.assign(text, length == 0 ? 0 : length - 1);
-  }
-
-  template <class T>
-  void read_sequence(std::vector<T>& value, std::size_t max) {
-    if constexpr (detail::is_block_v<T>) {
-      const std::uint32_t count = read_length(max, sizeof(T));
-      if (count == 0 || !align(sizeof(T)) || !need(count * sizeof(T))) return value.clear();
-      if constexpr (sizeof(T) == 1) {
-        const T* from = reinterpret_cast<const T*>(body_ + position_);
-        value.assign(from, from + count);  // unlike resize, does not write the memory twice
-        position_ += count;
-      } else {
-        value.resize(count);
-        scalars(value.data(), count);
-      }
-    } else {
-      value.clear();
-      const std::uint32_t count = read_length(max, 1);
-      // Grows as the elements come: what a length claims is not believed before they are there.
-      for (std::uint32_t i = 0; i < count && ok(); ++i) {
-        T element{};
-        read(element);
-        value.push_back(std::move(element));
-      }
-    }
-  }
-
-  template <class T, std::size_t N>
-  void read_array(std::array<T, N>& value) {
-    if constexpr (detail::is_block_v<T>) {
-      if (align(sizeof(T)) && need(N * sizeof(T))) scalars(value.data(), N);
-    } else {
-      for (T& element : value) read(element);
-    }
   }
 
   const std::uint8_t* body_;

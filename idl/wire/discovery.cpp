@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "idl/wire/discovery.hpp"
-
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
 #include <sstream>
+
+#include "idl/wire/participant.hpp"
 
 namespace bpa::wire {
 namespace {

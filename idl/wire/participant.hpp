@@ -10,7 +10,6 @@
 
 #include "core/base/log.hpp"
 #include "core/base/status.hpp"
-#include "idl/wire/discovery.hpp"
 #include "idl/wire/names.hpp"
 
 namespace bpa::wire {
@@ -18,6 +17,26 @@ namespace bpa::wire {
 namespace detail {
 class ParticipantImpl;
 }
+
+// How far a participant looks for others.
+
+enum class DiscoveryRange {
+  subnet,            ///< Multicast on the network, and the static peers.
+  localhost,         ///< This machine only, as ROS 2 Iron and later do it; and the static peers.
+  off,               ///< Nobody.
+  humble_localhost,  ///< This machine only, by the loopback interface alone, as Humble does it.
+};
+
+struct Discovery {
+  int domain_id = 0;  ///< 0 to 232.
+  DiscoveryRange range = DiscoveryRange::subnet;
+  std::vector<std::string> static_peers;  ///< Host names or IPv4 addresses.
+};
+
+/// From ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS and ROS_LOCALHOST_ONLY
+/// (which overrides the others and ignores the peers), as rcl reads them. `invalid_argument` names
+/// the variable whose value is not legal.
+Result<Discovery> discovery_from_environment();
 
 /// The size of ids in ros_discovery_info: Humble misreads that of Iron and later, and the reverse.
 enum class GraphLayout {

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <map>
 #include <mutex>
 
@@ -23,6 +25,17 @@ constexpr int kMaxWaitingReplies = 256;  ///< Of which a client that does not li
 constexpr int kMaxWaitingOfClient = 32;  ///< no more than these.
 constexpr std::size_t kMaxGreeted = 1024;
 constexpr int kMaxRepeated = 16;  ///< Replies to one new client that go out again.
+constexpr std::size_t kPrefixSize = 12;
+
+bool is_reader(const Guid& guid) {
+  const int kind = guid[15] & 0x3f;  // with a key 0x07, without 0x04
+  return kind == 0x04 || kind == 0x07;
+}
+
+Guid any_entity_of(Guid guid) {
+  std::fill(guid.begin() + kPrefixSize, guid.end(), std::uint8_t{0});
+  return guid;
+}
 
 struct Reply {
   ReplyAddress address;
@@ -207,6 +220,46 @@ class Server : public RawServer, public std::enable_shared_from_this<Server> {
 };
 
 }  // namespace
+
+Status read_request_frame(const std::vector<std::uint8_t>& bytes, const SampleMeta& meta,
+                          ReplyAddress* address, std::size_t* body_offset, bool* swap) {
+  if (!read_cdr_header(bytes.data(), bytes.size(), swap)) {
+    return Status(StatusCode::corrupt, "not plain CDR");
+  }
+  address->client = any_entity_of(meta.id.writer);
+  if (meta.related.writer != Guid{}) {
+    const Guid& client = meta.related.writer;
+    address->framing = Framing::fastdds;
+    address->related = {client, meta.id.sequence};
+    address->reader = is_reader(client) ? client : any_entity_of(client);
+    *body_offset = kCdrHeaderSize;
+    return {};
+  }
+  if (bytes.size() < kCdrHeaderSize + kCycloneHeaderSize) {
+    return Status(StatusCode::corrupt, "neither a related sample identity nor a request header");
+  }
+  address->framing = Framing::cyclone;
+  address->reader = any_entity_of(meta.id.writer);
+  std::memcpy(address->header.data(), bytes.data() + kCdrHeaderSize, kCycloneHeaderSize);
+  if (*swap) {  // two integers of 8 bytes; replies are in this host's order
+    std::reverse(address->header.begin(), address->header.begin() + 8);
+    std::reverse(address->header.begin() + 8, address->header.end());
+  }
+  *body_offset = kCdrHeaderSize + kCycloneHeaderSize;
+  return {};
+}
+
+std::vector<std::uint8_t> frame_reply(const ReplyAddress& address, const MessageRef& response) {
+  const std::size_t extra = address.framing == Framing::cyclone ? kCycloneHeaderSize : 0;
+  const std::size_t size = response.encoded_size(response.message);
+  std::vector<std::uint8_t> bytes(extra + size);
+  if (response.encode(response.message, bytes.data() + extra, size) == 0) return {};
+  if (extra != 0) {  // 16 bytes do not change the alignment of what follows
+    std::memcpy(bytes.data(), bytes.data() + extra, kCdrHeaderSize);
+    std::memcpy(bytes.data() + kCdrHeaderSize, address.header.data(), extra);
+  }
+  return bytes;
+}
 
 Result<std::shared_ptr<RawServer>> make_server(const Participant& participant,
                                                const ServiceSpec& spec, RequestDecode decode) {

@@ -10,9 +10,9 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 
 #include "core/base/status.hpp"
-#include "idl/wire/discovery.hpp"
 #include "idl/wire/endpoint.hpp"
 #include "idl/wire/fastdds/version.hpp"
+#include "idl/wire/participant.hpp"
 
 // Private to idl/wire/fastdds, the only folder that includes Fast DDS.
 

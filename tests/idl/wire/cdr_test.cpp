@@ -10,6 +10,7 @@
 
 #include "tests/idl/wire/all_types.hpp"
 #include "tests/idl/wire/fill.hpp"
+#include "tests/idl/wire/sequences.hpp"
 
 namespace bpa::wire {
 namespace {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "idl/wire/cdr.hpp"
+#include "tests/idl/wire/sequences.hpp"
 
 // The fields of a message as its C++ struct has them, to be compared with its .idl.
 

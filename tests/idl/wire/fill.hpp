@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "idl/wire/cdr.hpp"
+#include "tests/idl/wire/sequences.hpp"
 
 namespace bpa::wire {
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "idl/wire/discovery.hpp"
+#include "idl/wire/participant.hpp"
 
 namespace bpa::wire {
 namespace {
