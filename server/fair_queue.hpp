@@ -18,10 +18,8 @@ class FairQueue {
  public:
   /// How many items would come out before one that this client adds now.
   std::size_t ahead_of_next(const Client& client) const {
-    std::size_t own = 0;
-    for (const Line& line : lines_) {
-      if (line.client == client) own = line.items.size();
-    }
+    const auto line_of = std::ranges::find(lines_, client, &Line::client);
+    const std::size_t own = line_of == lines_.end() ? 0 : line_of->items.size();
     std::size_t ahead = own;
     bool before = true;  // whose turn comes before the client's; a new client's comes last
     for (const Line& line : lines_) {
@@ -35,8 +33,7 @@ class FairQueue {
   }
 
   void push(const Client& client, T item) {
-    auto line = std::find_if(lines_.begin(), lines_.end(),
-                             [&](const Line& one) { return one.client == client; });
+    auto line = std::ranges::find(lines_, client, &Line::client);
     if (line == lines_.end()) line = lines_.insert(lines_.end(), Line{client, {}});
     line->items.push_back(std::move(item));
     ++size_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <fstream>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -12,6 +13,8 @@
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include <unistd.h>
 
 #include "core/base/clock.hpp"
 #include "core/base/concat.hpp"
@@ -67,6 +70,14 @@ WorkerOptions worker_options(const ServerOptions& options) {
       .continuous = detection.continuous,
       .fuse_frames = detection.fuse_frames,
       .request = {{}, {}, detection.top_k, detection.budget_ms, detection.seed, detection.threads}};
+}
+
+/// Resident memory of this process in bytes; 0 when unknown.
+std::uint64_t resident_bytes() {
+  std::ifstream file("/proc/self/statm");
+  std::uint64_t total = 0, resident = 0;
+  file >> total >> resident;
+  return file ? resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
 }
 
 wire::GraphLayout graph_layout_of(const std::string& word) {

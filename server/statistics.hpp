@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -40,14 +41,38 @@ class Statistics {
     ++(counts_.*counter);
   }
   /// Counts a frame that came in, and remembers when.
-  void add_frame();
+  void add_frame() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++counts_.frames_received;
+    last_frame_ = std::chrono::steady_clock::now();
+  }
   /// Since the last frame came in; nothing before the first.
-  std::optional<double> seconds_since_frame() const;
+  std::optional<double> seconds_since_frame() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!last_frame_) return std::nullopt;
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - *last_frame_).count();
+  }
   /// Counts a rejected frame.
-  void add_rejection(RejectionCause cause);
-  void add_timings(const SceneInterpretations& result);
+  void add_rejection(RejectionCause cause) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++counts_.frames_rejected;
+    ++rejections_[static_cast<std::size_t>(cause)];
+  }
+  void add_timings(const SceneInterpretations& result) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    remember(totals_, result.total_milliseconds);
+    for (const StageTiming& timing : result.timings) {
+      auto stage = std::ranges::find(stages_, timing.stage, &Stage::first);
+      if (stage == stages_.end()) stage = stages_.insert(stage, {timing.stage, {}});
+      remember(stage->second, timing.milliseconds);
+    }
+  }
   /// Counts it, and remembers why.
-  void add_fusion_restart(const std::string& reason);
+  void add_fusion_restart(const std::string& reason) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++counts_.fusion_restarts;
+    fusion_restart_ = reason;
+  }
 
   Counts counts() const {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -59,27 +84,61 @@ class Statistics {
     return fusion_restart_;
   }
   /// The causes of rejection that occurred, with their counts.
-  std::vector<std::pair<std::string, std::uint64_t>> rejections() const;
+  std::vector<std::pair<std::string, std::uint64_t>> rejections() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::vector<std::pair<std::string, std::uint64_t>> counts;
+    for (std::size_t i = 0; i < rejections_.size(); ++i) {
+      if (rejections_[i] > 0) counts.emplace_back(kRejectionCauses[i], rejections_[i]);
+    }
+    return counts;
+  }
   /// Medians over the last 50 frames, in the order of the stages, "total" last.
-  std::vector<StageTiming> median_timings() const;
+  std::vector<StageTiming> median_timings() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::vector<StageTiming> timings;
+    for (const auto& [stage, values] : stages_) timings.push_back({stage, median(values)});
+    if (!totals_.empty()) timings.push_back({"total", median(totals_)});
+    return timings;
+  }
   /// Median of the whole search; 0 before the first.
-  double median_total_ms() const;
+  double median_total_ms() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return median(totals_);
+  }
   /// The shortest of the last searches; 0 before the first.
-  double shortest_total_ms() const;
+  double shortest_total_ms() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return totals_.empty() ? 0 : std::ranges::min(totals_);
+  }
   /// After a change that makes searches longer or shorter.
-  void forget_timings();
+  void forget_timings() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stages_.clear();
+    totals_.clear();
+  }
 
  private:
+  static constexpr std::size_t kRemembered = 50;
+  using Stage = std::pair<std::string, std::deque<double>>;
+
+  static void remember(std::deque<double>& values, double value) {
+    values.push_back(value);
+    if (values.size() > kRemembered) values.pop_front();
+  }
+  static double median(std::deque<double> values) {
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + values.size() / 2;
+    std::ranges::nth_element(values, middle);
+    return *middle;
+  }
+
   mutable std::mutex mutex_;
   Counts counts_;
   std::optional<std::chrono::steady_clock::time_point> last_frame_;
   std::array<std::uint64_t, std::size(kRejectionCauses)> rejections_{};
   std::string fusion_restart_;
-  std::vector<std::pair<std::string, std::deque<double>>> stages_;
+  std::vector<Stage> stages_;
   std::deque<double> totals_;
 };
-
-/// Resident memory of this process in bytes; 0 when unknown.
-std::uint64_t resident_bytes();
 
 }  // namespace bpa::server

@@ -43,10 +43,7 @@ void remap(const std::vector<std::int32_t>& map, std::vector<Pixel>& pixels) {
   std::vector<Pixel> out(pixels.size(), Pixel{});
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (map[i] < 0) continue;
-    const std::size_t from = static_cast<std::size_t>(map[i]);
-    for (std::size_t c = 0; c < kChannels; ++c) {
-      out[kChannels * i + c] = pixels[kChannels * from + c];
-    }
+    std::copy_n(pixels.begin() + map[i] * kChannels, kChannels, out.begin() + i * kChannels);
   }
   pixels = std::move(out);
 }
@@ -63,9 +60,8 @@ RegionOfInterest roi_of(const sensor::RegionOfInterest& roi) {
 }
 
 /// The frame with its pixels, from which the lens distortion is taken out, once all is legal.
-template <class MakeDepth, class MakeColor>
-DecodedFrame completed(Frame frame, const std::vector<double>& distortion, MakeDepth make_depth,
-                       MakeColor make_color) {
+DecodedFrame completed(Frame frame, const std::vector<double>& distortion, const auto& make_depth,
+                       const auto& make_color) {
   if (Status status = validate(frame.camera); !status.ok()) {
     return {RejectionCause::camera, status};
   }
@@ -101,9 +97,9 @@ Status check_same_size(const char* what, std::uint32_t width, std::uint32_t heig
 }
 
 /// Pixels of an image that is as large as the camera's. `from_raw` and `from_compressed` make them.
-template <class Pixels, class FromRaw, class FromCompressed>
+template <class Pixels>
 Result<Pixels> pixels_of(const char* field, const AnyImage& any, const Camera& camera,
-                         FromRaw from_raw, FromCompressed from_compressed) {
+                         const auto& from_raw, const auto& from_compressed) {
   const std::string what = std::string(field) + " image";
   if (const auto* raw = std::get_if<sensor::Image>(&any)) {
     const Status status = check_same_size(what.c_str(), raw->width, raw->height, camera);

@@ -48,11 +48,6 @@ Result<DetectRequest> search_of(const msgs::Detect_Request& request,
       .num_threads = options.threads};
 }
 
-int models_searched(const Recognition& recognition, const DetectRequest& search) {
-  if (!search.models.empty()) return static_cast<int>(search.models.size());
-  return static_cast<int>(recognition.models().size());
-}
-
 /// Makes the job of a request whose fields are legal.
 DetectJob job_of(std::shared_ptr<msgs::Detect_Request> request, const DetectRequest& search,
                  const DetectionOptions& options) {
@@ -152,9 +147,11 @@ void add_detect(const ServiceContext& context, ServiceSet& services) {
           response.success = result.ok();
           response.queue_position = static_cast<std::uint32_t>(done.position);
           if (frame != nullptr) {
+            const auto& named = done.request.models;
+            const auto models = named.empty() ? recognition->models().size() : named.size();
             response.result = interpretations_message(
-                result, {frame->stamp_ns, frame->frame_id,
-                         models_searched(*recognition, done.request), done.request.seed});
+                result,
+                {frame->stamp_ns, frame->frame_id, static_cast<int>(models), done.request.seed});
           }
           if (!result.ok()) log(hook, LogLevel::info, "detect failed: " + result.status().message);
           reply.send(response);

@@ -30,8 +30,7 @@ SynchronizerOptions synchronizer_options(const InputOptions& options) {
 }
 
 /// A whole frame; `convert` runs on the worker.
-template <class Message, class Convert>
-IncomingFrame incoming(Message message, Convert convert) {
+IncomingFrame incoming(auto message, auto convert) {
   IncomingFrame frame{{}, to_ns(message.header.stamp), message.header.frame_id};
   frame.decode = [message = std::move(message), convert]() mutable {
     return convert(std::move(message));
