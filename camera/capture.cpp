@@ -132,10 +132,7 @@ class Capture::Impl {
     if (Status s = camera->start_recording(path); !s.ok()) return s;
     recording_until_ = clock_->now() + limit;
     recorded_.reset();
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      status_.recording = path;
-    }
+    note_recording(path);
     log(log_, LogLevel::info, "capture: recording to " + path);
     return RecordingSummary{path, 0, 0};
   }
@@ -144,11 +141,7 @@ class Capture::Impl {
     if (recording_until_ && camera != nullptr) {
       recording_until_.reset();
       Result<RecordingSummary> summary = camera->stop_recording();
-      std::string path;
-      {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        path.swap(status_.recording);
-      }
+      const std::string path = note_recording("");
       if (!summary.ok()) {
         log(log_, LogLevel::error,
             "capture: recording to " + path + " failed: " + summary.status().message);
@@ -173,6 +166,12 @@ class Capture::Impl {
     const std::lock_guard<std::mutex> lock(mutex_);
     call_ = name;
     call_began_ = clock_->now();
+  }
+
+  /// Names the file that is written from now on; returns what was written before.
+  std::string note_recording(const std::string& path) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::exchange(status_.recording, path);
   }
 
   std::unique_ptr<CameraDevice> open() {

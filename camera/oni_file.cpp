@@ -46,10 +46,7 @@ class Inspector {
     std::uint32_t seen = 0;  ///< Frame records so far.
   };
 
-  template <class... Parts>
-  Status damaged(const Parts&... why) const {
-    return corrupt(path_, " is damaged: ", why...);
-  }
+  Status damaged(const auto&... why) const { return corrupt(path_, " is damaged: ", why...); }
   Status truncated() const {
     std::uint32_t frames = 0;
     for (const Node& node : nodes_) frames = std::max(frames, node.seen);

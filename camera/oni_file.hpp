@@ -85,14 +85,12 @@ struct ModeValue {
 #pragma pack(pop)
 
 /// Appends a value as it lies in memory.
-template <class T>
-void put(std::string& bytes, const T& value) {
+inline void put(std::string& bytes, const auto& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 /// Takes a value off `bytes` at `offset`, which moves on; false past the end.
-template <class T>
-bool get(const std::string& bytes, std::size_t& offset, T& value) {
+inline bool get(const std::string& bytes, std::size_t& offset, auto& value) {
   if (bytes.size() < offset + sizeof value) return false;
   std::memcpy(static_cast<void*>(&value), bytes.data() + offset, sizeof value);
   offset += sizeof value;

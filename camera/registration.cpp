@@ -21,11 +21,10 @@ Eigen::Vector2d carried(const DeviceGeometry& g, double u, double v, double z) {
 }
 
 void close_gaps(const Camera& camera, std::vector<std::uint16_t>& depth) {
-  const auto width = static_cast<std::size_t>(camera.width);
   const auto one_surface = [](int a, int b) { return 50 * std::abs(a - b) <= std::min(a, b); };
-  for (std::size_t v = 0; v < static_cast<std::size_t>(camera.height); ++v) {
-    std::uint16_t* row = depth.data() + v * width;
-    for (std::size_t u = 1; u + 1 < width; ++u) {
+  for (int v = 0; v < camera.height; ++v) {
+    std::uint16_t* row = depth.data() + v * camera.width;
+    for (int u = 1; u + 1 < camera.width; ++u) {
       if (row[u] != 0 || row[u - 1] == 0 || row[u + 1] == 0) continue;
       if (!one_surface(row[u - 1], row[u + 1])) continue;
       row[u] = static_cast<std::uint16_t>((row[u - 1] + row[u + 1]) / 2);
@@ -38,8 +37,7 @@ void close_gaps(const Camera& camera, std::vector<std::uint16_t>& depth) {
 
 std::vector<std::uint16_t> register_depth(const std::vector<std::uint16_t>& depth,
                                           const DeviceGeometry& g) {
-  const auto width = static_cast<std::size_t>(g.color.width);
-  std::vector<std::uint16_t> out(width * static_cast<std::size_t>(g.color.height), 0);
+  std::vector<std::uint16_t> out(g.color.width * g.color.height, 0);
   std::size_t i = 0;
   for (int v = 0; v < g.depth.height; ++v) {
     for (int u = 0; u < g.depth.width; ++u, ++i) {
@@ -54,8 +52,7 @@ std::vector<std::uint16_t> register_depth(const std::vector<std::uint16_t>& dept
       const int end_y = std::min(g.color.height, static_cast<int>(std::ceil(high.y())));
       for (int y = first_y; y < end_y; ++y) {
         for (int x = first_x; x < end_x; ++x) {
-          std::uint16_t& place =
-              out[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)];
+          std::uint16_t& place = out[y * g.color.width + x];
           if (place == 0 || depth[i] < place) place = depth[i];
         }
       }

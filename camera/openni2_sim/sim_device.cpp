@@ -41,19 +41,17 @@ void visit_pixels(const OniVideoMode& mode, bool mirrored, int width, auto visit
 }
 
 /// Hands out the value of a property, as OpenNI2 asks for it.
-template <class T>
-OniStatus give(const T& value, void* data, int* size) {
-  if (*size < static_cast<int>(sizeof(T))) return ONI_STATUS_BAD_PARAMETER;
-  std::memcpy(data, &value, sizeof(T));
-  *size = sizeof(T);
+OniStatus give(const auto& value, void* data, int* size) {
+  if (*size < static_cast<int>(sizeof value)) return ONI_STATUS_BAD_PARAMETER;
+  std::memcpy(data, &value, sizeof value);
+  *size = sizeof value;
   return ONI_STATUS_OK;
 }
 
 /// Takes the value of a property, as OpenNI2 sets it.
-template <class T>
-OniStatus take(const void* data, int size, T& value) {
-  if (size != static_cast<int>(sizeof(T))) return ONI_STATUS_BAD_PARAMETER;
-  std::memcpy(&value, data, sizeof(T));
+OniStatus take(const void* data, int size, auto& value) {
+  if (size != static_cast<int>(sizeof value)) return ONI_STATUS_BAD_PARAMETER;
+  std::memcpy(&value, data, sizeof value);
   return ONI_STATUS_OK;
 }
 
