@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "client/cli/commands.hpp"
-#include "client/cli/frame_view.hpp"
+#include "client/cli/convert.hpp"
 #include "client/cli/options.hpp"
 #include "client/cli/output.hpp"
 

@@ -3,6 +3,7 @@
 #include "client/cli/options.hpp"
 
 #include "client/cli/convert.hpp"
+#include "core/base/concat.hpp"
 #include "core/base/failure.hpp"
 #include "core/io/camera_file.hpp"
 #include "core/io/image_file.hpp"
@@ -76,13 +77,10 @@ Frame load_frame(const io::BopFrame& entry, const FrameFiles& files, std::int64_
   if (!files.roi.empty()) frame.roi = {files.roi[0], files.roi[1], files.roi[2], files.roi[3]};
   if (files.mask.empty()) return frame;
   const io::ColorImage image = or_throw(io::read_color_image(files.mask));
-  const auto size = [](int width, int height) {
-    return std::to_string(width) + "x" + std::to_string(height);
-  };
   const Camera& camera = frame.camera;
   if (image.width != camera.width || image.height != camera.height) {
-    throw Failure(invalid_argument(files.mask + " is " + size(image.width, image.height) +
-                                   " but the frame is " + size(camera.width, camera.height) +
+    throw Failure(invalid_argument(files.mask, " is ", image.width, "x", image.height,
+                                   " but the frame is ", camera.width, "x", camera.height,
                                    "; they must be equal"));
   }
   for (auto pixel = image.pixels.begin(); pixel != image.pixels.end(); pixel += 3) {

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "client/cli/commands.hpp"
-#include "client/cli/frame_view.hpp"
+#include "client/cli/convert.hpp"
 #include "client/cli/inbox.hpp"
 #include "client/cli/options.hpp"
 #include "client/cli/output.hpp"
@@ -79,11 +79,11 @@ void record_there(Client client, const RecordOptions& options) {
 }
 
 std::vector<std::uint16_t> depth_of(const FrameView& frame) {
-  const auto count = static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
+  const int count = frame.width * frame.height;
   if (frame.depth_mm != nullptr) return {frame.depth_mm, frame.depth_mm + count};
   std::vector<std::uint16_t> depth;
   depth.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (int i = 0; i < count; ++i) {
     const double units = std::round(static_cast<double>(frame.depth_m[i]) * 1000 / kFloatUnit_mm);
     depth.push_back(units > 0 && units <= 65535 ? static_cast<std::uint16_t>(units)
                                                 : std::uint16_t{0});
@@ -127,8 +127,7 @@ class FrameRecorder {
     const std::string name = io::bop_number(static_cast<int>(number)) + ".png";
     const fs::path scene = folder_ / kScene;
     if (frame.rgb != nullptr) {
-      const auto bytes = std::size_t{3} * static_cast<std::size_t>(frame.width) *
-                         static_cast<std::size_t>(frame.height);
+      const int bytes = 3 * frame.width * frame.height;
       const Status status = io::write_color_png(
           scene / "rgb" / name, {frame.width, frame.height, {frame.rgb, frame.rgb + bytes}});
       if (!status.ok()) return status;

@@ -53,8 +53,7 @@ Result<wire::Participant> join(const ClientOptions& options) {
   auto discovery = discovery_of(options);
   if (!discovery.ok()) return discovery.status();
   wire::ParticipantOptions seat;
-  seat.node.node_namespace = options.server_namespace;
-  seat.node.name = "client";
+  seat.node = {options.server_namespace, "client"};
   seat.discovery = *discovery;
   if (options.log) {
     seat.log = [hook = options.log](LogLevel, std::string_view text) { hook(std::string(text)); };
@@ -151,10 +150,8 @@ Status Client::Impl::subscribe(std::optional<wire::Subscriber<Message>>& slot, c
                                const wire::Qos& qos, bool wait, Convert convert, Call call) {
   const std::lock_guard<std::mutex> lock(mutex);
   slot.reset();
-  wire::SubscriberOptions subscription;
-  subscription.qos = qos;
   auto subscriber = wire::Subscriber<Message>::create(
-      participant, topic, subscription,
+      participant, topic, {qos},
       [this, convert, call = std::move(call)](Message&& message, const wire::SampleMeta&) {
         using Value = std::decay_t<decltype(convert(std::move(message)))>;
         auto value = std::make_shared<const Value>(convert(std::move(message)));
@@ -193,10 +190,8 @@ Result<DetectionSet> Client::Impl::search(msgs::Detect_Request request, const De
 Status Client::Impl::make_frames() {
   const std::lock_guard<std::mutex> lock(mutex);
   if (frames) return {};
-  wire::PublisherOptions publishing;
-  publishing.qos = wire::qos::frames();
-  publishing.shared_bytes = options.shared_frame_mb << 20U;
-  auto publisher = wire::Publisher<msgs::RgbdFrame>::create(participant, "frames", publishing);
+  auto publisher = wire::Publisher<msgs::RgbdFrame>::create(
+      participant, "frames", {wire::qos::frames(), options.shared_frame_mb << 20U});
   if (publisher.ok()) frames.emplace(std::move(publisher).value());
   return publisher.status();
 }

@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/base/concat.hpp"
+
 namespace bpa::sdk {
 namespace {
 
@@ -179,8 +181,7 @@ AnnotatedImage to_image(wire::sensor_msgs::Image&& message) {
 
 Status check(const FrameView& frame) {
   if (frame.width < 16 || frame.width > 8192 || frame.height < 16 || frame.height > 8192) {
-    return invalid_argument("frame is " + std::to_string(frame.width) + "x" +
-                            std::to_string(frame.height) +
+    return invalid_argument("frame is ", frame.width, "x", frame.height,
                             "; each side must be between 16 and 8192");
   }
   if ((frame.depth_mm == nullptr) == (frame.depth_m == nullptr)) {
@@ -233,8 +234,8 @@ Result<std::vector<msgs::PosePrior>> to_messages(const std::vector<ExpectedPose>
   std::vector<msgs::PosePrior> messages;
   for (const ExpectedPose& prior : priors) {
     if (!(prior.weight > 0 && prior.weight <= 1)) {
-      return invalid_argument("priors[" + std::to_string(messages.size()) + "].weight is " +
-                              std::to_string(prior.weight) + "; it must be above 0 and at most 1");
+      return invalid_argument("priors[", messages.size(), "].weight is ",
+                              std::to_string(prior.weight), "; it must be above 0 and at most 1");
     }
     messages.push_back(to_message(prior));
   }

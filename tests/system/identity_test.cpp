@@ -9,7 +9,7 @@
 
 #include <bpa/client.hpp>
 
-#include "client/cli/frame_view.hpp"
+#include "client/cli/convert.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/mesh_file.hpp"
 #include "core/io/model_file.hpp"

@@ -7,7 +7,7 @@
 
 #include <bpa/client.hpp>
 
-#include "client/cli/frame_view.hpp"
+#include "client/cli/convert.hpp"
 #include "core/io/model_file.hpp"
 #include "core/modeling/model_source.hpp"
 #include "tests/support/l_scene.hpp"
