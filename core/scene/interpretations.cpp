@@ -177,44 +177,33 @@ void anneal(SubsetScore& state, const std::vector<std::size_t>& among,
 
 using Entry = BestSubsets::Entry;
 
-// What no interpretation has shown yet, by falling probability.
-class Unshown {
- public:
-  Unshown(const Candidates& candidates, const Competition& competition,
-          const std::vector<std::size_t>& among)
-      : competition_(competition), by_probability_(among) {
-    std::ranges::stable_sort(by_probability_, std::greater(),
-                             [&](std::size_t i) { return candidates[i].probability; });
-  }
-  const std::vector<std::size_t>& left() const { return by_probability_; }
-  // Nearly the same pose of the same model counts as shown as well.
-  void show(const std::vector<bool>& subset) {
-    std::erase_if(by_probability_, [&](std::size_t i) {
-      const auto shown = [&](const Competition::Rival& rival) {
-        return rival.same_pose > 0.5 && subset[rival.other];
-      };
-      return subset[i] || std::ranges::any_of(competition_.rivals[i], shown);
-    });
-  }
-
- private:
-  const Competition& competition_;
-  std::vector<std::size_t> by_probability_;
-};
-
 // See interpret(): first what differs, then what is left of the best.
-std::vector<Entry> rank(SubsetScore& state, const std::vector<std::size_t>& among, Unshown& unshown,
+std::vector<Entry> rank(SubsetScore& state, const std::vector<std::size_t>& among,
+                        const Candidates& candidates, const Competition& competition,
                         BestSubsets& best, const InterpretationOptions& options) {
+  // What no interpretation has shown yet, by falling probability. Nearly the same pose of the same
+  // model counts as shown as well.
+  std::vector<std::size_t> unshown = among;
+  std::ranges::stable_sort(unshown, std::greater(),
+                           [&](std::size_t i) { return candidates[i].probability; });
+  const auto show = [&](const std::vector<bool>& subset) {
+    const auto shown = [&](const Competition::Rival& rival) {
+      return rival.same_pose > 0.5 && subset[rival.other];
+    };
+    std::erase_if(unshown, [&](std::size_t i) {
+      return subset[i] || std::ranges::any_of(competition.rivals[i], shown);
+    });
+  };
   std::vector<Entry> ranked{*best.entries().begin()};
-  unshown.show(ranked.front().subset);
-  while (std::ssize(ranked) < options.max_different && !unshown.left().empty()) {
+  show(ranked.front().subset);
+  while (std::ssize(ranked) < options.max_different && !unshown.empty()) {
     state.clear();
-    for (std::size_t i : unshown.left()) {
+    for (std::size_t i : unshown) {
       if (!state.blocked(i)) state.add(i);
     }
     greedy(state, among, best);
     ranked.push_back({-state.total(), state.subset()});
-    unshown.show(state.subset());
+    show(state.subset());
   }
   std::set<std::vector<bool>> known;
   for (const Entry& entry : ranked) known.insert(entry.subset);
@@ -246,10 +235,9 @@ std::vector<Interpretation> interpret(const Candidates& candidates, const Overla
   greedy(state, among, best);
   if (!among.empty()) anneal(state, among, options, best);
   const Competition competition = competition_of(candidates, overlaps);
-  Unshown unshown(candidates, competition, among);
   std::vector<Interpretation> out;
   double total = 0, top = 0;
-  for (const Entry& entry : rank(state, among, unshown, best, options)) {
+  for (const Entry& entry : rank(state, among, candidates, competition, best, options)) {
     const double score = -entry.negated_score;
     if (out.empty()) top = score;
     Interpretation& interpretation = out.emplace_back(
