@@ -79,17 +79,11 @@ Mode maximise_over_signs(const Correspondences& data, const Moments& moments,
 }
 
 PoseEstimate make_estimate(const Mode& mode, const Moments& moments) {
-  PoseEstimate result;
-  result.camera_from_object.rotation = from_wxyz(mode.q);
+  Pose pose{from_wxyz(mode.q)};
   if (moments.weight > 0) {
-    result.camera_from_object.translation =
-        moments.scene_centroid - result.camera_from_object.rotation * moments.model_centroid;
+    pose.translation = moments.scene_centroid - pose.rotation * moments.model_centroid;
   }
-  result.exponent = mode.exponent;
-  result.position_weight = moments.weight;
-  result.model_centroid = moments.model_centroid;
-  result.log_score = mode.value;
-  return result;
+  return {pose, mode.exponent, moments.weight, moments.model_centroid, mode.value};
 }
 
 Matrix4d prior_exponent(const Correspondences& data) {
