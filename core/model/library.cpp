@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/base/concat.hpp"
+
 namespace bpa {
 
 Status ModelLibrary::add(std::shared_ptr<const ObjectModel> model) {
@@ -12,9 +14,8 @@ Status ModelLibrary::add(std::shared_ptr<const ObjectModel> model) {
       return invalid_argument("the library already holds a model named " + model->name);
     }
     if (other->number == model->number) {
-      return invalid_argument("model " + model->name + " has the number " +
-                              std::to_string(model->number) + ", which " + other->name +
-                              " has already; numbers must differ");
+      return invalid_argument("model ", model->name, " has the number ", model->number, ", which ",
+                              other->name, " has already; numbers must differ");
     }
   }
   models_.insert(std::ranges::lower_bound(models_, model->number, {}, &ObjectModel::number),
