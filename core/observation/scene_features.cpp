@@ -42,10 +42,9 @@ SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
                              const Image<Eigen::Vector3f>& rgb) {
   SceneFeatures scene;
   EdgeImageOptions edge_options = options.edges;
-  edge_options.num_threads = options.num_threads;
-  scene.edges = scene_edges(map, rgb, edge_options);
   SuperPixelOptions segment_options = options.segments;
-  segment_options.num_threads = options.num_threads;
+  edge_options.num_threads = segment_options.num_threads = options.num_threads;
+  scene.edges = scene_edges(map, rgb, edge_options);
   if (!rgb.empty()) {
     scene.cielab =
         cielab(blur(rgb, options.color_blur_px, options.num_threads), options.num_threads);
