@@ -50,16 +50,14 @@ struct Tally {
 
 // The index of a model in the trace, or -1.
 std::ptrdiff_t index_of(const FrameTrace& trace, int number) {
-  const auto found = std::find_if(trace.models.begin(), trace.models.end(),
-                                  [&](const auto& model) { return model->number == number; });
+  const auto found = std::ranges::find(trace.models, number, &ObjectModel::number);
   return found == trace.models.end() ? -1 : found - trace.models.begin();
 }
 
 void add_instance(const io::BopInstance& truth, const FrameTrace& trace,
                   const SceneInterpretations& result, Tally& tally) {
-  const std::ptrdiff_t index = index_of(trace, truth.obj_id);
-  if (index < 0) return;
-  const auto m = static_cast<std::size_t>(index);
+  const std::ptrdiff_t m = index_of(trace, truth.obj_id);
+  if (m < 0) return;
   const auto is_right = [&](const Pose& pose) {
     return eval::is_right(pose, truth.camera_from_object, trace.models[m]->symmetry);
   };
@@ -84,7 +82,7 @@ void add_instance(const io::BopInstance& truth, const FrameTrace& trace,
 void add_reported(const std::vector<io::BopInstance>& truth, const FrameTrace& trace,
                   const Interpretation& best, Tally& tally) {
   for (const Placement& placement : best.placements) {
-    const auto m = static_cast<std::size_t>(index_of(trace, placement.model_number));
+    const std::ptrdiff_t m = index_of(trace, placement.model_number);
     ++tally.reported;
     tally.right += eval::is_right_about_any(placement.camera_from_object, *trace.models[m], truth);
   }

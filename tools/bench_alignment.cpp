@@ -49,9 +49,7 @@ void load_models(const AlignmentArguments& a, Experiment& experiment) {
 
 // The seen surface without large planes, with curvature.
 PointCloud scene_cloud(const Frame& frame, const AlignmentArguments& a) {
-  SurfaceMapOptions options;
-  options.num_threads = a.common.threads;
-  SurfaceMap map = surface_map(frame, options);
+  SurfaceMap map = surface_map(frame, {.num_threads = a.common.threads});
   if (frame.background.empty()) label_background_planes(map, PlaneOptions());
   PointCloud points;
   for (std::size_t i = 0; i < map.size(); ++i) {
@@ -121,12 +119,12 @@ io::ColorImage plot(const Quantity& quantity, const align::ConvergenceResult& re
   const auto series = [&](const char* name, const align::ConvergenceCurve& curve) {
     draw::Series out{name, {}, {}};
     for (const double value : curve.*quantity.values) {
-      out.x.push_back(static_cast<double>(out.x.size()));
+      out.x.push_back(out.x.size());
       out.y.push_back(quantity.scale * value);
     }
     return out;
   };
-  const auto last = static_cast<double>(result.bpa.position_m.size() - 1);
+  const double last = result.bpa.position_m.size() - 1;
   return draw::line_plot(
       {std::string("Mean of the least error so far: ") + quantity.name, "iteration", quantity.unit,
        0, last, 0, 0},

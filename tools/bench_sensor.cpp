@@ -14,8 +14,7 @@
 #include "core/io/image_file.hpp"
 #include "core/sim/depth_statistics.hpp"
 #include "core/sim/scenes.hpp"
-#include "tools/detect_inputs.hpp"
-#include "tools/progress.hpp"
+#include "tools/search.hpp"
 
 namespace bpa::cli {
 namespace {
@@ -90,9 +89,8 @@ double median_depth(const Frame& frame) {
   std::vector<float> depths = frame.depth;
   std::erase(depths, 0.0f);
   if (depths.empty()) return 1;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::ranges::nth_element(depths, middle);
-  return *middle;
+  std::ranges::nth_element(depths, depths.begin() + depths.size() / 2);
+  return depths[depths.size() / 2];
 }
 
 /// A simulated table seen by the same camera from about as far.
@@ -142,9 +140,7 @@ Json to_json(const DepthStatistics& row) {
 DepthStatistics mean_of(const std::vector<DepthStatistics>& rows) {
   DepthStatistics mean;
   for (const auto& s : kStatistics) {
-    for (const DepthStatistics& row : rows) {
-      mean.*s.value += row.*s.value / static_cast<double>(rows.size());
-    }
+    for (const DepthStatistics& row : rows) mean.*s.value += row.*s.value / rows.size();
   }
   return mean;
 }
@@ -163,8 +159,7 @@ Json bench_frames(const SensorArguments& a) {
   for (int k = 0; k < count; ++k) {
     progress.show(k);
     // Evenly over all that were given.
-    const Input& frame =
-        real[static_cast<std::size_t>(k) * real.size() / static_cast<std::size_t>(count)];
+    const Input& frame = real[k * real.size() / count];
     const Input beside =
         simulated_beside(stage, frame.frame, sim::scene_seed(a.common.seed, k), a.common.threads);
     progress.clear();
@@ -178,9 +173,7 @@ Json bench_frames(const SensorArguments& a) {
   }
   print_row("mean of the real ones", mean_of(real_rows));
   print_row("mean of the simulated", mean_of(simulated_rows));
-  if (!a.sheet.empty()) {
-    or_throw(io::write_color_png(a.sheet, draw::contact_sheet(cells, 2, 1280)));
-  }
+  if (!a.sheet.empty()) or_throw(io::write_color_png(a.sheet, draw::contact_sheet(cells, 2, 1280)));
   return {{"frames", count},
           {"real", to_json(mean_of(real_rows))},
           {"simulated", to_json(mean_of(simulated_rows))}};

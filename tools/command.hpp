@@ -4,6 +4,7 @@
 
 #include <cassert>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -16,8 +17,9 @@
 #include "core/base/failure.hpp"
 #include "core/base/options.hpp"
 
-// The commands of bpa and the options that several of them have. A command runs when the command
-// line chooses it. Wrong usage is a CLI::ParseError, every other failure another exception.
+// The commands of bpa, the options that several of them have, and their progress bar. A command
+// runs when the command line chooses it. Wrong usage is a CLI::ParseError, every other failure
+// another exception.
 
 namespace bpa::cli {
 
@@ -49,11 +51,10 @@ struct OptionField {
   std::string_view field;
 };
 
-/// Adds an option for each of these fields. Texts and ranges are those of visit_fields; validate()
-/// checks the ranges when the command runs.
+/// Adds an option for each of these fields, by visit_fields; validate() checks when it runs.
 void add_options(CLI::App& command, auto& options, std::initializer_list<OptionField> fields) {
   for (const OptionField& wanted : fields) {
-    bool known = false;
+    [[maybe_unused]] bool known = false;
     options.visit_fields([&](std::string_view name, auto& value, const FieldRule& rule) {
       if (name != wanted.field) return;
       known = true;
@@ -62,7 +63,6 @@ void add_options(CLI::App& command, auto& options, std::initializer_list<OptionF
       command.add_option(wanted.option, value, text.str())->capture_default_str();
     });
     assert(known);
-    static_cast<void>(known);
   }
 }
 
@@ -79,8 +79,7 @@ void add_library_option(CLI::App& command, std::string& folder);
 /// Adds --min-visible.
 void add_min_visible_option(CLI::App& command, double& fraction);
 
-/// Adds a command with --threads and --seed that runs `run` with its arguments. Returns both; the
-/// arguments live as long as the command.
+/// Adds a command with --threads and --seed that runs `run`. Its arguments live as long as it does.
 template <class Arguments>
 std::pair<CLI::App&, Arguments&> add_command(CLI::App& program, const char* name,
                                              const char* description,
@@ -91,6 +90,30 @@ std::pair<CLI::App&, Arguments&> add_command(CLI::App& program, const char* name
   command.callback([arguments, run] { run(*arguments); });
   return {command, *arguments};
 }
+
+/// A progress bar on stderr, if that is a terminal. The destructor removes it.
+class Progress {
+ public:
+  Progress(std::string title, int total);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// Shows that `done` of the total are done, and the current item.
+  void show(int done, const std::string& item = {});
+  /// Removes the bar, so that something else can be printed; the next show() draws it again.
+  void clear();
+
+ private:
+  std::string title_;
+  int total_;
+  bool terminal_;
+  bool drawn_ = false;
+};
+
+/// Runs work(0) to work(count - 1) in parallel under a progress bar. Throws as parallel_for does.
+void run_all(const std::string& title, int count, int num_threads,
+             const std::function<void(int)>& work);
 
 void add_model_command(CLI::App& program);
 void add_detect_command(CLI::App& program);

@@ -11,9 +11,8 @@
 #include "core/io/file_bytes.hpp"
 #include "core/io/pose_prior_file.hpp"
 #include "core/io/results.hpp"
-#include "tools/detect_inputs.hpp"
 #include "tools/explain_folder.hpp"
-#include "tools/progress.hpp"
+#include "tools/search.hpp"
 
 namespace bpa::cli {
 namespace {
@@ -85,8 +84,7 @@ class DetectRun {
     request_.num_threads = a_.common.threads;
   }
 
-  /// Takes up a frame. Searches once those that are to be combined are there, or with the `last`
-  /// of a scene.
+  /// Takes up a frame. Searches once all that are combined are there, or with a scene's `last`.
   void add(const io::BopFrame& entry, Input input, bool last) {
     if (a_.fuse > 1) {
       or_throw(validate(input.frame), input.name);

@@ -7,7 +7,6 @@
 #include "core/eval/evaluation.hpp"
 #include "core/io/file_bytes.hpp"
 #include "tools/command.hpp"
-#include "tools/progress.hpp"
 
 namespace bpa::cli {
 namespace {

@@ -49,9 +49,7 @@ class Page : public HtmlPage {
   /// Writes the picture, under its title and over its legend, if any, and shows it with the text.
   void show(const std::string& file, std::string_view text, const io::ColorImage& image,
             const std::string& title = "", const std::vector<LegendEntry>& legend = {}) {
-    const bool words = !title.empty();
-    or_throw(io::write_color_png(folder_ + "/" + file,
-                                 words ? draw::with_words(image, title, legend) : image));
+    or_throw(io::write_color_png(folder_ + "/" + file, draw::with_words(image, title, legend)));
     picture(file, text);
   }
   void write() const { or_throw(io::write_file(folder_ + "/index.html", finish())); }
@@ -101,7 +99,7 @@ class ModelExplanation {
   bool is_reported() const {
     if (!best_ || frame_.result.interpretations.empty()) return false;
     const auto& placements = frame_.result.interpretations.front().placements;
-    return std::any_of(placements.begin(), placements.end(), [&](const Placement& p) {
+    return std::ranges::any_of(placements, [&](const Placement& p) {
       return p.model == model_.name &&
              p.camera_from_object.translation == best_->pose().translation;
     });
@@ -128,9 +126,9 @@ class ModelExplanation {
   }
 
   std::size_t count_right(const TraceStage& stage) const {
-    return static_cast<std::size_t>(std::ranges::count_if(stage.poses, [&](const FastPose& pose) {
+    return std::ranges::count_if(stage.poses, [&](const FastPose& pose) {
       return eval::is_right_about_any(to_pose(pose), model_, frame_.truth);
-    }));
+    });
   }
 
   void write_table(Page& page) const {

@@ -32,8 +32,7 @@ struct ExplainedFrame {
 ///   11_best.png, 12_best_segments.png           the best placement and its super-pixels; the score
 ///                                               components are in a table of the page
 ///
-/// With several frames all of this is in a folder for each, with several models 03 to 11 in a
-/// folder for each, and index.html leads there.
+/// Several frames have a folder each, several models one each for 03 to 11; index.html leads there.
 class ExplainFolder {
  public:
   ExplainFolder(std::string folder, bool several_frames)

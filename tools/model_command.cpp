@@ -16,7 +16,6 @@
 #include "core/modeling/registration.hpp"
 #include "core/modeling/symmetry_search.hpp"
 #include "tools/posed_views.hpp"
-#include "tools/progress.hpp"
 
 namespace bpa::cli {
 namespace {
@@ -131,8 +130,7 @@ void save(const ModelSource& model, const ModelArguments& a) {
   }
 }
 
-/// The number asked for, else that of a model of that name, else the first that is free. Broken
-/// models have none.
+/// The number asked for, else that of a readable model of that name, else the first free one.
 int choose_number(const ModelArguments& a) {
   if (a.number > 0) return a.number;
   int largest = 0;

@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
 #include "core/base/random.hpp"
 #include "core/geometry/sphere_directions.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/image_file.hpp"
 #include "core/sim/kinect.hpp"
-#include "tools/progress.hpp"
 
 namespace bpa::cli {
 namespace fs = std::filesystem;
@@ -63,8 +61,7 @@ std::vector<std::uint8_t> near(const Frame& frame, const Pose& box_from_camera,
     if (!(frame.depth[i] > 0)) continue;
     const int u = static_cast<int>(i) % frame.camera.width;
     const int v = static_cast<int>(i) / frame.camera.width;
-    const Eigen::Vector3d p =
-        box_from_camera * frame.camera.unproject(u, v, double(frame.depth[i]));
+    const Eigen::Vector3d p = box_from_camera * frame.camera.unproject(u, v, frame.depth[i]);
     mask[i] = inside.contains(p.cast<float>());
   }
   return mask;
@@ -84,10 +81,9 @@ AlignedScan align_scan_of(const std::string& dataset, const std::string& split, 
                           const CommonOptions& common) {
   const std::vector<io::BopFrame> frames = or_throw(io::read_bop_frames(dataset, split));
   std::vector<ScanView> views(frames.size());
-  run_all("images", static_cast<int>(frames.size()), common.threads, [&](int k) {
-    const auto i = static_cast<std::size_t>(k);
+  run_all("images", static_cast<int>(frames.size()), common.threads, [&](int i) {
     views[i].view = make_posed_view(or_throw(io::load_bop_frame(frames[i])), {}, Pose{});
-    views[i].view.id = k;
+    views[i].view.id = i;
     views[i].step = frames[i].im_id;
   });
   std::vector<std::vector<ScanView>> positions;
@@ -121,7 +117,7 @@ std::vector<PosedView> read_posed_views(const std::string& dataset, const std::s
   }
   std::vector<PosedView> views(wanted.size());
   run_all("images", static_cast<int>(wanted.size()), num_threads, [&](int k) {
-    const auto& [entry, instance] = wanted[static_cast<std::size_t>(k)];
+    const auto& [entry, instance] = wanted[k];
     const Frame frame = or_throw(io::load_bop_frame(*entry));
     std::vector<std::uint8_t> mask;
     std::error_code error;
@@ -132,7 +128,7 @@ std::vector<PosedView> read_posed_views(const std::string& dataset, const std::s
       }
       for (const auto value : image.pixels) mask.push_back(value != 0);
     }
-    PosedView& view = views[static_cast<std::size_t>(k)];
+    PosedView& view = views[k];
     view = make_posed_view(frame, mask, entry->truth[instance].camera_from_object);
     view.id = k;
   });
@@ -140,20 +136,7 @@ std::vector<PosedView> read_posed_views(const std::string& dataset, const std::s
 }
 
 TriangleMesh squares_of(const PointCloud& cloud) {
-  // Twice the mean distance of a point to its nearest neighbour, from some 100 of them.
-  const std::size_t step = std::max<std::size_t>(1, cloud.size() / 100);
-  double sum = 0, count = 0;
-  for (std::size_t i = 0; i < cloud.size(); i += step) {
-    float nearest = std::numeric_limits<float>::infinity();
-    for (std::size_t j = 0; j < cloud.size(); ++j) {
-      if (j == i || cloud.normals[j].dot(cloud.normals[i]) < 0.5f) continue;
-      nearest = std::min(nearest, (cloud.points[j] - cloud.points[i]).squaredNorm());
-    }
-    if (!std::isfinite(nearest)) continue;
-    sum += std::sqrt(static_cast<double>(nearest));
-    ++count;
-  }
-  const auto half = static_cast<float>(count > 0 ? sum / count : 0);
+  const float half = mean_spacing(cloud, 0.5f);  // edges are twice as long
   TriangleMesh mesh;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3f u = half * cloud.normals[i].unitOrthogonal();
@@ -168,7 +151,7 @@ std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::
   constexpr double kDistance = 0.8, kMargin = 24;
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& v : mesh.vertices) box.extend(v);
-  const double size = static_cast<double>(box.diagonal().norm());
+  const double size = box.diagonal().norm();
   const double distance = std::max(kDistance, 0.5 * size + 0.6);
   // As much of the camera's image as the object covers.
   const double nearest = distance - 0.5 * size;
@@ -179,19 +162,16 @@ std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::
   const TriangleMesh walls = room(static_cast<float>(1.7 * distance), box.center());
   const sim::RayMeshes meshes({&mesh, &walls});
   const sim::RayScene scene(meshes, {{0, Pose{}}, {1, Pose{}}});
-  sim::Shading shading;
-  shading.materials = {sim::Material{}, sim::Material{}};
-  sim::KinectOptions kinect;
-  kinect.registered = false;
+  const sim::Shading shading{.materials = {sim::Material{}, sim::Material{}}};
+  const sim::KinectOptions kinect{.registered = false};
 
   std::vector<PosedView> views(static_cast<std::size_t>(count));
   run_all(title, count, num_threads, [&](int k) {
     const Pose object_from_camera =
         look_from(sphere_direction(k, count), distance, box.center().cast<double>());
-    const Frame frame =
-        sim::simulate_depth({scene, shading, camera, object_from_camera}, kinect,
-                            RandomStream(seed, static_cast<std::uint64_t>(k))(), 0, 1);
-    views[static_cast<std::size_t>(k)] =
+    const Frame frame = sim::simulate_depth({scene, shading, camera, object_from_camera}, kinect,
+                                            RandomStream(seed, k)(), 0, 1);
+    views[k] =
         make_posed_view(frame, near(frame, object_from_camera, box), object_from_camera.inverse());
   });
   return views;

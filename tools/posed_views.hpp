@@ -14,9 +14,8 @@
 
 namespace bpa::cli {
 
-/// Reads a split of a BOP data set as a turntable scan and finds the poses of its views: every
-/// scene is a resting position, and the number of an image says how many steps the table has
-/// turned. Truth and masks are not read.
+/// Reads a split of a BOP data set as a turntable scan and finds the poses of its views. A scene is
+/// a resting position; image numbers count the table's steps. Truth and masks are not read.
 AlignedScan align_scan_of(const std::string& dataset, const std::string& split, double step_deg,
                           const CommonOptions& common);
 
@@ -26,9 +25,8 @@ std::vector<PosedView> read_posed_views(const std::string& dataset, const std::s
                                         int obj_id, int num_threads);
 
 /// What a Kinect-class camera measures of a mesh from `count` directions spread over the sphere, in
-/// the middle of an empty room. The distance suits the object: 0.8 m, more for large ones. `title`
-/// is that of a progress bar. The same input and seed give the same views for any number of
-/// threads.
+/// the middle of an empty room, at 0.8 m, more for large objects. `title` is a progress bar's. The
+/// same input and seed give the same views for any number of threads.
 std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::uint64_t seed,
                                       int num_threads, const std::string& title);
 

@@ -11,7 +11,6 @@
 #include "core/sim/scenes.hpp"
 #include "core/sim/turntable.hpp"
 #include "tools/command.hpp"
-#include "tools/progress.hpp"
 
 namespace bpa::cli {
 namespace fs = std::filesystem;
