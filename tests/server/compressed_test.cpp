@@ -141,7 +141,7 @@ TEST(DecodeDepth, RefusesWhatIsNoDepth) {
   refused(image, StatusCode::unsupported);
 }
 
-TEST(FrameFromImages, CompressedImagesGiveTheFrameOfRawOnes) {
+TEST(FrameFromCompressedImages, CompressedImagesGiveTheFrameOfRawOnes) {
   CameraImages images{
       std::make_shared<AnyImage>(support::compressed_color(5)),
       std::make_shared<AnyImage>(support::compressed_depth(7, true)),

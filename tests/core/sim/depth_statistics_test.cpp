@@ -95,7 +95,7 @@ TEST(DepthStatistics, NothingGivesZeros) {
   EXPECT_EQ(s.roughness, 0);
 }
 
-TEST(PlaneNoise, WithoutErrorsThereIsNone) {
+TEST(PlaneNoiseOfImages, WithoutErrorsThereIsNone) {
   KinectOptions options;
   options.axial_noise = options.lateral_noise = options.dropouts = 0;
   options.disparity_step = 0;
@@ -106,7 +106,7 @@ TEST(PlaneNoise, WithoutErrorsThereIsNone) {
 }
 
 // Nguyen, Izadi and Lovell 2012: the lateral noise of a plane that faces the camera is 0.8 pixels.
-TEST(PlaneNoise, EdgesAreAsRaggedAsPublished) {
+TEST(PlaneNoiseOfImages, EdgesAreAsRaggedAsPublished) {
   for (const double depth : {0.6, 1.0, 1.5, 2.0}) {
     EXPECT_NEAR(plane_noise(depth, 0.2, {}).lateral, 0.81, 0.2) << depth;
   }
