@@ -66,7 +66,7 @@ endforeach()
 # The messages, for a ROS 2 workspace, and the settings: nothing reads these by itself.
 install(DIRECTORY idl/bpa_msgs DESTINATION ${CMAKE_INSTALL_DATADIR}/bpa COMPONENT server)
 install(DIRECTORY config DESTINATION ${CMAKE_INSTALL_DATADIR}/bpa COMPONENT server
-        PATTERN "apt-packages.txt" EXCLUDE PATTERN "readme" EXCLUDE
+        PATTERN "apt-packages*.txt" EXCLUDE PATTERN "readme" EXCLUDE
         PATTERN "dds_profiles.xml" EXCLUDE)
 install(FILES ${CMAKE_BINARY_DIR}/config/dds_profiles.xml
         DESTINATION ${CMAKE_INSTALL_DATADIR}/bpa/config COMPONENT server)

@@ -18,10 +18,10 @@ folder=$(cd "$folder" && pwd)
 
 say() { printf '\033[1m==> %s\033[0m\n' "$*"; }
 
-# Debian 13's names of what config/apt-packages.txt lists.
+# Debian 13's names of what config/apt-packages*.txt list.
 packages() {
   sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' -e 's/^libfastrtps-dev$/libfastdds-dev/' \
-    config/apt-packages.txt
+    config/apt-packages.txt config/apt-packages-tests.txt
 }
 
 # Runs a command in the folder, with mounts that end with it. The network is this machine's.
