@@ -235,6 +235,10 @@ void add_scenes(CLI::App& simulate) {
             "Fewest and most objects of a scene; 10,14 if not given");
   add_range(command, "--clutter", a.scene.min_clutter, a.scene.max_clutter,
             "Range of clutter, 0.6,1 if not given; 0 = apart on the table, 1 = heap");
+  add_range(command, "--focal", a.scene.min_focal, a.scene.max_focal,
+            "Range of the focal length, pixels; 525 if not given");
+  add_range(command, "--distance", a.scene.min_distance, a.scene.max_distance,
+            "Range from the camera to the middle of the pile, metres; 0.6,1.4 if not given");
   auto* meshes = add_option(command, "--meshes", a.meshes,
                             "Folder of PLY, OBJ or STL meshes instead of ours", "DIR");
   add_option(command, "--models", a.models, "Only these of the household objects", "LIST")
@@ -257,6 +261,8 @@ void add_scenes(CLI::App& simulate) {
                {"--distractors", "distractor_share"},
                {"--border", "border_share"},
                {"--misregistration", "misregistration"},
+               {"--exposure-spread", "exposure_spread"},
+               {"--lateral-noise", "lateral_noise"},
                {"--calibration-error", "calibration_error"}});
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -147,10 +146,17 @@ Pose aimed_past(const Pose& world_from_camera, const Eigen::Vector3d& object, co
   return world_from_camera * turn;
 }
 
-// The first `num_objects` of the pile are household objects.
-Pose draw_camera(const std::vector<PosedMesh>& pile, std::size_t num_objects,
-                 const SceneOptions& options, SceneKind kind, double azimuth,
-                 RandomStream& random) {
+Camera draw_lens(const SceneOptions& options, RandomStream& random) {
+  Camera camera = options.camera;
+  if (options.max_focal > 0) {
+    camera.fx = camera.fy = random.uniform(options.min_focal, options.max_focal);
+  }
+  return camera;
+}
+
+// Of the camera in the world. The first `num_objects` of the pile are household objects.
+Pose draw_pose(const std::vector<PosedMesh>& pile, std::size_t num_objects, const Camera& camera,
+               const SceneOptions& options, SceneKind kind, double azimuth, RandomStream& random) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const PosedMesh& body : pile) {
     middle += body.world_from_mesh.translation / static_cast<double>(pile.size());
@@ -167,11 +173,11 @@ Pose draw_camera(const std::vector<PosedMesh>& pile, std::size_t num_objects,
   if (num_objects == 0) return pose;
   const auto outward = [&](const PosedMesh& body) {
     const Eigen::Vector3d in_camera = pose.inverse() * body.world_from_mesh.translation;
-    return (left ? -1 : 1) * options.camera.project(in_camera).x();
+    return (left ? -1 : 1) * camera.project(in_camera).x();
   };
   const PosedMesh& outermost =
       *std::ranges::max_element(pile.begin(), pile.begin() + num_objects, {}, outward);
-  return aimed_past(pose, outermost.world_from_mesh.translation, options.camera, left);
+  return aimed_past(pose, outermost.world_from_mesh.translation, camera, left);
 }
 
 }  // namespace
@@ -260,11 +266,12 @@ SimulatedScene simulate_scene(const Stage& stage, const SceneOptions& options, s
   for (int view = 0; view < options.views; ++view) {
     RandomStream view_random(seed, 1 + static_cast<std::uint64_t>(view));
     const double azimuth = first_azimuth + 2 * kPi * view / options.views;
+    const Camera camera = draw_lens(options, view_random);
     const Pose world_from_camera =
-        draw_camera(pile, objects.size(), options, result.kind, azimuth, view_random);
+        draw_pose(pile, objects.size(), camera, options, result.kind, azimuth, view_random);
     const std::uint64_t view_seed = view_random();
     for (int shot = 0; shot < options.shots; ++shot) {
-      result.frames.push_back(capture({scene, shading, options.camera, world_from_camera}, objects,
+      result.frames.push_back(capture({scene, shading, camera, world_from_camera}, objects,
                                       options.kinect, view_seed, shot, num_threads));
     }
   }

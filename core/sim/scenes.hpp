@@ -39,6 +39,8 @@ struct SceneOptions {
   double empty_share = 0;
   double distractor_share = 0;
   double border_share = 0.1;
+  double min_focal = 0;
+  double max_focal = 0;
   Camera camera{640, 480, 525, 525, 319.5, 239.5};  ///< Of the colour image and the frame.
   KinectOptions kinect;
 
@@ -59,6 +61,8 @@ struct SceneOptions {
     visit("distractor_share", distractor_share, {0, 1, "Share of scenes with distractors only."});
     visit("border_share", border_share,
           {0, 1, "Share of scenes with an object cut by the image's border."});
+    visit("min_focal", min_focal, {0, 4000, "Shortest focal length, pixels."});
+    visit("max_focal", max_focal, {0, 4000, "Longest focal length; 0 = the camera's own."});
     kinect.visit_fields(visit);
   }
 };
