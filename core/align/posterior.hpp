@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "core/align/align.hpp"
 #include "core/bingham/bingham.hpp"

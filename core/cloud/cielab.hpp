@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <vector>
 
 #include "core/cloud/frame.hpp"
 #include "core/cloud/image.hpp"

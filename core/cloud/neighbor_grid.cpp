@@ -3,7 +3,6 @@
 #include "core/cloud/neighbor_grid.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace bpa {

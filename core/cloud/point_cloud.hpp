@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
-#include <concepts>
 #include <cstdint>
 #include <vector>
 

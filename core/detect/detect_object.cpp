@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "core/base/stopwatch.hpp"
 #include "core/detect/stages.hpp"
 
 namespace bpa {

@@ -6,7 +6,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/base/concat.hpp"
 #include "core/model/model_index.hpp"

@@ -4,7 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 
 #include "core/detect/matches.hpp"
 #include "core/model/model_index.hpp"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/deadline.hpp"
+#include "core/base/stopwatch.hpp"
 #include "core/detect/candidate.hpp"
 #include "core/detect/options.hpp"
 #include "core/detect/pose_prior.hpp"

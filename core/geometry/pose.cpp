@@ -3,7 +3,6 @@
 #include "core/geometry/pose.hpp"
 
 #include <Eigen/SVD>
-#include <algorithm>
 #include <cmath>
 
 namespace bpa {

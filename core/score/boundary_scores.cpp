@@ -3,7 +3,6 @@
 #include "core/score/boundary_scores.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/score/likelihood.hpp"
 

@@ -3,7 +3,6 @@
 #include "core/score/pose_check.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace bpa {
 namespace {

@@ -3,7 +3,6 @@
 #include <bit>
 #include <cstring>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "core/base/concat.hpp"

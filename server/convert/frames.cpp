@@ -3,7 +3,6 @@
 #include "server/convert/frames.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "core/base/concat.hpp"

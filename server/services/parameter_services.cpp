@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <utility>
 
 #include "core/base/clock.hpp"
 #include "core/base/failure.hpp"

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <atomic>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "camera/capture.hpp"
