@@ -4,13 +4,13 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "camera/camera_options.hpp"
 #include "core/base/options.hpp"
 #include "core/base/status.hpp"
 #include "core/pipeline/detector_options.hpp"
+#include "core/result/interpretation.hpp"
 
 // Every setting of the server, in groups. Each field describes itself once; reading server.yaml,
 // --set, --print-config, the ROS 2 parameters and the checks all use that. config/server.yaml shows
@@ -185,7 +185,7 @@ struct DetectionOptions {
   std::string library;
   std::string detector;
   bool continuous = true;
-  int top_k = 20;
+  int top_k = kDefaultTopK;
   double budget_ms = 0;
   int fuse_frames = 1;
   std::uint64_t seed = 0;

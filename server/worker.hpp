@@ -20,6 +20,7 @@
 #include "server/convert/frames.hpp"
 #include "server/fair_queue.hpp"
 #include "server/once.hpp"
+#include "server/options.hpp"
 #include "server/recognition.hpp"
 #include "server/statistics.hpp"
 
@@ -55,11 +56,11 @@ struct DetectJob {
 };
 
 struct WorkerOptions {
-  std::size_t frame_capacity = 1;
-  std::size_t request_capacity = 8;
-  bool continuous = true;  ///< Search every frame, not only when requested.
-  int fuse_frames = 1;     ///< Above 1, all frames that wait are taken at once and combined.
-  DetectRequest request;   ///< For those.
+  std::size_t frame_capacity = QueueOptions().frames;
+  std::size_t request_capacity = QueueOptions().requests;
+  bool continuous = DetectionOptions().continuous;
+  int fuse_frames = DetectionOptions().fuse_frames;
+  DetectRequest request;  ///< For every frame of the stream.
 };
 
 class Worker {

@@ -30,7 +30,7 @@ struct FrameTrace {
 struct DetectRequest {
   std::vector<std::string> models;  ///< Names; empty means every model of the library.
   std::vector<PosePrior> priors;    ///< What is known beforehand, in the camera frame.
-  int top_k = 20;                   ///< Number of interpretations to return, 1 to 100.
+  int top_k = kDefaultTopK;         ///< Number of interpretations to return, 1 to 100.
   /// Time for the search, milliseconds; 0: no limit. Every model gets an equal part of what is left
   /// after the frame was prepared (about 0.2 s at 640 x 480, which is not cut), and the best found
   /// by then is returned. With a budget, the answer depends on the machine's speed.

@@ -18,6 +18,9 @@ struct Interpretation {
   std::vector<Placement> placements;  ///< By falling probability. Empty: nothing known is there.
 };
 
+/// Interpretations that are returned unless another number is asked for.
+constexpr int kDefaultTopK = 20;
+
 /// Time that one stage of the detector took.
 struct StageTiming {
   std::string stage;  ///< Its name.

@@ -27,11 +27,11 @@ struct PoseCheck {
   }
 };
 
-/// Tolerances of a check.
+/// Tolerances of a check. The options that hold one say their defaults.
 struct CheckTolerance {
-  double depth_m = 0.010;
-  double free_depth_m = 0.030;
-  double normal_cosine = 0.75;
+  double depth_m = 0;
+  double free_depth_m = 0;
+  double normal_cosine = 0;
 
   void visit_fields(auto&& visit) {
     visit("depth_m", depth_m,
