@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // bpa train: the score layers, from frames with truth.
-#include <algorithm>
 #include <cstdio>
 
 #include "core/eval/pose_errors.hpp"
@@ -118,7 +117,9 @@ void print_reliability(const char* name, const ScoreLayer& layer,
 Samples without_color(Samples samples) {
   for (auto* frames : {&samples.training, &samples.held_out}) {
     for (ScoreFrame& frame : *frames) {
-      for (auto& sample : frame.samples) sample.values[component("color")] = kNotKnown;
+      for (auto& sample : frame.samples) {
+        sample.values[component("color")] = sample.values[component("tint")] = kNotKnown;
+      }
     }
   }
   return samples;

@@ -4,22 +4,32 @@
 
 #include <Eigen/Core>
 #include <span>
-#include <vector>
 
 #include "core/cloud/image.hpp"
 #include "core/model/object_model.hpp"
+#include "core/score/likelihood.hpp"
 #include "core/score/predicted_surface.hpp"
 
 namespace bpa {
 
-/// How far the predicted colours agree with the observed ones where the placement explains the
-/// depth (within 1 cm): the average truncated log-likelihood of their distance in CIELAB, standard
-/// deviation 12, in [-1, 0]. The light on the object is unknown, so the model's colours are scaled
-/// to the light observed at each place. Of lightness only its variation over the placement counts,
-/// with weight one half. Both sides are averaged over 3x3 pixels.
-/// kNotKnown when nothing can be compared. `observed` is the frame's CIELAB at the
-/// image's size, `surface` the model's (ModelIndex::cielab); either may be empty.
-double color_score(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
-                   std::span<const Eigen::Vector3f> surface, const PredictedSurface& predicted);
+/// How the colours that a placement predicts agree with the observed ones. kNotKnown where nothing
+/// can be compared.
+struct ColorAgreement {
+  /// Average truncated log-likelihood of the distance in CIELAB, standard deviation 12, in [-1, 0].
+  double likelihood = kNotKnown;
+  /// Colour shift common to the whole placement, CIELAB units at L = 54, at least 0: another white
+  /// balance, or another object.
+  double tint = kNotKnown;
+};
+
+/// Compares colours where the placement explains the depth (within 1 cm), each the mean of 3x3
+/// pixels. Light, exposure and white balance of model and frame differ: the model's cone responses
+/// are scaled by one gain a channel (von Kries), the median over the placement, and to the light at
+/// each pixel. Of lightness only its variation over the placement counts, with weight one half.
+/// `observed` is the frame's CIELAB at the image's size, `surface` the model's
+/// (ModelIndex::cielab); either may be empty.
+ColorAgreement compare_colors(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
+                              std::span<const Eigen::Vector3f> surface,
+                              const PredictedSurface& predicted);
 
 }  // namespace bpa

@@ -10,7 +10,6 @@
 
 #include "core/model/model_index.hpp"
 #include "core/score/boundary_scores.hpp"
-#include "core/score/color_score.hpp"
 #include "core/score/evidence.hpp"
 #include "core/score/likelihood.hpp"
 #include "core/score/random_walk_score.hpp"
@@ -105,8 +104,11 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
      [](Evidence& e) -> double { return fpfh_score(e.scene().surface, e.scene().keypoints, e.scene().fpfh, e.places(), e.pose()); },
      "FPFH features that lie on the model."},
     {"color", "log-likelihood", -1, 0, Round::three, true,
-     [](Evidence& e) -> double { return color_score(e.scene().image, e.scene().cielab, e.model().index->cielab, e.predicted()); },
+     [](Evidence& e) -> double { return e.colors().likelihood; },
      "Colours; not known where model or frame has none."},
+    {"tint", "CIELAB", 0, 200, Round::three, true,
+     [](Evidence& e) -> double { return e.colors().tint; },
+     "Colour shift of the whole placement."},
     {"rivals", "log-likelihood", -500, 0, Round::rivals, true,
      [](Evidence&) -> double { return kNotKnown; },
      "Log-likelihood behind the best pose in the same place; see behind_best()."},

@@ -5,7 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/model/model_index.hpp"
 #include "core/observation/scene_features.hpp"
+#include "core/score/color_score.hpp"
 #include "core/score/feature_score.hpp"
 #include "core/score/predicted_surface.hpp"
 #include "core/score/segment_scores.hpp"
@@ -43,6 +45,12 @@ class Evidence {
     }
     return *segments_;
   }
+  const ColorAgreement& colors() {
+    if (!colors_) {
+      colors_ = compare_colors(scene_.image, scene_.cielab, model().index->cielab, predicted());
+    }
+    return *colors_;
+  }
 
  private:
   const SceneFeatures& scene_;
@@ -52,6 +60,7 @@ class Evidence {
   std::optional<SurfaceAgreement> surface_;
   std::optional<PredictedSurface> predicted_;
   std::optional<std::vector<SegmentMatch>> segments_;
+  std::optional<ColorAgreement> colors_;
 };
 
 }  // namespace bpa

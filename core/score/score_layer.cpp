@@ -124,7 +124,8 @@ class FrameLikelihood {
 
 // Small values, and as smooth as the samples allow.
 void add_penalty(const Weights& weights, Weights& gradient) {
-  constexpr double kSize = 0.3, kRoughness = 2;
+  // The best of five pairs on simulated frames of another kind than those learned from.
+  constexpr double kSize = 1, kRoughness = 10;
   gradient.tail(kNumWeights - 1) += kSize * weights.tail(kNumWeights - 1);
   for (std::size_t f = 0; f < kNumComponents; ++f) {
     for (std::size_t k = 1; k + 1 < kKnots; ++k) {

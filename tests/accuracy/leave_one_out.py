@@ -36,7 +36,7 @@ RANGES = {
     "evidence": (0, 10), "range_evidence": (-10, 0), "edge_evidence": (-10, 0),
     "background": (1, 0), "support": (0, 100), "edge_likelihood": (-1, 0),
     "occlusion_edge": (-1, 0), "random_walk": (-1, 0), "segment": (-1, 0),
-    "segment_affinity": (-1, 0), "fpfh": (-1, 0), "color": (-1, 0),
+    "segment_affinity": (-1, 0), "fpfh": (-1, 0), "color": (-1, 0), "tint": (200, 0),
     "rivals": (-500, 0),
 }
 KNOTS = 8

@@ -57,7 +57,8 @@ const SceneFeatures& scene() {
 
 // Points, normals and curvatures.
 void surface(benchmark::State& state) {
-  for (auto _ : state) benchmark::DoNotOptimize(surface_map(heap().frame, {}));
+  const Frame& frame = heap().frame;
+  for (auto _ : state) benchmark::DoNotOptimize(surface_map(frame, {}));
 }
 BENCHMARK(surface)->Name("cloud/surface_map")->UseRealTime()->Unit(benchmark::kMillisecond);
 
@@ -73,9 +74,10 @@ BENCHMARK(fpfh)->Name("features/fpfh")->UseRealTime()->Unit(benchmark::kMillisec
 // Votes of one model's point pairs.
 void voting(benchmark::State& state) {
   const ModelIndex& index = *heap().model->index;
+  const ScenePairs& pairs = scene().pairs;
   const auto points = static_cast<int>(index.coarse.size());
   for (auto _ : state) {
-    benchmark::DoNotOptimize(vote_poses(scene().pairs, index.pairs, points, 1));
+    benchmark::DoNotOptimize(vote_poses(pairs, index.pairs, points, 1));
   }
 }
 BENCHMARK(voting)->Name("features/vote_poses")->Unit(benchmark::kMillisecond);

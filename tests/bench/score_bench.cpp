@@ -61,7 +61,7 @@ void round_three(benchmark::State& state) {
     sum += random_walk_score(image, edges, *model, pose, predicted);
     const auto matches = match_segments(segments, map, *model, pose, predicted);
     sum += segment_score(matches) + segment_affinity_score(segments, matches);
-    sum += color_score(image, lab, model_lab, predicted);
+    sum += compare_colors(image, lab, model_lab, predicted).likelihood;
     benchmark::DoNotOptimize(sum);
   }
 }

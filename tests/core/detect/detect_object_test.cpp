@@ -111,8 +111,7 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
     if (dropped.reason != "too much in free space") continue;
     int hanging = 0;
     for (const FastPose& pose : dropped.poses) {
-      CheckTolerance tolerance;
-      tolerance.free_depth_m = CheckOptions().free_depth_m;
+      const CheckTolerance tolerance{0.010, CheckOptions().free_depth_m, 0.75};
       const PoseCheck check = check_pose(scene.image, l_->index->check, pose, 1024, tolerance);
       hanging += check.free_space > 0;
     }
@@ -128,8 +127,8 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
   ASSERT_FALSE(candidates.empty());
   EXPECT_LT(pose_error(candidates[0].pose(), l_truth_, l_->symmetry).position, 0.01);
   const std::set<std::string> third = {
-      "edge_likelihood",  "occlusion_edge", "random_walk", "segment",
-      "segment_affinity", "fpfh",           "color",       "rivals"};
+      "edge_likelihood", "occlusion_edge", "random_walk", "segment", "segment_affinity", "fpfh",
+      "color",           "tint",           "rivals"};
   for (const Candidate& candidate : candidates) {
     const ScoreLayer& layer = default_score_layers().round_two;
     double sum = layer.bias;

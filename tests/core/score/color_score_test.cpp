@@ -43,79 +43,118 @@ class ColorScore : public ::testing::Test {
     if (x > 0) return {200, 60, 50};
     return {40, 90, 180};
   }
-  static double score(const Image<Eigen::Vector3f>& observed, const Pose& pose = kTruth) {
-    return color_score(image_, observed, model_->index->cielab,
-                       predict_surface(image_, *model_, pose));
+  static ColorAgreement compare(const Image<Eigen::Vector3f>& observed, const Pose& pose = kTruth) {
+    return compare_colors(image_, observed, model_->index->cielab,
+                          predict_surface(image_, *model_, pose));
   }
-  static Image<Eigen::Vector3f> shifted(const Eigen::Vector3f& by) {
-    Image<Eigen::Vector3f> out = observed_;
-    for (Eigen::Vector3f& lab : out.pixels) lab += by;
-    return out;
-  }
-
   static inline std::shared_ptr<const ObjectModel> model_;
   static inline CheckImage image_;
   static inline Image<Eigen::Vector3f> observed_;
 };
 
-TEST_F(ColorScore, OfItsOwnColoursIsNearZero) { EXPECT_GT(score(observed_), -0.05); }
+// CIELAB of a reflectance under lamps, by its definition: from linear light.
+Eigen::Vector3f lit(const Eigen::Vector3f& light, const Eigen::Vector3f& reflectance) {
+  const auto encoded = [](float linear) {
+    return 255 *
+           (linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f);
+  };
+  const Eigen::Vector3f c = light.cwiseProduct(reflectance);
+  return CielabConverter()(Eigen::Vector3f(encoded(c.x()), encoded(c.y()), encoded(c.z())));
+}
+const Eigen::Vector3f kWhite = Eigen::Vector3f::Ones();
+const Eigen::Vector3f kRed(0.6f, 0.1f, 0.08f), kBlue(0.1f, 0.15f, 0.6f);
+
+// A brick of one colour, seen in another.
+class PlainBrick : public ColorScore {
+ protected:
+  static ColorAgreement compare(const Image<Eigen::Vector3f>& seen, const Eigen::Vector3f& model) {
+    const std::vector<Eigen::Vector3f> surface(model_->surface.size(), model);
+    return compare_colors(image_, seen, surface, predict_surface(image_, *model_, kTruth));
+  }
+  static ColorAgreement compare(const Eigen::Vector3f& seen, const Eigen::Vector3f& model) {
+    return compare(Image<Eigen::Vector3f>(image_.width, image_.height, seen), model);
+  }
+  // `right` from 70 % of the columns that the brick covers.
+  static Image<Eigen::Vector3f> two_parts(const Eigen::Vector3f& left,
+                                          const Eigen::Vector3f& right) {
+    Image<Eigen::Vector3f> out(image_.width, image_.height, left);
+    for (int v = 0; v < out.height; ++v) {
+      for (int u = first_right_column(); u < out.width; ++u) out.at(u, v) = right;
+    }
+    return out;
+  }
+  static int first_right_column() {
+    const PredictedSurface predicted = predict_surface(image_, *model_, kTruth);
+    return predicted.u0 + predicted.depth.width * 7 / 10;
+  }
+  static double right_share() {
+    int right = 0, all = 0;
+    predict_surface(image_, *model_, kTruth).for_each([&](int u, int, float, std::uint32_t) {
+      right += u >= first_right_column();
+      ++all;
+    });
+    return static_cast<double>(right) / all;
+  }
+};
+
+TEST_F(ColorScore, OfItsOwnColoursIsNearZero) {
+  EXPECT_GT(compare(observed_).likelihood, -0.05);
+  EXPECT_LT(compare(observed_).tint, 5);
+}
 
 TEST_F(ColorScore, TellsApartWhatShapeDoesNot) {
   const Pose half_turn{rotation_from_vector({0, 0, M_PI}), Eigen::Vector3d::Zero()};
-  EXPECT_LT(score(observed_, kTruth * half_turn), -0.9);
+  EXPECT_LT(compare(observed_, kTruth * half_turn).likelihood, -0.2);
+  EXPECT_GT(compare(observed_, kTruth * half_turn).tint, 30);
 }
 
-TEST_F(ColorScore, FallsWithTheColourDistance) {
-  const Image<Eigen::Vector3f> flat(image_.width, image_.height, Eigen::Vector3f(50, 10, 5));
+TEST_F(PlainBrick, PatternsCountByTheirColourDistance) {
+  const Eigen::Vector3f grey(50, 10, 5);
   const auto with = [&](const Eigen::Vector3f& off) {
-    const std::vector<Eigen::Vector3f> surface(model_->surface.size(),
-                                               Eigen::Vector3f(50, 10, 5) + off);
-    return color_score(image_, flat, surface, predict_surface(image_, *model_, kTruth));
+    return compare(two_parts(grey, grey + off), grey).likelihood / right_share();
   };
-  EXPECT_NEAR(with({0, 0, 0}), 0, 1e-6);
-  EXPECT_NEAR(with({0, 12, 0}), -1.0 / 9, 1e-4);
-  EXPECT_NEAR(with({0, 0, -24}), -4.0 / 9, 1e-4);
-  EXPECT_NEAR(with({0, 60, 60}), -1, 1e-6);
+  EXPECT_NEAR(with({0, 0, 0}), 0, 1e-5);
+  EXPECT_NEAR(with({0, 12, 0}), -1.0 / 9, 0.02);
+  EXPECT_NEAR(with({0, 0, -24}), -4.0 / 9, 0.05);
+  EXPECT_NEAR(with({0, 60, 60}), -1, 0.05);
 }
 
-// The same surface under other light, by the definition of CIELAB: converted from linear light.
-TEST_F(ColorScore, LampsAndShadowsDoNotMatter) {
-  const auto lit = [](float light, const Eigen::Vector3f& reflectance) {
-    const auto encoded = [](float linear) {
-      return 255 * (linear <= 0.0031308f ? 12.92f * linear
-                                         : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f);
-    };
-    const Eigen::Vector3f c = light * reflectance;
-    return CielabConverter()(Eigen::Vector3f(encoded(c.x()), encoded(c.y()), encoded(c.z())));
-  };
-  const Eigen::Vector3f red(0.6f, 0.1f, 0.08f), blue(0.1f, 0.15f, 0.6f);
-  const PredictedSurface predicted = predict_surface(image_, *model_, kTruth);
-  const auto with = [&](const Eigen::Vector3f& seen, const Eigen::Vector3f& expected) {
-    const Image<Eigen::Vector3f> flat(image_.width, image_.height, seen);
-    const std::vector<Eigen::Vector3f> surface(model_->surface.size(), expected);
-    return color_score(image_, flat, surface, predicted);
-  };
-  for (float light : {1.0f, 0.5f, 0.2f}) {
-    EXPECT_NEAR(with(lit(light, red), lit(1, red)), 0, 1e-3) << light;
-    EXPECT_NEAR(with(lit(1, red), lit(light, red)), 0, 1e-3) << light;
-    EXPECT_LT(with(lit(light, red), lit(1, blue)), -0.9) << light;
+TEST_F(PlainBrick, LampsAndShadowsDoNotMatter) {
+  for (const float light : {1.0f, 0.5f, 0.2f}) {
+    const Eigen::Vector3f lamp = light * kWhite;
+    for (const auto& [seen, model] : {std::pair(lamp, kWhite), std::pair(kWhite, lamp)}) {
+      const ColorAgreement same = compare(lit(seen, kRed), lit(model, kRed));
+      EXPECT_NEAR(same.likelihood, 0, 1e-3) << light;
+      EXPECT_NEAR(same.tint, 0, 1) << light;
+    }
+    EXPECT_GT(compare(lit(lamp, kRed), lit(kWhite, kBlue)).tint, 50) << light;
   }
-  // Half of it in the shade.
-  Image<Eigen::Vector3f> half(image_.width, image_.height, lit(1, red));
-  for (int v = 0; v < half.height; ++v) {
-    for (int u = 0; u < predicted.u0 + predicted.depth.width / 2; ++u)
-      half.at(u, v) = lit(0.4f, red);
+  const auto shaded = two_parts(lit(kWhite, kRed), lit(0.4f * kWhite, kRed));
+  EXPECT_GT(compare(shaded, lit(kWhite, kRed)).likelihood, -0.1);
+  EXPECT_LT(compare(shaded, lit(kWhite, kRed)).tint, 1);
+}
+
+TEST_F(ColorScore, WhiteBalanceIsTintAlone) {
+  Image<Eigen::Vector3f> warmer = observed_;
+  for (Eigen::Vector3f& lab : warmer.pixels) {  // X by 1.15, Z by 0.8
+    const float y = (lab[0] + 16) / 116;
+    lab[1] = 500 * (std::cbrt(1.15f) * (y + lab[1] / 500) - y);
+    lab[2] = 200 * (y - std::cbrt(0.8f) * (y - lab[2] / 200));
   }
-  const std::vector<Eigen::Vector3f> surface(model_->surface.size(), lit(1, red));
-  EXPECT_GT(color_score(image_, half, surface, predicted), -0.2);
-  EXPECT_LT(score(shifted({0, 20, 0})), score(observed_) - 0.2);
+  EXPECT_NEAR(compare(warmer).likelihood, compare(observed_).likelihood, 0.02);
+  EXPECT_NEAR(compare(warmer).tint, std::hypot(300 * std::log(1.15) / 3, 120 * std::log(0.8) / 3),
+              3);
 }
 
 TEST_F(ColorScore, WithoutColourNeitherForNorAgainst) {
   const PredictedSurface predicted = predict_surface(image_, *model_, kTruth);
-  EXPECT_TRUE(std::isnan(color_score(image_, {}, model_->index->cielab, predicted)));
-  EXPECT_TRUE(std::isnan(color_score(image_, observed_, {}, predicted)));
-  EXPECT_TRUE(std::isnan(score(observed_, {kTruth.rotation, {0, 0, -1}})));
+  for (const ColorAgreement& unknown :
+       {compare_colors(image_, {}, model_->index->cielab, predicted),
+        compare_colors(image_, observed_, {}, predicted),
+        compare(observed_, {kTruth.rotation, {0, 0, -1}})}) {
+    EXPECT_TRUE(std::isnan(unknown.likelihood));
+    EXPECT_TRUE(std::isnan(unknown.tint));
+  }
   EXPECT_TRUE(test::brick_model()->index->cielab.empty());
 }
 
