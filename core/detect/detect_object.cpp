@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/base/stopwatch.hpp"
 #include "core/detect/stages.hpp"
 
 namespace bpa {

@@ -7,6 +7,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
+#include "core/base/stopwatch.hpp"
 #include "core/cloud/cielab.hpp"
 #include "core/detect/stages.hpp"
 #include "core/io/file_bytes.hpp"
