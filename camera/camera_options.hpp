@@ -36,7 +36,7 @@ struct CameraOptions {
     visit("source", source,
           {0, 0,
            "openni2 (the first sensor), openni2:URI, a recording FILE.oni, or a data set "
-           "bop:FOLDER; empty: none. Camera topics are not subscribed to then."});
+           "bop:FOLDER; empty: none. With a source, camera topics are not subscribed to."});
     visit("depth_mode", depth_mode, {0, 0, "WIDTHxHEIGHT@RATE of a sensor's depth."});
     visit("color_mode", color_mode, {0, 0, "WIDTHxHEIGHT@RATE of a sensor's colour."});
     visit("color", color, {0, 0, "Take colour images beside depth."});
@@ -46,8 +46,8 @@ struct CameraOptions {
            "server), device, software, off."});
     visit("baseline_mm", baseline_mm,
           {0, 200,
-           "Distance in mm from the depth camera to the colour camera on its right, where "
-           "the device does not tell it; for software registration."});
+           "Distance in mm from the depth camera to the colour camera on its right. For "
+           "software registration without the device's own value."});
     visit("calibration", calibration,
           {0, 0,
            "ROS camera_info YAML of the colour camera; empty: from the device's field of "
@@ -69,12 +69,12 @@ struct CameraOptions {
           {0, 1e9, "First frame of a recording or data set to show; they count from 1."});
     visit("every_frame", every_frame,
           {0, 0,
-           "Recordings and data sets wait until a frame has been taken up by the search "
-           "before they show the next."});
+           "Recordings and data sets wait with the next frame until the search has taken "
+           "the last one."});
     visit("timeout_ms", timeout_ms,
           {100, 60000,
-           "Milliseconds without frames after which a sensor is opened again; a call into "
-           "the driver that takes as long is reported."});
+           "Milliseconds without frames after which a sensor is opened again. Driver calls "
+           "that take as long are reported."});
     visit("retry_ms", retry_ms,
           {10, 60000, "Milliseconds between attempts to open a sensor that is not there."});
   }

@@ -96,12 +96,12 @@ struct InputOptions {
           {0, 0, "Ask for reliable camera topics; best-effort cameras then do not match."});
     visit("rectified", rectified,
           at_run_time({0, 0,
-                       "The camera's images have no lens distortion any more, so that the "
-                       "projection matrix p holds; otherwise k and d do."}));
+                       "The camera's images have no lens distortion, so the projection matrix "
+                       "p holds; false: k and d hold."}));
     visit("sync_tolerance_ms", sync_tolerance_ms,
           at_run_time({0, 1000,
-                       "Largest difference of stamps of images that belong together; 0: equal "
-                       "stamps only."}));
+                       "Largest difference in ms between the stamps of images of one frame; 0: "
+                       "equal stamps only."}));
     visit("sync_queue", sync_queue, at_run_time({2, 100, "Images of one topic that may wait."}));
     visit("silence_s", silence_s,
           at_run_time(
@@ -200,16 +200,16 @@ struct DetectionOptions {
           at_run_time({0, 0, "Search every frame; false: only when a request asks for one."}));
     visit("top_k", top_k, at_run_time({1, 100, "Interpretations to report."}));
     visit("budget_ms", budget_ms,
-          at_run_time({0, 1e6, "Report the best so far after this long; 0: no limit."}));
+          at_run_time({0, 1e6, "Report the best so far after this many ms; 0: no limit."}));
     visit("fuse_frames", fuse_frames,
           at_run_time({1, 30,
-                       "Number of latest frames that are combined before the search, for a camera "
-                       "and a scene that stand still; 1: each frame by itself."}));
+                       "Latest frames that are combined before the search, for a static camera "
+                       "and scene; 1: each frame by itself."}));
     visit("seed", seed, at_run_time({0, 9.0e15, "Same frame, library and seed: same answer."}));
     visit("threads", threads,
           at_run_time({0, 256, "0: one per core. Does not change the answer."}));
     visit("request_timeout_ms", request_timeout_ms,
-          at_run_time({1, 1e7, "Longest wait of a detect request that names none."}));
+          at_run_time({1, 1e7, "Longest wait of a detect request that names none, milliseconds."}));
   }
 };
 

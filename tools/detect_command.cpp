@@ -253,8 +253,8 @@ void add_detect_command(CLI::App& program) {
              "worst_frames.png",
              "DIR");
   add_option(command, "--explain", a.explain,
-             "Write pictures of what each stage of the search made of each frame and model, with "
-             "counts, times and score components; begin with index.html",
+             "Write pictures of each stage of the search for each frame and model. index.html "
+             "has counts, times and score components",
              "DIR");
 }
 

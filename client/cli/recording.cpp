@@ -224,15 +224,15 @@ void play(const Common& common, const PlayOptions& options) {
 
 void add_record(CLI::App& program, const Common& common) {
   CLI::App* command = program.add_subcommand(
-      "record", "take down frames and results, or have the server record its camera");
+      "record", "record frames and results, or have the server record its camera");
   auto options = std::make_shared<RecordOptions>();
   auto* oni =
       command->add_option("--oni", options->oni,
                           "new OpenNI2 recording, on the server's machine (about 46 MB a second)");
   command
       ->add_option("--to", options->folder,
-                   "new folder for the frames that clients publish, as a BOP data set with their "
-                   "times, and for the results; 32FC1 depth is rounded to 0.1 mm, at most 6.5 m")
+                   "new folder for the results and the frames that clients publish: a BOP data set "
+                   "with times; 32FC1 depth is rounded to 0.1 mm, at most 6.5 m")
       ->excludes(oni);
   command->add_option("--seconds", options->seconds, "how long; default until interrupted")
       ->check(CLI::Range(0.1, kLongest));

@@ -127,8 +127,8 @@ struct CheckOptions {
           {0, 100000, "Poses drawn from priors that go on, beyond max_kept."});
     visit("rank_penalty", rank_penalty,
           {0, 10,
-           "Each better pose within the same 5 cm lowers the check score by this when the "
-           "poses that go on are chosen."});
+           "Check score that a pose loses for each better pose within 5 cm, when the poses "
+           "that go on are chosen."});
   }
   void visit_groups(auto&& visit) {
     visit("correction", correction, "First small alignment of what passed the check.");

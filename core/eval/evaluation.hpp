@@ -26,11 +26,11 @@ struct EvaluationOptions {
   int num_threads = 0;
 
   void visit_fields(auto&& visit) {
-    visit("position_m", position_m, {0.001, 1, "Largest position error of a find."});
-    visit("angle_rad", angle_rad, {0.001, 3.2, "Largest orientation error of a find."});
-    visit("rmse_m", rmse_m, {0.001, 1, "Largest RMSE of a find by that criterion."});
+    visit("position_m", position_m, {0.001, 1, "Largest position error of a match, metres."});
+    visit("angle_rad", angle_rad, {0.001, 3.2, "Largest angle error of a match, radians."});
+    visit("rmse_m", rmse_m, {0.001, 1, "Largest RMSE of a match, metres."});
     visit("min_visible_fraction", min_visible_fraction,
-          {0, 1, "Instances less visible are neither required nor false."});
+          {0, 1, "Less visible instances are neither required nor false positives."});
     visit("bop_errors", bop_errors, {0, 1, "Also compute ADD, VSD, MSSD and MSPD."});
     visit("num_threads", num_threads, {0, 256, "0 = one per core."});
   }

@@ -41,7 +41,7 @@ struct InterpretationOptions {
     visit("start_temperature", start_temperature,
           {0, 1000, "Temperature of the first move, in units of the score."});
     visit("end_temperature", end_temperature,
-          {1e-6, 1000, "What the temperature has fallen to at the last move."});
+          {1e-6, 1000, "Temperature of the last move, in units of the score."});
     visit("min_shown", min_shown, {0, 1, "Less probable placements are in no interpretation."});
     visit("max_different", max_different,
           {1, 100, "Interpretations that show something new, with the best."});
