@@ -10,9 +10,8 @@
 
 #include "core/base/status.hpp"
 
-// The .oni files of OpenNI2: what is needed to check one and to write one. Playing them is left to
-// OpenNI2, which trusts them: a damaged file makes its driver spin or crash, so nothing is given to
-// it unseen.
+// The .oni files of OpenNI2: what is needed to check one and to write one. OpenNI2 plays them and
+// trusts them: a damaged file makes its driver spin or crash. So every file is checked first.
 //
 // A file is a header of 24 bytes and records: a header of 28 bytes, fields and a payload, all
 // little-endian without padding (OpenNI2: Source/Core/OniDataRecords.h). A stream is a node: its
@@ -149,10 +148,9 @@ struct OniStreamFormat {
 
 /// Writes a recording, uncompressed.
 ///
-/// OpenNI2 has a recorder of its own. It counts the time of each stream from that stream's first
-/// frame, so that depth and colour of one moment get different stamps; it loses depths of the
-/// device's maximum; and its thread takes a whole core. This one keeps stamps that belong together
-/// together, and every bit.
+/// OpenNI2's own recorder has three faults. It counts each stream's time from that stream's first
+/// frame, so simultaneous depth and colour get different stamps. It loses depths of the device's
+/// maximum. Its thread takes a whole core. OniWriter keeps the stamps and every bit.
 class OniWriter {
  public:
   /// Starts a file with these streams; `unavailable` when it cannot be written.

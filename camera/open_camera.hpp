@@ -34,16 +34,15 @@ struct UsbSensor {
 /// under `devices` (/dev/bus/usb). Empty when there are none or no such folder.
 std::vector<UsbSensor> usb_sensors(const std::string& sysfs, const std::string& devices);
 
-/// The OpenNI2 devices with their modes and what is wrong with each, and the depth sensors on USB
-/// that OpenNI2 does not serve, as text for people. Opens each device for a moment. Fails when
-/// OpenNI2 has no drivers.
+/// A text for people: the OpenNI2 devices, their modes and faults, and the USB depth sensors that
+/// OpenNI2 does not serve. Opens each device for a moment. Fails when OpenNI2 has no drivers.
 Result<std::string> list_devices();
 
 /// Opens and starts a device of OpenNI2: modes, no mirroring, depth and colour in step, depth
-/// registered to colour. `uri` is empty for the first that is found, and a path for a recording,
-/// which is checked before OpenNI2 sees it. OpenNI2 is loaded first if it is not. `unavailable`
-/// when the device is not there, `invalid_argument` when a setting does not fit it, `corrupt` for a
-/// damaged recording.
+/// registered to colour. `uri`: empty for the first device found, or the path of a recording.
+/// Checks a recording before OpenNI2 sees it. Loads OpenNI2 if needed. `unavailable` when there is
+/// no such device, `invalid_argument` when a setting does not fit it, `corrupt` for a damaged
+/// recording.
 OpenCamera openni2_camera(const std::string& uri, const CameraOptions& options, LogHook log);
 
 /// The frames of a data set in the BOP layout (its split "test"; FOLDER:SPLIT names another), in

@@ -59,16 +59,16 @@ OniStreamFormat recorded_format(openni::VideoStream& stream, OniStreamInfo::Kind
 /// Who registers depth to colour.
 enum class Registrar { none, device, server };
 
-/// An open device of OpenNI2 with its streams, closed in the order that drivers need, and what must
-/// be known to make images of its frames.
+/// An open device of OpenNI2, its streams and the geometry of its images. Closes them in the order
+/// that drivers need.
 class Openni2Connection : private openni::OpenNI::DeviceDisconnectedListener,
                           private openni::OpenNI::DeviceStateChangedListener {
  public:
   /// Opens a device and starts its streams: modes, no mirroring, exposure, the cameras' geometry,
-  /// registration of depth to colour, and last depth and colour in step. `uri` as openni2_camera
-  /// has it. `unavailable` when the device is not there or fails, `invalid_argument` when a setting
-  /// does not fit it, `unsupported` when it cannot do what is asked; for a recording also
-  /// `not_found` and `corrupt` (inspect_oni_file).
+  /// registration of depth to colour, and last depth and colour in step. `uri`: see openni2_camera.
+  /// `unavailable`: no such device, or it fails. `invalid_argument`: a setting does not fit it.
+  /// `unsupported`: it cannot do what is asked. A recording also: `not_found`, `corrupt`
+  /// (inspect_oni_file).
   static Result<std::unique_ptr<Openni2Connection>> open(std::shared_ptr<void> library,
                                                          const std::string& uri,
                                                          const CameraOptions& options, LogHook log);
@@ -76,7 +76,7 @@ class Openni2Connection : private openni::OpenNI::DeviceDisconnectedListener,
 
   bool with_color() const { return color.isValid(); }
   /// Has the device deliver depth and colour in pairs, or each by itself; false when it cannot. In
-  /// pairs, OpenNI2 waits for ever unless both streams are read.
+  /// pairs, OpenNI2 blocks unless both streams are read.
   bool set_in_step(bool wanted);
 
   std::string name;                 ///< For people: the device's, or the recording's path.

@@ -28,11 +28,11 @@ std::vector<std::uint16_t> register_depth(const std::vector<std::uint16_t>& dept
 
 enum class Alignment { registered, not_registered, cannot_tell };
 
-/// Whether a device that was asked to register depth really does. `before` is a depth image from
-/// before it was asked, `after` one from afterwards, both of the size of the depth camera, which
-/// must be that of colour. Only pixels whose depth registration changes by more than 1 % count.
-/// `cannot_tell` with fewer than 200 of them (a wall seen squarely), or when most agree with
-/// neither image (the view has changed).
+/// Whether a device really registers depth after it was asked to. `before` and `after` are depth
+/// images from before and after the request. Both have the size of the depth camera, which must be
+/// that of colour. Only pixels whose depth registration changes by more than 1 % count.
+/// `cannot_tell` with fewer than 200 of them (a wall seen squarely), or when most match neither
+/// image (the view changed).
 Alignment judge_registration(const std::vector<std::uint16_t>& before,
                              const std::vector<std::uint16_t>& after,
                              const DeviceGeometry& geometry);

@@ -14,14 +14,14 @@ namespace bpa::camera {
 /// Maps the time stamps of a device to the host's clock.
 ///
 /// A frame arrives some time after its exposure, never before: arrival = stamp + offset + delay.
-/// The smallest difference seen is the offset with the least delay, so it is kept; since clocks
-/// drift apart, it may grow by 100 millionths of the time that passes (crystals are within 50). The
+/// The smallest difference seen is the offset with the least delay, so it is kept. Since clocks
+/// drift apart, it may grow by 100 ppm of the elapsed time (crystals are within 50 ppm). The
 /// remaining error is the device's shortest delay (exposure, transfer), which is not seen here.
-/// Stamps stay as evenly spaced as the device made them, whatever load delays their arrival.
+/// Stamps stay as evenly spaced as the device made them, under any load.
 class HostClock {
  public:
   /// The host's time of a device stamp that arrived at `arrival_ns`. A stamp that goes back, or is
-  /// off by more than 2 s, means a new start (a recording that repeats, a device plugged in again).
+  /// off by over 2 s, resets the offset. Examples: a looped recording, a device plugged in again.
   std::int64_t map(std::int64_t device_us, std::int64_t arrival_ns) {
     const std::int64_t device_ns = device_us * 1000;
     const std::int64_t difference = arrival_ns - device_ns;

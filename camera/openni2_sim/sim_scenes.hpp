@@ -12,8 +12,8 @@
 
 // What the simulated device shows and how it behaves. The environment variable BPA_SIM names
 //
-//   a folder in the BOP layout (`bpa simulate scenes` makes one), whose frames are shown in turn,
-//   or a YAML file that is read again whenever it changes, so that faults can be tried:
+//   - a folder in the BOP layout (`bpa simulate scenes` makes one). Its frames are shown in turn.
+//   - or a YAML file that simulates faults. It is read again whenever it changes:
 //
 //     scenes: DIR                 the folder, relative to the file
 //     split: test
