@@ -13,8 +13,8 @@ namespace bpa::cli {
 /// differs.
 void print_detections(const DetectionSet& set, int max_interpretations);
 
-/// Clears the terminal and prints the best interpretation as a table, a line for each object, under
-/// a line about the frame and how many come each second.
+/// Clears the terminal. Prints the frame, the results per second and the best interpretation as a
+/// table with one object a line.
 void print_table(const DetectionSet& set, double frames_per_second);
 
 /// Writes a result file as `bpa detect --json` does; nothing for an empty path.

@@ -68,15 +68,15 @@ class Client {
   Result<DetectionSet> detect_in(const FrameView& frame, const DetectQuery& query = {},
                                  std::chrono::milliseconds timeout = {});
 
-  /// Hands a frame to the server's stream; what is found comes to the subscribers. When frames come
+  /// Hands a frame to the server's stream; subscribers get the result. When frames come
   /// faster than they are searched, the server takes the newest. Returns once the frame is sent,
-  /// not when it is searched; fails with `unavailable` when no server listens within the time-out.
-  /// `priors` tell what is known beforehand of the frame.
+  /// not when it is searched. Fails with `unavailable` when no server listens within the time-out.
+  /// `priors`: what is known of the objects' poses before the search.
   Status publish_frame(const FrameView& frame, const std::vector<ExpectedPose>& priors = {});
 
-  /// `on_result` runs on one thread of the SDK for every frame that the server searched, until the
-  /// client is destroyed (not by that function); DetectionSet::status tells why a frame could not
-  /// be searched. A second call replaces the first one's function.
+  /// Calls `on_result` for every frame that the server searched, on one thread of the SDK, until
+  /// the client is destroyed. `on_result` must not destroy the client. DetectionSet::status tells
+  /// why a search failed. A second call replaces the first one's function.
   Status subscribe(std::function<void(const DetectionSet&)> on_result);
   /// The same for the frames that clients publish to the server's stream, as they were sent; the
   /// pixels are there while the function runs. A ROS 2 camera's images are not among them.
@@ -91,10 +91,10 @@ class Client {
   /// Stops looking for a model.
   Status unload_model(const std::string& name);
 
-  /// Has the server record its own camera (not that of a ROS 2 driver) to `path`, a new .oni file
-  /// on the server's machine that begins with '/'. It ends after `seconds` (at most 3600) or with
+  /// Has the server record its own camera (not that of a ROS 2 driver). `path`: a new .oni file on
+  /// the server's machine, beginning with '/'. It ends after `seconds` (at most 3600) or with
   /// stop_recording(). Fails with `unavailable` when the server has no camera, `busy` while it
-  /// records, `invalid_argument` on a path that will not do.
+  /// records, `invalid_argument` on an unsuitable path.
   Result<Recording> start_recording(const std::string& path, double seconds = 60);
   /// Completes the file; also tells about a recording that ended by itself. `not_found` without
   /// one.

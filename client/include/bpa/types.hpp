@@ -49,8 +49,8 @@ struct Detection {
   int model_number = 0;  ///< The model's number in the server's library.
   int instance = 0;      ///< Counts the detections of this model in one interpretation, from 0.
   ObjectPose camera_from_object;
-  /// Row-major 6x6 covariance of (x, y, z, rotation about x, y, z) about the axes of the camera
-  /// frame, m^2 and rad^2.
+  /// Row-major 6x6 covariance of (x, y, z, rotation about x, y, z), m^2 and rad^2. The axes are
+  /// those of the camera frame.
   std::array<double, 36> covariance{};
   OrientationSpread orientation_spread;
   double score = 0;             ///< Larger is better; comparable within one model only.
@@ -129,8 +129,7 @@ struct ExpectedPose {
   double weight = 0.95;                         ///< Probability that this prior applies, in (0, 1].
 };
 
-/// The spread of an orientation (x, y, z, w) known up to a turn of standard deviation `sigma_rad`
-/// about each axis.
+/// The spread of an orientation (x, y, z, w) with standard deviation `sigma_rad` about each axis.
 OrientationSpread spread_about(const std::array<double, 4>& orientation, double sigma_rad);
 /// A prior about a pose with the same standard deviations along and about each axis; metres,
 /// radians, each above 0.
