@@ -14,9 +14,9 @@
 
 namespace bpa::server {
 
-/// Where the server's log goes: messages of a level or above to the terminal's hook and, once there
-/// is a participant, to /rosout. Much is said on DDS threads that hold locks of DDS, so /rosout is
-/// fed by a thread of its own, through a bounded queue; what does not fit is counted and said.
+/// Passes messages of a level or above to the terminal's hook and, once there is a participant, to
+/// /rosout. DDS threads log while they hold locks of DDS. So a separate thread feeds /rosout
+/// through a bounded queue; messages that do not fit are counted and reported.
 class LogRelay {
  public:
   /// `sink` may be empty.
@@ -28,7 +28,7 @@ class LogRelay {
   LogHook hook() const;
   void set_level(LogLevel least);
 
-  /// Starts to publish, what has been said so far first. Throws a Failure.
+  /// Starts to publish, earlier messages first. Throws a Failure.
   void connect(const wire::Participant& participant, const std::string& topic);
 
  private:

@@ -39,9 +39,9 @@ class Recognition {
   /// The models of the library's folder that cannot be read.
   virtual std::vector<io::BrokenModel> broken() const = 0;
 
-  /// Takes up the model `source`, a name in the library's folder or the path of a model's folder,
-  /// as `name` (empty: its own), in place of one of that name. `unsupported` where the library is
-  /// fixed, as for the next two.
+  /// Loads a model as `name` (empty: its own), replacing one of that name. `source`: a name in the
+  /// library's folder, or the path of a model's folder. `unsupported` where the library is fixed,
+  /// as for the next two.
   virtual Result<std::shared_ptr<const ObjectModel>> load(const std::string& source,
                                                           const std::string& name) = 0;
   /// Forgets a model; `not_found` without one of that name.
@@ -50,9 +50,9 @@ class Recognition {
   virtual Status set_options(const DetectorOptions& options) = 0;
 };
 
-/// The detector with a library from disk whose models may come and go while it serves; linked into
-/// bpa-server alone. A folder without models is no failure (searches fail until one is loaded), and
-/// a broken model is left out and told to `log`; a folder that is not there is a failure.
+/// The detector with a library from disk, whose models may be loaded and unloaded at run time.
+/// Linked into bpa-server alone. A missing folder is a failure; a folder without models is none
+/// (searches fail until one is loaded). A broken model is left out and reported to `log`.
 Result<std::shared_ptr<Recognition>> open_library(const std::string& folder,
                                                   const DetectorOptions& options, int num_threads,
                                                   const LogHook& log);

@@ -12,11 +12,11 @@
 
 namespace bpa::server {
 
-/// The settings in force. Everybody reads a snapshot; changes come one at a time.
+/// The settings in force. Readers get a snapshot; changes come one at a time.
 class Settings {
  public:
   using Snapshot = std::shared_ptr<const ServerOptions>;
-  /// Takes changed settings into use, or says why that cannot be; then they are not in force.
+  /// Applies changed settings. On failure they are not in force; the status has the reason.
   using Apply = std::function<Status(const ServerOptions& before, const ServerOptions& after)>;
 
   explicit Settings(const ServerOptions& options)

@@ -25,7 +25,7 @@ struct Counts {
   std::uint64_t frames_processed = 0;
   std::uint64_t frames_dropped = 0;   ///< A newer one took the place.
   std::uint64_t frames_fused = 0;     ///< Searched only as a part of a newer one.
-  std::uint64_t fusion_restarts = 0;  ///< Frames were combined anew: the camera or scene changed.
+  std::uint64_t fusion_restarts = 0;  ///< Combining restarted: the camera or scene changed.
   std::uint64_t frames_rejected = 0;  ///< Broke a rule.
   std::uint64_t frames_failed = 0;    ///< Legal, but the search failed.
   std::uint64_t requests_served = 0;

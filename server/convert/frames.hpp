@@ -42,8 +42,8 @@ class DecodedFrame : public Result<Frame> {
 /// (nearest pixel). Move the message in: pixels that are as a Frame has them are not copied then.
 DecodedFrame frame_from_message(wire::bpa_msgs::RgbdFrame message);
 
-/// Puts the region of interest and the mask of a message, if it has any, on a frame that has been
-/// checked. Fails where the message has priors in another frame_id than the frame's.
+/// Puts the region of interest and the mask of a message, if any, on a checked frame. Fails where
+/// the message has priors in another frame_id than the frame's.
 Status restrict_frame(const wire::bpa_msgs::RgbdFrame& message, Frame& frame);
 
 /// The priors of a message as the detector takes them, which also checks their numbers: camera
@@ -70,9 +70,9 @@ struct CameraImages {
   std::shared_ptr<const wire::sensor_msgs::CameraInfo> info;
 };
 
-/// A frame of a colour image, the depth image registered to it and their camera. `rectified` says
-/// that the images have no distortion any more, so that the projection matrix p of the camera info
-/// holds; otherwise k and d do. Stamp and frame_id are the depth image's.
+/// A frame of a colour image, the depth image registered to it and their camera. `rectified`:
+/// images without distortion, so the camera info's projection matrix p holds; otherwise k and d do.
+/// Stamp and frame_id are the depth image's.
 DecodedFrame frame_from_images(const CameraImages& images, bool rectified);
 
 /// A frame of an organised cloud in its camera's optical frame: float32 fields x, y, z, and rgb or

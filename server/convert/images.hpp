@@ -38,8 +38,8 @@ Result<std::vector<float>> depth_from_image(const ImageView& image);
 /// Row-major rgb, 3 bytes a pixel. From rgb8, bgr8, rgba8, bgra8 and mono8, else `unsupported`.
 Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image);
 
-/// For every pixel of the image without distortion, the index of the nearest pixel of the distorted
-/// image, or -1 outside. The camera matrix stays the same. `distortion` as distort() takes it.
+/// For every pixel of the undistorted image, the index of the nearest pixel of the distorted one;
+/// -1 outside. The camera matrix stays the same. `distortion` as distort() takes it.
 std::vector<std::int32_t> undistortion_map(const Camera& camera,
                                            const std::vector<double>& distortion);
 

@@ -43,8 +43,8 @@ wire::bpa_msgs::SceneInterpretations interpretations_message(
 wire::vision_msgs::Detection3DArray detections_message(const SceneInterpretations& result,
                                                        const Models& models);
 
-/// One box and one name per placement of the best interpretation, after a marker that deletes those
-/// of the last frame. The colour follows the model's number; `lifetime_s` 0 is for ever.
+/// One box and one name per placement of the best interpretation, after a marker that deletes the
+/// last frame's. The colour follows the model's number; `lifetime_s` 0 is for ever.
 wire::visualization_msgs::MarkerArray markers_message(const SceneInterpretations& result,
                                                       const Models& models, double lifetime_s);
 

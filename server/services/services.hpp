@@ -96,10 +96,10 @@ void add_detect(const ServiceContext& context, ServiceSet& services);
 /// Offers `list_models`, `load_model` and `unload_model`.
 void add_library_services(const ServiceContext& context, ServiceSet& services);
 
-/// Offers what every ROS 2 node has for `ros2 param`: NODE/list_parameters, get_parameters,
-/// get_parameter_types, describe_parameters, set_parameters and set_parameters_atomically, and
-/// /parameter_events, on which all parameters are announced at the start and then each change.
-/// `participant` and `settings` outlive the services.
+/// Offers the services of every ROS 2 node for `ros2 param`: NODE/list_parameters, get_parameters,
+/// get_parameter_types, describe_parameters, set_parameters and set_parameters_atomically. Also
+/// /parameter_events: all parameters at the start, then each change. `participant` and `settings`
+/// outlive the services.
 void add_parameter_services(const wire::Participant& participant, Settings& settings,
                             const LogHook& log, ServiceSet& services);
 

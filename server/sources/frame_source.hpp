@@ -29,8 +29,8 @@ using OnFrame = std::function<void(IncomingFrame&&)>;
 /// sentence for people, `hardware_id` the device or the topic.
 using SourceReport = wire::diagnostic_msgs::DiagnosticStatus;
 
-/// Where frames come from. It starts when it is made and hands frames to its owner, on threads
-/// of its own, until it is destroyed.
+/// A source of frames. It starts when it is made. Until it is destroyed, threads of its own hand
+/// frames to its owner.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
@@ -56,9 +56,9 @@ std::unique_ptr<TopicSource> open_topic_source(const wire::Participant& particip
                                                const ServerOptions& options, OnFrame on_frame,
                                                LogHook log);
 
-/// The server's own camera: its frames go to the search and to camera topics, it can be recorded by
-/// a service, and diagnostics say how it is. `on_frame` and `idle` (whether no frame waits for the
-/// search) are called on the capture thread. Throws a Failure.
+/// The server's own camera. Its frames go to the search and to camera topics. A service records it,
+/// and diagnostics report it. The capture thread calls `on_frame` and `idle` (whether no frame
+/// waits for the search). Throws a Failure.
 std::unique_ptr<FrameSource> open_camera_source(const wire::Participant& participant,
                                                 const CaptureOptions& options, OnFrame on_frame,
                                                 std::function<bool()> idle, LogHook log);

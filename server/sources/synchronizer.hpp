@@ -37,12 +37,12 @@ struct SyncCounts {
   std::int64_t nearest_miss_ns = 0;
 };
 
-/// Puts colour images, depth images and camera infos of one camera together by their stamps.
+/// Synchronises colour images, depth images and camera infos of one camera by their stamps.
 ///
-/// A depth image goes with the messages of the same stamp as soon as they are there. Without such,
-/// it goes with the nearest ones within the tolerance, once each stream has reached the depth
-/// image's stamp and so cannot bring a nearer one; of two equally near the earlier is taken. Every
-/// message is used once at most and sets come out in the order of their stamps. Not locked.
+/// A depth image goes with the messages of the same stamp as soon as they arrive. Otherwise it goes
+/// with the nearest ones within the tolerance, the earlier of two equally near. It waits until each
+/// stream has reached its stamp and so cannot bring a nearer one. Every message is used once at
+/// most. Sets come out in the order of their stamps. Not locked.
 class Synchronizer {
  public:
   explicit Synchronizer(const SynchronizerOptions& options) : options_(options) {}
