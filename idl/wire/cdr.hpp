@@ -14,12 +14,12 @@
 #include "core/base/status.hpp"
 #include "idl/wire/field.hpp"
 
-// Plain CDR (XCDR1), the encoding of every ROS 2 message: a header of 4 bytes that says which byte
-// order, then the fields, each aligned to its size counted from the end of that header.
+// Plain CDR (XCDR1), the encoding of every ROS 2 message. A header of 4 bytes tells the byte order.
+// Then come the fields, each aligned to its size, counted from the end of that header.
 //
 // Writing is in the host's byte order (little-endian hosts only); reading takes both. A reader
-// never allocates more than the message could fill: a length is checked against the bytes that are
-// left before anything is made of it.
+// checks a length against the remaining bytes before it allocates: never more than the message
+// could fill.
 
 namespace bpa::wire {
 

@@ -15,10 +15,10 @@
 //     visit("frame_id", self.frame_id);
 //   }
 //
-// in the order of its .idl. idl/generate.py writes these structs at build time; encoding and
-// decoding read the list of fields. The C++ types stand for IDL's as follows:
-// bool boolean, std::byte octet, [u]intN_t [u]intN, float, double, std::string string, std::vector
-// sequence, std::array a fixed array, a struct of this kind a nested message.
+// in the order of its .idl. idl/generate.py writes these structs at build time. Encoding and
+// decoding read the list of fields. The C++ types of IDL's: bool boolean, std::byte octet,
+// [u]intN_t [u]intN, float, double, std::string string, std::vector sequence, std::array a fixed
+// array. A nested message is a struct of this kind.
 
 namespace bpa::wire {
 

@@ -23,7 +23,7 @@ class ParticipantImpl;
 enum class DiscoveryRange {
   subnet,            ///< Multicast on the network, and the static peers.
   localhost,         ///< This machine only, as ROS 2 Iron and later do it; and the static peers.
-  off,               ///< Nobody.
+  off,               ///< No discovery.
   humble_localhost,  ///< This machine only, by the loopback interface alone, as Humble does it.
 };
 
@@ -50,9 +50,9 @@ struct ParticipantOptions {
   std::vector<Remap> remaps;           ///< Applied to every topic and service name.
   std::optional<Discovery> discovery;  ///< None: from the environment.
   GraphLayout graph_layout = GraphLayout::automatic;
-  /// A file of Fast DDS XML profiles; empty: none but those that Fast DDS loads by itself. The
-  /// participant profile "bpa" replaces our transports and time-outs, the profiles "bpa_writer" and
-  /// "bpa_reader", or those named like a DDS topic, what is not said by Qos.
+  /// A file of Fast DDS XML profiles; empty: only those that Fast DDS loads by itself. The
+  /// participant profile "bpa" replaces our transports and time-outs. Profiles "bpa_writer",
+  /// "bpa_reader" and those named like a DDS topic set what Qos leaves open.
   std::string profiles;
   int socket_buffer_bytes = 8'388'608;  ///< Asked of the kernel, which may give less (rmem_max).
   LogHook log;                          ///< Called from DDS threads.

@@ -27,7 +27,7 @@ class Publisher : public detail::TopicEnd<detail::RawWriter> {
   }
 
   /// Encodes straight into the memory that is sent. `Message` is T or a view of it (the same
-  /// kType). `invalid_argument` when it is larger than shared_bytes, `timeout` when a reliable
+  /// kType). `invalid_argument` when it is larger than shared_bytes. `timeout` when a reliable
   /// subscriber holds up a full history for more than 100 ms.
   template <class Message>
   Status publish(const Message& message) {

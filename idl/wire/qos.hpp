@@ -25,8 +25,8 @@ namespace qos {
 inline Qos sensor_input() { return {Reliability::best_effort, Durability::volatile_, 5, 0}; }
 /// Subscriptions to cameras over lossy links with reliable publishers.
 inline Qos reliable_input() { return {Reliability::reliable, Durability::volatile_, 5, 0}; }
-/// Frames: as many as come in a third of a second at 30 Hz, so that a reader that had to wait for
-/// the processor so long misses none of those that it shares memory for.
+/// Frames: a third of a second at 30 Hz. A reader that waits that long for the processor misses
+/// none of the frames in shared memory.
 inline Qos frames() { return {Reliability::reliable, Durability::volatile_, 10, 0}; }
 /// Published results, markers, diagnostics: matches every subscriber.
 inline Qos results() { return {Reliability::reliable, Durability::volatile_, 10, 0}; }

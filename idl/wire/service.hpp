@@ -16,8 +16,8 @@
 // Requests and replies as ROS 2 makes them. A `Service` is a struct with the types Request and
 // Response, such as bpa_msgs::Detect.
 //
-// A server serves both framings at once: that of rmw_fastrtps, with the request's identity beside
-// the payload, and that of rmw_cyclonedds, with 16 bytes in front of it. Our client: the first.
+// A server serves both framings at once. rmw_fastrtps: the request's identity beside the payload.
+// rmw_cyclonedds: 16 bytes in front of it. Our client uses the first.
 
 namespace bpa::wire {
 
@@ -66,7 +66,7 @@ Result<ServiceSpec> service_spec(const Participant& participant, std::string_vie
       endpoint_spec<typename Service::Response>(dds_reply_topic_name(*name), qos, 0)};
 }
 
-/// Withdraws the service when the last copy of the pointer goes, whoever still has a request.
+/// Withdraws the service when the last copy of the pointer goes, even while requests are open.
 Result<std::shared_ptr<RawServer>> make_server(const Participant& participant,
                                                const ServiceSpec& spec, RequestDecode decode);
 Result<std::unique_ptr<RawClient>> make_client(const Participant& participant,

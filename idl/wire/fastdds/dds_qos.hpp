@@ -25,8 +25,8 @@ Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
                                                   int socket_buffer_bytes,
                                                   const dds::DomainParticipantQos* base);
 
-/// The QoS of an endpoint; what spec.qos does not say may come from the user's XML profiles, those
-/// of the topic's DDS name or "bpa_writer" and "bpa_reader".
+/// The QoS of an endpoint. What spec.qos leaves open may come from the user's XML profiles: those
+/// of the topic's DDS name, or "bpa_writer" and "bpa_reader".
 dds::DataWriterQos writer_qos(const EndpointSpec& spec, const dds::Publisher& publisher);
 dds::DataReaderQos reader_qos(const EndpointSpec& spec, const dds::Subscriber& subscriber);
 

@@ -23,8 +23,8 @@ struct IncomingSample {
   Deliver deliver;  ///< Empty when status is not ok.
 };
 
-/// A type that Fast DDS knows by its name only: samples are MessageRef when written and
-/// IncomingSample when taken, so that our own CDR code writes into and reads from the payload.
+/// A type that Fast DDS knows by its name only. Samples are MessageRef when written and
+/// IncomingSample when taken, so that our own CDR code writes and reads the payload.
 class RawType : public dds::TopicDataType {
  public:
   explicit RawType(const std::string& dds_type) {

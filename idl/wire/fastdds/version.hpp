@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// What the two generations of Fast DDS call differently: 2.9 (Debian 12) and 3 (Debian 13).
-// Whatever needs more than another name asks BPA_FASTDDS_MAJOR, which CMake defines. Private to
+// What the two generations of Fast DDS call differently: 2.9 (Debian 12) and 3 (Debian 13). Code
+// that needs more than another name asks BPA_FASTDDS_MAJOR, which CMake defines. Private to
 // idl/wire/fastdds, the only folder that includes Fast DDS.
 
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
