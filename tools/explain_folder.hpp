@@ -29,8 +29,8 @@ struct ExplainedFrame {
 ///   index.html             the stages with counts and times, what each picture is
 ///   01_edges.png, 02_super_pixels.png           of the frame
 ///   03_sampled.png ... 10_final.png             the hypotheses after each stage of the detector
-///   11_best.png, 12_best_segments.png           the best placement and its super-pixels; the score
-///                                               components are in a table of the page
+///   11_best.png, 12_best_segments.png           the best placement and its super-pixels;
+///                                               the page has a table of its score components.
 ///
 /// Several frames have a folder each, several models one each for 03 to 11; index.html leads there.
 class ExplainFolder {

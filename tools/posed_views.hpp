@@ -24,9 +24,9 @@ AlignedScan align_scan_of(const std::string& dataset, const std::string& split, 
 std::vector<PosedView> read_posed_views(const std::string& dataset, const std::string& split,
                                         int obj_id, int num_threads);
 
-/// What a Kinect-class camera measures of a mesh from `count` directions spread over the sphere, in
-/// the middle of an empty room, at 0.8 m, more for large objects. `title` is a progress bar's. The
-/// same input and seed give the same views for any number of threads.
+/// What a Kinect-class camera measures of a mesh from `count` directions over the sphere. The mesh
+/// is in the middle of an empty room, at 0.8 m, more for large objects. `title` is a progress
+/// bar's. The same input and seed give the same views for any number of threads.
 std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::uint64_t seed,
                                       int num_threads, const std::string& title);
 
