@@ -29,10 +29,10 @@ struct PoseEstimate {
   double log_score = 0;
 };
 
-/// The maximum a posteriori pose. With positions only it is Horn's. Signs of curvature directions
-/// are maximised over too (from the normals' and positions' answer and from both signs of the most
-/// concentrated direction, each to its local maximum). Anisotropic position priors count as
-/// isotropic ones of the same mean variance; posterior.hpp corrects for that.
+/// The maximum a posteriori pose. With positions only it is Horn's. It also maximises over the
+/// signs of curvature directions, by local ascent from several starts: the answer of normals and
+/// positions, and both signs of the most concentrated direction. Anisotropic position priors count
+/// as isotropic ones of the same mean variance; posterior.hpp corrects for that.
 PoseEstimate bpa_mode(const Correspondences& data);
 
 /// One draw of camera_from_object given one correspondence, exact under the model: the scene point

@@ -50,10 +50,10 @@ struct SampledPosterior {
   double effective_sample_size = 0;
 };
 
-/// Orientations from the Bingham mixture of the isotropic model and, where the true one is not
-/// isotropic, from Binghams shaped like it at its maxima as well; positions from their exact
-/// Gaussian given the orientation; weights of the true posterior, both signs of open curvature
-/// directions included. In the isotropic case all weights are equal.
+/// Samples orientations from the Bingham mixture of the isotropic model. Where the true posterior
+/// is anisotropic, also from Binghams of its shape at its maxima. Positions come from their exact
+/// Gaussian given the orientation. Weights are those of the true posterior, over both signs of open
+/// curvature directions; all equal in the isotropic case.
 SampledPosterior sample_posterior(const Correspondences& data, const Anisotropy& anisotropy,
                                   int count, RandomStream& random,
                                   const PosteriorOptions& options = {});

@@ -107,10 +107,9 @@ struct ConvergenceResult {
   int trials = 0;
 };
 
-/// From each start, in each step: scene points near the placed model are drawn at random and
-/// matched with their nearest model point on the side that faces the camera; both methods get the
-/// same draws at the same pose. Angles and positions are modulo the symmetry. Does not depend on
-/// num_threads.
+/// From each start, each step samples scene points near the placed model at random. Each is matched
+/// with its nearest model point on the side that faces the camera. Both methods get the same
+/// samples at the same pose. Errors are modulo the symmetry. Does not depend on num_threads.
 ConvergenceResult run_convergence(const std::vector<TruePlacement>& placements,
                                   const ConvergenceOptions& options = {});
 

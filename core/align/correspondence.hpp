@@ -12,15 +12,15 @@
 
 namespace bpa::align {
 
-/// The paper's κ: the concentration of a feature's normal (appendix). A normal tilts by an angle of
-/// standard deviation sqrt(-1 / (2 κ)) * 2 = 8.1 degrees about each axis.
+/// The paper's κ: the concentration of a feature's normal (appendix). About each axis the normal
+/// tilts with a standard deviation of sqrt(-1 / (2 κ)) * 2 = 8.1 degrees.
 inline constexpr double kNormalConcentration = -100;
 
 /// A point with an orientation: the rotation matrix [n p n×p] of its normal and its principal
-/// curvature direction (paper, appendix), both in the frame of `point`.
+/// curvature direction (paper, appendix). Both are in the frame of `point`.
 ///
-/// Its uncertainty is a Bingham in the feature's own frame: a deviation e = (ew, ex, ey, ez) has
-/// exponent lambda3 ex² + kappa (ey² + ez²): ex turns about the normal, ey and ez tilt it.
+/// Its uncertainty is a Bingham in the feature's own frame. A deviation e = (ew, ex, ey, ez) has
+/// exponent lambda3 ex² + kappa (ey² + ez²). ex turns about the normal; ey and ez tilt it.
 struct OrientedPoint {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();                  ///< Metres.
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< Columns n, p, n×p.
@@ -28,8 +28,8 @@ struct OrientedPoint {
   double lambda3 = 0;  ///< Of the curvature direction, in [kappa, 0]; 0 = only the normal counts.
 };
 
-/// The orientation [n p n×p] of a unit normal and a curvature direction; p is made orthogonal to n,
-/// and where it is parallel or not finite, any direction orthogonal to n takes its place.
+/// The orientation [n p n×p] of a unit normal and a curvature direction; p is made orthogonal to n.
+/// Where p is parallel to n or not finite, any direction orthogonal to n replaces it.
 Eigen::Quaterniond feature_orientation(const Eigen::Vector3d& normal,
                                        const Eigen::Vector3d& principal_direction);
 
@@ -40,9 +40,9 @@ Eigen::Quaterniond feature_orientation(const Eigen::Vector3d& normal);
 /// cloud has them.
 OrientedPoint oriented_point(const PointCloud& cloud, std::size_t index, bool with_curvature);
 
-/// λ3 = max{10 (1 - c1 / c2), κ} of the principal curvatures c1 ≥ c2 ≥ 0 (eigenvalues of the
-/// covariance of the normals nearby; paper, appendix): 0 where the surface is flat or round, κ
-/// where it bends one way only. 0 when the ratio is not a number, as on a plane without noise.
+/// λ3 = max{10 (1 - c1 / c2), κ} (paper, appendix). The principal curvatures c1 ≥ c2 ≥ 0 are
+/// eigenvalues of the covariance of nearby normals. 0 where the surface is flat or round, κ where
+/// it bends one way only. 0 when the ratio is not a number, as on a plane without noise.
 double curvature_concentration(double c1, double c2, double kappa = kNormalConcentration);
 
 /// The same normal with the curvature direction reversed, q ∘ i: (q1, q2, q3, q4) becomes
@@ -65,8 +65,8 @@ struct FeatureConcentration {
 /// both are concentrated, uniform or zero, within 8 % of the concentration in between (README.md).
 FeatureConcentration compose(const OrientedPoint& model, const OrientedPoint& scene);
 
-/// A model point (object frame) and the scene point (camera frame) it is thought to be, whose
-/// distance under the true pose is Gaussian with standard deviation sigma along each axis. Metres.
+/// A model point (object frame) and its supposed scene point (camera frame). Under the true pose
+/// their offset is Gaussian, standard deviation sigma along each axis. Metres.
 struct PositionPair {
   Eigen::Vector3d model = Eigen::Vector3d::Zero();
   Eigen::Vector3d scene = Eigen::Vector3d::Zero();

@@ -24,9 +24,8 @@ struct Moments {
   double constant = 0;
 };
 
-/// The weight 2 b of a pair's curvature direction, and b (p pᵀ + p' p'ᵀ) with the model's
-/// directions on the left: what it adds to `attitude` with its sign as given, and subtracts with
-/// the reverse.
+/// A pair's curvature direction, of weight 2 b. It adds b (p pᵀ + p' p'ᵀ) to `attitude`, the
+/// model's directions on the left; with the reverse sign it subtracts that.
 struct CurvatureTerm {
   Eigen::Matrix3d attitude = Eigen::Matrix3d::Zero();
   double largest = 0;  ///< The most it can add to the log likelihood, -λ3 / 2. 0: no direction.

@@ -16,13 +16,14 @@ struct PosteriorOptions {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// The whole posterior of camera_from_object under isotropic noise (equation 7 of the paper and
-/// what it did not write down: p(t | Z)). With x̄ and ȳ the centroids weighted by 1 / σ²,
+/// The whole posterior of camera_from_object under isotropic noise (equation 7 of the paper, and
+/// p(t | Z), which it omits). x̄ and ȳ are the centroids weighted by 1 / σ². The model's centroid:
 ///
-///   R x̄ + t ~ N(ȳ, I / weight), independently of the orientation,
+///   R x̄ + t ~ N(ȳ, I / weight), independently of the orientation.
 ///
-/// which is a mixture of Binghams, one for each hypothesis about the curvature directions' signs (a
-/// single one when they are known or absent). A value; it does not refer to the correspondences.
+/// The orientation is a mixture of Binghams, one for each hypothesis of the curvature directions'
+/// signs. One Bingham if the signs are known or absent. A value: it does not refer to the
+/// correspondences.
 struct Posterior {
   PoseEstimate map;            ///< Over signs too; see bpa_mode.
   BinghamMixture orientation;  ///< The heaviest component first.

@@ -12,14 +12,15 @@
 
 namespace bpa {
 
-/// The Bingham distribution over orientations (paper, appendix): antipodally symmetric on S3,
+/// The Bingham distribution of orientations (paper, appendix), antipodally symmetric on S3:
 ///
-///   p(q) = exp(qᵀ C q) / F,   C = Σ λi vi viᵀ,   q a unit quaternion as (w, x, y, z).
+///   p(q) = exp(qᵀ C q) / F,   C = Σ λi vi viᵀ.
 ///
-/// A value: axes and concentrations, nothing cached. C is fixed up to a multiple of the identity by
-/// making its largest eigenvalue 0, so λ = (0, λ1, λ2, λ3) descends from the mode. (The paper
-/// counts the other way: its λ1 ≤ λ2 ≤ λ3 ≤ 0 leave the mode's zero out.) Densities are with
-/// respect to the surface measure of S3, of total 2π²; both q and -q count.
+/// q is a unit quaternion (w, x, y, z). A value: axes and concentrations, nothing cached. C is
+/// determined up to a multiple of the identity. Here its largest eigenvalue is 0, so λ = (0, λ1,
+/// λ2, λ3) descends from the mode. The paper counts the other way, λ1 ≤ λ2 ≤ λ3 ≤ 0, without the
+/// mode's zero. Densities are with respect to the surface measure of S3, of total 2π²; both q and
+/// -q count.
 class Bingham {
  public:
   /// The uniform distribution.
@@ -30,8 +31,8 @@ class Bingham {
   /// From the paper's parameters: orthonormal axes v1 v2 v3 as columns (w, x, y, z) and
   /// concentrations of any sign and order.
   static Bingham from_axes(const Eigen::Vector3d& lambda, const Eigen::Matrix<double, 4, 3>& axes);
-  /// About `mode`, with exponent λ[0] ex² + λ[1] ey² + λ[2] ez² for a deviation of
-  /// e = (ew, ex, ey, ez) in the body frame: q = mode ∘ e. λ ≤ 0.
+  /// About `mode`: q = mode ∘ e, where e = (ew, ex, ey, ez) is a deviation in the body frame. Its
+  /// exponent is λ[0] ex² + λ[1] ey² + λ[2] ez². λ ≤ 0.
   static Bingham about(const Eigen::Quaterniond& mode, const Eigen::Vector3d& lambda);
 
   /// λ = (0, λ1, λ2, λ3), descending.

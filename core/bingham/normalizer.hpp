@@ -6,15 +6,15 @@
 
 namespace bpa {
 
-// The normalising constant of the Bingham distribution on S3,
+// The normalising constant of the Bingham distribution on S3, for any finite λ:
 //
-//   F(λ) = ∫_{S3} exp(Σ λi xi²) dx,   F(0) = 2π²,
+//   F(λ) = ∫_{S3} exp(Σ λi xi²) dx,   F(0) = 2π².
 //
-// for any finite λ, by one rule of fourteen complex nodes that is the same for all λ. F is the
-// inverse Laplace transform, at 1, of 2π² Π (z - λi)^(-1/2) (integrate a Gaussian over R4 by
-// spheres), whose branch points lie on the real axis; Talbot's contour around them (Weideman and
-// Trefethen 2007) makes the midpoint rule converge as 3.9^-n. The relative error is below 1e-11 for
-// every λ, and derivatives come from the same nodes. README.md derives it.
+// One rule of fourteen complex nodes serves all λ. F is the inverse Laplace transform, at 1, of 2π²
+// Π (z - λi)^(-1/2): integrate a Gaussian over R4 by spheres. Its branch points lie on the real
+// axis. On Talbot's contour around them (Weideman and Trefethen 2007) the midpoint rule converges
+// as 3.9^-n. The relative error is below 1e-11 for every λ. Derivatives come from the same nodes.
+// README.md derives it.
 
 /// log F(λ).
 double bingham_log_normalizer(const Eigen::Vector4d& lambda);

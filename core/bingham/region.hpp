@@ -25,8 +25,8 @@ double angle_mass(const Bingham& bingham, double angle);
 /// only.
 double angle_bound(const Bingham& bingham, double probability);
 
-/// E[ω ωᵀ] of the rotation vector ω with q = exp(ω) ∘ mode, angle in [0, π], about the fixed axes
-/// of the frame that q maps into: the 3x3 block of a ROS covariance. rad².
+/// E[ω ωᵀ] of the rotation vector ω, q = exp(ω) ∘ mode, angle in [0, π], rad². The axes are those
+/// of the frame that q maps into: the 3x3 block of a ROS covariance.
 Eigen::Matrix3d rotation_covariance(const Bingham& bingham);
 
 }  // namespace bpa
