@@ -12,8 +12,8 @@
 
 #include "core/base/status.hpp"
 
-// Options are trees of structs of defaults. A struct describes its fields once, and the structs
-// inside of it once, in
+// Options are trees of structs of defaults. A struct describes its fields and the structs inside of
+// it once:
 //
 //   void visit_fields(auto&& visit) {
 //     visit("max_range_m", max_range_m, {0.1, 20, "Surface further away is ignored."});
@@ -22,8 +22,8 @@
 //     visit("refinement", refinement, "Gradient-based alignment.");
 //   }
 //
-// and reading files, checks, printing, help texts and run-time parameters all use that. Fields are
-// bool, int, double, std::uint64_t, std::string and std::vector<std::string>.
+// Reading files, checks, printing, help texts and run-time parameters use these functions. Fields
+// are bool, int, double, std::uint64_t, std::string and std::vector<std::string>.
 
 namespace bpa {
 
@@ -42,7 +42,7 @@ constexpr FieldRule at_run_time(FieldRule rule) {
   return rule;
 }
 
-/// One entry of a tree of options: a group (no value) or a field of somebody's struct.
+/// One entry of a tree of options: a group (no value) or a field of a struct.
 struct Option {
   using Value = std::variant<std::monostate, bool*, int*, double*, std::uint64_t*, std::string*,
                              std::vector<std::string>*>;

@@ -9,11 +9,11 @@ namespace bpa {
 /// The number of threads meant by `num_threads`: itself if positive, else one per core.
 int resolve_num_threads(int num_threads);
 
-/// Calls `body(first, last, thread)` for consecutive pieces of [0, count), each of at most `grain`
-/// items, on up to `num_threads` threads (0 = one per core), the caller's among them. Which
-/// `thread` in [0, num_threads) takes a piece is not determined: write results by index and reduce
-/// in index order, and the answer does not depend on `num_threads`. When `body` throws, no further
-/// piece begins, and the caller gets the exception of the lowest index.
+/// Calls `body(first, last, thread)` for consecutive pieces of [0, count), of at most `grain` items
+/// each. Runs on up to `num_threads` threads (0 = one per core), including the caller's. Which
+/// `thread` in [0, num_threads) takes a piece varies: write results by index and reduce in index
+/// order, and the answer does not depend on `num_threads`. When `body` throws, no further piece
+/// begins, and the caller gets the exception of the lowest index.
 void parallel_for_pieces(int count, int grain, int num_threads,
                          const std::function<void(int first, int last, int thread)>& body);
 

@@ -18,10 +18,9 @@ enum class Stream : std::uint64_t {
 };
 
 /// A small, fast stream of random numbers (xoshiro256++ by Blackman and Vigna, seeded by
-/// splitmix64). Give every work item its own stream, named by (seed, item), and results do not
-/// depend on which thread does which item. The numbers are the same on every platform; the
-/// distributions below are ours for the same reason (those of <random> are not). Meets
-/// UniformRandomBitGenerator.
+/// splitmix64). Give every work item its own stream, named by (seed, item). Then results do not
+/// depend on which thread does which item. The numbers are the same on every platform, and so are
+/// the distributions below (those of <random> are not). Meets UniformRandomBitGenerator.
 class RandomStream {
  public:
   using result_type = std::uint64_t;

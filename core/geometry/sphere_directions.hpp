@@ -19,7 +19,7 @@ inline Eigen::Vector3d sphere_direction(int index, int count) {
   return {r * std::cos(golden_angle * index), r * std::sin(golden_angle * index), z};
 }
 
-/// The points that are farthest along each of so many sphere_direction()s; none for no points.
+/// The farthest point along each of `directions` sphere_direction()s; none for no points.
 inline std::vector<Eigen::Vector3f> outermost(const std::vector<Eigen::Vector3f>& points,
                                               int directions) {
   std::vector<Eigen::Vector3f> out;
