@@ -8,8 +8,8 @@
 
 namespace bpa {
 
-// OpenCV's GaussianBlur picks its rounding by the processor's instruction set. These sums run in a
-// fixed order, so that the detector gives the same bits on every machine and for any threads.
+// OpenCV's GaussianBlur rounds by the processor's instruction set. These sums run in a fixed order:
+// the same bits on every machine, for any number of threads.
 
 /// The image blurred by a Gaussian of `sigma` pixels, cut off at three of them; beyond the border
 /// the image goes on as its last pixel. The image itself when sigma is not positive. The same for

@@ -9,11 +9,11 @@
 
 #include "core/cloud/frame.hpp"
 
-// Combines the last depth images of a camera and a scene that stand still, pixel by pixel. Noise
-// that is new in every frame shrinks with the root of their number, and holes are filled from
-// frames that have a depth there. Errors that all frames share stay: calibration, steps of
-// disparity larger than the noise, surfaces that the sensor never sees. An object that moves is
-// seen as in the newest frame.
+// Combines the last depth images of a static camera and scene, pixel by pixel. Noise that is
+// independent between frames shrinks with the root of their number. Holes are filled from frames
+// with a depth there. Errors that all frames share stay: calibration, steps of disparity larger
+// than the noise, surfaces that the sensor never sees. A moving object is seen as in the newest
+// frame.
 
 namespace bpa {
 
@@ -21,8 +21,8 @@ namespace bpa {
 /// there (depth_noise()).
 constexpr float kFusionAgreement = 3;
 
-/// The robust mean of a pixel's depths: of those that agree with the median, which is the lower of
-/// the two middle ones of an even number, so that no depth between two surfaces is invented.
+/// The robust mean of a pixel's depths: of those that agree with the median. With an even number
+/// the median is the lower middle one, so that no depth between two surfaces is invented.
 struct AgreedDepth {
   float median = 0;  ///< metres
   float mean = 0;    ///< metres
@@ -34,7 +34,7 @@ AgreedDepth agreed_depth(std::span<float> depths);
 /// A frame whose depth is that of the frames so far.
 struct FusedFrame {
   Frame frame;  ///< The newest with all that belongs to it, but for depth and Frame::fused.
-  /// Why this frame begins anew, such as "camera.fx changed from 525 to 600"; else empty.
+  /// Why combining restarts here, such as "camera.fx changed from 525 to 600"; else empty.
   std::string restart;
 };
 
@@ -42,15 +42,15 @@ struct FusedFrame {
 ///
 ///  - the robust mean of its depths, where the newest one is among those that agree;
 ///  - the newest, where it is not: something moved;
-///  - where the newest has none, the robust mean of the others', if at least half of all frames
-///    have one and most of these agree.
+///  - without a newest depth, the robust mean of the others. At least half of all frames must have
+///    one, and most of these must agree.
 ///
-/// Begins anew with a frame of another camera (size, intrinsics by more than kSameCamera,
-/// frame_id), and with one of which more than kMostMoved has moved. Not thread-safe.
+/// Restarts with another camera (size, frame_id, intrinsics by more than kSameCamera) and when
+/// more than kMostMoved has moved. Not thread-safe.
 class FrameFusion {
  public:
-  /// The share of the pixels with depth in the newest frame and in one before whose depth does not
-  /// agree with half of those before.
+  /// The share of pixels whose newest depth agrees with under half of the earlier frames' depths.
+  /// Of all pixels with depth in the newest frame and an earlier one.
   static constexpr double kMostMoved = 0.25;
   /// Pixels. Cameras that are estimated from clouds are not the same to the last bit.
   static constexpr double kSameCamera = 0.1;

@@ -36,11 +36,10 @@ struct PlaneOptions {
   }
 };
 
-/// The large planes of the scene (table, wall, floor), largest first, by RANSAC with normals;
-/// their pixels are labelled background: map.searched becomes 0 there. A plane hides behind
-/// objects, so its extent is measured over all its pixels: the square root of the product of the
-/// two largest standard deviations, times the square root of 12 (the side of a square of that
-/// spread). None where `label_planes` is off.
+/// The large planes of the scene (table, wall, floor), largest first, by RANSAC with normals. Their
+/// pixels are labelled background: map.searched becomes 0 there. Objects hide parts of a plane, so
+/// its extent is measured over all its pixels. The extent is the side of a square of the same
+/// spread: sqrt(12 s1 s2) of the two largest standard deviations. None where `label_planes` is off.
 std::vector<Plane> label_background_planes(SurfaceMap& map, const PlaneOptions& options);
 
 }  // namespace bpa

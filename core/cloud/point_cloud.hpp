@@ -11,7 +11,7 @@
 namespace bpa {
 
 /// Points with what is known about the surface at each of them. Every array but `points` is either
-/// empty or as long as `points`. Metres; in whatever frame the owner says.
+/// empty or as long as `points`. Metres. The owner says in which frame.
 struct PointCloud {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;               ///< Unit length, out of the surface.

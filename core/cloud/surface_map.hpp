@@ -23,8 +23,8 @@ struct SurfaceMap {
   std::vector<float> depth;              ///< 0 where there is none.
   std::vector<Eigen::Vector3f> points;   ///< Valid where depth > 0.
   std::vector<Eigen::Vector3f> normals;  ///< Toward the camera; zero where unknown.
-  /// 0 beyond the range limit, on labelled background, and where more than half of the block's
-  /// pixels on this surface are outside the region of interest or the mask or known background.
+  /// 0 beyond the range limit, on labelled background, and in excluded blocks: over half of the
+  /// pixels on this surface are outside the region of interest or mask, or known background.
   std::vector<std::uint8_t> searched;
 
   int width() const { return camera.width; }
