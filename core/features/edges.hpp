@@ -27,8 +27,8 @@ struct RangeEdgeOptions {
   }
 };
 
-/// Depth discontinuities (paper, V.2), from each pixel to the next one with a depth in the
-/// four directions of the grid. See surface_breaks() for what is one. Sensors with a projector see
+/// Depth discontinuities (paper, V.2) between each pixel and the next one with a depth, in the
+/// grid's four directions. See surface_breaks() for the criterion. Sensors with a projector see
 /// nothing beside an edge; the gap does not count, unless it is longer than max_gap_px.
 Image<RangeEdge> range_edges(const SurfaceMap& map, const RangeEdgeOptions& options = {});
 
@@ -78,8 +78,8 @@ struct HollowMap {
 constexpr int kHollowDirections[4][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}};
 HollowMap hollow_map(const SurfaceMap& map, const CurvatureEdgeOptions& options = {});
 
-/// High negative curvature (paper, V.2), where objects touch: 1 along the bottom of a hollow,
-/// which is where the lowest curvature is lower than on either side, else 0.
+/// High negative curvature (paper, V.2), where objects touch. 1 along the bottom of a hollow, where
+/// the lowest curvature is lower than on either side; else 0.
 Image<std::uint8_t> curvature_edges(const SurfaceMap& map,
                                     const CurvatureEdgeOptions& options = {});
 
@@ -110,10 +110,9 @@ struct SceneEdges {
   Image<float> likelihood;        ///< The edge image, in [0, 1].
 };
 
-/// The edge image (paper, V.2): the spatially blurred, weighted average of the three masks,
-/// the relative likelihood that a pixel is on the boundary of an object. In units of the strongest
-/// evidence: 1 (where it is cut off) on a straight line that is an edge of the kind of the largest
-/// weight.
+/// The edge image (paper, V.2): the blurred, weighted average of the three masks. It is the
+/// relative likelihood that a pixel is on the boundary of an object. It is clamped to 1, the value
+/// on a straight edge of the kind with the largest weight.
 Image<float> edge_image(const Image<RangeEdge>& range, const Image<std::uint8_t>& image,
                         const Image<std::uint8_t>& curvature, const EdgeImageOptions& options = {});
 

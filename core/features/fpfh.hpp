@@ -14,10 +14,9 @@ namespace bpa {
 /// Fast point feature histogram: three histograms of 11 bins, each summing to 100.
 using Fpfh = std::array<float, 33>;
 
-/// Fast point feature histograms (Rusu, Blodow and Beetz, ICRA 2009) of the cloud's points named by
-/// `indices`, over neighbours within `radius`. The cloud needs normals; evenly spaced points make
-/// features of scene and model comparable. Simplified histograms are computed once for every point
-/// that some feature needs.
+/// Fast point feature histograms (Rusu, Blodow and Beetz, ICRA 2009) of the points `indices`, over
+/// neighbours within `radius`. The cloud needs normals. Evenly spaced points make features of scene
+/// and model comparable. Simplified histograms are computed once for every point that needs one.
 std::vector<Fpfh> compute_fpfh(const PointCloud& cloud, std::span<const int> indices, float radius,
                                int num_threads);
 

@@ -33,9 +33,8 @@ constexpr int kTurnSteps = 256;     ///< Of a full turn about a normal.
 /// about a normal are measured from the first axis toward the second.
 Eigen::Matrix3f basis_of(const Eigen::Vector3f& normal);
 
-/// All ordered pairs of a model's points that fix a pose, found by their quantised feature. A pair
-/// whose feature lies in the outer quarter of a bin is found from the bin next to it as well, so
-/// that noise seldom hides it.
+/// All ordered pairs of a model's points that fix a pose, hashed by their quantised feature. Pairs
+/// in the outer quarter of a bin are also found from the next bin: noise seldom hides them.
 class PointPairTable {
  public:
   /// `distance_step` in metres.
@@ -96,9 +95,9 @@ struct VotedPose {
   int votes = 0;
 };
 
-/// Votes of each reference point's pairs for the model point it may be and the turn about its
-/// normal (Drost et al., section 3.4): the `peaks` best model points of each reference point, best
-/// first. `num_model_points` is the size of the cloud that `table` was made of.
+/// Each reference point's pairs vote for its model point and the turn about its normal (Drost et
+/// al., section 3.4). Returns the `peaks` best model points of each reference point, best first.
+/// `num_model_points` is the size of the cloud of `table`.
 std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable& table,
                                   int num_model_points, int peaks);
 

@@ -38,7 +38,7 @@ struct SuperPixelOptions {
   }
 };
 
-/// A 3-D super-pixel: a connected piece of surface that is alike in place, orientation and colour.
+/// A 3-D super-pixel: a connected piece of surface of similar position, normal and colour.
 struct Segment {
   std::vector<std::uint32_t> pixels;  ///< Of the surface map, ascending; not empty.
   std::vector<std::uint32_t> border;  ///< Those with one of the four neighbours outside; ascending.
@@ -74,10 +74,10 @@ struct Segmentation {
 Segmentation super_pixels(const SurfaceMap& map, const Image<Eigen::Vector3f>& lab,
                           const Image<float>& edges, const SuperPixelOptions& options = {});
 
-/// exp(-E/2) times the share of the contact without a break, where E adds up the squares of: the
-/// edge likelihood along the contact over 0.4; and an angle over 40 degrees if the two form a
-/// hollow, over 80 degrees if they bulge. The angle is the one between the mean normals plus the
-/// one by which the line between the mean positions is steeper than a smooth surface would have it.
+/// exp(-E/2) times the share of the contact without a break. E adds two squares: the contact's edge
+/// likelihood divided by 0.4, and an angle divided by 40 degrees (a hollow) or 80 (a bulge). The
+/// angle is that between the mean normals plus the step angle: how much steeper the line between
+/// the mean positions is than on a smooth surface.
 float segment_affinity(const Segment& first, const Segment& second, const SegmentPair& pair);
 
 }  // namespace bpa
