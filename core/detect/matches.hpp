@@ -20,7 +20,7 @@ struct SurfaceMatch {
 };
 
 /// Matches the i-th of `points` at a pose. False where it faces away, leaves the image or falls on
-/// background, or the surface is `gate` metres away or turned by more than 53 degrees.
+/// background. False where the surface is `gate` metres away or turned by more than 53 degrees.
 bool match_surface(const SceneFeatures& scene, const CheckPoints& points, std::size_t i,
                    const FastPose& pose, float gate, SurfaceMatch& match);
 
@@ -34,9 +34,9 @@ struct EdgePoint {
 EdgePoint edge_point(const ObjectModel& model, const ModelView& view, const FastPose& pose,
                      std::size_t k);
 
-/// How far outward of a model edge point the observed surface ends, metres, in [-reach, reach];
-/// none where it does not end within reach or something in front hides the end. The surface is
-/// followed from inside the model outward, pixel by pixel, until depth jumps back, is unknown or
+/// How far outward of a model edge point the observed surface ends, metres, in [-reach, reach].
+/// None where it does not end within reach or a nearer surface hides the end. Follows the surface
+/// from inside the model outward, pixel by pixel. It ends where depth jumps back, is unknown or
 /// belongs to the labelled background (V.6: edge points align to edge points).
 std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, float reach);
 

@@ -16,18 +16,18 @@
 
 // Pose priors: what a caller knows of an object's pose before the search, from tracking, touch or a
 // robot's own placing. A prior is a Gaussian of the position times a Bingham of the orientation. It
-// applies with probability `weight`. It has two effects. Poses drawn from it are hypotheses, as
-// those from features are, so that an object with few features is found too. And it is a factor of
-// the score: p is the density of the pose under the prior, u that under a uniform distribution, and
-// a placement gains the log odds
+// applies with probability `weight`. Poses sampled from it are hypotheses, like those from
+// features, so that an object with few features is found too. It is also a factor of the score. p
+// is the pose's density under the prior, u that under a uniform distribution. A placement gains the
+// log odds
 //
 //   log((1 - weight) + weight p / u).
 
 namespace bpa {
 
-/// Checks that all numbers are finite, the weight is in its range, the covariance is symmetric and
-/// positive definite, the concentrations are not positive, and the axes orthonormal unless all
-/// concentrations are zero. The message names the field, its value and the rule, after `name`.
+/// Checks the numbers (finite), the weight (range) and the covariance (symmetric, positive
+/// definite). Concentrations must not be positive; axes are orthonormal unless all concentrations
+/// are zero. The message names the field, its value and the rule, after `name`.
 Status validate(const PosePrior& prior, const std::string& name);
 
 /// The Bingham of the prior's orientation.
@@ -36,8 +36,8 @@ Bingham orientation_of(const PosePrior& prior);
 /// The same prior of a_from_object, from one of b_from_object.
 PosePrior transformed(const Pose& a_from_b, const PosePrior& prior);
 
-/// The uniform distribution that a prior is compared with has the object's origin anywhere in this
-/// volume, that over a table, and every orientation.
+/// The uniform distribution that a prior is compared with: the origin anywhere in this volume (over
+/// a table), every orientation.
 constexpr double kBackgroundVolume = 1;  // m³
 /// Largest log odds that priors add or subtract (150 to 1): a clear image outweighs a wrong prior.
 constexpr double kMostPriorEvidence = 5;
@@ -58,9 +58,9 @@ class ModelPriors {
   /// priors are of different instances, each equally likely: the mean of the logarithm's argument.
   double evidence(const Pose& camera_from_object) const;
 
-  /// `count` poses drawn from each prior. Where a prior leaves the position open, a point of the
-  /// model that faces the camera is put on a point of `surface` whose normal agrees with its own;
-  /// none when there is no such surface. Camera frame.
+  /// `count` poses sampled from each prior, camera frame. Where the position is unknown, a model
+  /// point is put on a random point of `surface`. Of a few random model points it is the one whose
+  /// normal agrees best. No such poses for an empty `surface`.
   std::vector<Pose> draw(const PointCloud& surface, int count, RandomStream& random) const;
 
  private:

@@ -19,9 +19,9 @@ struct Refinement {
   int num_correspondences = 0;
 };
 
-/// Gradient-based alignment (V.7): Gauss-Newton on the distances from model points to the observed
-/// surface's tangent planes, each model point matched with the pixel it falls on, and from the
-/// edges of the model's nearest view to those of the observed surface.
+/// Gradient-based alignment (V.7): Gauss-Newton on two kinds of distances. One is from a model
+/// point to the observed tangent plane at the pixel it falls on. The other is from the edges of the
+/// model's nearest view to those of the observed surface.
 Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
                        const RefinementOptions& options);
 

@@ -32,9 +32,9 @@ Candidates cluster(const Search& search, Candidates checked);
 /// nothing unless the deadline passes.
 Candidates round_two(const Search& search, Candidates clusters);
 
-/// One alignment by BPA to sampled super-pixels (V.6). Up to RoundTwoOptions::max_pairs model
-/// points that fall within `gate` metres of these are matched as oriented pairs, and half as many
-/// edge points as positions. Returns `start` where fewer than RoundTwoOptions::min_pairs match.
+/// One alignment by BPA to sampled super-pixels (V.6). Model points within `gate` metres of these
+/// give up to RoundTwoOptions::max_pairs oriented pairs. Edge points give half as many positions.
+/// Returns `start` where fewer than RoundTwoOptions::min_pairs match.
 Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
                       float gate, std::uint64_t seed, const DetectOptions& options = {});
 
