@@ -11,8 +11,8 @@
 
 namespace bpa {
 
-/// The objects that can be detected. Models are immutable and shared, so that copying a library,
-/// or making one with a model more or fewer, is cheap.
+/// The objects that can be detected. Models are immutable and shared. So copying a library, or
+/// making one with a model more or fewer, is cheap.
 class ModelLibrary {
  public:
   /// Fails with invalid_argument when a model of that name or number is already there.

@@ -20,11 +20,11 @@ struct SelfSurface {
   double diameter = 0;
 };
 
-/// Motions that lay most of a surface (60 % of the sample, within 3 % of the diameter and facing
-/// alike) onto itself and are not in `exact`: a mug turned about its axis, a box whose label alone
-/// tells its ends apart. An object that is seen from a few sides only may as well be in pose *
-/// motion. Turns about the principal axes and the axes of the object's frame in steps of 15
-/// degrees, each moved to where it fits best; best first, at most 40. Deterministic.
+/// Motions that lay most of a surface onto itself and are not in `exact`. Most: 60 % of the sample,
+/// within 3 % of the diameter and of similar normals. Examples: a mug turned about its axis, a box
+/// whose ends differ in the label only. Seen from few sides, pose and pose * motion look the same.
+/// Tries turns about the principal axes and the object frame's axes in steps of 15 degrees, each
+/// refined. Best first, at most 40. Deterministic.
 std::vector<Pose> near_symmetries(const SelfSurface& surface, const SymmetryGroup& exact);
 
 }  // namespace bpa

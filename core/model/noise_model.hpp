@@ -6,18 +6,18 @@
 #include <array>
 #include <cstddef>
 
-// What a sensor's measurements of an object are off by (paper section III): the standard deviation
-// of range and of normals as sigmoids of two numbers that follow from the viewpoint,
+// A sensor's error on an object (paper section III): standard deviations of range and of normals,
+// as sigmoids of two numbers of a viewpoint:
 //
-//  - the edge distance: how far, across the line of sight, a surface point is from the nearest
-//    range edge of the view (ModelView::edge_distance), and
+//  - the edge distance, across the line of sight: from a surface point to the view's nearest range
+//    edge (ModelView::edge_distance).
 //  - the surface angle: between the surface normal and the direction to the camera.
 
 namespace bpa {
 
-/// sigma(e, a) = floor + edge_height * s((edge_place - e) / edge_width)
-///                     + angle_height * s((a - angle_place) / angle_width),  s the logistic
-/// function: rises towards edges and towards grazing angles. All seven are positive.
+/// Rises towards edges and grazing angles. All seven are positive. With s the logistic function:
+///   sigma(e, a) = floor + edge_height * s((edge_place - e) / edge_width)
+///                       + angle_height * s((a - angle_place) / angle_width)
 struct NoiseCurve {
   double floor = 0;         ///< Far from edges and seen straight on; unit of the error.
   double edge_height = 0;   ///< What an edge adds; unit of the error.

@@ -57,7 +57,7 @@ struct ObjectModel : ModelSource {
 std::vector<float> geometric_normal_variance(const PointCloud& surface, int num_threads);
 
 /// The mean distance of a point to its nearest neighbour whose normal is within `least_cosine`,
-/// over some 100 of the points, metres; 0 where none has such a neighbour.
+/// metres. Over some 100 of the points; 0 where none has such a neighbour.
 float mean_spacing(const PointCloud& surface, float least_cosine);
 
 /// Computes the index, or takes source.prepared, and the normal variances where they are missing.

@@ -18,14 +18,14 @@ struct ViewBucket {
   float normal_variance = 0;  ///< Mean squared angle from that mean, radians squared.
 };
 
-/// Whether a bucket is part of the surface: likelier there than not, and seen more than by chance.
+/// Whether a bucket is part of the surface: occupancy of at least 0.5 from at least 3 rays.
 inline bool occupied(const ViewBucket& bucket) {
   constexpr int kFewestRays = 3;
   return bucket.rays >= kFewestRays && bucket.occupancy >= 0.5f;
 }
 
-/// A cell with two view-buckets, since a wall thinner than a cell has two surfaces in it (paper
-/// section III, footnote).
+/// A cell with two view-buckets: a wall thinner than a cell has two surfaces in it (paper section
+/// III, footnote).
 struct OccupancyCell {
   Eigen::Vector3i place;  ///< In the grid.
   std::array<ViewBucket, 2> buckets;

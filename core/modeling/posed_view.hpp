@@ -20,7 +20,7 @@ struct PosedView {
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< For each pixel of the map; may be empty.
   std::vector<std::uint8_t> object;                 ///< 1 where the pixel may belong to the object.
   Pose camera_from_object;
-  int id = 0;  ///< Whatever its owner tells it by.
+  int id = 0;  ///< The caller's number of the view.
 };
 
 /// Halves the frame as the detector does and takes its normals. `object` is a mask over the frame's
@@ -48,8 +48,8 @@ struct SurfaceObservations {
   double depth = 0;                   ///< Mean depth of what was measured, metres.
 };
 
-/// Compares a surface with what the views measured of it (paper section III), where its points
-/// should be visible and within 2 cm. The same for any number of threads.
+/// Compares a surface with the views' measurements of it (paper section III): at points that should
+/// be visible, within 2 cm. The same for any number of threads.
 SurfaceObservations observe_surface(const PointCloud& surface, const std::vector<PosedView>& views,
                                     int num_threads);
 
@@ -62,11 +62,11 @@ NoiseCurve fit_noise_curve(std::span<const NoiseBin> bins, const NoiseCurve& sta
 /// none; warns when part of it was never measured.
 void learn_noise(ModelSource& source, const std::vector<PosedView>& views, int num_threads);
 
-/// Makes a model whose surface is known exactly one of what a sensor can see: traces the views
-/// through the occupancy grid, drops the points of the surface where the grid is not occupied on
-/// their side, takes the normal variances from the grid and learns the noise. Points stay where
-/// they are, which is nearer to the truth than means of measurements. Warns when much drops out;
-/// a surface that the views do not show at all stays whole, with another warning.
+/// Reduces a model of exactly known surface to what a sensor can see. Traces the views through the
+/// occupancy grid and drops points where the grid is not occupied on their side. Takes the normal
+/// variances from the grid and learns the noise. Points stay in place, nearer to the truth than
+/// means of measurements. Warns when much drops out. A surface that no view shows stays whole, with
+/// another warning.
 void keep_measured(ModelSource& source, const std::vector<PosedView>& views, int num_threads);
 
 /// A model of what the views show: traced, thresholded and thinned (occupancy_grid.hpp), in their

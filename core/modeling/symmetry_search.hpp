@@ -9,11 +9,10 @@
 
 namespace bpa {
 
-/// The rotations that map a surface onto itself, within max(1.5 mm, 1.2 % of `diameter`) for at
-/// least 98 % of its points, normals considered and colours not: turns of a half to a sixth and
-/// continuous ones. Where turns of several orders together are as fine as 24 degrees, 95 % of the
-/// points do for a continuous one. The points must be evenly spaced; parts of the surface may be
-/// missing. Deterministic.
+/// The rotations that map a surface onto itself: turns of a half to a sixth, and continuous ones.
+/// At least 98 % of the points must fit within max(1.5 mm, 1.2 % of `diameter`). Where turns of
+/// several orders together are as fine as 24 degrees, 95 % suffice for a continuous one. Normals
+/// count, colours do not. The points must be evenly spaced; parts may be missing. Deterministic.
 SymmetryGroup find_symmetries(const PointCloud& surface, double diameter, int num_threads);
 
 /// One line for people: "any turn about (0, 0, 1) through (0, 0, 12) mm; 3 single turns".

@@ -10,10 +10,10 @@
 
 namespace bpa {
 
-/// Traces the ray of every pixel of the views through the grid: the measured point lies in one
-/// cell, and whatever the ray passes on its way there is empty on the side that faces the camera,
-/// but for the last bit, within the sensor's noise. Pixels that are not the object's end nowhere,
-/// but what they pass is empty too. The same for any number of threads.
+/// Traces the ray of every pixel of the views through the grid. The measured point lies in one
+/// cell. Cells before it are empty on the side that faces the camera, except within the sensor's
+/// noise. Rays of pixels outside the object end in no cell, but empty the cells they pass. The same
+/// for any number of threads.
 OccupancyGrid trace_occupancy(const std::vector<PosedView>& views, float cell, int num_threads);
 
 /// The surface of what is occupied (probability 0.5 or more) and seen from outside: bucket means,

@@ -52,20 +52,20 @@ Result<Plane> segment_object(std::vector<ScanView>& views, const ScanOptions& op
 Result<RestingPosition> align_resting_position(std::vector<ScanView> views,
                                                const ScanOptions& options);
 
-/// Finds step, centre and axis, and with them the poses of the views, from the plane and the views.
-/// `sense` is 1 when the table turns counter-clockwise, -1 clockwise, 0 to find it out, which fails
-/// where an object looks alike from all sides and stands in the middle.
+/// Finds step, centre, axis and the poses of the views, from the plane and the views. `sense`: 1
+/// when the table turns counter-clockwise, -1 clockwise, 0 to find out. 0 fails for an object in
+/// the middle that looks the same from all sides.
 void find_axis(RestingPosition& position, int sense, const ScanOptions& options);
 
-/// Finds, for every resting position but the first, the rigid motion that brings its object onto
-/// that of the first, and applies it to its views' poses. Of several that fit, one that puts
-/// another side down is likelier. Returns a line for each poor fit, whose views are left out.
+/// Registers every resting position to the first and applies the rigid motion to its views' poses.
+/// Of several motions that fit, one that puts another side down is likelier. Returns a line for
+/// each poor fit, whose views are left out.
 std::vector<std::string> merge_resting_positions(std::vector<RestingPosition>& positions,
                                                  const ScanOptions& options);
 
-/// Shifts a pose that lays the surface of one resting position onto that of another until the face
-/// that the object stands on in each of them, where the other one shows it, lies on its table
-/// (z = 0 in both frames). Leaves the pose as it is where the overlap would get worse by it.
+/// Shifts a pose that lays the surface of one resting position onto that of another. The face that
+/// the object stands on in either one, if the other shows it, then lies on its table: z = 0 in both
+/// frames. Leaves the pose as it is where that makes the overlap worse.
 Pose settle_on_tables(const PointCloud& source, const PointCloud& target,
                       const Pose& target_from_source);
 
