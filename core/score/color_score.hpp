@@ -22,12 +22,12 @@ struct ColorAgreement {
   double tint = kNotKnown;
 };
 
-/// Compares colours where the placement explains the depth (within 1 cm), each the mean of 3x3
-/// pixels. Light, exposure and white balance of model and frame differ: the model's cone responses
-/// are scaled by one gain a channel (von Kries), the median over the placement, and to the light at
-/// each pixel. Of lightness only its variation over the placement counts, with weight one half.
-/// `observed` is the frame's CIELAB at the image's size, `surface` the model's
-/// (ModelIndex::cielab); either may be empty.
+/// Compares colours (means of 3x3 pixels) where the placement explains the depth (within 1 cm).
+/// Light, exposure and white balance of model and frame differ. So the model's cone responses are
+/// scaled by one gain a channel (von Kries), the median over the placement. They are also scaled to
+/// the light at each pixel. Of lightness only its variation over the placement counts, with weight
+/// one half. `observed`: the frame's CIELAB at the image's size. `surface`: the model's
+/// (ModelIndex::cielab). Either may be empty.
 ColorAgreement compare_colors(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
                               std::span<const Eigen::Vector3f> surface,
                               const PredictedSurface& predicted);

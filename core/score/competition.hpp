@@ -13,16 +13,17 @@ namespace bpa {
 struct Competition {
   struct Rival {
     std::uint32_t other = 0;
-    /// The chance that this one is right if the other's pose is nearly the true one: 1 when both
-    /// are the same pose of the same model, a half at 2.5 cm or π/16, 0 for others.
+    /// The probability that this one is right if the other's pose is nearly the true one. 1: the
+    /// same pose of the same model. A half: 2.5 cm or π/16 apart. 0: 1.5 times that, or another
+    /// model.
     double same_pose = 0;
   };
   std::vector<std::vector<Rival>> rivals;  ///< Of each placement; not itself.
 };
 
-/// The probability that each placement is right, given that its rivals compete with it and that
-/// none of them may be right: the sum of exp(score) over itself and its rivals, each times
-/// same_pose, divided by 1 plus the same sum of all in full. `scores` are log odds against nothing.
+/// The probability that each placement is right, against its rivals and against none being right.
+/// The numerator sums exp(score) times same_pose over itself and its rivals. The denominator is 1
+/// plus the sum without same_pose. `scores` are log odds against an empty place.
 std::vector<double> competing_probabilities(std::span<const double> scores,
                                             const Competition& competition);
 

@@ -29,7 +29,7 @@ struct ComponentType {
   double min, max;  ///< Values are in this range.
   Round round;
   bool learned;                  ///< False: reported, but no part of the score.
-  double (*measure)(Evidence&);  ///< kNotKnown where it cannot be told.
+  double (*measure)(Evidence&);  ///< kNotKnown where it has no value.
   std::string_view meaning;
 };
 

@@ -17,8 +17,8 @@ class FeaturePlaces {
  public:
   explicit FeaturePlaces(const ObjectModel& model);
 
-  /// The model feature (index into index->fpfh) nearest to a point of the object's frame, of those
-  /// on the same side of a thin wall; -1 when none is within 1 cm.
+  /// The model feature (index into index->fpfh) nearest to a point in the object frame. It is on
+  /// the same side of a thin wall; -1 when none is within 1 cm.
   int nearest_to(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const;
   const ObjectModel& model() const { return model_; }
 

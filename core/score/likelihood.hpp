@@ -13,9 +13,9 @@ namespace bpa {
 /// The value of a score component that is not known.
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
-/// The log-likelihood of an error under a normal distribution, relative to that of no error, cut
-/// off at three standard deviations and scaled to [-1, 0] (paper V.5: truncated, so as not to
-/// over-penalise outliers).
+/// The log-likelihood of an error under a normal distribution, relative to that of no error.
+/// Truncated at three standard deviations, so as not to over-penalise outliers, and scaled to [-1,
+/// 0] (paper V.5).
 inline double truncated_log_normal(double error, double sigma) {
   const double z = error / (3 * sigma);
   return -std::min(z * z, 1.0);
@@ -26,8 +26,8 @@ inline double truncated_log(double probability, double floor) {
   return -std::min(std::log(std::max(probability, floor)) / std::log(floor), 1.0);
 }
 
-/// The probability that a model point is visible: 1 where it is predicted in front of what was
-/// observed (or nothing was), else falling with sigma_vis = 1 cm (paper V.5, footnote).
+/// The probability that a model point is visible (paper V.5, footnote). 1 in front of the observed
+/// surface or without one, else falling with sigma_vis = 1 cm.
 template <class Real>
 Real visibility_probability(Real observed_depth, Real predicted_depth) {
   constexpr Real kSigma = static_cast<Real>(0.01);

@@ -35,8 +35,8 @@ struct PredictedSurface {
   }
 };
 
-/// Draws the points that the closest of the 66 views sees into a depth buffer, each as large as
-/// points are apart. Empty when the model is out of sight.
+/// Draws the points that the closest of the 66 views sees into a depth buffer. Each is as large as
+/// the points' spacing. Empty when the model is out of sight.
 PredictedSurface predict_surface(const CheckImage& image, const ObjectModel& model,
                                  const Pose& camera_from_object);
 

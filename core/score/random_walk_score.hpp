@@ -18,12 +18,12 @@ struct RandomWalkOptions {
   std::uint64_t seed = 0;
 };
 
-/// Random walk score (paper V.8). Walks start at observed points that the placement explains
-/// (within 1 cm of the prediction, spread evenly over them) and go from pixel to neighbouring pixel
-/// of the observed surface; a step onto a pixel of edge likelihood e happens with probability
-/// (1 - e)^2, so that walks stay within predicted boundaries of objects. Where they end there
-/// should be model surface: the average truncated log-likelihood of the distance to the closest
-/// model point, standard deviation 1 cm, in [-1, 0]; -1 where nothing is explained.
+/// Random walk score (paper V.8). Walks start at observed points within 1 cm of the prediction,
+/// spread evenly. They go from pixel to neighbouring pixel of the observed surface. A step onto a
+/// pixel of edge likelihood e has probability (1 - e)^2, so walks stay within object boundaries.
+/// Their ends should be on the model's surface. The score is the average truncated log-likelihood
+/// of the distance to the closest model point, standard deviation 1 cm. In [-1, 0]; -1 where
+/// nothing is explained.
 double random_walk_score(const CheckImage& image, const Image<float>& edges,
                          const ObjectModel& model, const Pose& camera_from_object,
                          const PredictedSurface& predicted, const RandomWalkOptions& options = {});

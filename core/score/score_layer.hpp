@@ -53,9 +53,8 @@ const ScoreLayers& default_score_layers();
 /// The layers as JSON, each component by its name.
 std::string to_json(const ScoreLayers& layers);
 
-/// Fails with corrupt (naming `where` and what is wrong) on a text that is not JSON, is of another
-/// version, lacks a layer or names an unknown score component. A component that a layer lacks adds
-/// nothing to its log odds.
+/// Fails with corrupt (naming `where` and the fault): no JSON, another version, a missing layer or
+/// an unknown score component. A component that a layer lacks adds nothing to its log odds.
 Result<ScoreLayers> score_layers_from_json(const std::string& text, const std::string& where);
 
 /// The probability of log odds.

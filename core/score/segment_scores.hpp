@@ -43,8 +43,8 @@ double segment_score(const std::vector<SegmentMatch>& matches);
 
 /// Segment affinity score: how consistent the assigned segments are with the boundaries of objects.
 /// Two touching segments of the model should have a high affinity; a segment of the model and one
-/// of another object, a low one. The average log-likelihood over the contacts, each weighted by the
-/// probability that at least one side belongs to the model, in [-1, 0]; -1 if no segment does.
+/// of another object, a low one. The average log-likelihood over the contacts, in [-1, 0]. Each is
+/// weighted by the probability that at least one side belongs to the model. -1 if no segment does.
 double segment_affinity_score(const Segmentation& segmentation,
                               const std::vector<SegmentMatch>& matches);
 
