@@ -31,9 +31,9 @@ struct DetectRequest {
   std::vector<std::string> models;  ///< Names; empty means every model of the library.
   std::vector<PosePrior> priors;    ///< What is known beforehand, in the camera frame.
   int top_k = kDefaultTopK;         ///< Number of interpretations to return, 1 to 100.
-  /// Time for the search, milliseconds; 0: no limit. Every model gets an equal part of what is left
-  /// after the frame was prepared (about 0.2 s at 640 x 480, which is not cut), and the best found
-  /// by then is returned. With a budget, the answer depends on the machine's speed.
+  /// Time for the search, milliseconds; 0: no limit. Preparing the frame (about 0.2 s at 640 x 480)
+  /// is not cut; models share the rest equally. Returns the best found by then. With a budget, the
+  /// answer depends on the machine's speed.
   double budget_ms = 0;
   std::uint64_t seed = 0;  ///< Same frame, library, options and seed: same answer.
   int num_threads = 0;     ///< 0 = one per core. Does not change the answer.
@@ -47,9 +47,9 @@ class Detector {
            ScoreLayers layers = default_score_layers());
 
   /// Ranked interpretations of the frame. Fails with invalid_argument on a frame, request or
-  /// library that breaks a rule (an empty library too), with not_found on the name of a model, also
-  /// of a prior, that the library does not hold. An empty scene is a result, not an error. `trace`,
-  /// if given, receives the candidates of each stage.
+  /// library that breaks a rule (an empty library too). Fails with not_found on a model, also of a
+  /// prior, that the library does not hold. An empty scene is a result, not an error. `trace`, if
+  /// given, receives the candidates of each stage.
   Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request = {},
                                       FrameTrace* trace = nullptr) const;
 

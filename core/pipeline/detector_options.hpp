@@ -32,8 +32,8 @@ struct DetectorOptions {
 };
 
 /// Reads a YAML file that overrides some defaults: groups of fields, or fields by their own name
-/// where only one has it. Fails with not_found, or with invalid_argument naming the file, the line,
-/// the key (unknown keys are errors), the value and the rule.
+/// where it is unique. Fails with not_found or invalid_argument. The message names the file, the
+/// line, the key (unknown keys are errors), the value and the rule.
 Result<DetectorOptions> load_detector_options(const std::string& path);
 
 }  // namespace bpa

@@ -39,8 +39,8 @@ struct Placement {
   int model_number = 0;     ///< The model's number in its library.
   std::string model;        ///< The model's name.
   Pose camera_from_object;  ///< Optical frame of the camera, metres.
-  /// Covariance of (x, y, z, rotation about x, y, z), metres and radians, about the axes of the
-  /// camera frame (the order and meaning of geometry_msgs/PoseWithCovariance).
+  /// Covariance of (x, y, z, rotation about x, y, z), metres and radians. The axes are the camera
+  /// frame's (order and meaning of geometry_msgs/PoseWithCovariance).
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   OrientationUncertainty orientation;
   double score = 0;        ///< Log odds from the components; larger is better.

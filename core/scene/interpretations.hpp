@@ -55,14 +55,15 @@ struct InterpretationOptions {
 void let_compete(Candidates& candidates, const Overlaps& overlaps);
 
 /// Explains the scene by subsets of the candidates (paper section VI): simulated annealing on the
-/// multi-object-placement score. The score adds single scores, each weighted by the share of pixels
-/// that the placement has for itself, the ratio of explained to observed pixels, and a penalty per
-/// object. Returns the best distinct subsets met on the way: at least one, perhaps without objects.
+/// multi-object-placement score. It adds single scores, each weighted by the share of the pixels
+/// that the placement has for itself. It also adds the ratio of explained to observed pixels and a
+/// penalty per object. Returns the best distinct subsets met: at least one, perhaps without
+/// objects.
 ///
-/// Ranking: first the best; then, while new placements remain, interpretations of the most probable
-/// placements that no earlier one holds; then the rest by falling score. The probability of each is
-/// relative to all that are returned. `overlaps` is find_overlaps() of the candidates;
-/// `observed_pixels` counts the searched pixels of the reduced image.
+/// Ranking: first the best. Then, while new placements remain, interpretations of the most probable
+/// placements that no earlier one holds. Then the rest by falling score. Probabilities are relative
+/// to all returned. `overlaps` is find_overlaps() of the candidates; `observed_pixels` counts the
+/// searched pixels of the reduced image.
 std::vector<Interpretation> interpret(const Candidates& candidates, const Overlaps& overlaps,
                                       int observed_pixels, const InterpretationOptions& options);
 

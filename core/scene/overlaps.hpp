@@ -21,10 +21,10 @@ using Overlaps = std::vector<std::vector<Overlap>>;  ///< Of each candidate.
 /// Candidates of lower log odds are ignored: they are no rivals of others.
 constexpr double kHopelessScore = -8;
 
-/// For each candidate that is not hopeless, the others that share observed pixels or their place
-/// with it, by rising `other`. Two conflict when they share more than `max_shared` of what the
-/// smaller one explains, when their origins are too near for two solid objects, or when more than a
-/// tenth of the one's surface lies over 1 cm deep inside of the other.
+/// For each candidate that is not hopeless, the others that share observed pixels or its position,
+/// by rising `other`. Two conflict when they share more than `max_shared` of the smaller one's
+/// explained pixels. Also when their origins are too near for two solid objects. Also when more
+/// than a tenth of one's surface lies over 1 cm deep inside of the other.
 Overlaps find_overlaps(const Candidates& candidates, double max_shared);
 
 /// The rivals of each candidate: those that it conflicts with.
