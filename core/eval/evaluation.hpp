@@ -15,8 +15,8 @@
 
 namespace bpa::eval {
 
-/// When a placement counts as right (paper section VII: 2.5 cm and π/16 "with respect to the
-/// model's symmetry group" on Clutter, RMSE 1 cm on Kinect), and what counts at all.
+/// The tolerances of a right placement, and which instances count. Paper, section VII: 2.5 cm and
+/// π/16 "with respect to the model's symmetry group" on Clutter, RMSE 1 cm on Kinect.
 struct EvaluationOptions {
   double position_m = kPoseTolerance_m;
   double angle_rad = kPoseTolerance_rad;
@@ -74,8 +74,8 @@ struct EstimateOutcome {
   bool has_covariance = false;
   double mahalanobis_squared = 0;  ///< Of the error of a right one, under its covariance.
   int degrees_of_freedom = 6;      ///< Of that; a turn that changes nothing does not count.
-  /// Its own pose and its alternatives, against the instance of the same object that is nearest,
-  /// at most 5 cm away; empty without alternatives or without such an instance.
+  /// Its own pose and its alternatives, against the nearest instance of the same object, at most 5
+  /// cm away; empty without alternatives or without such an instance.
   std::vector<PoseOutcome> poses;
 };
 
@@ -180,16 +180,16 @@ Result<FrameOutcome> evaluate_frame(const io::BopFrame& frame, const EvalObjects
 /// Called after each frame with the number of frames done, from one thread at a time.
 using EvaluationProgress = std::function<void(int)>;
 
-/// Compares results with the truth of `frames`. Frames without a result count as if nothing was
-/// found in them. Fails with invalid_argument when a result names a frame or an object that the
-/// data set does not have, or frames have no truth; with what loading depth fails with (VSD).
+/// Compares results with the truth of `frames`. A frame without a result counts as an empty result.
+/// Fails with invalid_argument when a result names an unknown frame or object, or a frame has no
+/// truth. VSD also has the errors of loading depth.
 Result<EvaluationReport> evaluate(const std::vector<io::BopFrame>& frames,
                                   const EvalObjects& objects,
                                   const std::vector<io::FrameResult>& results,
                                   const EvaluationOptions& options = {},
                                   const EvaluationProgress& progress = {});
 
-/// Judges results of frames that hold no known object: whatever was reported is false.
+/// Judges results of frames that hold no known object: every placement is a false positive.
 Result<EvaluationReport> evaluate_nothing_there(const std::vector<io::FrameResult>& results,
                                                 const EvaluationOptions& options = {});
 

@@ -42,8 +42,8 @@ std::vector<int> match_greedily(const std::vector<double>& scores,
                                 const std::vector<std::vector<double>>& costs,
                                 double limit = kNoMatch);
 
-/// The discrete symmetries times the continuous one in steps so small that no vertex moves by more
-/// than `max_step` diameters (BOP: 0.01, which makes ceil(π / 0.01) steps). The identity is first.
+/// The discrete symmetries times the continuous one, in steps that move a vertex by at most
+/// `max_step` diameters (BOP: 0.01, which makes ceil(π / 0.01) steps). The identity is first.
 std::vector<Pose> discretised_symmetries(const SymmetryGroup& group, double max_step = 0.01);
 
 /// ADD: mean distance of corresponding vertices.
@@ -74,11 +74,11 @@ std::vector<float> render_depth(const TriangleMesh& mesh, const Pose& camera_fro
 constexpr std::array<double, 10> kBopThresholds = {0.05, 0.10, 0.15, 0.20, 0.25,
                                                    0.30, 0.35, 0.40, 0.45, 0.50};
 
-/// VSD for tolerances kBopThresholds x diameter: the fraction of the union of both visible
-/// silhouettes in which the rendered distances differ by the tolerance or more, or only one of the
-/// two is visible. The three images are row-major depths in metres (0: nothing): rendered at the
-/// estimate, rendered at the truth, and measured. Visible is what is at most `delta` behind the
-/// measured surface, or where nothing was measured.
+/// VSD for tolerances kBopThresholds x diameter: the fraction of wrong pixels in the union of both
+/// visible silhouettes. A pixel is wrong where the rendered distances differ by the tolerance or
+/// more, or only one silhouette is visible. The three images are row-major depths in metres (0:
+/// nothing): rendered at the estimate, rendered at the truth, and measured. Visible: at most
+/// `delta` behind the measured surface, or no measurement.
 std::array<double, 10> visible_surface_discrepancy(const std::vector<float>& depth_estimate,
                                                    const std::vector<float>& depth_truth,
                                                    const std::vector<float>& depth_measured,

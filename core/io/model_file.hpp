@@ -11,20 +11,20 @@
 
 // A library on disk is a folder of folders, one for each model:
 //
-//   LIBRARY/NAME/model.json   what the model is, and the size and checksum of the other files
-//   LIBRARY/NAME/surface.ply  its surface (binary; points, normals, colours; metres)
-//   LIBRARY/NAME/index.bin    what was computed from it, so that loading is quick
-//   LIBRARY/NAME/occupancy.bin  the occupancy grid that it was made of, if it was made from views
+//   LIBRARY/NAME/model.json     its description; size and checksum of the other files
+//   LIBRARY/NAME/surface.ply    its surface: binary; points, normals, colours; metres
+//   LIBRARY/NAME/index.bin      what was computed from it, so that loading is quick
+//   LIBRARY/NAME/occupancy.bin  its occupancy grid, if it was made from views
 
 namespace bpa::io {
 
 constexpr int kModelFileVersion = 3;
 
-/// Writes a model into a library, replacing one of the same name; the old model stays whole until
-/// the new one is. Computes the index unless model.prepared has it. Fails with invalid_argument
-/// when the name is not of letters, digits, '_', '-' and '.' (nor starting with '.'), when the
-/// number is not positive or belongs to another model of the library, when the surface is too small
-/// to make a model of; unavailable when it cannot be written.
+/// Writes a model into a library, replacing one of the same name. The old model stays whole until
+/// the new one is. Computes the index unless model.prepared has it. The name has letters, digits,
+/// '_', '-' and '.' (not first). The number is positive and not another model's. Fails with
+/// invalid_argument on other names and numbers and on too small a surface; unavailable when it
+/// cannot be written.
 Status save_model(const std::string& library, const ModelSource& model, int num_threads = 0);
 
 /// Reads LIBRARY/NAME without the occupancy grid, whose file is only checked. `prepared` is the
@@ -60,8 +60,8 @@ Result<LibraryContents> read_library(const std::string& library, int num_threads
 /// One line that says which models of a library cannot be read, and why; ok when all can be.
 Status explain_broken(const std::string& library, const std::vector<BrokenModel>& broken);
 
-/// The models of a library of which none is broken. Fails with not_found when the folder is not
-/// there, invalid_argument when it holds no model, corrupt when any of its models is.
+/// The models of a library, if none is broken. Fails with not_found (no such folder),
+/// invalid_argument (no model in it) or corrupt (a broken model).
 Result<std::vector<ModelSource>> load_library(const std::string& library, int num_threads = 0);
 
 /// The names of a library's models, sorted by name; empty for an empty or missing folder.

@@ -20,7 +20,7 @@ struct PcdCloud : PointCloud {
   bool organised() const { return height > 1; }
 };
 
-/// Reads ascii, binary and compressed PCD files with fields x y z and, if there, rgb or rgba and
+/// Reads ascii, binary and compressed PCD files with fields x y z. Optional fields: rgb or rgba,
 /// normal_x normal_y normal_z. Fails with not_found, corrupt or invalid_argument (no x y z).
 Result<PcdCloud> read_pcd(const std::string& path);
 
@@ -37,10 +37,10 @@ struct OrganisedFrame {
   std::vector<std::string> notes;
 };
 
-/// Makes a frame of an organised cloud. The camera is the pinhole that fits pixels and points best
-/// (least squares in u z = fx x + cx z and v z = fy y + cy z), or `camera` where given. Fails with
-/// invalid_argument when the cloud is not organised, has under 500 finite points or points on both
-/// sides of the camera, or when no pinhole camera sees it so (mean residual over 2 pixels).
+/// Makes a frame of an organised cloud. The camera is `camera` if given. Else it is the best
+/// pinhole: least squares in u z = fx x + cx z, v z = fy y + cy z. Fails with invalid_argument when
+/// the cloud is not organised or has under 500 finite points. Also when it has points on both sides
+/// of the camera, or no pinhole fits (mean residual over 2 pixels).
 Result<OrganisedFrame> frame_from_organised_cloud(const PcdCloud& cloud,
                                                   const Camera* camera = nullptr);
 

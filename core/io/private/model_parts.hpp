@@ -33,10 +33,9 @@ std::string description_text(const ModelDescription& description);
 /// Fails with not_found, or with corrupt: not JSON, without a field, or of another version.
 Result<ModelDescription> read_description(const std::string& path);
 
-/// index.bin. The index is null when it was written by another version of the program, whose
-/// indices differ: it must then be computed again. Little-endian; "bpaindex", kIndexVersion as u32,
-/// the distance transform's corner, cell and size, then arrays: a u64 with the number of elements,
-/// then these. Whatever derive_index() computes is not in it.
+/// index.bin, little-endian. The header: "bpaindex", kIndexVersion as u32, the distance transform's
+/// corner, cell and size. Then arrays: a u64 with the number of elements, then these. It lacks what
+/// derive_index() computes. A file of another program version reads as null: compute again.
 struct IndexFile {
   std::shared_ptr<ModelIndex> index;
   std::vector<float> normal_variance;
@@ -48,10 +47,10 @@ std::string index_bytes(const ModelIndex& index, const std::vector<float>& norma
 Result<IndexFile> parse_index(const std::string& bytes, std::size_t points,
                               const std::string& name);
 
-/// occupancy.bin. Little-endian, packed: "bpaoccup", version u32, corner of cell (0, 0, 0) 3 f32,
-/// side of a cell f32, size 3 i32, number of cells u64; then for each cell in which a ray ended
-/// place 3 u16, which buckets have rays u8 (bit 0, bit 1), and for each that has a StoredBucket.
-/// Fails with unsupported when the grid has more than 65535 cells along an axis.
+/// occupancy.bin, little-endian, packed. The header: "bpaoccup", version u32, corner of cell (0, 0,
+/// 0) 3 f32, side of a cell f32, size 3 i32; cell count u64. Each cell in which a ray ended: place
+/// 3 u16, which buckets have rays u8 (bit 0, bit 1), a StoredBucket for each of these. Fails with
+/// unsupported when the grid has more than 65535 cells along an axis.
 Result<std::string> occupancy_bytes(const OccupancyGrid& grid);
 
 /// What occupancy_bytes wrote, exact to the units of StoredBucket.
