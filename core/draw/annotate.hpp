@@ -42,9 +42,9 @@ struct DrawnObject {
 /// A colour for each object number, far apart for neighbouring numbers, the same in every picture.
 Rgb object_color(int number);
 
-/// The frame's colour image (depth as grey where it has none) with, for each object, the outline of
-/// its projected surface, a translucent fill and its label; nearer objects over further ones.
-/// Labels are moved so that they do not cover each other as long as there is room.
+/// Draws each object over the frame's colour image (depth as grey without colour): the outline of
+/// its projected surface, a translucent fill and its label. Nearer objects cover further ones.
+/// Labels are moved apart while there is room.
 io::ColorImage objects(const Frame& frame, const std::vector<DrawnObject>& drawn);
 
 /// A placement with its name and probability, coloured by its model number. Points into `model`.
@@ -62,9 +62,9 @@ struct JudgedFrame {
   int wrong = 0;   ///< False positives.
 };
 
-/// Truth (left) beside the result (right). Missed instances are outlined in red as MISSED on the
-/// left, false positives (eval::right_cost) in red as FALSE on the right. Objects that the library
-/// does not hold cannot be drawn and are left out.
+/// Truth (left) beside the result (right). MISSED, in red on the left: missed instances. FALSE, in
+/// red on the right: false positives (eval::right_cost). Objects that the library lacks are left
+/// out.
 JudgedFrame truth_beside_result(const Frame& frame, const std::vector<io::BopInstance>& truth,
                                 const Interpretation& result, const ModelLibrary& library,
                                 const std::string& caption);

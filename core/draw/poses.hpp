@@ -12,7 +12,7 @@
 
 namespace bpa::draw {
 
-/// Poses of one model that are drawn alike.
+/// Poses of one model that are drawn in one style.
 struct DrawnPoses {
   enum class Style {
     dots,      ///< A dot in the model's middle.

@@ -21,8 +21,8 @@ io::ColorImage edges(const Frame& frame, const SceneEdges& found);
 /// The edge image in grey: white is 1.
 io::ColorImage edge_image(const Frame& frame, const Image<float>& likelihood);
 
-/// The borders of the super-pixels over the colour image, black where the surface goes on, white
-/// where the affinity across the border is below one half.
+/// The borders of the super-pixels over the colour image. Black: the surface goes on. White: the
+/// affinity across the border is below one half.
 io::ColorImage segment_borders(const Frame& frame, const Segmentation& segmentation);
 
 /// The super-pixels that a placement touches over the dimmed image, from red (not its) to green.

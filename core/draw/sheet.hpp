@@ -34,8 +34,8 @@ io::ColorImage contact_sheet(const std::vector<io::ColorImage>& pictures, int co
 /// brightness is 6 cm; pixels without depth are black.
 io::ColorImage color_beside_depth(const Frame& frame, const std::string& caption);
 
-/// A sheet that shows a model: six sides in its colours with range edges (cyan) and symmetry axes
-/// (blue), how curved it is and how much its normals vary, and its noise curves.
+/// A sheet that shows a model from six sides in its colours, with range edges (cyan) and symmetry
+/// axes (blue). Also its curvature, the variance of its normals and its noise curves.
 io::ColorImage model_sheet(const ObjectModel& model);
 
 }  // namespace bpa::draw

@@ -18,14 +18,15 @@ struct PlaneNoise {
   double missing = 0;  ///< Share of its pixels without depth.
 };
 
-/// Looks at a wide plane, `depth` metres away in the middle, its normal turned by `angle` radians
-/// (up to 80 degrees) about the image's vertical axis; depth as measured, before registration.
+/// Measures a wide plane, `depth` metres away in the middle. Its normal is turned by `angle`
+/// radians (up to 80 degrees) about the image's vertical axis. Depth as measured, before
+/// registration.
 PlaneNoise plane_noise(double depth, double angle, const KinectOptions& options,
                        std::uint64_t seed = 1, int num_threads = 0);
 
-/// What an image tells about its camera, whatever it shows. Pixels are those of a Kinect's infrared
-/// camera (focal length 570.3), whatever the focal length of the frame; disparity is between it and
-/// a projector 7.5 cm beside it.
+/// What an image of any scene tells about its camera. Pixels are those of a Kinect's infrared
+/// camera (focal length 570.3), for any focal length of the frame. Disparity is to a projector 7.5
+/// cm beside it.
 struct DepthStatistics {
   double missing = 0;      ///< Share of pixels without depth, but for an unmeasured margin.
   double small_holes = 0;  ///< Holes of at most 20 square pixels for each 10000 pixels.

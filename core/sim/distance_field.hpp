@@ -46,10 +46,10 @@ double smooth_union(double a, double b, double blend);
 /// `a` without `b`, the crease filled over about `blend`.
 double smooth_difference(double a, double b, double blend);
 
-/// The surface of the field inside the box [low, high] as a closed mesh with outward normals: dual
-/// marching cubes (Nielson 2004) on a grid of `cell` metres, one vertex for each piece of surface
-/// in a cell, moved onto the field's zero. Walls must be thicker than about 1.5 cells, and the
-/// surface must lie two cells inside the box.
+/// The surface of the field inside the box [low, high] as a closed mesh with outward normals. Dual
+/// marching cubes (Nielson 2004) on a grid of `cell` metres. One vertex for each piece of surface
+/// in a cell, moved onto the field's zero. Walls must be thicker than about 1.5 cells. The surface
+/// must lie two cells inside the box.
 TriangleMesh mesh_from_field(const DistanceField& field, const Eigen::Vector3d& low,
                              const Eigen::Vector3d& high, double cell);
 

@@ -10,31 +10,30 @@
 
 // A depth camera with a projected dot pattern (Kinect v1, Xtion, PrimeSense), simulated in steps:
 //
-//  1. Triangulation. An infrared camera sees what a projector 7.5 cm to its right lights: what the
-//     projector does not reach has no depth (shadows left of everything that stands out).
-//  2. Matching. A 9 x 9 window is looked up in the stored pattern (Khoshelham and Elberink 2012,
-//     "Accuracy and resolution of Kinect depth data", Sensors 12): it needs enough lit pixels of
-//     one disparity, so depth ends before an edge does, and edges are ragged by about 0.8 pixels
-//     (lateral noise of Nguyen, Izadi and Lovell 2012, "Modeling Kinect sensor noise", 3DIMPVT), in
-//     waves of a few pixels as windows overlap. Single pixels without an answer are filled.
-//  3. Signal. Its strength falls with z^1.5 and the square root of the cosine of incidence, between
-//     the law of light and a gain control. Matching fails where little light returns (dark, far or
-//     grazing surfaces) and where a mirror-like surface throws the projector's light straight back
-//     (Mallick, Das and Majumdar 2014, "Characterizations of noise in Kinect depth images", IEEE
-//     Sensors J. 14).
-//  4. Noise. Disparity has noise such that depth gets the axial noise of Nguyen et al.,
-//     0.0012 + 0.0019 (z - 0.4)^2 m, plus 0.0001 / sqrt(z) * angle^2 / (pi/2 - angle)^2 m beyond
-//     60 degrees of incidence. Since windows overlap, neighbours share most of it.
-//     A sensor that is not well calibrated adds an error that changes slowly over the image
-//     (Herrera, Kannala and Heikkilä 2012, "Joint depth and color camera calibration with
-//     distortion correction", IEEE T-PAMI 34).
-//  5. Quantisation. Disparity comes in steps of 1/8 pixel (Khoshelham and Elberink), 2.9 mm of
-//     depth at 1 m and growing with z^2, and depth in millimetres.
+//  1. Triangulation. A projector 7.5 cm to the infrared camera's right lights the scene. What it
+//     does not reach has no depth: shadows left of everything that stands out.
+//  2. Matching (Khoshelham and Elberink 2012, "Accuracy and resolution of Kinect depth data",
+//     Sensors 12). A 9 x 9 window is looked up in the stored pattern. It needs enough lit pixels of
+//     one disparity, so depth ends before an edge does. Edges are ragged by about 0.8 pixels
+//     (lateral noise of Nguyen, Izadi and Lovell 2012, "Modeling Kinect sensor noise", 3DIMPVT).
+//     Since windows overlap, edges are waves a few pixels long. Single pixels without a match are
+//     filled.
+//  3. Signal. Its strength falls with z^1.5 and the square root of the cosine of incidence. That is
+//     between the law of light and a gain control. Matching fails where little light returns: dark,
+//     far or grazing surfaces. Mirror-like surfaces that reflect the projector straight back fail
+//     too. Source: Mallick, Das and Majumdar 2014, "Characterizations of noise in Kinect depth
+//     images", IEEE Sensors J. 14.
+//  4. Noise. Depth gets the axial noise of Nguyen et al. through noise of disparity. It is 0.0012 +
+//     0.0019 (z - 0.4)^2 m. Beyond 60 degrees of incidence it gains 0.0001 / sqrt(z) * angle^2 /
+//     (pi/2 - angle)^2 m. Windows overlap: neighbours share most of it. A badly calibrated sensor
+//     adds an error that changes slowly over the image. Source: Herrera, Kannala and Heikkilä 2012,
+//     "Joint depth and color camera calibration with distortion correction", IEEE T-PAMI 34.
+//  5. Quantisation. Disparity comes in steps of 1/8 pixel (Khoshelham and Elberink): 2.9 mm of
+//     depth at 1 m, growing with z^2. Depth is in millimetres.
 //  6. Registration. Depth is carried over to the colour camera, 2.5 cm beside the infrared one.
 //
-// How wide the waves, gaps and holes are was set beside real frames: bpa bench sensor.
-//
-// The colour image has exposure, white balance, blur and noise of its own.
+// The widths of waves, gaps and holes were compared with real frames: bpa bench sensor. The colour
+// image has exposure, white balance, blur and noise of its own.
 
 namespace bpa::sim {
 
@@ -79,8 +78,8 @@ struct KinectOptions {
   }
 };
 
-/// The standard deviation of depth along the axis that is asked of the model, metres (step 4), for
-/// a surface at `depth` metres seen at `angle` radians from its normal.
+/// The axial standard deviation of depth that the model must meet, metres (step 4). For a surface
+/// at `depth` metres seen at `angle` radians from its normal.
 double published_axial_noise(double depth, double angle);
 
 /// A camera's two images, and the truth about them.

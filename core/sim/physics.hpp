@@ -14,7 +14,7 @@ namespace bpa::sim {
 /// One body and where it is let go; bodies are let go one after the other.
 struct FallingBody {
   const SimulatedObject* object = nullptr;
-  Pose world_from_object;  ///< Its height is raised if something already lies that high.
+  Pose world_from_object;  ///< Raised if another body already lies that high.
 };
 
 /// The table's top is at z = 0, centred on the origin; the floor lies far below.

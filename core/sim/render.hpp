@@ -63,7 +63,7 @@ class RayScene {
 
   /// The first surface along the ray, seen from either side.
   std::optional<RayHit> cast(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;
-  /// Whether anything lies strictly between two points, but for the first and last 0.2 mm.
+  /// Whether a surface lies between two points, except in the first and last 0.2 mm.
   bool blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
 
  private:

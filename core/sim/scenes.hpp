@@ -10,7 +10,7 @@
 #include "core/sim/objects.hpp"
 #include "core/sim/render.hpp"
 
-// Whole scenes: objects fall on a table and are looked at as a robot would, with the truth.
+// Whole scenes: objects fall on a table and are seen from a robot's viewpoints, with the truth.
 
 namespace bpa::sim {
 
@@ -125,8 +125,8 @@ std::uint64_t scene_seed(std::uint64_t set_seed, int index);
 /// The mask of one instance's visible pixels: 255 or 0, row-major.
 std::vector<std::uint8_t> visible_mask(const SimulatedFrame& frame, int instance);
 
-/// Where a camera stands that looks at `target` from `distance` metres, `elevation` radians above
-/// the horizon, turned by `azimuth` about the vertical and by `roll` about its own axis.
+/// The pose of a camera that looks at `target` from `distance` metres. It is `elevation` radians
+/// above the horizon, turned by `azimuth` about the vertical and by `roll` about its own axis.
 Pose camera_looking_at(const Eigen::Vector3d& target, double distance, double elevation,
                        double azimuth, double roll);
 
