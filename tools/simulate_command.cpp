@@ -218,7 +218,8 @@ std::pair<CLI::App&, SimulateArguments&> add(CLI::App& simulate, const char* nam
 
 template <class Value>
 void add_range(CLI::App& command, const char* name, Value& low, Value& high, const char* text) {
-  const auto set = [&low, &high](const std::vector<Value>& range) {
+  const auto set = [name, &low, &high](const std::vector<Value>& range) {
+    if (range[0] > range[1]) throw CLI::ValidationError(name, "MIN must not be larger than MAX");
     low = range[0];
     high = range[1];
   };
@@ -263,6 +264,7 @@ void add_scenes(CLI::App& simulate) {
                {"--misregistration", "misregistration"},
                {"--exposure-spread", "exposure_spread"},
                {"--lateral-noise", "lateral_noise"},
+               {"--edge-gaps", "edge_gaps"},
                {"--calibration-error", "calibration_error"}});
 }
 

@@ -168,10 +168,13 @@ int answering_pixel(const Measurement& m, const Noise& noise, double lateral_noi
 }
 
 // Whether matching fails at (x, y), where the surface of pixel `source` answers.
-bool drops_out(const Measurement& m, const Noise& noise, float dropouts, int x, int y, int source) {
+bool drops_out(const Measurement& m, const Noise& noise, const KinectOptions& options, int x, int y,
+               int source) {
+  const auto dropouts = static_cast<float>(options.dropouts);
   if (dropouts <= 0) return false;
   const int i = y * m.camera.width + x;
-  const float enough = source != i ? kEnoughOfOther : kEnoughOfWindow;
+  const auto gaps = static_cast<float>(options.edge_gaps);
+  const float enough = gaps * (source != i ? kEnoughOfOther : kEnoughOfWindow);
   if (window_agreement(m, x, y, m.disparity[source]) < enough + 0.06f * noise.match[i]) return true;
   constexpr float kWeakSignal = 0.032f;
   const float faint = 1 / (1 + std::pow(m.signal[source] / kWeakSignal, 6.0f));
@@ -185,7 +188,7 @@ float measure(const Measurement& m, const Noise& noise, const KinectOptions& opt
   const int i = y * m.camera.width + x;
   const std::size_t source = answering_pixel(m, noise, options.lateral_noise, x, y);
   if (m.disparity[source] <= 0) return 0;
-  if (drops_out(m, noise, static_cast<float>(options.dropouts), x, y, source)) return 0;
+  if (drops_out(m, noise, options, x, y, source)) return 0;
   const double depth = m.depth[source];
   const double pixels_per_metre = m.disparity[source] / depth;
   const double wanted =

@@ -45,6 +45,7 @@ struct KinectOptions {
   double axial_noise = 1;
   double calibration_error = 0;
   double lateral_noise = 1;
+  double edge_gaps = 1;
   double dropouts = 1;
   bool shadows = true;
   bool registered = true;
@@ -65,6 +66,7 @@ struct KinectOptions {
         "calibration_error", calibration_error,
         {0, 2, "Standard deviation of the smooth error of disparity, pixels; 0.4 is 1 cm at 1 m."});
     visit("lateral_noise", lateral_noise, {0, 10, "Times the published noise of edges."});
+    visit("edge_gaps", edge_gaps, {0, 2, "Times the usual share of a window that must agree."});
     visit("dropouts", dropouts, {0, 10, "Times the usual chance that a pixel has no depth."});
     visit("shadows", shadows, {0, 1, "No depth where the projector does not reach."});
     visit("registered", registered,

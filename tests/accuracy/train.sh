@@ -6,9 +6,10 @@
 # file config/score_layers.json. Seeds are fixed: the same program makes the same file.
 #
 # Real objects are not exactly their models, and real sensors are not exactly calibrated: nor are these.
-# Two kinds of scenes cover what score components depend on: heaps seen from afar by a Kinect, and few
-# objects seen closely by a camera of longer focal length, with more ragged edges and another exposure and
-# white balance than the models' colours. Half of the scenes hold look-alikes of the objects.
+# Two kinds of scenes cover what score components depend on. Heaps are seen from afar by a Kinect. Few
+# objects are seen closely by an Xtion of longer focal length: its edges are more ragged, depth ends further
+# from them (bpa bench sensor), and exposure and white balance differ from the models' colours. Half of the
+# scenes hold look-alikes of the objects.
 #
 # The placements to learn from are those that the detector finds with the layers built in so far: after a
 # change of the detector, run this once, copy the file to config/, build, and run it again.
@@ -25,7 +26,7 @@ simulate() { # FOLDER SEED [OPTION...]
 }
 readonly heaps=(--clutter 0.3,1 --objects 6,14)
 readonly close=(--clutter 0,0.7 --objects 3,8 --distance 0.5,1.1 --focal 525,1067 --lateral-noise 2
-  --exposure-spread 0.5)
+  --edge-gaps 1.5 --exposure-spread 0.5)
 simulate heaps 7000 "${heaps[@]}"
 simulate heaps_look_alikes 8000 "${heaps[@]}" --look-alikes 6
 simulate close 9000 "${close[@]}"
