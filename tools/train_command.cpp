@@ -17,8 +17,8 @@ namespace {
 struct TrainArguments {
   CommonOptions common;
   DetectorArguments detector;
-  DatasetOptions dataset;        // without its folder
-  std::vector<std::string> bop;  // folders
+  DatasetOptions dataset;                       // without its folder
+  std::vector<std::string> bop, round_two_bop;  // folders; of the latter only round two learns
   std::string output, made_by = "bpa train";
   int held_out = 5;
 };
@@ -74,25 +74,32 @@ AllSamples collect(const TrainArguments& a) {
   const Detector detector = open_detector(built_in, a.common.threads);
   const DetectorOptions& options = detector.options();
   AllSamples samples;
+  bool round_three = true;
   const auto use = [&](const TrueFrame& frame, const auto&, const FrameTrace& trace) {
     const int index = static_cast<int>(frame.index);
     const bool held_out = a.held_out > 0 && index % a.held_out == a.held_out - 1;
     const auto part = held_out ? &Samples::held_out : &Samples::training;
     (samples.round_two.*part).push_back(round_two_samples(trace, options, frame.truth));
+    if (!round_three) return;
     (samples.round_three.*part).push_back(round_three_samples(trace, options, frame.truth));
   };
-  for (const std::string& folder : a.bop) {
-    DatasetOptions dataset = a.dataset;
-    dataset.folder = folder;
-    search_frames(detector, dataset, a.common, use);
+  for (const std::vector<std::string>* const folders : {&a.bop, &a.round_two_bop}) {
+    round_three = folders == &a.bop;
+    for (const std::string& folder : *folders) {
+      DatasetOptions dataset = a.dataset;
+      dataset.folder = folder;
+      search_frames(detector, dataset, a.common, use);
+    }
   }
   return samples;
 }
 
 // Of what a layer was made.
-std::string provenance(const TrainArguments& a, std::size_t frames) {
+std::string provenance(const TrainArguments& a, bool round_two, std::size_t frames) {
+  std::vector<std::string> folders = a.bop;
+  if (round_two) folders.insert(folders.end(), a.round_two_bop.begin(), a.round_two_bop.end());
   std::string sets;
-  for (const std::string& folder : a.bop) {
+  for (const std::string& folder : folders) {
     sets += (sets.empty() ? "" : " and ") + folder.substr(folder.find_last_of('/') + 1);
   }
   return a.made_by + ": split " + a.dataset.split + " of " + sets + ", " + std::to_string(frames) +
@@ -125,10 +132,12 @@ Samples without_color(Samples samples) {
   return samples;
 }
 
-ScoreLayer learn(const TrainArguments& a, const char* name, const Samples& samples) {
+const std::string kRoundTwo = "round two";
+
+ScoreLayer learn(const TrainArguments& a, const std::string& name, const Samples& samples) {
   ScoreLayer layer = or_throw(train_score_layer(samples.training));
-  layer.provenance = provenance(a, samples.training.size());
-  std::printf("%s\n", name);
+  layer.provenance = provenance(a, name == kRoundTwo, samples.training.size());
+  std::printf("%s\n", name.c_str());
   print_reliability("training", layer, samples.training);
   print_reliability("held out", layer, samples.held_out);
   return layer;
@@ -137,7 +146,7 @@ ScoreLayer learn(const TrainArguments& a, const char* name, const Samples& sampl
 void train(const TrainArguments& a) {
   const AllSamples samples = collect(a);
   ScoreLayers layers;
-  layers.round_two = learn(a, "round two", samples.round_two);
+  layers.round_two = learn(a, kRoundTwo, samples.round_two);
   layers.round_three = learn(a, "round three", samples.round_three);
   layers.without_color = learn(a, "without colours", without_color(samples.round_three));
   const std::string path = a.output.empty() ? score_layer_path(a.detector.library) : a.output;
@@ -153,6 +162,9 @@ void add_train_command(CLI::App& program) {
   add_detector_options(command, a.detector);
   add_option(command, "--bop", a.bop, "Folder of a BOP data set with truth; may be repeated", "DIR")
       ->required();
+  add_option(command, "--round-two-bop", a.round_two_bop,
+             "Data sets that only the layer of round two learns from, which orders placements",
+             "DIR");
   add_split_options(command, a.dataset);
   add_option(command, "--held-out", a.held_out,
              "Keep every N-th frame out of training, to judge the layers by; 0 = none")

@@ -9,7 +9,8 @@
 # Two kinds of scenes cover what score components depend on. Heaps are seen from afar by a Kinect. Few
 # objects are seen closely by an Xtion of longer focal length: its edges are more ragged, depth ends further
 # from them (bpa bench sensor), and exposure and white balance differ from the models' colours. Half of the
-# scenes hold look-alikes of the objects.
+# scenes hold look-alikes of the objects. Round two learns to order placements from all of them. Probabilities
+# are learned from a third with look-alikes: from more, right placements in real frames are disbelieved.
 #
 # The placements to learn from are those that the detector finds with the layers built in so far: after a
 # change of the detector, run this once, copy the file to config/, build, and run it again.
@@ -32,6 +33,7 @@ simulate heaps_look_alikes 8000 "${heaps[@]}" --look-alikes 6
 simulate close 9000 "${close[@]}"
 simulate close_look_alikes 10000 "${close[@]}" --look-alikes 6
 "$programs/bpa" model from-bop "$output/heaps" --library "$output/library"
-"$programs/bpa" train --bop "$output"/{heaps,heaps_look_alikes,close,close_look_alikes} \
+"$programs/bpa" train --bop "$output"/{heaps,heaps_look_alikes,close} \
+  --round-two-bop "$output/close_look_alikes" \
   --library "$output/library" --output "$output/score_layers.json" \
   --made-by "tests/accuracy/train.sh, $scenes scenes of each data set"
