@@ -142,6 +142,8 @@ class DetectRun {
           {input.name, file, input.frame, trace, scene, detector_.score_layers(), entry.truth});
     }
     if (a_.annotate.empty() || scene.interpretations.empty()) return;
+    write_picture(file + "_summary", draw::summary(input.frame, scene.interpretations,
+                                                   detector_.library(), input.name));
     const Interpretation& best = scene.interpretations.front();
     if (!entry.has_truth) {
       return write_picture(file, draw::annotate(input.frame, best, detector_.library()));
@@ -248,10 +250,11 @@ void add_detect_command(CLI::App& program) {
   add_question(command, a);
   add_option(command, "--csv", a.csv, "Write the best interpretation as BOP CSV", "FILE");
   add_option(command, "--json", a.json, "Write all interpretations as JSON", "FILE");
-  add_option(command, "--annotate", a.annotate,
-             "Write a picture of each frame and, where the truth is known, contact_sheet.png and "
-             "worst_frames.png",
-             "DIR");
+  add_option(
+      command, "--annotate", a.annotate,
+      "Write of each frame a picture and a summary with the second interpretation; where the "
+      "truth is known, also contact_sheet.png and worst_frames.png",
+      "DIR");
   add_option(command, "--explain", a.explain,
              "Write pictures of each stage of the search for each frame and model. index.html "
              "has counts, times and score components",

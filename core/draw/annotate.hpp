@@ -54,6 +54,11 @@ DrawnObject placed(const Placement& placement, const ObjectModel& model);
 io::ColorImage annotate(const Frame& frame, const Interpretation& interpretation,
                         const ModelLibrary& library);
 
+/// One picture of a result: colour beside depth under `caption`; then, for the best interpretation
+/// and the second, outlines with probabilities beside the models in their colours.
+io::ColorImage summary(const Frame& frame, const std::vector<Interpretation>& interpretations,
+                       const ModelLibrary& library, const std::string& caption);
+
 /// A picture of a frame, and how many instances and placements are which.
 struct JudgedFrame {
   io::ColorImage picture;
