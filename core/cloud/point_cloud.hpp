@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace bpa {
@@ -46,12 +47,19 @@ PointCloud select(const PointCloud& cloud, const Condition& condition) {
   return select(cloud, indices);
 }
 
+struct Texture;  // core/cloud/texture.hpp
+
 /// A triangle mesh. Metres once read by io.
 struct TriangleMesh {
   std::vector<Eigen::Vector3f> vertices;
-  std::vector<Eigen::Vector3f> normals;                 ///< Per vertex; may be empty.
-  std::vector<std::array<std::uint8_t, 3>> colors;      ///< Per vertex, rgb; may be empty.
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Counter-clockwise seen from outside.
+  std::vector<Eigen::Vector3f> normals;                  ///< Per vertex; may be empty.
+  std::vector<std::array<std::uint8_t, 3>> colors;       ///< Per vertex, rgb; may be empty.
+  std::vector<std::array<std::uint32_t, 3>> triangles;   ///< Counter-clockwise seen from outside.
+  std::vector<std::shared_ptr<const Texture>> textures;  ///< May be empty.
+  std::vector<std::int32_t> texture_of;  ///< Per triangle, an index of `textures`; -1: `colors`
+                                         ///< hold there. Empty without textures.
+  std::vector<Eigen::Vector2f> uv;  ///< Per vertex: u to the right, v up, (0, 0) is the lower left
+                                    ///< corner of the image. Empty without textures.
 };
 
 }  // namespace bpa

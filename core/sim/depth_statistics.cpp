@@ -33,7 +33,10 @@ struct Moments {
 TriangleMesh plate(double left, double right, double half_height) {
   const auto l = static_cast<float>(left), r = static_cast<float>(right);
   const auto h = static_cast<float>(half_height);
-  return {{{l, -h, 0}, {r, -h, 0}, {r, h, 0}, {l, h, 0}}, {}, {}, {{0, 1, 2}, {0, 2, 3}}};
+  TriangleMesh mesh;
+  mesh.vertices = {{l, -h, 0}, {r, -h, 0}, {r, h, 0}, {l, h, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
 }
 
 KinectImage see_plate(const TriangleMesh& mesh, double depth, double angle,
