@@ -12,6 +12,7 @@
 #include "core/base/random.hpp"
 #include "core/cloud/curvature.hpp"
 #include "core/cloud/neighbor_grid.hpp"
+#include "core/cloud/texture.hpp"
 #include "core/geometry/sphere_directions.hpp"
 #include "core/model/view_sphere.hpp"
 #include "core/modeling/model_source.hpp"
@@ -38,6 +39,8 @@ Eigen::Vector3f cross_of(const TriangleMesh& mesh, std::size_t triangle) {
 Samples sample_triangles(const TriangleMesh& mesh, double per_square_metre) {
   Samples samples;
   RandomStream random(1);
+  const bool colored = has_colors(mesh);
+  const auto side = static_cast<float>(1 / std::sqrt(per_square_metre));  // of a sample's square
   double carry = 0;
   for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
     const auto& [first, second, third] = mesh.triangles[k];
@@ -54,13 +57,11 @@ Samples sample_triangles(const TriangleMesh& mesh, double per_square_metre) {
       samples.cloud.points.push_back(a + s * ab + t * ac);
       samples.cloud.normals.push_back(cross.normalized());
       samples.triangles.push_back(k);
-      if (mesh.colors.empty()) continue;
-      std::array<std::uint8_t, 3>& color = samples.cloud.colors.emplace_back();
-      for (int c = 0; c < 3; ++c) {
-        const float from = mesh.colors[first][c];
-        color[c] = static_cast<std::uint8_t>(from + s * (mesh.colors[second][c] - from) +
-                                             t * (mesh.colors[third][c] - from));
-      }
+      if (!colored) continue;
+      const Eigen::Vector3f color = color_at(mesh, k, {s, t}, side);
+      samples.cloud.colors.push_back({static_cast<std::uint8_t>(color[0]),
+                                      static_cast<std::uint8_t>(color[1]),
+                                      static_cast<std::uint8_t>(color[2])});
     }
   }
   return samples;

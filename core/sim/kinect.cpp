@@ -58,7 +58,8 @@ Measurement see(const KinectView& infrared, const KinectOptions& options, int nu
     const Eigen::Vector3f lifted = point + 3e-4f * hit->face_normal;
     if (options.shadows && (lit <= 0 || infrared.scene.blocked(lifted, projector))) return;
     const Material material = infrared.shading.material(hit->instance, Material{});
-    const float brightness = hit->color.sum() / 3;
+    const auto pixel = static_cast<float>(hit->distance / m.camera.fx);
+    const float brightness = infrared.scene.color(*hit, pixel).sum() / 3;
     const auto shine = static_cast<float>(material.shine);
     const float away = 1 - 0.6f * shine * m.angle[i] / (std::numbers::pi_v<float> / 2);
     m.signal[i] = static_cast<float>(material.infrared) * (0.6f + 0.4f * brightness) *

@@ -10,6 +10,7 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include "core/cloud/texture.hpp"
 #include "core/sim/render.hpp"
 
 namespace bpa::sim {
@@ -119,24 +120,31 @@ std::optional<RayHit> RayScene::cast(const Eigen::Vector3f& origin,
   const Eigen::Vector3f edge = mesh.vertices[triangle[1]] - a;
   hit.face_normal = edge.cross(mesh.vertices[triangle[2]] - a).normalized();
   hit.normal = hit.face_normal;
-  hit.color = Eigen::Vector3f::Constant(0.6f);
+  hit.triangle = query.hit.primID;
+  hit.weights = {query.hit.u, query.hit.v};
   if (!mesh.normals.empty()) {
     hit.normal.setZero();
     for (int k = 0; k < 3; ++k) hit.normal += weight[k] * mesh.normals[triangle[k]];
     hit.normal.normalize();
-  }
-  if (!mesh.colors.empty()) {
-    hit.color.setZero();
-    for (int k = 0; k < 3; ++k) {
-      const auto& c = mesh.colors[triangle[k]];
-      hit.color += weight[k] / 255 * Eigen::Vector3f(c[0], c[1], c[2]);
-    }
   }
   for (Eigen::Vector3f* normal : {&hit.normal, &hit.face_normal}) {
     *normal = rotations_[hit.instance] * *normal;
     if (normal->dot(direction) > 0) *normal = -*normal;
   }
   return hit;
+}
+
+Eigen::Vector3f RayScene::color(const RayHit& hit, float side) const {
+  const TriangleMesh& mesh = meshes_->mesh(instances_[hit.instance].mesh);
+  if (!mesh.textures.empty()) return color_at(mesh, hit.triangle, hit.weights, side) / 255;
+  if (mesh.colors.empty()) return Eigen::Vector3f::Constant(0.6f);
+  const float weight[] = {1 - hit.weights.x() - hit.weights.y(), hit.weights.x(), hit.weights.y()};
+  Eigen::Vector3f color = Eigen::Vector3f::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const auto& c = mesh.colors[mesh.triangles[hit.triangle][k]];
+    color += weight[k] / 255 * Eigen::Vector3f(c[0], c[1], c[2]);
+  }
+  return color;
 }
 
 bool RayScene::blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {

@@ -8,8 +8,9 @@
 namespace bpa::sim {
 namespace {
 
+// `pixel` is the side of a pixel at the distance 1.
 Eigen::Vector3f shade(const RayScene& scene, const Shading& shading, const Eigen::Vector3f& origin,
-                      const Eigen::Vector3f& direction, const RayHit& hit) {
+                      const Eigen::Vector3f& direction, const RayHit& hit, float pixel) {
   const Eigen::Vector3f point = origin + hit.distance * direction;
   const Eigen::Vector3f lifted = point + 3e-4f * hit.face_normal;
   const Eigen::Vector3f reflected =
@@ -28,7 +29,7 @@ Eigen::Vector3f shade(const RayScene& scene, const Shading& shading, const Eigen
     const float mirror = std::max(0.0f, reflected.dot(to_light));
     highlight += power * static_cast<float>(material.shine) * std::pow(mirror, 40.0f);
   }
-  return diffuse * hit.color + Eigen::Vector3f::Constant(highlight);
+  return diffuse * scene.color(hit, pixel * hit.distance) + Eigen::Vector3f::Constant(highlight);
 }
 
 // The pixels a mesh's corners span, at most one image beyond each border.
@@ -59,6 +60,7 @@ RenderedImage render(const RayScene& scene, const Camera& camera, const Pose& wo
   if (shading) image.color.assign(3 * count, 0);
   const Eigen::Matrix3f rotation = world_from_camera.matrix().cast<float>();
   const Eigen::Vector3f origin = world_from_camera.translation.cast<float>();
+  const auto pixel = static_cast<float>(1 / camera.fx);
   for_each_pixel(camera, num_threads, [&](int x, int y, int i) {
     const Eigen::Vector3f direction =
         rotation * camera.unproject(x, y, 1).cast<float>();  // z = 1: distance is depth
@@ -69,8 +71,8 @@ RenderedImage render(const RayScene& scene, const Camera& camera, const Pose& wo
       image.normals[i] = rotation.transpose() * hit->normal;
     }
     if (!shading) return;
-    const Eigen::Vector3f color =
-        hit ? shade(scene, *shading, origin, direction, *hit) : shading->background.cast<float>();
+    const Eigen::Vector3f color = hit ? shade(scene, *shading, origin, direction, *hit, pixel)
+                                      : shading->background.cast<float>();
     for (int c = 0; c < 3; ++c) {
       image.color[3 * i + c] =
           static_cast<std::uint8_t>(std::lround(255 * std::clamp(color[c], 0.0f, 1.0f)));

@@ -27,7 +27,8 @@ struct RayHit {
   int instance = -1;            ///< Index of the posed mesh.
   Eigen::Vector3f normal;       ///< Unit length, toward the ray's origin; smooth if the mesh's are.
   Eigen::Vector3f face_normal;  ///< Of the triangle, toward the ray's origin.
-  Eigen::Vector3f color;        ///< rgb in [0, 1]; grey for a mesh without colours.
+  std::uint32_t triangle = 0;   ///< Index in the mesh.
+  Eigen::Vector2f weights;      ///< Barycentric, of the triangle's second and third corner.
 };
 
 /// Meshes prepared for ray casting, to be posed in any number of scenes. They must outlive it.
@@ -63,6 +64,8 @@ class RayScene {
 
   /// The first surface along the ray, seen from either side.
   std::optional<RayHit> cast(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;
+  /// rgb in [0, 1], averaged over a square of `side` metres; grey for a mesh without colours.
+  Eigen::Vector3f color(const RayHit& hit, float side) const;
   /// Whether a surface lies between two points, except in the first and last 0.2 mm.
   bool blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/cloud/neighbor_grid.hpp"
+#include "core/cloud/texture.hpp"
 #include "core/modeling/model_source.hpp"
 #include "tests/support/meshes.hpp"
 
@@ -254,6 +255,34 @@ TEST(SurfaceSampling, ColoursFollowTheVertices) {
     EXPECT_NEAR(surface.colors[i][0], 200 * part, 8);
     EXPECT_EQ(surface.colors[i][1], 10);
   }
+}
+
+// Two triangles a face, each with the whole image: red on the left, blue on the right.
+TEST(SurfaceSampling, ColoursOfATextureVaryInsideTriangles) {
+  TriangleMesh mesh = test::box_mesh(kBoxHalf);
+  RgbImage image(64, 64, {255, 0, 0});
+  for (int i = 0; i < 64 * 64; ++i) {
+    if (i % 64 >= 32) image.pixels[static_cast<std::size_t>(i)] = {0, 0, 255};
+  }
+  mesh.textures = {make_texture(image)};
+  mesh.texture_of.assign(mesh.triangles.size(), 0);
+  for (std::size_t k = 0; k < mesh.vertices.size(); k += 4) {
+    mesh.uv.insert(mesh.uv.end(), {{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  }
+  const PointCloud surface = source_of(mesh).surface;
+  ASSERT_EQ(surface.colors.size(), surface.size());
+  int red = 0, blue = 0;
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    Eigen::Index axis = 0;
+    if (surface.normals[i].cwiseAbs().maxCoeff(&axis) < 0.999f) continue;  // an edge of the box
+    const float x = surface.points[i][(axis + 1) % 3];  // along which test::add_box draws
+    if (std::abs(x) < 2 * kSpacing) continue;
+    const std::array<std::uint8_t, 3> expected =
+        x < 0 ? std::array<std::uint8_t, 3>{255, 0, 0} : std::array<std::uint8_t, 3>{0, 0, 255};
+    EXPECT_EQ(surface.colors[i], expected);
+    ++(x < 0 ? red : blue);
+  }
+  EXPECT_GT(std::min(red, blue), 1000);
 }
 
 TEST(SurfaceSampling, WrongUnitsAreRefusedWithAHint) {

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/cloud/texture.hpp"
 #include "core/sim/distance_field.hpp"
 
 namespace bpa::sim {
@@ -94,6 +95,40 @@ TEST(Render, OcclusionAndBorderLowerTheVisibleFraction) {
   EXPECT_EQ(seen[3].fraction(), 1);
   EXPECT_LT(seen[1].fraction(), 0.6);
   EXPECT_GT(seen[1].all_pixels, 40 * 40);
+}
+
+TEST(Render, TexturesAreLookedUpForEachPixelAndBlurredByDistance) {
+  TriangleMesh
+      mesh;  // a square across the view; rows of the image run down, as those of the camera
+  mesh.vertices = {{-0.1f, 0.1f, 0}, {0.1f, 0.1f, 0}, {0.1f, -0.1f, 0}, {-0.1f, -0.1f, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.uv = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  mesh.texture_of = {0, 0};
+  const auto color_at = [&](const RgbImage& texture, double distance, int x, int y) {
+    mesh.textures = {make_texture(texture)};
+    const RayMeshes meshes({&mesh});
+    const RayScene scene(meshes, {{0, Pose{Eigen::Quaterniond::Identity(), {0, 0, distance}}}});
+    Shading even;
+    even.lights.clear();
+    even.ambient = 2;  // half of it falls on what faces down the z axis
+    const std::vector<std::uint8_t> color = render(scene, kCamera, Pose{}, even, 1).color;
+    const std::size_t pixel = 3 * (static_cast<std::size_t>(y) * 160 + static_cast<std::size_t>(x));
+    return std::array<int, 3>{color[pixel], color[pixel + 1], color[pixel + 2]};
+  };
+  RgbImage corners(2, 2, {});
+  corners.pixels = {{100, 0, 0}, {0, 100, 0}, {0, 0, 100}, {100, 100, 0}};
+  // At 0.4 m a pixel is 2.9 mm; the middles of the quarters are 17.5 pixels off the centre.
+  EXPECT_NEAR(color_at(corners, 0.4, 62, 42)[0], 100, 4);
+  EXPECT_NEAR(color_at(corners, 0.4, 97, 42)[1], 100, 4);
+  EXPECT_NEAR(color_at(corners, 0.4, 62, 77)[2], 100, 4);
+  EXPECT_NEAR(color_at(corners, 0.4, 62, 77)[0], 0, 4);
+  RgbImage board(256, 256, {});
+  for (int i = 0; i < 256 * 256; ++i) {
+    const int bright = (i % 256 + i / 256) % 2;
+    board.pixels[static_cast<std::size_t>(i)].fill(static_cast<std::uint8_t>(200 * bright));
+  }
+  EXPECT_NEAR(color_at(board, 0.4, 61, 53)[0], 100, 2);
+  EXPECT_NEAR(color_at(board, 0.4, 66, 58)[0], 100, 2);
 }
 
 TEST(Render, NoThreadCountChangesTheImage) {
