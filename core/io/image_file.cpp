@@ -4,8 +4,8 @@
 // anything, so PNG bytes are checked chunk by chunk first, and only sound files reach it.
 #include "core/io/image_file.hpp"
 
+#include <algorithm>
 #include <fstream>
-#include <string_view>
 
 #include <opencv2/imgcodecs.hpp>
 
@@ -24,6 +24,14 @@ std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
   return value;
 }
 
+Status check_sides(const std::string& path, const ImageSize& size) {
+  if (std::min(size.width, size.height) >= 1 && std::max(size.width, size.height) <= kMaxSide) {
+    return {};
+  }
+  return invalid_argument(path, " has ", size.width, "x", size.height,
+                          " pixels; each side must be 1 to ", kMaxSide);
+}
+
 Result<ImageSize> parse_png_header(const std::string& path, std::string_view bytes) {
   if (bytes.substr(0, 8) != kPngSignature) return corrupt(path, " is not a PNG image");
   if (bytes.size() < 33 || bytes.substr(12, 4) != "IHDR") return corrupt(path, " is truncated");
@@ -33,11 +41,25 @@ Result<ImageSize> parse_png_header(const std::string& path, std::string_view byt
   size.bit_depth = static_cast<std::uint8_t>(bytes[24]);
   const char color_type = bytes[25];
   size.channels = color_type == 0 ? 1 : color_type == 4 ? 2 : color_type == 6 ? 4 : 3;
-  if (size.width < 1 || size.height < 1 || size.width > kMaxSide || size.height > kMaxSide) {
-    return invalid_argument(path, " has ", size.width, "x", size.height,
-                            " pixels; each side must be 1 to ", kMaxSide);
-  }
+  if (Status status = check_sides(path, size); !status.ok()) return status;
   return size;
+}
+
+/// Follows the segments of a JPEG to the frame header (ITU-T T.81, B.2.2).
+Result<ImageSize> parse_jpeg_header(const std::string& path, std::string_view bytes) {
+  const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
+  const auto number = [&](std::size_t i) { return byte(i) << 8 | byte(i + 1); };
+  for (std::size_t at = 2; at + 10 <= bytes.size() && byte(at) == 0xff;) {
+    const int marker = byte(at + 1);
+    const bool table = marker == 0xc4 || marker == 0xc8 || marker == 0xcc;
+    if (marker >= 0xc0 && marker <= 0xcf && !table) {
+      const ImageSize size{number(at + 7), number(at + 5), byte(at + 4), byte(at + 9)};
+      if (Status status = check_sides(path, size); !status.ok()) return status;
+      return size;
+    }
+    at += marker == 0xff ? 1 : 2 + static_cast<std::size_t>(number(at + 2));
+  }
+  return corrupt(path, " is truncated");
 }
 
 /// Follows the chunks to IEND and compares every checksum.
@@ -56,25 +78,32 @@ Status check_png_chunks(const std::string& path, std::string_view bytes) {
   return corrupt(path, " is truncated");
 }
 
-/// Decodes a PNG whose header passes check(size), and with `jpeg_too` a JPEG, unchecked.
-Result<cv::Mat> read_image(const std::string& path, int flags, bool jpeg_too, const auto& check) {
-  const Result<std::string> bytes = read_file(path);
-  if (!bytes.ok()) return bytes.status();
-  if (!jpeg_too || !bytes->starts_with("\xff\xd8\xff")) {
-    const Result<ImageSize> size = parse_png_header(path, *bytes);
-    if (!size.ok()) return size.status();
-    if (Status status = check(*size); !status.ok()) return status;
-    if (Status status = check_png_chunks(path, *bytes); !status.ok()) return status;
+/// Decodes a PNG, or with `jpeg_too` a JPEG, whose header passes check(size).
+Result<cv::Mat> decode(const std::string& path, std::string_view bytes, int flags, bool jpeg_too,
+                       const auto& check) {
+  const bool jpeg = jpeg_too && bytes.starts_with("\xff\xd8\xff");
+  if (jpeg_too && !jpeg && !bytes.starts_with(kPngSignature)) {
+    return corrupt(path, " is not a PNG or JPEG image");
   }
+  const Result<ImageSize> size =
+      jpeg ? parse_jpeg_header(path, bytes) : parse_png_header(path, bytes);
+  if (!size.ok()) return size.status();
+  if (Status status = check(*size); !status.ok()) return status;
+  if (Status status = jpeg ? Status() : check_png_chunks(path, bytes); !status.ok()) return status;
   cv::Mat image;
   try {
     image = cv::imdecode(
-        cv::Mat(1, static_cast<int>(bytes->size()), CV_8U, const_cast<char*>(bytes->data())),
-        flags);
+        cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data())), flags);
   } catch (const std::exception&) {
   }
   if (image.empty()) return corrupt(path, " is not an image that can be decoded");
   return image;
+}
+
+Result<cv::Mat> read_image(const std::string& path, int flags, bool jpeg_too, const auto& check) {
+  const Result<std::string> bytes = read_file(path);
+  if (!bytes.ok()) return bytes.status();
+  return decode(path, *bytes, flags, jpeg_too, check);
 }
 
 /// Writes width x height pixels of an OpenCV type, of which `pixels` holds `channels` values each.
@@ -97,8 +126,16 @@ Status encode(const std::string& path, int width, int height, int type, int chan
   return write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
+constexpr int kColorFlags = cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION;
+
 void swap_red_and_blue(std::vector<std::uint8_t>& pixels) {
   for (std::size_t i = 0; i + 2 < pixels.size(); i += 3) std::swap(pixels[i], pixels[i + 2]);
+}
+
+ColorImage to_color_image(const cv::Mat& bgr) {
+  ColorImage image{bgr.cols, bgr.rows, {bgr.datastart, bgr.dataend}};
+  swap_red_and_blue(image.pixels);
+  return image;
 }
 
 }  // namespace
@@ -117,12 +154,21 @@ Result<ColorImage> read_color_image(const std::string& path) {
     return invalid_argument(path, " has ", size.bit_depth,
                             " bits a channel; a colour image must have 8");
   };
-  const Result<cv::Mat> image =
-      read_image(path, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION, true, check);
+  const Result<cv::Mat> image = read_image(path, kColorFlags, true, check);
   if (!image.ok()) return image.status();
-  ColorImage result{image->cols, image->rows, {image->datastart, image->dataend}};
-  swap_red_and_blue(result.pixels);
-  return result;
+  return to_color_image(*image);
+}
+
+Result<ColorImage> decode_color_image(std::string_view bytes, const std::string& name,
+                                      std::size_t max_pixels) {
+  const auto check = [&](const ImageSize& size) -> Status {
+    const std::size_t pixels = static_cast<std::size_t>(size.width) * size.height;
+    if (pixels <= max_pixels) return {};
+    return invalid_argument(name, " has ", pixels, " pixels; at most ", max_pixels, " can be read");
+  };
+  const Result<cv::Mat> image = decode(name, bytes, kColorFlags, true, check);
+  if (!image.ok()) return image.status();
+  return to_color_image(*image);
 }
 
 Result<GrayImage> read_gray_png(const std::string& path) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/status.hpp"
@@ -28,13 +29,17 @@ struct GrayImage {
 struct ImageSize {
   int width = 0;
   int height = 0;
-  int bit_depth = 0;  ///< Bits a channel; 0 when the format does not say (JPEG).
+  int bit_depth = 0;  ///< Bits a channel.
   int channels = 0;
 };
 
 /// Reads an 8-bit PNG or JPEG of 1, 3 or 4 channels as rgb; alpha is dropped. All readers fail with
 /// not_found, corrupt (the message names the file) or invalid_argument (wrong kind of image).
 Result<ColorImage> read_color_image(const std::string& path);
+/// The same of an image in memory, of any bit depth and at most `max_pixels`; `name` is for
+/// messages.
+Result<ColorImage> decode_color_image(std::string_view bytes, const std::string& name,
+                                      std::size_t max_pixels);
 /// Reads a 1-channel PNG of 8 or 16 bits.
 Result<GrayImage> read_gray_png(const std::string& path);
 /// Reads the header of a PNG only.

@@ -87,6 +87,17 @@ TEST(ImageFile, KindsAreNotConfused) {
   EXPECT_EQ(read_color_image(folder / "none.png").status().code, StatusCode::not_found);
 }
 
+TEST(ImageFile, AHugeJpegIsRefusedBeforeItIsDecoded) {
+  const test::TemporaryFolder folder;
+  // The frame header says 65535 x 65535 pixels (ITU-T T.81, B.2.2).
+  spill(folder / "a.jpg",
+        std::string("\xff\xd8\xff\xe0\0\x04..\xff\xc0\0\x11\x08", 13) + "\xff\xff\xff\xff\x03more");
+  EXPECT_EQ(read_color_image(folder / "a.jpg").status().message,
+            (folder / "a.jpg") + " has 65535x65535 pixels; each side must be 1 to 8192");
+  spill(folder / "a.jpg", "\xff\xd8\xff\xe0");
+  EXPECT_EQ(read_color_image(folder / "a.jpg").status().code, StatusCode::corrupt);
+}
+
 TEST(FrameFile, SizesMustAgree) {
   const test::TemporaryFolder folder;
   ASSERT_TRUE(write_color_png(folder / "c.png", gradient(40, 30)).ok());
