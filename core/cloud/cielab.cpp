@@ -10,11 +10,6 @@
 namespace bpa {
 namespace {
 
-// IEC 61966-2-1.
-double linear_of_srgb(double value) {
-  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-}
-
 // CIE 15: a cube root with a straight foot.
 double cielab_root(double value) {
   constexpr double kFoot = 216.0 / 24389.0;
@@ -29,6 +24,14 @@ float interpolate(const std::array<float, N>& table, float position) {
 }
 
 }  // namespace
+
+double linear_of_srgb(double value) {
+  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
+double srgb_of_linear(double value) {
+  return value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
+}
 
 CielabConverter::CielabConverter() {
   for (std::size_t i = 0; i < linear_.size(); ++i) {

@@ -11,6 +11,10 @@
 
 namespace bpa {
 
+/// Light and the number that stands for it in an image (IEC 61966-2-1), both in [0, 1].
+double linear_of_srgb(double value);
+double srgb_of_linear(double value);
+
 // OpenCV's cvtColor picks its rounding by the processor's instruction set; this gives the same bits
 // on every machine.
 

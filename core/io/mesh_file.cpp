@@ -3,90 +3,121 @@
 #include "core/io/mesh_file.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-
-#include <assimp/Importer.hpp>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 
 #include "core/base/concat.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/pcd_file.hpp"
+#include "core/io/private/mesh_parts.hpp"
+#include "core/io/private/texture_files.hpp"
 
 namespace bpa::io {
 namespace {
 
-Eigen::Vector3f to_eigen(const aiVector3D& v) { return {v.x, v.y, v.z}; }
-
-std::uint8_t to_byte(float value) {
-  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0f, 1.0f)));
-}
-
-void append_mesh(const aiMesh& part, bool normals, bool colors, double scale, TriangleMesh& mesh) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (unsigned i = 0; i < part.mNumVertices; ++i) {
-    const Eigen::Vector3f vertex = to_eigen(part.mVertices[i]);
-    mesh.vertices.push_back((scale * vertex.cast<double>()).cast<float>());
-    if (normals) mesh.normals.push_back(to_eigen(part.mNormals[i]).stableNormalized());
-    if (colors) {
-      const aiColor4D& c = part.mColors[0][i];
-      mesh.colors.push_back({to_byte(c.r), to_byte(c.g), to_byte(c.b)});
-    }
-  }
-  for (unsigned i = 0; i < part.mNumFaces; ++i) {
-    const aiFace& face = part.mFaces[i];
-    if (face.mNumIndices != 3) continue;  // points and lines
-    mesh.triangles.push_back(
-        {first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]});
-  }
-}
-
-/// Reads OBJ and STL.
-Result<TriangleMesh> read_with_assimp(const std::string& path, double scale) {
-  if (!std::filesystem::is_regular_file(path)) return not_found(path, " cannot be opened");
-  try {
-    Assimp::Importer importer;
-    const aiScene* scene =
-        importer.ReadFile(path, aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
-                                    aiProcess_PreTransformVertices);
-    if (!scene) return corrupt(path, " cannot be read: ", importer.GetErrorString());
-    const auto all = [scene](auto has) {
-      return std::all_of(scene->mMeshes, scene->mMeshes + scene->mNumMeshes, has);
-    };
-    const bool normals = all([](const aiMesh* part) { return part->HasNormals(); });
-    const bool colors = all([](const aiMesh* part) { return part->HasVertexColors(0); });
-    TriangleMesh mesh;
-    for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
-      append_mesh(*scene->mMeshes[i], normals, colors, scale, mesh);
-    }
-    return mesh;
-  } catch (const std::exception& error) {
-    return corrupt(path, " cannot be read: ", error.what());
-  }
-}
-
-Result<TriangleMesh> read_ply(const std::string& path, double scale) {
+Result<PlyFile> read_ply(const std::string& path, double scale) {
   const Result<std::string> bytes = read_file(path);
   if (!bytes.ok()) return bytes.status();
-  return parse_ply(*bytes, path, scale);
+  return parse_ply_file(*bytes, path, scale);
+}
+
+/// Leaves the colours of the vertices, if there are any.
+void drop_textures(const std::string& reason, MeshFile& file) {
+  if (file.mesh.colors.empty()) return drop_colors(reason, file);
+  file.mesh.textures.clear();
+  file.mesh.texture_of.clear();
+  file.mesh.uv.clear();
+  file.warnings.push_back(reason + ": the colours of the vertices are used");
+}
+
+/// The texture of a PLY file replaces the colours of its vertices, as in BOP's renderer.
+MeshFile with_textures(PlyFile ply, const std::string& path) {
+  MeshFile file{std::move(ply.mesh), {}, false};
+  TriangleMesh& mesh = file.mesh;
+  if (mesh.uv.empty() && ply.textures.empty()) return file;
+  if (mesh.uv.empty() || ply.textures.empty()) {
+    const char* reason = mesh.uv.empty() ? "names a texture, but has no texture coordinates"
+                                         : "has texture coordinates, but names no texture";
+    drop_textures(reason, file);
+    return file;
+  }
+  TextureFiles textures(path);
+  std::vector<int> indices;  // a file may be named twice
+  for (const std::string& name : ply.textures) {
+    TextureReference reference;
+    reference.name = name;
+    const Result<int> index = textures.add(reference, mesh);
+    if (!index.ok()) {
+      drop_textures(index.status().message, file);
+      return file;
+    }
+    indices.push_back(*index);
+  }
+  for (int& k : mesh.texture_of) {
+    k = k >= 0 && k < static_cast<int>(indices.size()) ? indices[static_cast<std::size_t>(k)] : -1;
+  }
+  if (std::ranges::count(mesh.texture_of, -1) == 0) {
+    mesh.colors.clear();
+  } else if (mesh.colors.empty()) {
+    drop_colors("has triangles without texture", file);
+  }
+  return file;
+}
+
+Result<MeshFile> read_any(const std::string& path, double scale, bool colored) {
+  const std::string extension = lower_extension(path);
+  if (std::ranges::count(mesh_extensions(), extension) == 0) {
+    return Status(StatusCode::unsupported,
+                  path +
+                      " is not a mesh that can be read; use .ply, .obj, .stl, .glb, .gltf or "
+                      ".dae");
+  }
+  Result<MeshFile> file = MeshFile{};
+  if (extension == "ply") {
+    Result<PlyFile> ply = read_ply(path, scale);
+    if (!ply.ok()) return ply.status();
+    if (!colored) {
+      ply->mesh.uv.clear();
+      ply->mesh.texture_of.clear();
+      ply->textures.clear();
+    }
+    file = with_textures(std::move(*ply), path);
+  } else {
+    file = read_with_assimp(path, scale, colored);
+  }
+  if (!file.ok() || file->mesh.triangles.empty()) return file;
+  const auto finite = [](const auto& v) { return v.allFinite(); };
+  if (!std::ranges::all_of(file->mesh.vertices, finite)) {
+    return corrupt(path, " has a vertex that is not finite");
+  }
+  if (!std::ranges::all_of(file->mesh.uv, finite)) {
+    drop_colors("has texture coordinates that are not finite", *file);
+  }
+  return file;
 }
 
 }  // namespace
 
+const std::vector<std::string>& mesh_extensions() {
+  static const std::vector<std::string> extensions{"ply", "obj", "stl", "glb", "gltf", "dae"};
+  return extensions;
+}
+
+void drop_colors(const std::string& reason, MeshFile& file) {
+  file.mesh.colors.clear();
+  file.mesh.textures.clear();
+  file.mesh.texture_of.clear();
+  file.mesh.uv.clear();
+  file.warnings.push_back(reason + ": the model has no colour");
+}
+
+Result<MeshFile> read_mesh_file(const std::string& path, double scale) {
+  return read_any(path, scale, true);
+}
+
 Result<TriangleMesh> read_mesh(const std::string& path, double scale) {
-  const std::string extension = lower_extension(path);
-  const bool ply = extension == "ply";
-  if (!ply && extension != "obj" && extension != "stl") {
-    return Status(StatusCode::unsupported,
-                  path + " is not a mesh that can be read; use .ply, .obj or .stl");
-  }
-  Result<TriangleMesh> mesh = ply ? read_ply(path, scale) : read_with_assimp(path, scale);
-  if (!mesh.ok() || mesh->triangles.empty()) return mesh;
-  const bool finite =
-      std::ranges::all_of(mesh->vertices, [](const auto& v) { return v.allFinite(); });
-  if (!finite) return corrupt(path, " has a vertex that is not finite");
-  return mesh;
+  Result<MeshFile> file = read_any(path, scale, false);
+  if (!file.ok()) return file.status();
+  return std::move(file->mesh);
 }
 
 Result<PointCloud> read_point_cloud(const std::string& path, double scale) {
@@ -100,12 +131,12 @@ Result<PointCloud> read_point_cloud(const std::string& path, double scale) {
     return Status(StatusCode::unsupported,
                   path + " is not a point cloud that can be read; use .ply or .pcd");
   }
-  Result<TriangleMesh> mesh = read_ply(path, scale);
-  if (!mesh.ok()) return mesh.status();
+  Result<PlyFile> ply = read_ply(path, scale);
+  if (!ply.ok()) return ply.status();
   PointCloud cloud;
-  cloud.points = std::move(mesh->vertices);
-  cloud.normals = std::move(mesh->normals);
-  cloud.colors = std::move(mesh->colors);
+  cloud.points = std::move(ply->mesh.vertices);
+  cloud.normals = std::move(ply->mesh.normals);
+  cloud.colors = std::move(ply->mesh.colors);
   return drop_invalid_points(cloud);
 }
 

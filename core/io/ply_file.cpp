@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// Not by Assimp, which reads OBJ and STL here: 5.2.5 does not return from a truncated binary PLY.
+// Not by Assimp, which reads the other formats: 5.2.5 does not return from a truncated binary PLY.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -12,8 +12,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/io/file_bytes.hpp"
-#include "core/io/mesh_file.hpp"
-#include "core/io/private/byte_stream.hpp"
+#include "core/io/private/mesh_parts.hpp"
 
 namespace bpa::io {
 namespace {
@@ -64,6 +63,7 @@ struct Element {
 struct Header {
   std::string format;
   std::vector<Element> elements;
+  std::vector<std::string> textures;
   std::size_t size = 0;  ///< Bytes, to the first value.
 };
 
@@ -104,6 +104,11 @@ Result<Header> parse_header(const std::string& bytes, const std::string& name) {
           header.format != "binary_big_endian") {
         return corrupt(name, " has the unknown PLY format \"", header.format, "\"");
       }
+    } else if (key == "comment") {
+      // "comment TextureFile NAME", as MeshLab writes it.
+      std::string word, texture;
+      words >> word >> std::ws;
+      if (word == "TextureFile" && std::getline(words, texture)) header.textures.push_back(texture);
     } else if (key == "element") {
       Element& element = header.elements.emplace_back();
       words >> element.name >> element.count;
@@ -168,15 +173,20 @@ class Values {
   bool ok_ = true;
 };
 
-/// Where the numbers of a vertex stand in its row: position, normal, colour; -1 for none.
-using Columns = std::array<int, 9>;
+/// Where the numbers of a vertex stand in its row: position, normal, colour, texture coordinates;
+/// -1 for none.
+using Columns = std::array<int, 11>;
 
 Columns find_columns(const Element& element) {
-  constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
+  constexpr std::string_view kNames[] = {"x",   "y",     "z",    "nx",        "ny",       "nz",
+                                         "red", "green", "blue", "texture_u", "texture_v"};
   Columns columns;
   columns.fill(-1);
   for (std::size_t p = 0; p < element.properties.size(); ++p) {
-    const auto name = std::find(std::begin(kNames), std::end(kNames), element.properties[p].name);
+    std::string_view property = element.properties[p].name;
+    if (property == "s" || property == "u") property = "texture_u";  // of Blender; of PCL
+    if (property == "t" || property == "v") property = "texture_v";
+    const auto name = std::find(std::begin(kNames), std::end(kNames), property);
     if (name == std::end(kNames) || element.properties[p].count_type) continue;
     columns[name - std::begin(kNames)] = static_cast<int>(p);
   }
@@ -190,8 +200,8 @@ std::uint8_t color_byte(double value, const NumberType& type) {
 
 void add_vertex(const Element& element, const Columns& columns, const Row& row, double scale,
                 TriangleMesh& mesh) {
-  const auto has = [&](std::size_t first) {
-    return std::all_of(&columns[first], &columns[first] + 3, [](int p) { return p >= 0; });
+  const auto has = [&](std::size_t first, int count = 3) {
+    return std::all_of(&columns[first], &columns[first] + count, [](int p) { return p >= 0; });
   };
   const auto number = [&](std::size_t k) { return columns[k] < 0 ? 0.0 : row[columns[k]].front(); };
   mesh.vertices.push_back(
@@ -200,6 +210,7 @@ void add_vertex(const Element& element, const Columns& columns, const Row& row, 
     const Eigen::Vector3d normal(number(3), number(4), number(5));
     mesh.normals.push_back(normal.stableNormalized().cast<float>());
   }
+  if (has(9, 2)) mesh.uv.emplace_back(number(9), number(10));
   if (!has(6)) return;
   std::array<std::uint8_t, 3>& color = mesh.colors.emplace_back();
   for (std::size_t k = 0; k < 3; ++k) {
@@ -208,54 +219,80 @@ void add_vertex(const Element& element, const Columns& columns, const Row& row, 
   }
 }
 
-void add_face(const Element& element, const Row& row, TriangleMesh& mesh) {
+/// Texture coordinates of the corners of a triangle.
+using Corners = std::array<Eigen::Vector2f, 3>;
+
+/// Adds the triangles of a polygon and, if it has them, texture coordinates for each corner.
+void add_face(const Element& element, const Row& row, TriangleMesh& mesh,
+              std::vector<Corners>& corners) {
   const auto vertex = [](double index) {
     constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
     return index >= 0 && index < kNone ? static_cast<std::uint32_t>(index) : kNone;
   };
+  const auto index_of = [](double number) {
+    constexpr double kMany = 1000;  // textures; more are none
+    return number >= 0 && number < kMany ? static_cast<int>(number) : -1;
+  };
+  const std::vector<double> none;
+  const std::vector<double>*indices = &none, *uv = &none;
+  int texture = 0;
   for (std::size_t p = 0; p < row.size(); ++p) {
-    const Property& property = element.properties[p];
-    if (!property.count_type) continue;
-    if (property.name != "vertex_indices" && property.name != "vertex_index") continue;
-    for (std::size_t k = 2; k < row[p].size(); ++k) {
-      mesh.triangles.push_back({vertex(row[p][0]), vertex(row[p][k - 1]), vertex(row[p][k])});
+    const auto& [name, type, count_type] = element.properties[p];
+    if (count_type && (name == "vertex_indices" || name == "vertex_index")) indices = &row[p];
+    if (count_type && name == "texcoord") uv = &row[p];
+    if (!count_type && name == "texnumber") texture = index_of(row[p].front());
+  }
+  const std::vector<double>& of = *indices;
+  for (std::size_t k = 2; k < of.size(); ++k) {
+    mesh.triangles.push_back({vertex(of[0]), vertex(of[k - 1]), vertex(of[k])});
+    mesh.texture_of.push_back(texture);
+    if (uv->size() != 2 * of.size()) continue;
+    const auto at = [&](std::size_t i) {
+      return Eigen::Vector2f(static_cast<float>((*uv)[2 * i]),
+                             static_cast<float>((*uv)[2 * i + 1]));
+    };
+    corners.push_back({at(0), at(k - 1), at(k)});
+  }
+}
+
+/// Gives each corner of a triangle a vertex of its own, with its texture coordinates.
+void split_corners(const std::vector<Corners>& corners, TriangleMesh& mesh) {
+  const TriangleMesh from = std::move(mesh);
+  mesh = {};
+  mesh.texture_of = from.texture_of;
+  for (std::size_t t = 0; t < from.triangles.size(); ++t) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = from.triangles[t][k];
+      mesh.vertices.push_back(from.vertices[v]);
+      if (!from.normals.empty()) mesh.normals.push_back(from.normals[v]);
+      if (!from.colors.empty()) mesh.colors.push_back(from.colors[v]);
+      mesh.uv.push_back(corners[t][k]);
     }
   }
 }
 
-std::string bytes_of(const std::vector<Eigen::Vector3f>& points,
-                     const std::vector<Eigen::Vector3f>& normals,
-                     const std::vector<std::array<std::uint8_t, 3>>& colors,
-                     const std::vector<std::array<std::uint32_t, 3>>& triangles, double scale) {
-  std::string bytes = concat("ply\nformat binary_little_endian 1.0\nelement vertex ", points.size(),
-                             "\nproperty float x\nproperty float y\nproperty float z\n");
-  if (!normals.empty()) bytes += "property float nx\nproperty float ny\nproperty float nz\n";
-  if (!colors.empty()) bytes += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-  if (!triangles.empty()) {
-    bytes +=
-        concat("element face ", triangles.size(), "\nproperty list uchar int vertex_indices\n");
+Status check_indices(const TriangleMesh& mesh, const std::string& name) {
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t index : triangle) {
+      if (index < mesh.vertices.size()) continue;
+      return corrupt(name, " has a face with vertex ", index, "; it has only ",
+                     mesh.vertices.size(), " vertices");
+    }
   }
-  bytes += "end_header\n";
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3f scaled = (scale * points[i].cast<double>()).cast<float>();
-    append(bytes, scaled);
-    if (!normals.empty()) append(bytes, normals[i]);
-    if (!colors.empty()) append(bytes, colors[i]);
-  }
-  for (const auto& triangle : triangles) {
-    append(bytes, std::uint8_t{3});
-    append(bytes, triangle);
-  }
-  return bytes;
+  return {};
 }
 
 }  // namespace
 
-Result<TriangleMesh> parse_ply(const std::string& bytes, const std::string& name, double scale) {
+Result<PlyFile> parse_ply_file(const std::string& bytes, const std::string& name, double scale) {
   const Result<Header> header = parse_header(bytes, name);
   if (!header.ok()) return header.status();
   Values values(std::string_view(bytes).substr(header->size), header->format);
-  TriangleMesh mesh;
+  PlyFile file{{}, header->textures};
+  TriangleMesh& mesh = file.mesh;
+  std::vector<Corners> corners;
   Row row;
   for (const Element& element : header->elements) {
     if (element.count > values.remaining() + 1) {
@@ -269,33 +306,21 @@ Result<TriangleMesh> parse_ply(const std::string& bytes, const std::string& name
         return corrupt(name, " is truncated or damaged in PLY element ", element.name);
       }
       if (element.name == "vertex") add_vertex(element, columns, row, scale, mesh);
-      if (element.name == "face") add_face(element, row, mesh);
+      if (element.name == "face") add_face(element, row, mesh, corners);
     }
   }
-  for (const auto& triangle : mesh.triangles) {
-    for (const std::uint32_t index : triangle) {
-      if (index < mesh.vertices.size()) continue;
-      return corrupt(name, " has a face with vertex ", index, "; it has only ",
-                     mesh.vertices.size(), " vertices");
-    }
-  }
-  return mesh;
+  if (Status status = check_indices(mesh, name); !status.ok()) return status;
+  if (!corners.empty() && corners.size() == mesh.triangles.size()) split_corners(corners, mesh);
+  if (mesh.uv.empty()) mesh.texture_of.clear();
+  return file;
 }
 
-std::string ply_bytes(const TriangleMesh& mesh, double scale) {
-  return bytes_of(mesh.vertices, mesh.normals, mesh.colors, mesh.triangles, scale);
-}
-
-std::string ply_bytes(const PointCloud& cloud, double scale) {
-  return bytes_of(cloud.points, cloud.normals, cloud.colors, {}, scale);
-}
-
-Status write_ply(const std::string& path, const TriangleMesh& mesh, double scale) {
-  return write_file(path, ply_bytes(mesh, scale));
-}
-
-Status write_ply(const std::string& path, const PointCloud& cloud, double scale) {
-  return write_file(path, ply_bytes(cloud, scale));
+Result<TriangleMesh> parse_ply(const std::string& bytes, const std::string& name, double scale) {
+  Result<PlyFile> file = parse_ply_file(bytes, name, scale);
+  if (!file.ok()) return file.status();
+  file->mesh.uv.clear();
+  file->mesh.texture_of.clear();
+  return std::move(file->mesh);
 }
 
 }  // namespace bpa::io

@@ -16,6 +16,7 @@ from pathlib import Path
 
 # The cases that read real RGB-D frames.
 REAL_FRAMES = ("BopDataset.RealFrames", "Identity.OfARealFrame", "PcdFile.RealClouds",
+               "TexturedScan.ColorsAgreeWithThoseOfTheVertices",
                "Ycbv.ObjectsOfARealFrameAreFoundWhateverTheThreads")
 SKIPPED_CASE = re.compile(r"^skipped: (\S+): (.*)$", re.MULTILINE)
 

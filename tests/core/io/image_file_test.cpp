@@ -98,6 +98,17 @@ TEST(ImageFile, AHugeJpegIsRefusedBeforeItIsDecoded) {
   EXPECT_EQ(read_color_image(folder / "a.jpg").status().code, StatusCode::corrupt);
 }
 
+TEST(ImageFile, PixelsMayBeBounded) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_color_png(folder / "a.png", gradient(16, 16)).ok());
+  const std::string bytes = slurp(folder / "a.png");
+  const Result<ColorImage> image = decode_color_image(bytes, "a", 256);
+  ASSERT_TRUE(image.ok()) << image.status().message;
+  EXPECT_EQ(image->pixels, gradient(16, 16).pixels);
+  EXPECT_EQ(decode_color_image(bytes, "a", 255).status().message,
+            "a has 256 pixels; at most 255 can be read");
+}
+
 TEST(FrameFile, SizesMustAgree) {
   const test::TemporaryFolder folder;
   ASSERT_TRUE(write_color_png(folder / "c.png", gradient(40, 30)).ok());
