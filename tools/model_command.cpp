@@ -15,6 +15,7 @@
 #include "core/modeling/model_source.hpp"
 #include "core/modeling/registration.hpp"
 #include "core/modeling/symmetry_search.hpp"
+#include "tools/mesh_input.hpp"
 #include "tools/posed_views.hpp"
 
 namespace bpa::cli {
@@ -27,7 +28,7 @@ struct ModelArguments {
   std::string library;
   std::string input;  // a mesh, a data set
   std::string name;
-  double scale = 1;
+  double scale = 0;  // metres of a unit; 0 = guess
   int number = 0;
   int views = 120;
   std::string symmetry = "find";
@@ -53,11 +54,12 @@ void look_at(const TriangleMesh& mesh, const ModelArguments& a, ModelSource& sou
                 a.common.threads);
 }
 
-ModelSource source_from_mesh(const TriangleMesh& mesh, const std::string& path,
+ModelSource source_from_mesh(const io::MeshFile& file, const std::string& path,
                              const ModelArguments& a, const std::string& name, int number) {
   ModelSource source =
-      or_throw(model_source_from_mesh(mesh, name, number, a.options_with_threads()), path);
-  look_at(mesh, a, source);
+      or_throw(model_source_from_mesh(file.mesh, name, number, a.options_with_threads()), path);
+  look_at(file.mesh, a, source);
+  source.warnings.insert(source.warnings.end(), file.warnings.begin(), file.warnings.end());
   return source;
 }
 
@@ -144,11 +146,15 @@ int choose_number(const ModelArguments& a) {
 }
 
 ModelSource source_from_file(const ModelArguments& a, int number) {
+  double scale = a.scale;
   if (io::lower_extension(a.input) != "pcd") {
-    const TriangleMesh mesh = or_throw(io::read_mesh(a.input, a.scale));
-    if (!mesh.triangles.empty()) return source_from_mesh(mesh, a.input, a, a.name, number);
+    const io::MeshFile file = read_meshes({a.input}, scale).front();
+    const bool ply = io::lower_extension(a.input) == "ply";
+    if (!ply || !file.mesh.triangles.empty()) {
+      return source_from_mesh(file, a.input, a, a.name, number);
+    }
   }
-  const PointCloud cloud = or_throw(io::read_point_cloud(a.input, a.scale));
+  const PointCloud cloud = or_throw(io::read_point_cloud(a.input, scale > 0 ? scale : 1.0));
   ModelSource source =
       or_throw(model_source_from_points(cloud, a.name, number, a.options_with_threads()), a.input);
   if (source.complete) look_at(squares_of(source.surface), a, source);
@@ -197,9 +203,9 @@ void from_bop(const ModelArguments& a) {
   for (std::size_t i = 0; i < models.size(); ++i) {
     const io::BopModel& model = models[i];
     progress.show(static_cast<int>(i), model.name);
-    const TriangleMesh mesh = or_throw(io::read_mesh(model.path, kMetresPerMillimetre));
+    const io::MeshFile file = or_throw(io::read_mesh_file(model.path, kMetresPerMillimetre));
     ModelSource source =
-        source_from_mesh(mesh, model.path, a, io::clean_model_name(model.name), model.obj_id);
+        source_from_mesh(file, model.path, a, io::clean_model_name(model.name), model.obj_id);
     source.source = std::filesystem::path(model.path).filename().string();
     source.symmetry = model.symmetry;
     source.symmetry_origin = SymmetryOrigin::declared;
@@ -307,9 +313,10 @@ void add_new_model_options(CLI::App& command, ModelArguments& a) {
 void add_from_mesh(CLI::App& model) {
   const auto [command, a] =
       add(model, "from-mesh", "One mesh or point cloud to a model", from_mesh);
-  add_option(command, "mesh", a.input, "PLY, OBJ or STL mesh; PLY or PCD point cloud")->required();
-  add_option(command, "--scale", a.scale, "Metres of one unit of the file; 0.001 for millimetres")
-      ->check(CLI::PositiveNumber);
+  add_option(command, "mesh", a.input,
+             "PLY, OBJ, STL, GLB, glTF or DAE mesh, with textures; PLY or PCD point cloud")
+      ->required();
+  add_unit_options(command, a.scale);
   add_new_model_options(command, a);
   add_views_option(command, a);
 }

@@ -7,10 +7,10 @@
 
 #include "core/base/random.hpp"
 #include "core/io/bop_dataset.hpp"
-#include "core/io/mesh_file.hpp"
+#include "core/io/file_bytes.hpp"
 #include "core/sim/scenes.hpp"
 #include "core/sim/turntable.hpp"
-#include "tools/command.hpp"
+#include "tools/mesh_input.hpp"
 
 namespace bpa::cli {
 namespace fs = std::filesystem;
@@ -24,18 +24,17 @@ struct SimulateArguments {
   std::string split = "test";
   std::vector<std::string> models;
   int scenes = 30;
-  double scale = 1;
+  double scale = 0;  // metres of a unit of the meshes; 0 = guess
   double model_error = 0;
   int look_alikes = 0;
   sim::SceneOptions scene;
   sim::TurntableOptions turntable;
 };
 
-sim::SimulatedObject read_object(const std::string& path, double scale) {
+sim::SimulatedObject object_from_file(const std::string& path, io::MeshFile file) {
   constexpr double kSmallest = 0.005, kLargest = 3;  // metres
-  TriangleMesh mesh = or_throw(io::read_mesh(path, scale));
-  if (mesh.triangles.empty()) throw Failure(invalid_argument(path + " has no triangles"));
-  const double diameter = sim::diameter(mesh);
+  if (file.mesh.triangles.empty()) throw Failure(invalid_argument(path + " has no triangles"));
+  const double diameter = sim::diameter(file.mesh);
   if (!(diameter >= kSmallest && diameter <= kLargest)) {
     char text[160];
     std::snprintf(text, sizeof text,
@@ -44,25 +43,38 @@ sim::SimulatedObject read_object(const std::string& path, double scale) {
                   diameter);
     throw Failure(invalid_argument(path + text));
   }
-  return sim::object_from_mesh(fs::path(path).stem().string(), std::move(mesh));
+  const std::string name = fs::path(path).stem().string();
+  for (const std::string& warning : file.warnings) {
+    std::fprintf(stderr, "warning: %s: %s\n", name.c_str(), warning.c_str());
+  }
+  return sim::object_from_mesh(name, std::move(file.mesh));
 }
 
-std::vector<sim::SimulatedObject> read_objects(const std::string& folder, double scale) {
+std::vector<sim::SimulatedObject> read_objects(const std::vector<std::string>& paths,
+                                               double scale) {
+  std::vector<io::MeshFile> files = read_meshes(paths, scale);
+  std::vector<sim::SimulatedObject> objects;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    objects.push_back(object_from_file(paths[i], std::move(files[i])));
+  }
+  return objects;
+}
+
+std::vector<std::string> meshes_in(const std::string& folder) {
   std::vector<std::string> paths;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string extension = entry.path().extension().string();
-    if (extension == ".ply" || extension == ".obj" || extension == ".stl") {
-      paths.push_back(entry.path().string());
+    const std::string path = entry.path().string();
+    if (std::ranges::count(io::mesh_extensions(), io::lower_extension(path)) > 0) {
+      paths.push_back(path);
     }
   }
   if (paths.empty()) {
-    throw Failure({StatusCode::not_found, folder + " holds no PLY, OBJ or STL mesh"});
+    throw Failure(
+        {StatusCode::not_found, folder + " holds no PLY, OBJ, STL, GLB, glTF or DAE mesh"});
   }
   std::sort(paths.begin(), paths.end());
-  std::vector<sim::SimulatedObject> objects;
-  for (const std::string& path : paths) objects.push_back(read_object(path, scale));
-  return objects;
+  return paths;
 }
 
 std::vector<sim::SimulatedObject> household_objects(const std::vector<std::string>& names,
@@ -76,7 +88,7 @@ std::vector<sim::SimulatedObject> household_objects(const std::vector<std::strin
 }
 
 std::vector<sim::SimulatedObject> chosen_objects(const SimulateArguments& a) {
-  if (!a.meshes.empty()) return read_objects(a.meshes, a.scale);
+  if (!a.meshes.empty()) return read_objects(meshes_in(a.meshes), a.scale);
   if (a.models.empty()) return sim::household_objects(a.common.threads);
   return household_objects(a.models, a.common.threads);
 }
@@ -179,7 +191,7 @@ void simulate_turntable(const SimulateArguments& a) {
   or_throw(validate(a.turntable));
   const sim::SimulatedObject object = a.mesh.empty()
                                           ? household_objects({a.object}, a.common.threads).front()
-                                          : read_object(a.mesh, a.scale);
+                                          : read_objects({a.mesh}, a.scale).front();
   write_models(a.out, {object});
   Progress progress("simulate", 2);
   progress.show(0, "views");
@@ -211,8 +223,7 @@ std::pair<CLI::App&, SimulateArguments&> add(CLI::App& simulate, const char* nam
   const auto& [command, a] = added;
   add_option(command, "--out", a.out, "Folder of the data set to write", "DIR")->required();
   add_split_option(command, a.split);
-  add_option(command, "--scale", a.scale, "Metres of one unit of the meshes' files")
-      ->check(CLI::PositiveNumber);
+  add_unit_options(command, a.scale);
   return added;
 }
 
@@ -240,8 +251,9 @@ void add_scenes(CLI::App& simulate) {
             "Range of the focal length, pixels; 525 if not given");
   add_range(command, "--distance", a.scene.min_distance, a.scene.max_distance,
             "Range from the camera to the middle of the pile, metres; 0.6,1.4 if not given");
-  auto* meshes = add_option(command, "--meshes", a.meshes,
-                            "Folder of PLY, OBJ or STL meshes instead of ours", "DIR");
+  auto* meshes =
+      add_option(command, "--meshes", a.meshes,
+                 "Folder of meshes instead of ours: PLY, OBJ, STL, GLB, glTF, DAE", "DIR");
   add_option(command, "--models", a.models, "Only these of the household objects", "LIST")
       ->excludes(meshes)
       ->delimiter(',');
@@ -271,7 +283,8 @@ void add_scenes(CLI::App& simulate) {
 void add_turntable(CLI::App& simulate) {
   const auto [command, a] =
       add(simulate, "turntable", "An object turned before a camera", simulate_turntable);
-  auto* mesh = add_option(command, "--mesh", a.mesh, "PLY, OBJ or STL mesh", "FILE");
+  auto* mesh =
+      add_option(command, "--mesh", a.mesh, "PLY, OBJ, STL, GLB, glTF or DAE mesh", "FILE");
   add_option(command, "--object", a.object, "One of the household objects instead", "NAME")
       ->excludes(mesh);
   add_options(command, a.turntable,

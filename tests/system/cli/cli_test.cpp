@@ -152,11 +152,15 @@ TEST_F(BadInput, TruncatedPng) {
 TEST_F(BadInput, MeshInTheWrongUnit) {
   const std::string library = " --name b --library " + (folder_ / "M");
   ASSERT_TRUE(io::write_ply(folder_ / "mm.ply", box(0.06f, 0.04f, 0.09f), 1000).ok());
-  expect_failure("model from-mesh " + (folder_ / "mm.ply") + library,
+  expect_failure("model from-mesh " + (folder_ / "mm.ply") + library + " --unit m",
                  {"mm.ply", "3 m", "scale 0.001"});
   const Outcome scaled =
       run("model from-mesh " + (folder_ / "mm.ply") + library + " --scale 0.001");
   EXPECT_EQ(scaled.code, 0) << scaled.out;
+  const Outcome guessed = run("model from-mesh " + (folder_ / "mm.ply") + library);
+  EXPECT_EQ(guessed.code, 0) << guessed.out;
+  EXPECT_NE(guessed.out.find("mm.ply: assuming millimetres: 120 x 80 x 180 mm"), std::string::npos)
+      << guessed.out;
   expect_failure("model from-mesh " + (folder_ / "box.ply") + library + " --scale 0.001",
                  {"box.ply", "0.005", "scale"});
 }

@@ -52,11 +52,10 @@ TEST(Simulate, ATurntableScanOfAMesh) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(run("turntable --object l_brick --step-deg 90 --positions 1 --out " + folder / "a"), 0);
   const std::string mesh = folder / "a" + "/models/obj_000001.ply";
-  EXPECT_EQ(run("turntable --step-deg 90 --mesh " + mesh + " --out " + folder / "b"), 1);  // in mm
+  EXPECT_EQ(run("turntable --step-deg 90 --unit m --mesh " + mesh + " --out " + folder / "b"), 1);
   EXPECT_EQ(run("turntable --step-deg 90 --out " + folder / "b"), 2);
-  ASSERT_EQ(run("turntable --step-deg 90 --positions 1 --scale 0.001 --mesh " + mesh + " --out " +
-                folder / "b"),
-            0);
+  ASSERT_EQ(run("turntable --step-deg 90 --positions 1 --mesh " + mesh + " --out " + folder / "b"),
+            0);  // millimetres, as guessed
   const auto frames = io::read_bop_frames(folder / "b", "test");
   ASSERT_TRUE(frames.ok()) << frames.status().message;
   EXPECT_EQ(frames->size(), 4u);
