@@ -83,23 +83,12 @@ void add_symmetries(ModelSource& source, const ModelArguments& a) {
 
 /// Warns when the library holds a model that looks the same: both would be found in one place.
 void warn_of_twins(ModelSource& source, const ModelArguments& a) {
-  constexpr double kSameSize = 0.04, kSameShape = 0.97;
   for (const std::string& name : io::list_models(a.library)) {
+    // Its description alone first: that is quick to read.
     const Result<ModelSource> described = io::describe_model(a.library, name);
-    if (name == source.name || !described.ok()) continue;
-    if (std::abs(described->diameter / source.diameter - 1) > kSameSize) continue;
+    if (name == source.name || !described.ok() || !same_size(source, *described)) continue;
     const Result<ModelSource> other = io::load_model(a.library, name);
-    if (!other.ok()) continue;
-    const RegistrationOptions options{.tolerance_m = std::max(0.002, 0.015 * source.diameter),
-                                      .draws = 600,
-                                      .kept = 4,
-                                      .num_threads = a.common.threads};
-    const auto lies_on = [&options](const PointCloud& from, const PointCloud& onto) {
-      const auto found = register_surfaces(from, onto, options);
-      return !found.empty() && found.front().overlap >= kSameShape;
-    };
-    if (!lies_on(source.surface, other->surface)) continue;
-    if (!lies_on(other->surface, source.surface)) continue;
+    if (!other.ok() || !same_shape(source, *other, a.common.threads)) continue;
     source.warnings.push_back("has nearly the same shape as " + name +
                               ": one may be taken for the other");
   }

@@ -251,4 +251,23 @@ std::vector<Registration> register_surfaces(const PointCloud& source, const Poin
   return refine_all(source, surface, fast_ends, options);
 }
 
+bool same_size(const ModelSource& a, const ModelSource& b) {
+  constexpr double kSameSize = 0.04;  // chosen by hand
+  return std::abs(b.diameter / a.diameter - 1) <= kSameSize;
+}
+
+bool same_shape(const ModelSource& a, const ModelSource& b, int num_threads) {
+  constexpr double kSameShape = 0.97;  // chosen by hand
+  if (!same_size(a, b)) return false;
+  const RegistrationOptions options{.tolerance_m = std::max(0.002, 0.015 * a.diameter),
+                                    .draws = 600,
+                                    .kept = 4,
+                                    .num_threads = num_threads};
+  const auto lies_on = [&options](const PointCloud& from, const PointCloud& onto) {
+    const auto found = register_surfaces(from, onto, options);
+    return !found.empty() && found.front().overlap >= kSameShape;
+  };
+  return lies_on(a.surface, b.surface) && lies_on(b.surface, a.surface);
+}
+
 }  // namespace bpa

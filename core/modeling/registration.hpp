@@ -7,6 +7,7 @@
 
 #include "core/cloud/point_cloud.hpp"
 #include "core/geometry/pose.hpp"
+#include "core/model/object_model.hpp"
 
 namespace bpa {
 
@@ -30,5 +31,12 @@ struct RegistrationOptions {
 /// normals; they may cover different parts of one object. Symmetric objects have many such ways.
 std::vector<Registration> register_surfaces(const PointCloud& source, const PointCloud& target,
                                             const RegistrationOptions& options);
+
+/// Whether the diameters of two models are within 4 %.
+bool same_size(const ModelSource& a, const ModelSource& b);
+
+/// Whether two models have nearly the same size and shape, colours aside, so that one may be taken
+/// for the other. At once for models of other sizes, else about a second.
+bool same_shape(const ModelSource& a, const ModelSource& b, int num_threads = 0);
 
 }  // namespace bpa

@@ -90,5 +90,22 @@ TEST(Registration, SameForAnyNumberOfThreadsAndEmptyForNothing) {
   EXPECT_TRUE(register_surfaces(box, {}, one).empty());
 }
 
+ModelSource model_of(const PointCloud& surface, double diameter) {
+  ModelSource source;
+  source.surface = surface;
+  source.diameter = diameter;
+  return source;
+}
+
+TEST(SameShape, OfABoxMovedAndNotOfAnotherBox) {
+  const Eigen::Vector3f half(0.06f, 0.04f, 0.025f), other(0.063f, 0.041f, 0.0135f);
+  const double diameter = 2 * static_cast<double>(half.norm());
+  ASSERT_NEAR(2 * static_cast<double>(other.norm()) / diameter, 1, 0.03);
+  const ModelSource box = model_of(open_box(half), diameter);
+  EXPECT_TRUE(same_shape(box, model_of(moved(open_box(half), kAway), diameter)));
+  EXPECT_FALSE(same_shape(box, model_of(moved(open_box(other), kAway), diameter)));
+  EXPECT_FALSE(same_shape(box, model_of(moved(open_box(half), kAway), 1.05 * diameter)));
+}
+
 }  // namespace
 }  // namespace bpa
