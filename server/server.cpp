@@ -263,6 +263,8 @@ class Running : public Server {
 
   std::vector<KeyValue> details() const {
     std::vector<KeyValue> details = fusion();
+    details.push_back({"ms from the last frame's stamp until it came",
+                       std::to_string(statistics_.last_age_ns() / 1'000'000)});
     for (const auto& [cause, count] : drops()) details.push_back({cause, std::to_string(count)});
     for (const SourceReport& report : source_reports()) {
       details.insert(details.end(), report.values.begin(), report.values.end());

@@ -40,10 +40,11 @@ class Statistics {
     const std::lock_guard<std::mutex> lock(mutex_);
     ++(counts_.*counter);
   }
-  /// Counts a frame that came in, and remembers when.
-  void add_frame() {
+  /// Counts a frame that came in `age_ns` after its stamp, and remembers when.
+  void add_frame(std::int64_t age_ns) {
     const std::lock_guard<std::mutex> lock(mutex_);
     ++counts_.frames_received;
+    last_age_ns_ = age_ns;
     last_frame_ = std::chrono::steady_clock::now();
   }
   /// Since the last frame came in; nothing before the first.
@@ -51,6 +52,11 @@ class Statistics {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!last_frame_) return std::nullopt;
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - *last_frame_).count();
+  }
+  /// From the last frame's stamp until it came in, by this machine's clock; 0 before the first.
+  std::int64_t last_age_ns() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return last_age_ns_;
   }
   /// Counts a rejected frame.
   void add_rejection(RejectionCause cause) {
@@ -135,6 +141,7 @@ class Statistics {
   mutable std::mutex mutex_;
   Counts counts_;
   std::optional<std::chrono::steady_clock::time_point> last_frame_;
+  std::int64_t last_age_ns_ = 0;
   std::array<std::uint64_t, std::size(kRejectionCauses)> rejections_{};
   std::string fusion_restart_;
   std::vector<Stage> stages_;

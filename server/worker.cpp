@@ -51,7 +51,7 @@ void Worker::stop() {
 
 void Worker::push(IncomingFrame frame) {
   std::optional<IncomingFrame> displaced;  // freed outside the lock
-  statistics_.add_frame();
+  statistics_.add_frame(unix_time_ns() - frame.stamp_ns);
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!frames_.empty() && frames_.size() >= options_.frame_capacity) {
     displaced = std::move(frames_.front());

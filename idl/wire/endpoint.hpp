@@ -45,6 +45,8 @@ struct ReaderStatistics {
   std::uint64_t received = 0;   ///< Delivered to the callback.
   std::uint64_t malformed = 0;  ///< Refused: not a legal encoding of the type.
   std::uint64_t lost = 0;       ///< Reported lost or rejected by DDS.
+  /// Publishers that did not match because their QoS offers less than was asked for.
+  std::uint64_t incompatible = 0;
 };
 
 struct PublisherOptions {

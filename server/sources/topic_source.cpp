@@ -216,6 +216,7 @@ class Topics : public TopicSource {
     add(report.values, "messages of " + what, statistics.received);
     add(report.values, "messages malformed of " + what, statistics.malformed);
     add(report.values, "messages lost by DDS of " + what, statistics.lost);
+    add(report.values, "publishers with too weak QoS of " + what, statistics.incompatible);
     return report;
   }
 
@@ -265,6 +266,8 @@ class Topics : public TopicSource {
     add(values, "depth images without a camera info", sync.depth_without_info);
     add(values, "colour images unused", sync.color_unused);
     add(values, "camera clock restarts", sync.restarts);
+    add(values, "ms to the nearest image that was too far",
+        static_cast<std::uint64_t>(sync.nearest_miss_ns / 1'000'000));
     wire::ReaderStatistics sum;
     for (const Topic* topic : {&color_, &depth_, &info_}) {
       if (!topic->open()) continue;
@@ -272,10 +275,12 @@ class Topics : public TopicSource {
       sum.received += one.received;
       sum.malformed += one.malformed;
       sum.lost += one.lost;
+      sum.incompatible += one.incompatible;
     }
     add(values, "messages of the camera", sum.received);
     add(values, "messages malformed of the camera", sum.malformed);
     add(values, "messages lost by DDS of the camera", sum.lost);
+    add(values, "publishers with too weak QoS of the camera", sum.incompatible);
     return report;
   }
 

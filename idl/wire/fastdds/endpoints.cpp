@@ -51,7 +51,9 @@ class Reader : public RawReader, private dds::DataReaderListener {
   }
 
   Guid guid() const override { return guid_; }
-  ReaderStatistics statistics() const override { return {received_, malformed_, lost_}; }
+  ReaderStatistics statistics() const override {
+    return {received_, malformed_, lost_, incompatible_};
+  }
 
  private:
   // Samples come over UDP on one thread and through shared memory on another; one at a time.
@@ -86,6 +88,7 @@ class Reader : public RawReader, private dds::DataReaderListener {
 
   void on_requested_incompatible_qos(dds::DataReader*,
                                      const dds::RequestedIncompatibleQosStatus& status) override {
+    incompatible_ += static_cast<std::uint64_t>(status.total_count_change);
     participant_->log(LogLevel::warning,
                       incompatible_qos_text(spec_.dds_topic, false, status.last_policy_id));
   }
@@ -102,7 +105,7 @@ class Reader : public RawReader, private dds::DataReaderListener {
   const EndpointSpec spec_;
   const RawDecode decode_;
   Guid guid_{};
-  std::atomic<std::uint64_t> received_{0}, malformed_{0}, lost_{0};
+  std::atomic<std::uint64_t> received_{0}, malformed_{0}, lost_{0}, incompatible_{0};
   std::mutex callback_mutex_;
   bool closed_ = false;
   dds::DataReader* reader_ = nullptr;

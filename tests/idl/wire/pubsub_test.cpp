@@ -203,6 +203,10 @@ TEST(PubSub, MismatchesAreLoggedWithTheRemedy) {
   EXPECT_TRUE(contains(all, "best_effort")) << all;
   EXPECT_TRUE(contains(all, "std_msgs::msg::dds_::Header_")) << all;
   EXPECT_EQ(image->matched_count(), 0U);
+  for (int i = 0; i < 100 && image_subscriber->statistics().incompatible == 0; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  EXPECT_EQ(image_subscriber->statistics().incompatible, 1U);
 }
 
 /// The peer was there first: what is known of it is looked at when our endpoint comes.
