@@ -15,7 +15,8 @@ import xml.etree.ElementTree
 from pathlib import Path
 
 # The cases that read real RGB-D frames.
-REAL_FRAMES = ("BopDataset.RealFrames", "Identity.OfARealFrame", "PcdFile.RealClouds",
+REAL_FRAMES = ("BopDataset.RealFrames", "CheckFrame.RealDepthThatIsNotRegistered",
+               "CheckFrame.SaysNothingOfRealFrames", "Identity.OfARealFrame", "PcdFile.RealClouds",
                "TexturedScan.ColorsAgreeWithThoseOfTheVertices",
                "Ycbv.ObjectsOfARealFrameAreFoundWhateverTheThreads")
 SKIPPED_CASE = re.compile(r"^skipped: (\S+): (.*)$", re.MULTILINE)
