@@ -119,6 +119,7 @@ void add_model_command(CLI::App& program);
 void add_detect_command(CLI::App& program);
 void add_evaluate_command(CLI::App& program);
 void add_train_command(CLI::App& program);
+void add_doctor_command(CLI::App& program);
 void add_simulate_command(CLI::App& program);
 
 /// The experiments of `bpa bench`.

@@ -168,14 +168,10 @@ class DetectRun {
   std::vector<draw::JudgedFrame> sheet_;
 };
 
-/// What CLI11 cannot say: exactly one source of frames, and one colour image for each depth image.
+/// What CLI11 cannot say: exactly one source of frames.
 void check_usage(const DetectArguments& a) {
-  const int sources = !a.pcd.empty() + !a.depth.empty() + !a.dataset.folder.empty();
-  if (sources != 1) {
+  if (count_inputs(a) != 1) {
     throw CLI::ValidationError("frames", "give one of --pcd, --depth (with --camera) and --bop");
-  }
-  if (!a.color.empty() && a.color.size() != a.depth.size()) {
-    throw CLI::ValidationError("--color", "needs as many files as --depth");
   }
 }
 
@@ -200,20 +196,7 @@ void detect(const DetectArguments& a) {
 }
 
 void add_inputs(CLI::App& command, DetectArguments& a) {
-  add_option(command, "--pcd", a.pcd, "Organised PCD clouds; the camera is estimated from them",
-             "FILE...");
-  auto* const camera =
-      add_option(command, "--camera", a.camera, "BOP camera.json or ROS camera_info YAML", "FILE");
-  auto* const depth =
-      add_option(command, "--depth", a.depth, "16-bit depth PNGs, registered to colour", "FILE...");
-  depth->needs(camera);
-  add_option(command, "--color", a.color, "8-bit colour PNGs of the same size", "FILE...")
-      ->needs(depth);
-  auto* const bop =
-      add_option(command, "--bop", a.dataset.folder, "Folder of a BOP data set", "DIR");
-  bop->excludes(camera);
-  add_split_options(command, a.dataset);
-  command.get_option("--scenes")->needs(bop);
+  add_input_options(command, a);
   add_option(command, "--fuse", a.fuse,
              "Combine the depth of N consecutive frames of a scene and search them once; camera "
              "and scene must stand still",

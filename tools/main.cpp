@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   bpa::cli::add_evaluate_command(program);
   bpa::cli::add_train_command(program);
   bpa::cli::add_simulate_command(program);
+  bpa::cli::add_doctor_command(program);
   CLI::App& bench = *program.add_subcommand("bench", "Run an experiment");
   bench.require_subcommand(1);
   bpa::cli::add_bench_alignment(bench);

@@ -55,6 +55,30 @@ void add_detector_options(CLI::App& command, DetectorArguments& arguments) {
              "FILE");
 }
 
+void add_input_options(CLI::App& command, DetectArguments& a) {
+  add_option(command, "--pcd", a.pcd, "Organised PCD clouds; the camera is estimated from them",
+             "FILE...");
+  auto* const camera =
+      add_option(command, "--camera", a.camera, "BOP camera.json or ROS camera_info YAML", "FILE");
+  auto* const depth =
+      add_option(command, "--depth", a.depth, "16-bit depth PNGs, registered to colour", "FILE...");
+  depth->needs(camera);
+  add_option(command, "--color", a.color, "8-bit colour PNGs of the same size", "FILE...")
+      ->needs(depth);
+  auto* const bop =
+      add_option(command, "--bop", a.dataset.folder, "Folder of a BOP data set", "DIR");
+  bop->excludes(camera);
+  add_split_options(command, a.dataset);
+  command.get_option("--scenes")->needs(bop);
+}
+
+int count_inputs(const DetectArguments& a) {
+  if (!a.color.empty() && a.color.size() != a.depth.size()) {
+    throw CLI::ValidationError("--color", "needs as many files as --depth");
+  }
+  return !a.pcd.empty() + !a.depth.empty() + !a.dataset.folder.empty();
+}
+
 Detector open_detector(const DetectorArguments& a, int num_threads) {
   const DetectorOptions options =
       a.config.empty() ? DetectorOptions() : or_throw(load_detector_options(a.config));
@@ -94,7 +118,7 @@ std::vector<io::BopFrame> list_inputs(const DetectArguments& a) {
   return entries;
 }
 
-Input read_input(const DetectArguments& a, const io::BopFrame& entry) {
+Input read_raw_input(const DetectArguments& a, const io::BopFrame& entry) {
   Input input;
   if (!a.pcd.empty()) {
     input = read_pcd(entry.depth_path, entry.camera);
@@ -105,6 +129,11 @@ Input read_input(const DetectArguments& a, const io::BopFrame& entry) {
                                           : "scene " + std::to_string(entry.scene_id) + " image " +
                                                 std::to_string(entry.im_id);
   }
+  return input;
+}
+
+Input read_input(const DetectArguments& a, const io::BopFrame& entry) {
+  Input input = read_raw_input(a, entry);
   clean_depth(input.frame);
   return input;
 }

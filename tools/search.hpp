@@ -41,6 +41,12 @@ struct DetectArguments {
   std::string csv, json, annotate, explain;
 };
 
+/// Adds --pcd, --depth, --color, --camera, --bop, --split and --scenes.
+void add_input_options(CLI::App& command, DetectArguments& arguments);
+/// How many of --pcd, --depth and --bop are given; throws a ParseError unless there is one colour
+/// image for each depth image, or none.
+int count_inputs(const DetectArguments& arguments);
+
 /// A frame, and the frame of reference that its poses are reported in.
 struct Input {
   std::string name;  ///< For people.
@@ -52,7 +58,8 @@ struct Input {
 /// images of scene 0; the path of a PCD cloud is in depth_path.
 std::vector<io::BopFrame> list_inputs(const DetectArguments& arguments);
 
-/// Reads one of list_inputs().
+/// Reads one of list_inputs(). The depth of read_raw_input() may hold anything.
+Input read_raw_input(const DetectArguments& arguments, const io::BopFrame& entry);
 Input read_input(const DetectArguments& arguments, const io::BopFrame& entry);
 
 /// A frame with truth; nothing is owned.
