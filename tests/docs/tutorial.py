@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The bpa authors
 # SPDX-License-Identifier: Apache-2.0
-"""usage: tutorial.py TUTORIAL.md PROGRAMS WORK_FOLDER
+"""usage: tutorial.py TUTORIAL.md BUILD_FOLDER FOLDER BEGIN
 
-Runs the `sh` blocks of a tutorial, in order, as one bash script in an empty folder, with PROGRAMS on the
-PATH. A `text` block that follows is what the block before prints: each of its lines must appear in the
-output, in order. Numbers may differ, and `...` stands for any text. Prints the transcript.
+Runs the `sh` blocks of a tutorial, in order, as one bash script in FOLDER, which is made anew: a copy of
+the folder BEGIN, or empty where both are the same. The programs of BUILD_FOLDER are on the PATH. A `text`
+block that follows is what the block before prints: each of its lines must appear in the output, in
+order. Numbers may differ, and `...` stands for any text. Prints the transcript.
 """
 import os
 import pathlib
@@ -62,12 +63,15 @@ def script_of(pairs):
 
 
 def main():
-    tutorial, programs, folder = map(pathlib.Path, sys.argv[1:])
+    tutorial, build, folder, begin = (pathlib.Path(a).resolve() for a in sys.argv[1:])
     pairs = blocks(tutorial.read_text())
     shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    environment = dict(os.environ, PATH=f"{programs.resolve()}:{os.environ['PATH']}",
-                       BPA=str(tutorial.resolve().parent.parent))
+    if folder == begin:
+        folder.mkdir(parents=True)
+    else:
+        shutil.copytree(begin, folder)
+    environment = dict(os.environ, PATH=f"{build / 'bin'}:{os.environ['PATH']}",
+                       BPA=str(tutorial.parent.parent))
     run = subprocess.run(["bash", "-c", script_of(pairs)], cwd=folder, env=environment, text=True,
                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                          stderr=subprocess.STDOUT, timeout=TIME_LIMIT_S)
