@@ -140,6 +140,11 @@ TEST(Service, MalformedRequestsAreCountedAndTheNextIsServed) {
   const std::vector<std::uint8_t> no_header = {0, 1, 0, 0, 2, 0, 0, 0, 'a', 0};
   ASSERT_TRUE(writer.value()->write(detail::bytes_ref(long_name), &client_id, nullptr).ok());
   ASSERT_TRUE(writer.value()->write(detail::bytes_ref(no_header), nullptr, nullptr).ok());
+  // What two writers send reaches a reader in no certain order.
+  for (int i = 0; i < 500 && server->statistics().malformed < 2; ++i) {
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  EXPECT_EQ(server->statistics().malformed, 2U);
   Unload::Request request;
   request.name = "x";
   EXPECT_TRUE(client->call(request, seconds(5)).ok());
