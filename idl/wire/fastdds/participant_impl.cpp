@@ -26,6 +26,24 @@ namespace {
 constexpr std::size_t kMaxPeers = 4096;
 constexpr const char* kParticipantProfile = "bpa";
 
+// Numbers of this process's participants. A participant's ports follow from its number, and
+// discovery by unicast tries those of the first 32 alone. Fast DDS before 2.11 gives none a second
+// time, so that a program which joins and leaves often would not be found any more.
+std::mutex numbers_mutex;
+std::set<std::int32_t> numbers;
+
+std::int32_t take_number() {
+  const std::lock_guard<std::mutex> lock(numbers_mutex);
+  std::int32_t number = 0;
+  while (!numbers.insert(number).second) ++number;
+  return number;
+}
+
+void release_number(std::int32_t number) {
+  const std::lock_guard<std::mutex> lock(numbers_mutex);
+  numbers.erase(number);
+}
+
 }  // namespace
 
 Guid to_guid(const rtps::GUID_t& guid) {
@@ -132,8 +150,17 @@ Status ParticipantImpl::start() {
         "the XML profile \"bpa\" uses Fast DDS's built-in transports: the shared memory of Fast "
         "DDS 2.9.1 (Debian 12) fits no other release, and makes ROS 2 nodes on this machine abort");
   }
-  participant_ = factory->create_participant(static_cast<dds::DomainId_t>(discovery_.domain_id),
-                                             *qos, listener_.get(), dds::StatusMask::none());
+  const auto domain = static_cast<dds::DomainId_t>(discovery_.domain_id);
+  const auto create = [&] {
+    return factory->create_participant(domain, *qos, listener_.get(), dds::StatusMask::none());
+  };
+  if (qos->wire_protocol().participant_id < 0) {
+    number_ = take_number();
+    qos->wire_protocol().participant_id = number_;
+    participant_ = create();
+    qos->wire_protocol().participant_id = -1;
+  }
+  if (participant_ == nullptr) participant_ = create();  // its number is another participant's
   if (participant_ == nullptr) {
     return unavailable("cannot join DDS domain ", discovery_.domain_id,
                        ": no UDP port or no network interface is free");
@@ -166,10 +193,12 @@ ParticipantImpl::~ParticipantImpl() {
     graph_writer.swap(graph_writer_);
   }
   graph_writer.reset();
-  if (participant_ == nullptr) return;
-  participant_->set_listener(nullptr);
-  participant_->delete_contained_entities();
-  dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+  if (participant_ != nullptr) {
+    participant_->set_listener(nullptr);
+    participant_->delete_contained_entities();
+    dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+  }
+  if (number_ >= 0) release_number(number_);
 }
 
 Status ParticipantImpl::open(const EndpointSpec& spec, bool is_reader,

@@ -80,6 +80,7 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
   const ParticipantOptions options_;
   const Discovery discovery_;
   const std::unique_ptr<dds::DomainParticipantListener> listener_;
+  std::int32_t number_ = -1;  ///< In this process; -1: the user's profile gives one.
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher* publisher_ = nullptr;
   dds::Subscriber* subscriber_ = nullptr;

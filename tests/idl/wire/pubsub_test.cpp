@@ -253,6 +253,12 @@ TEST(PubSub, RangesOfDiscovery) {
   EXPECT_FALSE(find_each_other(DiscoveryRange::off, {}, milliseconds(300)));
 }
 
+// Discovery by unicast tries the ports of the first 32 participants of a host.
+TEST(PubSub, AProgramThatJoinsOftenIsStillFound) {
+  for (int i = 0; i < 40; ++i) ASSERT_TRUE(test_participant("joins_often").ok());
+  EXPECT_TRUE(find_each_other(DiscoveryRange::localhost, {}, seconds(5)));
+}
+
 TEST(PubSub, MatchesComeAndGo) {
   auto one = test_participant("one");
   auto two = test_participant("two");
