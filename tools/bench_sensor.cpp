@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/concat.hpp"
+#include "core/base/median.hpp"
 #include "core/draw/sheet.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/image_file.hpp"
@@ -89,8 +90,7 @@ double median_depth(const Frame& frame) {
   std::vector<float> depths = frame.depth;
   std::erase(depths, 0.0f);
   if (depths.empty()) return 1;
-  std::ranges::nth_element(depths, depths.begin() + depths.size() / 2);
-  return depths[depths.size() / 2];
+  return median(depths);
 }
 
 /// A simulated table seen by the same camera from about as far.

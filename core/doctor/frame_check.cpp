@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/concat.hpp"
+#include "core/base/median.hpp"
 #include "core/geometry/camera.hpp"
 
 namespace bpa {
@@ -60,14 +61,6 @@ void check_camera(const Camera& camera, Findings& findings) {
                                0.5 * (camera.height - 1), ")"),
                         remedy});
   }
-}
-
-/// The median, rearranging the values; 0 of none.
-float median(std::vector<float>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 /// Whether the unit of depth is right; nothing else of depth can be judged otherwise.
@@ -167,7 +160,7 @@ Findings check_frame(const Frame& frame, double max_range_m, int num_threads) {
   for (const float z : frame.depth) {
     if (z > 0 && std::isfinite(z)) depths.push_back(z);
   }
-  const double median_m = static_cast<double>(median(depths));
+  const double median_m = depths.empty() ? 0 : static_cast<double>(median(depths));
   if (!depths.empty() && !check_unit(median_m, findings)) return findings;
   if (const Status status = validate(clean); !status.ok()) {
     findings.push_back({Severity::error, "the frame cannot be searched", status.message,

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/base/concat.hpp"
+#include "core/base/median.hpp"
 #include "core/cloud/cielab.hpp"
 #include "core/modeling/registration.hpp"
 
@@ -18,18 +19,21 @@ namespace {
 double common_colors(const PointCloud& a, const PointCloud& b) {
   constexpr float kBin = 20;  // CIELAB units, ten times what is just noticeable
   const CielabConverter to_lab;
-  std::map<std::array<int, 3>, std::pair<double, double>> bins;
-  const auto count = [&](const PointCloud& cloud, double std::pair<double, double>::*share) {
-    for (const auto& [r, g, blue] : cloud.colors) {
-      const Eigen::Vector3f lab = to_lab(Eigen::Vector3f(r, g, blue)) / kBin;
+  const auto histogram = [&](const PointCloud& cloud) {
+    std::map<std::array<int, 3>, double> shares;
+    for (const auto& [red, green, blue] : cloud.colors) {
+      const Eigen::Vector3f lab = to_lab(Eigen::Vector3f(red, green, blue)) / kBin;
       const Eigen::Vector3i bin = lab.array().round().cast<int>();
-      bins[{bin.x(), bin.y(), bin.z()}].*share += 1 / static_cast<double>(cloud.size());
+      shares[{bin.x(), bin.y(), bin.z()}] += 1 / static_cast<double>(cloud.size());
     }
+    return shares;
   };
-  count(a, &std::pair<double, double>::first);
-  count(b, &std::pair<double, double>::second);
+  const auto shares_a = histogram(a), shares_b = histogram(b);
   double common = 0;
-  for (const auto& [bin, shares] : bins) common += std::min(shares.first, shares.second);
+  for (const auto& [bin, share] : shares_a) {
+    const auto same = shares_b.find(bin);
+    if (same != shares_b.end()) common += std::min(share, same->second);
+  }
   return common;
 }
 
@@ -47,9 +51,7 @@ double median_depth(const Frame& frame) {
   std::vector<float> depths;
   std::ranges::copy_if(frame.depth, std::back_inserter(depths), [](float z) { return z > 0; });
   if (depths.empty()) return 0;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::ranges::nth_element(depths, middle);
-  return static_cast<double>(*middle);
+  return static_cast<double>(median(depths));
 }
 
 /// The area that a model's box covers on average over all views, square metres: by Cauchy, a

@@ -6,6 +6,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "core/base/median.hpp"
 #include "core/draw/annotate.hpp"
 
 namespace bpa::draw {
@@ -24,8 +25,7 @@ double point_spacing(const std::vector<Eigen::Vector3f>& points) {
     }
     nearest.push_back(best);
   }
-  std::nth_element(nearest.begin(), nearest.begin() + kSamples / 2, nearest.end());
-  return std::sqrt(nearest[kSamples / 2]);
+  return std::sqrt(median(nearest));
 }
 
 struct Disc {

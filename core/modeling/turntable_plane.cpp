@@ -9,6 +9,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "core/base/median.hpp"
 #include "core/base/random.hpp"
 #include "core/modeling/turntable.hpp"
 
@@ -180,8 +181,7 @@ const Plane* highest_carrier(const std::vector<Plane>& planes, const Background&
     middle /= feet.size();
     std::vector<float> squared;
     for (const Eigen::Vector3f& p : feet) squared.push_back((p - middle).squaredNorm());
-    std::ranges::nth_element(squared, squared.begin() + squared.size() / 2);
-    if (!surrounds(plane, background, middle, std::sqrt(squared[squared.size() / 2]))) continue;
+    if (!surrounds(plane, background, middle, std::sqrt(median(squared)))) continue;
     if (best == nullptr || height(*best, middle) > 0) best = &plane;
   }
   return best;

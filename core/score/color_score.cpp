@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/median.hpp"
 #include "core/score/likelihood.hpp"
 
 namespace bpa {
@@ -52,12 +53,6 @@ std::optional<Window> compare_at(const CheckImage& image, const Image<Eigen::Vec
   if (count < kMinPixels) return std::nullopt;
   const auto pixels = static_cast<float>(count);
   return Window{light_roots(seen / pixels), light_roots(expected / pixels)};
-}
-
-float median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // The logarithm of the gain of each root from the model to the frame.

@@ -9,6 +9,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "core/base/median.hpp"
+
 namespace bpa::sim {
 namespace {
 
@@ -152,8 +154,7 @@ void add_roughness(const DepthImage& depth, double scale, DepthStatistics& stati
     }
   }
   if (roughness.empty()) return;
-  std::ranges::nth_element(roughness, roughness.begin() + roughness.size() / 2);
-  statistics.roughness = roughness[roughness.size() / 2];
+  statistics.roughness = median(roughness);
   statistics.near_correlation = near / squares;
   statistics.far_correlation = far / squares;
 }
