@@ -85,6 +85,12 @@ std::shared_ptr<const Texture> make_texture(RgbImage image, const std::array<Wra
 
 bool has_colors(const TriangleMesh& mesh) { return !mesh.colors.empty() || !mesh.textures.empty(); }
 
+void clear_textures(TriangleMesh& mesh) {
+  mesh.textures.clear();
+  mesh.texture_of.clear();
+  mesh.uv.clear();
+}
+
 Eigen::Vector3f color_at(const TriangleMesh& mesh, std::size_t triangle,
                          const Eigen::Vector2f& weights, float side) {
   const auto& [a, b, c] = mesh.triangles[triangle];

@@ -30,6 +30,9 @@ std::shared_ptr<const Texture> make_texture(RgbImage image, const std::array<Wra
 /// Whether the mesh has colours of vertices or textures.
 bool has_colors(const TriangleMesh& mesh);
 
+/// Leaves the colours of the vertices.
+void clear_textures(TriangleMesh& mesh);
+
 /// The colour of a mesh that has colours, rgb in [0, 255], at the point of a triangle with these
 /// barycentric weights of its second and third corner. Of a texture it is the mean over about a
 /// square of `side` metres.

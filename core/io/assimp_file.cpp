@@ -11,6 +11,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/cloud/cielab.hpp"
+#include "core/cloud/texture.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/private/mesh_parts.hpp"
 #include "core/io/private/texture_files.hpp"
@@ -196,8 +197,7 @@ class SceneReader {
   void drop_unused() {
     TriangleMesh& mesh = file_.mesh;
     if (mesh.textures.empty()) {
-      mesh.texture_of.clear();
-      mesh.uv.clear();
+      clear_textures(mesh);
     } else if (std::ranges::count(mesh.texture_of, -1) == 0) {
       mesh.colors.clear();
     }

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/base/concat.hpp"
+#include "core/cloud/texture.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/pcd_file.hpp"
 #include "core/io/private/mesh_parts.hpp"
@@ -23,9 +24,7 @@ Result<PlyFile> read_ply(const std::string& path, double scale) {
 /// Leaves the colours of the vertices, if there are any.
 void drop_textures(const std::string& reason, MeshFile& file) {
   if (file.mesh.colors.empty()) return drop_colors(reason, file);
-  file.mesh.textures.clear();
-  file.mesh.texture_of.clear();
-  file.mesh.uv.clear();
+  clear_textures(file.mesh);
   file.warnings.push_back(reason + ": the colours of the vertices are used");
 }
 
@@ -76,8 +75,7 @@ Result<MeshFile> read_any(const std::string& path, double scale, bool colored) {
     Result<PlyFile> ply = read_ply(path, scale);
     if (!ply.ok()) return ply.status();
     if (!colored) {
-      ply->mesh.uv.clear();
-      ply->mesh.texture_of.clear();
+      clear_textures(ply->mesh);
       ply->textures.clear();
     }
     file = with_textures(std::move(*ply), path);
@@ -104,9 +102,7 @@ const std::vector<std::string>& mesh_extensions() {
 
 void drop_colors(const std::string& reason, MeshFile& file) {
   file.mesh.colors.clear();
-  file.mesh.textures.clear();
-  file.mesh.texture_of.clear();
-  file.mesh.uv.clear();
+  clear_textures(file.mesh);
   file.warnings.push_back(reason + ": the model has no colour");
 }
 

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "core/base/concat.hpp"
+#include "core/cloud/texture.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/private/mesh_parts.hpp"
 
@@ -318,8 +319,7 @@ Result<PlyFile> parse_ply_file(const std::string& bytes, const std::string& name
 Result<TriangleMesh> parse_ply(const std::string& bytes, const std::string& name, double scale) {
   Result<PlyFile> file = parse_ply_file(bytes, name, scale);
   if (!file.ok()) return file.status();
-  file->mesh.uv.clear();
-  file->mesh.texture_of.clear();
+  clear_textures(file->mesh);
   return std::move(file->mesh);
 }
 
