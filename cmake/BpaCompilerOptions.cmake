@@ -21,7 +21,7 @@ function(bpa_compile_options target)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-align
     -Woverloaded-virtual -Werror
-    -fno-math-errno -fno-trapping-math)
+    -fno-math-errno -fno-trapping-math -ffp-contract=off)
   if(BPA_SANITIZE_ADDRESS)
     target_compile_options(${target} PRIVATE
       -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/base/dispatch.hpp"
+
 namespace bpa {
 namespace {
 
@@ -26,12 +28,9 @@ struct Block {
   float normal[3][kCheckBlock];
 };
 
-// Straight-line code over arrays, so that the compiler uses the widest vectors there are. Without
-// fused multiply-add, so that every machine rounds alike.
-__attribute__((target_clones("avx2", "default"))) void project_block(const CheckImage& image,
-                                                                     const CheckPoints& model,
-                                                                     const FastPose& pose,
-                                                                     int first, Block& out) {
+// Straight-line code over arrays, so that the compiler uses the widest vectors there are.
+BPA_DISPATCH void project_block(const CheckImage& image, const CheckPoints& model,
+                                const FastPose& pose, int first, Block& out) {
   const float* r = pose.rotation.data();  // column by column
   const Eigen::Vector3f& t = pose.translation;
   const float tx = t.x(), ty = t.y(), tz = t.z();

@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Before a function: compiles it for x86-64 processors with AVX2 too, and the loader chooses. For
+/// straight-line loops over arrays. Results are the same to the bit: no instruction set fuses
+/// multiplication and addition (-ffp-contract=off). NEON needs no choice, every ARM64 has it.
+#if defined(__x86_64__)
+#define BPA_DISPATCH __attribute__((target_clones("avx2", "default")))
+#else
+#define BPA_DISPATCH
+#endif
