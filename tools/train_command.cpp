@@ -14,20 +14,19 @@
 namespace bpa::cli {
 namespace {
 
+using Folders = std::vector<std::string>;
+
 struct TrainArguments {
   CommonOptions common;
   DetectorArguments detector;
-  DatasetOptions dataset;                       // without its folder
-  std::vector<std::string> bop, round_two_bop;  // folders; of the latter only round two learns
+  DatasetOptions dataset;      // without its folder
+  Folders bop, round_two_bop;  // of the latter only round two learns
   std::string output, made_by = "bpa train";
   int held_out = 5;
 };
 
 struct Samples {
   std::vector<ScoreFrame> training, held_out;
-};
-struct AllSamples {
-  Samples round_two, round_three;
 };
 
 // What round two has to order: right poses, and every fifth wrong one, none of which competes.
@@ -68,36 +67,26 @@ ScoreFrame round_three_samples(const FrameTrace& trace, const DetectorOptions& o
 
 // The placements of every frame as the detector chooses from them: right ones, the right object in
 // a wrong pose, and wrong objects, each aligned as well as possible (paper section V).
-AllSamples collect(const TrainArguments& a) {
-  DetectorArguments built_in = a.detector;
-  built_in.built_in_layers = true;
-  const Detector detector = open_detector(built_in, a.common.threads);
+void collect(const TrainArguments& a, const Detector& detector, const Folders& folders,
+             Samples& round_two, Samples* round_three) {
   const DetectorOptions& options = detector.options();
-  AllSamples samples;
-  bool round_three = true;
   const auto use = [&](const TrueFrame& frame, const auto&, const FrameTrace& trace) {
     const int index = static_cast<int>(frame.index);
     const bool held_out = a.held_out > 0 && index % a.held_out == a.held_out - 1;
     const auto part = held_out ? &Samples::held_out : &Samples::training;
-    (samples.round_two.*part).push_back(round_two_samples(trace, options, frame.truth));
-    if (!round_three) return;
-    (samples.round_three.*part).push_back(round_three_samples(trace, options, frame.truth));
+    (round_two.*part).push_back(round_two_samples(trace, options, frame.truth));
+    if (round_three == nullptr) return;
+    (round_three->*part).push_back(round_three_samples(trace, options, frame.truth));
   };
-  for (const std::vector<std::string>* const folders : {&a.bop, &a.round_two_bop}) {
-    round_three = folders == &a.bop;
-    for (const std::string& folder : *folders) {
-      DatasetOptions dataset = a.dataset;
-      dataset.folder = folder;
-      search_frames(detector, dataset, a.common, use);
-    }
+  for (const std::string& folder : folders) {
+    DatasetOptions dataset = a.dataset;
+    dataset.folder = folder;
+    search_frames(detector, dataset, a.common, use);
   }
-  return samples;
 }
 
 // Of what a layer was made.
-std::string provenance(const TrainArguments& a, bool round_two, std::size_t frames) {
-  std::vector<std::string> folders = a.bop;
-  if (round_two) folders.insert(folders.end(), a.round_two_bop.begin(), a.round_two_bop.end());
+std::string provenance(const TrainArguments& a, const Folders& folders, std::size_t frames) {
   std::string sets;
   for (const std::string& folder : folders) {
     sets += (sets.empty() ? "" : " and ") + folder.substr(folder.find_last_of('/') + 1);
@@ -132,23 +121,29 @@ Samples without_color(Samples samples) {
   return samples;
 }
 
-const std::string kRoundTwo = "round two";
-
-ScoreLayer learn(const TrainArguments& a, const std::string& name, const Samples& samples) {
+ScoreLayer learn(const TrainArguments& a, const char* name, const Folders& folders,
+                 const Samples& samples) {
   ScoreLayer layer = or_throw(train_score_layer(samples.training));
-  layer.provenance = provenance(a, name == kRoundTwo, samples.training.size());
-  std::printf("%s\n", name.c_str());
+  layer.provenance = provenance(a, folders, samples.training.size());
+  std::printf("%s\n", name);
   print_reliability("training", layer, samples.training);
   print_reliability("held out", layer, samples.held_out);
   return layer;
 }
 
 void train(const TrainArguments& a) {
-  const AllSamples samples = collect(a);
+  DetectorArguments built_in = a.detector;
+  built_in.built_in_layers = true;
+  const Detector detector = open_detector(built_in, a.common.threads);
+  Samples round_two, round_three;
+  collect(a, detector, a.bop, round_two, &round_three);
+  collect(a, detector, a.round_two_bop, round_two, nullptr);
+  Folders all = a.bop;
+  all.insert(all.end(), a.round_two_bop.begin(), a.round_two_bop.end());
   ScoreLayers layers;
-  layers.round_two = learn(a, kRoundTwo, samples.round_two);
-  layers.round_three = learn(a, "round three", samples.round_three);
-  layers.without_color = learn(a, "without colours", without_color(samples.round_three));
+  layers.round_two = learn(a, "round two", all, round_two);
+  layers.round_three = learn(a, "round three", a.bop, round_three);
+  layers.without_color = learn(a, "without colours", a.bop, without_color(round_three));
   const std::string path = a.output.empty() ? score_layer_path(a.detector.library) : a.output;
   or_throw(write_score_layers(path, layers));
   std::printf("wrote %s\n", path.c_str());
