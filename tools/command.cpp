@@ -12,6 +12,12 @@
 
 namespace bpa::cli {
 
+void print_warnings(const std::string& name, const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) {
+    std::fprintf(stderr, "warning: %s: %s\n", name.c_str(), warning.c_str());
+  }
+}
+
 void add_common_options(CLI::App& command, CommonOptions& options) {
   add_option(command, "--threads", options.threads, "Number of threads; 0 = one per core", "N")
       ->check(CLI::Range(0, 256));

@@ -91,6 +91,9 @@ std::pair<CLI::App&, Arguments&> add_command(CLI::App& program, const char* name
   return {command, *arguments};
 }
 
+/// To stderr, a line each.
+void print_warnings(const std::string& name, const std::vector<std::string>& warnings);
+
 /// A progress bar on stderr, if that is a terminal. The destructor removes it.
 class Progress {
  public:

@@ -153,8 +153,7 @@ void run_doctor(const DoctorArguments& a) {
   if (inputs > 1) {
     throw CLI::ValidationError("frames", "give one of --pcd, --depth, --bop and --sensor");
   }
-  const DetectorOptions options =
-      a.config.empty() ? DetectorOptions() : or_throw(load_detector_options(a.config));
+  const DetectorOptions options = read_detector_options(a.config);
   Report report;
   const std::vector<Input> frames = read_frames(a, report);
   if (inputs > 0) report.looked_at(concat(frames.size(), " frames"));

@@ -17,12 +17,12 @@ namespace {
 using std::chrono::milliseconds;
 
 // Chosen by hand.
-constexpr milliseconds kWatch{2000};    // between two statuses
-constexpr double kMaxLost = 0.1;        // share of messages or images
-constexpr double kMinLost = 3;          // of them; fewer are lost when a camera starts
-constexpr double kFuture_ms = 500;      // what synchronised clocks are never apart
-constexpr double kPast_ms = 5000;       // what no sensor, network or queue delays
-constexpr double kImageBytes = 921600;  // 640 x 480, rgb8: the largest usual message
+constexpr milliseconds kWatch{2000};  // between two statuses
+constexpr double kMaxLost = 0.1;      // share of messages or images
+constexpr double kMinLost = 3;        // of them; fewer are lost when a camera starts
+constexpr double kFuture_ms = 500;    // what synchronised clocks are never apart
+constexpr double kPast_ms = 5000;     // what no sensor, network or queue delays
+constexpr std::uint64_t kImageBytes = 640 * 480 * 3;  // rgb8: the largest usual message
 
 using Values = std::map<std::string, double>;
 
@@ -180,7 +180,7 @@ MachineNeeds machine_needs(const ClientOptions& options, bool found) {
   needs.multicast = !found && options.range_from_environment &&
                     given.range == wire::DiscoveryRange::subnet && given.static_peers.empty();
   needs.shm_bytes = static_cast<std::uint64_t>(wire::qos::frames().depth + 1) * wire::kFrameBytes;
-  needs.image_bytes = static_cast<std::uint64_t>(kImageBytes);
+  needs.image_bytes = kImageBytes;
   return needs;
 }
 

@@ -116,9 +116,7 @@ void save(const ModelSource& model, const ModelArguments& a) {
   std::printf("%s: number %d, diameter %.1f mm, %zu points -> %s\n", model.name.c_str(),
               model.number, 1000 * model.diameter, model.surface.size(),
               (std::filesystem::path(a.library) / model.name).c_str());
-  for (const std::string& warning : model.warnings) {
-    std::fprintf(stderr, "warning: %s: %s\n", model.name.c_str(), warning.c_str());
-  }
+  print_warnings(model.name, model.warnings);
 }
 
 /// The number asked for, else that of a readable model of that name, else the first free one.

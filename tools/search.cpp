@@ -79,9 +79,11 @@ int count_inputs(const DetectArguments& a) {
   return !a.pcd.empty() + !a.depth.empty() + !a.dataset.folder.empty();
 }
 
+DetectorOptions read_detector_options(const std::string& config) {
+  return config.empty() ? DetectorOptions() : or_throw(load_detector_options(config));
+}
+
 Detector open_detector(const DetectorArguments& a, int num_threads) {
-  const DetectorOptions options =
-      a.config.empty() ? DetectorOptions() : or_throw(load_detector_options(a.config));
   std::vector<ModelSource> sources = wanted_models(a.library, a.models, num_threads);
   const auto library = std::make_shared<ModelLibrary>();
   Progress progress("models", static_cast<int>(sources.size()));
@@ -92,7 +94,7 @@ Detector open_detector(const DetectorArguments& a, int num_threads) {
     or_throw(library->add(model));
   }
   return Detector(
-      library, options,
+      library, read_detector_options(a.config),
       a.built_in_layers ? default_score_layers() : or_throw(library_score_layers(a.library)));
 }
 

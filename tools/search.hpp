@@ -23,6 +23,9 @@ struct DetectorArguments {
 /// Adds --library and --config.
 void add_detector_options(CLI::App& command, DetectorArguments& arguments);
 
+/// The defaults without a file.
+DetectorOptions read_detector_options(const std::string& config);
+
 /// Reads settings, models and the library's score layers, with a progress bar.
 Detector open_detector(const DetectorArguments& arguments, int num_threads);
 

@@ -44,9 +44,7 @@ sim::SimulatedObject object_from_file(const std::string& path, io::MeshFile file
     throw Failure(invalid_argument(path + text));
   }
   const std::string name = fs::path(path).stem().string();
-  for (const std::string& warning : file.warnings) {
-    std::fprintf(stderr, "warning: %s: %s\n", name.c_str(), warning.c_str());
-  }
+  print_warnings(name, file.warnings);
   return sim::object_from_mesh(name, std::move(file.mesh));
 }
 
