@@ -227,6 +227,12 @@ class DoctorOfAServer : public Doctor {
   }
   static std::string log() { return support::read_text(scratch("server.log")); }
   static Outcome ask() { return doctor(server_words()); }
+  /// While this camera has sent frames for a second.
+  static Outcome ask_with_camera(milliseconds color_late, milliseconds stamped_late) {
+    const Camera20Hz camera(wire::Reliability::best_effort, color_late, stamped_late);
+    std::this_thread::sleep_for(milliseconds(1000));
+    return ask();
+  }
 
   std::optional<support::Process> server_;
 };
@@ -234,35 +240,27 @@ class DoctorOfAServer : public Doctor {
 TEST_F(DoctorOfAServer, SaysNothingWhenFramesComeAndWhenTheyDoNotThatNobodySendsThem) {
   start();
   EXPECT_EQ(ask().whats(), Whats{"the server gets no frames"});
-  const Camera20Hz camera(wire::Reliability::best_effort, milliseconds(0), milliseconds(0));
-  std::this_thread::sleep_for(milliseconds(1000));
-  const Outcome outcome = ask();
+  const Outcome outcome = ask_with_camera(milliseconds(0), milliseconds(0));
   EXPECT_EQ(outcome.whats(), Whats{}) << outcome.text << log();
 }
 
 TEST_F(DoctorOfAServer, SaysThatStampsAreApart) {
   start();
-  const Camera20Hz camera(wire::Reliability::best_effort, milliseconds(22), milliseconds(0));
-  std::this_thread::sleep_for(milliseconds(1000));
-  const Outcome outcome = ask();
+  const Outcome outcome = ask_with_camera(milliseconds(22), milliseconds(0));
   EXPECT_EQ(outcome.whats(), Whats{"depth images come without a colour image of their time"})
       << outcome.text << log();
 }
 
 TEST_F(DoctorOfAServer, SaysThatQosDoesNotMatch) {
   start({"input.reliable=true"});
-  const Camera20Hz camera(wire::Reliability::best_effort, milliseconds(0), milliseconds(0));
-  std::this_thread::sleep_for(milliseconds(1000));
-  const Outcome outcome = ask();
+  const Outcome outcome = ask_with_camera(milliseconds(0), milliseconds(0));
   EXPECT_EQ(outcome.whats(), Whats{"publishers and the server do not match in QoS"})
       << outcome.text << log();
 }
 
 TEST_F(DoctorOfAServer, SaysThatClocksAreApart) {
   start();
-  const Camera20Hz camera(wire::Reliability::best_effort, milliseconds(0), milliseconds(60'000));
-  std::this_thread::sleep_for(milliseconds(1000));
-  const Outcome outcome = ask();
+  const Outcome outcome = ask_with_camera(milliseconds(0), milliseconds(60'000));
   EXPECT_EQ(outcome.whats(), Whats{"frames are stamped in the future"}) << outcome.text << log();
 }
 
