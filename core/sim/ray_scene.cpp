@@ -138,6 +138,7 @@ Eigen::Vector3f RayScene::color(const RayHit& hit, float side) const {
   const TriangleMesh& mesh = meshes_->mesh(instances_[hit.instance].mesh);
   if (!mesh.textures.empty()) return color_at(mesh, hit.triangle, hit.weights, side) / 255;
   if (mesh.colors.empty()) return Eigen::Vector3f::Constant(0.6f);
+  // The sum of color_at() in another order, which keeps simulated frames the same to the bit.
   const float weight[] = {1 - hit.weights.x() - hit.weights.y(), hit.weights.x(), hit.weights.y()};
   Eigen::Vector3f color = Eigen::Vector3f::Zero();
   for (int k = 0; k < 3; ++k) {
