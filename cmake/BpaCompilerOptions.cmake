@@ -15,6 +15,21 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 
+option(BPA_UNITY "Compile several files of a room at once" ON)
+
+# bpa_compile_together(TARGET): several files at once, since parsing Eigen, OpenCV, CLI11 or JSON takes
+# longer than most files themselves. The preset asan compiles each file by itself, which shows includes
+# that are missing.
+function(bpa_compile_together target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${BPA_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+endfunction()
+
+# bpa_compile_cold(TARGET): command lines, printing and tests, which take twice as long to compile with
+# -O3 and do little themselves.
+function(bpa_compile_cold target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # bpa_compile_options(TARGET): language level, warnings as errors, sanitizers.
 function(bpa_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)

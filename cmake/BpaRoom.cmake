@@ -12,6 +12,7 @@ function(bpa_room name)
   add_library(bpa::core_${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME core_${name})
   bpa_compile_options(${target})
+  bpa_compile_together(${target})
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   foreach(room IN LISTS ROOM_USES)

@@ -22,7 +22,6 @@ namespace bpa::cli {
 namespace {
 
 constexpr float kSpacing = 0.004f;  // Metres.
-constexpr double kDegrees = 180 / M_PI;
 
 struct AlignmentArguments {
   CommonOptions common;

@@ -164,7 +164,7 @@ void print_surface(const PointCloud& surface, const Truth& truth) {
 }
 
 constexpr double kMinCount = 50;  // errors of a bin that counts
-constexpr double kDegrees = 180 / M_PI, kMillimetres = 1000;
+constexpr double kMillimetres = 1000;
 
 /// One kind of error: of range or of normals.
 struct Kind {

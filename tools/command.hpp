@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -22,6 +23,8 @@
 // another exception.
 
 namespace bpa::cli {
+
+constexpr double kDegrees = 180 / std::numbers::pi;  ///< Of a radian.
 
 /// What every command has.
 struct CommonOptions {
@@ -117,6 +120,9 @@ class Progress {
 /// Runs work(0) to work(count - 1) in parallel under a progress bar. Throws as parallel_for does.
 void run_all(const std::string& title, int count, int num_threads,
              const std::function<void(int)>& work);
+
+/// The program bpa. Returns its exit code: 0, 1 after a failure, 2 after wrong usage.
+int run_bpa(int argc, char** argv);
 
 void add_model_command(CLI::App& program);
 void add_detect_command(CLI::App& program);

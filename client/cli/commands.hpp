@@ -13,6 +13,9 @@
 
 namespace bpa::cli {
 
+/// The program bpa-client. Returns its exit code: 0, 1 after a failure, 2 after wrong usage.
+int run_bpa_client(int argc, char** argv);
+
 /// What every subcommand has.
 struct Common {
   ClientOptions options;

@@ -18,7 +18,7 @@
 namespace bpa::draw {
 namespace {
 
-constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+constexpr int kLabelFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kFillOpacity = 0.35;
 
 /// Near is bright; black has no depth.
@@ -79,7 +79,7 @@ void draw_label(cv::Mat& image, const DrawnObject& object, const cv::Rect& box,
                 std::vector<cv::Rect>& taken) {
   const double scale = 0.42 * std::max(1.0, image.cols / 640.0);
   int base = 0;
-  const cv::Size text = cv::getTextSize(object.label, kFont, scale, 1, &base);
+  const cv::Size text = cv::getTextSize(object.label, kLabelFont, scale, 1, &base);
   const int margin = 3;
   const cv::Size size(text.width + 2 * margin, text.height + base + 2 * margin);
   const cv::Point middle(box.x + box.width / 2, box.y + box.height / 2);
@@ -94,8 +94,9 @@ void draw_label(cv::Mat& image, const DrawnObject& object, const cv::Rect& box,
   cv::rectangle(image, place, color, cv::FILLED);
   cv::rectangle(image, place, {20, 20, 20}, 1);
   const double luminance = 0.3 * color[0] + 0.59 * color[1] + 0.11 * color[2];
-  cv::putText(image, object.label, {place.x + margin, place.y + margin + text.height}, kFont, scale,
-              luminance > 130 ? cv::Scalar(0, 0, 0) : cv::Scalar(255, 255, 255), 1, cv::LINE_AA);
+  cv::putText(image, object.label, {place.x + margin, place.y + margin + text.height}, kLabelFont,
+              scale, luminance > 130 ? cv::Scalar(0, 0, 0) : cv::Scalar(255, 255, 255), 1,
+              cv::LINE_AA);
 }
 
 constexpr Rgb kWrong = {255, 40, 40};

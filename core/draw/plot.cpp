@@ -12,7 +12,7 @@
 namespace bpa::draw {
 namespace {
 
-const cv::Scalar kInk(40, 40, 40);
+const cv::Scalar kFrameColor(40, 40, 40);
 const cv::Scalar kGrid(222, 222, 222);
 const cv::Scalar kColors[] = {{31, 119, 180}, {214, 39, 40}, {44, 160, 44}, {148, 103, 189}};
 
@@ -64,7 +64,7 @@ void draw_axes(cv::Mat& image, const Mapping& map) {
     write_centred(image, cv::format("%.3g", x), map(x, axes.y_min) + cv::Point(0, 18), 0.4);
     write_centred(image, cv::format("%.3g", y), map(axes.x_min, y) + cv::Point(-22, 4), 0.4);
   }
-  cv::rectangle(image, map.area, kInk);
+  cv::rectangle(image, map.area, kFrameColor);
   if (axes.diagonal) {
     cv::line(image, map(axes.x_min, axes.y_min), map(axes.x_max, axes.y_max), {150, 150, 150}, 1,
              cv::LINE_AA);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Rgb kOccluding{255, 50, 50}, kOccluded{60, 110, 255}, kCurvature{40, 220, 70},
     kImage{250, 220, 40};
-constexpr float kDim = 0.45f;
+constexpr float kDarkened = 0.45f;
 
 void set(io::ColorImage& image, int u, int v, const Rgb& color) {
   std::copy(color.begin(), color.end(), image.pixels.begin() + 3 * (v * image.width + u));
@@ -32,7 +32,7 @@ void for_each_pixel(const io::ColorImage& picture, const auto& map, const auto& 
 
 io::ColorImage dimmed(const Frame& frame) {
   io::ColorImage picture = objects(frame, {});
-  for (std::uint8_t& v : picture.pixels) v = static_cast<std::uint8_t>(kDim * v);
+  for (std::uint8_t& v : picture.pixels) v = static_cast<std::uint8_t>(kDarkened * v);
   return picture;
 }
 

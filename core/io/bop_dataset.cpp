@@ -17,7 +17,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kMetres = 0.001;
-constexpr double kMillimetres = 1000;
 
 SymmetryGroup read_symmetry(const Json& info) {
   SymmetryGroup group;

@@ -51,7 +51,7 @@ std::vector<const Option*> find(const OptionsReading& reading, const std::string
   return exact.empty() ? in_short : exact;
 }
 
-void append(const std::string& word, const char* separator, std::string& list) {
+void add_word(const std::string& word, const char* separator, std::string& list) {
   if (!list.empty()) list += separator;
   list += word;
 }
@@ -63,8 +63,8 @@ std::string unknown(const OptionsReading& reading, const std::string& path) {
   for (const Option& option : reading.options) {
     const bool here =
         option.path.starts_with(group) && option.path.find('.', group.size()) == std::string::npos;
-    if (here) append(option.path.substr(group.size()), ", ", beside);
-    if (last_name(option.path) == last_name(path)) append(option.path, " or ", elsewhere);
+    if (here) add_word(option.path.substr(group.size()), ", ", beside);
+    if (last_name(option.path) == last_name(path)) add_word(option.path, " or ", elsewhere);
   }
   if (!elsewhere.empty()) return "unknown key " + path + "; there is " + elsewhere;
   if (!beside.empty()) return "unknown key " + path + "; the keys are " + beside;

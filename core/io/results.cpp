@@ -122,7 +122,6 @@ Result<std::vector<FrameResult>> read_results_json(const std::string& path) {
 
 namespace {
 
-constexpr double kMillimetres = 1000;
 constexpr const char* kCsvHeader = "scene_id,im_id,obj_id,score,R,t,time";
 
 void write_number(std::ostream& out, double value, char separator) {
@@ -157,12 +156,12 @@ bool parse_numbers(std::string_view text, std::span<double> values) {
   return at == end;
 }
 
-struct Row {
+struct CsvRow {
   double scene[1], image[1], object[1], score[1], rotation[9], translation[3], time[1];
 };
 
 /// Empty when the line is right; else the name of the wrong column.
-std::string parse_row(const std::string& line, Row& row) {
+std::string parse_row(const std::string& line, CsvRow& row) {
   const std::pair<const char*, std::span<double>> columns[] = {{"scene_id", row.scene},
                                                                {"im_id", row.image},
                                                                {"obj_id", row.object},
@@ -180,7 +179,7 @@ std::string parse_row(const std::string& line, Row& row) {
   return {};
 }
 
-Placement placement_of(const Row& row) {
+Placement placement_of(const CsvRow& row) {
   Placement placement;
   placement.model_number = static_cast<int>(row.object[0]);
   placement.score = placement.probability = row.score[0];
@@ -213,7 +212,7 @@ Result<std::vector<FrameResult>> read_results_csv(const std::string& path) {
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     if (line.empty() || line == "\r" || (number == 1 && line.rfind("scene_id", 0) == 0)) continue;
-    Row row;
+    CsvRow row;
     if (const std::string wrong = parse_row(line, row); !wrong.empty()) {
       return corrupt(path, " line ", number, ": wrong column ", wrong);
     }

@@ -17,7 +17,7 @@ namespace {
 constexpr float kLeastCell = 0.003f;  // metres
 constexpr std::size_t kFewest = 100;  // points that a model needs
 constexpr double kMuchUnseen = 0.03;  // share of the surface
-constexpr float kSameSide = 0.5f;     // cosine between normals
+constexpr float kSameSurface = 0.5f;  // cosine between normals
 
 // How large a pixel is on the object, and how far it is, on average, in metres.
 std::pair<double, double> pixel_and_depth(const std::vector<PosedView>& views) {
@@ -43,7 +43,8 @@ std::vector<float> measured_variance(const PointCloud& surface, const GridSurfac
     float sum = 0, total = 0;
     near.for_each_neighbor(p, [&](int j, float squared) {
       const float cosine = n.dot(measured.points.normals[j]);
-      if (cosine < kSameSide || std::abs(n.dot(measured.points.points[j] - p)) > most_off) return;
+      if (cosine < kSameSurface || std::abs(n.dot(measured.points.points[j] - p)) > most_off)
+        return;
       const float bias = std::acos(std::min(1.0f, cosine));
       const float weight = 1.0001f - squared / (reach * reach);
       sum += weight * (measured.normal_variance[j] + bias * bias);

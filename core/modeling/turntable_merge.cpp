@@ -160,7 +160,7 @@ struct ShiftSums {
 // Point to plane, over the points of the source that lie on the target, facing the same way.
 ShiftSums overlap_sums(const PointCloud& source, const PointCloud& target, const NeighborGrid& near,
                        const Pose& pose) {
-  constexpr float kSameSide = 0.7f;  // cosine between normals
+  constexpr float kFacesAlike = 0.7f;  // cosine between normals
   ShiftSums sums;
   const FastPose fast = to_fast(pose);
   for (std::size_t i = 0; i < source.size(); ++i) {
@@ -169,7 +169,7 @@ ShiftSums overlap_sums(const PointCloud& source, const PointCloud& target, const
     float best = kReach * kReach;
     int found = -1;
     near.for_each_neighbor(p, [&](int j, float squared) {
-      if (n.dot(target.normals[j]) < kSameSide || squared > best) return;
+      if (n.dot(target.normals[j]) < kFacesAlike || squared > best) return;
       best = squared;
       found = j;
     });

@@ -13,8 +13,7 @@
 namespace bpa {
 namespace {
 
-constexpr float kExplained = 0.01f;  // metres between prediction and observation
-constexpr double kColorSigma = 12;   // CIELAB
+constexpr double kColorSigma = 12;  // CIELAB
 constexpr float kLightnessWeight = 0.5f;
 constexpr int kMinPixels = 5;        // of 9; with fewer a window is at the rim, with a neighbour's
 constexpr float kDarkest = 0.1f;     // root of light; below is noise alone
@@ -44,7 +43,7 @@ std::optional<Window> compare_at(const CheckImage& image, const Image<Eigen::Vec
       if (z <= 0) continue;
       const std::size_t i = observed.index(x, y);
       const float depth = image.pixels[i].depth;
-      if (depth <= 0 || std::abs(depth - z) > kExplained) continue;
+      if (depth <= 0 || std::abs(depth - z) > kExplained_m) continue;
       seen += observed[i];
       expected += surface[predicted.point.at(x - predicted.u0, y - predicted.v0)];
       ++count;

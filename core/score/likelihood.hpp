@@ -13,6 +13,11 @@ namespace bpa {
 /// The value of a score component that is not known.
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
+/// A placement explains what is observed so near to its prediction. Metres, chosen by hand.
+constexpr float kExplained_m = 0.01f;
+/// The standard deviation of distances in score components. Metres, chosen by hand.
+constexpr double kDistanceSigma_m = 0.01;
+
 /// The log-likelihood of an error under a normal distribution, relative to that of no error.
 /// Truncated at three standard deviations, so as not to over-penalise outliers, and scaled to [-1,
 /// 0] (paper V.5).

@@ -16,8 +16,6 @@ struct PixelPlace {
   int u = 0, v = 0;
 };
 
-constexpr float kExplained = 0.01f;      // metres between prediction and observation
-constexpr double kDistanceSigma = 0.01;  // metres
 constexpr int kSteps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
 
 bool observed(const CheckImage& image, int u, int v) {
@@ -30,7 +28,7 @@ std::vector<PixelPlace> explained_pixels(const CheckImage& image,
   std::vector<PixelPlace> places;
   predicted.for_each([&](int u, int v, float z, std::uint32_t) {
     const float depth = image.pixels[static_cast<std::size_t>(v * image.width + u)].depth;
-    if (depth > 0 && std::abs(depth - z) < kExplained) places.push_back({u, v});
+    if (depth > 0 && std::abs(depth - z) < kExplained_m) places.push_back({u, v});
   });
   return places;
 }
@@ -71,7 +69,7 @@ double random_walk_score(const CheckImage& image, const Image<float>& edges,
       continue;
     }
     const Eigen::Vector3f& surface = model.surface.points[static_cast<std::size_t>(nearest)];
-    sum += truncated_log_normal(static_cast<double>((point - surface).norm()), kDistanceSigma);
+    sum += truncated_log_normal(static_cast<double>((point - surface).norm()), kDistanceSigma_m);
   }
   return sum / options.walks;
 }

@@ -11,7 +11,7 @@ namespace bpa {
 namespace {
 
 constexpr float kSameDepth = 0.010f;   // metres: what both predictions may differ by
-constexpr float kModelSigma = 0.003f;  // metres: what models and their poses are off by
+constexpr float kRivalSigma = 0.003f;  // metres: what models and their poses are off by
 constexpr float kSeen = 0.7f;          // of the pixels that a right pose covers
 constexpr float kSeenThrough = 0.02f;  // of them: holes in the data, models that are too large
 // What hides a part hides it whole: its pixels are no evidence each, or a pose that puts a handle
@@ -54,7 +54,7 @@ float log_likelihood(const PredictedSurface& predicted, int u, int v, float obse
   const float depth = predicted.depth_at(u, v);
   if (!(depth > 0)) return 0;
   const float noise = depth_noise(depth);
-  const float sigma = 1.5f * std::sqrt(noise * noise + kModelSigma * kModelSigma);
+  const float sigma = 1.5f * std::sqrt(noise * noise + kRivalSigma * kRivalSigma);
   const float z = (observed - depth) / sigma;
   constexpr float kRootTwoPi = 2.5066283f;
   const float on_surface = kSeen * std::exp(-0.5f * z * z) / (kRootTwoPi * sigma);

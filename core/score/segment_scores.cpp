@@ -11,9 +11,8 @@
 namespace bpa {
 namespace {
 
-constexpr float kTouching = 0.03f;       // metres between prediction and observation
-constexpr float kOnModel = 0.01f;        // metres (paper section V: 1 cm)
-constexpr double kDistanceSigma = 0.01;  // metres
+constexpr float kTouching = 0.03f;  // metres between prediction and observation
+constexpr float kOnModel = 0.01f;   // metres (paper section V: 1 cm)
 constexpr double kAffinityFloor = 0.02;
 
 // What the points of one segment say.
@@ -38,7 +37,7 @@ void judge(const Segment& segment, const SurfaceMap& map, const ObjectModel& mod
     const Eigen::Vector3f normal = object_from_camera.rotation * map.normals[pixel];
     const float cosine =
         std::max(normal.dot(model.surface.normals[i]), normal.dot(model.index->soft_normals[i]));
-    distances += truncated_log_normal(static_cast<double>(distance), kDistanceSigma);
+    distances += truncated_log_normal(static_cast<double>(distance), kDistanceSigma_m);
     on_model += distance < kOnModel && cosine > min_cosine;
   }
   match.distance = distances / static_cast<double>(count);

@@ -14,13 +14,13 @@
 namespace bpa::sim {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 // Places in Stage::scenery().
 constexpr int kRoom = 0, kBin = 1, kFirstTable = 2, kNumTables = 4, kFirstDistractor = 6;
 
 // Uniform over all orientations (Shoemake 1992).
 Eigen::Quaterniond random_rotation(RandomStream& random) {
-  const double u = random.uniform(), v = 2 * kPi * random.uniform(), w = 2 * kPi * random.uniform();
+  const double u = random.uniform(), v = 2 * pi * random.uniform(), w = 2 * pi * random.uniform();
   const double a = std::sqrt(1 - u), b = std::sqrt(u);
   return {a * std::sin(v), a * std::cos(v), b * std::sin(w), b * std::cos(w)};
 }
@@ -29,7 +29,7 @@ Eigen::Quaterniond random_rotation(RandomStream& random) {
 Eigen::Quaterniond start_rotation(RandomStream& random) {
   constexpr double kUpright = 0.3;
   if (random.uniform() < kUpright) {
-    return rotation_from_vector(random.uniform(-kPi, kPi) * Eigen::Vector3d::UnitZ());
+    return rotation_from_vector(random.uniform(-pi, pi) * Eigen::Vector3d::UnitZ());
   }
   return random_rotation(random);
 }
@@ -50,7 +50,7 @@ Eigen::Vector2d start_point(double radius, double clutter,
   Eigen::Vector2d best = Eigen::Vector2d::Zero();
   double best_distance = -1;
   for (int i = 0; i < tries; ++i) {
-    const double r = radius * std::sqrt(random.uniform()), a = 2 * kPi * random.uniform();
+    const double r = radius * std::sqrt(random.uniform()), a = 2 * pi * random.uniform();
     const Eigen::Vector2d point(r * std::cos(a), r * std::sin(a));
     double distance = 1e9;
     for (const Eigen::Vector2d& other : taken) {
@@ -126,7 +126,7 @@ Shading draw_shading(RandomStream& random) {
   Shading shading;
   shading.lights.clear();
   for (int i = 0; i < 2; ++i) {
-    const double angle = 2 * kPi * random.uniform(), reach = random.uniform(0.3, 1.6);
+    const double angle = 2 * pi * random.uniform(), reach = random.uniform(0.3, 1.6);
     const double height = random.uniform(1.4, 2.2);
     shading.lights.push_back(
         {{reach * std::cos(angle), reach * std::sin(angle), height}, random.uniform(0.25, 0.5)});
@@ -165,7 +165,7 @@ Pose draw_pose(const std::vector<PosedMesh>& pile, std::size_t num_objects, cons
                                middle.y() + 0.03 * random.normal(), middle.z());
   const double distance = random.uniform(options.min_distance, options.max_distance);
   const double elevation =
-      random.uniform(options.min_elevation_deg, options.max_elevation_deg) * kPi / 180;
+      random.uniform(options.min_elevation_deg, options.max_elevation_deg) * pi / 180;
   const Pose pose = camera_looking_at(target, distance, elevation, azimuth, 0.05 * random.normal());
   if (kind != SceneKind::border) return pose;
   // The outermost object on one side, so that the others stay in view.
@@ -262,10 +262,10 @@ SimulatedScene simulate_scene(const Stage& stage, const SceneOptions& options, s
     if (body.mesh < num_objects) objects.push_back(body.mesh);
   }
   const RayScene scene(stage.meshes(), posed);
-  const double first_azimuth = random.uniform(0, 2 * kPi);
+  const double first_azimuth = random.uniform(0, 2 * pi);
   for (int view = 0; view < options.views; ++view) {
     RandomStream view_random(seed, 1 + static_cast<std::uint64_t>(view));
-    const double azimuth = first_azimuth + 2 * kPi * view / options.views;
+    const double azimuth = first_azimuth + 2 * pi * view / options.views;
     const Camera camera = draw_lens(options, view_random);
     const Pose world_from_camera =
         draw_pose(pile, objects.size(), camera, options, result.kind, azimuth, view_random);

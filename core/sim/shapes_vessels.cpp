@@ -9,7 +9,7 @@
 namespace bpa::sim {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 double polyline_distance(const Eigen::Vector2d& p, const Profile& corners) {
   double squared = 1e9;
@@ -73,7 +73,7 @@ Shape mug() {
 Profile bowl_profile(int steps) {
   Profile middle{{0, 0.00225}, {0.025, 0.00225}};
   for (int i = 1; i <= steps; ++i) {
-    const double a = kPi / 2 * i / steps;
+    const double a = pi / 2 * i / steps;
     middle.push_back({0.025 + 0.05 * std::sin(a), 0.00225 + 0.0555 * (1 - std::cos(a))});
   }
   return middle;
@@ -139,7 +139,7 @@ Shape cup() {
   s.paint = [](const Eigen::Vector3d& p, const Eigen::Vector3d& n) {
     const bool inside = n.head<2>().dot(p.head<2>()) < 0;
     if (inside || p.z() > 0.1) return Color(0.93, 0.93, 0.9);
-    const double a = 6 * angle_of(p) / kPi + p.z() / 0.03;
+    const double a = 6 * angle_of(p) / pi + p.z() / 0.03;
     return std::abs(a - std::round(a)) < 0.22 ? Color(0.1, 0.5, 0.35) : Color(0.92, 0.9, 0.85);
   };
   add_shell_parts({{0, 0.006}, {0.0265, 0.006}, {0.0385, 0.105}}, 0.0038, s.parts);
@@ -153,7 +153,7 @@ Shape tube() {
   Shape s{"tube", round_box(0.0227, 0, 0.17), {0.6, 0.0}, turning_z_and_flip()};
   s.field = shell({{0.0205, 0.0022}, {0.0205, 0.1678}}, 0.0044);
   s.paint = [](const Eigen::Vector3d& p, const Eigen::Vector3d&) {
-    const double spiral = angle_of(p) / (2 * kPi) + p.z() / 0.06;
+    const double spiral = angle_of(p) / (2 * pi) + p.z() / 0.06;
     return mix(Color(0.62, 0.48, 0.32), Color(0.5, 0.37, 0.24),
                spiral - std::floor(spiral) < 0.08 ? 1 : smooth_noise(p, 0.012));
   };

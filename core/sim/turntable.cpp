@@ -13,7 +13,7 @@
 namespace bpa::sim {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kPlateHeight = 0.02;
 
 // A pose with the lowest vertex at z = 0 and the middle of the bounding box over the origin.
@@ -52,7 +52,7 @@ std::vector<Pose> resting_poses(const SimulatedObject& object, int count, std::u
   std::vector<Pose> chosen{candidates.front()};
   while (static_cast<int>(chosen.size()) < count) {
     const Pose* best = nullptr;
-    double best_cosine = std::cos(kPi / 6);  // at least 30 degrees apart
+    double best_cosine = std::cos(pi / 6);  // at least 30 degrees apart
     for (const Pose& candidate : candidates) {
       double cosine = -1;
       for (const Pose& other : chosen) {
@@ -83,7 +83,7 @@ TurntableScan simulate_turntable(const SimulatedObject& object, const TurntableO
   };
   const Pose world_from_camera =
       camera_looking_at(Eigen::Vector3d(0, 0, 0.05), options.distance,
-                        options.elevation_deg * kPi / 180, 0, 0.03 * random.normal());
+                        options.elevation_deg * pi / 180, 0, 0.03 * random.normal());
   const Eigen::Vector3d axis_point = off_center();
   Shading shading;
   shading.lights = {{{0.8, -0.6, 1.8}, 0.4}, {{0.5, 0.9, 1.6}, 0.3}};
@@ -98,11 +98,11 @@ TurntableScan simulate_turntable(const SimulatedObject& object, const TurntableO
   const int per_rest = std::min(full_turn, options.max_views / static_cast<int>(rests.size()));
   for (std::size_t rest = 0; rest < rests.size(); ++rest) {
     const Pose plate_from_object =
-        Pose{rotation_from_vector(random.uniform(-kPi, kPi) * Eigen::Vector3d::UnitZ()),
+        Pose{rotation_from_vector(random.uniform(-pi, pi) * Eigen::Vector3d::UnitZ()),
              off_center()} *
         rests[rest];
     for (int view = 0; view < per_rest; ++view) {
-      const double turn = options.step_deg * kPi / 180 * view;
+      const double turn = options.step_deg * pi / 180 * view;
       const Pose world_from_plate{rotation_from_vector(turn * Eigen::Vector3d::UnitZ()),
                                   axis_point};
       const RayScene scene(meshes, {{0, world_from_plate * plate_from_object},

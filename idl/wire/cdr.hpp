@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/base/concat.hpp"
 #include "core/base/status.hpp"
 #include "idl/wire/field.hpp"
 
@@ -131,7 +132,7 @@ class CdrReader {
   /// `corrupt` with the type, the field and what is wrong with it; ok if nothing is.
   Status status(const char* type) const {
     if (ok()) return {};
-    return Status(StatusCode::corrupt, std::string(type) + " field " + field_ + ": " + error_);
+    return corrupt(type, " field ", field_, ": ", error_);
   }
   /// Bytes not read yet.
   std::size_t left() const { return size_ - position_; }
@@ -294,7 +295,7 @@ template <class T>
 Status decode(const std::uint8_t* bytes, std::size_t size, T& message) {
   bool swap = false;
   if (!read_cdr_header(bytes, size, &swap)) {
-    return Status(StatusCode::corrupt, std::string(T::kType) + ": not plain CDR");
+    return corrupt(T::kType, ": not plain CDR");
   }
   CdrReader reader(bytes + kCdrHeaderSize, size - kCdrHeaderSize, swap);
   reader.read(message);

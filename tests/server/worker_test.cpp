@@ -28,7 +28,7 @@ class Gate {
     stamps_.push_back(frame.stamp_ns);
     fused_.push_back(frame.fused);
     priors_.push_back({});
-    for (const PosePrior& prior : request.priors) priors_.back() += prior.model + " ";
+    for (const bpa::PosePrior& prior : request.priors) priors_.back() += prior.model + " ";
     changed_.notify_all();
     changed_.wait(lock, [this] { return open_; });
     if (request.seed == 666) throw std::runtime_error("out of luck");

@@ -180,4 +180,8 @@ inline Pose standing_at(double x, double y, double z, double angle) {
   return {Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ())), {x, y, z}};
 }
 
+/// A camera that looks down at the origin, and an object of 4 cm height that stands there.
+inline const Pose kCameraFromWorld = look_at({0.1, -0.6, 0.5}, {0, 0, 0});
+inline const Pose kTruth = kCameraFromWorld * standing_at(0, 0, 0.02, 0.7);
+
 }  // namespace bpa::test

@@ -23,7 +23,6 @@ namespace {
 using std::chrono::milliseconds;
 using wire::sensor_msgs::CameraInfo;
 using wire::sensor_msgs::CompressedImage;
-using wire::sensor_msgs::Image;
 
 constexpr std::int64_t kMs = 1'000'000;
 
@@ -101,7 +100,7 @@ class CameraTopics : public testing::Test {
 
   std::unique_ptr<support::StubServer> server;
   std::optional<wire::Participant> participant;
-  std::optional<wire::Publisher<Image>> color, depth;
+  std::optional<wire::Publisher<wire::sensor_msgs::Image>> color, depth;
   std::optional<wire::Publisher<CameraInfo>> info;
   std::mutex mutex;
   std::condition_variable changed;
@@ -135,7 +134,7 @@ TEST_F(CameraTopics, ExactAndNearStampsAreSearchedWithTheDepthImagesStamp) {
 TEST_F(CameraTopics, OtherEncodingsGiveTheSameDepth) {
   start();
   // Big-endian millimetres with padded rows, bgra colour.
-  Image image = support::wall_depth_image(1000 * kMs);
+  wire::sensor_msgs::Image image = support::wall_depth_image(1000 * kMs);
   const std::vector<std::uint8_t> little = image.data;
   image.is_bigendian = 1;
   image.step = 2 * support::kWidth + 6;
@@ -147,7 +146,7 @@ TEST_F(CameraTopics, OtherEncodingsGiveTheSameDepth) {
       image.data[v * image.step + 2 * u + 1] = little[from];
     }
   }
-  Image bgra = support::wall_color_image(1000 * kMs);
+  wire::sensor_msgs::Image bgra = support::wall_color_image(1000 * kMs);
   bgra.encoding = "bgra8";
   bgra.step = 4 * support::kWidth;
   bgra.data.assign(bgra.step * support::kHeight, 9);
@@ -235,7 +234,7 @@ TEST_F(CameraTopics, StreamsThatDoNotFitAreCountedAndSaid) {
 
 TEST_F(CameraTopics, UnregisteredDepthIsRefusedByName) {
   start();
-  Image small = support::wall_color_image(1000 * kMs);
+  wire::sensor_msgs::Image small = support::wall_color_image(1000 * kMs);
   small.width = 32;
   small.step = 96;
   small.data.resize(96 * support::kHeight);

@@ -44,7 +44,7 @@ class Arrivals {
   std::vector<T> items_;
 };
 
-class Stream : public testing::Test {
+class StreamOfFrames : public testing::Test {
  protected:
   FrameView view(std::int64_t stamp_ns) const {
     FrameView view;
@@ -64,7 +64,7 @@ class Stream : public testing::Test {
   const std::vector<std::uint8_t> rgb = support::wall_rgb();
 };
 
-TEST_F(Stream, EveryFrameComesBackWithItsStamp) {
+TEST_F(StreamOfFrames, EveryFrameComesBackWithItsStamp) {
   support::StubServer server({"queue.frames=30"});
   Arrivals<DetectionSet> results;
   Arrivals<AnnotatedImage> images;
@@ -89,7 +89,7 @@ TEST_F(Stream, EveryFrameComesBackWithItsStamp) {
   EXPECT_EQ(images.items()[3].rgb, std::vector<std::uint8_t>(rgb.size(), 200));
 }
 
-TEST_F(Stream, ASlowSearchDropsOldFramesAndCountsThem) {
+TEST_F(StreamOfFrames, ASlowSearchDropsOldFramesAndCountsThem) {
   support::StubServer server({}, 150);
   Arrivals<DetectionSet> results;
   auto client = Client::connect(support::client_options());
@@ -114,7 +114,7 @@ TEST_F(Stream, ASlowSearchDropsOldFramesAndCountsThem) {
   EXPECT_EQ(results.items().back().stamp_ns, kSent);  // the newest wins
 }
 
-TEST_F(Stream, FramesOfAStillSceneAreCombinedAndOthersBeginAnew) {
+TEST_F(StreamOfFrames, FramesOfAStillSceneAreCombinedAndOthersBeginAnew) {
   support::StubServer server({"detection.fuse_frames=3"});
   Arrivals<DetectionSet> results;
   auto client = Client::connect(support::client_options());
@@ -167,7 +167,7 @@ TEST_F(Stream, FramesOfAStillSceneAreCombinedAndOthersBeginAnew) {
   EXPECT_EQ(own->best().at(0).camera_from_object.position[2], start);
 }
 
-TEST_F(Stream, ABadFrameIsReportedToSubscribersAndForgotten) {
+TEST_F(StreamOfFrames, ABadFrameIsReportedToSubscribersAndForgotten) {
   support::StubServer server;
   Arrivals<DetectionSet> results;
   auto client = Client::connect(support::client_options());
@@ -193,7 +193,7 @@ TEST_F(Stream, ABadFrameIsReportedToSubscribersAndForgotten) {
   EXPECT_EQ(client->publish_frame(bad).code, StatusCode::invalid_argument);
 }
 
-TEST_F(Stream, AClientSurvivesAServerThatRestarts) {
+TEST_F(StreamOfFrames, AClientSurvivesAServerThatRestarts) {
   support::StubServer server;
   Arrivals<DetectionSet> results;
   ClientOptions options = support::client_options();
@@ -218,7 +218,7 @@ TEST_F(Stream, AClientSurvivesAServerThatRestarts) {
   EXPECT_GE(results.items().size(), 2U);
 }
 
-TEST_F(Stream, StandardTopicsCarryTheSameResult) {
+TEST_F(StreamOfFrames, StandardTopicsCarryTheSameResult) {
   support::StubServer server;
   auto client = Client::connect(support::client_options());
   ASSERT_TRUE(client.ok()) << client.status().message;

@@ -17,6 +17,12 @@
 
 // JSON without exceptions leaving a function; matrices, poses and cameras as JSON.
 
+namespace bpa::io {
+
+constexpr double kMillimetres = 1000;  ///< Of a metre; BOP's files are in millimetres.
+
+}  // namespace bpa::io
+
 /// A matrix as its values, row by row. More values than it has are ignored.
 template <int kRows, int kCols>
 struct nlohmann::adl_serializer<Eigen::Matrix<double, kRows, kCols>> {

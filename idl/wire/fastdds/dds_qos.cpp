@@ -97,7 +97,7 @@ std::uint64_t sharing_domain() {
   return hash;
 }
 
-Duration milliseconds(std::int64_t ms) {
+Duration to_duration(std::int64_t ms) {
   return Duration(static_cast<std::int32_t>(ms / 1000),
                   static_cast<std::uint32_t>(ms % 1000) * 1'000'000U);
 }
@@ -119,7 +119,7 @@ EndpointQos endpoint_qos(const EndpointSpec& spec, EndpointQos qos, const char* 
                               : dds::VOLATILE_DURABILITY_QOS;
   qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = depth;
-  if (wanted.lifespan_ms > 0) qos.lifespan().duration = milliseconds(wanted.lifespan_ms);
+  if (wanted.lifespan_ms > 0) qos.lifespan().duration = to_duration(wanted.lifespan_ms);
 
   auto& limits = qos.resource_limits();
   limits.max_samples = std::max(limits.max_samples, depth);
@@ -171,16 +171,16 @@ dds::DataWriterQos writer_qos(const EndpointSpec& spec, const dds::Publisher& pu
     return publisher.get_datawriter_qos_from_profile(profile, qos);
   };
   const auto set_defaults = [](dds::DataWriterQos& qos) {
-    qos.reliability().max_blocking_time = milliseconds(100);
+    qos.reliability().max_blocking_time = to_duration(100);
     qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
     // With the default of 3 s, what is written while a peer is being matched comes seconds late.
     auto& times = qos.reliable_writer_qos().times;
 #if BPA_FASTDDS_MAJOR >= 3
-    times.heartbeat_period = milliseconds(100);
-    times.nack_response_delay = milliseconds(1);
+    times.heartbeat_period = to_duration(100);
+    times.nack_response_delay = to_duration(1);
 #else
-    times.heartbeatPeriod = milliseconds(100);
-    times.nackResponseDelay = milliseconds(1);
+    times.heartbeatPeriod = to_duration(100);
+    times.nackResponseDelay = to_duration(1);
 #endif
   };
   return endpoint_qos(spec, dds::DATAWRITER_QOS_DEFAULT, "bpa_writer", find, set_defaults);
@@ -192,9 +192,9 @@ dds::DataReaderQos reader_qos(const EndpointSpec& spec, const dds::Subscriber& s
   };
   const auto set_defaults = [](dds::DataReaderQos& qos) {
 #if BPA_FASTDDS_MAJOR >= 3
-    qos.reliable_reader_qos().times.heartbeat_response_delay = milliseconds(1);
+    qos.reliable_reader_qos().times.heartbeat_response_delay = to_duration(1);
 #else
-    qos.reliable_reader_qos().times.heartbeatResponseDelay = milliseconds(1);
+    qos.reliable_reader_qos().times.heartbeatResponseDelay = to_duration(1);
 #endif
   };
   return endpoint_qos(spec, dds::DATAREADER_QOS_DEFAULT, "bpa_reader", find, set_defaults);

@@ -60,7 +60,7 @@ class Coverage {
   int inside_[3] = {};
 };
 
-struct Problem {
+struct CalibrationProblem {
   Pose truth;
   std::vector<OrientedPair> pairs;
 };
@@ -78,8 +78,8 @@ OrientedPair draw_mixed(const Pose& truth, RandomStream& random) {
                    random);
 }
 
-Problem draw_problem(int count, RandomStream& random) {
-  Problem problem{random_pose(random), {}};
+CalibrationProblem draw_problem(int count, RandomStream& random) {
+  CalibrationProblem problem{random_pose(random), {}};
   for (int i = 0; i < count; ++i) problem.pairs.push_back(draw_mixed(problem.truth, random));
   return problem;
 }
@@ -138,7 +138,7 @@ TEST_P(CalibrationTest, KnownSigns) {
   RandomStream random(1, static_cast<std::uint64_t>(GetParam()));
   Coverage orientation("orientation"), angle("angle to the mode"), position("position");
   for (int i = 0; i < kManyProblems; ++i) {
-    const Problem problem = draw_problem(GetParam(), random);
+    const CalibrationProblem problem = draw_problem(GetParam(), random);
     const Posterior p = posterior({.oriented = problem.pairs, .curvature_sign_known = true});
     const Bingham& bingham = p.orientation.components[0].bingham;
     const double energy = -bingham.log_ratio_to_mode(problem.truth.rotation);
@@ -156,7 +156,7 @@ TEST_P(CalibrationTest, OpenSigns) {
   RandomStream random(2, static_cast<std::uint64_t>(GetParam()));
   Coverage orientation("orientation, signs open"), position("position, signs open");
   for (int i = 0; i < (GetParam() < 10 ? kManyProblems : kProblems); ++i) {
-    Problem problem = draw_problem(GetParam(), random);
+    CalibrationProblem problem = draw_problem(GetParam(), random);
     for (OrientedPair& pair : problem.pairs) {
       if (random.uniform() < 0.5) {
         pair.scene.orientation = reversed_curvature(pair.scene.orientation);
@@ -182,7 +182,7 @@ TEST_P(CalibrationTest, BothEndsUncertain) {
   RandomStream random(3, static_cast<std::uint64_t>(GetParam()));
   Coverage orientation("orientation, both ends turned");
   for (int i = 0; i < kManyProblems; ++i) {
-    Problem problem = draw_problem(GetParam(), random);
+    CalibrationProblem problem = draw_problem(GetParam(), random);
     for (OrientedPair& pair : problem.pairs) {
       const Quaterniond true_feature = random_rotation(random);
       pair.model.orientation = true_feature;
@@ -207,7 +207,7 @@ TEST(Calibration, PositionsWithOrientedPairsAndAPrior) {
   const Matrix3d shape = Vector3d(0.02, 0.005, 0.01).asDiagonal();
   for (int i = 0; i < kProblems; ++i) {
     const PositionPrior prior{{0.1, 0, 1}, shape * shape};
-    Problem problem = draw_problem(1, random);
+    CalibrationProblem problem = draw_problem(1, random);
     Pose truth = problem.truth;
     truth.translation = prior.mean + shape * random_vector(random);
     problem.pairs = {draw_mixed(truth, random)};

@@ -14,13 +14,13 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-const Vector3d kConcentrations[] = {
+const Vector3d kTurnConcentrations[] = {
     {0, 0, 0},        {-0.3, -1, -2}, {0, -100, -100},    {-2, -2, -2},  {-1, -1.0001, -500},
     {-20, -50, -900}, {0, 0, -40},    {-1e5, -2e5, -1e6}, {0, -1, -1e6}, {-3, -3, -1e5}};
 
 TEST(CredibleRegion, HoldsAsManySamplesAsItSays) {
   RandomStream random(1);
-  for (const Vector3d& lambda : kConcentrations) {
+  for (const Vector3d& lambda : kTurnConcentrations) {
     if (lambda.isZero()) continue;  // Every energy is 0.
     const Bingham b = Bingham::about(Bingham().sample(random), lambda);
     const int count = 40000;
@@ -91,7 +91,7 @@ TEST(CredibleRegion, IncreasesWithEnergy) {
 
 TEST(RotationCovariance, AgreesWithSamples) {
   RandomStream random(3);
-  for (const Vector3d& lambda : kConcentrations) {
+  for (const Vector3d& lambda : kTurnConcentrations) {
     const Bingham b = Bingham::about(Bingham().sample(random), lambda);
     const Matrix3d covariance = rotation_covariance(b);
     const int count = 40000;

@@ -39,7 +39,7 @@ Placement placement(double x, double probability) {
   return out;
 }
 
-Frame grey_frame() {
+Frame empty_frame() {
   Frame frame;
   frame.camera = {320, 240, 300, 300, 159.5, 119.5};
   frame.depth.assign(320 * 240, 1.0f);
@@ -66,7 +66,7 @@ TEST(TruthBesideResult, CountsFoundMissedAndFalse) {
   Interpretation result;
   result.placements = {placement(0.1, 0.9), placement(-0.18, 0.8)};
   const JudgedFrame judged =
-      truth_beside_result(grey_frame(), truth, result, plates(), "scene 1 image 2");
+      truth_beside_result(empty_frame(), truth, result, plates(), "scene 1 image 2");
   EXPECT_EQ(judged.found, 1);
   EXPECT_EQ(judged.missed, 1);
   EXPECT_EQ(judged.wrong, 1);
@@ -81,7 +81,7 @@ TEST(TruthBesideResult, IsNotRedWhereAllIsRight) {
   Interpretation result;
   result.placements = {placement(0, 0.9)};
   const JudgedFrame judged =
-      truth_beside_result(grey_frame(), {instance(0, 1)}, result, plates(), "");
+      truth_beside_result(empty_frame(), {instance(0, 1)}, result, plates(), "");
   EXPECT_EQ(judged.found, 1);
   EXPECT_EQ(judged.missed + judged.wrong, 0);
   EXPECT_EQ(red_pixels(judged.picture), (std::pair{0, 0}));

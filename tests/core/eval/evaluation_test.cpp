@@ -16,9 +16,9 @@
 namespace bpa::eval {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
-Pose at(double x, double z, double turn = 0) {
+Pose posed_at(double x, double z, double turn = 0) {
   return {rotation_from_vector({0, 0, turn}), {x, 0, z}};
 }
 
@@ -40,7 +40,7 @@ EvalObjects objects() {
   const double diameter = 0.1 * std::sqrt(3.0);
   result[1] = {"plain", diameter, {}, cube()};
   result[2] = {"turned", diameter, {}, cube()};
-  result[2].symmetry.discrete = {{rotation_from_vector({0, 0, kPi}), Eigen::Vector3d::Zero()}};
+  result[2].symmetry.discrete = {{rotation_from_vector({0, 0, pi}), Eigen::Vector3d::Zero()}};
   return result;
 }
 
@@ -99,20 +99,20 @@ struct Case {
 /// one at 1.3 m.
 Case two_frames() {
   Case c;
-  c.frames = {frame(0, {{1, at(0, 0.7), 1.0},
-                        {1, at(0.3, 0.7), 0.35},
-                        {2, at(-0.3, 0.7), 0.95},
-                        {1, at(0.6, 0.7), 0.05}}),
-              frame(1, {{1, at(0, 1.3), 0.5}})};
+  c.frames = {frame(0, {{1, posed_at(0, 0.7), 1.0},
+                        {1, posed_at(0.3, 0.7), 0.35},
+                        {2, posed_at(-0.3, 0.7), 0.95},
+                        {1, posed_at(0.6, 0.7), 0.05}}),
+              frame(1, {{1, posed_at(0, 1.3), 0.5}})};
   c.results = {
       result(0, 0.4,
-             {{placement(1, at(0.02, 0.7), 0.9),        // right: 20 mm off
-               placement(1, at(0.012, 0.7), 0.6),       // the same instance again: false
-               placement(2, at(-0.3, 0.7, kPi), 0.95),  // right by symmetry
-               placement(1, at(0.6, 0.7), 0.8)},        // of the one that does not count: ignored
-              {placement(1, at(0.3, 0.7), 0.7)},        // the second finds what the first missed
+             {{placement(1, posed_at(0.02, 0.7), 0.9),       // right: 20 mm off
+               placement(1, posed_at(0.012, 0.7), 0.6),      // the same instance again: false
+               placement(2, posed_at(-0.3, 0.7, pi), 0.95),  // right by symmetry
+               placement(1, posed_at(0.6, 0.7), 0.8)},  // of the one that does not count: ignored
+              {placement(1, posed_at(0.3, 0.7), 0.7)},  // the second finds what the first missed
               {}}),
-      result(1, 0.8, {{placement(1, at(0.03, 1.3), 0.55)}})};  // 30 mm off: false
+      result(1, 0.8, {{placement(1, posed_at(0.03, 1.3), 0.55)}})};  // 30 mm off: false
   return c;
 }
 
@@ -139,11 +139,11 @@ TEST(Evaluation, PaperProtocolByHand) {
 }
 
 TEST(Evaluation, AngleCountsToo) {
-  const std::vector<io::BopFrame> frames = {frame(0, {{1, at(0, 0.7), 1.0}})};
+  const std::vector<io::BopFrame> frames = {frame(0, {{1, posed_at(0, 0.7), 1.0}})};
   for (const auto& [factor, hits] : {std::pair(0.99, 1), std::pair(1.01, 0)}) {
     const auto report = evaluate(
-        frames, objects(), {result(0, 0, {{placement(1, at(0, 0.7, factor * kPi / 16), 0.9)}})},
-        without_bop());
+        frames, objects(),
+        {result(0, 0, {{placement(1, posed_at(0, 0.7, factor * pi / 16), 0.9)}})}, without_bop());
     ASSERT_TRUE(report.ok());
     EXPECT_EQ(report->recall.hits, hits) << factor;
   }
@@ -214,8 +214,8 @@ TEST(Evaluation, CoverageOfWhatSpinsHasFiveDegreesOfFreedom) {
   // Standard deviations of 10 mm and 0.1 rad; the 22 mm error is 2.2 of them: 4.84, outside of the
   // 50 % region of 5 degrees of freedom (4.35) though inside of that of 6 (5.35).
   Case c;
-  c.frames = {frame(0, {{1, at(0, 0.7), 1.0}})};
-  c.results = {result(0, 0.1, {{placement(1, at(0.022, 0.7, 1.0), 0.9)}})};
+  c.frames = {frame(0, {{1, posed_at(0, 0.7), 1.0}})};
+  c.results = {result(0, 0.1, {{placement(1, posed_at(0.022, 0.7, 1.0), 0.9)}})};
   auto& covariance = c.results[0].interpretations[0].placements[0].covariance;
   covariance.bottomRightCorner<3, 3>() = 0.01 * Eigen::Matrix3d::Identity();
   for (const double turn_variance : {0.01, 1e6}) {  // it does not matter
@@ -236,8 +236,8 @@ TEST(Evaluation, CoverageAboutAnAxisBesideTheOrigin) {
   EvalObjects spinning = objects();
   spinning[1].symmetry.continuous = {{Eigen::Vector3d::UnitZ(), {0.1, 0, 0}}};
   Case c;
-  c.frames = {frame(0, {{1, at(0, 0.7), 1.0}})};
-  c.results = {result(0, 0.1, {{placement(1, at(0.01, 0.7), 0.9)}})};
+  c.frames = {frame(0, {{1, posed_at(0, 0.7), 1.0}})};
+  c.results = {result(0, 0.1, {{placement(1, posed_at(0.01, 0.7), 0.9)}})};
   auto& covariance = c.results[0].interpretations[0].placements[0].covariance;
   // Free motion: (0, -0.1, 0; 0, 0, 1). Make it very uncertain on top of 10 mm and 10 mrad.
   Eigen::Matrix<double, 6, 1> free;
@@ -254,8 +254,8 @@ TEST(Evaluation, CoverageOfABallHasThreeDegreesOfFreedom) {
   ball[1].symmetry.continuous = {{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()},
                                  {Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero()}};
   Case c;
-  c.frames = {frame(0, {{1, at(0, 0.7), 1.0}})};
-  c.results = {result(0, 0.1, {{placement(1, at(0.015, 0.7), 0.9)}})};
+  c.frames = {frame(0, {{1, posed_at(0, 0.7), 1.0}})};
+  c.results = {result(0, 0.1, {{placement(1, posed_at(0.015, 0.7), 0.9)}})};
   const auto report = evaluate(c.frames, ball, c.results, without_bop());
   ASSERT_TRUE(report.ok());
   EXPECT_EQ(report->outcomes[0].estimates[0].degrees_of_freedom, 3);
@@ -265,14 +265,14 @@ TEST(Evaluation, CoverageOfABallHasThreeDegreesOfFreedom) {
 
 TEST(Evaluation, OpenPosesByHand) {
   // A plain object turned by a quarter of a turn; a second one that is not there.
-  Placement first = placement(1, at(0, 0.7), 0.4);
-  first.alternatives = {{at(0.01, 0.7, kPi / 2), 0.25}, {at(0, 0.7, kPi), 0.22}};
-  Placement second = placement(1, at(0.5, 0.7), 0.4);
-  second.alternatives = {{at(0.5, 0.7, kPi), 0.5}};
-  Placement third = placement(1, at(-0.5, 0.7), 0.9);
+  Placement first = placement(1, posed_at(0, 0.7), 0.4);
+  first.alternatives = {{posed_at(0.01, 0.7, pi / 2), 0.25}, {posed_at(0, 0.7, pi), 0.22}};
+  Placement second = placement(1, posed_at(0.5, 0.7), 0.4);
+  second.alternatives = {{posed_at(0.5, 0.7, pi), 0.5}};
+  Placement third = placement(1, posed_at(-0.5, 0.7), 0.9);
   const auto report =
-      evaluate({frame(0, {{1, at(0, 0.7, kPi / 2), 1.0}, {1, at(-0.5, 0.7), 1.0}})}, objects(),
-               {result(0, 0.4, {{first, second, third}})}, without_bop());
+      evaluate({frame(0, {{1, posed_at(0, 0.7, pi / 2), 1.0}, {1, posed_at(-0.5, 0.7), 1.0}})},
+               objects(), {result(0, 0.4, {{first, second, third}})}, without_bop());
   ASSERT_TRUE(report.ok()) << report.status().message;
   const OpenPoses& open = report->open_poses;
   EXPECT_EQ(open.held.hits, 1);
@@ -290,11 +290,12 @@ TEST(Evaluation, FalseReportsWhereNothingIs) {
   // An empty frame with two reports, one without, one whose only instance is too hidden to count
   // and was found all the same, and one with an object.
   Case c;
-  c.frames = {frame(0, {}), frame(1, {}), frame(2, {{1, at(0, 0.7), 0.05}}),
-              frame(3, {{1, at(0, 0.7), 0.75}})};
-  c.results = {result(0, 0.1, {{placement(1, at(0, 0.7), 0.55), placement(2, at(0, 0.7), 0.6)}}),
-               result(1, 0.1, {{}}), result(2, 0.1, {{placement(1, at(0, 0.7), 0.9)}}),
-               result(3, 0.1, {{placement(2, at(0, 0.7), 0.7)}})};
+  c.frames = {frame(0, {}), frame(1, {}), frame(2, {{1, posed_at(0, 0.7), 0.05}}),
+              frame(3, {{1, posed_at(0, 0.7), 0.75}})};
+  c.results = {
+      result(0, 0.1, {{placement(1, posed_at(0, 0.7), 0.55), placement(2, posed_at(0, 0.7), 0.6)}}),
+      result(1, 0.1, {{}}), result(2, 0.1, {{placement(1, posed_at(0, 0.7), 0.9)}}),
+      result(3, 0.1, {{placement(2, posed_at(0, 0.7), 0.7)}})};
   const auto report = evaluate(c.frames, objects(), c.results, without_bop());
   ASSERT_TRUE(report.ok());
   EXPECT_EQ(report->false_reports.free_frames, 3);
@@ -354,14 +355,14 @@ TEST(Evaluation, BopErrorsByHand) {
   io::BopSceneWriter writer(folder.path(), "test", 1);
   io::BopInstanceRecord truth;
   truth.obj_id = 1;
-  truth.camera_from_object = at(0, 0.7);
+  truth.camera_from_object = posed_at(0, 0.7);
   ASSERT_TRUE(writer.add(0, image, {truth}).ok());
   ASSERT_TRUE(writer.finish().ok());
   const auto frames = io::read_bop_frames(folder.path(), "test");
   ASSERT_TRUE(frames.ok()) << frames.status().message;
 
   const auto exact =
-      evaluate(*frames, objects(), {result(0, 0, {{placement(1, at(0, 0.7), 0.9)}})});
+      evaluate(*frames, objects(), {result(0, 0, {{placement(1, posed_at(0, 0.7), 0.9)}})});
   ASSERT_TRUE(exact.ok()) << exact.status().message;
   EXPECT_EQ(exact->mssd, 1);
   EXPECT_EQ(exact->mspd, 1);
@@ -373,7 +374,7 @@ TEST(Evaluation, BopErrorsByHand) {
   // face is at 0.65 m: 60 * 40 / 650 = 3.69 pixels, at a width of 64 as good as 36.9 of 640: right
   // under 40, 45 and 50: 3 of 10. ADD is 0.231 diameters: wrong.
   const auto off =
-      evaluate(*frames, objects(), {result(0, 0, {{placement(1, at(0.04, 0.7), 0.9)}})});
+      evaluate(*frames, objects(), {result(0, 0, {{placement(1, posed_at(0.04, 0.7), 0.9)}})});
   ASSERT_TRUE(off.ok());
   EXPECT_NEAR(off->mssd, 0.6, 1e-12);
   EXPECT_NEAR(off->mspd, 0.3, 1e-12);
@@ -382,13 +383,14 @@ TEST(Evaluation, BopErrorsByHand) {
   // 15 mm deeper: the silhouettes are the same 10 x 10 pixels, the front faces lie 0.087 diameters
   // apart: VSD is 1 for the first tolerance and 0 for the nine others.
   const auto deep =
-      evaluate(*frames, objects(), {result(0, 0, {{placement(1, at(0, 0.715), 0.9)}})});
+      evaluate(*frames, objects(), {result(0, 0, {{placement(1, posed_at(0, 0.715), 0.9)}})});
   EXPECT_NEAR(deep->vsd, 0.9, 1e-12);
 
   // BOP takes as many estimates of an object as there are instances: the most probable.
-  const auto two =
-      evaluate(*frames, objects(),
-               {result(0, 0, {{placement(1, at(0, 0.7), 0.5), placement(1, at(0.5, 0.7), 0.9)}})});
+  const auto two = evaluate(
+      *frames, objects(),
+      {result(0, 0,
+              {{placement(1, posed_at(0, 0.7), 0.5), placement(1, posed_at(0.5, 0.7), 0.9)}})});
   EXPECT_EQ(two->average_recall, 0);
 }
 

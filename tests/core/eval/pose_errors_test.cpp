@@ -11,7 +11,7 @@
 namespace bpa::eval {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Pose at(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), {x, y, z}}; }
 Pose turned_about_z(double angle) { return {rotation_from_vector({0, 0, angle}), {0, 0, 1}}; }
@@ -26,8 +26,8 @@ TEST(PoseErrors, AddOfAShiftIsItsLength) {
 }
 
 TEST(PoseErrors, AddOfAQuarterTurnIsTheSideButAddSIsNothing) {
-  EXPECT_NEAR(average_distance(square(), turned_about_z(kPi / 2), turned_about_z(0)), 0.02, 1e-8);
-  EXPECT_NEAR(average_nearest_distance(square(), turned_about_z(kPi / 2), turned_about_z(0)), 0,
+  EXPECT_NEAR(average_distance(square(), turned_about_z(pi / 2), turned_about_z(0)), 0.02, 1e-8);
+  EXPECT_NEAR(average_nearest_distance(square(), turned_about_z(pi / 2), turned_about_z(0)), 0,
               1e-8);
 }
 
@@ -40,18 +40,18 @@ TEST(PoseErrors, AddSTakesTheNearestVertex) {
 
 TEST(PoseErrors, RmsOfAHalfTurnIsTheDiagonalUnlessSymmetric) {
   const double diagonal = 0.02 * std::sqrt(2.0);
-  EXPECT_NEAR(rms_distance(square(), turned_about_z(kPi), turned_about_z(0), {Pose{}}), diagonal,
+  EXPECT_NEAR(rms_distance(square(), turned_about_z(pi), turned_about_z(0), {Pose{}}), diagonal,
               1e-8);
   SymmetryGroup group;
-  group.discrete = {{rotation_from_vector({0, 0, kPi}), Eigen::Vector3d::Zero()}};
+  group.discrete = {{rotation_from_vector({0, 0, pi}), Eigen::Vector3d::Zero()}};
   EXPECT_NEAR(
-      rms_distance(square(), turned_about_z(kPi), turned_about_z(0), discretised_symmetries(group)),
+      rms_distance(square(), turned_about_z(pi), turned_about_z(0), discretised_symmetries(group)),
       0, 1e-8);
 }
 
 TEST(PoseErrors, MssdIsTheLargestDistance) {
   // A turn about the corner (0.01, 0.01) by 60 degrees moves the opposite one by the diagonal.
-  const Eigen::Quaterniond turn = rotation_from_vector({0, 0, kPi / 3});
+  const Eigen::Quaterniond turn = rotation_from_vector({0, 0, pi / 3});
   const Eigen::Vector3d corner(0.01, 0.01, 0);
   const Pose about_corner{turn, corner - turn * corner + Eigen::Vector3d(0, 0, 1)};
   EXPECT_NEAR(max_surface_distance(square(), about_corner, at(0, 0, 1), {Pose{}}),
@@ -74,15 +74,15 @@ TEST(PoseErrors, RightIsWithinBothTolerancesModuloSymmetry) {
   EXPECT_TRUE(is_right(at(0.024, 0, 1), truth, {}));
   EXPECT_FALSE(is_right(at(0.026, 0, 1), truth, {}));
   EXPECT_FALSE(is_right(at(1, 0, 1), truth, {}));
-  EXPECT_TRUE(is_right(turned_about_z(kPi / 17), truth, {}));
-  EXPECT_FALSE(is_right(turned_about_z(kPi / 15), truth, {}));
+  EXPECT_TRUE(is_right(turned_about_z(pi / 17), truth, {}));
+  EXPECT_FALSE(is_right(turned_about_z(pi / 15), truth, {}));
   SymmetryGroup half_turn;
-  half_turn.discrete = {{rotation_from_vector({0, 0, kPi}), {0, 0, 0}}};
-  EXPECT_FALSE(is_right(turned_about_z(kPi), truth, {}));
-  EXPECT_TRUE(is_right(turned_about_z(kPi), truth, half_turn));
+  half_turn.discrete = {{rotation_from_vector({0, 0, pi}), {0, 0, 0}}};
+  EXPECT_FALSE(is_right(turned_about_z(pi), truth, {}));
+  EXPECT_TRUE(is_right(turned_about_z(pi), truth, half_turn));
   // The symmetry may move the origin, by a part of the object's size.
   half_turn.discrete[0].translation = {0.1, 0, 0};
-  Pose moved = turned_about_z(kPi);
+  Pose moved = turned_about_z(pi);
   moved.translation.x() = 0.1;
   EXPECT_TRUE(is_right(moved, truth, half_turn));
 }

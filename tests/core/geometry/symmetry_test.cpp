@@ -12,22 +12,22 @@
 namespace bpa {
 namespace {
 
-Pose random_pose(RandomStream& random) {
+Pose any_pose(RandomStream& random) {
   Eigen::Vector4d q(random.normal(), random.normal(), random.normal(), random.normal());
   return {from_wxyz(q), 0.1 * Eigen::Vector3d(random.normal(), random.normal(), random.normal())};
 }
 
 TEST(Symmetry, WithoutSymmetryIsThePlainError) {
   RandomStream random(1);
-  const Pose a = random_pose(random);
-  const Pose b = random_pose(random);
+  const Pose a = any_pose(random);
+  const Pose b = any_pose(random);
   EXPECT_EQ(pose_error(a, b, SymmetryGroup{}).angle, pose_error(a, b).angle);
 }
 
 TEST(Symmetry, DiscreteTwinIsNoError) {
   RandomStream random(2);
   const Pose turn{rotation_from_vector({0, 0, M_PI}), {0.01, 0.02, 0}};
-  const Pose truth = random_pose(random);
+  const Pose truth = any_pose(random);
   const PoseError error = pose_error(truth * turn, truth, SymmetryGroup{{turn}, {}});
   EXPECT_LT(error.angle, 1e-9);
   EXPECT_LT(error.position, 1e-12);
@@ -38,8 +38,8 @@ TEST(Symmetry, ContinuousAgreesWithFineSampling) {
   RandomStream random(3);
   const ContinuousSymmetry spin{Eigen::Vector3d(0.2, 0.3, 0.9).normalized(), {0.01, 0.0, 0.03}};
   for (int trial = 0; trial < 20; ++trial) {
-    const Pose truth = random_pose(random);
-    const Pose estimate = random_pose(random);
+    const Pose truth = any_pose(random);
+    const Pose estimate = any_pose(random);
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 10000; ++i) {
       const Eigen::Quaterniond turn = rotation_from_vector(i * 2 * M_PI / 10000 * spin.axis);

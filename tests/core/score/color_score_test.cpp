@@ -12,8 +12,8 @@
 namespace bpa {
 namespace {
 
-const Pose kCameraFromWorld = test::look_at({0.1, -0.6, 0.5}, {0, 0, 0});
-const Pose kTruth = kCameraFromWorld * test::standing_at(0, 0, test::kBrickHalf.z(), 0.7);
+const Pose kBrickTruth =
+    test::kCameraFromWorld * test::standing_at(0, 0, test::kBrickHalf.z(), 0.7);
 
 // A brick whose ends are of two colours, so that a half turn about z changes it.
 class ColorScore : public ::testing::Test {
@@ -24,13 +24,14 @@ class ColorScore : public ::testing::Test {
       painted.surface.colors.push_back(color_at(p.x()));
     }
     model_ = make_object_model(std::move(painted)).value();
-    const auto rendered = test::render({test::table(kCameraFromWorld), test::brick_solid(kTruth)},
-                                       test::kinect_camera());
+    const auto rendered =
+        test::render({test::table(test::kCameraFromWorld), test::brick_solid(kBrickTruth)},
+                     test::kinect_camera());
     const SurfaceMap map = surface_map(rendered.frame, {});
     image_ = make_check_image(map);
     // The colours of the brick by the true surface, not by the model's points.
     observed_ = Image<Eigen::Vector3f>(map.width(), map.height(), Eigen::Vector3f(60, 0, 0));
-    const Pose object_from_camera = kTruth.inverse();
+    const Pose object_from_camera = kBrickTruth.inverse();
     for (std::size_t i = 0; i < map.size(); ++i) {
       if (rendered.solid[rendered.index_of(map, i)] != 1) continue;
       const auto [r, g, b] =
@@ -43,7 +44,8 @@ class ColorScore : public ::testing::Test {
     if (x > 0) return {200, 60, 50};
     return {40, 90, 180};
   }
-  static ColorAgreement compare(const Image<Eigen::Vector3f>& observed, const Pose& pose = kTruth) {
+  static ColorAgreement compare(const Image<Eigen::Vector3f>& observed,
+                                const Pose& pose = kBrickTruth) {
     return compare_colors(image_, observed, model_->index->cielab,
                           predict_surface(image_, *model_, pose));
   }
@@ -69,7 +71,7 @@ class PlainBrick : public ColorScore {
  protected:
   static ColorAgreement compare(const Image<Eigen::Vector3f>& seen, const Eigen::Vector3f& model) {
     const std::vector<Eigen::Vector3f> surface(model_->surface.size(), model);
-    return compare_colors(image_, seen, surface, predict_surface(image_, *model_, kTruth));
+    return compare_colors(image_, seen, surface, predict_surface(image_, *model_, kBrickTruth));
   }
   static ColorAgreement compare(const Eigen::Vector3f& seen, const Eigen::Vector3f& model) {
     return compare(Image<Eigen::Vector3f>(image_.width, image_.height, seen), model);
@@ -84,12 +86,12 @@ class PlainBrick : public ColorScore {
     return out;
   }
   static int first_right_column() {
-    const PredictedSurface predicted = predict_surface(image_, *model_, kTruth);
+    const PredictedSurface predicted = predict_surface(image_, *model_, kBrickTruth);
     return predicted.u0 + predicted.depth.width * 7 / 10;
   }
   static double right_share() {
     int right = 0, all = 0;
-    predict_surface(image_, *model_, kTruth).for_each([&](int u, int, float, std::uint32_t) {
+    predict_surface(image_, *model_, kBrickTruth).for_each([&](int u, int, float, std::uint32_t) {
       right += u >= first_right_column();
       ++all;
     });
@@ -104,8 +106,8 @@ TEST_F(ColorScore, OfItsOwnColoursIsNearZero) {
 
 TEST_F(ColorScore, TellsApartWhatShapeDoesNot) {
   const Pose half_turn{rotation_from_vector({0, 0, M_PI}), Eigen::Vector3d::Zero()};
-  EXPECT_LT(compare(observed_, kTruth * half_turn).likelihood, -0.2);
-  EXPECT_GT(compare(observed_, kTruth * half_turn).tint, 30);
+  EXPECT_LT(compare(observed_, kBrickTruth * half_turn).likelihood, -0.2);
+  EXPECT_GT(compare(observed_, kBrickTruth * half_turn).tint, 30);
 }
 
 TEST_F(PlainBrick, PatternsCountByTheirColourDistance) {
@@ -147,11 +149,11 @@ TEST_F(ColorScore, WhiteBalanceIsTintAlone) {
 }
 
 TEST_F(ColorScore, WithoutColourNeitherForNorAgainst) {
-  const PredictedSurface predicted = predict_surface(image_, *model_, kTruth);
+  const PredictedSurface predicted = predict_surface(image_, *model_, kBrickTruth);
   for (const ColorAgreement& unknown :
        {compare_colors(image_, {}, model_->index->cielab, predicted),
         compare_colors(image_, observed_, {}, predicted),
-        compare(observed_, {kTruth.rotation, {0, 0, -1}})}) {
+        compare(observed_, {kBrickTruth.rotation, {0, 0, -1}})}) {
     EXPECT_TRUE(std::isnan(unknown.likelihood));
     EXPECT_TRUE(std::isnan(unknown.tint));
   }

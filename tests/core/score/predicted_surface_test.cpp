@@ -13,14 +13,11 @@
 namespace bpa {
 namespace {
 
-const Pose kCameraFromWorld = test::look_at({0.1, -0.6, 0.5}, {0, 0, 0});
-const Pose kTruth = kCameraFromWorld * test::standing_at(0, 0, 0.02, 0.7);
-
 // Against exact rays.
 TEST(PredictedSurface, IsWhatACameraWouldSee) {
   const auto model = test::l_model();
-  for (const Pose& pose :
-       {kTruth, test::disturbed(kTruth, 0.05, 1.0, 3), test::disturbed(kTruth, 0.05, 2.0, 4)}) {
+  for (const Pose& pose : {test::kTruth, test::disturbed(test::kTruth, 0.05, 1.0, 3),
+                           test::disturbed(test::kTruth, 0.05, 2.0, 4)}) {
     const auto rendered = test::render(test::l_solids(pose), test::kinect_camera(320));
     SurfaceMap map = surface_map(rendered.frame, {});
     const CheckImage image = make_check_image(map);
@@ -46,27 +43,28 @@ TEST(PredictedSurface, IsWhatACameraWouldSee) {
 
 TEST(PredictedSurface, NamesThePointThatIsSeen) {
   const auto model = test::l_model();
-  const CheckImage image = make_check_image(
-      surface_map(test::render({test::table(kCameraFromWorld)}, test::kinect_camera()).frame, {}));
-  const FastPose pose = to_fast(kTruth);
+  const CheckImage image = make_check_image(surface_map(
+      test::render({test::table(test::kCameraFromWorld)}, test::kinect_camera()).frame, {}));
+  const FastPose pose = to_fast(test::kTruth);
   int covered = 0;
-  predict_surface(image, *model, kTruth).for_each([&](int u, int v, float z, std::uint32_t i) {
-    const Eigen::Vector3f p = pose.rotation * model->surface.points[i] + pose.translation;
-    ASSERT_NEAR(p.z(), z, 0.01);
-    ASSERT_NEAR(image.fx * p.x() / p.z() + image.cx, u, 1.0);
-    ASSERT_NEAR(image.fy * p.y() / p.z() + image.cy, v, 1.0);
-    ++covered;
-  });
+  predict_surface(image, *model, test::kTruth)
+      .for_each([&](int u, int v, float z, std::uint32_t i) {
+        const Eigen::Vector3f p = pose.rotation * model->surface.points[i] + pose.translation;
+        ASSERT_NEAR(p.z(), z, 0.01);
+        ASSERT_NEAR(image.fx * p.x() / p.z() + image.cx, u, 1.0);
+        ASSERT_NEAR(image.fy * p.y() / p.z() + image.cy, v, 1.0);
+        ++covered;
+      });
   EXPECT_GT(covered, 1000);
 }
 
 TEST(PredictedSurface, OutOfSightIsEmpty) {
   const auto model = test::l_model();
-  const CheckImage image = make_check_image(
-      surface_map(test::render({test::table(kCameraFromWorld)}, test::kinect_camera()).frame, {}));
+  const CheckImage image = make_check_image(surface_map(
+      test::render({test::table(test::kCameraFromWorld)}, test::kinect_camera()).frame, {}));
   for (const Eigen::Vector3d& place : {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(9, 0, 1),
                                        Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, -3, 1)}) {
-    const PredictedSurface out = predict_surface(image, *model, {kTruth.rotation, place});
+    const PredictedSurface out = predict_surface(image, *model, {test::kTruth.rotation, place});
     int covered = 0;
     out.for_each([&](int, int, float, std::uint32_t) { ++covered; });
     EXPECT_EQ(covered, 0) << place.transpose();

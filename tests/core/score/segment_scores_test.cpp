@@ -13,17 +13,14 @@
 namespace bpa {
 namespace {
 
-const Pose kCameraFromWorld = test::look_at({0.1, -0.6, 0.5}, {0, 0, 0});
-const Pose kTruth = kCameraFromWorld * test::standing_at(0, 0, 0.02, 0.7);
-
 class SegmentScores : public ::testing::Test {
  protected:
   static void SetUpTestSuite() { model_ = test::l_model(); }
   static void TearDownTestSuite() { model_.reset(); }
   void SetUp() override {
-    rendered_ =
-        test::render(test::together({test::table(kCameraFromWorld)}, test::l_solids(kTruth)),
-                     test::kinect_camera(), 1, 8);
+    rendered_ = test::render(
+        test::together({test::table(test::kCameraFromWorld)}, test::l_solids(test::kTruth)),
+        test::kinect_camera(), 1, 8);
     map_ = surface_map(rendered_.frame, {});
   }
   bool on_object(std::size_t i) const { return rendered_.solid[rendered_.index_of(map_, i)] >= 1; }
@@ -54,7 +51,7 @@ class SegmentScores : public ::testing::Test {
 
 TEST_F(SegmentScores, TheObjectsOwnSegmentBelongsToIt) {
   const Segmentation segments = segments_by([&](std::size_t i) { return on_object(i) ? 1 : 0; }, 2);
-  const std::vector<SegmentMatch> matches = match(segments, kTruth, {.points = 400});
+  const std::vector<SegmentMatch> matches = match(segments, test::kTruth, {.points = 400});
   ASSERT_FALSE(matches.empty());
   const SegmentMatch& own = matches.back();
   EXPECT_EQ(own.segment, 1);
@@ -84,22 +81,22 @@ TEST_F(SegmentScores, ProbabilityIsTheShareOnTheModel) {
   ASSERT_EQ(taken, size);
   const Segmentation own = segments_by([&](std::size_t i) { return on_object(i) ? 1 : 0; }, 2);
   const Segmentation mixed = segments_by([&](std::size_t i) { return rule[i]; }, 2);
-  const SegmentMatch pure = match(own, kTruth, {.points = 100000}).back();
-  const SegmentMatch half = match(mixed, kTruth, {.points = 100000}).back();
+  const SegmentMatch pure = match(own, test::kTruth, {.points = 100000}).back();
+  const SegmentMatch half = match(mixed, test::kTruth, {.points = 100000}).back();
   EXPECT_NEAR(half.probability, 0.5 * pure.probability, 0.01);
   EXPECT_NEAR(half.distance, 0.5 * (pure.distance - 1), 0.01);
-  EXPECT_NEAR(match(mixed, kTruth).back().probability, half.probability, 0.2) << "30 points";
+  EXPECT_NEAR(match(mixed, test::kTruth).back().probability, half.probability, 0.2) << "30 points";
 }
 
 TEST_F(SegmentScores, TruthScoresHigherThanWhatIsBesideIt) {
   const SceneEdges edges = scene_edges(map_, {});
   const Segmentation segments = super_pixels(map_, {}, edges.likelihood);
-  const std::vector<SegmentMatch> truth = match(segments, kTruth);
+  const std::vector<SegmentMatch> truth = match(segments, test::kTruth);
   EXPECT_GT(segment_score(truth), -0.08);
   EXPECT_GT(segment_affinity_score(segments, truth), -0.35);
   double distance = 0, affinity = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const auto other = match(segments, test::disturbed(kTruth, 0.02, 0.4, seed));
+    const auto other = match(segments, test::disturbed(test::kTruth, 0.02, 0.4, seed));
     EXPECT_LT(segment_score(other), segment_score(truth));
     distance += segment_score(other) / 20;
     affinity += segment_affinity_score(segments, other) / 20;
@@ -110,7 +107,7 @@ TEST_F(SegmentScores, TruthScoresHigherThanWhatIsBesideIt) {
 
 TEST_F(SegmentScores, NothingTouched) {
   const Segmentation segments = segments_by([](std::size_t) { return 0; }, 1);
-  const auto none = match(segments, {kTruth.rotation, {0, 0, -1}});
+  const auto none = match(segments, {test::kTruth.rotation, {0, 0, -1}});
   EXPECT_TRUE(none.empty());
   EXPECT_EQ(segment_score(none), -1);
   EXPECT_EQ(segment_affinity_score(segments, none), -1);

@@ -16,8 +16,6 @@ namespace {
 
 using test::Solid;
 
-const Pose kCameraFromWorld = test::look_at({0.1, -0.6, 0.5}, {0, 0, 0});
-
 class SurfaceAgreementOf : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -35,7 +33,7 @@ class SurfaceAgreementOf : public ::testing::Test {
     return make_check_image(map_of(solids, noise));
   }
   static std::vector<Solid> l_on_table() {
-    return test::together({test::table(kCameraFromWorld)}, test::l_solids(truth_));
+    return test::together({test::table(test::kCameraFromWorld)}, test::l_solids(truth_));
   }
 
   // Of the surface alone.
@@ -48,7 +46,7 @@ class SurfaceAgreementOf : public ::testing::Test {
   }
 
   static inline std::shared_ptr<const ObjectModel> l_, brick_;
-  static inline const Pose truth_ = kCameraFromWorld * test::standing_at(0, 0, 0.02, 0.7);
+  static inline const Pose truth_ = test::kCameraFromWorld * test::standing_at(0, 0, 0.02, 0.7);
 };
 
 TEST_F(SurfaceAgreementOf, ComponentsOfTheTruthAreNearlyPerfect) {
@@ -111,8 +109,8 @@ TEST_F(SurfaceAgreementOf, WhatIsSeenBesideTheSilhouetteCountsForLittle) {
 }
 
 TEST_F(SurfaceAgreementOf, FreeSpaceCountsAgainstIt) {
-  const CheckImage image = image_of({test::table(kCameraFromWorld)});
-  const Pose above = kCameraFromWorld * test::standing_at(0, 0, 0.15, 0.7);
+  const CheckImage image = image_of({test::table(test::kCameraFromWorld)});
+  const Pose above = test::kCameraFromWorld * test::standing_at(0, 0, 0.15, 0.7);
   const SurfaceAgreement c = measure_surface(image, *l_, above);
   EXPECT_GT(c.free_space, 0.9);
   EXPECT_LT(c.agreeing, 0.1);
@@ -120,13 +118,13 @@ TEST_F(SurfaceAgreementOf, FreeSpaceCountsAgainstIt) {
 
 TEST_F(SurfaceAgreementOf, AFaceInTheMiddleOfALargePlaneIsPenalised) {
   // The brick sunk into the table: its top is where the table is, but nothing ends there.
-  const Pose sunk =
-      kCameraFromWorld * test::standing_at(0, 0, -static_cast<double>(test::kBrickHalf.z()), 0.3);
-  const CheckImage table = image_of({test::table(kCameraFromWorld)});
+  const Pose sunk = test::kCameraFromWorld *
+                    test::standing_at(0, 0, -static_cast<double>(test::kBrickHalf.z()), 0.3);
+  const CheckImage table = image_of({test::table(test::kCameraFromWorld)});
   const SurfaceAgreement flush = measure_surface(table, *brick_, sunk);
-  const Pose on =
-      kCameraFromWorld * test::standing_at(0, 0, static_cast<double>(test::kBrickHalf.z()), 0.3);
-  const CheckImage both = image_of({test::table(kCameraFromWorld), test::brick_solid(on)});
+  const Pose on = test::kCameraFromWorld *
+                  test::standing_at(0, 0, static_cast<double>(test::kBrickHalf.z()), 0.3);
+  const CheckImage both = image_of({test::table(test::kCameraFromWorld), test::brick_solid(on)});
   const SurfaceAgreement standing = measure_surface(both, *brick_, on);
   EXPECT_LT(flush.edge, -0.4);
   EXPECT_GT(standing.edge, -0.25);

@@ -12,7 +12,7 @@ namespace bpa::sim {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-const Camera kCamera{320, 240, 570.3, 570.3, 159.5, 119.5};
+const Camera kKinect{320, 240, 570.3, 570.3, 159.5, 119.5};
 
 TriangleMesh quad(double half_width, double half_height) {
   const auto w = static_cast<float>(half_width), h = static_cast<float>(half_height);
@@ -43,7 +43,7 @@ KinectImage see_plane(double depth, double angle, const Material& material,
       meshes,
       {{0,
         {Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY())), {0, 0, depth}}}});
-  return simulate_kinect({scene, with_material(material), kCamera, Pose{}}, options, 5, shot,
+  return simulate_kinect({scene, with_material(material), kKinect, Pose{}}, options, 5, shot,
                          num_threads);
 }
 
@@ -68,15 +68,15 @@ double axial_noise(const KinectImage& image, double depth) {
 double hole_fraction(const KinectImage& image) {
   int holes = 0, all = 0;
   for (int y = 40; y < 200; ++y) {
-    for (int x = 60; x < 260; ++x, ++all) holes += image.frame.depth[y * kCamera.width + x] == 0;
+    for (int x = 60; x < 260; ++x, ++all) holes += image.frame.depth[y * kKinect.width + x] == 0;
   }
   return static_cast<double>(holes) / all;
 }
 
-class PlaneNoise : public testing::TestWithParam<std::tuple<double, int>> {};
+class NoiseOnAPlane : public testing::TestWithParam<std::tuple<double, int>> {};
 
 // Nguyen, Izadi and Lovell 2012, equations 2 and 3, written out anew.
-TEST_P(PlaneNoise, IsThePublishedOne) {
+TEST_P(NoiseOnAPlane, IsThePublishedOne) {
   const auto [depth, degrees] = GetParam();
   const double angle = degrees * kPi / 180;
   double expected = 0.0012 + 0.0019 * std::pow(depth - 0.4, 2);
@@ -90,7 +90,7 @@ TEST_P(PlaneNoise, IsThePublishedOne) {
   EXPECT_NEAR(measured / expected, 1, 0.15) << 1e3 * measured << " mm, not " << 1e3 * expected;
 }
 
-INSTANTIATE_TEST_SUITE_P(DepthAndAngle, PlaneNoise,
+INSTANTIATE_TEST_SUITE_P(DepthAndAngle, NoiseOnAPlane,
                          testing::Combine(testing::Values(0.6, 1.0, 1.5, 2.0),
                                           testing::Values(0, 30, 50, 70, 75)));
 
@@ -114,13 +114,13 @@ TEST(Kinect, ShadowIsAsWideAsTheParallax) {
   const Eigen::Quaterniond straight = Eigen::Quaterniond::Identity();
   const RayScene scene(meshes, {{0, {straight, {0, 0, 1.0}}}, {1, {straight, {0, 0, 0.6}}}});
   const KinectImage image =
-      simulate_kinect({scene, with_material({}), kCamera, Pose{}}, at_depth_camera(), 1);
+      simulate_kinect({scene, with_material({}), kKinect, Pose{}}, at_depth_camera(), 1);
   const double expected = 570.3 * 0.075 * (1 / 0.6 - 1 / 1.0);
   double left = 0, right = 0;
   int rows = 0;
   for (int y = 100; y < 140; ++y, ++rows) {
-    for (int x = 0; x < kCamera.width; ++x) {
-      (x < 160 ? left : right) += image.frame.depth[y * kCamera.width + x] == 0;
+    for (int x = 0; x < kKinect.width; ++x) {
+      (x < 160 ? left : right) += image.frame.depth[y * kKinect.width + x] == 0;
     }
   }
   EXPECT_NEAR(left / rows, expected, 5);  // the projector stands to the right
@@ -187,7 +187,7 @@ TEST(Kinect, RegistrationKeepsDepthWhereItIs) {
   double worst = 0;
   for (int y = 40; y < 200; ++y) {
     for (int x = 60; x < 260; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * kCamera.width + x;
+      const std::size_t i = static_cast<std::size_t>(y) * kKinect.width + x;
       worst = std::max<double>(worst, std::abs(image.frame.depth[i] - image.ideal.depth[i]));
     }
   }

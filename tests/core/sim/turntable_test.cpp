@@ -10,7 +10,7 @@
 namespace bpa::sim {
 namespace {
 
-TurntableOptions small_options() {
+TurntableOptions small_turntable() {
   TurntableOptions options;
   options.step_deg = 60;
   options.camera = {320, 240, 262.5, 262.5, 159.5, 119.5};
@@ -37,7 +37,7 @@ TEST(Turntable, RestingPosesDifferAndTouchThePlate) {
 
 TEST(Turntable, ViewsTurnAboutOneAxis) {
   const SimulatedObject brick = household_objects(std::vector<std::string>{"l_brick"}).front();
-  const TurntableScan scan = simulate_turntable(brick, small_options(), 5, 2);
+  const TurntableScan scan = simulate_turntable(brick, small_turntable(), 5, 2);
   ASSERT_EQ(scan.views.size(), 12u);
   for (std::size_t i = 1; i < scan.views.size(); ++i) {
     const TurntableView& a = scan.views[i - 1];
@@ -55,7 +55,7 @@ TEST(Turntable, ViewsTurnAboutOneAxis) {
 
 TEST(Turntable, ViewsAreShared) {
   const SimulatedObject brick = household_objects(std::vector<std::string>{"l_brick"}).front();
-  TurntableOptions options = small_options();
+  TurntableOptions options = small_turntable();
   options.step_deg = 90;
   options.max_views = 6;
   options.resting_positions = 2;

@@ -20,7 +20,6 @@ namespace bpa {
 namespace {
 
 using wire::bpa_msgs::SceneInterpretations;
-using wire::sensor_msgs::Image;
 
 /// An L and a brick on a table, with the noise of a Kinect, seen from another side each time.
 Frame table_frame(int index) {

@@ -13,7 +13,6 @@ namespace bpa {
 namespace {
 
 using support::Plate;
-using wire::sensor_msgs::Image;
 
 constexpr Camera kInfrared{320, 240, 300, 300, 159.5, 119.5};
 
@@ -35,7 +34,7 @@ struct Box {
   }
 };
 
-Box in_color(const Image& image, const Plate& plate) {
+Box in_color(const wire::sensor_msgs::Image& image, const Plate& plate) {
   Box box;
   for (int v = 0; v < 240; ++v) {
     for (int u = 0; u < 320; ++u) {
@@ -47,7 +46,7 @@ Box in_color(const Image& image, const Plate& plate) {
   return box;
 }
 
-Box in_depth(const Image& image, const Plate& plate) {
+Box in_depth(const wire::sensor_msgs::Image& image, const Plate& plate) {
   Box box;
   for (int v = 0; v < 240; ++v) {
     for (int u = 0; u < 320; ++u) {
@@ -73,7 +72,8 @@ class Registration : public ::testing::Test {
     support::SensorServer server(folder.path(), source, settings);
     support::CameraListener camera(*participant);
     ASSERT_TRUE(camera.color.wait_for(3) && camera.depth.wait_for(3)) << server.log();
-    const Image color = camera.color.messages().back(), depth = camera.depth.messages().back();
+    const wire::sensor_msgs::Image color = camera.color.messages().back(),
+                                   depth = camera.depth.messages().back();
     for (const Plate& plate : kPlates) {
       const Box c = in_color(color, plate), d = in_depth(depth, plate);
       ASSERT_GT(c.pixels, 500);
@@ -176,7 +176,7 @@ TEST_F(Registration, OfDepthInTenthsOfMillimetres) {
   support::SensorServer server(folder.path(), "openni2", {});
   support::CameraListener camera(*participant);
   ASSERT_TRUE(camera.color.wait_for(3) && camera.depth.wait_for(3)) << server.log();
-  const Image depth = camera.depth.messages().back();
+  const wire::sensor_msgs::Image depth = camera.depth.messages().back();
   const Box c = in_color(camera.color.messages().back(), kPlates[0]);
   ASSERT_EQ(depth.encoding, "32FC1");
   float metres = 0;
