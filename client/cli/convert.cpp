@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/convert.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <cstdio>
 
 namespace bpa::cli {
@@ -80,9 +80,12 @@ ExpectedPose to_expected_pose(const PosePrior& prior) {
   const auto& [axes, concentrations] = prior.orientation;
   Axes::Map(out.orientation_spread.axes[0].data()) = axes;
   Eigen::Vector3d::Map(out.orientation_spread.concentrations.data()) = concentrations;
-  // The mode is at right angles to all three axes; without axes it does not count.
-  const Eigen::Matrix4d basis = Eigen::HouseholderQR<Axes>(axes).householderQ();
-  const Eigen::Vector4d mode = basis.col(3);  // w, x, y, z
+  // The mode m is at right angles to all three axes: I - A Aᵀ = m mᵀ. Without axes it does not
+  // count.
+  const Eigen::Matrix4d squares = Eigen::Matrix4d::Identity() - axes * axes.transpose();
+  Eigen::Index longest;
+  squares.diagonal().maxCoeff(&longest);
+  const Eigen::Vector4d mode = squares.col(longest).normalized();  // w, x, y, z
   out.camera_from_object.orientation = {{mode[1], mode[2], mode[3], mode[0]}};
   return out;
 }

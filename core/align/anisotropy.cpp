@@ -9,6 +9,7 @@
 
 #include "core/align/moments.hpp"
 #include "core/bingham/eigen4.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace bpa::align {
 namespace {
@@ -213,7 +214,7 @@ RefinedPose refine(const Correspondences& data, const PositionModel& positions, 
     const Quadratic local = local_quadratic(data, positions, result.camera_from_object);
     Matrix6d damped = local.precision;
     damped.diagonal() += damping * (local.precision.diagonal() + vague_precision());
-    const Vector6d step = damped.ldlt().solve(local.gradient);
+    const Vector6d step = solve_symmetric(damped, local.gradient);
     Pose next = result.camera_from_object;
     next.translation += step.head<3>();
     next.rotation = (rotation_from_vector(step.tail<3>()) * next.rotation).normalized();
@@ -230,7 +231,7 @@ RefinedPose refine(const Correspondences& data, const PositionModel& positions, 
   }
   Matrix6d precision = local_quadratic(data, positions, result.camera_from_object).precision;
   precision.diagonal() += vague_precision();
-  result.covariance = precision.inverse();
+  result.covariance = inverse_symmetric(precision);
   return result;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/LU>
 #include <cmath>
 
 #include "core/detect/candidate.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace bpa {
 namespace {
@@ -18,7 +18,7 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const Refinement& refinement) {
   const double angle = 1 / (kAngleSigma * kAngleSigma);
   information.diagonal().head<3>().array() += position;
   information.diagonal().tail<3>().array() += angle;
-  const Eigen::Matrix<double, 6, 6> inverse = information.inverse();
+  const Eigen::Matrix<double, 6, 6> inverse = inverse_symmetric(information);
   return 0.5 * (inverse + inverse.transpose());
 }
 

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <functional>
 
@@ -64,30 +63,29 @@ std::vector<Twist> free_motions(const Pose& pose, const SymmetryGroup& symmetry)
   return motions;
 }
 
-/// Squared length of the error in units of the reported covariance, both seen modulo the motions
-/// that the symmetry leaves free. `truth` is the symmetric one nearest to the estimate.
+/// Squared length of the error in units of the reported covariance, without its part along the
+/// motions that the symmetry leaves free. `truth` is the symmetric one nearest to the estimate.
 void add_covariance_error(const Placement& estimate, const Pose& truth,
                           const SymmetryGroup& symmetry, EstimateOutcome& result) {
+  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(estimate.covariance);
+  result.has_covariance = factor.info() == Eigen::Success;
+  if (!result.has_covariance) return;
   const Pose& pose = estimate.camera_from_object;
   Twist error;
   error << truth.translation - pose.translation,
       vector_from_rotation((truth.rotation * pose.rotation.conjugate()).normalized());
-  const std::vector<Twist> motions = free_motions(pose, symmetry);
-  const int free = static_cast<int>(motions.size());
-  // Any linear map whose kernel is spanned by the free motions gives the same length.
-  Eigen::MatrixXd kernel = Eigen::MatrixXd::Zero(6, std::max(free, 1));
-  for (int i = 0; i < free; ++i) kernel.col(i) = motions[i];
-  const Eigen::Matrix<double, 6, 6> basis =
-      Eigen::HouseholderQR<Eigen::MatrixXd>(kernel).householderQ() *
-      Eigen::Matrix<double, 6, 6>::Identity();
-  const Eigen::MatrixXd seen = basis.rightCols(6 - free).transpose();
-  const Eigen::MatrixXd covariance = seen * estimate.covariance * seen.transpose();
-  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
-  result.has_covariance = factor.info() == Eigen::Success && covariance.diagonal().minCoeff() > 0;
-  if (!result.has_covariance) return;
-  const Eigen::VectorXd seen_error = seen * error;
-  result.mahalanobis_squared = seen_error.dot(factor.solve(seen_error));
-  result.degrees_of_freedom = 6 - free;
+  factor.matrixL().solveInPlace(error);
+  std::vector<Twist> free = free_motions(pose, symmetry);
+  for (auto motion = free.begin(); motion != free.end(); ++motion) {
+    factor.matrixL().solveInPlace(*motion);
+    for (auto earlier = free.begin(); earlier != motion; ++earlier) {
+      *motion -= earlier->dot(*motion) * *earlier;
+    }
+    motion->normalize();
+    error -= motion->dot(error) * *motion;
+  }
+  result.mahalanobis_squared = error.squaredNorm();
+  result.degrees_of_freedom = 6 - static_cast<int>(free.size());
 }
 
 /// Only what counts takes part in BOP's errors, and for each object at most as many estimates, the

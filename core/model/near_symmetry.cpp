@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/model/near_symmetry.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include "core/geometry/pose.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace bpa {
 namespace {
@@ -64,7 +64,7 @@ class SelfFit {
       const double lever = 0.25 * surface_.diameter * surface_.diameter;
       information.diagonal().head<3>().array() += places;
       information.diagonal().tail<3>().array() += places * lever;
-      const Eigen::Matrix<double, 6, 1> step = -information.ldlt().solve(gradient);
+      const Eigen::Matrix<double, 6, 1> step = -solve_symmetric(information, gradient);
       const Eigen::Quaterniond turn = rotation_from_vector(step.tail<3>());
       motion = Pose{turn, step.head<3>() + centre_ - turn * centre_} * motion;
       motion.rotation.normalize();

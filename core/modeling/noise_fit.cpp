@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
+#include "core/geometry/solve_symmetric.hpp"
 #include "core/modeling/posed_view.hpp"
 
 namespace bpa {
@@ -89,7 +89,7 @@ NoiseCurve fit_noise_curve(std::span<const NoiseBin> bins, const NoiseCurve& sta
     linearise(used, best, prior, gradient, hessian);
     Eigen::Matrix<double, 7, 7> damped = hessian;
     damped.diagonal() *= 1 + damping;
-    const Parameters next = best - damped.ldlt().solve(gradient);
+    const Parameters next = best - solve_symmetric(damped, gradient);
     const double next_cost = cost_of(used, next, prior);
     if (!(next_cost < cost)) {
       damping *= 10;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/modeling/registration.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/features/pair_voting.hpp"
 #include "core/geometry/pose.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 #include "core/geometry/symmetry.hpp"
 #include "core/model/distance_transform.hpp"
 
@@ -94,7 +94,7 @@ Registration refine(const PointCloud& source, const Target& target, const FastPo
     }
     out = {pose, count / source.size(), count > 0 ? std::sqrt(squares / count) : 0};
     if (count < 12 || round == kRounds) break;
-    const Vector6 step = -hessian.ldlt().solve(gradient);
+    const Vector6 step = -solve_symmetric(hessian, gradient);
     const Pose change{rotation_from_vector(step.head<3>()), step.tail<3>()};
     pose = change * pose;
     if (round > 8 && step.head<3>().norm() < 1e-5 && step.tail<3>().norm() < 1e-6) break;

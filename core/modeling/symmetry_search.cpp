@@ -13,6 +13,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 #include "core/geometry/sphere_directions.hpp"
 #include "core/model/distance_transform.hpp"
 #include "core/model/object_model.hpp"
@@ -258,7 +259,7 @@ Eigen::Vector3d common_point(const std::vector<Turn>& turns, const Eigen::Vector
     normal += across;
     right += across * (turn.axis.point - mean);
   }
-  return mean + normal.ldlt().solve(right);
+  return mean + solve_symmetric(normal, right);
 }
 
 // The axis about which turns of several orders follow one another so closely, 24 degrees or less,

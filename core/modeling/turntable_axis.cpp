@@ -5,7 +5,6 @@
 // other scan (paper section III). It is tried all over the table, then refined by Gauss-Newton with
 // distances to tangent planes; then also the step of the table (within a few per cent) and the tilt
 // of its axis (within a fraction of a degree) follow from the scans.
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -15,6 +14,7 @@
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/geometry/pose.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 #include "core/modeling/turntable.hpp"
 
 namespace bpa {
@@ -229,7 +229,7 @@ double refine(const std::vector<Scan>& scans, float radius, const Turn& start, b
   hessian(3, 3) += tilt_prior, hessian(4, 4) += tilt_prior;
   gradient[3] += tilt_prior * turn.tilt_x, gradient[4] += tilt_prior * turn.tilt_y;
   hessian.diagonal().head<2>().array() += 1;  // an object right on its axis says nothing
-  const Parameters step = -hessian.ldlt().solve(gradient);
+  const Parameters step = -solve_symmetric(hessian, gradient);
   turn = moved(turn, step);
   return step.head<2>().norm();
 }

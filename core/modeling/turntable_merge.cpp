@@ -4,7 +4,6 @@
 // onto that of the first are tried (registration.hpp); the right one is that which no view
 // contradicts: nothing floats in front of what a view measured, nothing is below the table, and
 // colours agree.
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,6 +13,7 @@
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/geometry/pose.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 #include "core/modeling/registration.hpp"
 #include "core/modeling/trace_occupancy.hpp"
 #include "core/modeling/turntable.hpp"
@@ -204,7 +204,7 @@ Pose settle_on_tables(const PointCloud& source, const PointCloud& target,
     if (there) sums.add(Eigen::Vector3d::UnitZ(), -*there, weight);
     if (back) sums.add(pose.rotation * Eigen::Vector3d::UnitZ(), *back, weight);
     sums.hessian += 1e-3 * sums.count * Eigen::Matrix3d::Identity();
-    const Eigen::Vector3d shift = sums.hessian.ldlt().solve(sums.gradient);
+    const Eigen::Vector3d shift = solve_symmetric(sums.hessian, sums.gradient);
     pose.translation += shift;
     if (shift.norm() < 1e-5) break;
   }

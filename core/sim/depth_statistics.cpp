@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/sim/depth_statistics.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -10,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/median.hpp"
+#include "core/geometry/solve_symmetric.hpp"
 
 namespace bpa::sim {
 namespace {
@@ -119,7 +119,7 @@ Patch fit_patch(const DepthImage& depth, int near_step, int far_step) {
       b += row * disparity(x, y);
     }
   }
-  const Eigen::Vector3d plane = a.ldlt().solve(b);
+  const Eigen::Vector3d plane = solve_symmetric(a, b);
   const auto residual = [&](int x, int y) {
     return disparity(x, y) - plane.x() * (x - 0.5 * size) - plane.y() * (y - 0.5 * size) -
            plane.z();
