@@ -34,6 +34,8 @@ struct Candidate {
   std::vector<std::uint32_t> explained = {};  ///< Sorted pixels of the reduced image on the model.
 
   const Pose& pose() const { return refinement.camera_from_object; }
+  /// Where the object's centre is, camera frame.
+  Eigen::Vector3d place() const { return pose() * model->centre; }
 };
 using Candidates = std::vector<Candidate>;
 

@@ -21,7 +21,8 @@ std::vector<Cluster> group(const Search& search, const Candidates& candidates) {
   for (const Candidate& candidate : candidates) {
     const Pose& pose = candidate.pose();
     const auto found = std::ranges::find_if(clusters, [&](const Cluster& c) {
-      if ((c.pose.translation - pose.translation).norm() > kFar) return false;
+      const Eigen::Vector3d& centre = search.model.centre;
+      if ((c.pose * centre - pose * centre).norm() > kFar) return false;
       const PoseError error = pose_error(pose, c.pose, search.model.symmetry);
       return error.position < kPoseTolerance_m && error.angle < kPoseTolerance_rad;
     });

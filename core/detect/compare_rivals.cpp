@@ -13,8 +13,7 @@ std::vector<std::size_t> rivals_of(const Search& search, const Candidates& candi
                                    std::size_t best, std::vector<bool>& compared) {
   std::vector<std::size_t> rivals;
   for (std::size_t i = best; i < candidates.size(); ++i) {
-    const double distance =
-        (candidates[i].pose().translation - candidates[best].pose().translation).norm();
+    const double distance = (candidates[i].place() - candidates[best].place()).norm();
     if (compared[i] || distance > kSamePlace * search.model.diameter) continue;
     compared[i] = true;
     if (candidates[i].score < candidates[best].score - search.options.rivals.max_behind) continue;

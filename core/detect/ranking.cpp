@@ -17,7 +17,8 @@ void sort_by_check_score(Candidates& candidates) {
 
 bool duplicates(const Search& search, const Pose& a, const Pose& b) {
   constexpr double kFar = 0.05;  // metres, whatever the symmetry
-  if ((a.translation - b.translation).norm() > kFar) return false;
+  const Eigen::Vector3d& centre = search.model.centre;
+  if ((a * centre - b * centre).norm() > kFar) return false;
   const PoseError error = pose_error(a, b, search.model.symmetry);
   const SelectOptions& options = search.options.select;
   return error.position < options.duplicate_m && error.angle < options.duplicate_rad;
@@ -61,8 +62,7 @@ void keep_best_of_places(const Search& search, int count, double rank_penalty,
   std::unordered_map<std::uint64_t, int> met;
   std::vector<std::pair<float, std::size_t>> order;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const int rank =
-        met[position_cell(candidates[i].pose().translation.cast<float>(), kPlacesPerMetre)]++;
+    const int rank = met[position_cell(candidates[i].place().cast<float>(), kPlacesPerMetre)]++;
     order.push_back(
         {-candidates[i].check_score + static_cast<float>(rank_penalty) * static_cast<float>(rank),
          i});

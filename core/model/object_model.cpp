@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/model/object_model.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -185,6 +186,9 @@ Result<std::shared_ptr<const ObjectModel>> make_object_model(ModelSource source,
   model->index = source.prepared ? source.prepared : build_index(source, num_threads);
   static_cast<ModelSource&>(*model) = std::move(source);
   model->prepared.reset();
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : model->surface.points) box.extend(p);
+  model->centre = box.center().cast<double>();
   if (model->normal_variance.size() != model->surface.size()) {
     model->normal_variance = geometric_normal_variance(model->surface, num_threads);
   }

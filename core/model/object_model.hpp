@@ -50,6 +50,8 @@ struct ModelSource {
 /// A known object, ready for detection.
 struct ObjectModel : ModelSource {
   std::shared_ptr<const ModelIndex> index;
+  /// Of the surface's bounding box; object frame, metres. The origin may lie anywhere.
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
 };
 
 /// The normal variances that follow from the surface alone: a sensor averages normals over its

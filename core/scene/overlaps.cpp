@@ -17,7 +17,7 @@ bool solid(const Candidate& c) { return c.model->complete && c.model->index; }
 // Two instances of one model cannot have nearly the same place. An object may lie on a plate, so
 // complete models of two objects are compared by their surfaces instead.
 bool same_place(const Candidate& a, const Candidate& b) {
-  const double distance = (a.pose().translation - b.pose().translation).norm();
+  const double distance = (a.place() - b.place()).norm();
   const double smaller = std::min(a.model->diameter, b.model->diameter);
   if (a.model == b.model) return distance < kSamePlace * smaller;
   return distance < 0.2 * smaller && !(solid(a) && solid(b));
@@ -46,12 +46,12 @@ bool interpenetrate(const Candidate& a, const Candidate& b) {
   constexpr double kMaxInside = 0.1;
   if (!solid(a) || !solid(b)) return false;
   const double reach = 0.5 * (a.model->diameter + b.model->diameter);
-  if ((a.pose().translation - b.pose().translation).norm() > reach) return false;
+  if ((a.place() - b.place()).norm() > reach) return false;
   return share_inside(a, b) > kMaxInside || share_inside(b, a) > kMaxInside;
 }
 
 double same_pose(const Candidate& a, const Candidate& b) {
-  if (a.model != b.model || (a.pose().translation - b.pose().translation).norm() > 0.1) return 0;
+  if (a.model != b.model || (a.place() - b.place()).norm() > 0.1) return 0;
   const PoseError error = pose_error(a.pose(), b.pose(), a.model->symmetry);
   return std::clamp(
       1.5 - std::max(error.position / kPoseTolerance_m, error.angle / kPoseTolerance_rad), 0.0,

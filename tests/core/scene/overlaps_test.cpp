@@ -51,6 +51,29 @@ TEST_F(OverlapsOf, AModelSeenFromOneSideHasNoInside) {
   EXPECT_FALSE(conflict(first, second));
 }
 
+// Scans have their origin anywhere.
+TEST_F(OverlapsOf, ThePlaceIsThatOfTheCentreNotOfTheOrigin) {
+  const Eigen::Vector3f shift(0.2f, -0.1f, 0.05f);
+  ModelSource source = *brick_;
+  for (Eigen::Vector3f& p : source.surface.points) p += shift;
+  const auto model = make_object_model(std::move(source)).value();
+  EXPECT_LT((model->centre - shift.cast<double>()).norm(), 1e-3);
+  const auto moved = [&](const Candidate& candidate, double turn) {
+    Candidate out = candidate;
+    out.model = model.get();
+    const Pose brick_from_model{Eigen::Quaterniond::Identity(), -shift.cast<double>()};
+    out.refinement.camera_from_object =
+        candidate.pose() * Pose{rotation_from_vector({0, 0, turn}), {0, 0, 0}} * brick_from_model;
+    return out;
+  };
+  const Candidate at_origin = brick_at(0, 0, 0);
+  for (const double x : {0.0, 0.03, 0.06, 0.3}) {
+    const Candidate beside = brick_at(x, 0, 500);
+    EXPECT_EQ(conflict(moved(at_origin, 0), moved(beside, 0)), conflict(at_origin, beside)) << x;
+  }
+  EXPECT_TRUE(conflict(moved(at_origin, 0), moved(brick_at(0, 0, 500), 2)));
+}
+
 TEST_F(OverlapsOf, AThingMayLieOnATray) {
   const float thickness = 0.010f;
   Candidate tray = brick_at(0, 0, 500);
