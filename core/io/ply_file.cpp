@@ -3,9 +3,9 @@
 // Not by Assimp, which reads the other formats: 5.2.5 does not return from a truncated binary PLY.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <sstream>
 #include <string_view>
@@ -18,20 +18,23 @@
 namespace bpa::io {
 namespace {
 
-/// A type of number: its two names, its size, and how to read it in this machine's byte order.
+/// A type of number: its two names, its size, and how to read it, in this machine's byte order or
+/// swapped.
 struct NumberType {
   std::string_view name, other_name;
   std::size_t size;
   bool real;
-  double (*read)(const char* bytes);
+  double (*read)(const char* bytes, bool swapped);
 };
 
 template <class T>
 constexpr NumberType number_type(std::string_view name, std::string_view other_name) {
-  return {name, other_name, sizeof(T), std::is_floating_point_v<T>, [](const char* bytes) {
-            T value;
-            std::memcpy(&value, bytes, sizeof(T));
-            return static_cast<double>(value);
+  return {name, other_name, sizeof(T), std::is_floating_point_v<T>,
+          [](const char* bytes, bool swapped) {
+            std::array<char, sizeof(T)> copy;
+            std::copy_n(bytes, sizeof(T), copy.begin());
+            if (swapped) std::reverse(copy.begin(), copy.end());
+            return static_cast<double>(std::bit_cast<T>(copy));
           }};
 }
 
@@ -150,11 +153,9 @@ class Values {
     if (ascii_) return next_word();
     ok_ = ok_ && bytes_.size() >= type.size;
     if (!ok_) return 0;
-    char number[8];
-    std::copy_n(bytes_.data(), type.size, number);
-    if (swapped_) std::reverse(number, number + type.size);
+    const double value = type.read(bytes_.data(), swapped_);
     bytes_.remove_prefix(type.size);
-    return type.read(number);
+    return value;
   }
 
   double next_word() {
