@@ -114,7 +114,9 @@ Samples without_color(Samples samples) {
   for (auto* frames : {&samples.training, &samples.held_out}) {
     for (ScoreFrame& frame : *frames) {
       for (auto& sample : frame.samples) {
-        sample.values[component("color")] = sample.values[component("tint")] = kNotKnown;
+        for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
+          if (kScoreComponents[i].needs_color) sample.values[i] = kNotKnown;
+        }
       }
     }
   }

@@ -33,6 +33,14 @@ double srgb_of_linear(double value) {
   return value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
 }
 
+Eigen::Vector3f log_light(const Eigen::Vector3f& lab) {
+  static constexpr float kDarkest = 0.1f;
+  const float y = (lab[0] + 16) / 116;
+  const auto log_of = [](float root) { return std::log(std::max(kDarkest, root)); };
+  const float green = log_of(y);
+  return {green, log_of(y + lab[1] / 500) - green, log_of(y - lab[2] / 200) - green};
+}
+
 CielabConverter::CielabConverter() {
   for (std::size_t i = 0; i < linear_.size(); ++i) {
     const double value = std::min(255.0, static_cast<double>(i)) / 255;

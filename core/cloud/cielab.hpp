@@ -33,6 +33,11 @@ class CielabConverter {
   std::array<float, kSteps + 2> lightness_;  // the cube root of CIELAB, over [0, 1]
 };
 
+/// The logarithms of a CIELAB colour's light: of the root (CIE 15) of green, and of red and blue
+/// over green. A gain of a channel adds to them; shading adds to the first alone. Light below 0.001
+/// of white, which is noise, counts as that.
+Eigen::Vector3f log_light(const Eigen::Vector3f& lab);
+
 /// The frame's colours at the resolution of its surface map: means of blocks of map.reduction
 /// pixels, rgb in [0, 255]. Empty without colour.
 Image<Eigen::Vector3f> reduced_color(const Frame& frame, const SurfaceMap& map, int num_threads);

@@ -34,7 +34,8 @@ Candidates compare_rivals(const Search& search, Candidates candidates) {
     const auto rivals = rivals_of(search, candidates, best, compared);
     std::vector<Pose> poses;
     for (const std::size_t i : rivals) poses.push_back(candidates[i].pose());
-    const std::vector<double> behind = behind_best(search.scene.image, search.model, poses);
+    const std::vector<double> behind =
+        behind_best(search.scene.image, search.scene.log_light, search.model, poses);
     for (std::size_t k = 0; k < rivals.size(); ++k) {
       Candidate& rival = candidates[rivals[k]];
       rival.values[component("rivals")] = behind[k];

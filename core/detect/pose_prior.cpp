@@ -65,24 +65,9 @@ Bingham widen(const Bingham& orientation) {
   return Bingham::from_axes(widened, orientation.axes().rightCols<3>());
 }
 
-// What the model looks the same under. Turns about an axis are sampled finely enough for a mean
-// over them of what is no narrower than kPlacementSigma_rad.
-std::vector<Pose> looks_the_same(const SymmetryGroup& symmetry) {
-  constexpr int kTurns = 64;
-  std::vector<Pose> out;
-  for (const Pose& element : discrete_elements(symmetry)) {
-    if (symmetry.continuous.empty()) {
-      out.push_back(element);
-      continue;
-    }
-    const ContinuousSymmetry& axis = symmetry.continuous.front();
-    for (int k = 0; k < kTurns; ++k) {
-      const Eigen::Quaterniond turn = rotation_from_vector(2 * M_PI * k / kTurns * axis.axis);
-      out.push_back(element * Pose{turn, axis.point - turn * axis.point});
-    }
-  }
-  return out;
-}
+// Turns about an axis are sampled finely enough for a mean over them of what is no narrower than
+// kPlacementSigma_rad.
+constexpr int kTurns = 64;
 
 }  // namespace
 
@@ -121,7 +106,7 @@ ModelPriors::ModelPriors(std::span<const PosePrior> priors, const ObjectModel& m
     priors_.back().widened = {};  // the orientation of a sphere says nothing
     priors_.back().log_orientation_peak = 0;
   }
-  if (!priors_.empty()) same_ = looks_the_same(model.symmetry);
+  if (!priors_.empty()) same_ = sampled_elements(model.symmetry, kTurns);
 }
 
 ModelPriors::Prior ModelPriors::prepare(const PosePrior& prior) {

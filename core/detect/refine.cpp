@@ -2,8 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
+#include "core/score/texture_score.hpp"
 
 namespace bpa {
+namespace {
+
+Pose turned_to_pattern(const Search& search, const Pose& pose) {
+  if (!search.options.score.use_round_three) return pose;
+  const SceneFeatures& scene = search.scene;
+  return turn_to_pattern(scene.image, scene.log_light, search.model, pose,
+                         predict_surface(scene.image, search.model, pose));
+}
+
+}  // namespace
 
 Candidates refine(const Search& search, Candidates aligned) {
   const RefineOptions& options = search.options.refine;
@@ -12,7 +23,9 @@ Candidates refine(const Search& search, Candidates aligned) {
   Candidates out;
   for (const Candidate& start : aligned) {
     if (search.late() && !out.empty()) break;
-    out.push_back(search.scored(search.refine(start.pose(), options.refinement), start.found_by));
+    const Refinement refined =
+        search.refine(turned_to_pattern(search, start.pose()), options.refinement);
+    out.push_back(search.scored(refined, start.found_by));
   }
   sort_by_score(out);
   return out;

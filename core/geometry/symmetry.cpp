@@ -43,6 +43,17 @@ std::vector<Pose> discrete_elements(const SymmetryGroup& group) {
   return elements;
 }
 
+std::vector<Pose> sampled_elements(const SymmetryGroup& group, int turns) {
+  if (group.continuous.empty()) return discrete_elements(group);
+  std::vector<Pose> elements;
+  for (const Pose& element : discrete_elements(group)) {
+    for (int k = 0; k < turns; ++k) {
+      elements.push_back(element * rotation_about(group.continuous.front(), 2 * M_PI * k / turns));
+    }
+  }
+  return elements;
+}
+
 Pose nearest_symmetric_pose(const Pose& pose, const Pose& reference, const SymmetryGroup& group) {
   const std::vector<Pose> poses = equivalents(pose, reference, group);
   return *std::ranges::min_element(poses, {}, [&](const Pose& candidate) {

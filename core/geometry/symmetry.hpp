@@ -41,6 +41,10 @@ constexpr double kPoseTolerance_rad = 0.19634954084936207;  // pi / 16
 /// All discrete elements including the identity (the identity first).
 std::vector<Pose> discrete_elements(const SymmetryGroup& group);
 
+/// All elements; turns about an axis of revolution are sampled, `turns` to the full circle. A
+/// sphere counts as one axis.
+std::vector<Pose> sampled_elements(const SymmetryGroup& group, int turns);
+
 /// The element pose * s, s in the group, nearest in orientation to `reference`; ties by
 /// translation. Continuous rotations are solved in closed form.
 Pose nearest_symmetric_pose(const Pose& pose, const Pose& reference, const SymmetryGroup& group);

@@ -42,11 +42,12 @@ struct ModelIndex {
   FeatureTree feature_tree{{}};  ///< Over `fpfh`.
   PointCloud coarse;             ///< What `pairs` is made of.
   PointPairTable pairs{{}, 1};
-  std::vector<ModelView> views;         ///< The 66 views, over `surface`.
-  DistanceTransform distances;          ///< Of `surface`.
-  NoiseTable noise;                     ///< Of the model's noise.
-  std::vector<Eigen::Vector3f> cielab;  ///< Of the surface points; empty without colours.
-  std::vector<Pose> near_symmetries;    ///< near_symmetries() of the surface.
+  std::vector<ModelView> views;            ///< The 66 views, over `surface`.
+  DistanceTransform distances;             ///< Of `surface`.
+  NoiseTable noise;                        ///< Of the model's noise.
+  std::vector<Eigen::Vector3f> cielab;     ///< Of the surface points; empty without colours.
+  std::vector<Eigen::Vector3f> log_light;  ///< log_light() of `cielab`.
+  std::vector<Pose> near_symmetries;       ///< near_symmetries() of the surface.
   double point_area = 0;  ///< Surface that each surface point stands for, square metres.
 };
 

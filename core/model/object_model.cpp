@@ -158,9 +158,10 @@ void derive_index(const ModelSource& source, ModelIndex& index) {
   index.check = check_points(source.surface);
   index.noise = NoiseTable(source.noise);
   const CielabConverter convert;
-  index.cielab.clear();
+  index.cielab.clear(), index.log_light.clear();
   for (const auto& [r, g, b] : source.surface.colors) {
     index.cielab.push_back(convert(Eigen::Vector3f(r, g, b)));
+    index.log_light.push_back(log_light(index.cielab.back()));
   }
   constexpr std::size_t kSelfSample = 256;
   const std::span<const std::uint32_t> sample(index.check.surface);

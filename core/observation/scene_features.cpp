@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/cloud/blur.hpp"
 #include "core/cloud/cielab.hpp"
@@ -48,6 +49,11 @@ SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
   if (!rgb.empty()) {
     scene.cielab =
         cielab(blur(rgb, options.color_blur_px, options.num_threads), options.num_threads);
+    if (options.use_texture) {
+      scene.log_light = scene.cielab;
+      parallel_for(scene.cielab.size(), options.num_threads,
+                   [&](std::size_t i) { scene.log_light[i] = log_light(scene.cielab[i]); });
+    }
   }
   scene.segmentation = super_pixels(map, scene.cielab, scene.edges.likelihood, segment_options);
   scene.image = make_check_image(map);

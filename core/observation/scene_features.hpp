@@ -26,8 +26,9 @@ struct SceneFeatures {
   PointCloud coarse;           ///< Searched surface, for point pairs.
   ScenePairs pairs;            ///< Of points of `coarse`.
   SceneEdges edges;
-  Image<Eigen::Vector3f> cielab;  ///< Blurred, of the map's size; empty without colour.
-  Segmentation segmentation;      ///< Super-pixels of the whole map.
+  Image<Eigen::Vector3f> cielab;     ///< Blurred, of the map's size; empty without colour.
+  Image<Eigen::Vector3f> log_light;  ///< log_light() of `cielab`; empty without patterns.
+  Segmentation segmentation;         ///< Super-pixels of the whole map.
 };
 
 struct SceneFeatureOptions {
@@ -36,6 +37,7 @@ struct SceneFeatureOptions {
   double coarse_spacing_m = 0.010;
   double pair_reach_m = 0.30;
   bool use_color = true;
+  bool use_texture = true;
   double color_blur_px = 1.5;
   EdgeImageOptions edges;
   SuperPixelOptions segments;
@@ -51,6 +53,8 @@ struct SceneFeatureOptions {
           {0.002, 0.1, "Spacing of the points that make pairs, metres."});
     visit("pair_reach_m", pair_reach_m, {0.01, 5, "Length of the longest pairs, metres."});
     visit("use_color", use_color, {0, 1, "Use the frame's colours; false ignores them."});
+    visit("use_texture", use_texture,
+          {0, 1, "Compare the patterns of surfaces in colour; false ignores them."});
     visit("color_blur_px", color_blur_px,
           {0, 10, "Standard deviation of the blur of the colours, pixels."});
   }

@@ -31,6 +31,7 @@ struct ComponentType {
   bool learned;                  ///< False: reported, but no part of the score.
   double (*measure)(Evidence&);  ///< kNotKnown where it has no value.
   std::string_view meaning;
+  bool needs_color = false;  ///< Known only where frame and model have colours.
 };
 
 constexpr auto kScoreComponents = std::to_array<ComponentType>({
@@ -105,10 +106,16 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
      "FPFH features that lie on the model."},
     {"color", "log-likelihood", -1, 0, Round::three, true,
      [](Evidence& e) -> double { return e.colors().likelihood; },
-     "Colours; not known where model or frame has none."},
+     "Colours of the surface, under the frame's light.", true},
     {"tint", "CIELAB", 0, 200, Round::three, true,
      [](Evidence& e) -> double { return e.colors().tint; },
-     "Colour shift of the whole placement."},
+     "Colour shift of the whole placement.", true},
+    {"texture", "log-likelihood ratio", -5, 10, Round::three, true,
+     [](Evidence& e) -> double { return e.texture().log_ratio; },
+     "Mean over pixels: the model's pattern against a surface of one colour.", true},
+    {"texture_evidence", "log-likelihood ratio", -1e5, 1e5, Round::three, true,
+     [](Evidence& e) -> double { return e.texture().total; },
+     "Sum over independent pixels of the same.", true},
     {"rivals", "log-likelihood", -500, 0, Round::rivals, true,
      [](Evidence&) -> double { return kNotKnown; },
      "Log-likelihood behind the best pose in the same place; see behind_best()."},

@@ -12,6 +12,7 @@
 #include "core/score/predicted_surface.hpp"
 #include "core/score/segment_scores.hpp"
 #include "core/score/surface_agreement.hpp"
+#include "core/score/texture_score.hpp"
 
 namespace bpa {
 
@@ -51,6 +52,10 @@ class Evidence {
     }
     return *colors_;
   }
+  const TextureAgreement& texture() {
+    if (!texture_) texture_ = compare_texture(scene_.image, scene_.log_light, model(), predicted());
+    return *texture_;
+  }
 
  private:
   const SceneFeatures& scene_;
@@ -61,6 +66,7 @@ class Evidence {
   std::optional<PredictedSurface> predicted_;
   std::optional<std::vector<SegmentMatch>> segments_;
   std::optional<ColorAgreement> colors_;
+  std::optional<TextureAgreement> texture_;
 };
 
 }  // namespace bpa

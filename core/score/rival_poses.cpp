@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/cloud/surface_map.hpp"
+#include "core/score/texture_score.hpp"
 
 namespace bpa {
 namespace {
@@ -91,15 +92,21 @@ double rival_evidence(const CheckImage& image, const PredictedSurface& first,
   return sum;
 }
 
-std::vector<double> behind_best(const CheckImage& image, const ObjectModel& model,
-                                std::span<const Pose> poses) {
+std::vector<double> behind_best(const CheckImage& image, const Image<Eigen::Vector3f>& log_light,
+                                const ObjectModel& model, std::span<const Pose> poses) {
   constexpr double kFarthest = 500;
   if (poses.empty()) return {};
   std::vector<double> evidence{0};
   if (poses.size() > 1) {
     const PredictedSurface first = predict_whole_surface(image, model, poses.front());
+    const auto texture = [&](const PredictedSurface& predicted) {
+      const double total = compare_texture(image, log_light, model, predicted).total;
+      return std::isnan(total) ? 0 : total;
+    };
+    evidence.front() = texture(first);
     for (const Pose& pose : poses.subspan(1)) {
-      evidence.push_back(rival_evidence(image, predict_whole_surface(image, model, pose), first));
+      const PredictedSurface other = predict_whole_surface(image, model, pose);
+      evidence.push_back(rival_evidence(image, other, first) + texture(other));
     }
   }
   const double best = *std::max_element(evidence.begin(), evidence.end());

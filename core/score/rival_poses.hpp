@@ -22,8 +22,8 @@ double rival_evidence(const CheckImage& image, const PredictedSurface& first,
 
 /// Log-likelihood of each pose (camera_from_object) minus that of the best, clamped to [-500, 0].
 /// All poses are of one model, in one place. Each is compared with the first, which should fit
-/// well.
-std::vector<double> behind_best(const CheckImage& image, const ObjectModel& model,
-                                std::span<const Pose> poses);
+/// well. The pattern of the surface counts where `log_light` is not empty.
+std::vector<double> behind_best(const CheckImage& image, const Image<Eigen::Vector3f>& log_light,
+                                const ObjectModel& model, std::span<const Pose> poses);
 
 }  // namespace bpa

@@ -126,9 +126,17 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
   const auto candidates = detect_object(Search(scene, *l_, options));
   ASSERT_FALSE(candidates.empty());
   EXPECT_LT(pose_error(candidates[0].pose(), l_truth_, l_->symmetry).position, 0.01);
-  const std::set<std::string> third = {
-      "edge_likelihood", "occlusion_edge", "random_walk", "segment", "segment_affinity", "fpfh",
-      "color",           "tint",           "rivals"};
+  const std::set<std::string> third = {"edge_likelihood",
+                                       "occlusion_edge",
+                                       "random_walk",
+                                       "segment",
+                                       "segment_affinity",
+                                       "fpfh",
+                                       "color",
+                                       "tint",
+                                       "texture",
+                                       "texture_evidence",
+                                       "rivals"};
   for (const Candidate& candidate : candidates) {
     const ScoreLayer& layer = default_score_layers().round_two;
     double sum = layer.bias;

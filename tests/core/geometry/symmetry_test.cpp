@@ -17,6 +17,26 @@ Pose any_pose(RandomStream& random) {
   return {from_wxyz(q), 0.1 * Eigen::Vector3d(random.normal(), random.normal(), random.normal())};
 }
 
+TEST(Symmetry, SampledElementsKeepTheAxisAndAreEvenlySpread) {
+  SymmetryGroup group;
+  EXPECT_EQ(sampled_elements(group, 8).size(), 1u);
+  const Pose half_turn{Eigen::Quaterniond(0, 1, 0, 0), Eigen::Vector3d::Zero()};
+  group.discrete = {half_turn};
+  EXPECT_EQ(sampled_elements(group, 8).size(), 2u);
+  group.continuous = {{Eigen::Vector3d::UnitZ(), {0.1, -0.2, 0}}};
+  const std::vector<Pose> elements = sampled_elements(group, 8);
+  ASSERT_EQ(elements.size(), 16u);
+  for (std::size_t i = 0; i < 16; ++i) {
+    const Pose element = i < 8 ? elements[i] : half_turn.inverse() * elements[i];
+    const Eigen::Vector3d on_axis(0.1, -0.2, 0.3);
+    EXPECT_LT((element * on_axis - on_axis).norm(), 1e-12);
+    if (i % 8 != 0) {
+      EXPECT_NEAR(rotation_angle(elements[i].rotation, elements[i - 1].rotation), M_PI / 4, 1e-12);
+    }
+  }
+  EXPECT_LT(pose_error(elements[0], Pose{}).angle, 1e-12) << "the identity is first";
+}
+
 TEST(Symmetry, WithoutSymmetryIsThePlainError) {
   RandomStream random(1);
   const Pose a = any_pose(random);

@@ -89,5 +89,36 @@ TEST(Ycbv, ObjectsOfARealFrameAreFoundWhateverTheThreads) {
   }
 }
 
+// An OBJ with a texture image, as people have them. Its origin is the scanner's; its axes are those
+// of YCB-Video. By shape alone a box upside down is as good.
+TEST(Ycbv, ATexturedMeshIsFoundTheRightWayRound) {
+  const std::string data = test::real_data();
+  if (data.empty()) GTEST_SKIP() << "no real frames here; BPA_DATA names their folder";
+  const auto mesh = io::read_mesh_file(data + "/textured/cracker_box/textured.obj");
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  constexpr int kCrackerBox = 2;
+  auto source = model_source_from_mesh(mesh->mesh, "cracker_box", kCrackerBox);
+  ASSERT_TRUE(source.ok()) << source.status().message;
+  auto library = std::make_shared<ModelLibrary>();
+  ASSERT_TRUE(library->add(make_object_model(std::move(source).value()).value()).ok());
+
+  const auto frames = io::read_bop_frames(data + "/ycbv", "test");
+  ASSERT_TRUE(frames.ok()) << frames.status().message;
+  int there = 0;
+  for (const io::BopFrame& frame : *frames) {
+    const auto truth = std::ranges::find(frame.truth, kCrackerBox, &io::BopInstance::obj_id);
+    if (truth == frame.truth.end()) continue;
+    ++there;
+    const auto found = Detector(library, {}).detect(io::load_bop_frame(frame).value());
+    ASSERT_TRUE(found.ok()) << found.status().message;
+    const auto& best = found->interpretations.at(0).placements;
+    ASSERT_EQ(best.size(), 1u);
+    EXPECT_LT(
+        rotation_angle(best[0].camera_from_object.rotation, truth->camera_from_object.rotation),
+        0.1);
+  }
+  EXPECT_GE(there, 2);
+}
+
 }  // namespace
 }  // namespace bpa

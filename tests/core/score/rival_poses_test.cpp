@@ -126,7 +126,7 @@ TEST_F(BehindBest, TurnedPosesAreBehindTheTrueOneWhicheverIsFirst) {
   const Pose near = test::disturbed(truth_, 0.002, 0.02, 3);
   for (const Pose& first : {near, turned(M_PI)}) {
     const std::vector<Pose> poses = {first, turned(1.5), near, turned(-1.5), turned(M_PI)};
-    const std::vector<double> behind = behind_best(image_, *model_, poses);
+    const std::vector<double> behind = behind_best(image_, {}, *model_, poses);
     ASSERT_EQ(behind.size(), poses.size());
     EXPECT_EQ(behind[2], 0);
     for (std::size_t turned : {1, 3, 4}) EXPECT_LT(behind[turned], -30);
@@ -134,8 +134,8 @@ TEST_F(BehindBest, TurnedPosesAreBehindTheTrueOneWhicheverIsFirst) {
 }
 
 TEST_F(BehindBest, NothingIsBehindItself) {
-  EXPECT_EQ(behind_best(image_, *model_, std::vector<Pose>{turned(1)}), std::vector<double>{0});
-  EXPECT_TRUE(behind_best(image_, *model_, {}).empty());
+  EXPECT_EQ(behind_best(image_, {}, *model_, std::vector<Pose>{turned(1)}), std::vector<double>{0});
+  EXPECT_TRUE(behind_best(image_, {}, *model_, {}).empty());
 }
 
 TEST_F(BehindBest, EvidenceForTheOneIsEvidenceAgainstTheOther) {

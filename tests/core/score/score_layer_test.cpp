@@ -203,7 +203,7 @@ TEST(ScoreLayer, TheBuiltInOnesHaveRisingPlacesAndKnowWhatTheirRoundKnows) {
     };
     EXPECT_EQ(says_something(layers.round_two), type.round == Round::two);
     EXPECT_TRUE(says_something(layers.round_three));
-    EXPECT_EQ(says_something(layers.without_color), type.name != "color" && type.name != "tint");
+    EXPECT_EQ(says_something(layers.without_color), !type.needs_color);
   }
 }
 
