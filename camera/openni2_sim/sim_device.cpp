@@ -160,14 +160,15 @@ class SimStream : public oni::driver::StreamBase {
 
   /// Delivers the tick's frame if the stream runs and its rate wants it. Ticks come at 30 Hz.
   void show(std::uint64_t tick, std::uint64_t timestamp_us) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    const auto every = static_cast<std::uint64_t>(30 / mode_.fps);
-    if (!running_ || tick % every != 0) return;
-    if (!depth_ && !config_.deliver_color) return;
+    if (!wants(tick)) return;
+    // Not locked while OpenNI2 is called, which may be waiting for this lock with one of its own.
     OniFrame* frame = getServices().acquireFrame();
     if (frame == nullptr) return;
-    fill(frames_.frames[tick / kTicksPerScene % frames_.frames.size()], *frame);
-    frame->frameIndex = static_cast<int>(tick / every) + 1;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      fill(frames_.frames[tick / kTicksPerScene % frames_.frames.size()], *frame);
+      frame->frameIndex = static_cast<int>(tick / ticks_per_frame()) + 1;
+    }
     frame->timestamp = timestamp_us;
     raiseNewFrame(frame);
     getServices().releaseFrame(frame);
@@ -178,6 +179,12 @@ class SimStream : public oni::driver::StreamBase {
     config_.pass();
     const std::lock_guard<std::mutex> lock(mutex_);
     running_ = running;
+  }
+
+  std::uint64_t ticks_per_frame() const { return static_cast<std::uint64_t>(30 / mode_.fps); }
+  bool wants(std::uint64_t tick) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return running_ && tick % ticks_per_frame() == 0 && (depth_ || config_.deliver_color);
   }
 
   /// Whether depth is shown as its own camera sees it, not as the colour camera would.
@@ -262,6 +269,7 @@ class SimDevice : public oni::driver::DeviceBase {
 
   void destroyStream(oni::driver::StreamBase* stream) override {
     config_.pass();
+    const std::lock_guard<std::mutex> not_shown(showing_);
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       std::erase(streams_, stream);
@@ -315,11 +323,16 @@ class SimDevice : public oni::driver::DeviceBase {
       const auto since_start = std::chrono::microseconds(tick * 1'000'000 / 30);
       std::this_thread::sleep_until(start + since_start);
       if (!config_.deliver || config_.wedged || !config_.plugged) continue;
-      const std::lock_guard<std::mutex> lock(mutex_);
+      const std::lock_guard<std::mutex> shown(showing_);
       // Depth first, as most devices do; the device's clock started before.
       const auto stamp = static_cast<std::uint64_t>(since_start.count()) + 5'000'000;
-      for (SimStream* stream : streams_) stream->show(tick, stamp);
+      for (SimStream* stream : streams()) stream->show(tick, stamp);
     }
+  }
+
+  std::vector<SimStream*> streams() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return streams_;
   }
 
   const SimFrames frames_;
@@ -330,7 +343,8 @@ class SimDevice : public oni::driver::DeviceBase {
       {ONI_SENSOR_DEPTH, static_cast<int>(depth_modes_.size()), depth_modes_.data()},
       {ONI_SENSOR_COLOR, static_cast<int>(color_modes_.size()), color_modes_.data()}};
   std::atomic<bool> registering_{false};
-  std::mutex mutex_;  ///< Guards the list; held while frames are shown.
+  std::mutex showing_;  ///< Held while frames are shown: no stream is destroyed meanwhile.
+  std::mutex mutex_;    ///< Guards the list.
   std::vector<SimStream*> streams_;
   std::jthread thread_;  ///< Last: runs while all else is there.
 };
