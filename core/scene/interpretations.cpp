@@ -226,14 +226,16 @@ void let_compete(Candidates& candidates, const Overlaps& overlaps) {
 
 std::vector<Interpretation> interpret(const Candidates& candidates, const Overlaps& overlaps,
                                       int observed_pixels, const InterpretationOptions& options) {
-  std::vector<std::size_t> among;
+  std::vector<std::size_t> among, probable;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (candidates[i].probability >= options.min_shown) among.push_back(i);
+    const double probability = candidates[i].probability;
+    if (probability >= options.min_shown) among.push_back(i);
+    if (probability >= options.min_probability) probable.push_back(i);
   }
   SubsetScore state(candidates, overlaps, observed_pixels, options);
   BestSubsets best(options.max_interpretations);
-  greedy(state, among, best);
-  if (!among.empty()) anneal(state, among, options, best);
+  greedy(state, probable, best);
+  if (!probable.empty()) anneal(state, probable, options, best);
   const Competition competition = competition_of(candidates, overlaps);
   std::vector<Interpretation> out;
   double total = 0, top = 0;
