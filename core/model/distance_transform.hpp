@@ -20,7 +20,7 @@ struct DistanceTransform {
   /// The cell of a point, -1 outside the grid.
   std::int64_t cell_of(const Eigen::Vector3f& point) const {
     const Eigen::Vector3f scaled = (point - low) / cell;
-    if (!(scaled.minCoeff() >= 0)) return -1;
+    if (!(scaled.array() >= 0).all()) return -1;  // NaN too
     const Eigen::Vector3i c = scaled.cast<int>();
     if ((c.array() >= size.array()).any()) return -1;
     return (static_cast<std::int64_t>(c.z()) * size.y() + c.y()) * size.x() + c.x();
