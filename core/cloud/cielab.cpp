@@ -33,12 +33,16 @@ double srgb_of_linear(double value) {
   return value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
 }
 
-Eigen::Vector3f log_light(const Eigen::Vector3f& lab) {
-  static constexpr float kDarkest = 0.1f;
+Eigen::Array3f light_roots(const Eigen::Vector3f& lab) {
+  constexpr float kDarkest = 0.1f;
   const float y = (lab[0] + 16) / 116;
-  const auto log_of = [](float root) { return std::log(std::max(kDarkest, root)); };
-  const float green = log_of(y);
-  return {green, log_of(y + lab[1] / 500) - green, log_of(y - lab[2] / 200) - green};
+  return Eigen::Array3f(y + lab[1] / 500, y, y - lab[2] / 200).max(kDarkest);
+}
+
+Eigen::Vector3f log_light(const Eigen::Vector3f& lab) {
+  const Eigen::Array3f roots = light_roots(lab);
+  const float green = std::log(roots[1]);
+  return {green, std::log(roots[0]) - green, std::log(roots[2]) - green};
 }
 
 CielabConverter::CielabConverter() {

@@ -33,9 +33,12 @@ class CielabConverter {
   std::array<float, kSteps + 2> lightness_;  // the cube root of CIELAB, over [0, 1]
 };
 
-/// The logarithms of a CIELAB colour's light: of the root (CIE 15) of green, and of red and blue
-/// over green. A gain of a channel adds to them; shading adds to the first alone. Light below 0.001
-/// of white, which is noise, counts as that.
+/// The cube roots of X, Y and Z of a CIELAB colour, each relative to white (CIE 15). A gain of
+/// light multiplies them. Light below 0.001 of white, which is noise, counts as that.
+Eigen::Array3f light_roots(const Eigen::Vector3f& lab);
+
+/// Logarithms of light_roots(): of Y, and of X and Z over Y. A gain of a channel adds to them;
+/// shading adds to the first alone.
 Eigen::Vector3f log_light(const Eigen::Vector3f& lab);
 
 /// The frame's colours at the resolution of its surface map: means of blocks of map.reduction

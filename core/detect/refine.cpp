@@ -10,8 +10,7 @@ namespace {
 Pose turned_to_pattern(const Search& search, const Pose& pose) {
   if (!search.options.score.use_round_three) return pose;
   const SceneFeatures& scene = search.scene;
-  return turn_to_pattern(scene.image, scene.log_light, search.model, pose,
-                         predict_surface(scene.image, search.model, pose));
+  return turn_to_pattern(scene.image, scene.log_light, search.model, pose);
 }
 
 }  // namespace

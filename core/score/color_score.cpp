@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/median.hpp"
+#include "core/cloud/cielab.hpp"
 #include "core/score/likelihood.hpp"
 
 namespace bpa {
@@ -16,15 +17,7 @@ namespace {
 constexpr double kColorSigma = 12;  // CIELAB
 constexpr float kLightnessWeight = 0.5f;
 constexpr int kMinPixels = 5;        // of 9; with fewer a window is at the rim, with a neighbour's
-constexpr float kDarkest = 0.1f;     // root of light; below is noise alone
 constexpr float kRootOfGrey = 0.6f;  // of L = 54
-
-// The cube roots of X, Y and Z of a CIELAB colour, each relative to white (CIE 15, as cielab.cpp).
-// A gain of light multiplies them.
-Eigen::Array3f light_roots(const Eigen::Vector3f& lab) {
-  const float y = (lab[0] + 16) / 116;
-  return Eigen::Array3f(y + lab[1] / 500, y, y - lab[2] / 200).max(kDarkest);
-}
 
 // light_roots() of both sides' mean colours.
 struct Window {

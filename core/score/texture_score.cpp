@@ -115,25 +115,33 @@ TextureAgreement compare_texture(const CheckImage& image, const Image<Eigen::Vec
 }
 
 Pose turn_to_pattern(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
-                     const ObjectModel& model, const Pose& camera_from_object,
-                     const PredictedSurface& predicted) {
+                     const ObjectModel& model, const Pose& camera_from_object) {
   constexpr int kTurnStep = 4;             // pixels: there are many turns to try
   constexpr int kTurns = 64;               // 3 mm apart at the rim of a can of 6 cm
   constexpr double kClearlyBetter = 0.05;  // log-likelihood ratio of a pixel
   const std::vector<Eigen::Vector3f>& colors = model.index->log_light;
   if (observed.empty() || colors.empty() || model.symmetry.trivial()) return camera_from_object;
+  struct Explained {
+    int u, v;
+    std::uint32_t point;
+  };
+  std::vector<Explained> explained;
+  for_each_explained(image, predict_surface(image, model, camera_from_object), kTurnStep,
+                     [&](int u, int v, std::uint32_t point) {
+                       explained.push_back({u, v, point});
+                     });
   Pose best = camera_from_object;
   double best_ratio = -INFINITY;
   for (const Pose& element : sampled_elements(model.symmetry, kTurns)) {
     const FastPose turned_from_object = to_fast(element.inverse());
     Sums sums;
-    for_each_explained(image, predicted, kTurnStep, [&](int u, int v, std::uint32_t point) {
+    for (const auto& [u, v, point] : explained) {
       const int there =
           model.index->distances.nearest_to(turned_from_object * model.surface.points[point]);
-      if (there < 0) return;
+      if (there < 0) continue;
       sums.add(model.surface.normals[point], colors[static_cast<std::size_t>(there)],
                observed.at(u, v));
-    });
+    }
     if (sums.count < kFewestPixels) continue;
     const double ratio = sums.log_ratio();
     if (ratio <= best_ratio) continue;

@@ -31,9 +31,8 @@ TextureAgreement compare_texture(const CheckImage& image, const Image<Eigen::Vec
 
 /// Of the poses that the symmetry of the model's shape makes equal, the one whose pattern is seen
 /// best; `camera_from_object` itself where colours or a symmetry are missing or no other pose is
-/// clearly better. `predicted` is the surface of that pose.
+/// clearly better.
 Pose turn_to_pattern(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
-                     const ObjectModel& model, const Pose& camera_from_object,
-                     const PredictedSurface& predicted);
+                     const ObjectModel& model, const Pose& camera_from_object);
 
 }  // namespace bpa
