@@ -90,14 +90,17 @@ io::ColorImage line_plot(const PlotAxes& axes, const std::vector<Series>& series
   cv::Mat image(480, 640, CV_8UC3, cv::Scalar::all(255));
   const Mapping map{fitted(axes, series)};
   draw_axes(image, map);
+  const cv::Rect with_border(map.area.tl(), map.area.size() + cv::Size(1, 1));
   for (std::size_t s = 0; s < series.size(); ++s) {
     const cv::Scalar color = write_legend(image, map, s, series[s].name, 2);
     cv::Point last;
     for (std::size_t i = 0; i < series[s].x.size(); ++i) {
       const cv::Point here = map(series[s].x[i], series[s].y[i]);
-      if (!map.area.contains(here) && !map.area.contains(here - cv::Point(1, 1))) continue;
+      if (!with_border.contains(here)) continue;
       if (i > 0) cv::line(image, last, here, color, 2, cv::LINE_AA);
       cv::circle(image, here, 4, color, cv::FILLED, cv::LINE_AA);
+      if (i < series[s].notes.size())
+        write(image, series[s].notes[i], here.x + 8, here.y + 14, 0.4);
       last = here;
     }
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/draw/report_plots.hpp"
 
+#include <cmath>
+
 #include "core/base/concat.hpp"
 #include "core/draw/plot.hpp"
 
@@ -36,8 +38,34 @@ io::ColorImage recall_plot(const EvaluationReport& report) {
                    {recall});
 }
 
+/// Every other point says its threshold.
+io::ColorImage precision_recall_plot(const EvaluationReport& report) {
+  Series curve{"least probability", {}, {}};
+  for (const eval::ThresholdPoint& point : report.threshold_curve) {
+    if (point.precision.total == 0 || point.recall.total == 0) continue;
+    add(curve, point.recall.value(), point.precision);
+    const bool odd_tenth = std::lround(20 * point.threshold) % 4 == 2;
+    curve.notes.push_back(odd_tenth ? fixed(point.threshold, 1) : "");
+  }
+  return line_plot({"precision and recall over the least probability", "recall", "precision"},
+                   {curve});
+}
+
+io::ColorImage false_positives_plot(const EvaluationReport& report) {
+  Series curve{std::to_string(report.frames) + " frames", {}, {}};
+  for (const eval::ThresholdPoint& point : report.threshold_curve) {
+    curve.x.push_back(point.threshold);
+    curve.y.push_back(point.false_positives_per_frame);
+  }
+  return line_plot({"false positives", "least probability", "false positives a frame", 0, 1, 0, 0},
+                   {curve});
+}
+
 io::ColorImage reliability_plot(const EvaluationReport& report) {
-  Series series{"Brier score " + fixed(report.brier, 3), {}, {}};
+  Series series{"expected error " + fixed(report.expected_calibration_error, 3) + ", Brier score " +
+                    fixed(report.brier, 3),
+                {},
+                {}};
   for (const auto& bin : report.reliability) add(series, bin.mean_probability, bin.correct);
   return line_plot(
       {"calibration of probabilities", "probability said", "fraction right", 0, 1, 0, 1, true},
@@ -83,6 +111,8 @@ io::ColorImage time_plot(const EvaluationReport& report) {
 Status write_plots(const std::string& folder, const EvaluationReport& report) {
   const std::pair<const char*, io::ColorImage> plots[] = {
       {"recall", recall_plot(report)},
+      {"precision_recall", precision_recall_plot(report)},
+      {"false_positives", false_positives_plot(report)},
       {"reliability", reliability_plot(report)},
       {"coverage", coverage_plot(report)},
       {"reports", reports_plot(report)},

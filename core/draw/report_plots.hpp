@@ -9,9 +9,10 @@
 
 namespace bpa::draw {
 
-/// Writes recall.png, reliability.png, coverage.png, reports.png (true and false positives by
-/// probability), visible_fraction.png, visible_histogram.png, distance.png, objects.png and
-/// time.png. Fails with unavailable.
+/// Writes recall.png, precision_recall.png and false_positives.png (over the least probability),
+/// reliability.png, coverage.png, reports.png (true and false positives by probability),
+/// visible_fraction.png, visible_histogram.png, distance.png, objects.png and time.png. Fails with
+/// unavailable.
 Status write_plots(const std::string& folder, const eval::EvaluationReport& report);
 
 }  // namespace bpa::draw

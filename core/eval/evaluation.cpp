@@ -164,7 +164,9 @@ void add_truth(const TruthOutcome& truth, Draft& draft) {
   count(report.recall, truth.found);
   count(report.rmse_recall, truth.found_rmse);
   for (const int rank : kRanks) {
-    count(report.recall_at[rank], truth.found_at_rank > 0 && truth.found_at_rank <= rank);
+    const auto by_then = [rank](int found_at) { return found_at > 0 && found_at <= rank; };
+    count(report.recall_at[rank], by_then(truth.found_at_rank));
+    count(report.among_alternatives_at[rank], by_then(truth.among_alternatives_at_rank));
   }
   count(draft.by_object[truth.obj_id].recall, truth.found);
   count(group_of(report.by_visible_fraction, kFractionRows, truth.visible_fraction).recall,
@@ -216,6 +218,8 @@ EvaluationReport finished(Draft draft, const EvalObjects& objects) {
   report.normalised_square /= std::max(1, draft.with_covariance);
   finish_bins(report.reliability);
   finish_bins(report.open_poses.weights);
+  report.expected_calibration_error = expected_calibration_error(report.reliability);
+  report.threshold_curve = threshold_curve(report.outcomes);
   for (auto& [obj_id, group] : draft.by_object) {
     group.name = objects.at(obj_id).name;
     report.by_object.push_back(group);

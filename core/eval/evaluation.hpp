@@ -88,7 +88,9 @@ struct TruthOutcome {
   bool found = false;       ///< By the best interpretation.
   bool found_rmse = false;  ///< By it, with the RMSE criterion.
   int found_at_rank = 0;    ///< The first interpretation that finds it, from 1; 0 = none.
-  double add = -1;          ///< Of the estimate that found it, metres; -1 when not found.
+  /// The same where an alternative of a placement finds it as well as the placement's own pose.
+  int among_alternatives_at_rank = 0;
+  double add = -1;  ///< Of the estimate that found it, metres; -1 when not found.
   double adds = -1;
 };
 
@@ -122,6 +124,14 @@ struct ReliabilityBin {
   Ratio correct;
 };
 
+/// What remains of the best interpretations if less probable placements are left out.
+struct ThresholdPoint {
+  double threshold = 0;  ///< Least probability of a placement, in [0, 1].
+  Ratio precision;       ///< Of the placements that remain.
+  Ratio recall;          ///< Instances that the remaining placements find.
+  double false_positives_per_frame = 0;
+};
+
 struct Coverage {
   double level = 0;  ///< The credible region's, such as 0.95.
   Ratio covered;
@@ -151,14 +161,21 @@ struct EvaluationReport {
   Ratio precision, recall;            ///< Paper: 2.5 cm, π/16.
   Ratio rmse_precision, rmse_recall;  ///< Paper: RMSE 1 cm.
   std::map<int, Ratio> recall_at;     ///< By number of interpretations: 1, 2, 3, 5, 10, 20.
+  /// Instances whose pose is that of a placement or of one of its alternatives, by the same
+  /// numbers.
+  std::map<int, Ratio> among_alternatives_at;
   bool has_bop = false;
   Ratio add_recall;
   double vsd = 0, mssd = 0, mspd = 0, average_recall = 0;  ///< BOP's average recalls.
   double mean_add = 0, mean_adds = 0;                      ///< Of what was found, metres.
   std::vector<Group> by_object, by_visible_fraction, by_distance;
   double brier = 0;
+  /// Mean over placements of |mean probability - fraction right| of their tenth (Naeini et al.
+  /// 2015).
+  double expected_calibration_error = 0;
   std::vector<ReliabilityBin> reliability;
-  std::vector<Coverage> coverage;  ///< Of right placements with a covariance.
+  std::vector<ThresholdPoint> threshold_curve;  ///< At 0.05, 0.10, ..., 0.95.
+  std::vector<Coverage> coverage;               ///< Of right placements with a covariance.
   /// Mean squared error over the covariance, for each degree of freedom: below 1 it is too large.
   double normalised_square = 0;
   OpenPoses open_poses;
@@ -168,6 +185,13 @@ struct EvaluationReport {
   TimeStatistics time;
   std::vector<FrameOutcome> outcomes;
 };
+
+/// Precision and recall at each threshold, ascending, from what is known of each frame. A result
+/// holds no placement below the detector's own scene.min_probability: there the curve is level.
+std::vector<ThresholdPoint> threshold_curve(const std::vector<FrameOutcome>& frames);
+
+/// 0 (the probabilities are the fractions) to 1; 0 without a placement.
+double expected_calibration_error(const std::vector<ReliabilityBin>& bins);
 
 /// The times of the reported frames whose time is known, ascending.
 std::vector<double> sorted_seconds(const EvaluationReport& report);

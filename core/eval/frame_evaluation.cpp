@@ -224,6 +224,24 @@ std::vector<PoseOutcome> open_poses(const io::BopFrame& frame, const EvalObjects
   return out;
 }
 
+/// Instances whose pose is that of an estimate or of one of its alternatives.
+std::vector<bool> among_alternatives(const io::BopFrame& frame, const Estimates& estimates,
+                                     const EvalObjects& objects, const EvaluationOptions& options) {
+  std::vector<bool> found;
+  for (const io::BopInstance& truth : frame.truth) {
+    const auto is_right = [&](const Pose& pose) {
+      return paper_cost(objects, options, pose, truth) < kNoMatch;
+    };
+    found.push_back(std::ranges::any_of(estimates, [&](const Placement& estimate) {
+      return estimate.model_number == truth.obj_id &&
+             (is_right(estimate.camera_from_object) ||
+              std::ranges::any_of(estimate.alternatives, is_right,
+                                  &PoseAlternative::camera_from_object));
+    }));
+  }
+  return found;
+}
+
 void add_estimates(const io::BopFrame& frame, const EvalObjects& objects,
                    const Estimates& estimates, const std::vector<int>& truth_of,
                    const EvaluationOptions& options, FrameOutcome& outcome) {
@@ -276,6 +294,11 @@ Result<FrameOutcome> evaluate_frame(const io::BopFrame& frame, const EvalObjects
     for (const int t : truth_of) {
       if (t < 0 || outcome.truth[t].found_at_rank > 0) continue;
       outcome.truth[t].found_at_rank = static_cast<int>(rank) + 1;
+    }
+    const std::vector<bool> open = among_alternatives(frame, estimates, objects, options);
+    for (std::size_t t = 0; t < open.size(); ++t) {
+      int& found_at = outcome.truth[t].among_alternatives_at_rank;
+      if (open[t] && found_at == 0) found_at = static_cast<int>(rank) + 1;
     }
     if (rank > 0) continue;
     add_estimates(frame, objects, estimates, truth_of, options, outcome);

@@ -22,6 +22,13 @@ static void to_json(Json& json, const ReliabilityBin& bin) {
           {"correct", bin.correct}};
 }
 
+static void to_json(Json& json, const ThresholdPoint& point) {
+  json = {{"threshold", point.threshold},
+          {"precision", point.precision},
+          {"recall", point.recall},
+          {"false_positives_per_frame", point.false_positives_per_frame}};
+}
+
 static void to_json(Json& json, const Coverage& coverage) {
   json = {{"level", coverage.level}, {"covered", coverage.covered}};
 }
@@ -93,9 +100,11 @@ std::string accuracy_text(const EvaluationReport& report) {
   std::string text = heading("best interpretation", "2.5 cm, pi/16", "RMSE 1 cm");
   text += row("precision", percent(report.precision), percent(report.rmse_precision));
   text += row("recall", percent(report.recall), percent(report.rmse_recall));
-  text += heading("interpretations", "recall");
+  text += heading("interpretations", "recall", "truth among the alternatives");
   for (const auto& [rank, ratio] : report.recall_at) {
-    text += row(std::to_string(rank), percent(ratio));
+    const auto among = report.among_alternatives_at.find(rank);
+    const bool known = among != report.among_alternatives_at.end();
+    text += row(std::to_string(rank), percent(ratio), known ? percent(among->second) : "");
   }
   if (report.has_bop) {
     text += heading("BOP", "average recall");
@@ -107,8 +116,23 @@ std::string accuracy_text(const EvaluationReport& report) {
                        1000 * report.mean_add, 1000 * report.mean_adds);
 }
 
+/// Every fourth point: 0.1, 0.3, ..., 0.9.
+std::string curve_text(const EvaluationReport& report) {
+  std::string text =
+      heading("probability at least", "precision", "recall             false positives a frame");
+  for (std::size_t i = 1; i < report.threshold_curve.size(); i += 4) {
+    const ThresholdPoint& point = report.threshold_curve[i];
+    text +=
+        row(format("%.1f", point.threshold), percent(point.precision),
+            format("%-18s %.2f", percent(point.recall).c_str(), point.false_positives_per_frame));
+  }
+  return text;
+}
+
 std::string calibration_text(const EvaluationReport& report) {
-  std::string text = heading("calibration", format("Brier score %.3f", report.brier).c_str());
+  std::string text =
+      heading("calibration", format("Brier score %.3f", report.brier).c_str(),
+              format("expected error %.3f", report.expected_calibration_error).c_str());
   text += bins_text("probability", report.reliability);
   text += heading("credible region, %", "holds the truth");
   for (const Coverage& coverage : report.coverage) {
@@ -123,6 +147,12 @@ std::string calibration_text(const EvaluationReport& report) {
   text += row("own pose right", percent(report.open_poses.own));
   text += row("own or an alternative", percent(report.open_poses.held));
   return text + bins_text("weight", report.open_poses.weights);
+}
+
+Json ranks_json(const std::map<int, Ratio>& ratios) {
+  Json json = Json::object();
+  for (const auto& [rank, ratio] : ratios) json[std::to_string(rank)] = ratio;
+  return json;
 }
 
 Json groups_json(const std::vector<Group>& groups, bool precision) {
@@ -140,29 +170,31 @@ std::string report_text(const EvaluationReport& report) {
   return frames_text(report) + accuracy_text(report) +
          groups_text("object", report.by_object, true) +
          groups_text("visible fraction", report.by_visible_fraction, false) +
-         groups_text("distance", report.by_distance, true) + calibration_text(report) +
+         groups_text("distance", report.by_distance, true) + curve_text(report) +
+         calibration_text(report) +
          format("\nseconds a frame            median %.2f, mean %.2f, largest %.2f\n",
                 report.time.median, report.time.mean, report.time.max);
 }
 
 std::string report_json(const EvaluationReport& report) {
-  Json recall_at = Json::object();
-  for (const auto& [rank, ratio] : report.recall_at) {
-    recall_at[std::to_string(rank)] = ratio;
-  }
   Json json = {{"format", "bpa evaluation"},
                {"version", 1},
                {"frames", report.frames},
                {"precision", report.precision},
                {"recall", report.recall},
-               {"recall_at", recall_at},
+               {"recall_at", ranks_json(report.recall_at)},
+               {"among_alternatives_at", ranks_json(report.among_alternatives_at)},
+               {"threshold_curve", report.threshold_curve},
                {"rmse", {{"precision", report.rmse_precision}, {"recall", report.rmse_recall}}},
                {"mean_add_m", report.mean_add},
                {"mean_adds_m", report.mean_adds},
                {"by_object", groups_json(report.by_object, true)},
                {"by_visible_fraction", groups_json(report.by_visible_fraction, false)},
                {"by_distance", groups_json(report.by_distance, true)},
-               {"calibration", {{"brier", report.brier}, {"bins", report.reliability}}},
+               {"calibration",
+                {{"brier", report.brier},
+                 {"expected_error", report.expected_calibration_error},
+                 {"bins", report.reliability}}},
                {"coverage", report.coverage},
                {"normalised_square", report.normalised_square},
                {"open_poses", {{"own", report.open_poses.own}, {"held", report.open_poses.held}}},

@@ -41,16 +41,28 @@ TEST(LinePlot, ALevelLineIsAtItsValue) {
   EXPECT_NEAR(blue_in_row(picture, row), 0.8 * 540, 15);
 }
 
+TEST(WritePlots, FalsePositivesAreAtTheirNumber) {
+  const test::TemporaryFolder folder;
+  eval::EvaluationReport report;
+  report.threshold_curve = {{0, {0, 4}, {}, 2}, {1, {0, 4}, {}, 2}};
+  ASSERT_TRUE(write_plots(folder.path(), report).ok());
+  const auto picture = io::read_color_image(folder / "false_positives.png");
+  ASSERT_TRUE(picture.ok());
+  EXPECT_GT(blue_in_row(*picture, 50), 500) << "the axis ends at 2, at the top of the area";
+}
+
 TEST(WritePlots, AllOfThemAlsoOfNothing) {
   const test::TemporaryFolder folder;
   eval::EvaluationReport report;
   report.recall_at[1] = {1, 2};
   report.by_object = {{"mug", {1, 2}, {1, 1}}};
   report.outcomes.resize(2);
+  report.threshold_curve = {{0.1, {1, 3}, {1, 2}, 2}, {0.5, {1, 1}, {1, 2}, 0}};
   for (const eval::EvaluationReport& some : {report, eval::EvaluationReport{}}) {
     ASSERT_TRUE(write_plots(folder.path(), some).ok());
-    for (const char* name : {"recall", "reliability", "coverage", "reports", "visible_fraction",
-                             "visible_histogram", "distance", "objects", "time"}) {
+    for (const char* name :
+         {"recall", "precision_recall", "false_positives", "reliability", "coverage", "reports",
+          "visible_fraction", "visible_histogram", "distance", "objects", "time"}) {
       EXPECT_TRUE(io::read_color_image(folder / (std::string(name) + ".png")).ok()) << name;
     }
   }

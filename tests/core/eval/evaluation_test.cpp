@@ -185,6 +185,61 @@ TEST(Evaluation, CalibrationByHand) {
   EXPECT_NEAR(report->reliability[9].mean_probability, 0.925, 1e-12);
   EXPECT_EQ(report->reliability[5].correct.total, 1);
   EXPECT_EQ(report->reliability[5].correct.hits, 0);
+  // 0.95 and 0.9 share a bin and are right; 0.6 and 0.55 are false, each in a bin of its own.
+  EXPECT_NEAR(report->expected_calibration_error, (2 * 0.075 + 0.6 + 0.55) / 4, 1e-12);
+}
+
+TEST(Evaluation, ThresholdCurveByHand) {
+  const Case c = two_frames();
+  const auto report = evaluate(c.frames, objects(), c.results, without_bop());
+  ASSERT_TRUE(report.ok());
+  ASSERT_EQ(report->threshold_curve.size(), 19u);
+  // Right at 0.9 and 0.95, false at 0.6 and 0.55, at 0.8 of an instance that does not count.
+  const auto expect = [&](double threshold, int right, int reported) {
+    const ThresholdPoint& point = report->threshold_curve[std::lround(20 * threshold) - 1];
+    EXPECT_EQ(point.threshold, threshold);
+    EXPECT_EQ(point.precision.hits, right) << threshold;
+    EXPECT_EQ(point.precision.total, reported) << threshold;
+    EXPECT_EQ(point.recall.hits, right) << threshold;
+    EXPECT_EQ(point.recall.total, 4) << threshold;
+    EXPECT_EQ(point.false_positives_per_frame, (reported - right) / 2.0) << threshold;
+  };
+  expect(0.05, 2, 4);
+  expect(0.55, 2, 4);  // the threshold itself remains
+  expect(0.6, 2, 3);
+  expect(0.65, 2, 2);
+  expect(0.9, 2, 2);
+  expect(0.95, 1, 1);
+}
+
+/// Probabilities of k/100 that are right with exactly that chance: precision is the mean of those
+/// above the threshold, in closed form (100 + t) / 200 for a threshold of t/100.
+TEST(Evaluation, ThresholdCurveOfCalibratedProbabilities) {
+  constexpr int kOfEach = 100;
+  FrameOutcome frame;
+  frame.truth.resize(2 * 5050);
+  for (int percent = 1; percent <= 100; ++percent) {
+    for (int i = 0; i < kOfEach; ++i) {
+      EstimateOutcome& estimate = frame.estimates.emplace_back();
+      estimate.probability = percent / 100.0;
+      estimate.truth = i < percent ? 0 : -1;
+    }
+  }
+  for (const ThresholdPoint& point : threshold_curve({frame})) {
+    EXPECT_NEAR(point.precision.value(), (1 + point.threshold) / 2, 1e-12);
+    const double t = 100 * point.threshold;  // right are the sum of t to 100
+    EXPECT_NEAR(point.recall.value(), (5050 - t * (t - 1) / 2) / (2 * 5050), 1e-12);
+  }
+  EXPECT_TRUE(threshold_curve({}).front().precision.total == 0);
+}
+
+TEST(Evaluation, ExpectedCalibrationErrorByHand) {
+  // 30 placements at 0.2 of which a tenth is right, 10 at 0.9 of which all are: (30 + 10) * 0.1
+  // / 40.
+  EXPECT_NEAR(expected_calibration_error(
+                  {{0.2, 0.3, 0.2, {3, 30}}, {0.5, 0.6, 0, {}}, {0.9, 1, 0.9, {10, 10}}}),
+              0.1, 1e-12);
+  EXPECT_EQ(expected_calibration_error({}), 0);
 }
 
 TEST(Evaluation, CoverageByHand) {
@@ -284,6 +339,24 @@ TEST(Evaluation, OpenPosesByHand) {
   EXPECT_EQ(open.weights[2].correct.hits, 1);
   EXPECT_EQ(open.weights[2].correct.total, 2);
   EXPECT_NE(report_text(*report).find("placements with alternatives"), std::string::npos);
+  // The first finds the one by an alternative, the third the other.
+  EXPECT_EQ(report->recall_at.at(1).hits, 1);
+  EXPECT_EQ(report->among_alternatives_at.at(1).hits, 2);
+  EXPECT_EQ(report->among_alternatives_at.at(1).total, 2);
+}
+
+TEST(Evaluation, AmongAlternativesCountsFromItsInterpretation) {
+  Placement away = placement(1, posed_at(0, 0.7, pi / 2), 0.4);
+  Placement open = away;
+  open.alternatives = {{posed_at(0, 0.7), 0.3}};
+  Placement other = open;
+  other.model_number = 2;  // the alternative of another object says nothing
+  const auto report = evaluate({frame(0, {{1, posed_at(0, 0.7), 1.0}})}, objects(),
+                               {result(0, 0.4, {{away}, {other}, {open}})}, without_bop());
+  ASSERT_TRUE(report.ok()) << report.status().message;
+  EXPECT_EQ(report->among_alternatives_at.at(2).hits, 0);
+  EXPECT_EQ(report->among_alternatives_at.at(3).hits, 1);
+  EXPECT_EQ(report->recall_at.at(20).hits, 0);
 }
 
 TEST(Evaluation, FalseReportsWhereNothingIs) {
@@ -314,6 +387,10 @@ TEST(Evaluation, FalseReportsWhereNothingIs) {
   EXPECT_EQ(nothing->false_reports.reports, 2);
   EXPECT_EQ(nothing->reliability[5].correct.total, 1);
   EXPECT_EQ(nothing->by_object.size(), 2u);
+  // Two false positives, of 0.55 and 0.6, in two frames.
+  EXPECT_EQ(nothing->threshold_curve[10].false_positives_per_frame, 1);    // 0.55
+  EXPECT_EQ(nothing->threshold_curve[11].false_positives_per_frame, 0.5);  // 0.6
+  EXPECT_EQ(nothing->threshold_curve[12].false_positives_per_frame, 0);
 }
 
 TEST(Evaluation, TellsHowFarItIs) {
@@ -402,6 +479,10 @@ TEST(Report, TextAndJson) {
   const auto json = nlohmann::json::parse(report_json(*report));
   EXPECT_EQ(json.at("recall_at").at("2").at("hits"), 3);
   EXPECT_EQ(json.at("precision").at("value"), 0.5);
+  EXPECT_EQ(json.at("threshold_curve").size(), 19u);
+  EXPECT_EQ(json.at("threshold_curve")[11].at("precision").at("total"), 3);
+  EXPECT_NE(report_text(*report).find("0.5" + std::string(23, ' ') + "50.0 % (2/4)"),
+            std::string::npos);
   EXPECT_FALSE(report_text(EvaluationReport{}).empty()) << "nothing at all";
 }
 
