@@ -58,6 +58,18 @@ std::vector<sim::SimulatedObject> read_objects(const std::vector<std::string>& p
   return objects;
 }
 
+/// The objects of a BOP data set's folder of models, in millimetres, with their symmetries.
+std::vector<sim::SimulatedObject> read_bop_objects(const std::string& folder) {
+  constexpr double kMetresPerMillimetre = 0.001;
+  std::vector<sim::SimulatedObject> objects;
+  for (const io::BopModel& model : or_throw(io::read_bop_models_folder(folder))) {
+    objects.push_back(read_objects({model.path}, kMetresPerMillimetre).front());
+    objects.back().name = model.name;
+    objects.back().symmetry = model.symmetry;
+  }
+  return objects;
+}
+
 std::vector<std::string> meshes_in(const std::string& folder) {
   std::vector<std::string> paths;
   std::error_code error;
@@ -86,6 +98,9 @@ std::vector<sim::SimulatedObject> household_objects(const std::vector<std::strin
 }
 
 std::vector<sim::SimulatedObject> chosen_objects(const SimulateArguments& a) {
+  if (!a.meshes.empty() && fs::exists(fs::path(a.meshes) / "models_info.json")) {
+    return read_bop_objects(a.meshes);
+  }
   if (!a.meshes.empty()) return read_objects(meshes_in(a.meshes), a.scale);
   if (a.models.empty()) return sim::household_objects(a.common.threads);
   return household_objects(a.models, a.common.threads);
@@ -161,6 +176,10 @@ void simulate_scenes(const SimulateArguments& a) {
     throw Failure(invalid_argument("--objects MIN,MAX: MIN must not be greater than MAX"));
   }
   std::vector<sim::SimulatedObject> objects = chosen_objects(a), look_alikes;
+  if (options.ambiguous_share > 0 &&
+      std::ranges::all_of(objects, [](const auto& object) { return object.telltales.empty(); })) {
+    throw Failure(invalid_argument("--ambiguous needs the household object mug"));
+  }
   write_models(a.out, objects);
   if (a.look_alikes > 0) {
     look_alikes = make_look_alikes(objects, a.common.seed);
@@ -251,7 +270,9 @@ void add_scenes(CLI::App& simulate) {
             "Range from the camera to the middle of the pile, metres; 0.6,1.4 if not given");
   auto* meshes =
       add_option(command, "--meshes", a.meshes,
-                 "Folder of meshes instead of ours: PLY, OBJ, STL, GLB, glTF, DAE", "DIR");
+                 "Folder of meshes instead of ours: PLY, OBJ, STL, GLB, glTF, DAE. Names and "
+                 "symmetries are those of its models_info.json (BOP, millimetres) if it is there",
+                 "DIR");
   add_option(command, "--models", a.models, "Only these of the household objects", "LIST")
       ->excludes(meshes)
       ->delimiter(',');
@@ -271,6 +292,7 @@ void add_scenes(CLI::App& simulate) {
                {"--empty", "empty_share"},
                {"--distractors", "distractor_share"},
                {"--border", "border_share"},
+               {"--ambiguous", "ambiguous_share"},
                {"--misregistration", "misregistration"},
                {"--exposure-spread", "exposure_spread"},
                {"--lateral-noise", "lateral_noise"},

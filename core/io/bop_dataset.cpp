@@ -183,15 +183,18 @@ std::string bop_number(int number) { return format("%06d", number); }
 std::string bop_object_name(int obj_id) { return "obj_" + bop_number(obj_id); }
 
 Result<std::vector<BopModel>> read_bop_models(const std::string& dataset) {
-  const std::string path = (fs::path(dataset) / "models" / "models_info.json").string();
+  return read_bop_models_folder((fs::path(dataset) / "models").string());
+}
+
+Result<std::vector<BopModel>> read_bop_models_folder(const std::string& folder) {
+  const std::string path = (fs::path(folder) / "models_info.json").string();
   return read_json(path, [&](const Json& json) -> Result<std::vector<BopModel>> {
     std::vector<BopModel> models;
     for (const auto& [key, info] : json.items()) {
       BopModel& model = models.emplace_back();
       model.obj_id = std::stoi(key);
       model.name = info.value("name", bop_object_name(model.obj_id));
-      model.path =
-          (fs::path(dataset) / "models" / (bop_object_name(model.obj_id) + ".ply")).string();
+      model.path = (fs::path(folder) / (bop_object_name(model.obj_id) + ".ply")).string();
       model.diameter = kMetres * info.at("diameter").get<double>();
       model.symmetry = read_symmetry(info);
     }

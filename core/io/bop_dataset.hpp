@@ -48,6 +48,9 @@ struct BopFrame {
 /// The models by obj_id. Fails with not_found (naming the file) or corrupt.
 Result<std::vector<BopModel>> read_bop_models(const std::string& dataset);
 
+/// The same of a folder that holds models_info.json and the meshes.
+Result<std::vector<BopModel>> read_bop_models_folder(const std::string& folder);
+
 /// The frames of a split by (scene_id, im_id); `scenes` selects scene ids, empty = all. Fails with
 /// not_found when the split or a scene asked for is not there, corrupt otherwise.
 Result<std::vector<BopFrame>> read_bop_frames(const std::string& dataset, const std::string& split,

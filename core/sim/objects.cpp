@@ -40,6 +40,11 @@ SimulatedObject build_object(const Shape& shape) {
       shape.cell * ((half_size.array() / shape.cell).ceil() + 2.5).matrix();
   object.mesh = mesh_from_field(shape.field, center - reach, center + reach, shape.cell);
   paint_mesh(shape.paint, object.mesh);
+  for (std::size_t i = 0; shape.telltale && i < object.mesh.vertices.size(); ++i) {
+    if (shape.telltale(object.mesh.vertices[i].cast<double>())) {
+      object.telltales.push_back(static_cast<int>(i));
+    }
+  }
   const Eigen::Vector3f shift = center.cast<float>();
   for (Eigen::Vector3f& vertex : object.mesh.vertices) vertex -= shift;
   for (ConvexPart& part : object.parts) {

@@ -30,6 +30,8 @@ struct SimulatedObject {
   Material material;
   SymmetryGroup symmetry;         ///< Of the shape alone; colours may break it.
   std::vector<ConvexPart> parts;  ///< Together they fill the mesh, hollows left open.
+  /// Vertices without which it looks the same from many sides, as those of a handle. Empty: none.
+  std::vector<int> telltales = {};
 };
 
 /// Eighteen objects of a household, always the same: mug, bowl, bottle, can, cup, tube, funnel,

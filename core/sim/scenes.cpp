@@ -9,6 +9,7 @@
 
 #include "core/base/random.hpp"
 #include "core/sim/physics.hpp"
+#include "core/sim/private/telltales.hpp"
 #include "core/sim/scenery.hpp"
 
 namespace bpa::sim {
@@ -16,6 +17,7 @@ namespace {
 
 using std::numbers::pi;
 // Places in Stage::scenery().
+constexpr int kAmbiguousDraws = 1000;  // of the camera; about one of 15 will do
 constexpr int kRoom = 0, kBin = 1, kFirstTable = 2, kNumTables = 4, kFirstDistractor = 6;
 
 // Uniform over all orientations (Shoemake 1992).
@@ -25,13 +27,14 @@ Eigen::Quaterniond random_rotation(RandomStream& random) {
   return {a * std::sin(v), a * std::cos(v), b * std::sin(w), b * std::cos(w)};
 }
 
+Eigen::Quaterniond turned(RandomStream& random) {
+  return rotation_from_vector(random.uniform(-pi, pi) * Eigen::Vector3d::UnitZ());
+}
+
 // Some household objects are put down, the others tumble.
 Eigen::Quaterniond start_rotation(RandomStream& random) {
   constexpr double kUpright = 0.3;
-  if (random.uniform() < kUpright) {
-    return rotation_from_vector(random.uniform(-pi, pi) * Eigen::Vector3d::UnitZ());
-  }
-  return random_rotation(random);
+  return random.uniform() < kUpright ? turned(random) : random_rotation(random);
 }
 
 std::vector<int> chosen_without_repetition(int count, int from, RandomStream& random) {
@@ -68,7 +71,17 @@ SceneKind draw_kind(const SceneOptions& options, RandomStream& random) {
   if ((u -= options.empty_share) < 0) return SceneKind::empty_table;
   if ((u -= options.distractor_share) < 0) return SceneKind::distractors;
   if ((u -= options.border_share) < 0) return SceneKind::border;
+  if ((u -= options.ambiguous_share) < 0) return SceneKind::ambiguous;
   return SceneKind::pile;
+}
+
+// One of the objects that have telltales.
+int choose_ambiguous(const Stage& stage, RandomStream& random) {
+  std::vector<int> candidates;
+  for (int i = 0; i < static_cast<int>(stage.objects().size()); ++i) {
+    if (!stage.objects()[i].telltales.empty()) candidates.push_back(i);
+  }
+  return candidates.at(random.index(static_cast<int>(candidates.size())));
 }
 
 // Meshes of the household objects of a pile, then of its distractors.
@@ -84,7 +97,9 @@ std::vector<int> choose_bodies(const Stage& stage, const SceneOptions& options, 
   }
   const int objects = static_cast<int>(stage.objects().size());
   const int distractors = static_cast<int>(stage.scenery().size()) - kFirstDistractor;
-  std::vector<int> bodies = chosen_without_repetition(wanted, objects, random);
+  std::vector<int> bodies = kind == SceneKind::ambiguous
+                                ? std::vector<int>{choose_ambiguous(stage, random)}
+                                : chosen_without_repetition(wanted, objects, random);
   for (const int i : chosen_without_repetition(others, distractors, random)) {
     bodies.push_back(objects + kFirstDistractor + i);
   }
@@ -101,13 +116,16 @@ std::vector<PosedMesh> make_pile(const Stage& stage, const SceneOptions& options
                          (options.max_clutter - options.min_clutter) * std::sqrt(random.uniform());
   const double share = std::sqrt(static_cast<double>(chosen.size()) / 14);
   const double radius = share * (0.36 + clutter * (0.08 - 0.36)) + 0.02;
-  const bool in_bin = random.uniform() < options.bin_share * clutter;
+  const bool ambiguous = kind == SceneKind::ambiguous;
+  const bool in_bin = random.uniform() < options.bin_share * clutter && !ambiguous;
   std::vector<Eigen::Vector2d> taken;
   std::vector<FallingBody> bodies;
   for (const int mesh : chosen) {
     taken.push_back(start_point(radius, clutter, taken, random));
     const Eigen::Vector3d start(taken.back().x(), taken.back().y(), 0.05);
-    bodies.push_back({&stage.body(mesh), {start_rotation(random), start}});
+    const bool upright = ambiguous && bodies.empty();
+    const Eigen::Quaterniond rotation = upright ? turned(random) : start_rotation(random);
+    bodies.push_back({&stage.body(mesh), {rotation, start}});
   }
   const std::vector<RestingBody> resting =
       drop(bodies, {.table_half_x = kTableHalfX,
@@ -120,6 +138,13 @@ std::vector<PosedMesh> make_pile(const Stage& stage, const SceneOptions& options
   }
   if (in_bin) pile.push_back({static_cast<int>(stage.objects().size()) + kBin, Pose{}});
   return pile;
+}
+
+// Whether an object is first and stands: its telltales are beside it then, not on top.
+bool object_stands(const Stage& stage, const std::vector<PosedMesh>& pile) {
+  constexpr double kUpright = 0.99;
+  return !pile.empty() && pile.front().mesh < static_cast<int>(stage.objects().size()) &&
+         pile.front().world_from_mesh.rotation.toRotationMatrix()(2, 2) > kUpright;
 }
 
 Shading draw_shading(RandomStream& random) {
@@ -250,7 +275,10 @@ SimulatedScene simulate_scene(const Stage& stage, const SceneOptions& options, s
   RandomStream random(seed, 0);
   SimulatedScene result;
   result.kind = draw_kind(options, random);
-  const std::vector<PosedMesh> pile = make_pile(stage, options, result.kind, random);
+  std::vector<PosedMesh> pile = make_pile(stage, options, result.kind, random);
+  while (result.kind == SceneKind::ambiguous && !object_stands(stage, pile)) {
+    pile = make_pile(stage, options, result.kind, random);
+  }
   Shading shading = draw_shading(random);
   const int num_objects = static_cast<int>(stage.objects().size());
   std::vector<PosedMesh> posed = pile;
@@ -267,8 +295,15 @@ SimulatedScene simulate_scene(const Stage& stage, const SceneOptions& options, s
     RandomStream view_random(seed, 1 + static_cast<std::uint64_t>(view));
     const double azimuth = first_azimuth + 2 * pi * view / options.views;
     const Camera camera = draw_lens(options, view_random);
-    const Pose world_from_camera =
-        draw_pose(pile, objects.size(), camera, options, result.kind, azimuth, view_random);
+    const auto draw = [&](double from) {
+      return draw_pose(pile, objects.size(), camera, options, result.kind, from, view_random);
+    };
+    Pose world_from_camera = draw(azimuth);
+    for (int i = 0; i < kAmbiguousDraws && result.kind == SceneKind::ambiguous; ++i) {
+      const SimulatedObject& object = stage.objects()[objects.front()];
+      if (telltales_hidden(object, scene, camera, world_from_camera)) break;
+      world_from_camera = draw(view_random.uniform(0, 2 * pi));
+    }
     const std::uint64_t view_seed = view_random();
     for (int shot = 0; shot < options.shots; ++shot) {
       result.frames.push_back(capture({scene, shading, camera, world_from_camera}, objects,

@@ -20,6 +20,7 @@ enum class SceneKind {
   empty_table,  ///< Nothing on the table.
   distractors,  ///< Distractors only.
   border,       ///< A pile of which one object is cut by the image's border.
+  ambiguous,    ///< One object whose telltales are out of sight, and perhaps a few distractors.
 };
 
 /// The ranges that scenes are drawn from.
@@ -39,6 +40,7 @@ struct SceneOptions {
   double empty_share = 0;
   double distractor_share = 0;
   double border_share = 0.1;
+  double ambiguous_share = 0;
   double min_focal = 0;
   double max_focal = 0;
   Camera camera{640, 480, 525, 525, 319.5, 239.5};  ///< Of the colour image and the frame.
@@ -61,6 +63,8 @@ struct SceneOptions {
     visit("distractor_share", distractor_share, {0, 1, "Share of scenes with distractors only."});
     visit("border_share", border_share,
           {0, 1, "Share of scenes with an object cut by the image's border."});
+    visit("ambiguous_share", ambiguous_share,
+          {0, 1, "Share of scenes with one mug whose handle is out of sight."});
     visit("min_focal", min_focal, {0, 4000, "Shortest focal length, pixels."});
     visit("max_focal", max_focal, {0, 4000, "Longest focal length; 0 = the camera's own."});
     kinect.visit_fields(visit);
@@ -115,7 +119,8 @@ class Stage {
 SimulatedFrame capture(const KinectView& view, const std::vector<int>& objects,
                        const KinectOptions& options, std::uint64_t seed, int shot, int num_threads);
 
-/// One scene. The same stage, options and seed give the same scene for any number of threads.
+/// One scene. An ambiguous one needs an object with telltales. The same stage, options and seed
+/// give the same scene for any number of threads.
 SimulatedScene simulate_scene(const Stage& stage, const SceneOptions& options, std::uint64_t seed,
                               int num_threads = 0);
 

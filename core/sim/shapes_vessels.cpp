@@ -59,6 +59,7 @@ Shape mug() {
     const bool outside = radius > 0.0395 && radius < 0.0425;
     return stripe && outside ? Color(0.95, 0.9, 0.8) : Color(0.72, 0.09, 0.08);
   };
+  s.telltale = [](const Eigen::Vector3d& p) { return p.head<2>().norm() > 0.0425; };
   add_shell_parts({{0, 0.003}, {0.0395, 0.003}, {0.0395, 0.0925}}, 0.0045, s.parts);
   for (int i = -2; i < 2; ++i) {
     const auto at = [&handle](int step) {

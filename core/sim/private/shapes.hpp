@@ -31,6 +31,7 @@ struct Shape {
   DistanceField field = {};
   Paint paint = {};
   std::vector<ConvexPart> parts = {};
+  std::function<bool(const Eigen::Vector3d&)> telltale = {};  ///< Empty: nothing is.
 };
 
 /// Meshes and paints each shape.

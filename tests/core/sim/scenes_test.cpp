@@ -112,6 +112,32 @@ TEST(Scenes, TruthAgreesWithDepth) {
   }
 }
 
+/// Judged by another way than the simulator's: the handle, beyond the wall's radius of 42 mm about
+/// the mug's axis, has next to no pixel in the ideal image.
+TEST(Scenes, AnAmbiguousSceneShowsTheMugWithoutItsHandle) {
+  constexpr double kAxisX = -0.0164, kWallRadius = 0.0435;  // metres, in the mug's frame
+  SceneOptions options = small_options();
+  options.ambiguous_share = 1;
+  for (int i = 0; i < 4; ++i) {
+    const SimulatedScene scene = simulate_scene(stage(), options, scene_seed(11, i), 2);
+    EXPECT_EQ(scene.kind, SceneKind::ambiguous);
+    const SimulatedFrame& frame = scene.frames.front();
+    ASSERT_EQ(frame.instances.size(), 1u);
+    EXPECT_EQ(stage().objects()[frame.instances[0].object].name, "mug");
+    const Pose mug_from_camera = frame.instances[0].camera_from_object.inverse();
+    int wall = 0, handle = 0;
+    for (int p = 0; p < options.camera.width * options.camera.height; ++p) {
+      if (frame.instance_image[p] != 0) continue;
+      const Eigen::Vector3d ray = options.camera.unproject(
+          p % options.camera.width, p / options.camera.width, frame.ideal_depth[p]);
+      const Eigen::Vector3d point = mug_from_camera * ray;
+      ++(std::hypot(point.x() - kAxisX, point.y()) > kWallRadius ? handle : wall);
+    }
+    EXPECT_GT(wall, 200);
+    EXPECT_LE(handle, wall / 200);
+  }
+}
+
 TEST(Scenes, AreTheSameForAnyNumberOfThreads) {
   SceneOptions options = small_options();
   options.views = 2;

@@ -48,6 +48,23 @@ TEST(Simulate, ScenesAreABopSet) {
   }
 }
 
+TEST(Simulate, MeshesOfABopSetKeepTheirNamesAndSymmetries) {
+  const test::TemporaryFolder folder;
+  const std::string what = "scenes --scenes 1 --seed 4 --objects 1,1 ";
+  ASSERT_EQ(run(what + "--models cube,can --out " + folder / "one"), 0);
+  ASSERT_EQ(run(what + "--meshes " + folder / "one" + "/models --out " + folder / "two"), 0);
+  const auto one = io::read_bop_models(folder / "one"), two = io::read_bop_models(folder / "two");
+  ASSERT_TRUE(one.ok() && two.ok());
+  ASSERT_EQ(two->size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ((*two)[i].name, (*one)[i].name);
+    EXPECT_EQ((*two)[i].symmetry.discrete.size(), (*one)[i].symmetry.discrete.size());
+    EXPECT_EQ((*two)[i].symmetry.continuous.size(), (*one)[i].symmetry.continuous.size());
+    EXPECT_NEAR((*two)[i].diameter, (*one)[i].diameter, 1e-4);
+  }
+  EXPECT_EQ(run(what + "--ambiguous 1 --models cube --out " + folder / "x"), 1) << "no handle";
+}
+
 TEST(Simulate, ATurntableScanOfAMesh) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(run("turntable --object l_brick --step-deg 90 --positions 1 --out " + folder / "a"), 0);
