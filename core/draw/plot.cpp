@@ -14,6 +14,7 @@ namespace {
 
 const cv::Scalar kFrameColor(40, 40, 40);
 const cv::Scalar kGrid(222, 222, 222);
+constexpr double kNoteSpacing = 16;  // pixels between notes, a line of text
 const cv::Scalar kColors[] = {{31, 119, 180}, {214, 39, 40}, {44, 160, 44}, {148, 103, 189}};
 
 void write_centred(cv::Mat& image, const std::string& text, cv::Point at, double size = 0.45) {
@@ -93,14 +94,17 @@ io::ColorImage line_plot(const PlotAxes& axes, const std::vector<Series>& series
   const cv::Rect with_border(map.area.tl(), map.area.size() + cv::Size(1, 1));
   for (std::size_t s = 0; s < series.size(); ++s) {
     const cv::Scalar color = write_legend(image, map, s, series[s].name, 2);
-    cv::Point last;
+    cv::Point last, noted;
     for (std::size_t i = 0; i < series[s].x.size(); ++i) {
       const cv::Point here = map(series[s].x[i], series[s].y[i]);
       if (!with_border.contains(here)) continue;
       if (i > 0) cv::line(image, last, here, color, 2, cv::LINE_AA);
       cv::circle(image, here, 4, color, cv::FILLED, cv::LINE_AA);
-      if (i < series[s].notes.size())
+      const bool has_note = i < series[s].notes.size() && !series[s].notes[i].empty();
+      if (has_note && cv::norm(here - noted) >= kNoteSpacing) {
         write(image, series[s].notes[i], here.x + 8, here.y + 14, 0.4);
+        noted = here;
+      }
       last = here;
     }
   }

@@ -14,7 +14,7 @@ struct Series {
   std::string name;
   std::vector<double> x;
   std::vector<double> y;
-  std::vector<std::string> notes = {};  ///< Beside the points; may be shorter than x.
+  std::vector<std::string> notes = {};  ///< Beside the points if there is room; x's length or less.
 };
 
 struct PlotAxes {
