@@ -99,6 +99,7 @@ void add_times(const FrameTrace& trace, const SceneInterpretations& result, Tall
     }
     tally.add_time(timing.stage, timing.milliseconds);
   }
+  tally.add_time("total", result.total_milliseconds);
 }
 
 void print_row(const std::string& name, const Survival& survival) {

@@ -74,19 +74,24 @@ def share(hits, total):
     return f"{100 * hits / total:.1f} % ({hits}/{total})" if total else "-"
 
 
-def print_table(folder):
-    print("| left out | right pose in the final 50 | in the best 20 interpretations "
-          "| in the best | precision of the best |")
-    print("|---|---|---|---|---|")
+def table(folder):
+    """Costs are the mean milliseconds of a frame with everything, less those without the part."""
+    lines = ["| left out | right pose in the final 50 | in the best 20 interpretations "
+             "| in the best | precision of the best | ms a frame | cost of the part, ms |",
+             "|---|---|---|---|---|---|---|"]
+    all_ms = None
     for name, title in ROWS:
         path = folder / f"{name}.json"
         if not path.is_file():
             continue
         run = json.loads(path.read_text())
-        alive = run["alive"]
+        alive, ms = run["alive"], run["mean_milliseconds"]["total"]
+        all_ms = ms if name == "all" else all_ms
         cells = [share(alive[stage], alive["instances"]) for stage in ("final", "best 20", "best")]
         cells.append(share(run["right"], run["reported"]))
-        print(f"| {title} | " + " | ".join(cells) + " |")
+        cells += [f"{ms:.0f}", "" if name == "all" or all_ms is None else f"{all_ms - ms:.0f}"]
+        lines.append(f"| {title} | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
 
 
 def main(command, where=""):
@@ -97,7 +102,7 @@ def main(command, where=""):
     elif command == "layer":
         Path(where).write_text(json.dumps(unlearned_layers(), indent=2) + "\n", encoding="utf-8")
     elif command == "table":
-        print_table(Path(where))
+        print(table(Path(where)), end="")
     else:
         sys.exit(__doc__)
 

@@ -2,13 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes FOLDER/report.md from what report.sh left there: python3 report.py FOLDER.
 
-Needs nothing but Debian's python3. What was skipped is said to be skipped.
+    report.py FOLDER --baseline COMMIT
+
+keeps the figures of FOLDER as those of COMMIT in baseline.json beside this file. Later reports give
+them as "before". Needs nothing but Debian's python3. What was skipped is said to be skipped.
 """
 
-import json
+import argparse
 import os
-import sys
 from pathlib import Path
+
+import comparison
+import leave_one_out
+from comparison import FREE, RUNS
+from cells import load, percent, table
 
 # Glover and Popovic, section VII: Clutter data set; RMSE criterion on the Kinect data set.
 PAPER = {
@@ -16,17 +23,6 @@ PAPER = {
     "icp": {"precision": "73.8 %", "recall": "63.3 %"},
     "recall_at": {1: 73.3, 2: 77.5, 3: 80.0, 5: 80.8, 10: 83.3, 20: 84.2},
 }
-RUNS = [
-    ("clutter-bpa", "clutter, BPA"),
-    ("clutter-icp", "clutter, ICP"),
-    ("real-bpa", "real, BPA"),
-    ("real-icp", "real, ICP"),
-]
-FREE = [
-    ("empty", "simulated empty tables"),
-    ("distractors", "simulated distractors only"),
-    ("osd", "real tables, nothing known on them"),
-]
 PLOTS = [
     ("visible_histogram", "how visible the instances of the set are"),
     ("recall", "recall by number of interpretations"),
@@ -38,22 +34,6 @@ PLOTS = [
     ("coverage", "coverage of credible regions"),
     ("time", "time of frames"),
 ]
-
-
-def load(path):
-    return json.loads(path.read_text()) if path.is_file() else None
-
-
-def percent(ratio):
-    if not ratio or not ratio["total"]:
-        return "-"
-    return f"{100 * ratio['hits'] / ratio['total']:.1f} % ({ratio['hits']}/{ratio['total']})"
-
-
-def table(header, rows):
-    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
-    lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
-    return "\n".join(lines) + "\n"
 
 
 def machine():
@@ -143,7 +123,7 @@ def breakdown(title, key, runs, with_precision):
 def free_scenes(folder):
     rows = []
     for name, text in FREE:
-        run = load(folder / f"{name}-bpa" / "evaluation.json")
+        run = load(folder / name / "evaluation.json")
         everything = load(folder / f"{name}-everything" / "evaluation.json")
         if run is None or everything is None:
             rows.append([text, "skipped", "", "", ""])
@@ -199,7 +179,9 @@ def worst(folder, run):
 
 def report(folder):
     runs = [(text, load(folder / name / "evaluation.json")) for name, text in RUNS]
-    skipped = [text for text, run in runs if run is None]
+    after, baseline = comparison.summaries(folder), load(comparison.BASELINE) or {"sets": {}}
+    before = baseline["sets"]
+    skipped = [text for name, text in RUNS + FREE if name not in after]
     runs = [(text, run) for text, run in runs if run is not None]
     simulated = [(text, run) for text, run in runs if text.startswith("clutter")]
     real = [(text, run) for text, run in runs if text.startswith("real")]
@@ -212,6 +194,18 @@ def report(folder):
         "within 2.5 cm and π/16 modulo the symmetry; instances of which less than a tenth is "
         "visible neither count nor are false.\n",
         f"Skipped, for want of data: {'; '.join(skipped)}.\n" if skipped else "",
+        "## Before and now\n",
+        f"Before: commit {baseline['commit']}, {baseline['date']}, {baseline['machine']}.\n"
+        if before else "There is no baseline.json to compare with.\n",
+        comparison.before_and_after(before, after),
+        "## Choosing the threshold\n",
+        "All sets with objects, in colour; the ambiguous one is left out.\n",
+        comparison.pooled_curve(after),
+        "## Poses that the view leaves open\n", comparison.ambiguous(before, after),
+        "## Over the threshold\n",
+        "One search at a threshold of 0.05; what is less probable than the row is left out. A search "
+        "at the row's own threshold can hold a placement less.\n",
+        comparison.curves(folder, before, after),
         "## In short\n", headline(runs),
         "The paper's recalls on its Clutter set are multiples of 1/120: some four instances a scene. "
         f"Ours has {simulated[0][1]['recall']['total'] / simulated[0][1]['frames']:.1f} a scene that "
@@ -224,27 +218,29 @@ def report(folder):
         "## Time\n", times(runs),
         "## Where nothing is to be found\n", free_scenes(folder),
     ]
-    for name, text in FREE:
-        plot = f"{name}-everything/plots/reports.png"
-        if (folder / plot).is_file():
-            parts.append(f"![{text}: reports by probability]({plot})\n")
+    parts += ["## What each part is worth, and what it costs\n",
+              "Mean milliseconds of a frame's search, and how many more than without the part.\n"]
+    for name, title in (("leave_one_out", "Simulated clutter, first scenes"),
+                        ("leave_one_out_real", "Real frames")):
+        if (folder / name).is_dir():
+            parts.append(f"### {title}\n\n{leave_one_out.table(folder / name)}")
     parts += [
         "## The simulated clutter\n",
         f"{sum(visible['tenths'])} instances, median visible fraction {visible['median']:.2f}; by "
         f"tenths {' '.join(str(count) for count in visible['tenths'])}.\n",
-        pictures(folder, "clutter-bpa"),
+        pictures(folder, "clutter"),
         breakdown("visible fraction", "by_visible_fraction", simulated, False),
         breakdown("distance", "by_distance", simulated, True),
         breakdown("object", "by_object", simulated, True),
-        "### Worst frames\n", worst(folder, "clutter-bpa"),
+        "### Worst frames\n", worst(folder, "clutter"),
     ]
     if real:
         parts += [
-            "## Real frames\n", pictures(folder, "real-bpa"),
+            "## Real frames\n", pictures(folder, "real"),
             breakdown("visible fraction", "by_visible_fraction", real, False),
             breakdown("distance", "by_distance", real, True),
             breakdown("object", "by_object", real, True),
-            "### Worst frames\n", worst(folder, "real-bpa"),
+            "### Worst frames\n", worst(folder, "real"),
         ]
     parts.append("## Alignment alone: BPA against ICP from noisy starts\n")
     for name in ("position", "orientation"):
@@ -260,7 +256,13 @@ def report(folder):
 
 
 def main():
-    folder = Path(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--baseline", metavar="COMMIT")
+    arguments = parser.parse_args()
+    folder = arguments.folder
+    if arguments.baseline:
+        comparison.write_baseline(folder, arguments.baseline, machine())
     (folder / "report.md").write_text(report(folder), encoding="utf-8")
     print(f"report: {folder / 'report.md'}")
 

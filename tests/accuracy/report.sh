@@ -2,13 +2,20 @@
 # SPDX-FileCopyrightText: 2026 The bpa authors
 # SPDX-License-Identifier: Apache-2.0
 # usage: report.sh PROGRAMS OUTPUT
-# The accuracy of today's detector: simulates scenes by fixed seeds, builds the library, detects with
-# BPA and with ICP in its place, evaluates, does the same on real frames (ycbv/ and osd_clutter/ in
-# the folder BPA_DATA, or in ../shared/data) and writes OUTPUT/report.md. BPA_SCENES and
-# BPA_FREE_SCENES say how many scenes are simulated with objects and without.
+# The accuracy of today's detector: simulates sets by fixed seeds, builds the libraries, detects,
+# evaluates, does the same on real frames (ycbv/ and osd_clutter/ in the folder BPA_DATA, or in
+# ../shared/data) and writes OUTPUT/report.md. Numbers of simulated scenes: BPA_SCENES (clutter),
+# BPA_FREE_SCENES (nothing to find, of each kind), BPA_UNSEEN_SCENES (objects never trained on, of
+# each sensor), BPA_AMBIGUOUS_SCENES. BPA_DETECTOR is the program bpa of another build, which makes
+# the models and detects in place of this one; 'report.py OUTPUT --baseline COMMIT' keeps its
+# figures as those from before.
 set -euo pipefail
 readonly programs=$1 output=$2 data=${BPA_DATA:-../shared/data}
 readonly scenes=${BPA_SCENES:-30} free_scenes=${BPA_FREE_SCENES:-10}
+readonly unseen_scenes=${BPA_UNSEEN_SCENES:-20} ambiguous_scenes=${BPA_AMBIGUOUS_SCENES:-40}
+readonly detector=${BPA_DETECTOR:-$programs/bpa}
+tools=$(dirname "${BASH_SOURCE[0]}")
+readonly tools
 mkdir -p "$output/logs"
 : >"$output/commands.log"
 
@@ -29,77 +36,104 @@ bpa() {
   step "$log" "$programs/bpa" "$@"
 }
 
-# judge NAME DATASET LIBRARY CONFIG...: detection and figures of a data set in $output/NAME.
-judge() {
-  local name=$1 set=$2 library=$3 folder=$output/$1
+# judge_once NAME LIBRARY SETTINGS SET...: detection and figures of a set in $output/NAME. SETTINGS
+# is a YAML file. SET is --bop FOLDER, or --pcd FILE... of frames that hold none of the objects.
+judge_once() {
+  local name=$1 library=$2 settings=$3 folder=$output/$1
   shift 3
-  rm -rf "${folder:?}"
+  local truth=("$@") options=(--config "$settings" --json "$folder/result.json")
+  [[ $1 == --pcd ]] && truth=(--nothing-there)
+  [[ $name == *-everything ]] || options+=(--annotate "$folder/annotated")
   mkdir -p "$folder"
-  bpa "$name-detect" detect --library "$library" --bop "$set" --csv "$folder/result.csv" \
-    --json "$folder/result.json" --annotate "$folder/annotated" "$@"
-  bpa "$name-evaluate" evaluate --bop "$set" --json "$folder/result.json" \
+  step "$name-detect" "$detector" detect --library "$library" "$@" "${options[@]}"
+  bpa "$name-evaluate" evaluate "${truth[@]}" --json "$folder/result.json" \
     --json-out "$folder/evaluation.json" --plots "$folder/plots"
 }
 
-printf 'use_orientation: false\n' >"$output/icp.yaml"
-# So low that the distribution of what is just not reported is seen as well.
+# judge NAME LIBRARY SETTINGS SET...: also in $output/NAME-everything, with a threshold so low that
+# what is not reported is seen as well: for the curves over the threshold.
+judge() {
+  local name=$1 library=$2 settings=$3
+  shift 3
+  judge_once "$name" "$library" "$settings" "$@"
+  cat "$output/everything.yaml" "$settings" >"$output/$name-everything.yaml"
+  judge_once "$name-everything" "$library" "$output/$name-everything.yaml" "$@"
+}
+
+# simulate SET OPTION...: in $output/sets/SET.
+simulate() {
+  bpa "$1-simulate" simulate scenes --out "$output/sets/$1" "${@:2}"
+}
+
+# What an earlier report of other sets left must not count.
+rm -rf "${output:?}"/sets "$output"/library "$output"/real-library "$output"/leave_one_out* \
+  "$output"/{clutter,real,unseen,ambiguous,empty,distractors,osd}* "$output/sheet.png"
+: >"$output/default.yaml"
 printf 'min_probability: 0.05\n' >"$output/everything.yaml"
+printf 'use_orientation: false\n' >"$output/icp.yaml"
+printf 'use_color: false\n' >"$output/colourless.yaml"
+readonly default=$output/default.yaml
 
 # Simulated clutter, BPA and ICP.
 readonly clutter=$output/sets/clutter models=$output/library
-rm -rf "$output/sets" "$models"
-bpa clutter-simulate simulate scenes --out "$clutter" --scenes "$scenes" --seed 1
-bpa library model from-bop "$clutter" --library "$models"
-judge clutter-bpa "$clutter" "$models"
-judge clutter-icp "$clutter" "$models" --config "$output/icp.yaml"
+simulate clutter --scenes "$scenes" --seed 1
+step library "$detector" model from-bop "$clutter" --library "$models"
+judge clutter "$models" "$default" --bop "$clutter"
+judge_once clutter-icp "$models" "$output/icp.yaml" --bop "$clutter"
+
+# A pose that the view leaves open.
+simulate ambiguous --scenes "$ambiguous_scenes" --seed 4 --ambiguous 1 --border 0
+judge ambiguous "$models" "$default" --bop "$output/sets/ambiguous"
 
 # Nothing to find.
 for kind in empty distractors; do
-  bpa "$kind-simulate" simulate scenes --out "$output/sets/$kind" --scenes "$free_scenes" --seed 2 \
-    --"$kind" 1
-  judge "$kind-bpa" "$output/sets/$kind" "$models"
-  judge "$kind-everything" "$output/sets/$kind" "$models" --config "$output/everything.yaml"
+  simulate "$kind" --scenes "$free_scenes" --seed 2 "--$kind" 1
+  judge "$kind" "$models" "$default" --bop "$output/sets/$kind"
 done
 
 # The paper's second comparison of BPA with ICP, and the sensor.
+first_scenes=$(seq -s , 1 $((scenes < 6 ? scenes : 6)))
+readonly first_scenes
 bpa alignment bench alignment --bop "$clutter" --library "$models" --starts 10 \
-  --scenes "$(seq -s , 1 $((scenes < 6 ? scenes : 6)))" --plots "$output/alignment"
+  --scenes "$first_scenes" --plots "$output/alignment"
 sensor=()
 
-# Real frames.
+# Real frames, and simulated ones of their objects, which the built-in layers were not trained on.
 if [[ -d $data/ycbv ]]; then
-  rm -rf "$output/real-library"
-  bpa real-library model from-bop "$data/ycbv" --library "$output/real-library"
-  judge real-bpa "$data/ycbv" "$output/real-library"
-  judge real-icp "$data/ycbv" "$output/real-library" --config "$output/icp.yaml"
+  readonly real_models=$output/real-library
+  step real-library "$detector" model from-bop "$data/ycbv" --library "$real_models"
+  judge real "$real_models" "$default" --bop "$data/ycbv"
+  judge real-colourless "$real_models" "$output/colourless.yaml" --bop "$data/ycbv"
+  judge_once real-icp "$real_models" "$output/icp.yaml" --bop "$data/ycbv"
+  for kind in structured_light active_stereo time_of_flight; do
+    # Objects keep their numbers: those of ycbv have no gap.
+    simulate "unseen-$kind" --scenes "$unseen_scenes" --seed 3 --meshes "$data/ycbv/models" \
+      --sensor "$kind"
+    judge "unseen-$kind" "$real_models" "$default" --bop "$output/sets/unseen-$kind"
+  done
   sensor+=(--bop "$data/ycbv")
-else
-  rm -rf "$output/real-bpa" "$output/real-icp"
 fi
 clouds=()
 for cloud in "$data"/osd_clutter/*.pcd; do
   # Clouds that are not organised are no images.
   if [[ -f $cloud ]] && ! grep -a -q -m 1 '^HEIGHT 1$' "$cloud"; then clouds+=("$cloud"); fi
 done
-rm -rf "$output/osd-bpa" "$output/osd-everything"
 # Scenes that hold none of the real objects; without these, none of the simulated ones.
-osd_models=$models
-[[ -d $data/ycbv ]] && osd_models=$output/real-library
+readonly osd_models=${real_models:-$models}
 if ((${#clouds[@]})); then
   sensor+=(--pcd "${clouds[@]}")
-  for config in bpa everything; do
-    folder=$output/osd-$config
-    mkdir -p "$folder"
-    options=()
-    [[ $config == everything ]] && options=(--config "$output/everything.yaml")
-    bpa "osd-$config-detect" detect --library "$osd_models" --pcd "${clouds[@]}" \
-      --json "$folder/result.json" --annotate "$folder/annotated" "${options[@]}"
-    bpa "osd-$config-evaluate" evaluate --nothing-there --json "$folder/result.json" \
-      --json-out "$folder/evaluation.json" --plots "$folder/plots"
-  done
+  judge osd "$osd_models" "$default" --pcd "${clouds[@]}"
+  judge osd-colourless "$osd_models" "$output/colourless.yaml" --pcd "${clouds[@]}"
 fi
-rm -f "$output/sheet.png"
 ((${#sensor[@]})) && sensor+=(--sheet "$output/sheet.png")
 bpa sensor bench sensor --json "$output/sensor.json" "${sensor[@]}"
 
-/usr/bin/python3 "$(dirname "${BASH_SOURCE[0]}")/report.py" "$output"
+# What each part is worth and what it costs.
+step leave-one-out "$tools/leave_one_out.sh" "$programs" "$output/leave_one_out" "$models" \
+  "$clutter" --scenes "$first_scenes"
+if [[ -n ${real_models:-} ]]; then
+  step leave-one-out-real "$tools/leave_one_out.sh" "$programs" "$output/leave_one_out_real" \
+    "$real_models" "$data/ycbv"
+fi
+
+/usr/bin/python3 "$tools/report.py" "$output"
