@@ -41,15 +41,15 @@ TriangleMesh plate(double left, double right, double half_height) {
   return mesh;
 }
 
-KinectImage see_plate(const TriangleMesh& mesh, double depth, double angle,
-                      const KinectOptions& options, std::uint64_t seed, int num_threads) {
+SensorImage see_plate(const TriangleMesh& mesh, double depth, double angle,
+                      const SensorOptions& options, std::uint64_t seed, int num_threads) {
   const Camera camera{320, 240, kInfraredFocal, kInfraredFocal, 159.5, 119.5};
   const RayMeshes meshes({&mesh});
   const Pose pose{rotation_from_vector(angle * Eigen::Vector3d::UnitY()), {0, 0, depth}};
   const RayScene scene(meshes, {{0, pose}});
   Shading shading;
   shading.materials.assign(1, {0.7, 0});
-  return simulate_kinect({scene, shading, camera, Pose{}}, options, seed, 0, num_threads);
+  return simulate_sensor({scene, shading, camera, Pose{}}, options, seed, 0, num_threads);
 }
 
 using DepthImage = cv::Mat_<float>;
@@ -161,13 +161,13 @@ void add_roughness(const DepthImage& depth, double scale, DepthStatistics& stati
 
 }  // namespace
 
-PlaneNoise plane_noise(double depth, double angle, const KinectOptions& options, std::uint64_t seed,
+PlaneNoise plane_noise(double depth, double angle, const SensorOptions& options, std::uint64_t seed,
                        int num_threads) {
   constexpr double kBand = 0.03;  // of the depth
-  KinectOptions measured = options;
-  measured.registered = false;
+  SensorOptions measured = options;
+  measured.kinect.registered = false;
   const TriangleMesh wide = plate(-20, 20, 20);
-  const KinectImage image = see_plate(wide, depth, angle, measured, seed, num_threads);
+  const SensorImage image = see_plate(wide, depth, angle, measured, seed, num_threads);
   Moments error, missing;
   for (std::size_t i = 0; i < image.frame.depth.size(); ++i) {
     if (!(std::abs(image.ideal.depth[i] / depth - 1) <= kBand)) continue;
@@ -177,7 +177,7 @@ PlaneNoise plane_noise(double depth, double angle, const KinectOptions& options,
   }
   // The edge's side away from the projector is a shadow's, so it is the right one that is measured.
   const TriangleMesh half = plate(-20, 0, 20);
-  const KinectImage edge = see_plate(half, depth, angle, measured, seed, num_threads);
+  const SensorImage edge = see_plate(half, depth, angle, measured, seed, num_threads);
   const int width = edge.frame.camera.width;
   Moments column;
   for (int y = 0; y < edge.frame.camera.height; ++y) {

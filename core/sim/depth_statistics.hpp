@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/cloud/frame.hpp"
-#include "core/sim/kinect.hpp"
+#include "core/sim/sensor.hpp"
 
 // Figures that compare a simulated depth camera with published ones and with real frames.
 
@@ -21,7 +21,7 @@ struct PlaneNoise {
 /// Measures a wide plane, `depth` metres away in the middle. Its normal is turned by `angle`
 /// radians (up to 80 degrees) about the image's vertical axis. Depth as measured, before
 /// registration.
-PlaneNoise plane_noise(double depth, double angle, const KinectOptions& options,
+PlaneNoise plane_noise(double depth, double angle, const SensorOptions& options,
                        std::uint64_t seed = 1, int num_threads = 0);
 
 /// What an image of any scene tells about its camera. Pixels are those of a Kinect's infrared

@@ -3,16 +3,14 @@
 #include "core/sim/kinect.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include <opencv2/imgproc.hpp>
 
-#include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
-#include "core/geometry/pose.hpp"
+#include "core/sim/private/infrared.hpp"
 
 namespace bpa::sim {
 namespace {
@@ -32,42 +30,29 @@ struct Measurement {
   std::vector<float> glare;      // in [0, 1]
 };
 
-float smooth_step(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
-
 // Steps 1 and 3.
-Measurement see(const KinectView& infrared, const KinectOptions& options, int num_threads) {
-  const std::vector<float> zeros(infrared.camera.width * infrared.camera.height, 0);
-  Measurement m{infrared.camera, zeros, zeros, zeros, zeros, zeros};
-  const FastPose world_from_camera = to_fast(infrared.world_from_camera);
-  const Eigen::Matrix3f& rotation = world_from_camera.rotation;
-  const Eigen::Vector3f& origin = world_from_camera.translation;
-  const Eigen::Vector3f projector = origin + static_cast<float>(options.baseline) * rotation.col(0);
+Measurement see(const InfraredCamera& infrared, const KinectOptions& options, int num_threads) {
+  const Camera& camera = infrared.camera();
+  const std::vector<float> zeros(camera.width * camera.height, 0);
+  Measurement m{camera, zeros, zeros, zeros, zeros, zeros};
+  const Eigen::Vector3f projector = infrared.beside(options.baseline);
   for_each_pixel(m.camera, num_threads, [&](int x, int y, int i) {
-    const Eigen::Vector3f direction = rotation * m.camera.unproject(x, y, 1).cast<float>();
-    const std::optional<RayHit> hit = infrared.scene.cast(origin, direction);
-    if (!hit || hit->distance < options.min_range || hit->distance > options.max_range) return;
-    const Eigen::Vector3f point = origin + hit->distance * direction;
-    const Eigen::Vector3f to_camera = -direction.normalized();
-    const Eigen::Vector3f to_projector = (projector - point).normalized();
-    const float lit = hit->face_normal.dot(to_projector);
-    m.depth[i] = hit->distance;
-    m.angle[i] = std::acos(std::clamp(hit->normal.dot(to_camera), 0.0f, 1.0f));
-    const Eigen::Vector3f lifted = point + 3e-4f * hit->face_normal;
-    if (options.shadows && (lit <= 0 || infrared.scene.blocked(lifted, projector))) return;
-    const Material material = infrared.shading.material(hit->instance, Material{});
-    const auto pixel = static_cast<float>(hit->distance / m.camera.fx);
-    const float brightness = infrared.scene.color(*hit, pixel).sum() / 3;
+    const auto seen = infrared.look(infrared.origin(), infrared.direction(x, y));
+    if (!seen) return;
+    const RayHit& hit = seen->hit;
+    if (hit.distance < options.min_range || hit.distance > options.max_range) return;
+    const float lit = hit.face_normal.dot((projector - seen->point).normalized());
+    m.depth[i] = hit.distance;
+    m.angle[i] = seen->angle;
+    if (options.shadows && (lit <= 0 || infrared.scene().blocked(seen->lifted, projector))) return;
+    const Material material = infrared.material(hit);
     const auto shine = static_cast<float>(material.shine);
     const float away = 1 - 0.6f * shine * m.angle[i] / (std::numbers::pi_v<float> / 2);
-    m.signal[i] = static_cast<float>(material.infrared) * (0.6f + 0.4f * brightness) *
-                  std::sqrt(std::max(lit, 0.0f)) * away / std::pow(hit->distance, 1.5f);
-    const float facing = hit->normal.dot((to_camera + to_projector).normalized());
-    m.glare[i] = smooth_step(0.25f, 1.0f, shine) * smooth_step(0.965f, 0.998f, facing);
+    m.signal[i] = infrared.reflectance(hit) * std::sqrt(std::max(lit, 0.0f)) * away /
+                  std::pow(hit.distance, 1.5f);
+    m.glare[i] = seen->glare(material, projector);
     m.disparity[i] =
-        static_cast<float>(m.camera.fx * std::max(options.baseline, 1e-3) / hit->distance);
+        static_cast<float>(m.camera.fx * std::max(options.baseline, 1e-3) / hit.distance);
   });
   return m;
 }
@@ -82,54 +67,6 @@ float window_agreement(const Measurement& m, int x, int y, float disparity) {
     }
   }
   return static_cast<float>(agree) / ((2 * kWindow + 1) * (2 * kWindow + 1));
-}
-
-// A tent whose squares sum to 1, so that variances stay 1.
-std::vector<float> tent(int radius) {
-  std::vector<float> weights;
-  double squares = 0;
-  for (int i = -radius; i <= radius; ++i) {
-    const double w = radius + 1 - std::abs(i);
-    weights.push_back(static_cast<float>(w));
-    squares += w * w;
-  }
-  for (float& w : weights) w /= static_cast<float>(std::sqrt(squares));
-  return weights;
-}
-
-// Row-major standard normal numbers, each of variance 1; with `radius` > 0 neighbours correlate:
-// white noise under a tent of half width `radius` + 1 pixels. The same for any number of threads.
-std::vector<float> noise_field(int width, int height, int radius, std::uint64_t seed,
-                               int num_threads) {
-  const std::vector<float> weights = tent(radius);
-  const int taps = 2 * radius + 1, padded_height = height + 2 * radius;
-  // White noise, smoothed along its rows as it is made.
-  std::vector<float> smooth_rows(width * padded_height);
-  parallel_for(padded_height, num_threads, [&](int y) {
-    RandomStream random(seed, y);
-    std::vector<float> white(width + 2 * radius);
-    for (float& value : white) value = static_cast<float>(random.normal());
-    for (int x = 0; x < width; ++x) {
-      float sum = 0;
-      for (int t = 0; t < taps; ++t) sum += weights[t] * white[x + t];
-      smooth_rows[y * width + x] = sum;
-    }
-  });
-  if (radius == 0) return smooth_rows;
-  std::vector<float> field(width * height, 0);
-  parallel_for(height, num_threads, [&](int y) {
-    for (int t = 0; t < taps; ++t) {
-      for (int x = 0; x < width; ++x) {
-        field[y * width + x] += weights[t] * smooth_rows[(y + t) * width + x];
-      }
-    }
-  });
-  return field;
-}
-
-// The seed of what differs from shot to shot.
-std::uint64_t shot_seed(std::uint64_t seed, int shot) {
-  return shot == 0 ? seed : RandomStream(seed, static_cast<std::uint64_t>(shot))();
 }
 
 // The random images that the measurement draws on.
@@ -232,75 +169,6 @@ std::vector<float> without_specks(const std::vector<float>& depth, const Camera&
   return result;
 }
 
-// Step 6: every measured pixel covers the colour pixels under it; the nearest wins. On one surface
-// (disparities within a pixel) it reaches half way to its neighbours in the row, so that a slope,
-// which the other viewpoint stretches, has no cracks.
-std::vector<float> carried_over(const std::vector<float>& depth, const Camera& infrared,
-                                const Camera& color, double color_x, double pixels_per_inverse) {
-  std::vector<float> result(color.width * color.height, 0);
-  const double half_x = std::max(0.5 * color.fx / infrared.fx, 0.5);
-  const double half_y = std::max(0.5 * color.fy / infrared.fy, 0.5);
-  const auto column = [&](int x, float z) {
-    return color.project(infrared.unproject(x, 0, z) - Eigen::Vector3d(color_x, 0, 0)).x();
-  };
-  const auto first = [](double p) { return std::max(static_cast<int>(std::ceil(p - 1e-9)), 0); };
-  const auto last = [](double p, int size) {
-    return std::min(static_cast<int>(std::floor(p - 1e-6)), size - 1);
-  };
-  for (int y = 0; y < infrared.height; ++y) {
-    const float* row = depth.data() + y * infrared.width;
-    const auto joined = [&](int a, int b) {
-      if (b < 0 || b >= infrared.width || row[b] <= 0) return false;
-      return pixels_per_inverse * std::abs(1 / row[a] - 1 / row[b]) <= kSameDisparity;
-    };
-    for (int x = 0; x < infrared.width; ++x) {
-      const float z = row[x];
-      if (z <= 0) continue;
-      const double u0 = column(x, z), v0 = color.project(infrared.unproject(x, y, z)).y();
-      double left = u0 - half_x, right = u0 + half_x;
-      if (joined(x, x - 1)) left = std::min(left, 0.5 * (u0 + column(x - 1, row[x - 1])));
-      if (joined(x, x + 1)) right = std::max(right, 0.5 * (u0 + column(x + 1, row[x + 1])));
-      for (int v = first(v0 - half_y); v <= last(v0 + half_y, color.height); ++v) {
-        for (int u = first(left); u <= last(right, color.width); ++u) {
-          float& target = result[v * color.width + u];
-          if (target == 0 || z < target) target = z;
-        }
-      }
-    }
-  }
-  return result;
-}
-
-// Exposure, white balance, a lens and a mosaic of filters (blur), noise that grows with light.
-std::vector<std::uint8_t> photograph(const std::vector<std::uint8_t>& ideal, const Camera& camera,
-                                     const KinectOptions& options, std::uint64_t seed, int shot,
-                                     int num_threads) {
-  RandomStream random(seed, 0);
-  const double exposure = 0.9 * std::exp(options.exposure_spread * random.normal());
-  Eigen::Array3d gain;
-  for (int c = 0; c < 3; ++c) {
-    gain[c] = exposure * std::exp(0.3 * options.exposure_spread * random.normal());
-  }
-  const auto draw_field = [&] {
-    return noise_field(camera.width, camera.height, 1, shot_seed(random(), shot), num_threads);
-  };
-  const std::array<std::vector<float>, 3> noise{draw_field(), draw_field(), draw_field()};
-  cv::Mat blurred;
-  cv::Mat(camera.height, camera.width, CV_8UC3, const_cast<std::uint8_t*>(ideal.data()))
-      .convertTo(blurred, CV_32F);
-  cv::GaussianBlur(blurred, blurred, {3, 3}, 0, 0, cv::BORDER_REPLICATE);  // binomial: exact
-  std::vector<std::uint8_t> image(ideal.size());
-  for_each_pixel(camera, num_threads, [&](int x, int y, int i) {
-    for (int c = 0; c < 3; ++c) {
-      const double light = gain[c] * blurred.at<cv::Vec3f>(y, x)[c];
-      const double sigma = options.color_noise * std::sqrt(6 + 0.12 * light);
-      const double value = light + sigma * noise[c][i];
-      image[3 * i + c] = static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
-    }
-  });
-  return image;
-}
-
 }  // namespace
 
 double published_axial_noise(double depth, double angle) {
@@ -313,14 +181,11 @@ double published_axial_noise(double depth, double angle) {
   return sigma;
 }
 
-Frame simulate_depth(const KinectView& view, const KinectOptions& options, std::uint64_t seed,
+Frame simulate_depth(const SensorView& view, const KinectOptions& options, std::uint64_t seed,
                      int shot, int num_threads) {
-  KinectView infrared = view;
-  if (options.registered) {
-    infrared.camera = {640, 480, options.infrared_focal, options.infrared_focal, 319.5, 239.5};
-    infrared.world_from_camera = view.world_from_camera * Pose{Eigen::Quaterniond::Identity(),
-                                                               {-options.color_baseline, 0, 0}};
-  }
+  const Camera own{640, 480, options.infrared_focal, options.infrared_focal, 319.5, 239.5};
+  const InfraredCamera infrared(
+      options.registered ? infrared_view(view, own, options.color_baseline) : view);
   const Measurement m = see(infrared, options, num_threads);
   const Noise noise(m.camera, options.calibration_error > 0, seed, shot, num_threads);
   std::vector<float> depth(m.depth.size(), 0);
@@ -334,27 +199,6 @@ Frame simulate_depth(const KinectView& view, const KinectOptions& options, std::
                                                   options.color_baseline, pixels_per_inverse)
                                    : std::move(depth);
   return frame;
-}
-
-KinectImage simulate_kinect(const KinectView& view, const KinectOptions& options,
-                            std::uint64_t seed, int shot, int num_threads) {
-  const auto render_by = [&](const Camera& camera) {
-    return render(view.scene, camera, view.world_from_camera, view.shading, num_threads);
-  };
-  KinectImage image;
-  image.frame = simulate_depth(view, options, seed, shot, num_threads);
-  image.ideal = render_by(view.camera);
-  RandomStream random(seed, 100);
-  Camera moved = view.camera;
-  if (options.misregistration > 0) {
-    const double direction = random.uniform(0, 2 * std::numbers::pi);
-    moved.cx += options.misregistration * std::cos(direction);
-    moved.cy += options.misregistration * std::sin(direction);
-  }
-  const std::vector<std::uint8_t> color =
-      options.misregistration > 0 ? render_by(moved).color : image.ideal.color;
-  image.frame.color = photograph(color, view.camera, options, random(), shot, num_threads);
-  return image;
 }
 
 }  // namespace bpa::sim

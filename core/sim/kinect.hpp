@@ -6,7 +6,7 @@
 
 #include "core/base/options.hpp"
 #include "core/cloud/frame.hpp"
-#include "core/sim/render.hpp"
+#include "core/sim/sensor_view.hpp"
 
 // A depth camera with a projected dot pattern (Kinect v1, Xtion, PrimeSense), simulated in steps:
 //
@@ -32,8 +32,7 @@
 //     depth at 1 m, growing with z^2. Depth is in millimetres.
 //  6. Registration. Depth is carried over to the colour camera, 2.5 cm beside the infrared one.
 //
-// The widths of waves, gaps and holes were compared with real frames: bpa bench sensor. The colour
-// image has exposure, white balance, blur and noise of its own.
+// The widths of waves, gaps and holes were compared with real frames: bpa bench sensor.
 
 namespace bpa::sim {
 
@@ -50,9 +49,6 @@ struct KinectOptions {
   bool shadows = true;
   bool registered = true;
   double color_baseline = 0.025;
-  double misregistration = 0;
-  double color_noise = 1;
-  double exposure_spread = 0.12;
   double min_range = 0.4;
   double max_range = 4.5;
 
@@ -72,9 +68,6 @@ struct KinectOptions {
     visit("registered", registered,
           {0, 1, "Measure from beside the colour camera and carry over."});
     visit("color_baseline", color_baseline, {0, 0.5, "Infrared to colour camera, metres."});
-    visit("misregistration", misregistration, {0, 50, "Shift of colour against depth, pixels."});
-    visit("color_noise", color_noise, {0, 10, "Times the usual noise of colours."});
-    visit("exposure_spread", exposure_spread, {0, 2, "Standard deviation of the log exposure."});
     visit("min_range", min_range, {0, 20, "Nearest depth measured, metres."});
     visit("max_range", max_range, {0, 20, "Farthest depth measured, metres."});
   }
@@ -84,27 +77,10 @@ struct KinectOptions {
 /// at `depth` metres seen at `angle` radians from its normal.
 double published_axial_noise(double depth, double angle);
 
-/// A camera's two images, and the truth about them.
-struct KinectImage {
-  Frame frame;          ///< As measured.
-  RenderedImage ideal;  ///< The same view without any error.
-};
-
-/// A scene with its light, and the camera that looks at it.
-struct KinectView {
-  const RayScene& scene;
-  const Shading& shading;  ///< Holds the materials of the posed meshes.
-  Camera camera;           ///< Of the colour image; of the depth image too, if not `registered`.
-  Pose world_from_camera;
-};
-
-/// What the camera measures. Another `shot` (from 0) of one seed is the same camera a moment later:
-/// it has other noise. The same options and seed give the same image for any number of threads.
-KinectImage simulate_kinect(const KinectView& view, const KinectOptions& options,
-                            std::uint64_t seed, int shot = 0, int num_threads = 0);
-
-/// The depth of simulate_kinect() in a fraction of the time; the frame has no colour.
-Frame simulate_depth(const KinectView& view, const KinectOptions& options, std::uint64_t seed,
+/// Depth alone, in a fraction of simulate_sensor()'s time. Another `shot` (from 0) of one seed is
+/// the same camera a moment later: it has other noise. The same options and seed give the same
+/// image for any number of threads.
+Frame simulate_depth(const SensorView& view, const KinectOptions& options, std::uint64_t seed,
                      int shot = 0, int num_threads = 0);
 
 }  // namespace bpa::sim

@@ -225,10 +225,10 @@ const SimulatedObject& Stage::body(int mesh) const {
   return index < objects_.size() ? objects_[index] : scenery_[index - objects_.size()];
 }
 
-SimulatedFrame capture(const KinectView& view, const std::vector<int>& objects,
-                       const KinectOptions& options, std::uint64_t seed, int shot,
+SimulatedFrame capture(const SensorView& view, const std::vector<int>& objects,
+                       const SensorOptions& options, std::uint64_t seed, int shot,
                        int num_threads) {
-  KinectImage image = simulate_kinect(view, options, seed, shot, num_threads);
+  SensorImage image = simulate_sensor(view, options, seed, shot, num_threads);
   SimulatedFrame frame;
   frame.frame = std::move(image.frame);
   frame.camera_from_world = view.world_from_camera.inverse();
@@ -307,7 +307,7 @@ SimulatedScene simulate_scene(const Stage& stage, const SceneOptions& options, s
     const std::uint64_t view_seed = view_random();
     for (int shot = 0; shot < options.shots; ++shot) {
       result.frames.push_back(capture({scene, shading, camera, world_from_camera}, objects,
-                                      options.kinect, view_seed, shot, num_threads));
+                                      options.sensor, view_seed, shot, num_threads));
     }
   }
   return result;

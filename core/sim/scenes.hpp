@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "core/sim/kinect.hpp"
 #include "core/sim/objects.hpp"
 #include "core/sim/render.hpp"
+#include "core/sim/sensor.hpp"
 
 // Whole scenes: objects fall on a table and are seen from a robot's viewpoints, with the truth.
 
@@ -44,7 +44,7 @@ struct SceneOptions {
   double min_focal = 0;
   double max_focal = 0;
   Camera camera{640, 480, 525, 525, 319.5, 239.5};  ///< Of the colour image and the frame.
-  KinectOptions kinect;
+  SensorOptions sensor;
 
   void visit_fields(auto&& visit) {
     visit("min_objects", min_objects, {0, 100, "Fewest objects in a pile."});
@@ -67,7 +67,7 @@ struct SceneOptions {
           {0, 1, "Share of scenes with one mug whose handle is out of sight."});
     visit("min_focal", min_focal, {0, 4000, "Shortest focal length, pixels."});
     visit("max_focal", max_focal, {0, 4000, "Longest focal length; 0 = the camera's own."});
-    kinect.visit_fields(visit);
+    sensor.visit_fields(visit);
   }
 };
 
@@ -116,8 +116,8 @@ class Stage {
 
 /// One frame with its truth. The first posed meshes of the scene are the instances: instance i is
 /// the object of index `objects[i]`.
-SimulatedFrame capture(const KinectView& view, const std::vector<int>& objects,
-                       const KinectOptions& options, std::uint64_t seed, int shot, int num_threads);
+SimulatedFrame capture(const SensorView& view, const std::vector<int>& objects,
+                       const SensorOptions& options, std::uint64_t seed, int shot, int num_threads);
 
 /// One scene. An ambiguous one needs an object with telltales. The same stage, options and seed
 /// give the same scene for any number of threads.

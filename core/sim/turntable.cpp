@@ -109,9 +109,9 @@ TurntableScan simulate_turntable(const SimulatedObject& object, const TurntableO
                                     {1, world_from_plate},
                                     {2, below},
                                     {3, Pose{}}});
-      const KinectView seen{scene, shading, options.camera, world_from_camera};
+      const SensorView seen{scene, shading, options.camera, world_from_camera};
       scan.views.push_back({static_cast<int>(rest), turn,
-                            capture(seen, {0}, options.kinect, random(), 0, num_threads)});
+                            capture(seen, {0}, options.sensor, random(), 0, num_threads)});
     }
   }
   return scan;

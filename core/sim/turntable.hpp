@@ -22,7 +22,7 @@ struct TurntableOptions {
   double spread = 0.03;
   double plate_radius = 0.16;
   Camera camera{640, 480, 525, 525, 319.5, 239.5};
-  KinectOptions kinect;
+  SensorOptions sensor;
 
   void visit_fields(auto&& visit) {
     visit("resting_positions", resting_positions, {1, 6, "Ways the object is put down."});
@@ -32,7 +32,7 @@ struct TurntableOptions {
     visit("elevation_deg", elevation_deg, {5, 85, "Camera above the plate, degrees."});
     visit("spread", spread, {0, 0.2, "How far off centre the object and the axis are, metres."});
     visit("plate_radius", plate_radius, {0.05, 0.5, "Of the turning plate, metres."});
-    kinect.visit_fields(visit);
+    sensor.visit_fields(visit);
   }
 };
 

@@ -28,7 +28,7 @@ Frame pile(double misregistration) {
   options.min_objects = 5;
   options.max_objects = 6;
   options.empty_share = options.distractor_share = options.border_share = 0;
-  options.kinect.misregistration = misregistration;
+  options.sensor.color.misregistration = misregistration;
   return sim::simulate_scene(stage, options, 4).frames.front().frame;
 }
 

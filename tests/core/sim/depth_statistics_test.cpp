@@ -96,9 +96,9 @@ TEST(DepthStatistics, NothingGivesZeros) {
 }
 
 TEST(PlaneNoiseOfImages, WithoutErrorsThereIsNone) {
-  KinectOptions options;
-  options.axial_noise = options.lateral_noise = options.dropouts = 0;
-  options.disparity_step = 0;
+  SensorOptions options;
+  options.kinect.axial_noise = options.kinect.lateral_noise = options.kinect.dropouts = 0;
+  options.kinect.disparity_step = 0;
   const PlaneNoise noise = plane_noise(1, 0.5, options);
   EXPECT_LT(noise.axial, 1e-5);
   EXPECT_EQ(noise.lateral, 0);

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/sim/kinect.hpp"
-
 #include <cmath>
 #include <numbers>
 #include <set>
 
 #include <gtest/gtest.h>
+
+#include "core/sim/sensor.hpp"
 
 namespace bpa::sim {
 namespace {
@@ -28,27 +28,27 @@ Shading with_material(const Material& material) {
   return shading;
 }
 
-KinectOptions at_depth_camera() {
-  KinectOptions options;
-  options.registered = false;
+SensorOptions at_depth_camera() {
+  SensorOptions options;
+  options.kinect.registered = false;
   return options;
 }
 
 // A wide plane through (0, 0, depth), turned about the image's y axis.
-KinectImage see_plane(double depth, double angle, const Material& material,
-                      const KinectOptions& options, int num_threads = 2, int shot = 0) {
+SensorImage see_plane(double depth, double angle, const Material& material,
+                      const SensorOptions& options, int num_threads = 2, int shot = 0) {
   static const TriangleMesh mesh = quad(20, 20);
   const RayMeshes meshes({&mesh});
   const RayScene scene(
       meshes,
       {{0,
         {Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY())), {0, 0, depth}}}});
-  return simulate_kinect({scene, with_material(material), kKinect, Pose{}}, options, 5, shot,
+  return simulate_sensor({scene, with_material(material), kKinect, Pose{}}, options, 5, shot,
                          num_threads);
 }
 
 // The standard deviation of the measured depth where the plane is `depth` away within 3 %.
-double axial_noise(const KinectImage& image, double depth) {
+double axial_noise(const SensorImage& image, double depth) {
   double sum = 0, squares = 0;
   int count = 0;
   for (std::size_t i = 0; i < image.frame.depth.size(); ++i) {
@@ -65,7 +65,7 @@ double axial_noise(const KinectImage& image, double depth) {
   return sigma;
 }
 
-double hole_fraction(const KinectImage& image) {
+double hole_fraction(const SensorImage& image) {
   int holes = 0, all = 0;
   for (int y = 40; y < 200; ++y) {
     for (int x = 60; x < 260; ++x, ++all) holes += image.frame.depth[y * kKinect.width + x] == 0;
@@ -83,8 +83,8 @@ TEST_P(NoiseOnAPlane, IsThePublishedOne) {
   if (degrees > 60) {
     expected += 0.0001 / std::sqrt(depth) * angle * angle / std::pow(kPi / 2 - angle, 2);
   }
-  KinectOptions options = at_depth_camera();
-  options.dropouts = 0;
+  SensorOptions options = at_depth_camera();
+  options.kinect.dropouts = 0;
   const double measured = axial_noise(see_plane(depth, angle, {}, options), depth);
   RecordProperty("measured_um", static_cast<int>(1e6 * measured));
   EXPECT_NEAR(measured / expected, 1, 0.15) << 1e3 * measured << " mm, not " << 1e3 * expected;
@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(DepthAndAngle, NoiseOnAPlane,
                                           testing::Values(0, 30, 50, 70, 75)));
 
 TEST(Kinect, DepthComesInStepsOfAnEighthOfAPixel) {
-  const KinectImage image = see_plane(2.0, 0, {}, at_depth_camera());
+  const SensorImage image = see_plane(2.0, 0, {}, at_depth_camera());
   std::set<int> levels;
   for (const float depth : image.frame.depth) {
     if (depth > 0) levels.insert(static_cast<int>(std::lround(1e3 * depth)));
@@ -113,8 +113,8 @@ TEST(Kinect, ShadowIsAsWideAsTheParallax) {
   const RayMeshes meshes({&wall, &card});
   const Eigen::Quaterniond straight = Eigen::Quaterniond::Identity();
   const RayScene scene(meshes, {{0, {straight, {0, 0, 1.0}}}, {1, {straight, {0, 0, 0.6}}}});
-  const KinectImage image =
-      simulate_kinect({scene, with_material({}), kKinect, Pose{}}, at_depth_camera(), 1);
+  const SensorImage image =
+      simulate_sensor({scene, with_material({}), kKinect, Pose{}}, at_depth_camera(), 1);
   const double expected = 570.3 * 0.075 * (1 / 0.6 - 1 / 1.0);
   double left = 0, right = 0;
   int rows = 0;
@@ -128,7 +128,7 @@ TEST(Kinect, ShadowIsAsWideAsTheParallax) {
 }
 
 TEST(Kinect, LosesGrazingDarkAndShinySurfaces) {
-  const KinectOptions options = at_depth_camera();
+  const SensorOptions options = at_depth_camera();
   const Material matt{0.7, 0}, dark{0.05, 0}, shiny{0.6, 0.9};
   EXPECT_LT(hole_fraction(see_plane(1.0, 0.3, matt, options)), 0.01);
   EXPECT_GT(hole_fraction(see_plane(1.0, 85 * kPi / 180, matt, options)), 0.5);
@@ -140,12 +140,12 @@ TEST(Kinect, LosesGrazingDarkAndShinySurfaces) {
 }
 
 TEST(Kinect, WithoutErrorsItIsIdeal) {
-  KinectOptions options = at_depth_camera();
-  options.axial_noise = options.lateral_noise = options.dropouts = 0;
-  options.disparity_step = 0;
-  options.shadows = false;
-  options.color_noise = options.exposure_spread = 0;
-  const KinectImage image = see_plane(1.0, 0.8, {}, options);
+  SensorOptions options = at_depth_camera();
+  options.kinect.axial_noise = options.kinect.lateral_noise = options.kinect.dropouts = 0;
+  options.kinect.disparity_step = 0;
+  options.kinect.shadows = false;
+  options.color.color_noise = options.color.exposure_spread = 0;
+  const SensorImage image = see_plane(1.0, 0.8, {}, options);
   for (std::size_t i = 0; i < image.frame.depth.size(); ++i) {
     EXPECT_NEAR(image.frame.depth[i], image.ideal.depth[i], 1e-5);
   }
@@ -153,16 +153,16 @@ TEST(Kinect, WithoutErrorsItIsIdeal) {
 
 // Without any other error, depth is off by what the disparity is, and alike beside each other.
 TEST(Kinect, CalibrationErrorIsSmoothAndAsLargeAsAsked) {
-  KinectOptions options = at_depth_camera();
-  options.axial_noise = options.lateral_noise = options.dropouts = 0;
-  options.disparity_step = 0;
-  options.shadows = false;
-  options.calibration_error = 0.2;
-  const double focal_baseline = options.infrared_focal * options.baseline;
+  SensorOptions options = at_depth_camera();
+  options.kinect.axial_noise = options.kinect.lateral_noise = options.kinect.dropouts = 0;
+  options.kinect.disparity_step = 0;
+  options.kinect.shadows = false;
+  options.kinect.calibration_error = 0.2;
+  const double focal_baseline = options.kinect.infrared_focal * options.kinect.baseline;
   double squares = 0, steps = 0;
   int count = 0;
   for (const double depth : {0.7, 0.9, 1.1, 1.3}) {
-    const KinectImage image = see_plane(depth, 0, {}, options);
+    const SensorImage image = see_plane(depth, 0, {}, options);
     double last = 0;
     for (std::size_t i = 0; i < image.frame.depth.size(); ++i) {
       const double z = image.frame.depth[i];
@@ -179,10 +179,10 @@ TEST(Kinect, CalibrationErrorIsSmoothAndAsLargeAsAsked) {
 }
 
 TEST(Kinect, RegistrationKeepsDepthWhereItIs) {
-  KinectOptions options;
-  options.axial_noise = 0.1;
-  options.dropouts = 0;
-  const KinectImage image = see_plane(1.0, 0.5, {}, options);
+  SensorOptions options;
+  options.kinect.axial_noise = 0.1;
+  options.kinect.dropouts = 0;
+  const SensorImage image = see_plane(1.0, 0.5, {}, options);
   EXPECT_LT(hole_fraction(image), 1e-3);
   double worst = 0;
   for (int y = 40; y < 200; ++y) {
@@ -195,27 +195,28 @@ TEST(Kinect, RegistrationKeepsDepthWhereItIs) {
 }
 
 TEST(Kinect, AnotherShotHasOtherNoiseAndTheSameErrorsOfTheCamera) {
-  KinectOptions options = at_depth_camera();
-  options.calibration_error = 0.4;
-  options.misregistration = 3;
-  const KinectImage first = see_plane(1.0, 0.3, {}, options);
-  const KinectImage second = see_plane(1.0, 0.3, {}, options, 2, 1);
+  SensorOptions options = at_depth_camera();
+  options.kinect.calibration_error = 0.4;
+  options.color.misregistration = 3;
+  const SensorImage first = see_plane(1.0, 0.3, {}, options);
+  const SensorImage second = see_plane(1.0, 0.3, {}, options, 2, 1);
   EXPECT_EQ(first.ideal.depth, second.ideal.depth);
   EXPECT_NE(first.frame.depth, second.frame.depth);
   EXPECT_NE(first.frame.color, second.frame.color);
-  options.axial_noise = options.lateral_noise = options.dropouts = options.color_noise = 0;
-  const KinectImage third = see_plane(1.0, 0.3, {}, options);
-  const KinectImage fourth = see_plane(1.0, 0.3, {}, options, 2, 1);
+  options.kinect.axial_noise = options.kinect.lateral_noise = options.kinect.dropouts =
+      options.color.color_noise = 0;
+  const SensorImage third = see_plane(1.0, 0.3, {}, options);
+  const SensorImage fourth = see_plane(1.0, 0.3, {}, options, 2, 1);
   EXPECT_NE(third.frame.depth, third.ideal.depth);
   EXPECT_EQ(third.frame.depth, fourth.frame.depth);
   EXPECT_EQ(third.frame.color, fourth.frame.color);
 }
 
 TEST(Kinect, IsTheSameForAnyNumberOfThreads) {
-  KinectOptions options;
-  options.misregistration = 2;
-  const KinectImage one = see_plane(0.9, 0.5, {}, options, 1);
-  const KinectImage two = see_plane(0.9, 0.5, {}, options, 2);
+  SensorOptions options;
+  options.color.misregistration = 2;
+  const SensorImage one = see_plane(0.9, 0.5, {}, options, 1);
+  const SensorImage two = see_plane(0.9, 0.5, {}, options, 2);
   EXPECT_EQ(one.frame.depth, two.frame.depth);
   EXPECT_EQ(one.frame.color, two.frame.color);
 }

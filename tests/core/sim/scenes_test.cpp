@@ -25,7 +25,7 @@ SceneOptions small_options() {
   options.max_objects = 6;
   options.border_share = 0;
   options.camera = {320, 240, 262.5, 262.5, 159.5, 119.5};
-  options.kinect.registered = false;
+  options.sensor.kinect.registered = false;
   return options;
 }
 
@@ -187,7 +187,7 @@ TEST(Scenes, TheDefaultSetIsHard) {
   const Stage all(household_objects());
   SceneOptions options;
   options.camera = {160, 120, 131.25, 131.25, 79.5, 59.5};
-  options.kinect.registered = false;
+  options.sensor.kinect.registered = false;
   std::vector<double> fractions;
   for (int i = 0; i < 2; ++i) {
     const SimulatedScene scene = simulate_scene(all, options, scene_seed(1, i), 2);

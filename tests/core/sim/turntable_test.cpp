@@ -14,7 +14,7 @@ TurntableOptions small_turntable() {
   TurntableOptions options;
   options.step_deg = 60;
   options.camera = {320, 240, 262.5, 262.5, 159.5, 119.5};
-  options.kinect.registered = false;
+  options.sensor.kinect.registered = false;
   return options;
 }
 

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/sim/sensor_view.hpp"
+
+// What the simulated depth cameras share: what an infrared camera sees, random images, and the
+// registration of depth to the colour camera.
+
+namespace bpa::sim {
+
+/// 0 up to `low`, 1 from `high` on, a cubic between them.
+float smooth_step(float low, float high, float x);
+
+/// What one ray from an infrared camera meets. World frame, metres.
+struct InfraredHit {
+  RayHit hit;                 ///< Its distance is the depth where the direction has z = 1.
+  Eigen::Vector3f point;      ///< On the surface.
+  Eigen::Vector3f lifted;     ///< Just above it: where rays start.
+  Eigen::Vector3f to_camera;  ///< Unit length.
+  float angle = 0;            ///< Of incidence, radians.
+
+  /// The mirror-like share of light that `source` sends to the camera by this surface, in [0, 1].
+  float glare(const Material& material, const Eigen::Vector3f& source) const;
+};
+
+/// An infrared camera in a scene.
+class InfraredCamera {
+ public:
+  explicit InfraredCamera(const SensorView& view);
+
+  const Camera& camera() const { return view_.camera; }
+  const RayScene& scene() const { return view_.scene; }
+  const Eigen::Vector3f& origin() const { return pose_.translation; }
+  /// World frame; depth along it is distance along the optical axis.
+  Eigen::Vector3f direction(int x, int y) const;
+  /// A point `offset` metres to the right of the camera.
+  Eigen::Vector3f beside(double offset) const;
+  std::optional<InfraredHit> look(const Eigen::Vector3f& from,
+                                  const Eigen::Vector3f& direction) const;
+  /// Matt unless the scene says otherwise.
+  Material material(const RayHit& hit) const;
+  /// The share of infrared light that a surface returns: its material's, less where it looks dark.
+  float reflectance(const RayHit& hit) const;
+  /// How bright the surface looks where the ray meets it, in [0, 1].
+  float brightness(const RayHit& hit) const;
+
+ private:
+  SensorView view_;
+  FastPose pose_;
+};
+
+/// Where an infrared camera stands that is `color_x` metres to the left of the colour camera.
+SensorView infrared_view(const SensorView& color, const Camera& infrared, double color_x);
+
+/// Row-major standard normal numbers, each of variance 1; with `radius` > 0 neighbours correlate:
+/// white noise under a tent of half width `radius` + 1 pixels. The same for any number of threads.
+std::vector<float> noise_field(int width, int height, int radius, std::uint64_t seed,
+                               int num_threads);
+
+/// The seed of what differs from shot to shot.
+std::uint64_t shot_seed(std::uint64_t seed, int shot);
+
+/// Depths at which inverse depths differ by less than 1 / this are of one surface: a pixel of a
+/// Kinect's disparity, metres.
+constexpr double kOneSurface = 42.8;
+
+/// Registration: every measured pixel covers the colour pixels under it; the nearest wins. On one
+/// surface it reaches half way to its neighbours in the row, so that a slope, which the other
+/// viewpoint stretches, has no cracks. `same_surface` as kOneSurface.
+std::vector<float> carried_over(const std::vector<float>& depth, const Camera& infrared,
+                                const Camera& color, double color_x, double same_surface);
+
+}  // namespace bpa::sim

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/options.hpp"
+#include "core/cloud/frame.hpp"
+#include "core/sim/kinect.hpp"
+
+// A depth camera with the colour camera beside it.
+
+namespace bpa::sim {
+
+/// The colour image has exposure, white balance, blur and noise of its own.
+struct ColorCameraOptions {
+  double misregistration = 0;
+  double color_noise = 1;
+  double exposure_spread = 0.12;
+
+  void visit_fields(auto&& visit) {
+    visit("misregistration", misregistration, {0, 50, "Shift of colour against depth, pixels."});
+    visit("color_noise", color_noise, {0, 10, "Times the usual noise of colours."});
+    visit("exposure_spread", exposure_spread, {0, 2, "Standard deviation of the log exposure."});
+  }
+};
+
+/// Every effect can be turned down to none.
+struct SensorOptions {
+  KinectOptions kinect;
+  ColorCameraOptions color;
+
+  void visit_fields(auto&& visit) {
+    kinect.visit_fields(visit);
+    color.visit_fields(visit);
+  }
+};
+
+/// A camera's two images, and the truth about them.
+struct SensorImage {
+  Frame frame;          ///< As measured.
+  RenderedImage ideal;  ///< The same view without any error.
+};
+
+/// What the sensor measures. Another `shot` (from 0) of one seed is the same camera a moment later:
+/// it has other noise. The same options and seed give the same image for any number of threads.
+SensorImage simulate_sensor(const SensorView& view, const SensorOptions& options,
+                            std::uint64_t seed, int shot = 0, int num_threads = 0);
+
+}  // namespace bpa::sim
