@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// bpa bench sensor: the simulated depth camera against published figures and against real frames.
+// bpa bench sensor: the simulated depth cameras against published figures and against real frames.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -65,6 +65,31 @@ Json bench_planes(const SensorArguments& a) {
                       {"lateral_px", noise.lateral},
                       {"published_lateral_px", nguyen_lateral(angle)},
                       {"missing", noise.missing}});
+    }
+  }
+  return rows;
+}
+
+/// The other two kinds against what is published of them.
+Json bench_other_planes(const SensorArguments& a, SensorKind kind) {
+  sim::SensorOptions options;
+  options.kind = kind;
+  std::printf("\n%-20s    axial noise, mm     edge, pixels\n", std::string(name_of(kind)).c_str());
+  std::printf("depth  angle   measured  published     measured\n");
+  Json rows = Json::array();
+  for (const double depth : kDepths) {
+    for (const double degrees : kAngles) {
+      const double angle = degrees * kRadians;
+      const sim::PlaneNoise noise =
+          sim::plane_noise(depth, angle, options, a.common.seed, a.common.threads);
+      const std::optional<double> published = sim::published_axial_noise(options, depth, angle);
+      std::printf("%3.1f m  %3.0f deg %8.2f %10s %12.2f\n", depth, degrees, 1e3 * noise.axial,
+                  published ? fixed(1e3 * *published, 2).c_str() : "", noise.lateral);
+      rows.push_back({{"depth_m", depth},
+                      {"angle_deg", degrees},
+                      {"axial_m", noise.axial},
+                      {"lateral_px", noise.lateral}});
+      if (published) rows.back()["published_axial_m"] = *published;
     }
   }
   return rows;
@@ -185,6 +210,9 @@ void bench_sensor(const SensorArguments& a) {
     throw CLI::ValidationError("--sheet", "needs real frames: --bop or --pcd");
   }
   Json json = {{"format", "bpa sensor bench"}, {"version", 1}, {"planes", bench_planes(a)}};
+  for (const SensorKind kind : {SensorKind::active_stereo, SensorKind::time_of_flight}) {
+    json[std::string(name_of(kind))] = bench_other_planes(a, kind);
+  }
   if (with_frames) json["frames"] = bench_frames(a);
   if (!a.json.empty()) or_throw(io::write_file(a.json, json.dump(1) + "\n"));
 }
@@ -193,7 +221,8 @@ void bench_sensor(const SensorArguments& a) {
 
 void add_bench_sensor(CLI::App& bench) {
   const auto [command, a] = add_command(
-      bench, "sensor", "Compare the simulated Kinect with published noise and real frames",
+      bench, "sensor",
+      "Compare the simulated sensors with published noise, the Kinect with real frames too",
       bench_sensor);
   add_option(command, "--bop", a.dataset.folder, "Real frames: folder of a BOP data set", "DIR");
   add_split_options(command, a.dataset);

@@ -257,6 +257,22 @@ void add_range(CLI::App& command, const char* name, Value& low, Value& high, con
       ->type_name("MIN,MAX");
 }
 
+void add_sensor(CLI::App& command, sim::SceneOptions& options) {
+  constexpr std::string_view kMixed = "mixed";
+  const auto set = [kMixed, &options](const std::string& name) {
+    options.mixed_sensors = name == kMixed;
+    options.sensor.kind = sensor_kind(name).value_or(SensorKind::structured_light);
+  };
+  std::vector<std::string> names{std::string(kMixed)};
+  for (const SensorKind kind : kSensorKinds) names.emplace_back(name_of(kind));
+  command
+      .add_option_function<std::string>(
+          "--sensor", set,
+          "Kind of the depth camera, structured_light if not given; mixed = one of the three for "
+          "each scene")
+      ->check(CLI::IsMember(names));
+}
+
 void add_scenes(CLI::App& simulate) {
   const auto [command, a] = add(simulate, "scenes", "Piles of objects on a table", simulate_scenes);
   add_option(command, "--scenes", a.scenes, "Number of scenes")->check(CLI::Range(1, 999999));
@@ -268,6 +284,7 @@ void add_scenes(CLI::App& simulate) {
             "Range of the focal length, pixels; 525 if not given");
   add_range(command, "--distance", a.scene.min_distance, a.scene.max_distance,
             "Range from the camera to the middle of the pile, metres; 0.6,1.4 if not given");
+  add_sensor(command, a.scene);
   auto* meshes =
       add_option(command, "--meshes", a.meshes,
                  "Folder of meshes instead of ours: PLY, OBJ, STL, GLB, glTF, DAE. Names and "

@@ -43,7 +43,8 @@ TriangleMesh plate(double left, double right, double half_height) {
 
 SensorImage see_plate(const TriangleMesh& mesh, double depth, double angle,
                       const SensorOptions& options, std::uint64_t seed, int num_threads) {
-  const Camera camera{320, 240, kInfraredFocal, kInfraredFocal, 159.5, 119.5};
+  const double focal = infrared_focal(options);
+  const Camera camera{320, 240, focal, focal, 159.5, 119.5};
   const RayMeshes meshes({&mesh});
   const Pose pose{rotation_from_vector(angle * Eigen::Vector3d::UnitY()), {0, 0, depth}};
   const RayScene scene(meshes, {{0, pose}});
@@ -165,7 +166,7 @@ PlaneNoise plane_noise(double depth, double angle, const SensorOptions& options,
                        int num_threads) {
   constexpr double kBand = 0.03;  // of the depth
   SensorOptions measured = options;
-  measured.kinect.registered = false;
+  set_registered(measured, false);
   const TriangleMesh wide = plate(-20, 20, 20);
   const SensorImage image = see_plate(wide, depth, angle, measured, seed, num_threads);
   Moments error, missing;

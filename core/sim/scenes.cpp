@@ -171,6 +171,13 @@ Pose aimed_past(const Pose& world_from_camera, const Eigen::Vector3d& object, co
   return world_from_camera * turn;
 }
 
+SensorOptions draw_sensor(const SceneOptions& options, std::uint64_t seed) {
+  constexpr std::uint64_t kStream = 1u << 20;  // beyond those of the views
+  SensorOptions sensor = options.sensor;
+  if (options.mixed_sensors) sensor.kind = kSensorKinds[RandomStream(seed, kStream).index(3)];
+  return sensor;
+}
+
 Camera draw_lens(const SceneOptions& options, RandomStream& random) {
   Camera camera = options.camera;
   if (options.max_focal > 0) {
@@ -275,6 +282,8 @@ SimulatedScene simulate_scene(const Stage& stage, const SceneOptions& options, s
   RandomStream random(seed, 0);
   SimulatedScene result;
   result.kind = draw_kind(options, random);
+  const SensorOptions sensor = draw_sensor(options, seed);
+  result.sensor = sensor.kind;
   std::vector<PosedMesh> pile = make_pile(stage, options, result.kind, random);
   while (result.kind == SceneKind::ambiguous && !object_stands(stage, pile)) {
     pile = make_pile(stage, options, result.kind, random);
@@ -306,8 +315,8 @@ SimulatedScene simulate_scene(const Stage& stage, const SceneOptions& options, s
     }
     const std::uint64_t view_seed = view_random();
     for (int shot = 0; shot < options.shots; ++shot) {
-      result.frames.push_back(capture({scene, shading, camera, world_from_camera}, objects,
-                                      options.sensor, view_seed, shot, num_threads));
+      result.frames.push_back(capture({scene, shading, camera, world_from_camera}, objects, sensor,
+                                      view_seed, shot, num_threads));
     }
   }
   return result;

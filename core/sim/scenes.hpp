@@ -45,6 +45,7 @@ struct SceneOptions {
   double max_focal = 0;
   Camera camera{640, 480, 525, 525, 319.5, 239.5};  ///< Of the colour image and the frame.
   SensorOptions sensor;
+  bool mixed_sensors = false;
 
   void visit_fields(auto&& visit) {
     visit("min_objects", min_objects, {0, 100, "Fewest objects in a pile."});
@@ -68,7 +69,10 @@ struct SceneOptions {
     visit("min_focal", min_focal, {0, 4000, "Shortest focal length, pixels."});
     visit("max_focal", max_focal, {0, 4000, "Longest focal length; 0 = the camera's own."});
     sensor.visit_fields(visit);
+    visit("mixed_sensors", mixed_sensors,
+          {0, 1, "Each scene takes one of the three kinds of sensors by its seed."});
   }
+  void visit_groups(auto&& visit) { sensor.visit_groups(visit); }
 };
 
 /// One object in one frame.
@@ -90,6 +94,7 @@ struct SimulatedFrame {
 /// A scene and its views.
 struct SimulatedScene {
   SceneKind kind = SceneKind::pile;
+  SensorKind sensor = SensorKind::structured_light;
   std::vector<SimulatedFrame> frames;  ///< All shots of a view, then those of the next.
 };
 

@@ -45,7 +45,51 @@ std::vector<std::uint8_t> photograph(const std::vector<std::uint8_t>& ideal, con
   return image;
 }
 
+Frame measure_depth(const SensorView& view, const SensorOptions& options, std::uint64_t seed,
+                    int shot, int num_threads) {
+  switch (options.kind) {
+    case SensorKind::active_stereo:
+      return simulate_depth(view, options.active_stereo, seed, shot, num_threads);
+    case SensorKind::time_of_flight:
+      return simulate_depth(view, options.time_of_flight, seed, shot, num_threads);
+    case SensorKind::structured_light:
+      break;
+  }
+  return simulate_depth(view, options.kinect, seed, shot, num_threads);
+}
+
 }  // namespace
+
+double infrared_focal(const SensorOptions& options) {
+  switch (options.kind) {
+    case SensorKind::active_stereo:
+      return options.active_stereo.infrared_focal;
+    case SensorKind::time_of_flight:
+      return options.time_of_flight.infrared_focal;
+    case SensorKind::structured_light:
+      break;
+  }
+  return options.kinect.infrared_focal;
+}
+
+void set_registered(SensorOptions& options, bool registered) {
+  options.kinect.registered = options.active_stereo.registered = options.time_of_flight.registered =
+      registered;
+}
+
+std::optional<double> published_axial_noise(const SensorOptions& options, double depth,
+                                            double angle) {
+  switch (options.kind) {
+    case SensorKind::active_stereo:
+      if (angle > 0) return std::nullopt;
+      return published_axial_noise(options.active_stereo, depth);
+    case SensorKind::time_of_flight:
+      return published_axial_noise(options.time_of_flight, depth, angle);
+    case SensorKind::structured_light:
+      break;
+  }
+  return published_axial_noise(depth, angle);
+}
 
 SensorImage simulate_sensor(const SensorView& view, const SensorOptions& options,
                             std::uint64_t seed, int shot, int num_threads) {
@@ -53,7 +97,7 @@ SensorImage simulate_sensor(const SensorView& view, const SensorOptions& options
     return render(view.scene, camera, view.world_from_camera, view.shading, num_threads);
   };
   SensorImage image;
-  image.frame = simulate_depth(view, options.kinect, seed, shot, num_threads);
+  image.frame = measure_depth(view, options, seed, shot, num_threads);
   image.ideal = render_by(view.camera);
   RandomStream random(seed, 100);
   Camera moved = view.camera;

@@ -3,12 +3,16 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "core/base/options.hpp"
 #include "core/cloud/frame.hpp"
+#include "core/cloud/sensor_kind.hpp"
+#include "core/sim/active_stereo.hpp"
 #include "core/sim/kinect.hpp"
+#include "core/sim/time_of_flight.hpp"
 
-// A depth camera with the colour camera beside it.
+// A depth camera of one of three kinds with the colour camera beside it.
 
 namespace bpa::sim {
 
@@ -25,16 +29,34 @@ struct ColorCameraOptions {
   }
 };
 
-/// Every effect can be turned down to none.
+/// Every effect can be turned down to none. Only the options of `kind` count.
 struct SensorOptions {
+  SensorKind kind = SensorKind::structured_light;
   KinectOptions kinect;
+  ActiveStereoOptions active_stereo;
+  TimeOfFlightOptions time_of_flight;
   ColorCameraOptions color;
 
   void visit_fields(auto&& visit) {
     kinect.visit_fields(visit);
     color.visit_fields(visit);
   }
+  void visit_groups(auto&& visit) {
+    visit("active_stereo", active_stereo, "Two infrared cameras and a projector.");
+    visit("time_of_flight", time_of_flight, "The phase of modulated light.");
+  }
 };
+
+/// Of the infrared image that depth is measured in, pixels.
+double infrared_focal(const SensorOptions& options);
+
+/// Whether depth is carried over to the colour camera.
+void set_registered(SensorOptions& options, bool registered);
+
+/// The axial standard deviation of depth that the sensor must meet, metres. For a surface at
+/// `depth` metres seen at `angle` radians from its normal. Nothing where none is published.
+std::optional<double> published_axial_noise(const SensorOptions& options, double depth,
+                                            double angle);
 
 /// A camera's two images, and the truth about them.
 struct SensorImage {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -305,6 +306,25 @@ TEST(Scenes, ShotsOfOneViewCombinedComeCloserToTheTruth) {
   // Not by 1 / sqrt(5): the steps of disparity are about as large as the noise.
   EXPECT_LT(five.median, 0.75 * single.median);
   EXPECT_LT(five.holes, single.holes);
+}
+
+TEST(Scenes, MixedSensorsAreAllThreeKindsAndTheirSceneIsTheSame) {
+  SceneOptions options = small_options();
+  options.sensor.active_stereo.registered = options.sensor.time_of_flight.registered = false;
+  options.min_objects = options.max_objects = 1;
+  SceneOptions mixed = options;
+  mixed.mixed_sensors = true;
+  std::set<SensorKind> kinds;
+  for (int k = 0; kinds.size() < kSensorKinds.size() && k < 20; ++k) {
+    const SimulatedScene scene = simulate_scene(stage(), mixed, scene_seed(3, k));
+    if (!kinds.insert(scene.sensor).second) continue;
+    options.sensor.kind = scene.sensor;
+    const SimulatedScene same = simulate_scene(stage(), options, scene_seed(3, k));
+    EXPECT_EQ(scene.frames[0].ideal_depth, same.frames[0].ideal_depth);
+    EXPECT_EQ(scene.frames[0].frame.depth, same.frames[0].frame.depth);
+    EXPECT_EQ(scene.frames[0].frame.color, same.frames[0].frame.color);
+  }
+  EXPECT_EQ(kinds.size(), 3u);
 }
 
 }  // namespace
