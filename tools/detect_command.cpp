@@ -23,6 +23,8 @@ void print_result(const std::string& name, const io::FrameResult& result) {
   std::printf("%s: %zu interpretation%s, %.2f s%s", name.c_str(), result.interpretations.size(),
               result.interpretations.size() == 1 ? "" : "s", result.seconds,
               result.budget_exhausted ? " (time budget exhausted)" : "");
+  if (!result.sensor.empty() && result.sensor != name_of(SensorKind::structured_light))
+    std::printf(", %s", result.sensor.c_str());
   if (result.fused_frames > 1) std::printf(", %d frames combined", result.fused_frames);
   std::printf("\n");
   if (result.interpretations.empty() || result.interpretations.front().placements.empty()) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <variant>
 #include <vector>
@@ -34,6 +35,8 @@ struct FieldRule {
   double max = std::numeric_limits<double>::infinity();
   const char* description = "";
   bool runtime = false;  ///< May change while the program runs.
+  /// Of a text: the values it may have, each followed by a space; empty for any text.
+  std::string_view choices = {};
 };
 
 /// The same rule for a field that may change while the program runs.
@@ -80,7 +83,23 @@ std::vector<Option> options_of(Options& options, const std::string& prefix = "")
   return out;
 }
 
-/// Checks a number against its rule. The message names the field, its value and the rule.
+namespace detail {
+inline Status validate_text(const std::string& path, const std::string& value,
+                            std::string_view choices) {
+  std::string listed;
+  for (std::size_t i = 0; i < choices.size();) {
+    const std::size_t end = choices.find(' ', i);
+    const std::string_view choice = choices.substr(i, end - i);
+    if (choice == value) return {};
+    listed += (listed.empty() ? "" : ", ") + std::string(choice);
+    i = end + 1;
+  }
+  if (choices.empty()) return {};
+  return invalid_argument(path + " is \"" + value + "\"; it must be one of " + listed);
+}
+}  // namespace detail
+
+/// Checks a number or text against its rule. The message names the field, its value and the rule.
 inline Status validate(const Option& option) {
   return std::visit(
       [&](const auto& value) -> Status {
@@ -93,6 +112,8 @@ inline Status validate(const Option& option) {
           text << option.path << " is " << number << "; it must be between " << option.rule.min
                << " and " << option.rule.max;
           return invalid_argument(text.str());
+        } else if constexpr (std::is_same_v<Value, std::string*>) {
+          return detail::validate_text(option.path, *value, option.rule.choices);
         }
         return {};
       },

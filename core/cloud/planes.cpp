@@ -23,11 +23,13 @@ constexpr int kFits = 3;
 
 using Indices = std::vector<std::size_t>;  // of pixels
 
-float plane_tolerance(float z) { return kToleranceFloor + kToleranceSigmas * depth_noise(z); }
+float plane_tolerance(const SensorNoise& noise, float z) {
+  return kToleranceFloor + kToleranceSigmas * noise(z);
+}
 
 bool on_plane(const SurfaceMap& map, std::size_t i, const Plane& plane) {
   const float distance = std::abs(plane.normal.dot(map.points[i]) - plane.offset);
-  return distance < plane_tolerance(map.depth[i]);
+  return distance < plane_tolerance(map.noise, map.depth[i]);
 }
 
 struct PlaneFit {

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/parallel.hpp"
 
@@ -22,7 +23,9 @@ constexpr int kMaxReduction = 8;
 
 // Depths of one surface differ by less than this within a few pixels, unless it is seen at a
 // grazing angle. Metres.
-float same_surface_gate(float z) { return kGateFloor + kGateSigmas * depth_noise(z); }
+float same_surface_gate(const SensorNoise& noise, float z) {
+  return kGateFloor + kGateSigmas * noise(z);
+}
 
 Camera reduced_camera(const Camera& camera, int reduction) {
   const double scale = 1.0 / reduction;
@@ -42,7 +45,8 @@ void for_each_of_block(const Frame& frame, int column, int row, int reduction, c
 }
 
 // The mean of the block's depths near its median, 0 when less than half of the block has a depth.
-float block_depth(const Frame& frame, int column, int row, int reduction) {
+float block_depth(const Frame& frame, const SensorNoise& noise, int column, int row,
+                  int reduction) {
   float values[kMaxReduction * kMaxReduction];
   int count = 0;
   for_each_of_block(frame, column, row, reduction, [&](int, int, float z) {
@@ -54,7 +58,7 @@ float block_depth(const Frame& frame, int column, int row, int reduction) {
   float sum = 0;
   int used = 0;
   for (int i = 0; i < count; ++i) {
-    if (std::abs(values[i] - median) > same_surface_gate(median)) continue;
+    if (std::abs(values[i] - median) > same_surface_gate(noise, median)) continue;
     sum += values[i];
     ++used;
   }
@@ -75,10 +79,11 @@ bool pixel_searched(const Frame& frame, int u, int v) {
 // Whether at least half of the block's pixels on the surface at `depth`, which stands for the
 // block, are searched. Any of them would let a mask grow by up to a block to each side, and all of
 // them shrink it; half keeps its area, and pixels on another surface have no say.
-bool block_searched(const Frame& frame, int column, int row, int reduction, float depth) {
+bool block_searched(const Frame& frame, const SensorNoise& noise, int column, int row,
+                    int reduction, float depth) {
   int searched = 0, on_surface = 0;
   for_each_of_block(frame, column, row, reduction, [&](int u, int v, float z) {
-    if (!(std::abs(z - depth) <= same_surface_gate(depth))) return;
+    if (!(std::abs(z - depth) <= same_surface_gate(noise, depth))) return;
     ++on_surface;
     searched += pixel_searched(frame, u, v);
   });
@@ -91,7 +96,7 @@ Eigen::Vector3f fit_normal(const SurfaceMap& map, int u, int v, int radius) {
   const int width = map.width();
   const float z0 = map.depth[v * width + u];
   const Eigen::Vector3f centre = map.points[v * width + u];
-  const float gate = same_surface_gate(z0) + kGatePerPixel * static_cast<float>(radius);
+  const float gate = same_surface_gate(map.noise, z0) + kGatePerPixel * static_cast<float>(radius);
   const int step = radius > kDenseWindow ? 2 : 1;
   float sx = 0, sy = 0, sz = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
   int count = 0;
@@ -124,6 +129,9 @@ Eigen::Vector3f fit_normal(const SurfaceMap& map, int u, int v, int radius) {
 
 SurfaceMap surface_map(const Frame& frame, const SurfaceMapOptions& options) {
   SurfaceMap map;
+  const std::optional<SensorKind> known = sensor_kind(options.sensor);
+  map.sensor = known ? *known : sensor_kind_of(sensor_traits(frame));
+  map.noise = noise_of(map.sensor);
   map.reduction = 1;
   while (frame.camera.width / map.reduction > options.max_width && map.reduction < kMaxReduction) {
     ++map.reduction;
@@ -138,11 +146,11 @@ SurfaceMap surface_map(const Frame& frame, const SurfaceMapOptions& options) {
   parallel_for(map.height(), options.num_threads, [&](int v) {
     for (int u = 0; u < width; ++u) {
       const int i = v * width + u;
-      const float z = block_depth(frame, u, v, map.reduction);
+      const float z = block_depth(frame, map.noise, u, v, map.reduction);
       map.depth[i] = z;
       map.points[i] = map.camera.unproject(u, v, z).cast<float>();
       map.searched[i] = z > 0 && z <= static_cast<float>(options.max_range_m) &&
-                        block_searched(frame, u, v, map.reduction, z);
+                        block_searched(frame, map.noise, u, v, map.reduction, z);
     }
   });
   parallel_for(map.height(), options.num_threads, [&](int v) {

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/base/options.hpp"
 #include "core/cloud/frame.hpp"
+#include "core/cloud/sensor_noise.hpp"
 #include "core/geometry/camera.hpp"
 
 namespace bpa {
@@ -26,6 +28,8 @@ struct SurfaceMap {
   /// 0 beyond the range limit, on labelled background, and in excluded blocks: over half of the
   /// pixels on this surface are outside the region of interest or mask, or known background.
   std::vector<std::uint8_t> searched;
+  SensorKind sensor = SensorKind::structured_light;  ///< That took the frame.
+  SensorNoise noise;                                 ///< Of depth; that of `sensor`.
 
   int width() const { return camera.width; }
   int height() const { return camera.height; }
@@ -36,6 +40,7 @@ struct SurfaceMapOptions {
   double max_range_m = 2.5;
   double normal_radius_m = 0.010;
   int max_width = 400;
+  std::string sensor = "auto";
   int num_threads = 0;  ///< 0: one per core. Does not change the result.
 
   void visit_fields(auto&& visit) {
@@ -45,21 +50,25 @@ struct SurfaceMapOptions {
           {0.003, 0.05, "Radius of the window a surface normal is fitted in, metres."});
     visit("max_width", max_width,
           {64, 8192, "Wider frames are halved until they are not wider, pixels."});
+    visit("sensor", sensor,
+          {.description = "Kind of depth camera: structured_light, active_stereo or "
+                          "time_of_flight; auto tells it from each frame.",
+           .choices = "auto structured_light active_stereo time_of_flight "});
   }
 };
 
 /// Standard deviation of a Kinect-class depth at distance z, metres (Nguyen, Izadi and Lovell,
 /// "Modeling Kinect Sensor Noise", 3DIMPVT 2012).
-inline float depth_noise(float z) { return 0.0012f + 0.0019f * (z - 0.4f) * (z - 0.4f); }
+inline float depth_noise(float z) { return SensorNoise{}(z); }
 
 /// The frame must be valid (validate(Frame)).
 SurfaceMap surface_map(const Frame& frame, const SurfaceMapOptions& options);
 
 /// The step in depth, at depth z and of a surface seen from the front, that is no noise, metres.
 /// A floor and standard deviations of depth, chosen by hand.
-inline float break_step(float z) {
-  constexpr float kFloor = 0.006f, kSigmas = 3;  // metres; times depth_noise()
-  return kFloor + kSigmas * depth_noise(z);
+inline float break_step(const SensorNoise& noise, float z) {
+  constexpr float kFloor = 0.006f, kSigmas = 3;  // metres; times the noise
+  return kFloor + kSigmas * noise(z);
 }
 
 namespace detail {
@@ -82,7 +91,7 @@ inline bool plane_reaches(const SurfaceMap& map, std::size_t from, std::size_t t
 /// depths differ by more than break_step, and neither lies on the other's tangent plane.
 inline bool surface_breaks(const SurfaceMap& map, std::size_t a, std::size_t b) {
   const float za = map.depth[a], zb = map.depth[b];
-  const float step = break_step(std::min(za, zb));
+  const float step = break_step(map.noise, std::min(za, zb));
   if (std::abs(za - zb) < step) return false;
   return !detail::plane_reaches(map, a, b, step) && !detail::plane_reaches(map, b, a, step);
 }

@@ -76,7 +76,7 @@ std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, 
   const Eigen::Vector2f at = image.project(p);
   const Walk walk{image, at.x() + 0.5f, at.y() + 0.5f, du * step, dv * step};
   const int steps = std::max(1, static_cast<int>(reach * pixels_per_metre));
-  const float jump = kJump + 2 * depth_noise(p.z());
+  const float jump = kJump + 2 * image.noise(p.z());
   int k = -steps;
   const CheckPixel* here = walk.at(k);
   const auto on_model = [&](const CheckPixel* pixel) {

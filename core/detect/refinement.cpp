@@ -62,7 +62,7 @@ struct Problem {
     for (std::size_t i = 0; i < last; ++i) {
       if (!match_surface(scene, points, i, pose, gate, match)) continue;
       const float residual = match.scene_normal.dot(match.model_point - match.scene_point);
-      const float sigma = depth_noise(match.scene_point.z()) + kModelSigma;
+      const float sigma = scene.map.noise(match.scene_point.z()) + kModelSigma;
       const float weight = weight_of(residual, gate, sigma);
       equations.add(match.scene_normal, match.model_point - centre, residual, weight);
       ++equations.count;

@@ -80,8 +80,9 @@ align::OrientedPair oriented_pair(const Search& search, const Candidate& candida
                                      candidate.scene_point, feature);
   pair.model = align::oriented_point(feature ? model.features : model.coarse, candidate.model_point,
                                      feature);
-  pair.sigma = (feature ? options.feature_sigma_m : options.pair_sigma_m) +
-               static_cast<double>(depth_noise(static_cast<float>(pair.scene.point.z())));
+  pair.sigma =
+      (feature ? options.feature_sigma_m : options.pair_sigma_m) +
+      static_cast<double>(search.scene.map.noise(static_cast<float>(pair.scene.point.z())));
   return pair;
 }
 

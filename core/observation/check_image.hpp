@@ -28,6 +28,7 @@ struct CheckImage {
   int height = 0;
   float fx = 0, fy = 0, cx = 0, cy = 0;
   std::vector<CheckPixel> pixels;  ///< Row by row.
+  SensorNoise noise;               ///< Of depth.
 
   /// The image point of a point of the camera frame with z > 0.
   Eigen::Vector2f project(const Eigen::Vector3f& point) const {
@@ -51,7 +52,8 @@ inline CheckImage make_check_image(const SurfaceMap& map) {
                    .fy = static_cast<float>(map.camera.fy),
                    .cx = static_cast<float>(map.camera.cx),
                    .cy = static_cast<float>(map.camera.cy),
-                   .pixels = std::vector<CheckPixel>(map.size())};
+                   .pixels = std::vector<CheckPixel>(map.size()),
+                   .noise = map.noise};
   for (std::size_t i = 0; i < map.size(); ++i) {
     CheckPixel& pixel = image.pixels[i];
     pixel.depth = map.depth[i];

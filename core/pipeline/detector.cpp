@@ -156,6 +156,7 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   out.frame_id = frame.frame_id;
   out.fused_frames = frame.fused;
   SceneFeatures scene = observe(frame, request, options_, out.timings);
+  out.sensor = name_of(scene.map.sensor);
 
   Stopwatch stage;
   Candidates candidates = ModelSearch{scene, options_.detect, layers_, request, deadline}.run(

@@ -51,10 +51,11 @@ float inside(const PredictedSurface& predicted, int u, int v) {
 }
 
 // log p(observed depth | predicted), relative to that of a pixel that is not covered.
-float log_likelihood(const PredictedSurface& predicted, int u, int v, float observed) {
+float log_likelihood(const SensorNoise& sensor, const PredictedSurface& predicted, int u, int v,
+                     float observed) {
   const float depth = predicted.depth_at(u, v);
   if (!(depth > 0)) return 0;
-  const float noise = depth_noise(depth);
+  const float noise = sensor(depth);
   const float sigma = 1.5f * std::sqrt(noise * noise + kRivalSigma * kRivalSigma);
   const float z = (observed - depth) / sigma;
   constexpr float kRootTwoPi = 2.5066283f;
@@ -80,7 +81,8 @@ double rival_evidence(const CheckImage& image, const PredictedSurface& first,
   const auto add = [&](int u, int v) {
     const float observed = image.pixels[static_cast<std::size_t>(v * image.width + u)].depth;
     if (!(observed > 0)) return;
-    sum += log_likelihood(first, u, v, observed) - log_likelihood(second, u, v, observed);
+    sum += log_likelihood(image.noise, first, u, v, observed) -
+           log_likelihood(image.noise, second, u, v, observed);
   };
   for_each_difference(image, first, second, add);
   for_each_difference(image, second, first, [&](int u, int v) {

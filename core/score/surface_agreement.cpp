@@ -56,7 +56,8 @@ struct SeenPoint {
 };
 
 // Adds the pixel's part of the likelihoods; true when it shows the model's surface.
-bool add_point(const CheckPixel& pixel, const SeenPoint& seen, Sums& sums) {
+bool add_point(const CheckImage& image, const SeenPoint& seen, Sums& sums) {
+  const CheckPixel& pixel = image.pixels[seen.pixel];
   const Eigen::Vector3f& point = seen.point;
   const Eigen::Vector3f& normal = seen.normal;
   const float difference = pixel.depth - point.z();
@@ -65,7 +66,7 @@ bool add_point(const CheckPixel& pixel, const SeenPoint& seen, Sums& sums) {
   sums.visible += visible > 0.5f;
   // Depth errors along the ray grow with the slant of the surface.
   const float slant = std::max(0.25f, seen.slant);
-  const float noise = depth_noise(point.z());
+  const float noise = image.noise(point.z());
   const float z = difference / seen.noise.range;
   sums.weight += weight;
   sums.range += weight * -std::min(0.5f * z * z, kTruncation);
@@ -110,7 +111,7 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const ModelV
     if (beyond.depth <= 0) continue;  // no depth: an edge shadow, neither for nor against
     // Where the model's tangent plane would be if the surface went on.
     const bool continues =
-        std::abs(beyond.depth - point.z()) < kGoesOn + 2 * depth_noise(point.z());
+        std::abs(beyond.depth - point.z()) < kGoesOn + 2 * image.noise(point.z());
     const bool turns = normal_of(beyond).dot(normal) < kTurned;
     (continues && !turns ? goes_on : ends) += 1;
   }
@@ -133,7 +134,7 @@ bool see_point(const CheckImage& image, const ObjectModel& model, const ModelVie
   out.soft_normal = pose.rotation * model.index->soft_normals[i];
   const float edge_distance = view.edge_distance[k];
   const NoiseTable& noise = model.index->noise;
-  const float sensor = noise.range(edge_distance, out.slant) * depth_noise(out.point.z()) /
+  const float sensor = noise.range(edge_distance, out.slant) * image.noise(out.point.z()) /
                        depth_noise(static_cast<float>(model.noise.depth));
   const float off = kModelSigma / out.slant;
   out.noise.range = std::sqrt(sensor * sensor + off * off);
@@ -171,7 +172,7 @@ SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& mod
       ++sums.unknown;
       continue;
     }
-    if (add_point(pixel, seen, sums)) {
+    if (add_point(image, seen, sums)) {
       out.explained_pixels += covered;
       out.explained_area += model.index->point_area * static_cast<double>(step);
       sums.background += pixel.searched ? 0 : 1;
@@ -205,7 +206,7 @@ std::vector<std::uint32_t> explained_pixels(const CheckImage& image, const Objec
     if (!see_point(image, model, view, fast, k, seen)) continue;
     const CheckPixel& pixel = image.pixels[seen.pixel];
     if (pixel.depth <= 0) continue;
-    if (add_point(pixel, seen, sums)) out.push_back(static_cast<std::uint32_t>(seen.pixel));
+    if (add_point(image, seen, sums)) out.push_back(static_cast<std::uint32_t>(seen.pixel));
   }
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());

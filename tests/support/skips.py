@@ -16,7 +16,8 @@ from pathlib import Path
 
 # The cases that read real RGB-D frames.
 REAL_FRAMES = ("BopDataset.RealFrames", "CheckFrame.RealDepthThatIsNotRegistered",
-               "CheckFrame.SaysNothingOfRealFrames", "Identity.OfARealFrame", "PcdFile.RealClouds",
+               "CheckFrame.SaysNothingOfRealFrames", "Identity.OfARealFrame",
+               "KindOfRealFrame.IsStructuredLight", "PcdFile.RealClouds",
                "TexturedScan.ColorsAgreeWithThoseOfTheVertices",
                "Ycbv.ATexturedMeshIsFoundTheRightWayRound",
                "Ycbv.ObjectsOfARealFrameAreFoundWhateverTheThreads")
