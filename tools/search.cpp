@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/base/random.hpp"
 #include "core/io/camera_file.hpp"
 #include "core/io/model_file.hpp"
 #include "core/io/pcd_file.hpp"
@@ -154,11 +155,17 @@ void read_true_frames(const DatasetOptions& dataset,
 }
 
 void search_frames(const Detector& detector, const DatasetOptions& dataset,
-                   const CommonOptions& common, const UseSearched& use) {
+                   const CommonOptions& common, const UseSearched& use, int max_models) {
   DetectRequest request;
   request.seed = common.seed;
   request.num_threads = common.threads;
+  std::vector<std::string> names;
+  for (const auto& model : detector.library().models()) names.push_back(model->name);
   read_true_frames(dataset, [&](const TrueFrame& frame) {
+    if (max_models > 0 && max_models < std::ssize(names)) {
+      std::ranges::shuffle(names, RandomStream(common.seed, frame.index));
+      request.models.assign(names.begin(), names.begin() + max_models);
+    }
     FrameTrace trace;
     use(frame, or_throw(detector.detect(frame.frame, request, &trace)), trace);
   });

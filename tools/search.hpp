@@ -76,10 +76,11 @@ struct TrueFrame {
 void read_true_frames(const DatasetOptions& dataset,
                       const std::function<void(const TrueFrame&)>& use);
 
-/// The same for frames that the detector has searched.
+/// The same for frames that the detector has searched, each for `max_models` random models of the
+/// library; 0: for all.
 using UseSearched =
     std::function<void(const TrueFrame&, const SceneInterpretations&, const FrameTrace&)>;
 void search_frames(const Detector& detector, const DatasetOptions& dataset,
-                   const CommonOptions& common, const UseSearched& use);
+                   const CommonOptions& common, const UseSearched& use, int max_models = 0);
 
 }  // namespace bpa::cli

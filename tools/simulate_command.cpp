@@ -26,7 +26,7 @@ struct SimulateArguments {
   int scenes = 30;
   double scale = 0;  // metres of a unit of the meshes; 0 = guess
   double model_error = 0;
-  int look_alikes = 0;
+  int look_alikes = 0, other_prints = 0;
   sim::SceneOptions scene;
   sim::TurntableOptions turntable;
 };
@@ -181,10 +181,12 @@ void simulate_scenes(const SimulateArguments& a) {
     throw Failure(invalid_argument("--ambiguous needs the household object mug"));
   }
   write_models(a.out, objects);
-  if (a.look_alikes > 0) {
-    look_alikes = make_look_alikes(objects, a.common.seed);
-    options.max_distractors = a.look_alikes;
+  if (a.look_alikes > 0) look_alikes = make_look_alikes(objects, a.common.seed);
+  for (std::size_t i = 0; a.other_prints > 0 && i < 2 * objects.size(); ++i) {
+    look_alikes.push_back(
+        sim::printed_otherwise(objects[i / 2], RandomStream(a.common.seed, 3000 + i)()));
   }
+  if (!look_alikes.empty()) options.max_distractors = std::max(a.look_alikes, a.other_prints);
   for (std::size_t i = 0; a.model_error > 0 && i < objects.size(); ++i) {
     objects[i] = sim::made_inexactly(std::move(objects[i]), a.model_error,
                                      RandomStream(a.common.seed, 1000 + i)());
@@ -301,6 +303,11 @@ void add_scenes(CLI::App& simulate) {
   add_option(command, "--look-alikes", a.look_alikes,
              "Most distractors of a scene with an object's shape and other measures, which are "
              "not in the truth")
+      ->check(CLI::Range(0, 20))
+      ->capture_default_str();
+  add_option(command, "--other-prints", a.other_prints,
+             "Most distractors of a scene with an object's shape and measures and another print, "
+             "which are not in the truth")
       ->check(CLI::Range(0, 20))
       ->capture_default_str();
   add_options(command, a.scene,

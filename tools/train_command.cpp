@@ -19,10 +19,10 @@ using Folders = std::vector<std::string>;
 struct TrainArguments {
   CommonOptions common;
   DetectorArguments detector;
-  DatasetOptions dataset;      // without its folder
-  Folders bop, round_two_bop;  // of the latter only round two learns
+  DatasetOptions dataset;                 // without its folder
+  Folders bop, round_two_bop, color_bop;  // see the options
   std::string output, made_by = "bpa train";
-  int held_out = 5;
+  int held_out = 5, models_per_frame = 0;
 };
 
 struct Samples {
@@ -68,20 +68,21 @@ ScoreFrame round_three_samples(const FrameTrace& trace, const DetectorOptions& o
 // The placements of every frame as the detector chooses from them: right ones, the right object in
 // a wrong pose, and wrong objects, each aligned as well as possible (paper section V).
 void collect(const TrainArguments& a, const Detector& detector, const Folders& folders,
-             Samples& round_two, Samples* round_three) {
+             Samples* round_two, Samples* round_three) {
   const DetectorOptions& options = detector.options();
   const auto use = [&](const TrueFrame& frame, const auto&, const FrameTrace& trace) {
     const int index = static_cast<int>(frame.index);
     const bool held_out = a.held_out > 0 && index % a.held_out == a.held_out - 1;
     const auto part = held_out ? &Samples::held_out : &Samples::training;
-    (round_two.*part).push_back(round_two_samples(trace, options, frame.truth));
-    if (round_three == nullptr) return;
-    (round_three->*part).push_back(round_three_samples(trace, options, frame.truth));
+    if (round_two) (round_two->*part).push_back(round_two_samples(trace, options, frame.truth));
+    if (round_three) {
+      (round_three->*part).push_back(round_three_samples(trace, options, frame.truth));
+    }
   };
   for (const std::string& folder : folders) {
     DatasetOptions dataset = a.dataset;
     dataset.folder = folder;
-    search_frames(detector, dataset, a.common, use);
+    search_frames(detector, dataset, a.common, use, a.models_per_frame);
   }
 }
 
@@ -133,19 +134,23 @@ ScoreLayer learn(const TrainArguments& a, const char* name, const Folders& folde
   return layer;
 }
 
+Folders together(Folders folders, const Folders& more) {
+  folders.insert(folders.end(), more.begin(), more.end());
+  return folders;
+}
+
 void train(const TrainArguments& a) {
   DetectorArguments built_in = a.detector;
   built_in.built_in_layers = true;
   const Detector detector = open_detector(built_in, a.common.threads);
   Samples round_two, round_three;
-  collect(a, detector, a.bop, round_two, &round_three);
-  collect(a, detector, a.round_two_bop, round_two, nullptr);
-  Folders all = a.bop;
-  all.insert(all.end(), a.round_two_bop.begin(), a.round_two_bop.end());
+  collect(a, detector, a.bop, &round_two, &round_three);
+  collect(a, detector, a.round_two_bop, &round_two, nullptr);
   ScoreLayers layers;
-  layers.round_two = learn(a, "round two", all, round_two);
-  layers.round_three = learn(a, "round three", a.bop, round_three);
+  layers.round_two = learn(a, "round two", together(a.bop, a.round_two_bop), round_two);
   layers.without_color = learn(a, "without colours", a.bop, without_color(round_three));
+  collect(a, detector, a.color_bop, nullptr, &round_three);
+  layers.round_three = learn(a, "round three", together(a.bop, a.color_bop), round_three);
   const std::string path = a.output.empty() ? score_layer_path(a.detector.library) : a.output;
   or_throw(write_score_layers(path, layers));
   std::printf("wrote %s\n", path.c_str());
@@ -162,9 +167,16 @@ void add_train_command(CLI::App& program) {
   add_option(command, "--round-two-bop", a.round_two_bop,
              "Data sets that only the layer of round two learns from, which orders placements",
              "DIR");
+  add_option(command, "--color-bop", a.color_bop,
+             "Data sets that only the layer for colours learns from, such as objects that only "
+             "their print tells apart",
+             "DIR");
   add_split_options(command, a.dataset);
   add_option(command, "--held-out", a.held_out,
              "Keep every N-th frame out of training, to judge the layers by; 0 = none")
+      ->check(CLI::Range(0, 1000));
+  add_option(command, "--models-per-frame", a.models_per_frame,
+             "Search every frame for so many random models; 0 = for all")
       ->check(CLI::Range(0, 1000));
   add_option(command, "--output", a.output,
              "Write the layers to this file instead of the library's score_layer.json", "FILE");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/sim/objects.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +23,9 @@ std::vector<Shape> all_shapes() {
 void paint_mesh(const Paint& paint, TriangleMesh& mesh) {
   mesh.colors.resize(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const Color color = paint(mesh.vertices[i].cast<double>(), mesh.normals[i].cast<double>());
+    const Eigen::Vector3d normal =
+        mesh.normals.empty() ? Eigen::Vector3d::Zero() : mesh.normals[i].cast<double>().eval();
+    const Color color = paint(mesh.vertices[i].cast<double>(), normal);
     for (int c = 0; c < 3; ++c) {
       mesh.colors[i][c] =
           static_cast<std::uint8_t>(std::lround(255 * std::clamp(color[c], 0.0, 1.0)));
@@ -93,6 +96,30 @@ SimulatedObject made_inexactly(SimulatedObject object, double error, std::uint64
   for (ConvexPart& part : object.parts) {
     for (Eigen::Vector3f& corner : part) corner.array() *= scale;
   }
+  return object;
+}
+
+SimulatedObject printed_otherwise(SimulatedObject object, std::uint64_t seed) {
+  RandomStream random(seed);
+  const auto any_color = [&] {
+    const double red = random.uniform(0.05, 0.95), green = random.uniform(0.05, 0.95);
+    return Color(red, green, random.uniform(0.05, 0.95));
+  };
+  const Color ground = any_color(), band = any_color(), ink = any_color();
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& vertex : object.mesh.vertices) box.extend(vertex);
+  const double height = double{box.sizes().z()};
+  const double bottom = double{box.min().z()} + random.uniform(0, 0.5) * height;
+  const double top = bottom + random.uniform(0.25, 0.5) * height;
+  const double letter = random.uniform(0.006, 0.02);
+  object.mesh.textures.clear();
+  paint_mesh(
+      [&](const Eigen::Vector3d& p, const Eigen::Vector3d& n) -> Color {
+        if (p.z() < bottom || p.z() > top) return ground;
+        const double u = std::abs(n.x()) > std::abs(n.y()) ? p.y() : p.x();
+        return mix(band, ink, print_pattern(u, p.z(), letter));
+      },
+      object.mesh);
   return object;
 }
 

@@ -52,6 +52,10 @@ SimulatedObject object_from_mesh(std::string name, TriangleMesh mesh,
 /// normally distributed share of standard deviation `error`.
 SimulatedObject made_inexactly(SimulatedObject object, double error, std::uint64_t seed);
 
+/// An object of the same shape that is printed otherwise: a band with print on a ground, in three
+/// random colours.
+SimulatedObject printed_otherwise(SimulatedObject object, std::uint64_t seed);
+
 /// The largest distance between two vertices, metres.
 double diameter(const TriangleMesh& mesh);
 

@@ -229,5 +229,26 @@ TEST(Objects, AreTheSameForAnyNumberOfThreads) {
   }
 }
 
+TEST(Objects, PrintedOtherwiseHaveTheSameShapeAndOtherColours) {
+  const SimulatedObject can = household_objects(std::vector<std::string>{"can"}).front();
+  const SimulatedObject one = printed_otherwise(can, 1);
+  EXPECT_EQ(one.mesh.vertices, can.mesh.vertices);
+  EXPECT_EQ(one.mesh.triangles, can.mesh.triangles);
+  ASSERT_EQ(one.mesh.colors.size(), can.mesh.vertices.size());
+  EXPECT_EQ(printed_otherwise(can, 1).mesh.colors, one.mesh.colors) << "the same seed";
+  const std::set<std::array<std::uint8_t, 3>> shades(one.mesh.colors.begin(),
+                                                     one.mesh.colors.end());
+  EXPECT_GE(shades.size(), 3u) << "ground, band and print";
+  const auto changed = [&](const SimulatedObject& a, const SimulatedObject& b) {
+    int count = 0;
+    for (std::size_t i = 0; i < a.mesh.colors.size(); ++i) {
+      count += a.mesh.colors[i] != b.mesh.colors[i];
+    }
+    return static_cast<double>(count) / static_cast<double>(a.mesh.colors.size());
+  };
+  EXPECT_GT(changed(one, can), 0.9);
+  EXPECT_GT(changed(one, printed_otherwise(can, 2)), 0.9);
+}
+
 }  // namespace
 }  // namespace bpa::sim
