@@ -22,6 +22,20 @@ std::vector<std::size_t> rivals_of(const Search& search, const Candidates& candi
   return rivals;
 }
 
+// Poses within the tolerance of a right one stand for one answer: what speaks for the best of them
+// speaks for all.
+RivalEvidence best_of_same_pose(const Search& search, const std::vector<Pose>& poses,
+                                const std::vector<RivalEvidence>& behind, std::size_t k) {
+  RivalEvidence best = behind[k];
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const PoseError error = pose_error(poses[i], poses[k], search.model.symmetry);
+    if (error.position > kPoseTolerance_m || error.angle > kPoseTolerance_rad) continue;
+    best.depth = std::max(best.depth, behind[i].depth);
+    best.color = std::max(best.color, behind[i].color);
+  }
+  return best;
+}
+
 }  // namespace
 
 Candidates compare_rivals(const Search& search, Candidates candidates) {
@@ -34,11 +48,12 @@ Candidates compare_rivals(const Search& search, Candidates candidates) {
     const auto rivals = rivals_of(search, candidates, best, compared);
     std::vector<Pose> poses;
     for (const std::size_t i : rivals) poses.push_back(candidates[i].pose());
-    const std::vector<double> behind =
-        behind_best(search.scene.image, search.scene.log_light, search.model, poses);
+    const auto behind = behind_best(search.scene, search.model, poses);
     for (std::size_t k = 0; k < rivals.size(); ++k) {
       Candidate& rival = candidates[rivals[k]];
-      rival.values[component("rivals")] = behind[k];
+      const RivalEvidence evidence = best_of_same_pose(search, poses, behind, k);
+      rival.values[component("rivals")] = evidence.depth;
+      if (!search.scene.cielab.empty()) rival.values[component("rivals_color")] = evidence.color;
       search.apply_layer(rival);
     }
   }

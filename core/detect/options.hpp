@@ -220,7 +220,7 @@ struct ClimbOptions {
 
 struct TurnOptions {
   int max_turned = 6;
-  int max_kept_turned = 12;
+  int max_kept_turned = 36;
   double min_turned_score = -5;
 
   void visit_fields(auto&& visit) {

@@ -36,12 +36,17 @@ std::vector<int> choose(std::size_t available, int wanted, std::uint64_t seed) {
   return all;
 }
 
+Image<Eigen::Vector3f> log_light_of(Image<Eigen::Vector3f> lab, int num_threads) {
+  parallel_for(lab.size(), num_threads, [&](std::size_t i) { lab[i] = log_light(lab[i]); });
+  return lab;
+}
+
 }  // namespace
 
 SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
-                             const SceneFeatureOptions& options,
-                             const Image<Eigen::Vector3f>& rgb) {
+                             const SceneFeatureOptions& options, ColorImages colors) {
   SceneFeatures scene;
+  const Image<Eigen::Vector3f>& rgb = colors.reduced;
   EdgeImageOptions edge_options = options.edges;
   SuperPixelOptions segment_options = options.segments;
   edge_options.num_threads = segment_options.num_threads = options.num_threads;
@@ -49,10 +54,10 @@ SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
   if (!rgb.empty()) {
     scene.cielab =
         cielab(blur(rgb, options.color_blur_px, options.num_threads), options.num_threads);
-    if (options.use_texture) {
-      scene.log_light = scene.cielab;
-      parallel_for(scene.cielab.size(), options.num_threads,
-                   [&](std::size_t i) { scene.log_light[i] = log_light(scene.cielab[i]); });
+    if (options.use_texture) scene.log_light = log_light_of(scene.cielab, options.num_threads);
+    if (options.use_outline) {
+      scene.sharp_light = log_light_of(cielab(rgb, options.num_threads), options.num_threads);
+      scene.gradients = std::move(colors.gradients);
     }
   }
   scene.segmentation = super_pixels(map, scene.cielab, scene.edges.likelihood, segment_options);

@@ -26,9 +26,11 @@ struct SceneFeatures {
   PointCloud coarse;           ///< Searched surface, for point pairs.
   ScenePairs pairs;            ///< Of points of `coarse`.
   SceneEdges edges;
-  Image<Eigen::Vector3f> cielab;     ///< Blurred, of the map's size; empty without colour.
-  Image<Eigen::Vector3f> log_light;  ///< log_light() of `cielab`; empty without patterns.
-  Segmentation segmentation;         ///< Super-pixels of the whole map.
+  Image<Eigen::Vector3f> cielab;       ///< Blurred, of the map's size; empty without colour.
+  Image<Eigen::Vector3f> log_light;    ///< log_light() of `cielab`; empty without patterns.
+  Image<Eigen::Vector3f> sharp_light;  ///< log_light() without blur; empty without outlines.
+  Image<Eigen::Vector2f> gradients;    ///< color_gradients() of the frame; empty without outlines.
+  Segmentation segmentation;           ///< Super-pixels of the whole map.
 };
 
 struct SceneFeatureOptions {
@@ -38,6 +40,7 @@ struct SceneFeatureOptions {
   double pair_reach_m = 0.30;
   bool use_color = true;
   bool use_texture = true;
+  bool use_outline = true;
   double color_blur_px = 1.5;
   EdgeImageOptions edges;
   SuperPixelOptions segments;
@@ -55,6 +58,8 @@ struct SceneFeatureOptions {
     visit("use_color", use_color, {0, 1, "Use the frame's colours; false ignores them."});
     visit("use_texture", use_texture,
           {0, 1, "Compare the patterns of surfaces in colour; false ignores them."});
+    visit("use_outline", use_outline,
+          {0, 1, "Compare outlines with the colour image; false ignores them."});
     visit("color_blur_px", color_blur_px,
           {0, 10, "Standard deviation of the blur of the colours, pixels."});
   }
@@ -64,9 +69,14 @@ struct SceneFeatureOptions {
   }
 };
 
-/// `map` with its background labelled; `rgb` is the frame's reduced_color, empty without colour.
+/// The colours of a frame, empty without.
+struct ColorImages {
+  Image<Eigen::Vector3f> reduced;    ///< reduced_color()
+  Image<Eigen::Vector2f> gradients;  ///< color_gradients()
+};
+
+/// `map` with its background labelled.
 SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
-                             const SceneFeatureOptions& options,
-                             const Image<Eigen::Vector3f>& rgb = {});
+                             const SceneFeatureOptions& options, ColorImages colors = {});
 
 }  // namespace bpa

@@ -9,6 +9,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/cloud/cielab.hpp"
+#include "core/cloud/color_gradients.hpp"
 #include "core/detect/stages.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/options_yaml.hpp"
@@ -70,9 +71,14 @@ SceneFeatures observe(const Frame& frame, const DetectRequest& request, Detector
   std::vector<Plane> planes;
   if (frame.background.empty()) planes = label_background_planes(map, options.planes);
   finish_stage("planes");
-  Image<Eigen::Vector3f> rgb;
-  if (options.features.use_color) rgb = reduced_color(frame, map, request.num_threads);
-  SceneFeatures scene = scene_features(std::move(map), std::move(planes), options.features, rgb);
+  ColorImages colors;
+  if (options.features.use_color) {
+    colors.reduced = reduced_color(frame, map, request.num_threads);
+    if (options.features.use_outline)
+      colors.gradients = color_gradients(frame, request.num_threads);
+  }
+  SceneFeatures scene =
+      scene_features(std::move(map), std::move(planes), options.features, std::move(colors));
   finish_stage("features");
   return scene;
 }

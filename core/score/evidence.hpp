@@ -10,7 +10,9 @@
 #include "core/score/color_score.hpp"
 #include "core/score/feature_score.hpp"
 #include "core/score/predicted_surface.hpp"
+#include "core/score/resting_score.hpp"
 #include "core/score/segment_scores.hpp"
+#include "core/score/silhouette_score.hpp"
 #include "core/score/surface_agreement.hpp"
 #include "core/score/texture_score.hpp"
 
@@ -56,6 +58,16 @@ class Evidence {
     if (!texture_) texture_ = compare_texture(scene_.image, scene_.log_light, model(), predicted());
     return *texture_;
   }
+  const RestingAgreement& resting() {
+    if (!resting_) resting_ = compare_resting(scene_.image, scene_.planes, model(), pose_);
+    return *resting_;
+  }
+  const SilhouetteAgreement& silhouette() {
+    if (!silhouette_) {
+      silhouette_ = compare_silhouette(scene_.image, scene_.gradients, predicted());
+    }
+    return *silhouette_;
+  }
 
  private:
   const SceneFeatures& scene_;
@@ -67,6 +79,8 @@ class Evidence {
   std::optional<std::vector<SegmentMatch>> segments_;
   std::optional<ColorAgreement> colors_;
   std::optional<TextureAgreement> texture_;
+  std::optional<SilhouetteAgreement> silhouette_;
+  std::optional<RestingAgreement> resting_;
 };
 
 }  // namespace bpa

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/cloud/surface_map.hpp"
+#include "core/score/figure_ground.hpp"
 #include "core/score/texture_score.hpp"
 
 namespace bpa {
@@ -73,46 +74,72 @@ void for_each_difference(const CheckImage& image, const PredictedSurface& first,
   });
 }
 
+// Over the pixels where the two disagree.
+void for_each_disagreement(const CheckImage& image, const PredictedSurface& first,
+                           const PredictedSurface& second, const auto& visit) {
+  for_each_difference(image, first, second, visit);
+  for_each_difference(image, second, first, [&](int u, int v) {
+    const float depth = first.depth_at(u, v);
+    if (depth > 0 && !agrees(second, u, v, depth, tolerance(image, depth)))
+      return;  // visited above
+    visit(u, v);
+  });
+}
+
+// The same of colours: does the image show the object or what is around it?
+double color_evidence(const CheckImage& image, const Image<Eigen::Vector3f>& colors,
+                      const ObjectModel& model, const PredictedSurface& first,
+                      const PredictedSurface& second) {
+  constexpr double kCorrelated = 4;  // pixels per independent one
+  if (colors.empty()) return 0;
+  const FigureColors one(image, colors, model, first), two(image, colors, model, second);
+  if (!one.known() || !two.known()) return 0;
+  double sum = 0;
+  for_each_disagreement(image, first, second, [&](int u, int v) {
+    const double ratio = one.log_likelihood(u, v, second) - two.log_likelihood(u, v, first);
+    if (!std::isnan(ratio)) sum += ratio;
+  });
+  return sum / kCorrelated;
+}
+
 }  // namespace
 
 double rival_evidence(const CheckImage& image, const PredictedSurface& first,
                       const PredictedSurface& second) {
   double sum = 0;
-  const auto add = [&](int u, int v) {
+  for_each_disagreement(image, first, second, [&](int u, int v) {
     const float observed = image.pixels[static_cast<std::size_t>(v * image.width + u)].depth;
     if (!(observed > 0)) return;
     sum += log_likelihood(image.noise, first, u, v, observed) -
            log_likelihood(image.noise, second, u, v, observed);
-  };
-  for_each_difference(image, first, second, add);
-  for_each_difference(image, second, first, [&](int u, int v) {
-    const float depth = first.depth_at(u, v);
-    if (depth > 0 && !agrees(second, u, v, depth, tolerance(image, depth)))
-      return;  // counted above
-    add(u, v);
   });
   return sum;
 }
 
-std::vector<double> behind_best(const CheckImage& image, const Image<Eigen::Vector3f>& log_light,
-                                const ObjectModel& model, std::span<const Pose> poses) {
+std::vector<RivalEvidence> behind_best(const SceneFeatures& scene, const ObjectModel& model,
+                                       std::span<const Pose> poses) {
   constexpr double kFarthest = 500;
   if (poses.empty()) return {};
-  std::vector<double> evidence{0};
+  const CheckImage& image = scene.image;
+  std::vector<RivalEvidence> evidence(1);
   if (poses.size() > 1) {
     const PredictedSurface first = predict_whole_surface(image, model, poses.front());
     const auto texture = [&](const PredictedSurface& predicted) {
-      const double total = compare_texture(image, log_light, model, predicted).total;
+      const double total = compare_texture(image, scene.log_light, model, predicted).total;
       return std::isnan(total) ? 0 : total;
     };
-    evidence.front() = texture(first);
+    evidence.front().color = texture(first);
     for (const Pose& pose : poses.subspan(1)) {
       const PredictedSurface other = predict_whole_surface(image, model, pose);
-      evidence.push_back(rival_evidence(image, other, first) + texture(other));
+      evidence.push_back(
+          {rival_evidence(image, other, first),
+           texture(other) + color_evidence(image, scene.sharp_light, model, other, first)});
     }
   }
-  const double best = *std::max_element(evidence.begin(), evidence.end());
-  for (double& own : evidence) own = std::max(own - best, -kFarthest);
+  for (double RivalEvidence::*part : {&RivalEvidence::depth, &RivalEvidence::color}) {
+    const double best = std::ranges::max(evidence, {}, part).*part;
+    for (RivalEvidence& own : evidence) own.*part = std::max(own.*part - best, -kFarthest);
+  }
   return evidence;
 }
 

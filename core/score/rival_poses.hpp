@@ -7,6 +7,7 @@
 
 #include "core/geometry/pose.hpp"
 #include "core/model/object_model.hpp"
+#include "core/observation/scene_features.hpp"
 #include "core/score/pose_check.hpp"
 #include "core/score/predicted_surface.hpp"
 
@@ -20,10 +21,17 @@ namespace bpa {
 double rival_evidence(const CheckImage& image, const PredictedSurface& first,
                       const PredictedSurface& second);
 
-/// Log-likelihood of each pose (camera_from_object) minus that of the best, clamped to [-500, 0].
+/// Log-likelihoods of one of several poses.
+struct RivalEvidence {
+  double depth = 0;
+  double color = 0;  ///< 0 without colours.
+};
+
+/// Log-likelihoods of each pose (camera_from_object) minus those of the best, clamped to [-500, 0].
 /// All poses are of one model, in one place. Each is compared with the first, which should fit
-/// well. The pattern of the surface counts where `log_light` is not empty.
-std::vector<double> behind_best(const CheckImage& image, const Image<Eigen::Vector3f>& log_light,
-                                const ObjectModel& model, std::span<const Pose> poses);
+/// well. Colours: the pattern of the surface, and whether the pixels where poses disagree show the
+/// object or what is around it.
+std::vector<RivalEvidence> behind_best(const SceneFeatures& scene, const ObjectModel& model,
+                                       std::span<const Pose> poses);
 
 }  // namespace bpa

@@ -22,6 +22,7 @@ PARTS = {
     "climb": ("climbing the score", "climb: {max_climbed: 0}"),
     "use_round_three": ("components of round three", "score: {use_round_three: false}"),
     "use_texture": ("patterns of surfaces", "features: {use_texture: false}"),
+    "use_outline": ("outlines and figure-ground in colour", "features: {use_outline: false}"),
     "use_color": ("colours", "features: {use_color: false}"),
 }
 ROWS = [("all", "nothing"), *((name, title) for name, (title, _) in PARTS.items()),
@@ -38,8 +39,9 @@ RANGES = {
     "background": (1, 0), "support": (0, 100), "edge_likelihood": (-1, 0),
     "occlusion_edge": (-1, 0), "random_walk": (-1, 0), "segment": (-1, 0),
     "segment_affinity": (-1, 0), "fpfh": (-1, 0), "color": (-1, 0), "tint": (200, 0),
-    "texture": (-1, 1), "texture_evidence": (-100, 100),
-    "rivals": (-500, 0),
+    "texture": (-1, 1), "texture_evidence": (-100, 100), "silhouette": (0, 1),
+    "silhouette_contrast": (-1, 1), "below": (1, 0), "gap": (0.2, 0), "balance": (-0.5, 0.5),
+    "rivals": (-500, 0), "rivals_color": (-500, 0),
 }
 KNOTS = 8
 

@@ -8,6 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include "core/cloud/cielab.hpp"
+#include "core/cloud/color_gradients.hpp"
 #include "core/cloud/planes.hpp"
 #include "core/detect/stages.hpp"
 #include "core/modeling/model_source.hpp"
@@ -40,8 +41,8 @@ struct Heap {
   SceneFeatures features() const {
     SurfaceMap map = surface_map(frame, {});
     auto planes = label_background_planes(map, {});
-    const auto rgb = reduced_color(frame, map, 0);
-    return scene_features(std::move(map), std::move(planes), {}, rgb);
+    ColorImages colors{reduced_color(frame, map, 0), color_gradients(frame, 0)};
+    return scene_features(std::move(map), std::move(planes), {}, std::move(colors));
   }
 };
 

@@ -111,12 +111,13 @@ class BehindBest : public ::testing::Test {
     const auto seen =
         test::render(test::together({test::table(camera_from_world)}, test::l_solids(truth_)),
                      test::kinect_camera(), 1, 8);
-    image_ = make_check_image(surface_map(seen.frame, {}));
+    image_ = scene_.image = make_check_image(surface_map(seen.frame, {}));
   }
   Pose turned(double angle) const {
     return truth_ * Pose{rotation_from_vector(angle * Eigen::Vector3d::UnitZ()), {0, 0, 0}};
   }
 
+  SceneFeatures scene_;
   std::shared_ptr<const ObjectModel> model_;
   Pose truth_;
   CheckImage image_;
@@ -126,16 +127,19 @@ TEST_F(BehindBest, TurnedPosesAreBehindTheTrueOneWhicheverIsFirst) {
   const Pose near = test::disturbed(truth_, 0.002, 0.02, 3);
   for (const Pose& first : {near, turned(M_PI)}) {
     const std::vector<Pose> poses = {first, turned(1.5), near, turned(-1.5), turned(M_PI)};
-    const std::vector<double> behind = behind_best(image_, {}, *model_, poses);
+    const auto behind = behind_best(scene_, *model_, poses);
     ASSERT_EQ(behind.size(), poses.size());
-    EXPECT_EQ(behind[2], 0);
-    for (std::size_t turned : {1, 3, 4}) EXPECT_LT(behind[turned], -30);
+    EXPECT_EQ(behind[2].depth, 0);
+    for (std::size_t turned : {1, 3, 4}) EXPECT_LT(behind[turned].depth, -30);
   }
 }
 
 TEST_F(BehindBest, NothingIsBehindItself) {
-  EXPECT_EQ(behind_best(image_, {}, *model_, std::vector<Pose>{turned(1)}), std::vector<double>{0});
-  EXPECT_TRUE(behind_best(image_, {}, *model_, {}).empty());
+  const auto alone = behind_best(scene_, *model_, std::vector<Pose>{turned(1)});
+  ASSERT_EQ(alone.size(), 1u);
+  EXPECT_EQ(alone[0].depth, 0);
+  EXPECT_EQ(alone[0].color, 0);
+  EXPECT_TRUE(behind_best(scene_, *model_, {}).empty());
 }
 
 TEST_F(BehindBest, EvidenceForTheOneIsEvidenceAgainstTheOther) {

@@ -35,7 +35,7 @@ struct Seen {
   LogLight colors;
 
   Seen(ModelSource source, const Pose& pose) : model(make_object_model(std::move(source)).value()) {
-    image = {320, 240, 270, 270, 160, 120, std::vector<CheckPixel>(320 * 240)};
+    image = {320, 240, 270, 270, 160, 120, std::vector<CheckPixel>(320 * 240), {}};
     colors = LogLight(image.width, image.height, Eigen::Vector3f::Zero());
     predicted(pose).for_each([&](int u, int v, float z, std::uint32_t point) {
       image.pixels[colors.index(u, v)].depth = z;
@@ -154,12 +154,14 @@ TEST_F(TextureScore, OneColourSaysNothingAndNoneIsNotKnown) {
 
 TEST_F(TextureScore, RivalsOfOneShapeAreToldApartByTheirPattern) {
   const std::vector<Pose> poses = {kBrickPose * kHalfTurn, kBrickPose};
-  const std::vector<double> blind = behind_best(brick().image, {}, *brick().model, poses);
-  const std::vector<double> behind =
-      behind_best(brick().image, brick().colors, *brick().model, poses);
-  EXPECT_GT(blind[0], -5);
-  EXPECT_EQ(behind[1], 0);
-  EXPECT_LT(behind[0], blind[0] - 10);
+  SceneFeatures scene;
+  scene.image = brick().image;
+  EXPECT_EQ(behind_best(scene, *brick().model, poses)[0].color, 0);
+  scene.log_light = brick().colors;
+  const auto behind = behind_best(scene, *brick().model, poses);
+  EXPECT_GT(behind[0].depth, -5);
+  EXPECT_EQ(behind[1].color, 0);
+  EXPECT_LT(behind[0].color, -10);
 }
 
 Pose turned_to_pattern(const Seen& seen, const Pose& start) {
