@@ -92,7 +92,7 @@ std::vector<sim::SimulatedObject> household_objects(const std::vector<std::strin
   std::vector<sim::SimulatedObject> objects = sim::household_objects(names, num_threads);
   for (const std::string& name : names) {
     if (std::ranges::count(objects, name, &sim::SimulatedObject::name) > 0) continue;
-    throw Failure({StatusCode::not_found, "there is no household object " + name});
+    throw Failure({StatusCode::not_found, "there is no object of ours " + name});
   }
   return objects;
 }
@@ -292,7 +292,11 @@ void add_scenes(CLI::App& simulate) {
                  "Folder of meshes instead of ours: PLY, OBJ, STL, GLB, glTF, DAE. Names and "
                  "symmetries are those of its models_info.json (BOP, millimetres) if it is there",
                  "DIR");
-  add_option(command, "--models", a.models, "Only these of the household objects", "LIST")
+  add_option(
+      command, "--models", a.models,
+      "Only these of our objects, also pen, screwdriver, wrench, scissors, clamp, spatula, tin, "
+      "battery, phone, remote, book, soap, sponge, matchbox; the household objects if not given",
+      "LIST")
       ->excludes(meshes)
       ->delimiter(',');
   add_option(command, "--model-error", a.model_error,
@@ -329,8 +333,7 @@ void add_turntable(CLI::App& simulate) {
       add(simulate, "turntable", "An object turned before a camera", simulate_turntable);
   auto* mesh =
       add_option(command, "--mesh", a.mesh, "PLY, OBJ, STL, GLB, glTF or DAE mesh", "FILE");
-  add_option(command, "--object", a.object, "One of the household objects instead", "NAME")
-      ->excludes(mesh);
+  add_option(command, "--object", a.object, "One of our objects instead", "NAME")->excludes(mesh);
   add_options(command, a.turntable,
               {{"--step-deg", "step_deg"}, {"--positions", "resting_positions"}});
 }

@@ -14,7 +14,7 @@
 namespace bpa::sim {
 namespace {
 
-std::vector<Shape> all_shapes() {
+std::vector<Shape> household_shapes() {
   std::vector<Shape> shapes = vessel_shapes();
   for (Shape& shape : solid_shapes()) shapes.push_back(std::move(shape));
   return shapes;
@@ -66,12 +66,17 @@ std::vector<SimulatedObject> build_objects(const std::vector<Shape>& shapes, int
 }
 
 std::vector<SimulatedObject> household_objects(int num_threads) {
-  return build_objects(all_shapes(), num_threads);
+  return build_objects(household_shapes(), num_threads);
+}
+
+std::vector<SimulatedObject> workshop_objects(int num_threads) {
+  return build_objects(tool_shapes(), num_threads);
 }
 
 std::vector<SimulatedObject> household_objects(const std::vector<std::string>& names,
                                                int num_threads) {
-  const std::vector<Shape> shapes = all_shapes();
+  std::vector<Shape> shapes = household_shapes();
+  for (Shape& shape : tool_shapes()) shapes.push_back(std::move(shape));
   std::vector<Shape> chosen;
   for (const std::string& name : names) {
     const auto found = std::ranges::find(shapes, name, &Shape::name);

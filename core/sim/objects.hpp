@@ -40,7 +40,11 @@ struct SimulatedObject {
 /// triangles each; about a second in all.
 std::vector<SimulatedObject> household_objects(int num_threads = 0);
 
-/// The same, only those named, in the order of the names; unknown names are left out.
+/// Fourteen things of a workshop and a desk, thin, flat, long or small: pen, screwdriver, wrench,
+/// scissors, clamp, spatula, tin, battery, phone, remote, book, soap, sponge, matchbox.
+std::vector<SimulatedObject> workshop_objects(int num_threads = 0);
+
+/// Those of both that are named, in the order of the names; unknown names are left out.
 std::vector<SimulatedObject> household_objects(const std::vector<std::string>& names,
                                                int num_threads = 0);
 

@@ -40,6 +40,9 @@ std::vector<SimulatedObject> build_objects(const std::vector<Shape>& shapes, int
 std::vector<Shape> vessel_shapes();  ///< mug, bowl, bottle, can, cup, tube, funnel, plate
 /// milk_carton, cereal_box, snack_box, spray_bottle, jug, cube, l_brick, stud_block, gear, banana
 std::vector<Shape> solid_shapes();
+/// pen, screwdriver, wrench, scissors, clamp, spatula, tin, battery, phone, remote, book, soap,
+/// sponge, matchbox
+std::vector<Shape> tool_shapes();
 
 // Symmetries.
 SymmetryGroup turning_z();            ///< Any angle about z.

@@ -17,7 +17,11 @@ namespace bpa::sim {
 namespace {
 
 const std::vector<SimulatedObject>& objects() {
-  static const std::vector<SimulatedObject> all = household_objects();
+  static const std::vector<SimulatedObject> all = [] {
+    std::vector<SimulatedObject> both = household_objects();
+    for (SimulatedObject& tool : workshop_objects()) both.push_back(std::move(tool));
+    return both;
+  }();
   return all;
 }
 
@@ -96,10 +100,10 @@ Pose turn(const Eigen::Vector3d& axis, double angle) {
   return {rotation_from_vector(angle * axis), Eigen::Vector3d::Zero()};
 }
 
-TEST(Objects, AreEighteenWithDifferentNames) {
+TEST(Objects, AreEighteenAndFourteenWithDifferentNames) {
   std::set<std::string> names;
   for (const SimulatedObject& object : objects()) names.insert(object.name);
-  EXPECT_EQ(names.size(), 18u);
+  EXPECT_EQ(names.size(), 18u + 14u);
 }
 
 TEST(Objects, AreClosedOrientedAndOfHouseholdSize) {
@@ -146,6 +150,9 @@ TEST(Objects, VolumesAgreeWithClosedForms) {
   check("cereal_box", 0.056 * 0.15 * 0.2, 0.01);
   check("cube", 0.057 * 0.057 * 0.057, 0.01);
   check("tube", pi * 0.17 * (0.0227 * 0.0227 - 0.0183 * 0.0183), 0.02);
+  check("tin", pi * 0.042 * 0.042 * 0.034, 0.01);
+  check("phone", 0.146 * 0.072 * 0.01, 0.06);
+  check("matchbox", 0.08 * 0.05 * 0.024, 0.02);
   check("l_brick", 0.04 * (0.09 * 0.03 + 0.03 * 0.03), 0.01);
 }
 
