@@ -92,7 +92,10 @@ static void fields(auto& visit, Is<FrameResult> auto& frame) {
   if constexpr (!std::is_const_v<std::remove_reference_t<decltype(frame)>>) {
     if (visit.has("status")) frame.server.emplace();
   }
-  if (!frame.server) return;
+  if (!frame.server) {
+    visit("sensor", frame.sensor, kOptional);
+    return;
+  }
   visit("frame_id", frame.frame_id, kOptional);
   visit("stamp_ns", frame.stamp_ns, kOptional);
   visit("status", frame.server->status.code);

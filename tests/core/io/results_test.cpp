@@ -32,6 +32,7 @@ std::vector<FrameResult> some_results() {
   frame.im_id = 5;
   frame.seconds = 0.1;
   frame.fused_frames = 5;
+  frame.sensor = "active_stereo";
   frame.timings = {{"edges", 12.5}};
   frame.interpretations.resize(2);
   frame.interpretations[0].placements = {some_placement(3, 0.9), some_placement(4, 0.1)};
@@ -55,6 +56,7 @@ TEST(Results, JsonKeepsEverythingToTheLastBit) {
   const FrameResult& frame = back->at(0);
   EXPECT_EQ(frame.seconds, 0.1);
   EXPECT_EQ(frame.fused_frames, 5);
+  EXPECT_EQ(frame.sensor, "active_stereo");
   ASSERT_EQ(frame.interpretations.size(), 2u);
   const Placement& a = results[0].interpretations[0].placements[1];
   const Placement& b = frame.interpretations[0].placements.at(1);
