@@ -8,7 +8,6 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "core/base/random.hpp"
 #include "core/sim/private/infrared.hpp"
 
 namespace bpa::sim {
@@ -73,15 +72,11 @@ struct StereoNoise {
   std::vector<float> shared, own, match, drop;
 
   StereoNoise(const Camera& camera, std::uint64_t seed, int shot, int num_threads) {
-    std::uint64_t stream = 0;
-    const auto make = [&](int radius) {
-      const std::uint64_t drawn = shot_seed(RandomStream(seed, stream++)(), shot);
-      return noise_field(camera.width, camera.height, radius, drawn, num_threads);
-    };
-    shared = make(kHalfWindow);
-    own = make(0);
-    match = make(3);
-    drop = make(kHalfWindow);
+    NoiseFields fields(camera, seed, shot, num_threads);
+    shared = fields.next(kHalfWindow);
+    own = fields.next(0);
+    match = fields.next(3);
+    drop = fields.next(kHalfWindow);
   }
 };
 
@@ -152,14 +147,7 @@ double published_axial_noise(const ActiveStereoOptions& options, double depth) {
 
 Frame simulate_depth(const SensorView& view, const ActiveStereoOptions& options, std::uint64_t seed,
                      int shot, int num_threads) {
-  const Camera own{options.width,
-                   options.height,
-                   options.infrared_focal,
-                   options.infrared_focal,
-                   0.5 * (options.width - 1),
-                   0.5 * (options.height - 1)};
-  const InfraredCamera left(options.registered ? infrared_view(view, own, options.color_baseline)
-                                               : view);
+  const InfraredCamera left = infrared_camera(view, options.width, options.height, options);
   const LeftImage m = see(left, options, num_threads);
   const StereoNoise noise(m.camera, seed, shot, num_threads);
   cv::Mat_<float> nearest;
@@ -168,12 +156,7 @@ Frame simulate_depth(const SensorView& view, const ActiveStereoOptions& options,
   for_each_pixel(m.camera, num_threads, [&](int x, int y, int i) {
     depth[i] = measure(m, noise, options, nearest(y, x), x, y);
   });
-  Frame frame;
-  frame.camera = view.camera;
-  frame.depth = options.registered ? carried_over(depth, m.camera, view.camera,
-                                                  options.color_baseline, kOneSurface)
-                                   : std::move(depth);
-  return frame;
+  return depth_frame(view, m.camera, std::move(depth), options);
 }
 
 }  // namespace bpa::sim

@@ -115,6 +115,16 @@ std::uint64_t shot_seed(std::uint64_t seed, int shot) {
   return shot == 0 ? seed : RandomStream(seed, static_cast<std::uint64_t>(shot))();
 }
 
+std::vector<float> NoiseFields::next(int radius) {
+  const std::uint64_t drawn = RandomStream(seed_, stream_++)();
+  return noise_field(camera_.width, camera_.height, radius, shot_seed(drawn, shot_), num_threads_);
+}
+
+std::vector<float> NoiseFields::next_of_all_shots(int radius) {
+  const std::uint64_t drawn = RandomStream(seed_, stream_++)();
+  return noise_field(camera_.width, camera_.height, radius, drawn, num_threads_);
+}
+
 std::vector<float> carried_over(const std::vector<float>& depth, const Camera& infrared,
                                 const Camera& color, double color_x, double same_surface) {
   std::vector<float> result(color.width * color.height, 0);

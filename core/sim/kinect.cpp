@@ -9,7 +9,6 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "core/base/random.hpp"
 #include "core/sim/private/infrared.hpp"
 
 namespace bpa::sim {
@@ -74,19 +73,14 @@ struct Noise {
   std::vector<float> lateral_x, lateral_y, shared, own, match, drop, smooth;
 
   Noise(const Camera& camera, bool with_smooth, std::uint64_t seed, int shot, int num_threads) {
-    std::uint64_t stream = 0;
-    const auto make = [&](int radius, bool always_so = false) {
-      const std::uint64_t drawn = RandomStream(seed, stream++)();
-      return noise_field(camera.width, camera.height, radius,
-                         always_so ? drawn : shot_seed(drawn, shot), num_threads);
-    };
-    lateral_x = make(3);
-    lateral_y = make(3);
-    shared = make(6);
-    own = make(0);
-    match = make(3);
-    drop = make(4);
-    if (with_smooth) smooth = make(std::max(1, camera.width / 8), true);
+    NoiseFields fields(camera, seed, shot, num_threads);
+    lateral_x = fields.next(3);
+    lateral_y = fields.next(3);
+    shared = fields.next(6);
+    own = fields.next(0);
+    match = fields.next(3);
+    drop = fields.next(4);
+    if (with_smooth) smooth = fields.next_of_all_shots(std::max(1, camera.width / 8));
   }
 };
 
@@ -183,22 +177,16 @@ double published_axial_noise(double depth, double angle) {
 
 Frame simulate_depth(const SensorView& view, const KinectOptions& options, std::uint64_t seed,
                      int shot, int num_threads) {
-  const Camera own{640, 480, options.infrared_focal, options.infrared_focal, 319.5, 239.5};
-  const InfraredCamera infrared(
-      options.registered ? infrared_view(view, own, options.color_baseline) : view);
+  constexpr int kWidth = 640, kHeight = 480;  // of a Kinect's infrared image
+  const InfraredCamera infrared = infrared_camera(view, kWidth, kHeight, options);
   const Measurement m = see(infrared, options, num_threads);
   const Noise noise(m.camera, options.calibration_error > 0, seed, shot, num_threads);
   std::vector<float> depth(m.depth.size(), 0);
   for_each_pixel(m.camera, num_threads,
                  [&](int x, int y, int i) { depth[i] = measure(m, noise, options, x, y); });
   const double pixels_per_inverse = m.camera.fx * std::max(options.baseline, 1e-3);
-  depth = without_specks(depth, m.camera, pixels_per_inverse);
-  Frame frame;
-  frame.camera = view.camera;
-  frame.depth = options.registered ? carried_over(depth, m.camera, view.camera,
-                                                  options.color_baseline, pixels_per_inverse)
-                                   : std::move(depth);
-  return frame;
+  return depth_frame(view, m.camera, without_specks(depth, m.camera, pixels_per_inverse), options,
+                     pixels_per_inverse);
 }
 
 }  // namespace bpa::sim

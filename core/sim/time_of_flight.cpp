@@ -8,7 +8,6 @@
 #include <complex>
 #include <numbers>
 
-#include "core/base/random.hpp"
 #include "core/sim/private/infrared.hpp"
 
 namespace bpa::sim {
@@ -178,13 +177,9 @@ struct FlightNoise {
   std::vector<float> own, drop;
 
   FlightNoise(const Camera& camera, std::uint64_t seed, int shot, int num_threads) {
-    std::uint64_t stream = 0;
-    const auto make = [&](int radius) {
-      const std::uint64_t drawn = shot_seed(RandomStream(seed, stream++)(), shot);
-      return noise_field(camera.width, camera.height, radius, drawn, num_threads);
-    };
-    own = make(0);
-    drop = make(1);
+    NoiseFields fields(camera, seed, shot, num_threads);
+    own = fields.next(0);
+    drop = fields.next(1);
   }
 };
 
@@ -222,14 +217,7 @@ double published_axial_noise(const TimeOfFlightOptions&, double depth, double an
 
 Frame simulate_depth(const SensorView& view, const TimeOfFlightOptions& options, std::uint64_t seed,
                      int shot, int num_threads) {
-  const Camera own{options.width,
-                   options.height,
-                   options.infrared_focal,
-                   options.infrared_focal,
-                   0.5 * (options.width - 1),
-                   0.5 * (options.height - 1)};
-  const InfraredCamera infrared(
-      options.registered ? infrared_view(view, own, options.color_baseline) : view);
+  const InfraredCamera infrared = infrared_camera(view, options.width, options.height, options);
   const LitImage m = see(infrared, options, num_threads);
   std::vector<Phasor> bounced;
   if (options.multipath > 0) {
@@ -241,12 +229,7 @@ Frame simulate_depth(const SensorView& view, const TimeOfFlightOptions& options,
   for_each_pixel(m.camera, num_threads, [&](int x, int y, int i) {
     depth[i] = measure(m, bounced, noise, options, x, y);
   });
-  Frame frame;
-  frame.camera = view.camera;
-  frame.depth = options.registered ? carried_over(depth, m.camera, view.camera,
-                                                  options.color_baseline, kOneSurface)
-                                   : std::move(depth);
-  return frame;
+  return depth_frame(view, m.camera, std::move(depth), options);
 }
 
 }  // namespace bpa::sim

@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "core/cloud/frame.hpp"
 #include "core/sim/sensor_view.hpp"
 
 // What the simulated depth cameras share: what an infrared camera sees, random images, and the
@@ -57,6 +59,15 @@ class InfraredCamera {
 /// Where an infrared camera stands that is `color_x` metres to the left of the colour camera.
 SensorView infrared_view(const SensorView& color, const Camera& infrared, double color_x);
 
+/// The infrared camera of a sensor: its own of width x height pixels beside the colour camera, or
+/// the view itself where depth is not `registered`. `options` are those of any depth camera.
+InfraredCamera infrared_camera(const SensorView& view, int width, int height, const auto& options) {
+  if (!options.registered) return InfraredCamera(view);
+  const double focal = options.infrared_focal;
+  const Camera own{width, height, focal, focal, 0.5 * (width - 1), 0.5 * (height - 1)};
+  return InfraredCamera(infrared_view(view, own, options.color_baseline));
+}
+
 /// Row-major standard normal numbers, each of variance 1; with `radius` > 0 neighbours correlate:
 /// white noise under a tent of half width `radius` + 1 pixels. The same for any number of threads.
 std::vector<float> noise_field(int width, int height, int radius, std::uint64_t seed,
@@ -64,6 +75,23 @@ std::vector<float> noise_field(int width, int height, int radius, std::uint64_t 
 
 /// The seed of what differs from shot to shot.
 std::uint64_t shot_seed(std::uint64_t seed, int shot);
+
+/// The random images of one measurement, each of a stream of its own.
+class NoiseFields {
+ public:
+  NoiseFields(const Camera& camera, std::uint64_t seed, int shot, int num_threads)
+      : camera_(camera), seed_(seed), shot_(shot), num_threads_(num_threads) {}
+
+  /// The next noise_field(); it differs from shot to shot.
+  std::vector<float> next(int radius);
+  /// The next one, the same in all shots.
+  std::vector<float> next_of_all_shots(int radius);
+
+ private:
+  const Camera& camera_;
+  std::uint64_t seed_, stream_ = 0;
+  int shot_, num_threads_;
+};
 
 /// Depths at which inverse depths differ by less than 1 / this are of one surface: a pixel of a
 /// Kinect's disparity, metres.
@@ -74,5 +102,16 @@ constexpr double kOneSurface = 42.8;
 /// viewpoint stretches, has no cracks. `same_surface` as kOneSurface.
 std::vector<float> carried_over(const std::vector<float>& depth, const Camera& infrared,
                                 const Camera& color, double color_x, double same_surface);
+
+/// The frame of what the infrared camera measured, carried over to the view's where `registered`.
+Frame depth_frame(const SensorView& view, const Camera& infrared, std::vector<float> depth,
+                  const auto& options, double same_surface = kOneSurface) {
+  Frame frame;
+  frame.camera = view.camera;
+  frame.depth = options.registered ? carried_over(depth, infrared, view.camera,
+                                                  options.color_baseline, same_surface)
+                                   : std::move(depth);
+  return frame;
+}
 
 }  // namespace bpa::sim
