@@ -34,6 +34,10 @@ struct CheckImage {
   Eigen::Vector2f project(const Eigen::Vector3f& point) const {
     return {fx * point.x() / point.z() + cx, fy * point.y() / point.z() + cy};
   }
+  /// Of a pixel inside the image, metres; 0 where there is none.
+  float depth_at(int u, int v) const {
+    return pixels[static_cast<std::size_t>(v * width + u)].depth;
+  }
   /// The index of the pixel that shows a point of the camera frame; -1 where none does.
   int pixel_of(const Eigen::Vector3f& point) const {
     if (!(point.z() > kNearest_m)) return -1;

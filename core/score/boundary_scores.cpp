@@ -25,10 +25,6 @@ double best_edge(const CheckImage& image, const Image<float>& edges, const Eigen
   return static_cast<double>(best);
 }
 
-float observed_depth(const CheckImage& image, int u, int v) {
-  return image.pixels[static_cast<std::size_t>(v * image.width + u)].depth;
-}
-
 }  // namespace
 
 double edge_likelihood_score(const CheckImage& image, const Image<float>& edges,
@@ -54,7 +50,7 @@ double edge_likelihood_score(const CheckImage& image, const Image<float>& edges,
 double occlusion_edge_score(const CheckImage& image, const Image<float>& edges,
                             const PredictedSurface& predicted) {
   const auto occluded = [&](int u, int v, float z) {
-    const float observed = observed_depth(image, u, v);
+    const float observed = image.depth_at(u, v);
     return observed > 0 && observed < z - kOccluded;
   };
   double sum = 0;

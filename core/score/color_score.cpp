@@ -33,11 +33,8 @@ std::optional<Window> compare_at(const CheckImage& image, const Image<Eigen::Vec
   for (int y = v - 1; y <= v + 1; ++y) {
     for (int x = u - 1; x <= u + 1; ++x) {
       const float z = predicted.depth_at(x, y);
-      if (z <= 0) continue;
-      const std::size_t i = observed.index(x, y);
-      const float depth = image.pixels[i].depth;
-      if (depth <= 0 || std::abs(depth - z) > kExplained_m) continue;
-      seen += observed[i];
+      if (z <= 0 || !explains(image, x, y, z)) continue;
+      seen += observed.at(x, y);
       expected += surface[predicted.point.at(x - predicted.u0, y - predicted.v0)];
       ++count;
     }

@@ -33,13 +33,11 @@ FigureColors::FigureColors(const CheckImage& image, const Image<Eigen::Vector3f>
     : image_(image), colors_(colors), model_(model), predicted_(predicted) {
   const std::vector<Eigen::Vector3f>& own = model.index->log_light;
   std::vector<float> differences[3];
-  predicted.for_each([&](int u, int v, float z, std::uint32_t point) {
-    const std::size_t i = colors.index(u, v);
-    const float depth = image.pixels[i].depth;
-    if (depth <= 0 || std::abs(depth - z) > kExplained_m) return;
-    explained_.push_back(colors[i]);
+  for_each_explained(image, predicted, [&](int u, int v, std::uint32_t point) {
+    const Eigen::Vector3f& color = colors.at(u, v);
+    explained_.push_back(color);
     if (own.empty()) return;
-    for (int c = 0; c < 3; ++c) differences[c].push_back(colors[i][c] - own[point][c]);
+    for (int c = 0; c < 3; ++c) differences[c].push_back(color[c] - own[point][c]);
   });
   known_ = explained_.size() >= kFewestExplained;
   if (!known_) return;
@@ -54,7 +52,7 @@ FigureColors::FigureColors(const CheckImage& image, const Image<Eigen::Vector3f>
 
 double FigureColors::log_likelihood(int u, int v, const PredictedSurface& other) const {
   const float z = predicted_.depth_at(u, v);
-  const float observed = image_.pixels[colors_.index(u, v)].depth;
+  const float observed = image_.depth_at(u, v);
   const bool hidden = observed > 0 && observed < z - kOccluder;
   return z > 0 && !hidden ? of_object(u, v) : of_surroundings(u, v, other);
 }

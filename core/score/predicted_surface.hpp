@@ -3,11 +3,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 
 #include "core/cloud/image.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/model/object_model.hpp"
+#include "core/score/likelihood.hpp"
 #include "core/score/pose_check.hpp"
 
 namespace bpa {
@@ -44,9 +46,23 @@ PredictedSurface predict_surface(const CheckImage& image, const ObjectModel& mod
 PredictedSurface predict_whole_surface(const CheckImage& image, const ObjectModel& model,
                                        const Pose& camera_from_object);
 
+/// Whether a predicted depth explains what is observed at a pixel of the image.
+inline bool explains(const CheckImage& image, int u, int v, float predicted) {
+  const float observed = image.depth_at(u, v);
+  return observed > 0 && std::abs(observed - predicted) <= kExplained_m;
+}
+
+/// Calls visit(u, v, point) for every pixel that the prediction explains, row by row.
+void for_each_explained(const CheckImage& image, const PredictedSurface& predicted,
+                        const auto& visit) {
+  predicted.for_each([&](int u, int v, float z, std::uint32_t point) {
+    if (explains(image, u, v, z)) visit(u, v, point);
+  });
+}
+
 /// The observed point at a pixel, in the camera's frame.
 inline Eigen::Vector3f observed_point(const CheckImage& image, int u, int v) {
-  const float z = image.pixels[static_cast<std::size_t>(v * image.width + u)].depth;
+  const float z = image.depth_at(u, v);
   return {(static_cast<float>(u) - image.cx) / image.fx * z,
           (static_cast<float>(v) - image.cy) / image.fy * z, z};
 }

@@ -19,15 +19,14 @@ struct PixelPlace {
 constexpr int kSteps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
 
 bool observed(const CheckImage& image, int u, int v) {
-  return u >= 0 && v >= 0 && u < image.width && v < image.height &&
-         image.pixels[static_cast<std::size_t>(v * image.width + u)].depth > 0;
+  return u >= 0 && v >= 0 && u < image.width && v < image.height && image.depth_at(u, v) > 0;
 }
 
 std::vector<PixelPlace> explained_pixels(const CheckImage& image,
                                          const PredictedSurface& predicted) {
   std::vector<PixelPlace> places;
   predicted.for_each([&](int u, int v, float z, std::uint32_t) {
-    const float depth = image.pixels[static_cast<std::size_t>(v * image.width + u)].depth;
+    const float depth = image.depth_at(u, v);
     if (depth > 0 && std::abs(depth - z) < kExplained_m) places.push_back({u, v});
   });
   return places;

@@ -108,7 +108,7 @@ double rival_evidence(const CheckImage& image, const PredictedSurface& first,
                       const PredictedSurface& second) {
   double sum = 0;
   for_each_disagreement(image, first, second, [&](int u, int v) {
-    const float observed = image.pixels[static_cast<std::size_t>(v * image.width + u)].depth;
+    const float observed = image.depth_at(u, v);
     if (!(observed > 0)) return;
     sum += log_likelihood(image.noise, first, u, v, observed) -
            log_likelihood(image.noise, second, u, v, observed);

@@ -51,7 +51,7 @@ SilhouetteAgreement compare_silhouette(const CheckImage& image,
   const float scale = static_cast<float>(gradients.width / image.width);
   const auto hidden = [&](int u, int v, float z) {
     if (u < 0 || v < 0 || u >= image.width || v >= image.height) return true;
-    const float depth = image.pixels[static_cast<std::size_t>(v * image.width + u)].depth;
+    const float depth = image.depth_at(u, v);
     return depth > 0 && depth < z - kInFront;
   };
   double on = 0, beside = 0;

@@ -76,17 +76,6 @@ struct Sums {
   }
 };
 
-// Calls visit(pixel u, v, point of the surface) for the pixels that the placement explains, every
-// `step`-th of a row and a column.
-void for_each_explained(const CheckImage& image, const PredictedSurface& predicted, int step,
-                        const auto& visit) {
-  predicted.for_each([&](int u, int v, float z, std::uint32_t point) {
-    if (u % step != 0 || v % step != 0) return;
-    const float depth = image.pixels[static_cast<std::size_t>(v * image.width + u)].depth;
-    if (depth > 0 && std::abs(depth - z) <= kExplained_m) visit(u, v, point);
-  });
-}
-
 }  // namespace
 
 TextureAgreement compare_texture(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
@@ -94,7 +83,8 @@ TextureAgreement compare_texture(const CheckImage& image, const Image<Eigen::Vec
   const std::vector<Eigen::Vector3f>& colors = model.index->log_light;
   if (observed.empty() || colors.empty()) return {};
   Sums sums[3][3];
-  for_each_explained(image, predicted, kStep, [&](int u, int v, std::uint32_t point) {
+  for_each_explained(image, predicted, [&](int u, int v, std::uint32_t point) {
+    if (u % kStep != 0 || v % kStep != 0) return;
     if (!observed.contains(u - kShift, v - kShift) || !observed.contains(u + kShift, v + kShift)) {
       return;
     }
@@ -126,8 +116,9 @@ Pose turn_to_pattern(const CheckImage& image, const Image<Eigen::Vector3f>& obse
     std::uint32_t point;
   };
   std::vector<Explained> explained;
-  for_each_explained(image, predict_surface(image, model, camera_from_object), kTurnStep,
+  for_each_explained(image, predict_surface(image, model, camera_from_object),
                      [&](int u, int v, std::uint32_t point) {
+                       if (u % kTurnStep != 0 || v % kTurnStep != 0) return;
                        explained.push_back({u, v, point});
                      });
   Pose best = camera_from_object;
