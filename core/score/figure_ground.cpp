@@ -31,6 +31,7 @@ float density(const Eigen::Vector3f& difference, const Eigen::Array3f& sigma) {
 FigureColors::FigureColors(const CheckImage& image, const Image<Eigen::Vector3f>& colors,
                            const ObjectModel& model, const PredictedSurface& predicted)
     : image_(image), colors_(colors), model_(model), predicted_(predicted) {
+  if (colors.empty()) return;
   const std::vector<Eigen::Vector3f>& own = model.index->log_light;
   std::vector<float> differences[3];
   for_each_explained(image, predicted, [&](int u, int v, std::uint32_t point) {

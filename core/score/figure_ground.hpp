@@ -20,7 +20,8 @@ class FigureColors {
   FigureColors(const CheckImage& image, const Image<Eigen::Vector3f>& colors,
                const ObjectModel& model, const PredictedSurface& predicted);
 
-  /// True when enough is explained to know the object's colours.
+  const PredictedSurface& predicted() const { return predicted_; }
+  /// True when enough is explained to know the object's colours; false without `colors`.
   bool known() const { return known_; }
   /// log p(observed colour) of a pixel: of the object where the pose covers it, else of what is
   /// around it and outside of `other` as well; not known where nothing of that is near.

@@ -74,31 +74,46 @@ void for_each_difference(const CheckImage& image, const PredictedSurface& first,
   });
 }
 
-// Over the pixels where the two disagree.
-void for_each_disagreement(const CheckImage& image, const PredictedSurface& first,
-                           const PredictedSurface& second, const auto& visit) {
-  for_each_difference(image, first, second, visit);
+using Pixels = std::vector<Eigen::Vector2i>;
+
+// The pixels where the two disagree.
+Pixels disagreement(const CheckImage& image, const PredictedSurface& first,
+                    const PredictedSurface& second) {
+  Pixels pixels;
+  for_each_difference(image, first, second, [&](int u, int v) { pixels.emplace_back(u, v); });
   for_each_difference(image, second, first, [&](int u, int v) {
     const float depth = first.depth_at(u, v);
-    if (depth > 0 && !agrees(second, u, v, depth, tolerance(image, depth)))
-      return;  // visited above
-    visit(u, v);
+    if (depth > 0 && !agrees(second, u, v, depth, tolerance(image, depth))) return;  // added above
+    pixels.emplace_back(u, v);
   });
+  return pixels;
+}
+
+// The log-likelihood ratio of the observed depths at these pixels.
+double depth_evidence(const CheckImage& image, const PredictedSurface& first,
+                      const PredictedSurface& second, const Pixels& pixels) {
+  double sum = 0;
+  for (const Eigen::Vector2i& pixel : pixels) {
+    const int u = pixel.x(), v = pixel.y();
+    const float observed = image.depth_at(u, v);
+    if (!(observed > 0)) continue;
+    sum += log_likelihood(image.noise, first, u, v, observed) -
+           log_likelihood(image.noise, second, u, v, observed);
+  }
+  return sum;
 }
 
 // The same of colours: does the image show the object or what is around it?
-double color_evidence(const CheckImage& image, const Image<Eigen::Vector3f>& colors,
-                      const ObjectModel& model, const PredictedSurface& first,
-                      const PredictedSurface& second) {
+double color_evidence(const FigureColors& first, const FigureColors& second, const Pixels& pixels) {
   constexpr double kCorrelated = 4;  // pixels per independent one
-  if (colors.empty()) return 0;
-  const FigureColors one(image, colors, model, first), two(image, colors, model, second);
-  if (!one.known() || !two.known()) return 0;
+  if (!first.known() || !second.known()) return 0;
   double sum = 0;
-  for_each_disagreement(image, first, second, [&](int u, int v) {
-    const double ratio = one.log_likelihood(u, v, second) - two.log_likelihood(u, v, first);
+  for (const Eigen::Vector2i& pixel : pixels) {
+    const int u = pixel.x(), v = pixel.y();
+    const double ratio = first.log_likelihood(u, v, second.predicted()) -
+                         second.log_likelihood(u, v, first.predicted());
     if (!std::isnan(ratio)) sum += ratio;
-  });
+  }
   return sum / kCorrelated;
 }
 
@@ -106,14 +121,7 @@ double color_evidence(const CheckImage& image, const Image<Eigen::Vector3f>& col
 
 double rival_evidence(const CheckImage& image, const PredictedSurface& first,
                       const PredictedSurface& second) {
-  double sum = 0;
-  for_each_disagreement(image, first, second, [&](int u, int v) {
-    const float observed = image.depth_at(u, v);
-    if (!(observed > 0)) return;
-    sum += log_likelihood(image.noise, first, u, v, observed) -
-           log_likelihood(image.noise, second, u, v, observed);
-  });
-  return sum;
+  return depth_evidence(image, first, second, disagreement(image, first, second));
 }
 
 std::vector<RivalEvidence> behind_best(const SceneFeatures& scene, const ObjectModel& model,
@@ -128,12 +136,14 @@ std::vector<RivalEvidence> behind_best(const SceneFeatures& scene, const ObjectM
       const double total = compare_texture(image, scene.log_light, model, predicted).total;
       return std::isnan(total) ? 0 : total;
     };
+    const FigureColors first_colors(image, scene.sharp_light, model, first);
     evidence.front().color = texture(first);
     for (const Pose& pose : poses.subspan(1)) {
       const PredictedSurface other = predict_whole_surface(image, model, pose);
-      evidence.push_back(
-          {rival_evidence(image, other, first),
-           texture(other) + color_evidence(image, scene.sharp_light, model, other, first)});
+      const FigureColors colors(image, scene.sharp_light, model, other);
+      const Pixels pixels = disagreement(image, other, first);
+      evidence.push_back({depth_evidence(image, other, first, pixels),
+                          texture(other) + color_evidence(colors, first_colors, pixels)});
     }
   }
   for (double RivalEvidence::*part : {&RivalEvidence::depth, &RivalEvidence::color}) {

@@ -75,6 +75,7 @@ TEST_F(FigureGround, FewExplainedPixelsAreNotEnough) {
   CheckImage blind = scene_.image;
   for (CheckPixel& pixel : blind.pixels) pixel.depth = 0;
   EXPECT_FALSE(FigureColors(blind, scene_.sharp_light, *colored_, predicted).known());
+  EXPECT_FALSE(FigureColors(scene_.image, {}, *colored_, predicted).known());
 }
 
 }  // namespace
