@@ -14,22 +14,14 @@ namespace {
 constexpr double kGradientBlur = 1;  // pixels
 constexpr float kHalfStrength = 2;   // CIELAB a pixel; noise leaves 0.5
 
-Image<Eigen::Vector3f> full_color(const Frame& frame, int num_threads) {
-  Image<Eigen::Vector3f> rgb(frame.camera.width, frame.camera.height, Eigen::Vector3f::Zero());
-  parallel_for(rgb.size(), num_threads, [&](std::size_t i) {
-    const auto* pixel = &frame.color[3 * i];
-    rgb[i] = {static_cast<float>(pixel[0]), static_cast<float>(pixel[1]),
-              static_cast<float>(pixel[2])};
-  });
-  return rgb;
-}
-
 }  // namespace
 
 Image<Eigen::Vector2f> color_gradients(const Frame& frame, int num_threads) {
   if (frame.color.empty()) return {};
-  const Image<Eigen::Vector3f> lab =
-      blur(cielab(full_color(frame, num_threads), num_threads), kGradientBlur, num_threads);
+  SurfaceMap full;  // not reduced
+  full.camera = frame.camera;
+  const Image<Eigen::Vector3f> rgb = reduced_color(frame, full, num_threads);
+  const Image<Eigen::Vector3f> lab = blur(cielab(rgb, num_threads), kGradientBlur, num_threads);
   Image<Eigen::Vector2f> out(lab.width, lab.height, Eigen::Vector2f::Zero());
   parallel_for(
       static_cast<std::size_t>(std::max(0, lab.height - 2)), num_threads, [&](std::size_t row) {
