@@ -92,7 +92,8 @@ std::vector<sim::SimulatedObject> household_objects(const std::vector<std::strin
   std::vector<sim::SimulatedObject> objects = sim::household_objects(names, num_threads);
   for (const std::string& name : names) {
     if (std::ranges::count(objects, name, &sim::SimulatedObject::name) > 0) continue;
-    throw Failure({StatusCode::not_found, "there is no object of ours " + name});
+    throw Failure({StatusCode::not_found, "there is no object of ours " + name +
+                                              "; bpa simulate scenes --help lists their names"});
   }
   return objects;
 }
@@ -294,8 +295,10 @@ void add_scenes(CLI::App& simulate) {
                  "DIR");
   add_option(
       command, "--models", a.models,
-      "Only these of our objects, also pen, screwdriver, wrench, scissors, clamp, spatula, tin, "
-      "battery, phone, remote, book, soap, sponge, matchbox; the household objects if not given",
+      "Only these of our objects. Household, all of them if not given: mug, bowl, bottle, can, "
+      "cup, tube, funnel, plate, milk_carton, cereal_box, snack_box, spray_bottle, jug, cube, "
+      "l_brick, stud_block, gear, banana. Workshop and desk: pen, screwdriver, wrench, scissors, "
+      "clamp, spatula, tin, battery, phone, remote, book, soap, sponge, matchbox",
       "LIST")
       ->excludes(meshes)
       ->delimiter(',');
