@@ -176,7 +176,7 @@ void add_train_command(CLI::App& program) {
              "Keep every N-th frame out of training, to judge the layers by; 0 = none")
       ->check(CLI::Range(0, 1000));
   add_option(command, "--models-per-frame", a.models_per_frame,
-             "Search every frame for so many random models; 0 = for all")
+             "Random models that each frame is searched for; 0 = all")
       ->check(CLI::Range(0, 1000));
   add_option(command, "--output", a.output,
              "Write the layers to this file instead of the library's score_layer.json", "FILE");
