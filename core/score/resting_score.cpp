@@ -12,11 +12,12 @@
 namespace bpa {
 namespace {
 
-constexpr float kBelow = 0.008f;      // metres beneath a plane, plus noise
-constexpr float kOnPlane = 0.02f;     // metres: what is seen there is the plane
-constexpr float kInContact = 0.004f;  // metres above the lowest point
-constexpr float kRests = 0.015f;      // metres between the plane and the lowest point
-constexpr float kLowest = -0.05f, kHighest = 0.2f;
+// Chosen by hand on simulated piles, as all constants of this file.
+constexpr float kBelow = 0.008f;                    // metres beneath a plane, plus noise
+constexpr float kOnPlane = 0.02f;                   // metres: what is seen there is the plane
+constexpr float kInContact = 0.004f;                // metres above the lowest point
+constexpr float kRests = 0.015f;                    // metres between the plane and the lowest point
+constexpr float kLowest = -0.05f, kHighest = 0.2f;  // metres: the gap is clamped to them
 constexpr int kHullDirections = 64;
 
 float height_above(const Plane& plane, const Eigen::Vector3f& point) {
