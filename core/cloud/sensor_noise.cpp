@@ -19,7 +19,7 @@ bool in_whole_units(const std::vector<float>& depth) {
   constexpr std::size_t kStep = 7;
   int whole = 0, seen = 0;
   for (std::size_t i = 0; i < depth.size(); i += kStep) {
-    if (depth[i] <= 0) continue;
+    if (!(depth[i] > 0)) continue;  // or NaN
     const float units = depth[i] * kUnitsPerMetre;
     whole += std::abs(units - std::round(units)) < kOff;
     ++seen;
@@ -37,9 +37,9 @@ double noise_at(const Frame& frame, int reach) {
     const float* row = frame.depth.data() + static_cast<std::size_t>(y) * frame.camera.width;
     for (int x = kApart; x + kApart < frame.camera.width; x += kStep) {
       const float here = row[x], left = row[x - kApart], right = row[x + kApart];
-      if (here <= 0 || left <= 0 || right <= 0) continue;
-      if (row[x - reach] <= 0 || row[x + reach] <= 0) continue;
-      if (std::abs(left - here) + std::abs(right - here) > kOneSurface) continue;
+      if (!(here > 0 && left > 0 && right > 0)) continue;
+      if (!(row[x - reach] > 0 && row[x + reach] > 0)) continue;
+      if (!(std::abs(left - here) + std::abs(right - here) <= kOneSurface)) continue;
       sizes.push_back(std::abs(row[x - reach] - 2 * row[x] + row[x + reach]));
     }
   }

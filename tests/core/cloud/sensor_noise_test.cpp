@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/random.hpp"
 #include "core/cloud/surface_map.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/pcd_file.hpp"
@@ -28,6 +29,23 @@ TEST(SensorNoise, IsAsPublished) {
 
 std::string text_of(const SensorTraits& t) {
   return "noise " + std::to_string(1e3 * t.noise) + " mm, whiteness " + std::to_string(t.whiteness);
+}
+
+TEST(SensorTraits, NaNIsNoDepth) {
+  Frame zeros;
+  zeros.camera = {160, 120, 200, 200, 79.5, 59.5};
+  RandomStream random(1);
+  for (int i = 0; i < 160 * 120; ++i) {
+    const double depth = i % 200 == 0 ? 0 : 1e-3 * std::round(1000 + 3 * random.normal());
+    zeros.depth.push_back(static_cast<float>(depth));
+  }
+  Frame nans = zeros;
+  for (float& depth : nans.depth) depth = depth > 0 ? depth : std::nanf("");
+  const SensorTraits expected = sensor_traits(zeros), traits = sensor_traits(nans);
+  EXPECT_TRUE(traits.measured);
+  EXPECT_NEAR(expected.noise, 0.003, 3e-4);
+  EXPECT_EQ(traits.noise, expected.noise);
+  EXPECT_EQ(traits.whiteness, expected.whiteness);
 }
 
 class KindOfFrame : public testing::TestWithParam<SensorKind> {};
