@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // bpa train: the score layers, from frames with truth.
+#include <cmath>
 #include <cstdio>
 
 #include "core/eval/pose_errors.hpp"
@@ -23,6 +24,7 @@ struct TrainArguments {
   Folders bop, round_two_bop, color_bop;  // see the options
   std::string output, made_by = "bpa train";
   int held_out = 5, models_per_frame = 0;
+  bool adapt = false;
 };
 
 struct Samples {
@@ -72,7 +74,7 @@ void collect(const TrainArguments& a, const Detector& detector, const Folders& f
   const DetectorOptions& options = detector.options();
   const auto use = [&](const TrueFrame& frame, const auto&, const FrameTrace& trace) {
     const int index = static_cast<int>(frame.index);
-    const bool held_out = a.held_out > 0 && index % a.held_out == a.held_out - 1;
+    const bool held_out = !a.adapt && a.held_out > 0 && index % a.held_out == a.held_out - 1;
     const auto part = held_out ? &Samples::held_out : &Samples::training;
     if (round_two) (round_two->*part).push_back(round_two_samples(trace, options, frame.truth));
     if (round_three) {
@@ -124,10 +126,55 @@ Samples without_color(Samples samples) {
   return samples;
 }
 
+// Sums over frames that a layer has not seen.
+struct Judged {
+  double log_loss = 0;
+  int reported = 0, right = 0;  // of the probabilities from 0.3, the default threshold
+
+  void add(const ScoreLayer& layer, const std::vector<ScoreFrame>& frames) {
+    const Reliability r = reliability(layer, frames);
+    log_loss += r.log_loss * r.samples;
+    for (std::size_t b = 3; b < r.bins.size(); ++b) {
+      reported += r.bins[b].count;
+      right += static_cast<int>(std::lround(r.bins[b].right * r.bins[b].count));
+    }
+  }
+};
+
+// The built-in layer adjusted to the frames, where that helps: each fifth of the frames is judged
+// by what the others teach.
+ScoreLayer adapt(const char* name, const ScoreLayer& built_in, const std::string& made_of,
+                 const std::vector<ScoreFrame>& frames) {
+  constexpr std::size_t kParts = 5;
+  Judged before, after;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    std::vector<ScoreFrame> others, left_out;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      (i % kParts == part ? left_out : others).push_back(frames[i]);
+    }
+    before.add(built_in, left_out);
+    after.add(or_throw(adapt_score_layer(built_in, others)), left_out);
+  }
+  std::printf(
+      "%s, on frames left out: log loss %.1f built in, %.1f adapted; right of those over 0.3: "
+      "%d/%d built in, %d/%d adapted\n",
+      name, before.log_loss, after.log_loss, before.right, before.reported, after.right,
+      after.reported);
+  if (after.log_loss >= before.log_loss) {
+    std::printf("%s: these frames do not improve the built-in layer; it is kept\n", name);
+    return built_in;
+  }
+  ScoreLayer layer = or_throw(adapt_score_layer(built_in, frames));
+  layer.provenance = built_in.provenance + "; adapted by " + made_of;
+  return layer;
+}
+
 ScoreLayer learn(const TrainArguments& a, const char* name, const Folders& folders,
-                 const Samples& samples) {
+                 const ScoreLayer& built_in, const Samples& samples) {
+  const std::string made_of = provenance(a, folders, samples.training.size());
+  if (a.adapt) return adapt(name, built_in, made_of, samples.training);
   ScoreLayer layer = or_throw(train_score_layer(samples.training));
-  layer.provenance = provenance(a, folders, samples.training.size());
+  layer.provenance = made_of;
   std::printf("%s\n", name);
   print_reliability("training", layer, samples.training);
   print_reliability("held out", layer, samples.held_out);
@@ -147,10 +194,14 @@ void train(const TrainArguments& a) {
   collect(a, detector, a.bop, &round_two, &round_three);
   collect(a, detector, a.round_two_bop, &round_two, nullptr);
   ScoreLayers layers;
-  layers.round_two = learn(a, "round two", together(a.bop, a.round_two_bop), round_two);
-  layers.without_color = learn(a, "without colours", a.bop, without_color(round_three));
+  const ScoreLayers& start = default_score_layers();
+  layers.round_two =
+      learn(a, "round two", together(a.bop, a.round_two_bop), start.round_two, round_two);
+  layers.without_color =
+      learn(a, "without colours", a.bop, start.without_color, without_color(round_three));
   collect(a, detector, a.color_bop, nullptr, &round_three);
-  layers.round_three = learn(a, "round three", together(a.bop, a.color_bop), round_three);
+  layers.round_three =
+      learn(a, "round three", together(a.bop, a.color_bop), start.round_three, round_three);
   const std::string path = a.output.empty() ? score_layer_path(a.detector.library) : a.output;
   or_throw(write_score_layers(path, layers));
   std::printf("wrote %s\n", path.c_str());
@@ -178,6 +229,10 @@ void add_train_command(CLI::App& program) {
   add_option(command, "--models-per-frame", a.models_per_frame,
              "Random models that each frame is searched for; 0 = all")
       ->check(CLI::Range(0, 1000));
+  command.add_flag(
+      "--adapt", a.adapt,
+      "Adjust the built-in layers to these frames, where that helps on frames left out; without "
+      "it, learn new layers");
   add_option(command, "--output", a.output,
              "Write the layers to this file instead of the library's score_layer.json", "FILE");
   add_option(command, "--made-by", a.made_by, "Command that the file's provenance names", "TEXT");

@@ -122,7 +122,7 @@ class FrameLikelihood {
   std::vector<Row> rows_;
 };
 
-// Small values, and as smooth as the samples allow.
+// Small changes, and as smooth as the samples allow. `weights` are relative to the start.
 void add_penalty(const Weights& weights, Weights& gradient) {
   // The best of five pairs on simulated frames of another kind than those learned from.
   constexpr double kSize = 1, kRoughness = 10;
@@ -139,13 +139,12 @@ void add_penalty(const Weights& weights, Weights& gradient) {
 }
 
 // Adam (Kingma and Ba, 2015) on all frames at once, with falling steps.
-Weights minimise(const std::vector<FrameLikelihood>& frames, double samples) {
+Weights minimise(const Weights& start, const std::vector<FrameLikelihood>& frames, double samples) {
   constexpr int kIterations = 600;
-  Weights weights = Weights::Zero(), mean = Weights::Zero(), square = Weights::Zero();
-  weights[0] = -3;
+  Weights weights = start, mean = Weights::Zero(), square = Weights::Zero();
   for (int k = 1; k <= kIterations; ++k) {
     Weights gradient = Weights::Zero();
-    add_penalty(weights, gradient);
+    add_penalty(weights - start, gradient);
     for (const FrameLikelihood& frame : frames) frame.add_gradient(weights, gradient);
     gradient /= samples;
     mean = 0.9 * mean + 0.1 * gradient;
@@ -173,15 +172,26 @@ double ScoreLayer::log_odds(const ScoreValues& values) const {
 
 Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames) {
   std::array<std::vector<std::pair<double, bool>>, kNumComponents> values;
-  std::size_t right = 0, total = 0;
   for (const ScoreFrame& frame : frames) {
     for (const ScoreFrame::Sample& sample : frame.samples) {
-      right += sample.right;
-      ++total;
       for (std::size_t f = 0; f < kNumComponents; ++f) {
         values[f].push_back({sample.values[f], sample.right});
       }
     }
+  }
+  ScoreLayer start;
+  for (std::size_t f = 0; f < kNumComponents; ++f) {
+    start.components[f].place = choose_places(std::move(values[f]));
+  }
+  start.bias = -3;  // most placements are wrong
+  return adapt_score_layer(start, frames);
+}
+
+Result<ScoreLayer> adapt_score_layer(const ScoreLayer& start, std::span<const ScoreFrame> frames) {
+  std::size_t right = 0, total = 0;
+  for (const ScoreFrame& frame : frames) {
+    total += frame.samples.size();
+    right += std::ranges::count(frame.samples, true, &ScoreFrame::Sample::right);
   }
   if (right < 10 || right + 10 > total) {
     return invalid_argument("training has " + std::to_string(right) + " right placements of " +
@@ -189,10 +199,17 @@ Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames) {
                             "; it needs at least 10 right and 10 wrong ones");
   }
   std::array<Places, kNumComponents> places;
-  for (std::size_t f = 0; f < kNumComponents; ++f) places[f] = choose_places(values[f]);
+  Weights weights = Weights::Zero();
+  weights[0] = start.bias;
+  for (std::size_t f = 0; f < kNumComponents; ++f) {
+    places[f] = start.components[f].place;
+    for (std::size_t k = 0; k < kKnots; ++k) {
+      weights[weight_of(f, k)] = start.components[f].value[k];
+    }
+  }
   std::vector<FrameLikelihood> likelihoods;
   for (const ScoreFrame& frame : frames) likelihoods.emplace_back(frame, places);
-  const Weights weights = minimise(likelihoods, static_cast<double>(total));
+  weights = minimise(weights, likelihoods, static_cast<double>(total));
   ScoreLayer layer;
   layer.bias = weights[0];
   for (std::size_t f = 0; f < kNumComponents; ++f) {
@@ -225,10 +242,12 @@ Reliability reliability(const ScoreLayer& layer, std::span<const ScoreFrame> fra
       ++out.samples;
       out.right += right;
       out.brier_score += (p - right) * (p - right);
+      out.log_loss -= std::log(std::max(1e-9, right ? p : 1 - p));
     }
   }
   const double total = std::max(1, out.samples);
   out.brier_score /= total;
+  out.log_loss /= total;
   for (Reliability::Bin& bin : out.bins) {
     if (bin.count == 0) continue;
     out.expected_calibration_error += std::abs(bin.predicted - bin.right) / total;

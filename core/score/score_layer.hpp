@@ -75,6 +75,10 @@ struct ScoreFrame {
 /// of both kinds; otherwise fails with invalid_argument.
 Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames);
 
+/// The layer that changes `start` no more than these frames demand: the same fit, with the penalty
+/// on the difference. A few frames with truth of a user's own camera suffice. Errors as above.
+Result<ScoreLayer> adapt_score_layer(const ScoreLayer& start, std::span<const ScoreFrame> frames);
+
 /// Calibration: how well probabilities agree with frequencies.
 struct Reliability {
   struct Bin {
@@ -85,6 +89,7 @@ struct Reliability {
   int samples = 0, right = 0;
   double expected_calibration_error = 0;  ///< Mean of |predicted - right|, weighted by count.
   double brier_score = 0;
+  double log_loss = 0;  ///< Mean of -log of the probability given to what was true.
 };
 Reliability reliability(const ScoreLayer& layer, std::span<const ScoreFrame> frames);
 

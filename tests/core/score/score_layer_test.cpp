@@ -89,6 +89,36 @@ TEST(ScoreLayer, TrainingFindsTheLawThatDrewTheLabels) {
   EXPECT_EQ(held_out.samples, 12000);
 }
 
+// A camera that differs from those learned from: the same law, three log odds bolder.
+TEST(ScoreLayer, AFewFramesAdaptALayer) {
+  const auto learned = train_score_layer(drawn_frames(1000, 1));
+  ASSERT_TRUE(learned.ok()) << learned.status().message;
+  ScoreLayer bold = *learned;
+  bold.bias += 3;
+  const auto few = drawn_frames(20, 5), unseen = drawn_frames(600, 6);
+  const auto adapted = adapt_score_layer(bold, few);
+  ASSERT_TRUE(adapted.ok()) << adapted.status().message;
+  const auto anew = train_score_layer(few);
+  ASSERT_TRUE(anew.ok()) << anew.status().message;
+  const double best = reliability(*learned, unseen).log_loss;
+  EXPECT_GT(reliability(bold, unseen).log_loss, best + 0.2);
+  EXPECT_LT(reliability(*adapted, unseen).log_loss, best + 0.03);
+  EXPECT_LT(reliability(*adapted, unseen).log_loss, reliability(*anew, unseen).log_loss);
+}
+
+TEST(ScoreLayer, FramesThatAgreeDoNotChangeALayer) {
+  const auto learned = train_score_layer(drawn_frames(1000, 1));
+  ASSERT_TRUE(learned.ok()) << learned.status().message;
+  const auto adapted = adapt_score_layer(*learned, drawn_frames(1000, 1));
+  ASSERT_TRUE(adapted.ok()) << adapted.status().message;
+  for (double range = -0.95; range < 0; range += 0.1) {
+    ScoreValues x;
+    x.fill(0.5);
+    x[0] = range;
+    EXPECT_NEAR(adapted->log_odds(x), learned->log_odds(x), 0.2);
+  }
+}
+
 TEST(ScoreLayer, ReliabilityOfKnownProbabilities) {
   ScoreLayer layer;  // says 1/2 of everything, 1/3 of each of two rivals
   ScoreFrame frame;
@@ -103,6 +133,7 @@ TEST(ScoreLayer, ReliabilityOfKnownProbabilities) {
   // |1/2 - 1/2| of two samples and |1/3 - 1/2| of two.
   EXPECT_NEAR(r.expected_calibration_error, 0.5 / 6, 1e-12);
   EXPECT_NEAR(r.brier_score, (0.25 + 0.25 + 4.0 / 9 + 1.0 / 9) / 4, 1e-12);
+  EXPECT_NEAR(r.log_loss, (2 * std::log(2) + std::log(3) + std::log(1.5)) / 4, 1e-12);
 }
 
 TEST(ScoreLayer, ValuesOutsideTrainingCountAsTheNearestOnes) {
