@@ -9,6 +9,7 @@
 #include "core/features/fpfh.hpp"
 #include "core/features/pair_voting.hpp"
 #include "core/model/distance_transform.hpp"
+#include "core/model/flat_rest.hpp"
 #include "core/model/object_model.hpp"
 #include "core/model/view_sphere.hpp"
 
@@ -47,6 +48,7 @@ struct ModelIndex {
   NoiseTable noise;                        ///< Of the model's noise.
   std::vector<Eigen::Vector3f> cielab;     ///< Of the surface points; empty without colours.
   std::vector<Eigen::Vector3f> log_light;  ///< log_light() of `cielab`.
+  std::vector<FlatRest> flat_rests;        ///< flat_rests() of the surface.
   std::vector<Pose> near_symmetries;       ///< near_symmetries() of the surface.
   double point_area = 0;  ///< Surface that each surface point stands for, square metres.
 };
@@ -59,8 +61,8 @@ constexpr int kIndexVersion = 1;
 std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threads);
 
 /// The parts of an index that are quicker to compute than to read from a file: check points, the
-/// tree over `fpfh`, the pairs of `coarse`, the noise table, CIELAB colours, near symmetries, the
-/// area of a point.
+/// tree over `fpfh`, the pairs of `coarse`, the noise table, CIELAB colours, flat rests, near
+/// symmetries, the area of a point.
 void derive_index(const ModelSource& source, ModelIndex& index);
 
 }  // namespace bpa

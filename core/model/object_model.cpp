@@ -163,6 +163,7 @@ void derive_index(const ModelSource& source, ModelIndex& index) {
     index.cielab.push_back(convert(Eigen::Vector3f(r, g, b)));
     index.log_light.push_back(log_light(index.cielab.back()));
   }
+  index.flat_rests = flat_rests(source.surface.points);
   constexpr std::size_t kSelfSample = 256;
   const std::span<const std::uint32_t> sample(index.check.surface);
   index.near_symmetries = near_symmetries(
