@@ -41,6 +41,23 @@ Image<Eigen::Vector3f> log_light_of(Image<Eigen::Vector3f> lab, int num_threads)
   return lab;
 }
 
+// CIELAB for thin objects, which the blur of `cielab` would smear.
+Image<Eigen::Vector3f> sharp_colors(const Image<Eigen::Vector3f>& rgb, int num_threads) {
+  constexpr double kBlur = 0.7;  // pixels: against noise
+  if (rgb.empty()) return {};
+  return blur(cielab(rgb, num_threads), kBlur, num_threads);
+}
+
+std::shared_ptr<const SceneFeatures> with_flat_regions(const SceneFeatures& scene) {
+  if (scene.flat.regions.empty()) return nullptr;
+  auto out = std::make_shared<SceneFeatures>(scene);
+  for (std::size_t i = 0; i < out->map.size(); ++i) {
+    if (scene.flat.label[i] < 0) continue;
+    out->map.searched[i] = out->image.pixels[i].searched = 1;
+  }
+  return out;
+}
+
 }  // namespace
 
 SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
@@ -73,6 +90,10 @@ SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
   scene.pairs =
       scene_pairs(scene.coarse, choose(scene.coarse.size(), options.max_references, options.seed),
                   static_cast<float>(options.pair_reach_m), options.num_threads);
+  if (options.use_flat_regions) {
+    scene.flat = find_flat_regions(scene.map, scene.planes, sharp_colors(rgb, options.num_threads));
+    scene.with_flat = with_flat_regions(scene);
+  }
   return scene;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/cloud/planes.hpp"
@@ -11,6 +12,7 @@
 #include "core/features/fpfh.hpp"
 #include "core/features/pair_voting.hpp"
 #include "core/observation/check_image.hpp"
+#include "core/observation/flat_regions.hpp"
 #include "core/segment/super_pixels.hpp"
 
 namespace bpa {
@@ -31,6 +33,9 @@ struct SceneFeatures {
   Image<Eigen::Vector3f> sharp_light;  ///< log_light() without blur; empty without outlines.
   Image<Eigen::Vector2f> gradients;    ///< color_gradients() of the frame; empty without outlines.
   Segmentation segmentation;           ///< Super-pixels of the whole map.
+  FlatRegions flat;                    ///< Where thin objects may lie.
+  /// This scene where the flat regions are searched as well; null where there is none.
+  std::shared_ptr<const SceneFeatures> with_flat;
 };
 
 struct SceneFeatureOptions {
@@ -41,6 +46,7 @@ struct SceneFeatureOptions {
   bool use_color = true;
   bool use_texture = true;
   bool use_outline = true;
+  bool use_flat_regions = true;
   double color_blur_px = 1.5;
   EdgeImageOptions edges;
   SuperPixelOptions segments;
@@ -60,6 +66,8 @@ struct SceneFeatureOptions {
           {0, 1, "Compare the patterns of surfaces in colour; false ignores them."});
     visit("use_outline", use_outline,
           {0, 1, "Compare outlines with the colour image; false ignores them."});
+    visit("use_flat_regions", use_flat_regions,
+          {0, 1, "Look for thin objects where a plane's colours or heights differ."});
     visit("color_blur_px", color_blur_px,
           {0, 10, "Standard deviation of the blur of the colours, pixels."});
   }
