@@ -12,8 +12,9 @@
 
 namespace bpa {
 
-/// What suggested a pose: an FPFH match, the votes of oriented point pairs, or the caller's prior.
-enum class Source : std::uint8_t { feature, pairs, prior };
+/// What suggested a pose: an FPFH match, the votes of oriented point pairs, the caller's prior, or
+/// a flat region.
+enum class Source : std::uint8_t { feature, pairs, prior, region };
 
 /// One model at one pose, from the first guess to the placement that is returned. Later stages fill
 /// the later fields.
@@ -23,7 +24,7 @@ struct Candidate {
   Refinement refinement = {};
   Source found_by = Source::feature;
   int scene_point = -1;   ///< Of the correspondence: index into SceneFeatures::surface (feature) or
-                          ///< ::coarse (pairs); -1 for a prior.
+                          ///< ::coarse (pairs), of the region in ::flat; -1 for a prior.
   int model_point = -1;   ///< Index into ModelIndex::features or ::coarse; -1 for a prior.
   float check_score = 0;  ///< PoseCheck::score(); up to stage cluster.
 

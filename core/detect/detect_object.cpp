@@ -29,6 +29,10 @@ constexpr Stage kStages[] = {
      "The best climb the score by small steps, from where they are and from beside."},
     {"turned", try_turned, 0.7, "Turned",
      "The best are tried in near-symmetric poses, those that the view may leave open."},
+    {"laid", lay_flat, 0.7, "Laid flat",
+     "A thin model is laid onto regions that differ from their plane, and slides on it to where "
+     "its "
+     "silhouette agrees best."},
     {"rivals", compare_rivals, 1, "Compared",
      "Poses in one place are compared on the pixels where they disagree."},
     {"final", select, 1, "Selected",

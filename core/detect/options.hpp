@@ -233,6 +233,21 @@ struct TurnOptions {
   }
 };
 
+struct FlatOptions {
+  int max_laid = 16;
+  int max_per_region = 8;
+  int slide_rounds = 5;
+  double slide_step_m = 0.008;
+
+  void visit_fields(auto&& visit) {
+    visit("max_laid", max_laid,
+          {0, 10000, "Poses at rest on flat regions that are scored in full; 0: none."});
+    visit("max_per_region", max_per_region, {1, 10000, "The same of one region."});
+    visit("slide_rounds", slide_rounds, {0, 100, "Rounds of six steps each, on the plane."});
+    visit("slide_step_m", slide_step_m, {1e-5, 0.1, "First step at the object's rim, metres."});
+  }
+};
+
 struct RivalOptions {
   double max_behind = 6;
   double min_rival_score = -5;
@@ -287,6 +302,7 @@ struct DetectOptions {
   RefineOptions refine;
   ClimbOptions climb;
   TurnOptions turn;
+  FlatOptions flat;
   RivalOptions rivals;
   SelectOptions select;
 
@@ -300,6 +316,7 @@ struct DetectOptions {
     visit("refine", refine, "Alignment to the end.");
     visit("climb", climb, "Hill climbing of the score.");
     visit("turn", turn, "Near symmetries.");
+    visit("flat", flat, "Thin objects at rest on a plane.");
     visit("rivals", rivals, "Poses of one object in one place.");
     visit("select", select, "What is returned.");
   }

@@ -12,6 +12,18 @@ Search::Search(const SceneFeatures& s, const ObjectModel& m, const DetectOptions
                const ScoreLayers& l, std::span<const PosePrior> p, std::uint64_t random_seed)
     : scene(s), model(m), options(o), layers(l), priors(p, m), seed(random_seed), places(m) {}
 
+Search::Search(const SceneFeatures& s, const Search& other)
+    : scene(s),
+      model(other.model),
+      options(other.options),
+      layers(other.layers),
+      priors(other.priors),
+      seed(other.seed),
+      places(other.places),
+      deadline(other.deadline),
+      cut(other.cut),
+      tracing(other.tracing) {}
+
 bool Search::late() const {
   const bool passed = deadline.passed();
   if (passed && cut) *cut = 1;

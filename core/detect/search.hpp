@@ -47,6 +47,8 @@ struct Search {
   Search(const SceneFeatures& scene, const ObjectModel& model, const DetectOptions& options = {},
          const ScoreLayers& layers = default_score_layers(), std::span<const PosePrior> priors = {},
          std::uint64_t seed = 0);
+  /// The same search in another view of the scene.
+  Search(const SceneFeatures& scene, const Search& other);
 
   const SceneFeatures& scene;
   const ObjectModel& model;

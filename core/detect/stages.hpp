@@ -48,6 +48,10 @@ Candidates climb(const Search& search, Candidates refined);
 /// Adds the best candidates turned by the model's near symmetries.
 Candidates try_turned(const Search& search, Candidates climbed);
 
+/// Adds poses of a thin model at rest on flat regions. Each slides on the plane to where its
+/// silhouette agrees best, and is scored with all components. Changes no other candidate.
+Candidates lay_flat(const Search& search, Candidates turned);
+
 /// Compares candidates that claim one place on the pixels where they disagree. Rejects nothing.
 Candidates compare_rivals(const Search& search, Candidates turned);
 

@@ -20,6 +20,7 @@ PARTS = {
     "use_segments": ("sampled segments", "align: {use_segments: false}"),
     "use_edges": ("edge correspondences", "align: {use_edges: false}"),
     "climb": ("climbing the score", "climb: {max_climbed: 0}"),
+    "lay_flat": ("thin objects laid flat", "flat: {max_laid: 0}"),
     "use_round_three": ("components of round three", "score: {use_round_three: false}"),
     "use_texture": ("patterns of surfaces", "features: {use_texture: false}"),
     "use_outline": ("outlines and figure-ground in colour", "features: {use_outline: false}"),

@@ -98,8 +98,9 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
       EXPECT_EQ(all, before) << stage.name;
     }
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"sampled", "free_space", "clusters", "round_two",
-                                             "aligned", "climbed", "turned", "rivals", "final"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"sampled", "free_space", "clusters", "round_two", "aligned",
+                                      "climbed", "turned", "laid", "rivals", "final"}));
   EXPECT_GT(trace.stages[0].poses.size(), 1000u);
   EXPECT_TRUE(trace.stages[3].rejected.empty()) << "round two rejects nothing";
   ASSERT_EQ(trace.stages.back().poses.size(), plain.size());

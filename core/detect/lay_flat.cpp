@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "core/detect/ranking.hpp"
+#include "core/detect/stages.hpp"
+#include "core/model/model_index.hpp"
+#include "core/score/predicted_surface.hpp"
+#include "core/score/silhouette_score.hpp"
+
+namespace bpa {
+namespace {
+
+// Chosen by hand on simulated tables, as all constants of this file.
+constexpr float kElongated = 1.4f;    // length over width; below, the longest direction says little
+constexpr int kTurnsOfRound = 8;      // 45 degrees apart, where it says little
+constexpr float kNearlyWhole = 0.8f;  // share of the length in sight
+constexpr float kHides = 0.02f;       // metres in front of the model
+constexpr float kEnds[] = {0, 1, -1};  // where a part in sight may be: middle, either end
+
+Eigen::Matrix3f basis_along(const Eigen::Vector3f& axis, const Eigen::Vector3f& up) {
+  Eigen::Matrix3f basis;
+  basis << axis, up.cross(axis), up;
+  return basis;
+}
+
+// True where a region may show the whole object at rest, or what something leaves of it.
+bool may_show(const FlatRegion& region, const FlatRest& rest) {
+  constexpr float kMoreLong = 1.2f, kMoreWide = 1.4f, kMore = 0.01f;  // shadows, rims; metres
+  constexpr float kLessLong = 0.4f, kLessWide = 0.3f;
+  return region.length < kMoreLong * rest.length + kMore &&
+         region.length > kLessLong * rest.length && region.width < kMoreWide * rest.width + kMore &&
+         region.width > kLessWide * rest.width;
+}
+
+// The share of the model's visible pixels and the region's that both have.
+double overlap(const Search& search, int region, const PredictedSurface& predicted) {
+  const FlatRegions& flat = search.scene.flat;
+  int both = 0, model = 0;
+  predicted.for_each([&](int u, int v, float z, std::uint32_t) {
+    const bool in_region = flat.label.at(u, v) == region;
+    const float depth = search.scene.image.depth_at(u, v);
+    both += in_region;
+    model += in_region || !(depth > 0 && depth < z - kHides);
+  });
+  return both / std::max(1.0, static_cast<double>(flat.regions[region].pixels + model - both));
+}
+
+// Larger where the silhouette is the region's and its outline is seen in colour.
+double agreement(const Search& search, int region, const Pose& pose) {
+  const PredictedSurface predicted = predict_surface(search.scene.image, search.model, pose);
+  const double contrast =
+      compare_silhouette(search.scene.image, search.scene.gradients, predicted).contrast;
+  return overlap(search, region, predicted) + (std::isnan(contrast) ? 0 : contrast);
+}
+
+// The ways in which the model may rest there; `scene_point` is the region.
+void add_resting(const Search& search, int index, const FlatRest& rest, Candidates& out) {
+  const FlatRegion& region = search.scene.flat.regions[index];
+  const bool elongated = rest.length > kElongated * rest.width;
+  const int turns = elongated ? 2 : kTurnsOfRound;
+  const bool whole = !elongated || region.length > kNearlyWhole * rest.length;
+  const float hidden = (rest.length - region.length) / 2;
+  for (int k = 0; k < turns; ++k) {
+    const Eigen::AngleAxisf turn(static_cast<float>(2 * k * M_PI / turns), region.up);
+    FastPose pose;
+    pose.rotation =
+        basis_along(turn * region.axis, region.up) * basis_along(rest.axis, rest.up).transpose();
+    for (const float end : std::span(kEnds).first(whole ? 1 : 3)) {
+      pose.translation = region.centre + end * hidden * region.axis - pose.rotation * rest.centre;
+      const Pose camera_from_object = to_pose(pose);
+      out.push_back({.model = &search.model,
+                     .refinement = {.camera_from_object = camera_from_object},
+                     .found_by = Source::region,
+                     .scene_point = index,
+                     .score = agreement(search, index, camera_from_object)});
+    }
+  }
+}
+
+// The best of each region.
+Candidates resting_poses(const Search& search) {
+  const FlatRegions& flat = search.scene.flat;
+  Candidates all;
+  for (int index = 0; index < static_cast<int>(flat.regions.size()); ++index) {
+    if (search.late()) break;
+    Candidates here;
+    for (const FlatRest& rest : search.model.index->flat_rests) {
+      if (may_show(flat.regions[index], rest)) add_resting(search, index, rest, here);
+    }
+    suppress_duplicates(search, here);
+    keep_first(search, search.options.flat.max_per_region, here);
+    std::ranges::move(here, std::back_inserter(all));
+  }
+  sort_by_score(all);
+  return all;
+}
+
+// The three degrees of freedom that contact leaves: two steps along the plane, a turn about its
+// normal; there and back.
+Pose moved(const Search& search, const Candidate& candidate, int move, double step) {
+  const FlatRegion& region = search.scene.flat.regions[candidate.scene_point];
+  const double sign = move % 2 ? -1 : 1;
+  const Eigen::Vector3d up = region.up.cast<double>(), axis = region.axis.cast<double>();
+  Pose pose = candidate.pose();
+  if (move < 4) {
+    pose.translation += sign * step * (move < 2 ? axis : up.cross(axis));
+    return pose;
+  }
+  const Eigen::Quaterniond turn =
+      rotation_from_vector(sign * step / (0.5 * search.model.diameter) * up);
+  const Eigen::Vector3d centre = candidate.place();
+  pose.rotation = (turn * pose.rotation).normalized();
+  pose.translation = centre - pose.rotation * search.model.centre;
+  return pose;
+}
+
+// Small steps on the plane; smaller ones when none improves. Depth would drag the pose off it.
+void slide(const Search& search, Candidate& candidate) {
+  double step = search.options.flat.slide_step_m;
+  for (int round = 0; round < search.options.flat.slide_rounds; ++round) {
+    bool improved = false;
+    for (int move = 0; move < 6; ++move) {
+      const Pose pose = moved(search, candidate, move, step);
+      const double score = agreement(search, candidate.scene_point, pose);
+      if (score <= candidate.score) continue;
+      candidate.refinement.camera_from_object = pose;
+      candidate.score = score;
+      improved = true;
+    }
+    if (!improved) step *= 0.5;
+  }
+}
+
+}  // namespace
+
+Candidates lay_flat(const Search& whole, Candidates found) {
+  const bool thin = !whole.model.index->flat_rests.empty();
+  if (!thin || !whole.scene.with_flat || whole.options.flat.max_laid == 0) return found;
+  const Search search(*whole.scene.with_flat, whole);
+  RefinementOptions still = search.options.refine.refinement;  // only measures what is known
+  still.iterations = 0;
+  still.start_gate_m = still.end_gate_m;
+  Candidates laid = resting_poses(search);
+  keep_first(search, search.options.flat.max_laid, laid);
+  for (Candidate& candidate : laid) {
+    if (search.late()) break;
+    slide(search, candidate);
+    found.push_back(search.scored(search.refine(candidate.pose(), still), Source::region));
+  }
+  return found;
+}
+
+}  // namespace bpa
