@@ -30,9 +30,8 @@ constexpr Stage kStages[] = {
     {"turned", try_turned, 0.7, "Turned",
      "The best are tried in near-symmetric poses, those that the view may leave open."},
     {"laid", lay_flat, 0.7, "Laid flat",
-     "A thin model is laid onto regions that differ from their plane, and slides on it to where "
-     "its "
-     "silhouette agrees best."},
+     "A thin model is laid onto regions that differ from their plane, where its silhouette agrees "
+     "best."},
     {"rivals", compare_rivals, 1, "Compared",
      "Poses in one place are compared on the pixels where they disagree."},
     {"final", select, 1, "Selected",

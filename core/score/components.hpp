@@ -109,7 +109,7 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
      "Model points beneath a plane that is seen there."},
     {"gap", "metres", -0.05, 0.2, Round::three, true,
      [](Evidence& e) -> double { return e.resting().gap; },
-     "From the largest plane to the lowest point."},
+     "From the largest plane to the lowest point, beyond 1 cm."},
     {"balance", "diameters", -2, 2, Round::three, true,
      [](Evidence& e) -> double { return e.resting().balance; },
      "How far the centre is inside of what rests on the plane; negative: it would fall."},

@@ -16,7 +16,8 @@ namespace bpa {
 struct RestingAgreement {
   /// Share of the model's points beneath a plane that is seen there.
   double below = kNotKnown;
-  /// From the largest plane to the model's lowest point, metres, clamped to [-0.05, 0.2].
+  /// From the largest plane to the model's lowest point, metres, beyond the centimetre that the
+  /// sensor may be off: 0 within it. Clamped to [-0.05, 0.2].
   double gap = kNotKnown;
   /// How far the centre is inside the convex hull of what touches the plane, in diameters; negative
   /// outside, where the object would fall over. Known where the gap is within 15 mm.

@@ -38,9 +38,13 @@ class RestingScore : public ::testing::Test {
 
 constexpr double kHalfHeight = 0.025, kHalfWidth = 0.040;  // of the brick
 
-TEST_F(RestingScore, TheGapIsTheHeightOfTheLowestPoint) {
-  for (const double above : {-0.03, 0.0, 0.004, 0.05, 0.1}) {
-    EXPECT_NEAR(at(kHalfHeight + above).gap, above, 0.003) << above;
+TEST_F(RestingScore, TheGapIsTheHeightOfTheLowestPointBeyondACentimetre) {
+  for (const double above : {-0.03, 0.05, 0.1}) {
+    const double offset = std::copysign(0.010, above);
+    EXPECT_NEAR(at(kHalfHeight + above).gap, above - offset, 0.003) << above;
+  }
+  for (const double above : {-0.006, 0.0, 0.006}) {
+    EXPECT_EQ(at(kHalfHeight + above).gap, 0) << "within what the sensor may be off";
   }
   EXPECT_NEAR(at(0.6).gap, 0.2, 1e-6) << "clamped";
   // On an edge, at 45 degrees.
