@@ -60,7 +60,8 @@ TEST(GoldenScoreLayers, BuiltInOnesAreMadeByTheSameCommand) {
   const Json small = Json::parse(test::slurp(kGolden));
   for (const char* layer : {"round_two", "round_three", "without_color"}) {
     const std::string provenance = built_in.at(layer).at("provenance");
-    EXPECT_EQ(provenance.rfind("tests/accuracy/train.sh, up to 400 scenes of each data set: ", 0), 0U)
+    EXPECT_EQ(provenance.rfind("tests/accuracy/train.sh, up to 400 scenes of each data set: ", 0),
+              0U)
         << layer << ": " << provenance;
     for (const auto& [name, component] : small.at(layer).at("components").items()) {
       EXPECT_TRUE(built_in.at(layer).at("components").contains(name)) << layer << "." << name;
