@@ -28,8 +28,7 @@ float plane_tolerance(const SensorNoise& noise, float z) {
 }
 
 bool on_plane(const SurfaceMap& map, std::size_t i, const Plane& plane) {
-  const float distance = std::abs(plane.normal.dot(map.points[i]) - plane.offset);
-  return distance < plane_tolerance(map.noise, map.depth[i]);
+  return std::abs(plane.height(map.points[i])) < plane_tolerance(map.noise, map.depth[i]);
 }
 
 struct PlaneFit {

@@ -15,6 +15,9 @@ namespace bpa {
 struct Plane {
   Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();
   float offset = 0;
+
+  /// Metres above the plane; negative beneath it.
+  float height(const Eigen::Vector3f& point) const { return normal.dot(point) - offset; }
 };
 
 struct PlaneOptions {

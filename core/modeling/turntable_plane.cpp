@@ -60,13 +60,9 @@ Background look_behind(const std::vector<ScanView>& views) {
   return out;
 }
 
-float height(const Plane& plane, const Eigen::Vector3f& p) {
-  return plane.normal.dot(p) - plane.offset;
-}
-
 bool on_plane(const Plane& plane, const PointCloud& cloud, std::size_t i) {
   const float tolerance = std::max(0.005f, 2.5f * depth_noise(cloud.points[i].z()));
-  return std::abs(height(plane, cloud.points[i])) < tolerance &&
+  return std::abs(plane.height(cloud.points[i])) < tolerance &&
          plane.normal.dot(cloud.normals[i]) > 0.94f;
 }
 
@@ -123,7 +119,7 @@ std::vector<Plane> find_planes(const Background& background, std::uint64_t seed)
 
 bool near_plane(const std::vector<Plane>& planes, const Eigen::Vector3f& p) {
   return std::ranges::any_of(planes, [&](const Plane& plane) {
-    return std::abs(height(plane, p)) < std::max(0.006f, 3 * depth_noise(p.z()));
+    return std::abs(plane.height(p)) < std::max(0.006f, 3 * depth_noise(p.z()));
   });
 }
 
@@ -134,7 +130,7 @@ const Plane* carrier(const std::vector<Plane>& planes, const std::vector<Eigen::
   float lowest = kMostGap;
   for (const Plane& plane : planes) {
     std::vector<float> heights;
-    for (const Eigen::Vector3f& p : points) heights.push_back(height(plane, p));
+    for (const Eigen::Vector3f& p : points) heights.push_back(plane.height(p));
     if (quantile(heights, 0.02) < -0.006f) continue;
     const float gap = quantile(heights, 0.08);
     if (gap >= lowest) continue;
@@ -171,7 +167,7 @@ const Plane* highest_carrier(const std::vector<Plane>& planes, const Background&
     std::vector<Eigen::Vector3f> feet;
     bool stands = false;
     for (const Eigen::Vector3f& p : points) {
-      const float h = height(plane, p);
+      const float h = plane.height(p);
       if (h < kLeastHeight || h > kMostHeight) continue;
       feet.emplace_back(p - h * plane.normal);
       middle += feet.back();
@@ -182,14 +178,14 @@ const Plane* highest_carrier(const std::vector<Plane>& planes, const Background&
     std::vector<float> squared;
     for (const Eigen::Vector3f& p : feet) squared.push_back((p - middle).squaredNorm());
     if (!surrounds(plane, background, middle, std::sqrt(median(squared)))) continue;
-    if (best == nullptr || height(*best, middle) > 0) best = &plane;
+    if (best == nullptr || best->height(middle) > 0) best = &plane;
   }
   return best;
 }
 
 // Where the ray through a point meets the first plane, is it above the second?
 bool is_above(const Plane& plane, const Plane& other, const Eigen::Vector3f& p) {
-  return height(other, p * (plane.offset / plane.normal.dot(p))) > 0;
+  return other.height(p * (plane.offset / plane.normal.dot(p))) > 0;
 }
 
 // For an object that looks alike from all sides: what is on no plane near the image's middle.
@@ -277,7 +273,7 @@ Result<Plane> segment_object(std::vector<ScanView>& views, const ScanOptions& op
 
   Footprint footprint(*table, middle);
   const auto rises = [&](const SurfaceMap& map, std::size_t i) {
-    const float h = map.depth[i] > 0 ? height(*table, map.points[i]) : 0;
+    const float h = map.depth[i] > 0 ? table->height(map.points[i]) : 0;
     return h > std::max(0.004f, 2.7f * depth_noise(map.depth[i])) &&
            h < static_cast<float>(options.max_height_m);
   };

@@ -24,12 +24,8 @@ constexpr float kSmallest = 3e-4f, kLargest = 4e-2f;  // square metres
 constexpr float kMostRising = 0.25f;                  // share of the border that goes on upward
 constexpr std::size_t kMostRegions = 40;
 
-float above(const Plane& plane, const Eigen::Vector3f& point) {
-  return plane.normal.dot(point) - plane.offset;
-}
-
 bool on_background(const SurfaceMap& map, const Plane& plane, std::size_t i) {
-  return map.depth[i] > 0 && !map.searched[i] && std::abs(above(plane, map.points[i])) < kOnPlane;
+  return map.depth[i] > 0 && !map.searched[i] && std::abs(plane.height(map.points[i])) < kOnPlane;
 }
 
 // How often each colour is seen on a plane.
@@ -82,7 +78,7 @@ Image<std::uint8_t> different(const SurfaceMap& map, const Plane& plane,
   Image<std::uint8_t> mask(map.width(), map.height(), 0);
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (!(map.depth[i] > 0)) continue;
-    const float height = above(plane, map.points[i]);
+    const float height = plane.height(map.points[i]);
     mask[i] = (map.searched[i] && height > 0 && height < kLow) ||
               (colors.enough() && on_background(map, plane, i) && colors.rare(cielab[i]));
   }
@@ -125,7 +121,7 @@ float rising_share(const SurfaceMap& map, const Plane& plane, const Image<std::u
       if (!mask.contains(x, y) || mask.at(x, y)) continue;
       const std::size_t beyond = mask.index(x, y);
       ++border;
-      rising += map.searched[beyond] && above(plane, map.points[beyond]) >= kLow &&
+      rising += map.searched[beyond] && plane.height(map.points[beyond]) >= kLow &&
                 !surface_breaks(map, pixel, beyond);
     }
   }
@@ -143,7 +139,7 @@ Found measured(const SurfaceMap& map, const Plane& plane, std::vector<std::uint3
   std::vector<Eigen::Vector3f> points;
   for (const std::uint32_t pixel : pixels) {
     const Eigen::Vector3f& p = map.points[pixel];
-    points.push_back(p - plane.normal * above(plane, p));
+    points.push_back(p - plane.normal * plane.height(p));
     const auto side = static_cast<float>(static_cast<double>(p.z()) / map.camera.fx);
     constexpr float kMinSlant = 0.2f;  // cosine
     found.area += side * side / std::max(kMinSlant, -plane.normal.dot(p) / p.norm());

@@ -23,10 +23,6 @@ constexpr float kLowest = -0.05f, kHighest = 0.2f;  // metres: the gap is clampe
 constexpr float kOffset = 0.010f;
 constexpr int kHullDirections = 64;
 
-float height_above(const Plane& plane, const Eigen::Vector3f& point) {
-  return plane.normal.dot(point) - plane.offset;
-}
-
 // True where the plane is seen in front of the point.
 bool beneath(const CheckImage& image, std::span<const Plane> planes, const Eigen::Vector3f& point) {
   const int pixel = image.pixel_of(point);
@@ -35,8 +31,8 @@ bool beneath(const CheckImage& image, std::span<const Plane> planes, const Eigen
   if (seen.searched || seen.depth <= 0) return false;
   const Eigen::Vector3f observed = point * (seen.depth / point.z());
   return std::ranges::any_of(planes, [&](const Plane& plane) {
-    return height_above(plane, point) < -kBelow - 2 * image.noise(point.z()) &&
-           std::abs(height_above(plane, observed)) < kOnPlane;
+    return plane.height(point) < -kBelow - 2 * image.noise(point.z()) &&
+           std::abs(plane.height(observed)) < kOnPlane;
   });
 }
 
@@ -69,7 +65,7 @@ RestingAgreement compare_resting(const CheckImage& image, std::span<const Plane>
   for (const Eigen::Vector3f& p : model.index->check.points) {
     points.push_back(pose * p);
     below += beneath(image, planes, points.back());
-    lowest = std::min(lowest, height_above(table, points.back()));
+    lowest = std::min(lowest, table.height(points.back()));
   }
   RestingAgreement out;
   out.below = below / std::max(1.0, static_cast<double>(points.size()));
@@ -77,7 +73,7 @@ RestingAgreement compare_resting(const CheckImage& image, std::span<const Plane>
   out.gap = double{std::clamp(beyond, kLowest, kHighest)};
   if (std::abs(lowest) > kRests) return out;
   std::erase_if(points, [&](const Eigen::Vector3f& p) {
-    return height_above(table, p) > lowest + kInContact;
+    return table.height(p) > lowest + kInContact;
   });
   const Eigen::Vector3f centre = pose * model.centre.cast<float>();
   out.balance = double{inside_hull(table, points, centre)} / model.diameter;
