@@ -8,6 +8,7 @@
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
 #include "core/model/model_index.hpp"
+#include "core/score/likelihood.hpp"
 #include "core/score/predicted_surface.hpp"
 #include "core/score/silhouette_score.hpp"
 
@@ -18,7 +19,6 @@ namespace {
 constexpr float kElongated = 1.4f;    // length over width; below, the longest direction says little
 constexpr int kTurnsOfRound = 8;      // 45 degrees apart, where it says little
 constexpr float kNearlyWhole = 0.8f;  // share of the length in sight
-constexpr float kHides = 0.02f;       // metres in front of the model
 constexpr float kEnds[] = {0, 1, -1};  // where a part in sight may be: middle, either end
 
 Eigen::Matrix3f basis_along(const Eigen::Vector3f& axis, const Eigen::Vector3f& up) {
@@ -42,9 +42,8 @@ double overlap(const Search& search, int region, const PredictedSurface& predict
   int both = 0, model = 0;
   predicted.for_each([&](int u, int v, float z, std::uint32_t) {
     const bool in_region = flat.label.at(u, v) == region;
-    const float depth = search.scene.image.depth_at(u, v);
     both += in_region;
-    model += in_region || !(depth > 0 && depth < z - kHides);
+    model += in_region || !hides(search.scene.image.depth_at(u, v), z);
   });
   return both / std::max(1.0, static_cast<double>(flat.regions[region].pixels + model - both));
 }

@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kEdgeFloor = 0.05;          // least likelihood of an edge where one is predicted
 constexpr float kEdgeReach = 0.008f;         // metres: how wide the band of edge points is
-constexpr float kOccluded = 0.02f;           // metres behind what was observed
 constexpr std::size_t kMaxEdgePoints = 300;  // that are looked at
 
 // The largest edge likelihood between a point and the place `reach` from it.
@@ -49,10 +48,7 @@ double edge_likelihood_score(const CheckImage& image, const Image<float>& edges,
 
 double occlusion_edge_score(const CheckImage& image, const Image<float>& edges,
                             const PredictedSurface& predicted) {
-  const auto occluded = [&](int u, int v, float z) {
-    const float observed = image.depth_at(u, v);
-    return observed > 0 && observed < z - kOccluded;
-  };
+  const auto occluded = [&](int u, int v, float z) { return hides(image.depth_at(u, v), z); };
   double sum = 0;
   int count = 0;
   predicted.for_each([&](int u, int v, float z, std::uint32_t) {

@@ -17,7 +17,6 @@ constexpr std::size_t kFewestExplained = 20;  // pixels
 constexpr std::size_t kMostExplained = 64;
 constexpr float kFewestAround = 8;  // pixels of surroundings
 constexpr int kAround = 8;          // pixels: half a window of surroundings
-constexpr float kOccluder = 0.02f;  // metres in front of what is predicted
 constexpr float kUnusual = 0.02f;   // probability density of a colour that nobody foresaw
 // Standard deviations of log_light(): shading and inexact models, and of one surface in the image.
 const Eigen::Array3f kModelSigma(0.25f, 0.06f, 0.10f);
@@ -56,8 +55,7 @@ FigureColors::FigureColors(const CheckImage& image, const Image<Eigen::Vector3f>
 
 double FigureColors::log_likelihood(int u, int v, const PredictedSurface& other) const {
   const float z = predicted_.depth_at(u, v);
-  const float observed = image_.depth_at(u, v);
-  const bool hidden = observed > 0 && observed < z - kOccluder;
+  const bool hidden = hides(image_.depth_at(u, v), z);
   return z > 0 && !hidden ? of_object(u, v) : of_surroundings(u, v, other);
 }
 

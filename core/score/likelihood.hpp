@@ -18,6 +18,14 @@ constexpr float kExplained_m = 0.01f;
 /// The standard deviation of distances in score components. Metres, chosen by hand.
 constexpr double kDistanceSigma_m = 0.01;
 
+/// What is observed this far in front of a prediction hides it. Metres, chosen by hand.
+constexpr float kHidden_m = 0.02f;
+
+/// Whether what is observed hides what is predicted; 0 is no observation and hides nothing.
+inline bool hides(float observed_depth, float predicted_depth) {
+  return observed_depth > 0 && observed_depth < predicted_depth - kHidden_m;
+}
+
 /// The log-likelihood of an error under a normal distribution, relative to that of no error.
 /// Truncated at three standard deviations, so as not to over-penalise outliers, and scaled to [-1,
 /// 0] (paper V.5).

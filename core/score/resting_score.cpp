@@ -72,9 +72,8 @@ RestingAgreement compare_resting(const CheckImage& image, std::span<const Plane>
   const float beyond = lowest - std::clamp(lowest, -kOffset, kOffset);
   out.gap = double{std::clamp(beyond, kLowest, kHighest)};
   if (std::abs(lowest) > kRests) return out;
-  std::erase_if(points, [&](const Eigen::Vector3f& p) {
-    return table.height(p) > lowest + kInContact;
-  });
+  std::erase_if(points,
+                [&](const Eigen::Vector3f& p) { return table.height(p) > lowest + kInContact; });
   const Eigen::Vector3f centre = pose * model.centre.cast<float>();
   out.balance = double{inside_hull(table, points, centre)} / model.diameter;
   return out;

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/score/likelihood.hpp"
+
 namespace bpa {
 namespace {
 
 // Chosen by hand on simulated piles, as all constants of this file.
 constexpr float kBehind = 0.03f;    // metres: a step of depth within the object is an outline
-constexpr float kInFront = 0.02f;   // metres in front of the outline
 constexpr int kFewestOutline = 12;  // pixels of the reduced image
 // In pixels of the reduced image: where the outline is looked for, and where its surroundings are.
 constexpr float kOutlineReach = 1.5f, kBesideFrom = 2.5f, kBesideTo = 4;
@@ -52,8 +53,7 @@ SilhouetteAgreement compare_silhouette(const CheckImage& image,
   const float scale = static_cast<float>(gradients.width / image.width);
   const auto hidden = [&](int u, int v, float z) {
     if (u < 0 || v < 0 || u >= image.width || v >= image.height) return true;
-    const float depth = image.depth_at(u, v);
-    return depth > 0 && depth < z - kInFront;
+    return hides(image.depth_at(u, v), z);
   };
   double on = 0, beside = 0;
   int count = 0;
