@@ -41,11 +41,10 @@ Image<Eigen::Vector3f> log_light_of(Image<Eigen::Vector3f> lab, int num_threads)
   return lab;
 }
 
-// CIELAB for thin objects, which the blur of `cielab` would smear.
-Image<Eigen::Vector3f> sharp_colors(const Image<Eigen::Vector3f>& rgb, int num_threads) {
-  constexpr double kBlur = 0.7;  // pixels: against noise
-  if (rgb.empty()) return {};
-  return blur(cielab(rgb, num_threads), kBlur, num_threads);
+// CIELAB for thin objects, which the blur of SceneFeatures::cielab would smear.
+Image<Eigen::Vector3f> less_noise(const Image<Eigen::Vector3f>& lab, int num_threads) {
+  constexpr double kBlur = 0.7;  // pixels
+  return lab.empty() ? Image<Eigen::Vector3f>() : blur(lab, kBlur, num_threads);
 }
 
 std::shared_ptr<const SceneFeatures> with_flat_regions(const SceneFeatures& scene) {
@@ -68,12 +67,14 @@ SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
   SuperPixelOptions segment_options = options.segments;
   edge_options.num_threads = segment_options.num_threads = options.num_threads;
   scene.edges = scene_edges(map, rgb, edge_options);
+  Image<Eigen::Vector3f> sharp_lab;  // without blur
   if (!rgb.empty()) {
+    sharp_lab = cielab(rgb, options.num_threads);
     scene.cielab =
         cielab(blur(rgb, options.color_blur_px, options.num_threads), options.num_threads);
     if (options.use_texture) scene.log_light = log_light_of(scene.cielab, options.num_threads);
     if (options.use_outline) {
-      scene.sharp_light = log_light_of(cielab(rgb, options.num_threads), options.num_threads);
+      scene.sharp_light = log_light_of(sharp_lab, options.num_threads);
       scene.gradients = std::move(colors.gradients);
     }
   }
@@ -91,7 +92,8 @@ SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
       scene_pairs(scene.coarse, choose(scene.coarse.size(), options.max_references, options.seed),
                   static_cast<float>(options.pair_reach_m), options.num_threads);
   if (options.use_flat_regions) {
-    scene.flat = find_flat_regions(scene.map, scene.planes, sharp_colors(rgb, options.num_threads));
+    scene.flat =
+        find_flat_regions(scene.map, scene.planes, less_noise(sharp_lab, options.num_threads));
     scene.with_flat = with_flat_regions(scene);
   }
   return scene;
