@@ -14,6 +14,8 @@ import json
 import sys
 from pathlib import Path
 
+import cells
+
 # Each part, what the table calls it, and the settings that leave it out (config/detector.yaml).
 PARTS = {
     "use_orientation": ("orientations (ICP instead of BPA)", "align: {use_orientation: false}"),
@@ -73,28 +75,23 @@ def unlearned_layers():
     return {name: layer if isinstance(old, dict) else old for name, old in built_in.items()}
 
 
-def share(hits, total):
-    return f"{100 * hits / total:.1f} % ({hits}/{total})" if total else "-"
-
-
-def table(folder):
+def parts_table(folder):
     """Costs are the mean milliseconds of a frame with everything, less those without the part."""
-    lines = ["| left out | right pose in the final 50 | in the best 20 interpretations "
-             "| in the best | precision of the best | ms a frame | cost of the part, ms |",
-             "|---|---|---|---|---|---|---|"]
-    all_ms = None
+    rows, all_ms = [], None
     for name, title in ROWS:
-        path = folder / f"{name}.json"
-        if not path.is_file():
+        run = cells.load(folder / f"{name}.json")
+        if not run:
             continue
-        run = json.loads(path.read_text())
         alive, ms = run["alive"], run["mean_milliseconds"]["total"]
         all_ms = ms if name == "all" else all_ms
-        cells = [share(alive[stage], alive["instances"]) for stage in ("final", "best 20", "best")]
-        cells.append(share(run["right"], run["reported"]))
-        cells += [f"{ms:.0f}", "" if name == "all" or all_ms is None else f"{all_ms - ms:.0f}"]
-        lines.append(f"| {title} | " + " | ".join(cells) + " |")
-    return "\n".join(lines) + "\n"
+        shares = [(alive[stage], alive["instances"]) for stage in ("final", "best 20", "best")]
+        shares.append((run["right"], run["reported"]))
+        rows.append([title,
+                     *(cells.percent({"hits": hits, "total": total}) for hits, total in shares),
+                     f"{ms:.0f}", "" if name == "all" or all_ms is None else f"{all_ms - ms:.0f}"])
+    return cells.table(["left out", "right pose in the final 50", "in the best 20 interpretations",
+                        "in the best", "precision of the best", "ms a frame",
+                        "cost of the part, ms"], rows)
 
 
 def main(command, where=""):
@@ -105,7 +102,7 @@ def main(command, where=""):
     elif command == "layer":
         Path(where).write_text(json.dumps(unlearned_layers(), indent=2) + "\n", encoding="utf-8")
     elif command == "table":
-        print(table(Path(where)), end="")
+        print(parts_table(Path(where)), end="")
     else:
         sys.exit(__doc__)
 

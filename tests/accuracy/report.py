@@ -223,7 +223,7 @@ def report(folder):
     for name, title in (("leave_one_out", "Simulated clutter, first scenes"),
                         ("leave_one_out_real", "Real frames")):
         if (folder / name).is_dir():
-            parts.append(f"### {title}\n\n{leave_one_out.table(folder / name)}")
+            parts.append(f"### {title}\n\n{leave_one_out.parts_table(folder / name)}")
     parts += [
         "## The simulated clutter\n",
         f"{sum(visible['tenths'])} instances, median visible fraction {visible['median']:.2f}; by "
