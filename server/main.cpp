@@ -141,6 +141,7 @@ int main(int argc, char** argv) {
   program.footer(
       "ROS 2's own arguments come after --ros-args: -r FROM:=TO, -r __node:=NAME, "
       "-r __ns:=NAMESPACE,\n-p NAME:=VALUE, --params-file FILE, --log-level LEVEL.");
+  program.set_version_flag("--version", BPA_VERSION);
   CommandLine line;
   add_options(program, line);
   std::vector<std::string> words(ros->own.rbegin(), ros->own.rend() - 1);  // as CLI11 wants them

@@ -12,6 +12,7 @@ int run_bpa_client(int argc, char** argv) {
                    "bpa-client");
   program.require_subcommand(1);
   program.fallthrough();
+  program.set_version_flag("--version", BPA_VERSION);
   Common common;
   add_common(program, common);
   add_send(program, common);
