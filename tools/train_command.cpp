@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/base/random.hpp"
 #include "core/eval/pose_errors.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/pipeline/detector.hpp"
+#include "core/scene/given_others.hpp"
 #include "core/scene/interpretations.hpp"
 #include "core/scene/overlaps.hpp"
 #include "tools/command.hpp"
@@ -54,15 +56,43 @@ ScoreFrame round_two_samples(const FrameTrace& trace, const DetectorOptions& opt
   return out;
 }
 
-// What interpretations choose from.
-ScoreFrame round_three_samples(const FrameTrace& trace, const DetectorOptions& options,
-                               const std::vector<io::BopInstance>& truth) {
+// The objects of the frame that a first interpretation would hold: most of those in sight.
+Candidates others_of(const Detector& detector, const FrameTrace& trace, const TrueFrame& frame) {
+  constexpr double kFound = 0.75;       // of the objects in sight, in unseen piles
+  constexpr std::size_t kInSight = 50;  // pixels
+  const auto& models = detector.library().models();
+  RandomStream random(frame.index);
+  Candidates out;
+  for (const io::BopInstance& instance : frame.truth) {
+    const auto model =
+        std::ranges::find(models, instance.obj_id, [](const auto& m) { return m->number; });
+    const bool found = random.uniform() < kFound;
+    if (model == models.end() || !found) continue;
+    Candidate other{.model = model->get()};
+    other.refinement.camera_from_object = instance.camera_from_object;
+    other.explained = explained_pixels(trace.scene.image, **model, other.pose());
+    if (other.explained.size() >= kInSight) out.push_back(std::move(other));
+  }
+  return out;
+}
+
+// What interpretations choose from. A frame is searched for some models alone, so what others
+// explain is taken from the truth.
+ScoreFrame round_three_samples(const Detector& detector, const FrameTrace& trace,
+                               const TrueFrame& frame) {
+  const double max_shared = detector.options().scene.max_shared;
+  Candidates all = trace.candidates;
+  const std::size_t count = all.size();
+  std::ranges::move(others_of(detector, trace, frame), std::back_inserter(all));
+  std::vector<bool> present(count, false);
+  present.resize(all.size(), true);
+  measure_given_others(trace.scene, find_overlaps(all, max_shared), present, all);
+  all.resize(count);
   ScoreFrame out;
-  out.competition =
-      competition_of(trace.candidates, find_overlaps(trace.candidates, options.scene.max_shared));
-  for (const Candidate& candidate : trace.candidates) {
-    out.samples.push_back(
-        {candidate.values, eval::is_right_about_any(candidate.pose(), *candidate.model, truth)});
+  out.competition = competition_of(all, find_overlaps(all, max_shared));
+  for (const Candidate& candidate : all) {
+    out.samples.push_back({candidate.values, eval::is_right_about_any(
+                                                 candidate.pose(), *candidate.model, frame.truth)});
   }
   return out;
 }
@@ -78,7 +108,7 @@ void collect(const TrainArguments& a, const Detector& detector, const Folders& f
     const auto part = held_out ? &Samples::held_out : &Samples::training;
     if (round_two) (round_two->*part).push_back(round_two_samples(trace, options, frame.truth));
     if (round_three) {
-      (round_three->*part).push_back(round_three_samples(trace, options, frame.truth));
+      (round_three->*part).push_back(round_three_samples(detector, trace, frame));
     }
   };
   for (const std::string& folder : folders) {

@@ -138,7 +138,7 @@ struct CheckOptions {
 struct ClusterOptions {
   int min_features = 2;
   int max_correspondences = 10;
-  int max_clusters = 200;
+  int max_clusters = 400;
   double suggested_share = 0.25;
   double rank_penalty = 0.04;
 
@@ -188,7 +188,7 @@ struct RoundTwoOptions {
 };
 
 struct RefineOptions {
-  int max_refined = 40;
+  int max_refined = 50;
   RefinementOptions refinement{8, 500, 60, 0.015, 0.008};
 
   void visit_fields(auto&& visit) {

@@ -50,10 +50,14 @@ Candidate Search::scored(Refinement refinement, Source found_by) const {
   return out;
 }
 
+void apply_layers(const ScoreLayers& layers, Candidate& candidate) {
+  candidate.score = layers.last_for(candidate.values).log_odds(candidate.values) + candidate.prior;
+  candidate.probability = probability_of(candidate.score);
+}
+
 void Search::apply_layer(Candidate& candidate) const {
-  const ScoreLayer& layer =
-      options.score.use_round_three ? layers.last_for(candidate.values) : layers.round_two;
-  candidate.score = layer.log_odds(candidate.values) + candidate.prior;
+  if (options.score.use_round_three) return apply_layers(layers, candidate);
+  candidate.score = layers.round_two.log_odds(candidate.values) + candidate.prior;
   candidate.probability = probability_of(candidate.score);
 }
 

@@ -40,6 +40,9 @@ struct ObjectTrace {
   std::vector<TraceStage> stages;  ///< In the order of detection_stages().
 };
 
+/// Sets score and probability from values and prior, by the last layer.
+void apply_layers(const ScoreLayers& layers, Candidate& candidate);
+
 /// The search for one model in one scene: what every stage reads. Keeps references to
 /// scene, model and layers.
 struct Search {

@@ -13,6 +13,7 @@
 #include "core/detect/stages.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/options_yaml.hpp"
+#include "core/scene/given_others.hpp"
 #include "core/scene/interpretations.hpp"
 
 namespace bpa {
@@ -121,13 +122,26 @@ void keep_best(std::vector<Interpretation>& interpretations, std::size_t count) 
   for (Interpretation& interpretation : interpretations) interpretation.probability /= sum;
 }
 
+// Judges the candidates again, given the others of a first interpretation.
+void judge_again(const SceneFeatures& scene, const Overlaps& overlaps, const ScoreLayers& layers,
+                 const DetectRequest& request, Candidates& candidates) {
+  const auto present = first_interpretation(candidates, overlaps);
+  measure_given_others(scene, overlaps, present, candidates, request.num_threads);
+  for (Candidate& candidate : candidates) apply_layers(layers, candidate);
+  let_compete(candidates, overlaps);
+}
+
 // Lets the candidates compete and ranks interpretations of the scene.
-std::vector<Interpretation> interpret_scene(const SceneFeatures& scene, Candidates& candidates,
-                                            const DetectRequest& request,
-                                            InterpretationOptions options) {
+std::vector<Interpretation> interpret_scene(const SceneFeatures& scene, const ScoreLayers& layers,
+                                            Candidates& candidates, const DetectRequest& request,
+                                            const DetectorOptions& detector) {
+  InterpretationOptions options = detector.scene;
   options.seed = request.seed;
   const auto overlaps = find_overlaps(candidates, options.max_shared);
   let_compete(candidates, overlaps);
+  if (options.judge_given_others && detector.detect.score.use_round_three) {
+    judge_again(scene, overlaps, layers, request, candidates);
+  }
   const auto observed = static_cast<int>(std::ranges::count(scene.map.searched, 1));
   std::vector<Interpretation> ranked = interpret(candidates, overlaps, observed, options);
   keep_best(ranked, request.top_k);
@@ -169,7 +183,7 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
       *models, trace ? &trace->objects : nullptr, out.budget_exhausted);
   out.timings.push_back({"objects", stage.lap_milliseconds()});
 
-  out.interpretations = interpret_scene(scene, candidates, request, options_.scene);
+  out.interpretations = interpret_scene(scene, layers_, candidates, request, options_);
   out.timings.push_back({"interpretations", stage.lap_milliseconds()});
   out.total_milliseconds = total.milliseconds();
   if (trace) {

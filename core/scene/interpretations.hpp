@@ -20,7 +20,8 @@ struct InterpretationOptions {
   int annealing_steps = 20000;
   double start_temperature = 2;
   double end_temperature = 0.05;
-  double min_shown = 0.02;
+  double min_shown = 0.005;
+  bool judge_given_others = true;
   int max_different = 20;
   int max_interpretations = 100;
   std::uint64_t seed = 0;
@@ -43,6 +44,8 @@ struct InterpretationOptions {
     visit("end_temperature", end_temperature,
           {1e-6, 1000, "Temperature of the last move, in units of the score."});
     visit("min_shown", min_shown, {0, 1, "Less probable placements are in no interpretation."});
+    visit("judge_given_others", judge_given_others,
+          {0, 1, "Judge each placement again, given the others of a first interpretation."});
     visit("max_different", max_different,
           {1, 100, "Interpretations that show something new, with the best."});
     visit("max_interpretations", max_interpretations,

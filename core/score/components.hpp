@@ -20,8 +20,9 @@
 
 namespace bpa {
 
-/// When a component becomes known: in round two, in round three, or when rivals are compared.
-enum class Round : std::uint8_t { two, three, rivals };
+/// When a component becomes known: in round two, in round three, when rivals are compared, or when
+/// a first interpretation says what else is there.
+enum class Round : std::uint8_t { two, three, rivals, others };
 
 struct ComponentType {
   std::string_view name;
@@ -32,15 +33,16 @@ struct ComponentType {
   double (*measure)(Evidence&);  ///< kNotKnown where it has no value.
   std::string_view meaning;
   bool needs_color = false;  ///< Known only where frame and model have colours.
+  bool rises = false;  ///< More never speaks against a placement: training keeps the curve rising.
 };
 
 constexpr auto kScoreComponents = std::to_array<ComponentType>({
     {"range", "log-likelihood", -1, 0, Round::two, true,
      [](Evidence& e) -> double { return e.surface().range; },
-     "Depth differences, weighted by visibility."},
+     "Depth differences, weighted by visibility.", false, true},
     {"normal", "log-likelihood", -1, 0, Round::two, true,
      [](Evidence& e) -> double { return e.surface().normal; },
-     "Differences of normals, weighted by visibility."},
+     "Differences of normals, weighted by visibility.", false, true},
     {"agreeing", "share", 0, 1, Round::two, true,
      [](Evidence& e) -> double { return e.surface().agreeing; },
      "Visible points on the observed surface."},
@@ -137,6 +139,12 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
     {"rivals_color", "log-likelihood", -500, 0, Round::rivals, true,
      [](Evidence&) -> double { return kNotKnown; },
      "The same of colours.", true},
+    {"hidden_by_unknown", "share", 0, 1, Round::others, true,
+     [](Evidence&) -> double { return kNotKnown; },
+     "Facing model points that are hidden by what no other placement explains."},
+    {"left_over", "share", 0, 1, Round::others, true,
+     [](Evidence&) -> double { return kNotKnown; },
+     "Pixels of its super-pixels that neither it nor another placement explains."},
     {"explained_pixels", "pixels", 0, 77000, Round::two, false,
      [](Evidence& e) -> double { return e.surface().explained_pixels; },
      "Observed pixels on the model, reduced image."},

@@ -138,7 +138,39 @@ void add_penalty(const Weights& weights, Weights& gradient) {
   }
 }
 
-// Adam (Kingma and Ba, 2015) on all frames at once, with falling steps.
+// The nearest values that never fall: pools adjacent violators (Barlow et al., "Statistical
+// Inference under Order Restrictions", 1972).
+void make_rising(std::span<double> values) {
+  struct Pool {
+    double sum;
+    std::size_t count;
+    double mean() const { return sum / static_cast<double>(count); }
+  };
+  std::array<Pool, kKnots> pools;
+  std::size_t n = 0;
+  for (const double value : values) {
+    pools[n++] = {value, 1};
+    while (n > 1 && pools[n - 2].mean() > pools[n - 1].mean()) {
+      pools[n - 2].sum += pools[n - 1].sum;
+      pools[n - 2].count += pools[n - 1].count;
+      --n;
+    }
+  }
+  auto value = values.begin();
+  for (std::size_t i = 0; i < n; ++i) value = std::fill_n(value, pools[i].count, pools[i].mean());
+}
+
+// What rises for certain rises.
+void keep_directions(Weights& weights) {
+  for (std::size_t f = 0; f < kNumComponents; ++f) {
+    if (kScoreComponents[f].rises) {
+      make_rising({&weights[weight_of(f, 0)], kKnots});
+    }
+  }
+}
+
+// Adam (Kingma and Ba, 2015) on all frames at once, with falling steps, each of which is projected
+// onto the curves of known direction.
 Weights minimise(const Weights& start, const std::vector<FrameLikelihood>& frames, double samples) {
   constexpr int kIterations = 600;
   Weights weights = start, mean = Weights::Zero(), square = Weights::Zero();
@@ -152,6 +184,7 @@ Weights minimise(const Weights& start, const std::vector<FrameLikelihood>& frame
     const Weights step = (mean / (1 - std::pow(0.9, k))).array() /
                          ((square / (1 - std::pow(0.99, k))).array().sqrt() + 1e-12);
     weights -= 0.1 * (1 - static_cast<double>(k - 1) / kIterations) * step;
+    keep_directions(weights);
   }
   return weights;
 }

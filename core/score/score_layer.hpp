@@ -71,8 +71,9 @@ struct ScoreFrame {
 };
 
 /// Fits the layer by penalised maximum likelihood of the samples' labels under
-/// competing_probabilities() (gradient descent with adaptive steps; deterministic). Needs samples
-/// of both kinds; otherwise fails with invalid_argument.
+/// competing_probabilities() (gradient descent with adaptive steps; deterministic). Curves rise
+/// where ComponentType::rises says so. Needs samples of both kinds; otherwise fails with
+/// invalid_argument.
 Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames);
 
 /// The layer that changes `start` no more than these frames demand: the same fit, with the penalty

@@ -145,16 +145,19 @@ bool see_point(const CheckImage& image, const ObjectModel& model, const ModelVie
   return true;
 }
 
+// Every how many points of the view to look at; 0: all of them.
+std::size_t step_through(const ModelView& view, int max_points) {
+  if (max_points <= 0) return 1;
+  return std::max<std::size_t>(1, view.visible.size() / static_cast<std::size_t>(max_points));
+}
+
 }  // namespace
 
 SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& model,
                                  const Pose& pose, int max_points) {
   const FastPose fast = to_fast(pose);
   const ModelView& view = nearest_view(model.index->views, fast);
-  const std::size_t step =
-      max_points > 0
-          ? std::max<std::size_t>(1, view.visible.size() / static_cast<std::size_t>(max_points))
-          : 1;
+  const std::size_t step = step_through(view, max_points);
   // Pixels that a point's surface covers, seen from the front at one metre.
   const double pixels_per_point = model.index->point_area * static_cast<double>(step) *
                                   static_cast<double>(image.fx) * image.fy;
@@ -210,6 +213,24 @@ std::vector<std::uint32_t> explained_pixels(const CheckImage& image, const Objec
   }
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+HiddenPoints hidden_points(const CheckImage& image, const ObjectModel& model, const Pose& pose,
+                           int max_points) {
+  const FastPose fast = to_fast(pose);
+  const ModelView& view = nearest_view(model.index->views, fast);
+  const std::size_t step = step_through(view, max_points);
+  HiddenPoints out;
+  SeenPoint seen;
+  for (std::size_t k = 0; k < view.visible.size(); k += step) {
+    if (!see_point(image, model, view, fast, k, seen)) continue;
+    ++out.facing;
+    const float depth = image.pixels[seen.pixel].depth;
+    if (depth > 0 && depth < seen.point.z() - kHiding) {
+      out.pixels.push_back(static_cast<std::uint32_t>(seen.pixel));
+    }
+  }
   return out;
 }
 

@@ -51,4 +51,15 @@ SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& mod
 std::vector<std::uint32_t> explained_pixels(const CheckImage& image, const ObjectModel& model,
                                             const Pose& pose);
 
+/// Model points that face the camera, and the pixels of those that are hidden by something over
+/// 1.5 cm in front of them.
+struct HiddenPoints {
+  int facing = 0;
+  std::vector<std::uint32_t> pixels;  ///< One for each hidden point.
+};
+
+/// Looks at about `max_points` of the surface points that the nearest view shows.
+HiddenPoints hidden_points(const CheckImage& image, const ObjectModel& model, const Pose& pose,
+                           int max_points);
+
 }  // namespace bpa

@@ -26,6 +26,7 @@ PARTS = {
     "use_round_three": ("components of round three", "score: {use_round_three: false}"),
     "use_texture": ("patterns of surfaces", "features: {use_texture: false}"),
     "use_outline": ("outlines and figure-ground in colour", "features: {use_outline: false}"),
+    "given_others": ("what hides what", "scene: {judge_given_others: false}"),
     "use_color": ("colours", "features: {use_color: false}"),
 }
 ROWS = [("all", "nothing"), *((name, title) for name, (title, _) in PARTS.items()),
@@ -44,7 +45,7 @@ RANGES = {
     "segment_affinity": (-1, 0), "fpfh": (-1, 0), "color": (-1, 0), "tint": (200, 0),
     "texture": (-1, 1), "texture_evidence": (-100, 100), "silhouette": (0, 1),
     "silhouette_contrast": (-1, 1), "below": (1, 0), "gap": (0.2, 0), "balance": (-0.5, 0.5),
-    "rivals": (-500, 0), "rivals_color": (-500, 0),
+    "rivals": (-500, 0), "rivals_color": (-500, 0), "hidden_by_unknown": (1, 0), "left_over": (1, 0),
 }
 KNOTS = 8
 

@@ -6,7 +6,6 @@
 # file config/score_layers.json. Seeds are fixed: the same program makes the same file.
 #
 # Real objects are not exactly their models, and real sensors are not exactly calibrated: nor are these.
-# Real objects are not exactly their models, and real sensors are not exactly calibrated: nor are these.
 # Each scene has one of the three kinds of depth camera. Several kinds of scenes cover what score components
 # depend on. Heaps are seen from afar. Few objects are seen closely by a longer lens: edges are more ragged, depth
 # ends further from them (bpa bench sensor), and exposure and white balance differ from the models' colours. The
@@ -14,7 +13,7 @@
 # none of them. Some sets hold look-alikes. Round two learns to order placements from all of them. Probabilities are
 # learned from a third with look-alikes: from more, right placements in real frames are disbelieved. Two sets hold
 # objects of the same shape with another print, from which only the layer for colours learns. Each frame is
-# searched for a fifth of the models: more frames are worth more than more models.
+# searched for five of the models: more frames are worth more than more models.
 #
 # The placements to learn from are those that the detector finds with the layers built in so far: after a
 # change of the detector, run this once, copy the file to config/, build, and run it again. Two cores take 80 minutes.
@@ -23,14 +22,14 @@
 set -euo pipefail
 readonly programs=$1 output=$2
 readonly scenes=${BPA_SCENES:-400}
-readonly objects=${BPA_OBJECTS:-mug,bowl,bottle,can,cup,tube,funnel,plate,milk_carton,cereal_box,snack_box,spray_bottle,jug,\
-cube,l_brick,stud_block,gear,banana,pen,screwdriver,wrench,scissors,clamp,spatula,tin,battery,phone,remote,book,soap,\
+readonly objects=${BPA_OBJECTS:-mug,bowl,bottle,can,cup,tube,funnel,plate,milk_carton,cereal_box,snack_box,\
+spray_bottle,jug,cube,l_brick,stud_block,gear,banana,pen,screwdriver,wrench,scissors,clamp,spatula,tin,battery,phone,remote,book,soap,\
 sponge,matchbox}
 mkdir -p "$output"
 rm -rf "$output"/{heaps,heaps_look_alikes,close,close_look_alikes,rough,table,foreign,prints,close_prints,library}
 simulate() { # FOLDER SEED SCENES [OPTION...]
-  "$programs/bpa" simulate scenes --out "$output/$1" --seed "$2" --scenes $(((scenes * $3 + 399) / 400)) --models "$objects" \
-    --sensor mixed "${errors[@]}" "${@:4}"
+  "$programs/bpa" simulate scenes --out "$output/$1" --seed "$2" --scenes $(((scenes * $3 + 399) / 400)) \
+    --models "$objects" --sensor mixed "${errors[@]}" "${@:4}"
 }
 readonly heaps=(--clutter 0.3,1 --objects 6,14)
 readonly close=(--clutter 0,0.7 --objects 3,8 --distance 0.5,1.1 --focal 525,1067 --lateral-noise 2)
@@ -48,6 +47,6 @@ simulate rough 15000 300 "${close[@]}" --edge-gaps 2 --exposure-spread 0.8
 "$programs/bpa" model from-bop "$output/heaps" --library "$output/library"
 "$programs/bpa" train --bop "$output"/{heaps,heaps_look_alikes,close,rough,table,foreign} \
   --round-two-bop "$output/close_look_alikes" --color-bop "$output"/{prints,close_prints} \
-  --models-per-frame 6 --held-out 0 \
+  --models-per-frame 5 --held-out 0 \
   --library "$output/library" --output "$output/score_layers.json" \
   --made-by "tests/accuracy/train.sh, up to $scenes scenes of each data set"

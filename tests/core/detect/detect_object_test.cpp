@@ -26,7 +26,7 @@ TEST_F(SingleObject, BestPlacementIsTheTruth) {
       ASSERT_FALSE(candidates.empty()) << model->name;
       const PoseError error = pose_error(candidates[0].pose(), truth, model->symmetry);
       EXPECT_LT(error.position, 0.004) << model->name;
-      EXPECT_LT(error.angle, 0.06) << model->name;
+      EXPECT_LT(error.angle, 0.05) << model->name;
     }
   }
 }
@@ -93,7 +93,7 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
     if (s == 0) continue;
     const std::size_t before = trace.stages[s - 1].poses.size();
     if (names.back() == "turned") {
-      EXPECT_GT(all, before) << "an L has near symmetries";
+      EXPECT_GT(stage.poses.size(), before) << "an L has near symmetries";
     } else {
       EXPECT_EQ(all, before) << stage.name;
     }
@@ -143,7 +143,9 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
                                        "silhouette",
                                        "silhouette_contrast",
                                        "rivals",
-                                       "rivals_color"};
+                                       "rivals_color",
+                                       "hidden_by_unknown",
+                                       "left_over"};
   for (const Candidate& candidate : candidates) {
     const ScoreLayer& layer = default_score_layers().round_two;
     double sum = layer.bias;

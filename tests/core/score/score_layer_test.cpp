@@ -119,6 +119,26 @@ TEST(ScoreLayer, FramesThatAgreeDoNotChangeALayer) {
   }
 }
 
+TEST(ScoreLayer, ACurveThatHasToRiseDoes) {
+  RandomStream random(11);
+  ScoreFrame frame;
+  frame.samples.resize(4000);
+  frame.competition.rivals.resize(4000);
+  constexpr std::size_t kRising = component("range"), kAny = component("gap");
+  for (auto& sample : frame.samples) {
+    sample.values.fill(0);
+    const double x = random.uniform();
+    sample.right = random.uniform() < (x < 0.5 ? 0.8 : 0.2);
+    sample.values[kRising] = sample.values[kAny] = x;
+  }
+  const auto layer = train_score_layer(std::vector<ScoreFrame>{frame});
+  ASSERT_TRUE(layer.ok()) << layer.status().message;
+  const auto& rising = layer->components[kRising].value;
+  EXPECT_EQ(std::ranges::adjacent_find(rising, std::greater()), rising.end());
+  const auto& any = layer->components[kAny].value;
+  EXPECT_LT(any.back() - any.front(), -2) << "log odds of 0.2 less those of 0.8";
+}
+
 TEST(ScoreLayer, ReliabilityOfKnownProbabilities) {
   ScoreLayer layer;  // says 1/2 of everything, 1/3 of each of two rivals
   ScoreFrame frame;
@@ -225,14 +245,18 @@ TEST(ScoreLayer, TheBuiltInOnesHaveRisingPlacesAndKnowWhatTheirRoundKnows) {
     const ComponentType& type = kScoreComponents[i];
     if (!type.learned) continue;
     SCOPED_TRACE(std::string(type.name));
-    const auto says_something = [i](const ScoreLayer& layer) {
+    const auto says_something = [i, &type](const ScoreLayer& layer) {
       const auto& place = layer.components[i].place;
       EXPECT_EQ(std::adjacent_find(place.begin(), place.end(), std::greater_equal<>()),
                 place.end());
       const auto& value = layer.components[i].value;
-      return std::any_of(value.begin(), value.end(), [](double v) { return v != 0; });
+      const bool falls = std::ranges::adjacent_find(value, std::greater()) != value.end();
+      const bool rises = std::ranges::adjacent_find(value, std::less()) != value.end();
+      EXPECT_FALSE(falls && type.rises);
+      return rises || falls;
     };
     EXPECT_EQ(says_something(layers.round_two), type.round == Round::two);
+    if (type.rises) continue;  // may say nothing: what they know, others say too
     EXPECT_TRUE(says_something(layers.round_three));
     EXPECT_EQ(says_something(layers.without_color), !type.needs_color);
   }

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/scene/given_others.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+#include "core/base/parallel.hpp"
+#include "core/score/surface_agreement.hpp"
+
+namespace bpa {
+namespace {
+
+constexpr int kJudgedPoints = 300;  // of the model that are looked at
+constexpr int kNobody = -1;
+constexpr double kPresent = 0.3;  // probability of what a first interpretation holds
+
+// Calls visit(pixel) for the pixels and their neighbours in an image: explained pixels are those of
+// single model points, which may lie further apart than pixels.
+void for_each_beside(const std::vector<std::uint32_t>& pixels, int width, int height,
+                     const auto& visit) {
+  for (const std::uint32_t pixel : pixels) {
+    const int u = static_cast<int>(pixel) % width, v = static_cast<int>(pixel) / width;
+    for (int y = std::max(0, v - 1); y <= std::min(height - 1, v + 1); ++y) {
+      for (int x = std::max(0, u - 1); x <= std::min(width - 1, u + 1); ++x) {
+        visit(static_cast<std::size_t>(y * width + x));
+      }
+    }
+  }
+}
+
+// Which placement explains a pixel.
+std::vector<int> owners_of(const SceneFeatures& scene, const std::vector<bool>& present,
+                           const Candidates& candidates) {
+  std::vector<int> owners(scene.map.size(), kNobody);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (!present[i]) continue;
+    for (const std::uint32_t pixel : candidates[i].explained) owners[pixel] = static_cast<int>(i);
+  }
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (!present[i]) continue;
+    for_each_beside(candidates[i].explained, scene.map.width(), scene.map.height(),
+                    [&](std::size_t pixel) {
+                      if (owners[pixel] == kNobody) owners[pixel] = static_cast<int>(i);
+                    });
+  }
+  return owners;
+}
+
+// What one placement looks like given the others.
+class Judge {
+ public:
+  Judge(const SceneFeatures& scene, const Candidate& candidate,
+        const std::vector<Overlap>& overlaps, std::size_t self, const std::vector<int>& owners)
+      : scene_(scene), candidate_(candidate), owners_(owners), not_others_{static_cast<int>(self)} {
+    for (const Overlap& overlap : overlaps) {
+      if (overlap.conflicting) not_others_.push_back(static_cast<int>(overlap.other));
+    }
+  }
+
+  // The share of the facing model points that are hidden by what no other explains.
+  double hidden_by_unknown() const {
+    const HiddenPoints hidden =
+        hidden_points(scene_.image, *candidate_.model, candidate_.pose(), kJudgedPoints);
+    const auto unknown = std::ranges::count_if(
+        hidden.pixels, [&](std::uint32_t pixel) { return !of_another(pixel); });
+    return static_cast<double>(unknown) / std::max(1, hidden.facing);
+  }
+
+  // The share of the super-pixels it explains that neither it nor another does; those that it
+  // explains most of count most.
+  double left_over() const {
+    const Segmentation& segmentation = scene_.segmentation;
+    std::vector<std::int32_t> touched;
+    for (const std::uint32_t pixel : candidate_.explained) {
+      if (segmentation.labels[pixel] >= 0) touched.push_back(segmentation.labels[pixel]);
+    }
+    if (touched.empty()) return kNotKnown;
+    std::ranges::sort(touched);
+    std::vector<std::uint32_t> own;
+    for_each_beside(candidate_.explained, scene_.map.width(), scene_.map.height(),
+                    [&](std::size_t pixel) { own.push_back(static_cast<std::uint32_t>(pixel)); });
+    std::ranges::sort(own);
+    double sum = 0;
+    for (auto first = touched.begin(); first != touched.end();) {
+      const auto last = std::upper_bound(first, touched.end(), *first);
+      const auto& pixels = segmentation.segments[static_cast<std::size_t>(*first)].pixels;
+      const auto left = std::ranges::count_if(pixels, [&](std::uint32_t pixel) {
+        return !of_another(pixel) && !std::ranges::binary_search(own, pixel);
+      });
+      sum += static_cast<double>(last - first) * static_cast<double>(left) /
+             static_cast<double>(pixels.size());
+      first = last;
+    }
+    return sum / static_cast<double>(touched.size());
+  }
+
+ private:
+  bool of_another(std::uint32_t pixel) const {
+    const int owner = owners_[pixel];
+    return owner != kNobody && std::ranges::find(not_others_, owner) == not_others_.end();
+  }
+
+  const SceneFeatures& scene_;
+  const Candidate& candidate_;
+  const std::vector<int>& owners_;
+  std::vector<int> not_others_;  // itself and what it conflicts with
+};
+
+}  // namespace
+
+std::vector<bool> first_interpretation(const Candidates& candidates, const Overlaps& overlaps) {
+  std::vector<std::size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(),
+                           [&](std::size_t i) { return candidates[i].probability; });
+  std::vector<bool> present(candidates.size(), false);
+  for (const std::size_t i : order) {
+    if (candidates[i].probability < kPresent) break;
+    present[i] = std::ranges::none_of(overlaps[i], [&](const Overlap& overlap) {
+      return overlap.conflicting && present[overlap.other];
+    });
+  }
+  return present;
+}
+
+void measure_given_others(const SceneFeatures& scene, const Overlaps& overlaps,
+                          const std::vector<bool>& present, Candidates& candidates,
+                          int num_threads) {
+  const std::vector<int> owners = owners_of(scene, present, candidates);
+  parallel_for(candidates.size(), num_threads, [&](std::size_t i) {
+    Candidate& candidate = candidates[i];
+    if (candidate.score < kHopelessScore) return;
+    const Judge judge(scene, candidate, overlaps[i], i, owners);
+    candidate.values[component("hidden_by_unknown")] = judge.hidden_by_unknown();
+    candidate.values[component("left_over")] = judge.left_over();
+  });
+}
+
+}  // namespace bpa

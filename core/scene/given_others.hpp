@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "core/detect/candidate.hpp"
+#include "core/observation/scene_features.hpp"
+#include "core/scene/overlaps.hpp"
+#include "core/score/score_layer.hpp"
+
+// What hides what: each placement is judged again given the others of a first interpretation. What
+// they hide is neither for nor against it, and what they explain is not left over.
+
+namespace bpa {
+
+/// The candidates of a first interpretation: by falling probability, those over 0.3 that conflict
+/// with none before.
+std::vector<bool> first_interpretation(const Candidates& candidates, const Overlaps& overlaps);
+
+/// Measures the components of Round::others for each candidate that is not hopeless. The others are
+/// the `present` candidates that it does not conflict with.
+void measure_given_others(const SceneFeatures& scene, const Overlaps& overlaps,
+                          const std::vector<bool>& present, Candidates& candidates,
+                          int num_threads = 0);
+
+}  // namespace bpa

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/scene/given_others.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/score/surface_agreement.hpp"
+#include "tests/support/posed_models.hpp"
+
+namespace bpa {
+namespace {
+
+enum { kBack, kFront };
+
+// A brick in front of a wall, half hidden by another. Which pixel shows what is known from rays.
+class GivenOthers : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { brick_ = test::brick_model(); }
+  static void TearDownTestSuite() { brick_.reset(); }
+
+  void SetUp() override {
+    const test::Solid wall{test::Solid::Kind::box, {2, 2, 0.1}, at(0, 0, 1.6)};
+    const std::vector<test::Solid> bricks{test::brick_solid(kPlaces[kBack]),
+                                          test::brick_solid(kPlaces[kFront])};
+    const Camera camera = test::kinect_camera();
+    const test::SolidImage both = test::render(test::together(bricks, {wall}), camera);
+    const test::SolidImage alone = test::render({bricks[kBack]}, camera);
+    scene_.map = surface_map(both.frame, {});
+    scene_.image = make_check_image(scene_.map);
+    for (const Pose& place : kPlaces) {
+      Candidate& candidate = candidates_.emplace_back();
+      candidate.model = brick_.get();
+      candidate.refinement.camera_from_object = place;
+      candidate.probability = 0.9;
+      candidate.explained = explained_pixels(scene_.image, *brick_, place);
+    }
+    Segmentation& segmentation = scene_.segmentation;  // all that is nearer than the wall
+    segmentation.labels = Image<std::int32_t>(scene_.map.width(), scene_.map.height(), -1);
+    segmentation.segments.resize(1);
+    for (std::size_t i = 0; i < scene_.map.size(); ++i) {
+      const std::size_t pixel = both.index_of(scene_.map, i);
+      const int seen = both.solid[pixel];
+      if (alone.solid[pixel] == kBack) ++covered_, hidden_ += seen == kFront;
+      if (seen != kBack && seen != kFront) continue;
+      ++shown_[seen];
+      segmentation.labels[i] = 0;
+      segmentation.segments[0].pixels.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+
+  static Pose at(double x, double y, double z) {
+    return {Eigen::Quaterniond::Identity(), {x, y, z}};
+  }
+  // A component of the brick at the back, given the others.
+  double measured(std::string_view name, const std::vector<bool>& present,
+                  const Overlaps& overlaps = Overlaps(2)) {
+    measure_given_others(scene_, overlaps, present, candidates_);
+    for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
+      if (kScoreComponents[i].name == name) return candidates_[kBack].values[i];
+    }
+    return kNotKnown;
+  }
+  double hidden() const { return static_cast<double>(hidden_) / covered_; }
+  // Of the pixels of both, those of the one in front.
+  double left() const { return static_cast<double>(shown_[kFront]) / (shown_[0] + shown_[1]); }
+
+  static inline const Pose kPlaces[2] = {at(0, 0, 1), at(0.04, 0, 0.8)};
+  static inline std::shared_ptr<const ObjectModel> brick_;
+  SceneFeatures scene_;
+  Candidates candidates_;
+  int covered_ = 0, hidden_ = 0, shown_[2] = {};
+};
+
+TEST_F(GivenOthers, WhatAnotherHidesIsHiddenByWhatIsKnown) {
+  ASSERT_GT(hidden(), 0.3);
+  ASSERT_LT(hidden(), 0.8);
+  EXPECT_NEAR(measured("hidden_by_unknown", {true, true}), 0, 0.03);
+  EXPECT_NEAR(measured("hidden_by_unknown", {true, false}), hidden(), 0.05);
+  EXPECT_NEAR(measured("hidden_by_unknown", {false, false}), hidden(), 0.05);
+}
+
+TEST_F(GivenOthers, WhatAnotherExplainsIsNotLeftOver) {
+  EXPECT_NEAR(measured("left_over", {true, true}), 0, 0.05);
+  EXPECT_NEAR(measured("left_over", {true, false}), left(), 0.05);
+}
+
+// It cannot be there when the placement in question is.
+TEST_F(GivenOthers, ARivalIsNoOther) {
+  Overlaps overlaps(2);
+  overlaps[kBack] = {{kFront, 0, true}};
+  EXPECT_NEAR(measured("hidden_by_unknown", {true, true}, overlaps), hidden(), 0.05);
+  EXPECT_NEAR(measured("left_over", {true, true}, overlaps), left(), 0.05);
+}
+
+TEST_F(GivenOthers, HopelessPlacementsAreNotMeasured) {
+  candidates_[kBack].values.fill(kNotKnown);
+  candidates_[kBack].score = kHopelessScore - 1;
+  EXPECT_TRUE(std::isnan(measured("left_over", {false, true})));
+}
+
+TEST_F(GivenOthers, TheFirstInterpretationHoldsTheMostProbableThatDoNotConflict) {
+  Candidates three(3);
+  three[0].probability = 0.5;
+  three[1].probability = 0.8;
+  three[2].probability = 0.2;
+  Overlaps overlaps(3);
+  EXPECT_EQ(first_interpretation(three, overlaps), (std::vector{true, true, false}));
+  three[2].probability = 0.4;
+  overlaps[0] = {{1, 7, true}};
+  overlaps[1] = {{0, 7, true}, {2, 7, false}};
+  overlaps[2] = {{1, 7, false}};
+  EXPECT_EQ(first_interpretation(three, overlaps), (std::vector{false, true, true}));
+}
+
+}  // namespace
+}  // namespace bpa
