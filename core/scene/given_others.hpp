@@ -7,7 +7,6 @@
 #include "core/detect/candidate.hpp"
 #include "core/observation/scene_features.hpp"
 #include "core/scene/overlaps.hpp"
-#include "core/score/score_layer.hpp"
 
 // What hides what: each placement is judged again given the others of a first interpretation. What
 // they hide is neither for nor against it, and what they explain is not left over.
