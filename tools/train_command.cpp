@@ -58,8 +58,8 @@ ScoreFrame round_two_samples(const FrameTrace& trace, const DetectorOptions& opt
 
 // The objects of the frame that a first interpretation would hold: most of those in sight.
 Candidates others_of(const Detector& detector, const FrameTrace& trace, const TrueFrame& frame) {
-  constexpr double kFound = 0.75;       // of the objects in sight, in unseen piles
-  constexpr std::size_t kInSight = 50;  // pixels
+  constexpr double kFound = 0.75;       // of the objects in sight: about the recall in unseen piles
+  constexpr std::size_t kInSight = 50;  // explained pixels, chosen by hand
   const auto& models = detector.library().models();
   RandomStream random(frame.index);
   Candidates out;
@@ -79,14 +79,14 @@ Candidates others_of(const Detector& detector, const FrameTrace& trace, const Tr
 // What interpretations choose from. A frame is searched for some models alone, so what others
 // explain is taken from the truth.
 ScoreFrame round_three_samples(const Detector& detector, const FrameTrace& trace,
-                               const TrueFrame& frame) {
+                               const TrueFrame& frame, int num_threads) {
   const double max_shared = detector.options().scene.max_shared;
   Candidates all = trace.candidates;
   const std::size_t count = all.size();
   std::ranges::move(others_of(detector, trace, frame), std::back_inserter(all));
   std::vector<bool> present(count, false);
   present.resize(all.size(), true);
-  measure_given_others(trace.scene, find_overlaps(all, max_shared), present, all);
+  measure_given_others(trace.scene, find_overlaps(all, max_shared), present, all, num_threads);
   all.resize(count);
   ScoreFrame out;
   out.competition = competition_of(all, find_overlaps(all, max_shared));
@@ -108,7 +108,7 @@ void collect(const TrainArguments& a, const Detector& detector, const Folders& f
     const auto part = held_out ? &Samples::held_out : &Samples::training;
     if (round_two) (round_two->*part).push_back(round_two_samples(trace, options, frame.truth));
     if (round_three) {
-      (round_three->*part).push_back(round_three_samples(detector, trace, frame));
+      (round_three->*part).push_back(round_three_samples(detector, trace, frame, a.common.threads));
     }
   };
   for (const std::string& folder : folders) {

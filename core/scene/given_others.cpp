@@ -12,9 +12,10 @@
 namespace bpa {
 namespace {
 
-constexpr int kJudgedPoints = 300;  // of the model that are looked at
 constexpr int kNobody = -1;
-constexpr double kPresent = 0.3;  // probability of what a first interpretation holds
+// Chosen by hand.
+constexpr int kJudgedPoints = 300;  // of the model that are looked at
+constexpr double kPresent = 0.3;    // probability of what a first interpretation holds
 
 // Calls visit(pixel) for the pixels and their neighbours in an image: explained pixels are those of
 // single model points, which may lie further apart than pixels.
@@ -52,10 +53,12 @@ std::vector<int> owners_of(const SceneFeatures& scene, const std::vector<bool>& 
 class Judge {
  public:
   Judge(const SceneFeatures& scene, const Candidate& candidate,
-        const std::vector<Overlap>& overlaps, std::size_t self, const std::vector<int>& owners)
+        const std::vector<Overlap>& overlaps, const std::vector<bool>& present, std::size_t self,
+        const std::vector<int>& owners)
       : scene_(scene), candidate_(candidate), owners_(owners), not_others_{static_cast<int>(self)} {
     for (const Overlap& overlap : overlaps) {
-      if (overlap.conflicting) not_others_.push_back(static_cast<int>(overlap.other));
+      if (overlap.conflicting && present[overlap.other])
+        not_others_.push_back(static_cast<int>(overlap.other));
     }
   }
 
@@ -72,28 +75,27 @@ class Judge {
   // explains most of count most.
   double left_over() const {
     const Segmentation& segmentation = scene_.segmentation;
-    std::vector<std::int32_t> touched;
+    std::vector<int> explained(segmentation.segments.size(), 0);
+    int all = 0;
     for (const std::uint32_t pixel : candidate_.explained) {
-      if (segmentation.labels[pixel] >= 0) touched.push_back(segmentation.labels[pixel]);
+      const std::int32_t label = segmentation.labels[pixel];
+      if (label < 0) continue;
+      ++explained[static_cast<std::size_t>(label)];
+      ++all;
     }
-    if (touched.empty()) return kNotKnown;
-    std::ranges::sort(touched);
-    std::vector<std::uint32_t> own;
+    if (all == 0) return kNotKnown;
+    std::vector<bool> own(scene_.map.size(), false);
     for_each_beside(candidate_.explained, scene_.map.width(), scene_.map.height(),
-                    [&](std::size_t pixel) { own.push_back(static_cast<std::uint32_t>(pixel)); });
-    std::ranges::sort(own);
+                    [&](std::size_t pixel) { own[pixel] = true; });
     double sum = 0;
-    for (auto first = touched.begin(); first != touched.end();) {
-      const auto last = std::upper_bound(first, touched.end(), *first);
-      const auto& pixels = segmentation.segments[static_cast<std::size_t>(*first)].pixels;
-      const auto left = std::ranges::count_if(pixels, [&](std::uint32_t pixel) {
-        return !of_another(pixel) && !std::ranges::binary_search(own, pixel);
-      });
-      sum += static_cast<double>(last - first) * static_cast<double>(left) /
-             static_cast<double>(pixels.size());
-      first = last;
+    for (std::size_t s = 0; s < explained.size(); ++s) {
+      if (explained[s] == 0) continue;
+      const auto& pixels = segmentation.segments[s].pixels;
+      const auto left = std::ranges::count_if(
+          pixels, [&](std::uint32_t pixel) { return !own[pixel] && !of_another(pixel); });
+      sum += explained[s] * static_cast<double>(left) / static_cast<double>(pixels.size());
     }
-    return sum / static_cast<double>(touched.size());
+    return sum / all;
   }
 
  private:
@@ -105,7 +107,7 @@ class Judge {
   const SceneFeatures& scene_;
   const Candidate& candidate_;
   const std::vector<int>& owners_;
-  std::vector<int> not_others_;  // itself and what it conflicts with
+  std::vector<int> not_others_;  // itself and what is present and conflicts with it
 };
 
 }  // namespace
@@ -132,7 +134,7 @@ void measure_given_others(const SceneFeatures& scene, const Overlaps& overlaps,
   parallel_for(candidates.size(), num_threads, [&](std::size_t i) {
     Candidate& candidate = candidates[i];
     if (candidate.score < kHopelessScore) return;
-    const Judge judge(scene, candidate, overlaps[i], i, owners);
+    const Judge judge(scene, candidate, overlaps[i], present, i, owners);
     candidate.values[component("hidden_by_unknown")] = judge.hidden_by_unknown();
     candidate.values[component("left_over")] = judge.left_over();
   });

@@ -21,6 +21,6 @@ std::vector<bool> first_interpretation(const Candidates& candidates, const Overl
 /// the `present` candidates that it does not conflict with.
 void measure_given_others(const SceneFeatures& scene, const Overlaps& overlaps,
                           const std::vector<bool>& present, Candidates& candidates,
-                          int num_threads = 0);
+                          int num_threads);
 
 }  // namespace bpa

@@ -21,9 +21,10 @@ constexpr double kDistanceSigma_m = 0.01;
 /// What is observed this far in front of a prediction hides it. Metres, chosen by hand.
 constexpr float kHidden_m = 0.02f;
 
-/// Whether what is observed hides what is predicted; 0 is no observation and hides nothing.
-inline bool hides(float observed_depth, float predicted_depth) {
-  return observed_depth > 0 && observed_depth < predicted_depth - kHidden_m;
+/// Whether what is observed hides what is predicted, being over `by` metres in front of it; 0 is no
+/// observation and hides nothing.
+inline bool hides(float observed_depth, float predicted_depth, float by = kHidden_m) {
+  return observed_depth > 0 && observed_depth < predicted_depth - by;
 }
 
 /// The log-likelihood of an error under a normal distribution, relative to that of no error.

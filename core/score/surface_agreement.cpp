@@ -103,7 +103,7 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const ModelV
     if (at < 0) continue;
     ++total;
     const CheckPixel& inside = image.pixels[static_cast<std::size_t>(at)];
-    if (inside.depth > 0 && inside.depth < point.z() - kHiding) continue;
+    if (hides(inside.depth, point.z(), kHiding)) continue;
     ++visible;
     const int at_beyond = image.pixel_of(point + kBeyond * outward);
     if (at_beyond < 0) continue;
@@ -226,8 +226,7 @@ HiddenPoints hidden_points(const CheckImage& image, const ObjectModel& model, co
   for (std::size_t k = 0; k < view.visible.size(); k += step) {
     if (!see_point(image, model, view, fast, k, seen)) continue;
     ++out.facing;
-    const float depth = image.pixels[seen.pixel].depth;
-    if (depth > 0 && depth < seen.point.z() - kHiding) {
+    if (hides(image.pixels[seen.pixel].depth, seen.point.z(), kHiding)) {
       out.pixels.push_back(static_cast<std::uint32_t>(seen.pixel));
     }
   }
