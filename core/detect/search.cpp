@@ -50,15 +50,15 @@ Candidate Search::scored(Refinement refinement, Source found_by) const {
   return out;
 }
 
-void apply_layers(const ScoreLayers& layers, Candidate& candidate) {
-  candidate.score = layers.last_for(candidate.values).log_odds(candidate.values) + candidate.prior;
+void apply_layer(const ScoreLayer& layer, Candidate& candidate) {
+  candidate.score = layer.log_odds(candidate.values) + candidate.prior;
   candidate.probability = probability_of(candidate.score);
 }
 
 void Search::apply_layer(Candidate& candidate) const {
-  if (options.score.use_round_three) return apply_layers(layers, candidate);
-  candidate.score = layers.round_two.log_odds(candidate.values) + candidate.prior;
-  candidate.probability = probability_of(candidate.score);
+  bpa::apply_layer(
+      options.score.use_round_three ? layers.last_for(candidate.values) : layers.round_two,
+      candidate);
 }
 
 void Search::reject(std::string_view reason, const Pose& pose) const {

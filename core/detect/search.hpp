@@ -40,8 +40,8 @@ struct ObjectTrace {
   std::vector<TraceStage> stages;  ///< In the order of detection_stages().
 };
 
-/// Sets score and probability from values and prior, by the last layer.
-void apply_layers(const ScoreLayers& layers, Candidate& candidate);
+/// Sets score and probability from values and prior.
+void apply_layer(const ScoreLayer& layer, Candidate& candidate);
 
 /// The search for one model in one scene: what every stage reads. Keeps references to
 /// scene, model and layers.
@@ -72,7 +72,7 @@ struct Search {
   double quick_score(const Pose& pose) const;
   /// Scores a candidate at `refinement` with all components.
   Candidate scored(Refinement refinement, Source found_by) const;
-  /// Sets score and probability from values and prior.
+  /// Sets score and probability by the last layer, or by that of round two without round three.
   void apply_layer(Candidate& candidate) const;
   /// Compares `points` of the model's points at a pose with the depth image; without a tolerance,
   /// with that of CheckOptions, whose depth follows the model's size.

@@ -127,7 +127,9 @@ void judge_again(const SceneFeatures& scene, const Overlaps& overlaps, const Sco
                  const DetectRequest& request, Candidates& candidates) {
   const auto present = first_interpretation(candidates, overlaps);
   measure_given_others(scene, overlaps, present, candidates, request.num_threads);
-  for (Candidate& candidate : candidates) apply_layers(layers, candidate);
+  for (Candidate& candidate : candidates) {
+    apply_layer(layers.last_for(candidate.values), candidate);
+  }
   let_compete(candidates, overlaps);
 }
 
