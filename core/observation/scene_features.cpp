@@ -41,12 +41,6 @@ Image<Eigen::Vector3f> log_light_of(Image<Eigen::Vector3f> lab, int num_threads)
   return lab;
 }
 
-// CIELAB for thin objects, which the blur of SceneFeatures::cielab would smear.
-Image<Eigen::Vector3f> less_noise(const Image<Eigen::Vector3f>& lab, int num_threads) {
-  constexpr double kBlur = 0.7;  // pixels
-  return lab.empty() ? Image<Eigen::Vector3f>() : blur(lab, kBlur, num_threads);
-}
-
 std::shared_ptr<const SceneFeatures> with_flat_regions(const SceneFeatures& scene) {
   if (scene.flat.regions.empty()) return nullptr;
   auto out = std::make_shared<SceneFeatures>(scene);
@@ -92,8 +86,10 @@ SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
       scene_pairs(scene.coarse, choose(scene.coarse.size(), options.max_references, options.seed),
                   static_cast<float>(options.pair_reach_m), options.num_threads);
   if (options.use_flat_regions) {
-    scene.flat =
-        find_flat_regions(scene.map, scene.planes, less_noise(sharp_lab, options.num_threads));
+    // Pixels, against noise. The blur of `cielab` would smear thin objects.
+    constexpr double kLittleBlur = 0.7;
+    scene.flat = find_flat_regions(scene.map, scene.planes,
+                                   blur(sharp_lab, kLittleBlur, options.num_threads));
     scene.with_flat = with_flat_regions(scene);
   }
   return scene;

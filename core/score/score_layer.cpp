@@ -160,17 +160,15 @@ void make_rising(std::span<double> values) {
   for (std::size_t i = 0; i < n; ++i) value = std::fill_n(value, pools[i].count, pools[i].mean());
 }
 
-// What rises for certain rises.
-void keep_directions(Weights& weights) {
+// See ComponentType::rises.
+void keep_rising(Weights& weights) {
   for (std::size_t f = 0; f < kNumComponents; ++f) {
-    if (kScoreComponents[f].rises) {
-      make_rising({&weights[weight_of(f, 0)], kKnots});
-    }
+    if (kScoreComponents[f].rises) make_rising({&weights[weight_of(f, 0)], kKnots});
   }
 }
 
-// Adam (Kingma and Ba, 2015) on all frames at once, with falling steps, each of which is projected
-// onto the curves of known direction.
+// Adam (Kingma and Ba, 2015) on all frames at once, with falling steps. After each, curves that
+// must not fall are projected onto rising ones.
 Weights minimise(const Weights& start, const std::vector<FrameLikelihood>& frames, double samples) {
   constexpr int kIterations = 600;
   Weights weights = start, mean = Weights::Zero(), square = Weights::Zero();
@@ -184,7 +182,7 @@ Weights minimise(const Weights& start, const std::vector<FrameLikelihood>& frame
     const Weights step = (mean / (1 - std::pow(0.9, k))).array() /
                          ((square / (1 - std::pow(0.99, k))).array().sqrt() + 1e-12);
     weights -= 0.1 * (1 - static_cast<double>(k - 1) / kIterations) * step;
-    keep_directions(weights);
+    keep_rising(weights);
   }
   return weights;
 }

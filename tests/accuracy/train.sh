@@ -23,8 +23,8 @@ set -euo pipefail
 readonly programs=$1 output=$2
 readonly scenes=${BPA_SCENES:-400}
 readonly objects=${BPA_OBJECTS:-mug,bowl,bottle,can,cup,tube,funnel,plate,milk_carton,cereal_box,snack_box,\
-spray_bottle,jug,cube,l_brick,stud_block,gear,banana,pen,screwdriver,wrench,scissors,clamp,spatula,tin,battery,phone,remote,book,soap,\
-sponge,matchbox}
+spray_bottle,jug,cube,l_brick,stud_block,gear,banana,pen,screwdriver,wrench,scissors,clamp,spatula,tin,battery,phone,\
+remote,book,soap,sponge,matchbox}
 mkdir -p "$output"
 rm -rf "$output"/{heaps,heaps_look_alikes,close,close_look_alikes,rough,table,foreign,prints,close_prints,library}
 simulate() { # FOLDER SEED SCENES [OPTION...]
