@@ -49,6 +49,7 @@ void for_each_key(const PointPairFeature& f, float inverse_step, const auto& vis
   }
 }
 
+constexpr std::size_t kMaxPoints = 65535;  // of a table: an entry's index has 16 bits
 constexpr int kTurnBins = 32;
 constexpr int kStepsPerBin = kTurnSteps / kTurnBins;
 constexpr int kMinVotes = 3;  // of a voted pose; chosen by hand
@@ -89,6 +90,17 @@ PointPairFeature point_pair_feature(const Eigen::Vector3f& p, const Eigen::Vecto
           safe_acos(np.dot(nq))};
 }
 
+std::optional<PointPairFeature> rim_feature(const Eigen::Vector3f& p, const Eigen::Vector3f& np,
+                                            const RimPoint& rim) {
+  constexpr float kMinDistance = 0.005f;  // metres; chosen by hand
+  PointPairFeature feature = point_pair_feature(p, np, rim.point, rim.normal);
+  if (feature.distance < kMinDistance || fixes_pose(feature)) return {};
+  feature.angle_first = 0.5f * kAngleStep;  // the middle of a bin
+  feature.angle_second = safe_acos(rim.outward.dot(rim.point - p) / feature.distance);
+  feature.angle_normals = 0.5f * kAngleStep;
+  return feature;
+}
+
 bool fixes_pose(const PointPairFeature& f) {
   return f.angle_normals > kFixingAngle || std::abs(f.angle_first - 0.5f * kPi) > kFixingAngle;
 }
@@ -118,23 +130,10 @@ std::uint8_t turn_of(const Eigen::Matrix3f& basis, const Eigen::Vector3f& line) 
   return static_cast<std::uint8_t>(static_cast<int>(std::floor(steps + 0.5f)) & (kTurnSteps - 1));
 }
 
-PointPairTable::PointPairTable(const PointCloud& points, float distance_step)
-    : inverse_step_(1 / distance_step) {
-  const std::size_t count = std::min<std::size_t>(points.size(), 65535);
-  std::vector<Eigen::Matrix3f> bases(count);
-  for (std::size_t i = 0; i < count; ++i) bases[i] = basis_of(points.normals[i]);
-  // Twice over the pairs: how many there are of each key, then where each goes.
-  const auto for_each_pair = [&](const auto& visit) {
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t j = 0; j < count; ++j) {
-        if (i == j) continue;
-        const PointPairFeature feature = point_pair_feature(points.points[i], points.normals[i],
-                                                            points.points[j], points.normals[j]);
-        if (feature.distance >= distance_step && fixes_pose(feature)) visit(i, j, feature);
-      }
-    }
-  };
-  for_each_pair([&](std::size_t, std::size_t, const PointPairFeature& feature) {
+// Calls for_each_pair(visit(index of the first point, second point, feature)) twice: how many pairs
+// there are of each key, then where each goes.
+void PointPairTable::fill(const PointCloud& points, const auto& for_each_pair) {
+  for_each_pair([&](std::size_t, const Eigen::Vector3f&, const PointPairFeature& feature) {
     max_distance_ = std::max(max_distance_, feature.distance);
     for_each_key(feature, inverse_step_, [&](std::uint32_t key) {
       if (key + 2 > first_.size()) first_.resize(key + 2, 0);
@@ -143,33 +142,58 @@ PointPairTable::PointPairTable(const PointCloud& points, float distance_step)
   });
   for (std::size_t k = 1; k < first_.size(); ++k) first_[k] += first_[k - 1];
   entries_.resize(first_.empty() ? 0 : first_.back());
+  std::vector<Eigen::Matrix3f> bases;
+  for (const Eigen::Vector3f& normal : points.normals) bases.push_back(basis_of(normal));
   std::vector<std::uint32_t> next = first_;
-  for_each_pair([&](std::size_t i, std::size_t j, const PointPairFeature& feature) {
-    const Entry entry{static_cast<std::uint16_t>(i),
-                      turn_of(bases[i], points.points[j] - points.points[i])};
+  for_each_pair([&](std::size_t i, const Eigen::Vector3f& second, const PointPairFeature& feature) {
+    const Entry entry{static_cast<std::uint16_t>(i), turn_of(bases[i], second - points.points[i])};
     for_each_key(feature, inverse_step_, [&](std::uint32_t key) { entries_[next[key]++] = entry; });
   });
 }
 
-ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, float reach,
-                       int num_threads) {
+PointPairTable::PointPairTable(const PointCloud& points, float distance_step)
+    : inverse_step_(1 / distance_step) {
+  const std::size_t count = std::min(points.size(), kMaxPoints);
+  fill(points, [&](const auto& visit) {
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = 0; j < count; ++j) {
+        if (i == j) continue;
+        const PointPairFeature feature = point_pair_feature(points.points[i], points.normals[i],
+                                                            points.points[j], points.normals[j]);
+        if (feature.distance >= distance_step && fixes_pose(feature)) {
+          visit(i, points.points[j], feature);
+        }
+      }
+    }
+  });
+}
+
+PointPairTable::PointPairTable(const PointCloud& points, std::span<const RimPoint> rims,
+                               float distance_step)
+    : inverse_step_(1 / distance_step) {
+  const std::size_t count = std::min(points.size(), kMaxPoints);
+  fill(points, [&](const auto& visit) {
+    for (std::size_t i = 0; i < count; ++i) {
+      for (const RimPoint& rim : rims) {
+        const auto feature = rim_feature(points.points[i], points.normals[i], rim);
+        if (feature) visit(i, rim.point, *feature);
+      }
+    }
+  });
+}
+
+namespace {
+
+// add(index of the reference point, its basis, out) adds its partners.
+ScenePairs pairs_about(const PointCloud& cloud, std::vector<int> references, int num_threads,
+                       const auto& add) {
   ScenePairs out;
   out.references = std::move(references);
   out.first.assign(out.references.size() + 1, 0);
-  if (out.references.empty()) return out;
-  const NeighborGrid grid(cloud.points, reach);
   std::vector<std::vector<ScenePairs::Partner>> partners(out.references.size());
   parallel_for(out.references.size(), num_threads, [&](std::size_t r) {
     const std::size_t i = out.references[r];
-    const Eigen::Matrix3f basis = basis_of(cloud.normals[i]);
-    grid.for_each_neighbor(cloud.points[i], [&](std::size_t j, float) {
-      if (i == j || (i + j) % 2 != 0) return;  // half of them
-      const PointPairFeature feature =
-          point_pair_feature(cloud.points[i], cloud.normals[i], cloud.points[j], cloud.normals[j]);
-      if (!fixes_pose(feature)) return;
-      partners[r].push_back({feature.distance, pair_angle_key(feature),
-                             turn_of(basis, cloud.points[j] - cloud.points[i])});
-    });
+    add(i, basis_of(cloud.normals[i]), partners[r]);
     std::ranges::stable_sort(partners[r], {}, &ScenePairs::Partner::distance);
   });
   for (std::size_t r = 0; r < partners.size(); ++r) {
@@ -177,6 +201,40 @@ ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, flo
     out.first[r + 1] = static_cast<std::uint32_t>(out.partners.size());
   }
   return out;
+}
+
+}  // namespace
+
+ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, float reach,
+                       int num_threads) {
+  const NeighborGrid grid(cloud.points, reach);
+  const auto add = [&](std::size_t i, const Eigen::Matrix3f& basis, auto& partners) {
+    grid.for_each_neighbor(cloud.points[i], [&](std::size_t j, float) {
+      if (i == j || (i + j) % 2 != 0) return;  // half of them
+      const PointPairFeature feature =
+          point_pair_feature(cloud.points[i], cloud.normals[i], cloud.points[j], cloud.normals[j]);
+      if (!fixes_pose(feature)) return;
+      partners.push_back({feature.distance, pair_angle_key(feature),
+                          turn_of(basis, cloud.points[j] - cloud.points[i])});
+    });
+  };
+  return pairs_about(cloud, std::move(references), num_threads, add);
+}
+
+ScenePairs scene_rim_pairs(const PointCloud& cloud, std::span<const RimPoint> rims,
+                           std::vector<int> references, float reach, int num_threads) {
+  std::vector<Eigen::Vector3f> ends;
+  for (const RimPoint& rim : rims) ends.push_back(rim.point);
+  const NeighborGrid grid(ends, reach);
+  const auto add = [&](std::size_t i, const Eigen::Matrix3f& basis, auto& partners) {
+    grid.for_each_neighbor(cloud.points[i], [&](std::size_t j, float) {
+      const auto feature = rim_feature(cloud.points[i], cloud.normals[i], rims[j]);
+      if (!feature) return;
+      partners.push_back(
+          {feature->distance, pair_angle_key(*feature), turn_of(basis, ends[j] - cloud.points[i])});
+    });
+  };
+  return pairs_about(cloud, std::move(references), num_threads, add);
 }
 
 std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable& table,

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/cloud/point_cloud.hpp"
+#include "core/features/rim_points.hpp"
 
 namespace bpa {
 
@@ -26,6 +28,13 @@ PointPairFeature point_pair_feature(const Eigen::Vector3f& p, const Eigen::Vecto
 /// not in one another's tangent plane.
 bool fixes_pose(const PointPairFeature& feature);
 
+/// The same of a point and a rim of the face that it is on; nothing if it is not on that face.
+/// Pairs within one flat face fix no pose. With points of its rim they do (compare Choi et al.,
+/// "Voting-Based Pose Estimation for Robotic Assembly Using a 3D Sensor", ICRA 2012). Angles:
+/// between line and outward direction; the other two are constant.
+std::optional<PointPairFeature> rim_feature(const Eigen::Vector3f& p, const Eigen::Vector3f& np,
+                                            const RimPoint& rim);
+
 constexpr int kPairAngleBins = 12;  ///< 15 degrees each.
 constexpr int kTurnSteps = 256;     ///< Of a full turn about a normal.
 
@@ -39,6 +48,9 @@ class PointPairTable {
  public:
   /// `distance_step` in metres.
   PointPairTable(const PointCloud& points, float distance_step);
+
+  /// The pairs of a point and a rim of the face that it is on, under rim_feature().
+  PointPairTable(const PointCloud& points, std::span<const RimPoint> rims, float distance_step);
 
   /// One pair: its first point, and where the second lies about the first's normal.
   struct Entry {
@@ -58,6 +70,8 @@ class PointPairTable {
   static constexpr std::uint32_t kAngleKeys = kPairAngleBins * kPairAngleBins * kPairAngleBins;
 
  private:
+  void fill(const PointCloud& points, const auto& for_each_pair);
+
   float inverse_step_ = 1;
   float max_distance_ = 0;
   std::vector<std::uint32_t> first_;  // first_[key]..first_[key + 1] is the cell
@@ -85,6 +99,10 @@ struct ScenePairs {
 /// whose indices are both even or both odd.
 ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, float reach,
                        int num_threads);
+
+/// All pairs of the points `references` within `reach` metres of a rim of the face they are on.
+ScenePairs scene_rim_pairs(const PointCloud& cloud, std::span<const RimPoint> rims,
+                           std::vector<int> references, float reach, int num_threads);
 
 /// A reference point laid on a model point, turned about its normal: a pose that many pairs vote
 /// for.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -241,6 +242,90 @@ TEST(PairVoting, PartnersAreThoseWithinReachThatFixAPose) {
     }
     EXPECT_EQ(found, expected);
   }
+}
+
+// A flat plate, 12 x 8 cm, without one corner: no turn maps it onto itself.
+bool on_plate(const Eigen::Vector3f& p) {
+  return std::abs(p.x()) < 0.06f && std::abs(p.y()) < 0.04f && (p.x() < 0.02f || p.y() < 0.01f);
+}
+
+PointCloud plate(float spacing, float offset) {
+  PointCloud out;
+  for (float x = -0.06f + offset; x < 0.06f; x += spacing) {
+    for (float y = -0.04f + offset; y < 0.04f; y += spacing) {
+      if (!on_plate({x, y, 0})) continue;
+      out.points.emplace_back(x, y, 0.0f);
+      out.normals.push_back(Eigen::Vector3f::UnitZ());
+    }
+  }
+  return out;
+}
+
+Beside beside_plate(const Eigen::Vector3f& at, const Eigen::Vector3f&) {
+  return on_plate(at) ? Beside::surface : Beside::end;
+}
+
+TEST(RimPoints, LieWhereTheSurfaceEnds) {
+  PointCloud points;
+  for (const float x : {0.0f, 0.03f, 0.045f, 0.057f}) points.points.emplace_back(x, -0.015f, 0.0f);
+  points.normals.assign(points.points.size(), Eigen::Vector3f::UnitZ());
+  const auto rims = find_rims(points, beside_plate);
+  ASSERT_EQ(rims.size(), 2u) << "of those within 2 cm";
+  for (const RimPoint& rim : rims) {
+    EXPECT_NEAR(rim.point.x(), 0.06, 0.002);
+    EXPECT_NEAR(rim.point.y(), -0.015, 0.002);
+    EXPECT_GT(rim.outward.x(), 0.99f);
+    EXPECT_EQ(rim.normal, Eigen::Vector3f::UnitZ());
+  }
+}
+
+TEST(RimPoints, WhereDepthIsUnknownTheSurfaceEndsWhereItWasLastSeen) {
+  PointCloud point;
+  point.points = {{0.05f, -0.015f, 0}};
+  point.normals = {Eigen::Vector3f::UnitZ()};
+  const auto shadow = [](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
+    const bool beside = at.x() >= 0.06f && at.x() < 0.066f;
+    return beside ? Beside::unknown : beside_plate(at, normal);
+  };
+  const auto rims = find_rims(point, shadow);
+  ASSERT_EQ(rims.size(), 1u);
+  EXPECT_NEAR(rims[0].point.x(), 0.06, 0.003);
+}
+
+TEST(RimPoints, WhatIsHiddenHasNone) {
+  const auto hidden = [](const Eigen::Vector3f& at, const Eigen::Vector3f&) {
+    return on_plate(at) ? Beside::surface : Beside::hidden;
+  };
+  EXPECT_TRUE(find_rims(plate(0.01f, 0.005f), hidden).empty());
+}
+
+TEST(PairVoting, TheRimOfAFlatFaceFixesItsPose) {
+  const PointCloud model = plate(0.01f, 0.005f);
+  const PointPairTable table(model, find_rims(model, beside_plate), kDistanceStep);
+  const Pose truth = random_pose(13);
+  const Pose back = truth.inverse();
+  const PointCloud scene = moved(plate(0.011f, 0.003f), truth);
+  const auto rims = find_rims(scene, [&](const Eigen::Vector3f& at, const Eigen::Vector3f&) {
+    return beside_plate((back * at.cast<double>()).cast<float>(), {});
+  });
+  std::vector<int> references(scene.size());
+  std::iota(references.begin(), references.end(), 0);
+  constexpr float kReach = 0.3f;
+  EXPECT_TRUE(scene_pairs(scene, references, kReach, 1).partners.empty());
+  const ScenePairs pairs = scene_rim_pairs(scene, rims, references, kReach, 2);
+  int right = 0;
+  const auto voted = vote_poses(pairs, table, static_cast<int>(model.size()), 1);
+  for (const VotedPose& pose : voted) {
+    const auto s = static_cast<std::size_t>(pose.reference);
+    const auto m = static_cast<std::size_t>(pose.model_point);
+    const Eigen::Matrix3f rotation = basis_of(scene.normals[s]) *
+                                     Eigen::AngleAxisf(pose.turn, Eigen::Vector3f::UnitZ()) *
+                                     basis_of(model.normals[m]).transpose();
+    const Eigen::Vector3d there = truth * model.points[m].cast<double>();
+    right += rotation_angle(Eigen::Quaterniond(rotation.cast<double>()), truth.rotation) < 0.2 &&
+             (there - scene.points[s].cast<double>()).norm() < 0.02;
+  }
+  EXPECT_GT(right, 0.6 * static_cast<double>(voted.size()));
 }
 
 }  // namespace
