@@ -40,15 +40,20 @@ RivalEvidence best_of_same_pose(const Search& search, const std::vector<Pose>& p
 
 Candidates compare_rivals(const Search& search, Candidates candidates) {
   if (!search.options.score.use_round_three) return candidates;
+  const RivalOptions& options = search.options.rivals;
   sort_by_score(candidates);
   std::vector<bool> compared(candidates.size(), false);
   for (std::size_t best = 0; best < candidates.size(); ++best) {
-    if (compared[best] || candidates[best].score < search.options.rivals.min_rival_score) continue;
+    if (compared[best] || candidates[best].score < options.min_rival_score) continue;
     if (search.late()) break;
     const auto rivals = rivals_of(search, candidates, best, compared);
     std::vector<Pose> poses;
-    for (const std::size_t i : rivals) poses.push_back(candidates[i].pose());
-    const auto behind = behind_best(search.scene, search.model, poses);
+    std::size_t contenders = 0;  // scores fall: the first of them
+    for (const std::size_t i : rivals) {
+      poses.push_back(candidates[i].pose());
+      contenders += candidates[i].score >= candidates[best].score - options.contender_margin;
+    }
+    const auto behind = behind_best(search.scene, search.model, poses, contenders);
     for (std::size_t k = 0; k < rivals.size(); ++k) {
       Candidate& rival = candidates[rivals[k]];
       const RivalEvidence evidence = best_of_same_pose(search, poses, behind, k);

@@ -52,6 +52,7 @@ struct SampleOptions {
   int matches_per_keypoint = 2;
   int draws_per_match = 3;
   int peaks_per_reference = 12;
+  int rim_peaks_per_reference = 4;
   int draws_per_prior = 300;
   double feature_sigma_m = 0.004;
   double pair_sigma_m = 0.008;
@@ -64,6 +65,9 @@ struct SampleOptions {
           {1, 50, "Poses drawn by BPA from each correspondence."});
     visit("peaks_per_reference", peaks_per_reference,
           {1, 100, "Voted poses of each scene reference point."});
+    visit("rim_peaks_per_reference", rim_peaks_per_reference,
+          {0, 100,
+           "Poses that pairs with the rim of its flat face vote for; 0: such pairs are not used."});
     visit("draws_per_prior", draws_per_prior, {0, 100000, "Poses drawn from each prior."});
     visit("feature_sigma_m", feature_sigma_m,
           {1e-4, 0.1,
@@ -250,11 +254,15 @@ struct FlatOptions {
 
 struct RivalOptions {
   double max_behind = 6;
+  double contender_margin = 3;
   double min_rival_score = -5;
 
   void visit_fields(auto&& visit) {
     visit("max_behind", max_behind,
           {0, 1000, "Placements this far behind the best in log odds are no rivals."});
+    visit("contender_margin", contender_margin,
+          {0, 1000,
+           "Placements this far behind the best in log odds do not make others less likely."});
     visit("min_rival_score", min_rival_score,
           {-1000, 1000, "Places whose best has lower log odds are not compared."});
   }

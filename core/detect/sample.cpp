@@ -34,14 +34,14 @@ void from_features(const Search& search, Candidates& out) {
 }
 
 // Poses voted for by oriented point pairs (Drost et al., CVPR 2010).
-void from_pairs(const Search& search, Candidates& out) {
+void from_pairs(const Search& search, const ScenePairs& pairs, const PointPairTable& table,
+                int peaks, Candidates& out) {
   const ModelIndex& index = *search.model.index;
   std::vector<Eigen::Matrix3f> bases;
   for (const Eigen::Vector3f& normal : index.coarse.normals) bases.push_back(basis_of(normal));
   const PointCloud& coarse = search.scene.coarse;
   for (const VotedPose& voted :
-       vote_poses(search.scene.pairs, index.pairs, static_cast<int>(index.coarse.size()),
-                  search.options.sample.peaks_per_reference)) {
+       vote_poses(pairs, table, static_cast<int>(index.coarse.size()), peaks)) {
     const int s = voted.reference, m = voted.model_point;
     FastPose pose;
     pose.rotation = basis_of(coarse.normals[s]) *
@@ -90,7 +90,13 @@ Candidates sample(const Search& search, Candidates) {
   Candidates out;
   from_priors(search, out);
   from_features(search, out);
-  from_pairs(search, out);
+  const SampleOptions& options = search.options.sample;
+  from_pairs(search, search.scene.pairs, search.model.index->pairs, options.peaks_per_reference,
+             out);
+  if (options.rim_peaks_per_reference > 0) {
+    from_pairs(search, search.scene.rim_pairs, search.model.index->rim_pairs,
+               options.rim_peaks_per_reference, out);
+  }
   return out;
 }
 

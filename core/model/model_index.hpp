@@ -41,8 +41,9 @@ struct ModelIndex {
   PointCloud features;           ///< With curvature, kFeatureSpacing apart.
   std::vector<Fpfh> fpfh;        ///< Of `features`.
   FeatureTree feature_tree{{}};  ///< Over `fpfh`.
-  PointCloud coarse;             ///< What `pairs` is made of.
+  PointCloud coarse;             ///< What `pairs` and `rim_pairs` are made of.
   PointPairTable pairs{{}, 1};
+  PointPairTable rim_pairs{{}, {}, 1};     ///< Empty where the model is not complete.
   std::vector<ModelView> views;            ///< The 66 views, over `surface`.
   DistanceTransform distances;             ///< Of `surface`.
   NoiseTable noise;                        ///< Of the model's noise.

@@ -154,6 +154,20 @@ std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threa
   return index;
 }
 
+// The rims beside `points`: where the tangent plane leaves the surface.
+std::vector<RimPoint> model_rims(const PointCloud& surface, const DistanceTransform& distances,
+                                 const PointCloud& points) {
+  constexpr float kSameFace = 0.7f;  // cosine; chosen by hand
+  constexpr float kOff = 0.005f;     // metres, about a cell of `distances`
+  const float off = std::max(kOff, 1.2f * mean_spacing(surface, -2));
+  return find_rims(points, [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
+    const int nearest = distances.nearest_to(at);
+    const bool goes_on = nearest >= 0 && (surface.points[nearest] - at).norm() < off &&
+                         surface.normals[nearest].dot(normal) > kSameFace;
+    return goes_on ? Beside::surface : Beside::end;
+  });
+}
+
 void derive_index(const ModelSource& source, ModelIndex& index) {
   index.check = check_points(source.surface);
   index.noise = NoiseTable(source.noise);
@@ -172,8 +186,14 @@ void derive_index(const ModelSource& source, ModelIndex& index) {
       source.symmetry);
   index.point_area = mean_point_area(source.surface);
   index.feature_tree = FeatureTree(index.fpfh);
-  index.pairs =
-      PointPairTable(index.coarse, std::max(0.006f, 0.05f * static_cast<float>(source.diameter)));
+  constexpr float kDistanceStep = 0.006f;  // metres
+  index.pairs = PointPairTable(
+      index.coarse, std::max(kDistanceStep, 0.05f * static_cast<float>(source.diameter)));
+  // An incomplete model ends where its scans do.
+  if (source.complete) {
+    const auto rims = model_rims(source.surface, index.distances, index.coarse);
+    index.rim_pairs = PointPairTable(index.coarse, rims, kDistanceStep);
+  }
 }
 
 Result<std::shared_ptr<const ObjectModel>> make_object_model(ModelSource source, int num_threads) {

@@ -16,6 +16,11 @@ struct CheckPixel {
   float depth = 0;                    ///< 0 where there is none.
   std::int8_t normal[3] = {0, 0, 0};  ///< Times 127; zero where unknown.
   std::uint8_t searched = 0;
+
+  /// The normal, unit length; zero where unknown.
+  Eigen::Vector3f direction() const {
+    return Eigen::Vector3f(normal[0], normal[1], normal[2]) / 127.0f;
+  }
 };
 
 /// Model points nearer to the camera than this are out of sight, metres: no depth camera sees them.

@@ -41,6 +41,23 @@ Image<Eigen::Vector3f> log_light_of(Image<Eigen::Vector3f> lab, int num_threads)
   return lab;
 }
 
+// The rims of the observed surface beside `points`: range edges and creases.
+std::vector<RimPoint> scene_rims(const CheckImage& image, const PointCloud& points) {
+  constexpr float kSameFace = 0.7f;     // cosine; chosen by hand, like model_rims()
+  constexpr float kTolerance = 0.006f;  // metres, and three standard deviations of depth
+  return find_rims(points, [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
+    const int pixel = image.pixel_of(at);
+    if (pixel < 0) return Beside::hidden;
+    const CheckPixel& seen = image.pixels[static_cast<std::size_t>(pixel)];
+    if (!(seen.depth > 0)) return Beside::unknown;
+    const float tolerance = kTolerance + 3 * image.noise(at.z());
+    if (seen.depth < at.z() - tolerance) return Beside::hidden;
+    if (seen.depth > at.z() + tolerance) return Beside::end;
+    const Eigen::Vector3f there = seen.direction();
+    return there.isZero() || there.dot(normal) > kSameFace ? Beside::surface : Beside::end;
+  });
+}
+
 std::shared_ptr<const SceneFeatures> with_flat_regions(const SceneFeatures& scene) {
   if (scene.flat.regions.empty()) return nullptr;
   auto out = std::make_shared<SceneFeatures>(scene);
@@ -85,6 +102,9 @@ SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
   scene.pairs =
       scene_pairs(scene.coarse, choose(scene.coarse.size(), options.max_references, options.seed),
                   static_cast<float>(options.pair_reach_m), options.num_threads);
+  scene.rim_pairs =
+      scene_rim_pairs(scene.coarse, scene_rims(scene.image, scene.coarse), scene.pairs.references,
+                      static_cast<float>(options.pair_reach_m), options.num_threads);
   if (options.use_flat_regions) {
     // Pixels, against noise. The blur of `cielab` would smear thin objects.
     constexpr double kLittleBlur = 0.7;

@@ -27,6 +27,7 @@ struct SceneFeatures {
   std::vector<Fpfh> fpfh;      ///< Of the keypoints.
   PointCloud coarse;           ///< Searched surface, for point pairs.
   ScenePairs pairs;            ///< Of points of `coarse`.
+  ScenePairs rim_pairs;        ///< Of points of `coarse` and the rims of their faces.
   SceneEdges edges;
   Image<Eigen::Vector3f> cielab;       ///< Blurred, of the map's size; empty without colour.
   Image<Eigen::Vector3f> log_light;    ///< log_light() of `cielab`; empty without patterns.

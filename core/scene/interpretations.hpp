@@ -13,8 +13,8 @@
 namespace bpa {
 
 struct InterpretationOptions {
-  double min_probability = 0.3;
-  double object_penalty = 0.2;
+  double min_probability = 0.25;
+  double object_penalty = 0;
   double explained_weight = 2;
   double max_shared = 0.3;
   int annealing_steps = 20000;
@@ -32,7 +32,9 @@ struct InterpretationOptions {
            "Placements less probable than this are not part of the best "
            "interpretation."});
     visit("object_penalty", object_penalty,
-          {0, 100, "Log odds that each further object of an interpretation costs."});
+          {0, 100,
+           "Log odds that each further object of an interpretation costs, beyond those of "
+           "min_probability."});
     visit("explained_weight", explained_weight,
           {0, 1000, "Weight of the ratio of explained to observed surface."});
     visit("max_shared", max_shared,

@@ -125,7 +125,7 @@ double rival_evidence(const CheckImage& image, const PredictedSurface& first,
 }
 
 std::vector<RivalEvidence> behind_best(const SceneFeatures& scene, const ObjectModel& model,
-                                       std::span<const Pose> poses) {
+                                       std::span<const Pose> poses, std::size_t contenders) {
   constexpr double kFarthest = 500;
   if (poses.empty()) return {};
   const CheckImage& image = scene.image;
@@ -147,8 +147,8 @@ std::vector<RivalEvidence> behind_best(const SceneFeatures& scene, const ObjectM
     }
   }
   for (double RivalEvidence::*part : {&RivalEvidence::depth, &RivalEvidence::color}) {
-    const double best = std::ranges::max(evidence, {}, part).*part;
-    for (RivalEvidence& own : evidence) own.*part = std::max(own.*part - best, -kFarthest);
+    const double best = std::ranges::max(std::span(evidence).first(contenders), {}, part).*part;
+    for (RivalEvidence& own : evidence) own.*part = std::clamp(own.*part - best, -kFarthest, 0.0);
   }
   return evidence;
 }

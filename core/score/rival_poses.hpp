@@ -27,11 +27,11 @@ struct RivalEvidence {
   double color = 0;  ///< 0 without colours.
 };
 
-/// Log-likelihoods of each pose (camera_from_object) minus those of the best, clamped to [-500, 0].
-/// All poses are of one model, in one place. Each is compared with the first, which should fit
-/// well. Colours: the pattern of the surface, and whether the pixels where poses disagree show the
-/// object or what is around it.
+/// Log-likelihoods of each pose (camera_from_object) minus those of the best of the first
+/// `contenders` poses, clamped to [-500, 0]. All poses are of one model, in one place. Each is
+/// compared with the first, which should fit well. Colours: the pattern of the surface, and whether
+/// the pixels where poses disagree show the object or what is around it.
 std::vector<RivalEvidence> behind_best(const SceneFeatures& scene, const ObjectModel& model,
-                                       std::span<const Pose> poses);
+                                       std::span<const Pose> poses, std::size_t contenders);
 
 }  // namespace bpa

@@ -29,10 +29,6 @@ struct Sums {
   Eigen::Matrix3f normals = Eigen::Matrix3f::Zero();  // of agreeing points, squared
 };
 
-Eigen::Vector3f normal_of(const CheckPixel& pixel) {
-  return Eigen::Vector3f(pixel.normal[0], pixel.normal[1], pixel.normal[2]) / 127.0f;
-}
-
 // The probability that the pixel of a point so far from a range edge of the view shows the model
 // and not what is behind it: the pixel is as large as it is, and the pose is a little off.
 float inside_probability(float edge_distance, float pixel_size) {
@@ -71,7 +67,7 @@ bool add_point(const CheckImage& image, const SeenPoint& seen, Sums& sums) {
   sums.weight += weight;
   sums.range += weight * -std::min(0.5f * z * z, kTruncation);
   // Beside a crease either the face's own normal is seen or the mean across the crease.
-  const Eigen::Vector3f observed = normal_of(pixel);
+  const Eigen::Vector3f observed = pixel.direction();
   const float cosine = std::max(normal.dot(observed), seen.soft_normal.dot(observed));
   const float angle = std::acos(std::clamp(cosine, -1.0f, 1.0f)) / seen.noise.normal;
   const bool known = pixel.normal[0] != 0 || pixel.normal[1] != 0 || pixel.normal[2] != 0;
@@ -100,8 +96,8 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const ModelV
     const Eigen::Vector3f normal = pose.rotation * model.surface.normals[i];
     const Eigen::Vector3f outward = pose.rotation * view.outward[k];
     const int at = image.pixel_of(point);
-    if (at < 0) continue;
     ++total;
+    if (at < 0) continue;  // the image border hides it
     const CheckPixel& inside = image.pixels[static_cast<std::size_t>(at)];
     if (hides(inside.depth, point.z(), kHiding)) continue;
     ++visible;
@@ -112,7 +108,7 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const ModelV
     // Where the model's tangent plane would be if the surface went on.
     const bool continues =
         std::abs(beyond.depth - point.z()) < kGoesOn + 2 * image.noise(point.z());
-    const bool turns = normal_of(beyond).dot(normal) < kTurned;
+    const bool turns = beyond.direction().dot(normal) < kTurned;
     (continues && !turns ? goes_on : ends) += 1;
   }
   out.edge_visibility = total > 0 ? static_cast<double>(visible) / total : 0;
@@ -120,14 +116,21 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const ModelV
   out.edge = visible > 0 ? -static_cast<double>(goes_on) / visible : -1;
 }
 
-// The k-th visible point of the view; false where it faces away or falls outside the image.
-bool see_point(const CheckImage& image, const ObjectModel& model, const ModelView& view,
-               const FastPose& pose, std::size_t k, SeenPoint& out) {
+// The k-th visible point of the view: position, normal and slant. False where it faces away or is
+// behind the camera.
+bool place_point(const ObjectModel& model, const ModelView& view, const FastPose& pose,
+                 std::size_t k, SeenPoint& out) {
   const std::uint32_t i = view.visible[k];
   out.point = pose * model.surface.points[i];
   out.normal = pose.rotation * model.surface.normals[i];
   out.slant = -out.normal.dot(out.point) / out.point.norm();
-  if (out.slant < kMinSlant) return false;
+  return out.point.z() > kNearest_m && out.slant >= kMinSlant;
+}
+
+// The rest of a placed point; false outside the image.
+bool see_placed(const CheckImage& image, const ObjectModel& model, const ModelView& view,
+                const FastPose& pose, std::size_t k, SeenPoint& out) {
+  const std::uint32_t i = view.visible[k];
   const int pixel = image.pixel_of(out.point);
   if (pixel < 0) return false;
   out.pixel = static_cast<std::size_t>(pixel);
@@ -143,6 +146,11 @@ bool see_point(const CheckImage& image, const ObjectModel& model, const ModelVie
       std::sqrt(std::max(normal * normal, model.normal_variance[i]) + kNormalSigma * kNormalSigma);
   out.noise.inside = inside_probability(edge_distance, out.point.z() / image.fx);
   return true;
+}
+
+bool see_point(const CheckImage& image, const ObjectModel& model, const ModelView& view,
+               const FastPose& pose, std::size_t k, SeenPoint& out) {
+  return place_point(model, view, pose, k, out) && see_placed(image, model, view, pose, k, out);
 }
 
 // Every how many points of the view to look at; 0: all of them.
@@ -165,11 +173,12 @@ SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& mod
   Sums sums;
   SeenPoint seen;
   for (std::size_t k = 0; k < view.visible.size(); k += step) {
-    if (!see_point(image, model, view, fast, k, seen)) continue;
+    if (!place_point(model, view, fast, k, seen)) continue;
     ++sums.facing;
     const double z = seen.point.z();
     const double covered = pixels_per_point * seen.slant / (z * z);
     out.expected_pixels += covered;
+    if (!see_placed(image, model, view, fast, k, seen)) continue;  // the image border hides it
     const CheckPixel& pixel = image.pixels[seen.pixel];
     if (pixel.depth <= 0) {
       ++sums.unknown;

@@ -259,6 +259,7 @@ TEST_F(PriorsOf, FindWhatFeaturesDoNot) {
   scene.keypoints.clear();
   scene.fpfh.clear();
   scene.pairs = {};
+  scene.rim_pairs = {};
   ASSERT_TRUE(detect_object(Search(scene, *l_)).empty()) << "nothing suggests a pose";
   // Off by what a tracker is off by.
   std::vector<PosePrior> given = {

@@ -92,13 +92,16 @@ TEST_F(Stages, NoiseDoesNotHideThem) {
 TEST_F(Stages, EachSourceAloneFindsTheL) {
   const SceneFeatures scene = features_of(everything());
   SceneFeatures without_pairs = scene;
-  without_pairs.pairs = scene_pairs(scene.coarse, {}, 0.1f, 1);
+  without_pairs.pairs = {};
+  SceneFeatures rims_alone = without_pairs;
+  without_pairs.rim_pairs = {};
   const auto by_features = sampled_in(without_pairs, *l_);
   for (const Candidate& hypothesis : by_features) {
     ASSERT_EQ(hypothesis.found_by, Source::feature);
   }
   EXPECT_LT(first_right(by_features, l_truth_, l_->symmetry), by_features.size());
   SceneFeatures without_keypoints = scene;
+  without_keypoints.rim_pairs = {};
   without_keypoints.keypoints.clear();
   without_keypoints.fpfh.clear();
   const auto by_pairs = sampled_in(without_keypoints, *l_);
@@ -106,6 +109,10 @@ TEST_F(Stages, EachSourceAloneFindsTheL) {
     ASSERT_EQ(hypothesis.found_by, Source::pairs);
   }
   EXPECT_LT(first_right(by_pairs, l_truth_, l_->symmetry), by_pairs.size());
+  rims_alone.keypoints.clear();
+  rims_alone.fpfh.clear();
+  const auto by_rims = sampled_in(rims_alone, *l_);
+  EXPECT_LT(first_right(by_rims, l_truth_, l_->symmetry), by_rims.size());
 }
 
 TEST_F(Stages, SameSeedSameHypotheses) {

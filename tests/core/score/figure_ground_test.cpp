@@ -40,7 +40,7 @@ class FigureGround : public ::testing::Test {
   }
   // How far the turned pose is behind the true one.
   double behind(const ObjectModel& model) const {
-    const auto evidence = behind_best(scene_, model, std::vector<Pose>{turned(), truth_});
+    const auto evidence = behind_best(scene_, model, std::vector<Pose>{turned(), truth_}, 2);
     EXPECT_EQ(evidence[1].color, 0);
     return evidence[0].color;
   }

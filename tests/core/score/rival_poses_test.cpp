@@ -127,19 +127,29 @@ TEST_F(BehindBest, TurnedPosesAreBehindTheTrueOneWhicheverIsFirst) {
   const Pose near = test::disturbed(truth_, 0.002, 0.02, 3);
   for (const Pose& first : {near, turned(M_PI)}) {
     const std::vector<Pose> poses = {first, turned(1.5), near, turned(-1.5), turned(M_PI)};
-    const auto behind = behind_best(scene_, *model_, poses);
+    const auto behind = behind_best(scene_, *model_, poses, poses.size());
     ASSERT_EQ(behind.size(), poses.size());
     EXPECT_EQ(behind[2].depth, 0);
     for (std::size_t turned : {1, 3, 4}) EXPECT_LT(behind[turned].depth, -30);
   }
 }
 
+TEST_F(BehindBest, WhatDoesNotContendMakesNothingLessLikely) {
+  const std::vector<Pose> poses = {turned(1.5), turned(M_PI), truth_};
+  const auto all = behind_best(scene_, *model_, poses, 3);
+  EXPECT_LT(all[0].depth, -30);
+  const auto one = behind_best(scene_, *model_, poses, 1);
+  EXPECT_EQ(one[0].depth, 0);
+  EXPECT_EQ(one[2].depth, 0) << "better than the best contender, clamped";
+  EXPECT_NEAR(one[1].depth, std::min(0.0, all[1].depth - all[0].depth), 1e-6);
+}
+
 TEST_F(BehindBest, NothingIsBehindItself) {
-  const auto alone = behind_best(scene_, *model_, std::vector<Pose>{turned(1)});
+  const auto alone = behind_best(scene_, *model_, std::vector<Pose>{turned(1)}, 1);
   ASSERT_EQ(alone.size(), 1u);
   EXPECT_EQ(alone[0].depth, 0);
   EXPECT_EQ(alone[0].color, 0);
-  EXPECT_TRUE(behind_best(scene_, *model_, {}).empty());
+  EXPECT_TRUE(behind_best(scene_, *model_, {}, 0).empty());
 }
 
 TEST_F(BehindBest, EvidenceForTheOneIsEvidenceAgainstTheOther) {

@@ -93,6 +93,29 @@ TEST_F(SurfaceAgreementOf, WhatHidesItDoesNotCountAgainstIt) {
   EXPECT_NEAR(hidden.expected_pixels, open.expected_pixels, 1);
 }
 
+TEST_F(SurfaceAgreementOf, TheImageBorderHides) {
+  const CheckImage whole = image_of(l_on_table());
+  CheckImage left = whole;
+  left.width = static_cast<int>(whole.project(truth_.translation.cast<float>()).x());
+  left.pixels.clear();
+  for (int v = 0; v < whole.height; ++v) {
+    const auto row = whole.pixels.begin() + v * whole.width;
+    left.pixels.insert(left.pixels.end(), row, row + left.width);
+  }
+  const auto pixels = explained_pixels(whole, *l_, truth_);
+  const auto inside = std::ranges::count_if(pixels, [&](std::uint32_t pixel) {
+    return static_cast<int>(pixel) % whole.width < left.width;
+  });
+  const double share = static_cast<double>(inside) / static_cast<double>(pixels.size());
+  const SurfaceAgreement all = measure_surface(whole, *l_, truth_);
+  const SurfaceAgreement cut = measure_surface(left, *l_, truth_);
+  EXPECT_NEAR(cut.visibility, share * all.visibility, 0.1);
+  EXPECT_NEAR(cut.edge_visibility, share * all.edge_visibility, 0.2);
+  EXPECT_NEAR(cut.explained_pixels, share * all.explained_pixels, 0.1 * all.explained_pixels);
+  EXPECT_NEAR(cut.expected_pixels, all.expected_pixels, 1e-6);
+  EXPECT_GT(cut.agreeing, all.agreeing - 0.1);
+}
+
 // A pose that is off by less than a pixel's width is no evidence of free space.
 TEST_F(SurfaceAgreementOf, WhatIsSeenBesideTheSilhouetteCountsForLittle) {
   const CheckImage image = image_of(l_on_table());

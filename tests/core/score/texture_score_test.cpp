@@ -156,9 +156,9 @@ TEST_F(TextureScore, RivalsOfOneShapeAreToldApartByTheirPattern) {
   const std::vector<Pose> poses = {kBrickPose * kHalfTurn, kBrickPose};
   SceneFeatures scene;
   scene.image = brick().image;
-  EXPECT_EQ(behind_best(scene, *brick().model, poses)[0].color, 0);
+  EXPECT_EQ(behind_best(scene, *brick().model, poses, poses.size())[0].color, 0);
   scene.log_light = brick().colors;
-  const auto behind = behind_best(scene, *brick().model, poses);
+  const auto behind = behind_best(scene, *brick().model, poses, poses.size());
   EXPECT_GT(behind[0].depth, -5);
   EXPECT_EQ(behind[1].color, 0);
   EXPECT_LT(behind[0].color, -10);
