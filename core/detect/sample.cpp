@@ -33,15 +33,23 @@ void from_features(const Search& search, Candidates& out) {
   }
 }
 
-// Poses voted for by oriented point pairs (Drost et al., CVPR 2010).
-void from_pairs(const Search& search, const ScenePairs& pairs, const PointPairTable& table,
-                int peaks, Candidates& out) {
+// Poses voted for by oriented point pairs (Drost et al., CVPR 2010), and by points with the rims
+// of their faces.
+void from_pairs(const Search& search, Candidates& out) {
+  const SampleOptions& options = search.options.sample;
+  const SceneFeatures& scene = search.scene;
   const ModelIndex& index = *search.model.index;
+  const auto count = static_cast<int>(index.coarse.size());
+  auto poses = vote_poses(scene.pairs, index.pairs, count, options.peaks_per_reference);
+  if (options.rim_peaks_per_reference > 0) {
+    const auto by_rims =
+        vote_poses(scene.rim_pairs, index.rim_pairs, count, options.rim_peaks_per_reference);
+    poses.insert(poses.end(), by_rims.begin(), by_rims.end());
+  }
   std::vector<Eigen::Matrix3f> bases;
   for (const Eigen::Vector3f& normal : index.coarse.normals) bases.push_back(basis_of(normal));
-  const PointCloud& coarse = search.scene.coarse;
-  for (const VotedPose& voted :
-       vote_poses(pairs, table, static_cast<int>(index.coarse.size()), peaks)) {
+  const PointCloud& coarse = scene.coarse;
+  for (const VotedPose& voted : poses) {
     const int s = voted.reference, m = voted.model_point;
     FastPose pose;
     pose.rotation = basis_of(coarse.normals[s]) *
@@ -90,13 +98,7 @@ Candidates sample(const Search& search, Candidates) {
   Candidates out;
   from_priors(search, out);
   from_features(search, out);
-  const SampleOptions& options = search.options.sample;
-  from_pairs(search, search.scene.pairs, search.model.index->pairs, options.peaks_per_reference,
-             out);
-  if (options.rim_peaks_per_reference > 0) {
-    from_pairs(search, search.scene.rim_pairs, search.model.index->rim_pairs,
-               options.rim_peaks_per_reference, out);
-  }
+  from_pairs(search, out);
   return out;
 }
 

@@ -243,6 +243,9 @@ std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable&
   std::vector<std::uint16_t> votes(num_model_points * kTurnBins);
   std::vector<Peak> best;
   for (std::size_t r = 0; r < pairs.references.size(); ++r) {
+    const bool votes_for_none = pairs.first[r] == pairs.first[r + 1] ||
+                                pairs.partners[pairs.first[r]].distance > table.max_distance();
+    if (votes_for_none) continue;
     std::fill(votes.begin(), votes.end(), std::uint16_t{0});
     for (std::uint32_t k = pairs.first[r]; k < pairs.first[r + 1]; ++k) {
       const ScenePairs::Partner& partner = pairs.partners[k];

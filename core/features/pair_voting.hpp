@@ -28,10 +28,10 @@ PointPairFeature point_pair_feature(const Eigen::Vector3f& p, const Eigen::Vecto
 /// not in one another's tangent plane.
 bool fixes_pose(const PointPairFeature& feature);
 
-/// The same of a point and a rim of the face that it is on; nothing if it is not on that face.
-/// Pairs within one flat face fix no pose. With points of its rim they do (compare Choi et al.,
-/// "Voting-Based Pose Estimation for Robotic Assembly Using a 3D Sensor", ICRA 2012). Angles:
-/// between line and outward direction; the other two are constant.
+/// The feature of a point and a rim of its face; nothing if the rim is of another face. Pairs
+/// within one flat face fix no pose, but pairs with its rim do (compare Choi et al., "Voting-Based
+/// Pose Estimation for Robotic Assembly Using a 3D Sensor", ICRA 2012). `angle_second` is between
+/// the line and the rim's outward direction. The other two angles are constants.
 std::optional<PointPairFeature> rim_feature(const Eigen::Vector3f& p, const Eigen::Vector3f& np,
                                             const RimPoint& rim);
 

@@ -16,7 +16,7 @@ using Look = std::function<Beside(const Eigen::Vector3f&, const Eigen::Vector3f&
 // Chosen by hand.
 constexpr int kDirections = 16, kSteps = 5;
 constexpr float kStep = 0.004f;  // metres
-// Directions in which the surface ends: more than a half of them is a point by itself.
+// Directions in which the surface ends. A point with more of them has no surface around it.
 constexpr int kMinEnds = 3, kMaxEnds = 9;
 
 // How far the surface goes on in a direction, metres; nothing if no end is seen. Depth is often

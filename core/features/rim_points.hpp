@@ -17,6 +17,9 @@ struct RimPoint {
   Eigen::Vector3f outward;  ///< In the tangent plane, away from the surface; unit length.
 };
 
+/// Cosine of the angle between normals of one face, at least. Chosen by hand.
+constexpr float kSameFace = 0.7f;
+
 /// What is at a point of a surface's tangent plane.
 enum class Beside : std::uint8_t {
   surface,  ///< The surface goes on.

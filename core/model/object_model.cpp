@@ -157,9 +157,9 @@ std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threa
 // The rims beside `points`: where the tangent plane leaves the surface.
 std::vector<RimPoint> model_rims(const PointCloud& surface, const DistanceTransform& distances,
                                  const PointCloud& points) {
-  constexpr float kSameFace = 0.7f;  // cosine; chosen by hand
-  constexpr float kOff = 0.005f;     // metres, about a cell of `distances`
-  const float off = std::max(kOff, 1.2f * mean_spacing(surface, -2));
+  // Off the surface by more than this, it has ended; chosen by hand.
+  constexpr float kOff = 0.005f, kSpacings = 1.2f;  // metres; mean spacings of the points
+  const float off = std::max(kOff, kSpacings * mean_spacing(surface, -2));
   return find_rims(points, [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
     const int nearest = distances.nearest_to(at);
     const bool goes_on = nearest >= 0 && (surface.points[nearest] - at).norm() < off &&
@@ -186,7 +186,7 @@ void derive_index(const ModelSource& source, ModelIndex& index) {
       source.symmetry);
   index.point_area = mean_point_area(source.surface);
   index.feature_tree = FeatureTree(index.fpfh);
-  constexpr float kDistanceStep = 0.006f;  // metres
+  constexpr float kDistanceStep = 0.006f;  // metres; chosen by hand
   index.pairs = PointPairTable(
       index.coarse, std::max(kDistanceStep, 0.05f * static_cast<float>(source.diameter)));
   // An incomplete model ends where its scans do.

@@ -43,14 +43,14 @@ Image<Eigen::Vector3f> log_light_of(Image<Eigen::Vector3f> lab, int num_threads)
 
 // The rims of the observed surface beside `points`: range edges and creases.
 std::vector<RimPoint> scene_rims(const CheckImage& image, const PointCloud& points) {
-  constexpr float kSameFace = 0.7f;     // cosine; chosen by hand, like model_rims()
-  constexpr float kTolerance = 0.006f;  // metres, and three standard deviations of depth
+  constexpr float kTolerance = 0.006f;  // metres; chosen by hand
+  constexpr float kDeviations = 3;      // of depth, added to it
   return find_rims(points, [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
     const int pixel = image.pixel_of(at);
     if (pixel < 0) return Beside::hidden;
     const CheckPixel& seen = image.pixels[static_cast<std::size_t>(pixel)];
     if (!(seen.depth > 0)) return Beside::unknown;
-    const float tolerance = kTolerance + 3 * image.noise(at.z());
+    const float tolerance = kTolerance + kDeviations * image.noise(at.z());
     if (seen.depth < at.z() - tolerance) return Beside::hidden;
     if (seen.depth > at.z() + tolerance) return Beside::end;
     const Eigen::Vector3f there = seen.direction();
