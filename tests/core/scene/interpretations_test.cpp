@@ -245,12 +245,13 @@ TEST(Interpretations, ProbableOnesAreInAndImprobableOnesOut) {
 }
 
 TEST(Interpretations, WhatIsLessProbableThanAskedIsNotInTheBestHoweverMuchItExplains) {
-  const std::vector<Candidate> one{candidate(0, 0.2, pixels(0, 4000))};
+  const std::vector<Candidate> one{candidate(0, 0.25, pixels(0, 4000))};
   InterpretationOptions options;
+  options.min_probability = 0.3;
   const auto found = interpret_all(one, kObserved, options);
   EXPECT_EQ(subset_of(found.at(0)), Subset{});
   EXPECT_EQ(subset_of(found.at(1)), Subset{0}) << "but in a later one";
-  options.min_probability = 0.15;
+  options.min_probability = 0.2;
   EXPECT_EQ(subset_of(interpret_all(one, kObserved, options)[0]), Subset{0});
 }
 
