@@ -65,9 +65,9 @@ struct SampleOptions {
           {1, 50, "Poses drawn by BPA from each correspondence."});
     visit("peaks_per_reference", peaks_per_reference,
           {1, 100, "Voted poses of each scene reference point."});
-    visit("rim_peaks_per_reference", rim_peaks_per_reference,
-          {0, 100,
-           "Poses that pairs with the rim of its flat face vote for; 0: such pairs are not used."});
+    visit(
+        "rim_peaks_per_reference", rim_peaks_per_reference,
+        {0, 100, "The same, voted by pairs with the rim of its face; 0: such pairs are not used."});
     visit("draws_per_prior", draws_per_prior, {0, 100000, "Poses drawn from each prior."});
     visit("feature_sigma_m", feature_sigma_m,
           {1e-4, 0.1,

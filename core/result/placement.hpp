@@ -45,7 +45,9 @@ struct Placement {
   OrientationUncertainty orientation;
   double score = 0;        ///< Log odds from the components; larger is better.
   double probability = 0;  ///< That the pose is within 2.5 cm and π/16 of the truth; in [0, 1].
-  double visible_fraction = 0;  ///< Of the model surface that faces the camera, in [0, 1].
+  /// Of the model surface that faces the camera, in [0, 1]. What is outside the image is not
+  /// visible.
+  double visible_fraction = 0;
   std::vector<ScoreComponent> components;     ///< What the score is made of.
   std::vector<PoseAlternative> alternatives;  ///< Empty: the view leaves no other pose.
 };
