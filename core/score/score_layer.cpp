@@ -55,7 +55,31 @@ Eigen::Index weight_of(std::size_t feature, std::size_t knot) {
   return static_cast<Eigen::Index>(1 + feature * kKnots + knot);
 }
 
-// The likelihood of the labels of one frame's samples, and its gradient.
+// The gradient of a frame's negative log likelihood by the scores of its samples.
+std::vector<double> gradient_by_score(const ScoreFrame& frame, std::span<const double> scores) {
+  std::vector<double> odds, by_score(scores.size(), 0);
+  for (const double score : scores) odds.push_back(std::exp(std::min(30.0, score)));
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const auto& rivals = frame.competition.rivals[i];
+    double right = odds[i], all = 1 + odds[i];
+    for (const auto& rival : rivals) {
+      all += odds[rival.other];
+      right += rival.same_pose * odds[rival.other];
+    }
+    const double p = std::min(right / all, 1 - 1e-9);
+    // d(-log likelihood) / d(score j) = (p - label) / (1 - p) * (part of j in `right` / p - part
+    // of j in `all`), all over p or 1 - p.
+    const double outer = frame.samples[i].right ? -1 / p : 1 / (1 - p);
+    const auto add = [&](std::size_t j, double same) {
+      by_score[j] += outer * odds[j] * (same - p) / all;
+    };
+    add(i, 1);
+    for (const auto& rival : rivals) add(rival.other, rival.same_pose);
+  }
+  return by_score;
+}
+
+// The samples of one frame, by where their values lie between knots.
 class FrameLikelihood {
  public:
   FrameLikelihood(const ScoreFrame& frame, std::span<const Places> places) : frame_(frame) {
@@ -69,28 +93,11 @@ class FrameLikelihood {
     }
   }
 
-  // Adds the gradient of the negative log likelihood.
+  // Adds the gradient of the negative log likelihood of the labels.
   void add_gradient(const Weights& weights, Weights& gradient) const {
-    std::vector<double> odds, by_score(rows_.size(), 0);
-    for (const Row& row : rows_) odds.push_back(std::exp(std::min(30.0, score_of(row, weights))));
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const auto& rivals = frame_.competition.rivals[i];
-      double right = odds[i], all = 1 + odds[i];
-      for (const auto& rival : rivals) {
-        all += odds[rival.other];
-        right += rival.same_pose * odds[rival.other];
-      }
-      const double p = std::min(right / all, 1 - 1e-9);
-      const bool label = frame_.samples[i].right;
-      // d(-log likelihood) / d(score j) = (p - label) / (1 - p) * (part of j in `right` / p - part
-      // of j in `all`), all over p or 1 - p.
-      const double outer = label ? -1 / p : 1 / (1 - p);
-      const auto add = [&](std::size_t j, double same) {
-        by_score[j] += outer * odds[j] * (same - p) / all;
-      };
-      add(i, 1);
-      for (const auto& rival : rivals) add(rival.other, rival.same_pose);
-    }
+    std::vector<double> scores;
+    for (const Row& row : rows_) scores.push_back(score_of(row, weights));
+    const std::vector<double> by_score = gradient_by_score(frame_, scores);
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       gradient[0] += by_score[i];
       for (std::size_t f = 0; f < kNumComponents; ++f) {
@@ -167,24 +174,39 @@ void keep_rising(Weights& weights) {
   }
 }
 
-// Adam (Kingma and Ba, 2015) on all frames at once, with falling steps. After each, curves that
-// must not fall are projected onto rising ones.
-Weights minimise(const Weights& start, const std::vector<FrameLikelihood>& frames, double samples) {
+// Adam (Kingma and Ba, 2015) with falling steps; project(weights) after each.
+template <class Vector>
+Vector minimise(Vector weights, const auto& gradient_at, const auto& project) {
   constexpr int kIterations = 600;
-  Weights weights = start, mean = Weights::Zero(), square = Weights::Zero();
+  Vector mean = Vector::Zero(), square = Vector::Zero();
   for (int k = 1; k <= kIterations; ++k) {
-    Weights gradient = Weights::Zero();
-    add_penalty(weights - start, gradient);
-    for (const FrameLikelihood& frame : frames) frame.add_gradient(weights, gradient);
-    gradient /= samples;
+    const Vector gradient = gradient_at(weights);
     mean = 0.9 * mean + 0.1 * gradient;
     square = 0.99 * square + 0.01 * gradient.cwiseAbs2();
-    const Weights step = (mean / (1 - std::pow(0.9, k))).array() /
-                         ((square / (1 - std::pow(0.99, k))).array().sqrt() + 1e-12);
+    const Vector step = (mean / (1 - std::pow(0.9, k))).array() /
+                        ((square / (1 - std::pow(0.99, k))).array().sqrt() + 1e-12);
     weights -= 0.1 * (1 - static_cast<double>(k - 1) / kIterations) * step;
-    keep_rising(weights);
+    project(weights);
   }
   return weights;
+}
+
+// The number of samples; an error where there are too few of a kind.
+Result<std::size_t> count_samples(std::span<const ScoreFrame> frames) {
+  std::size_t right = 0, total = 0;
+  for (const ScoreFrame& frame : frames) {
+    total += frame.samples.size();
+    right += std::ranges::count(frame.samples, true, &ScoreFrame::Sample::right);
+  }
+  if (right >= 10 && right + 10 <= total) return total;
+  return invalid_argument("training has " + std::to_string(right) + " right placements of " +
+                          std::to_string(total) + "; it needs at least 10 right and 10 wrong ones");
+}
+
+std::vector<double> scores_of(const ScoreLayer& layer, const ScoreFrame& frame) {
+  std::vector<double> scores;
+  for (const auto& sample : frame.samples) scores.push_back(layer.log_odds(sample.values));
+  return scores;
 }
 
 }  // namespace
@@ -219,16 +241,8 @@ Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames) {
 }
 
 Result<ScoreLayer> adapt_score_layer(const ScoreLayer& start, std::span<const ScoreFrame> frames) {
-  std::size_t right = 0, total = 0;
-  for (const ScoreFrame& frame : frames) {
-    total += frame.samples.size();
-    right += std::ranges::count(frame.samples, true, &ScoreFrame::Sample::right);
-  }
-  if (right < 10 || right + 10 > total) {
-    return invalid_argument("training has " + std::to_string(right) + " right placements of " +
-                            std::to_string(total) +
-                            "; it needs at least 10 right and 10 wrong ones");
-  }
+  const Result<std::size_t> samples = count_samples(frames);
+  if (!samples.ok()) return samples.status();
   std::array<Places, kNumComponents> places;
   Weights weights = Weights::Zero();
   weights[0] = start.bias;
@@ -240,7 +254,13 @@ Result<ScoreLayer> adapt_score_layer(const ScoreLayer& start, std::span<const Sc
   }
   std::vector<FrameLikelihood> likelihoods;
   for (const ScoreFrame& frame : frames) likelihoods.emplace_back(frame, places);
-  weights = minimise(weights, likelihoods, static_cast<double>(total));
+  const auto gradient_at = [&, first = weights](const Weights& at) -> Weights {
+    Weights gradient = Weights::Zero();
+    add_penalty(at - first, gradient);
+    for (const FrameLikelihood& frame : likelihoods) frame.add_gradient(at, gradient);
+    return gradient / static_cast<double>(*samples);
+  };
+  weights = minimise(weights, gradient_at, keep_rising);
   ScoreLayer layer;
   layer.bias = weights[0];
   for (std::size_t f = 0; f < kNumComponents; ++f) {
@@ -257,11 +277,39 @@ Result<ScoreLayer> adapt_score_layer(const ScoreLayer& start, std::span<const Sc
   return layer;
 }
 
+Result<ScoreLayer> calibrate_score_layer(const ScoreLayer& layer,
+                                         std::span<const ScoreFrame> frames) {
+  const Result<std::size_t> samples = count_samples(frames);
+  if (!samples.ok()) return samples.status();
+  std::vector<std::vector<double>> scores;
+  for (const ScoreFrame& frame : frames) scores.push_back(scores_of(layer, frame));
+  const auto gradient_at = [&](const Eigen::Vector2d& scale_and_shift) -> Eigen::Vector2d {
+    Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      std::vector<double> changed;
+      for (const double score : scores[i]) {
+        changed.push_back(scale_and_shift[0] * score + scale_and_shift[1]);
+      }
+      const std::vector<double> by_score = gradient_by_score(frames[i], changed);
+      for (std::size_t k = 0; k < by_score.size(); ++k) {
+        gradient += by_score[k] * Eigen::Vector2d(scores[i][k], 1);
+      }
+    }
+    return gradient / static_cast<double>(*samples);
+  };
+  const Eigen::Vector2d found = minimise(Eigen::Vector2d(1, 0), gradient_at, [](const auto&) {});
+  ScoreLayer out = layer;
+  for (ScoreLayer::Component& component : out.components) {
+    for (double& value : component.value) value *= found[0];
+  }
+  out.bias = found[0] * layer.bias + found[1];
+  return out;
+}
+
 Reliability reliability(const ScoreLayer& layer, std::span<const ScoreFrame> frames) {
   Reliability out;
   for (const ScoreFrame& frame : frames) {
-    std::vector<double> scores;
-    for (const auto& sample : frame.samples) scores.push_back(layer.log_odds(sample.values));
+    const std::vector<double> scores = scores_of(layer, frame);
     const std::vector<double> probabilities = competing_probabilities(scores, frame.competition);
     for (std::size_t i = 0; i < scores.size(); ++i) {
       const double p = probabilities[i];

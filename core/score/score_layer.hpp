@@ -80,6 +80,12 @@ Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames);
 /// on the difference. A few frames with truth of a user's own camera suffice. Errors as above.
 Result<ScoreLayer> adapt_score_layer(const ScoreLayer& start, std::span<const ScoreFrame> frames);
 
+/// The layer with its log odds scaled and shifted so that probabilities agree with frequencies on
+/// these frames: Platt scaling (Platt, "Probabilistic Outputs for Support Vector Machines", 1999),
+/// fitted by maximum likelihood under competing_probabilities(). Errors as above.
+Result<ScoreLayer> calibrate_score_layer(const ScoreLayer& layer,
+                                         std::span<const ScoreFrame> frames);
+
 /// Calibration: how well probabilities agree with frequencies.
 struct Reliability {
   struct Bin {

@@ -106,6 +106,35 @@ TEST(ScoreLayer, AFewFramesAdaptALayer) {
   EXPECT_LT(reliability(*adapted, unseen).log_loss, reliability(*anew, unseen).log_loss);
 }
 
+// The law of drawn_frames(), halved and one log odds bolder.
+TEST(ScoreLayer, CalibrationFindsScaleAndShift) {
+  ScoreLayer layer;
+  for (ScoreLayer::Component& component : layer.components) {
+    for (std::size_t k = 0; k < ScoreLayer::kKnots; ++k) {
+      component.place[k] = -1 + 2.0 * static_cast<double>(k) / (ScoreLayer::kKnots - 1);
+    }
+  }
+  for (std::size_t k = 0; k < ScoreLayer::kKnots; ++k) {
+    layer.components[0].value[k] = 0.5 * 4 * layer.components[0].place[k];
+    layer.components[2].value[k] = 0.5 * 6 * layer.components[2].place[k];
+  }
+  layer.bias = 0.5 * -4 + 1;
+  const auto calibrated = calibrate_score_layer(layer, drawn_frames(1000, 1));
+  ASSERT_TRUE(calibrated.ok()) << calibrated.status().message;
+  RandomStream random(2);
+  for (int k = 0; k < 50; ++k) {
+    ScoreValues x;
+    x.fill(0.5);
+    x[0] = random.uniform(-1, 0);
+    x[2] = random.uniform(0, 1);
+    EXPECT_NEAR(calibrated->log_odds(x), 4 * x[0] + 6 * x[2] - 4, 0.2);
+  }
+  const auto unseen = drawn_frames(600, 3);
+  EXPECT_GT(reliability(layer, unseen).expected_calibration_error, 0.05);
+  EXPECT_LT(reliability(*calibrated, unseen).expected_calibration_error, 0.01);
+  EXPECT_FALSE(calibrate_score_layer(layer, {}).ok());
+}
+
 TEST(ScoreLayer, FramesThatAgreeDoNotChangeALayer) {
   const auto learned = train_score_layer(drawn_frames(1000, 1));
   ASSERT_TRUE(learned.ok()) << learned.status().message;
