@@ -22,8 +22,8 @@ using Folders = std::vector<std::string>;
 struct TrainArguments {
   CommonOptions common;
   DetectorArguments detector;
-  DatasetOptions dataset;                 // without its folder
-  Folders bop, round_two_bop, color_bop;  // see the options
+  DatasetOptions dataset;                                  // without its folder
+  Folders bop, round_two_bop, color_bop, calibration_bop;  // see the options
   std::string output, made_by = "bpa train";
   int held_out = 5, models_per_frame = 0;
   bool adapt = false;
@@ -56,6 +56,11 @@ ScoreFrame round_two_samples(const FrameTrace& trace, const DetectorOptions& opt
   return out;
 }
 
+double exposure_of(const SceneFeatures& scene, const ObjectModel& model, const Pose& pose) {
+  const FeaturePlaces places(model);
+  return Evidence(scene, places, pose).colors().exposure;
+}
+
 // The objects of the frame that a first interpretation would hold: most of those in sight.
 Candidates others_of(const Detector& detector, const FrameTrace& trace, const TrueFrame& frame) {
   constexpr double kFound = 0.75;       // of the objects in sight: about the recall in unseen piles
@@ -71,6 +76,7 @@ Candidates others_of(const Detector& detector, const FrameTrace& trace, const Tr
     Candidate other{.model = model->get()};
     other.refinement.camera_from_object = instance.camera_from_object;
     other.explained = explained_pixels(trace.scene.image, **model, other.pose());
+    other.values[component("exposure")] = exposure_of(trace.scene, **model, other.pose());
     if (other.explained.size() >= kInSight) out.push_back(std::move(other));
   }
   return out;
@@ -100,7 +106,7 @@ ScoreFrame round_three_samples(const Detector& detector, const FrameTrace& trace
 // The placements of every frame as the detector chooses from them: right ones, the right object in
 // a wrong pose, and wrong objects, each aligned as well as possible (paper section V).
 void collect(const TrainArguments& a, const Detector& detector, const Folders& folders,
-             Samples* round_two, Samples* round_three) {
+             int models_per_frame, Samples* round_two, Samples* round_three) {
   const DetectorOptions& options = detector.options();
   const auto use = [&](const TrueFrame& frame, const auto&, const FrameTrace& trace) {
     const int index = static_cast<int>(frame.index);
@@ -114,7 +120,7 @@ void collect(const TrainArguments& a, const Detector& detector, const Folders& f
   for (const std::string& folder : folders) {
     DatasetOptions dataset = a.dataset;
     dataset.folder = folder;
-    search_frames(detector, dataset, a.common, use, a.models_per_frame);
+    search_frames(detector, dataset, a.common, use, models_per_frame);
   }
 }
 
@@ -159,12 +165,12 @@ Samples without_color(Samples samples) {
 // Sums over frames that a layer has not seen.
 struct Judged {
   double log_loss = 0;
-  int reported = 0, right = 0;  // of the probabilities from 0.3, the default threshold
+  int reported = 0, right = 0;  // of the probabilities from 0.5, the default threshold
 
   void add(const ScoreLayer& layer, const std::vector<ScoreFrame>& frames) {
     const Reliability r = reliability(layer, frames);
     log_loss += r.log_loss * r.samples;
-    for (std::size_t b = 3; b < r.bins.size(); ++b) {
+    for (std::size_t b = 5; b < r.bins.size(); ++b) {
       reported += r.bins[b].count;
       right += static_cast<int>(std::lround(r.bins[b].right * r.bins[b].count));
     }
@@ -186,7 +192,7 @@ ScoreLayer adapt(const char* name, const ScoreLayer& built_in, const std::string
     after.add(or_throw(adapt_score_layer(built_in, others)), left_out);
   }
   std::printf(
-      "%s, on frames left out: log loss %.1f built in, %.1f adapted; right of those over 0.3: "
+      "%s, on frames left out: log loss %.1f built in, %.1f adapted; right of those over 0.5: "
       "%d/%d built in, %d/%d adapted\n",
       name, before.log_loss, after.log_loss, before.right, before.reported, after.right,
       after.reported);
@@ -211,6 +217,18 @@ ScoreLayer learn(const TrainArguments& a, const char* name, const Folders& folde
   return layer;
 }
 
+// What the layer says of frames as they are in use, as often as it says.
+ScoreLayer calibrate(const TrainArguments& a, const char* name, const ScoreLayer& layer,
+                     const Samples& samples) {
+  ScoreLayer out = or_throw(calibrate_score_layer(layer, samples.training));
+  out.provenance += "; calibrated by " + provenance(a, a.calibration_bop, samples.training.size());
+  std::printf("%s, calibrated\n", name);
+  print_reliability("before", layer, samples.training);
+  print_reliability("after", out, samples.training);
+  print_reliability("held out", out, samples.held_out);
+  return out;
+}
+
 Folders together(Folders folders, const Folders& more) {
   folders.insert(folders.end(), more.begin(), more.end());
   return folders;
@@ -221,17 +239,24 @@ void train(const TrainArguments& a) {
   built_in.built_in_layers = true;
   const Detector detector = open_detector(built_in, a.common.threads);
   Samples round_two, round_three;
-  collect(a, detector, a.bop, &round_two, &round_three);
-  collect(a, detector, a.round_two_bop, &round_two, nullptr);
+  collect(a, detector, a.bop, a.models_per_frame, &round_two, &round_three);
+  collect(a, detector, a.round_two_bop, a.models_per_frame, &round_two, nullptr);
   ScoreLayers layers;
   const ScoreLayers& start = default_score_layers();
   layers.round_two =
       learn(a, "round two", together(a.bop, a.round_two_bop), start.round_two, round_two);
   layers.without_color =
       learn(a, "without colours", a.bop, start.without_color, without_color(round_three));
-  collect(a, detector, a.color_bop, nullptr, &round_three);
+  collect(a, detector, a.color_bop, a.models_per_frame, nullptr, &round_three);
   layers.round_three =
       learn(a, "round three", together(a.bop, a.color_bop), start.round_three, round_three);
+  if (!a.calibration_bop.empty()) {
+    Samples in_use;
+    collect(a, detector, a.calibration_bop, 0, nullptr, &in_use);
+    layers.round_three = calibrate(a, "round three", layers.round_three, in_use);
+    layers.without_color =
+        calibrate(a, "without colours", layers.without_color, without_color(in_use));
+  }
   const std::string path = a.output.empty() ? score_layer_path(a.detector.library) : a.output;
   or_throw(write_score_layers(path, layers));
   std::printf("wrote %s\n", path.c_str());
@@ -251,6 +276,10 @@ void add_train_command(CLI::App& program) {
   add_option(command, "--color-bop", a.color_bop,
              "Data sets that only the layer for colours learns from, such as objects that only "
              "their print tells apart",
+             "DIR");
+  add_option(command, "--calibration-bop", a.calibration_bop,
+             "Data sets like the frames of use, searched for all models: the layers are scaled and "
+             "shifted until probabilities agree with frequencies there",
              "DIR");
   add_split_options(command, a.dataset);
   add_option(command, "--held-out", a.held_out,

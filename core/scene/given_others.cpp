@@ -3,9 +3,11 @@
 #include "core/scene/given_others.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numeric>
 
+#include "core/base/median.hpp"
 #include "core/base/parallel.hpp"
 #include "core/score/surface_agreement.hpp"
 
@@ -15,7 +17,7 @@ namespace {
 constexpr int kNobody = -1;
 // Chosen by hand.
 constexpr int kJudgedPoints = 300;  // of the model that are looked at
-constexpr double kPresent = 0.3;    // probability of what a first interpretation holds
+constexpr double kPresent = 0.5;    // probability of what a first interpretation holds
 
 // Calls visit(pixel) for the pixels and their neighbours in an image: explained pixels are those of
 // single model points, which may lie further apart than pixels.
@@ -98,10 +100,26 @@ class Judge {
     return sum / all;
   }
 
+  // How much lighter it is seen than the others are: exposure is the same for all.
+  double relative_exposure(const Candidates& candidates, const std::vector<bool>& present) const {
+    std::vector<double> others;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const double exposure = candidates[i].values[component("exposure")];
+      if (present[i] && is_other(static_cast<int>(i)) && !std::isnan(exposure)) {
+        others.push_back(exposure);
+      }
+    }
+    if (others.empty()) return kNotKnown;
+    return candidate_.values[component("exposure")] - median(others);
+  }
+
  private:
   bool of_another(std::uint32_t pixel) const {
     const int owner = owners_[pixel];
-    return owner != kNobody && std::ranges::find(not_others_, owner) == not_others_.end();
+    return owner != kNobody && is_other(owner);
+  }
+  bool is_other(int candidate) const {
+    return std::ranges::find(not_others_, candidate) == not_others_.end();
   }
 
   const SceneFeatures& scene_;
@@ -137,6 +155,7 @@ void measure_given_others(const SceneFeatures& scene, const Overlaps& overlaps,
     const Judge judge(scene, candidate, overlaps[i], present, i, owners);
     candidate.values[component("hidden_by_unknown")] = judge.hidden_by_unknown();
     candidate.values[component("left_over")] = judge.left_over();
+    candidate.values[component("relative_exposure")] = judge.relative_exposure(candidates, present);
   });
 }
 

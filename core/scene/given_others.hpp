@@ -13,7 +13,7 @@
 
 namespace bpa {
 
-/// The candidates of a first interpretation: by falling probability, those over 0.3 that conflict
+/// The candidates of a first interpretation: by falling probability, those over 0.5 that conflict
 /// with none before.
 std::vector<bool> first_interpretation(const Candidates& candidates, const Overlaps& overlaps);
 

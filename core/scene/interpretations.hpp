@@ -13,14 +13,14 @@
 namespace bpa {
 
 struct InterpretationOptions {
-  double min_probability = 0.25;
+  double min_probability = 0.5;
   double object_penalty = 0;
   double explained_weight = 2;
   double max_shared = 0.3;
   int annealing_steps = 20000;
   double start_temperature = 2;
   double end_temperature = 0.05;
-  double min_shown = 0.005;
+  double min_shown = 0.001;
   bool judge_given_others = true;
   int max_different = 20;
   int max_interpretations = 100;

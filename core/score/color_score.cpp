@@ -86,7 +86,9 @@ ColorAgreement compare_colors(const CheckImage& image, const Image<Eigen::Vector
   }
   const float a = 500 * kRootOfGrey * (log_gain[0] - log_gain[1]);
   const float b = 200 * kRootOfGrey * (log_gain[2] - log_gain[1]);
-  return {sum / static_cast<double>(windows.size()), static_cast<double>(std::hypot(a, b))};
+  return {.likelihood = sum / static_cast<double>(windows.size()),
+          .tint = static_cast<double>(std::hypot(a, b)),
+          .exposure = static_cast<double>(log_gain[1])};
 }
 
 }  // namespace bpa

@@ -52,6 +52,12 @@ inline bool explains(const CheckImage& image, int u, int v, float predicted) {
   return observed > 0 && std::abs(observed - predicted) <= kExplained_m;
 }
 
+/// Whether colours may be those of a surface of this depth: it explains what is observed, or no
+/// depth is known. Sensors do not see what is black or shiny, cameras do.
+inline bool may_show(const CheckImage& image, int u, int v, float predicted) {
+  return image.depth_at(u, v) == 0 || explains(image, u, v, predicted);
+}
+
 /// Calls visit(u, v, point) for every pixel that the prediction explains, row by row.
 void for_each_explained(const CheckImage& image, const PredictedSurface& predicted,
                         const auto& visit) {

@@ -13,6 +13,7 @@ namespace bpa {
 namespace {
 
 constexpr int kStep = 2;            // pixels; colours are blurred by 1.5
+constexpr int kMixed = 2;           // pixels beside the outline whose blurred colours are mixed
 constexpr int kShift = 2;           // pixels between colour and depth that are looked for
 constexpr int kFewestPixels = 30;   // looked at; fewer cannot tell a pattern from shading
 constexpr double kPixelsApart = 7;  // looked-at pixels per independent one: 4 pi (1.5 / kStep)^2
@@ -76,6 +77,21 @@ struct Sums {
   }
 };
 
+// Whether the blur of colours mixes the pixel with none beside the outline.
+bool inside(const PredictedSurface& predicted, int u, int v) {
+  return predicted.depth_at(u - kMixed, v) > 0 && predicted.depth_at(u + kMixed, v) > 0 &&
+         predicted.depth_at(u, v - kMixed) > 0 && predicted.depth_at(u, v + kMixed) > 0;
+}
+
+// Calls visit(u, v, point) for every step-th pixel that may show the surface's colours.
+void for_each_shown(const CheckImage& image, const PredictedSurface& predicted, int step,
+                    const auto& visit) {
+  predicted.for_each([&](int u, int v, float z, std::uint32_t point) {
+    if (u % step != 0 || v % step != 0) return;
+    if (may_show(image, u, v, z)) visit(u, v, point);
+  });
+}
+
 }  // namespace
 
 TextureAgreement compare_texture(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
@@ -83,8 +99,8 @@ TextureAgreement compare_texture(const CheckImage& image, const Image<Eigen::Vec
   const std::vector<Eigen::Vector3f>& colors = model.index->log_light;
   if (observed.empty() || colors.empty()) return {};
   Sums sums[3][3];
-  for_each_explained(image, predicted, [&](int u, int v, std::uint32_t point) {
-    if (u % kStep != 0 || v % kStep != 0) return;
+  for_each_shown(image, predicted, kStep, [&](int u, int v, std::uint32_t point) {
+    if (!inside(predicted, u, v)) return;
     if (!observed.contains(u - kShift, v - kShift) || !observed.contains(u + kShift, v + kShift)) {
       return;
     }
@@ -111,22 +127,21 @@ Pose turn_to_pattern(const CheckImage& image, const Image<Eigen::Vector3f>& obse
   constexpr double kClearlyBetter = 0.05;  // log-likelihood ratio of a pixel
   const std::vector<Eigen::Vector3f>& colors = model.index->log_light;
   if (observed.empty() || colors.empty() || model.symmetry.trivial()) return camera_from_object;
-  struct Explained {
+  struct Pixel {
     int u, v;
     std::uint32_t point;
   };
-  std::vector<Explained> explained;
-  for_each_explained(image, predict_surface(image, model, camera_from_object),
-                     [&](int u, int v, std::uint32_t point) {
-                       if (u % kTurnStep != 0 || v % kTurnStep != 0) return;
-                       explained.push_back({u, v, point});
-                     });
+  std::vector<Pixel> shown;
+  for_each_shown(image, predict_surface(image, model, camera_from_object), kTurnStep,
+                 [&](int u, int v, std::uint32_t point) {
+                   shown.push_back({u, v, point});
+                 });
   Pose best = camera_from_object;
   double best_ratio = -INFINITY;
   for (const Pose& element : sampled_elements(model.symmetry, kTurns)) {
     const FastPose turned_from_object = to_fast(element.inverse());
     Sums sums;
-    for (const auto& [u, v, point] : explained) {
+    for (const auto& [u, v, point] : shown) {
       const int there =
           model.index->distances.nearest_to(turned_from_object * model.surface.points[point]);
       if (there < 0) continue;

@@ -23,9 +23,10 @@ struct TextureAgreement {
   double total = kNotKnown;
 };
 
-/// Compares pixels of the reduced image that the placement explains; 0 where they are few. Not
-/// known where `observed` (log_light() of the image) or model.index->log_light is empty. The best
-/// of nine shifts by two pixels counts, since colour and depth are never registered exactly.
+/// Compares pixels of the reduced image that the placement explains, or that have no depth, away
+/// from its outline, where blurred colours are mixed; 0 where they are few. Not known where
+/// `observed` (log_light() of the image) or model.index->log_light is empty. The best of nine
+/// shifts by two pixels counts, since colour and depth are never registered exactly.
 TextureAgreement compare_texture(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
                                  const ObjectModel& model, const PredictedSurface& predicted);
 

@@ -23,6 +23,7 @@ PARTS = {
     "use_edges": ("edge correspondences", "align: {use_edges: false}"),
     "climb": ("climbing the score", "climb: {max_climbed: 0}"),
     "lay_flat": ("thin objects laid flat", "flat: {max_laid: 0}"),
+    "rims": ("pairs with rims", "sample: {rim_peaks_per_reference: 0}"),
     "use_round_three": ("components of round three", "score: {use_round_three: false}"),
     "use_texture": ("patterns of surfaces", "features: {use_texture: false}"),
     "use_outline": ("outlines and figure-ground in colour", "features: {use_outline: false}"),
@@ -46,6 +47,7 @@ RANGES = {
     "texture": (-1, 1), "texture_evidence": (-100, 100), "silhouette": (0, 1),
     "silhouette_contrast": (-1, 1), "below": (1, 0), "gap": (0.2, 0), "balance": (-0.5, 0.5),
     "rivals": (-500, 0), "rivals_color": (-500, 0), "hidden_by_unknown": (1, 0), "left_over": (1, 0),
+    "relative_exposure": (-1, 1),
 }
 KNOTS = 8
 

@@ -13,11 +13,13 @@
 # none of them. Some sets hold look-alikes. Round two learns to order placements from all of them. Probabilities are
 # learned from a third with look-alikes: from more, right placements in real frames are disbelieved. Two sets hold
 # objects of the same shape with another print, from which only the layer for colours learns. Each frame is
-# searched for five of the models: more frames are worth more than more models.
+# searched for five of the models: more frames are worth more than more models. So many look-alikes and errors make
+# probabilities too low for most frames. The last set is of piles with small errors and without look-alikes. It is
+# searched for all models, and probabilities are made to agree with frequencies there.
 #
 # The placements to learn from are those that the detector finds with the layers built in so far: after a
-# change of the detector, run this once, copy the file to config/, build, and run it again. Two cores take 80 minutes.
-# BPA_SCENES is the number of scenes of the largest sets (400); the others shrink with it. BPA_OBJECTS limits the
+# change of the detector, run this once, copy the file to config/, build, and run it again. Two cores take two
+# hours. BPA_SCENES is the number of scenes of the largest sets (400); the others shrink with it. BPA_OBJECTS limits the
 # models, such as milk_carton,bowl.
 set -euo pipefail
 readonly programs=$1 output=$2
@@ -26,7 +28,8 @@ readonly objects=${BPA_OBJECTS:-mug,bowl,bottle,can,cup,tube,funnel,plate,milk_c
 spray_bottle,jug,cube,l_brick,stud_block,gear,banana,pen,screwdriver,wrench,scissors,clamp,spatula,tin,battery,phone,\
 remote,book,soap,sponge,matchbox}
 mkdir -p "$output"
-rm -rf "$output"/{heaps,heaps_look_alikes,close,close_look_alikes,rough,table,foreign,prints,close_prints,library}
+rm -rf "$output"/{heaps,heaps_look_alikes,close,close_look_alikes,rough,table,foreign,prints,close_prints} \
+  "$output"/{in_use,library}
 simulate() { # FOLDER SEED SCENES [OPTION...]
   "$programs/bpa" simulate scenes --out "$output/$1" --seed "$2" --scenes $(((scenes * $3 + 399) / 400)) \
     --models "$objects" --sensor mixed "${errors[@]}" "${@:4}"
@@ -44,9 +47,12 @@ simulate table 13000 250 --clutter 0,0.3 --objects 4,10
 simulate foreign 14000 60 --distractors 1 --look-alikes 8
 errors=(--model-error 0.02 --calibration-error 0.3 --misregistration 1.5)
 simulate rough 15000 300 "${close[@]}" --edge-gaps 2 --exposure-spread 0.8
+errors=(--model-error 0.008 --calibration-error 0.06)
+readonly in_use=$((scenes < 20 ? 1200 : 120)) # six scenes at least: calibration needs ten right placements
+simulate in_use 16000 "$in_use" --clutter 0.3,1 --objects 5,14
 "$programs/bpa" model from-bop "$output/heaps" --library "$output/library"
 "$programs/bpa" train --bop "$output"/{heaps,heaps_look_alikes,close,rough,table,foreign} \
   --round-two-bop "$output/close_look_alikes" --color-bop "$output"/{prints,close_prints} \
-  --models-per-frame 5 --held-out 0 \
+  --calibration-bop "$output/in_use" --models-per-frame 5 --held-out 0 \
   --library "$output/library" --output "$output/score_layers.json" \
   --made-by "tests/accuracy/train.sh, up to $scenes scenes of each data set"

@@ -136,6 +136,7 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
                                        "fpfh",
                                        "color",
                                        "tint",
+                                       "exposure",
                                        "texture",
                                        "texture_evidence",
                                        "below",
@@ -146,7 +147,8 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
                                        "rivals",
                                        "rivals_color",
                                        "hidden_by_unknown",
-                                       "left_over"};
+                                       "left_over",
+                                       "relative_exposure"};
   for (const Candidate& candidate : candidates) {
     const ScoreLayer& layer = default_score_layers().round_two;
     double sum = layer.bias;

@@ -86,6 +86,16 @@ TEST_F(GivenOthers, WhatAnotherExplainsIsNotLeftOver) {
   EXPECT_NEAR(measured("left_over", {true, false}), left(), 0.05);
 }
 
+TEST_F(GivenOthers, ExposureIsRelativeToThatOfOthers) {
+  candidates_[kBack].values[component("exposure")] = -1;
+  candidates_[kFront].values[component("exposure")] = 0.2;
+  EXPECT_NEAR(measured("relative_exposure", {true, true}), -1.2, 1e-12);
+  EXPECT_TRUE(std::isnan(measured("relative_exposure", {true, false})))
+      << "nothing to compare with";
+  candidates_[kFront].values[component("exposure")] = kNotKnown;
+  EXPECT_TRUE(std::isnan(measured("relative_exposure", {true, true}))) << "a model without colours";
+}
+
 // It cannot be there when the placement in question is.
 TEST_F(GivenOthers, ARivalIsNoOther) {
   Overlaps overlaps(2);
@@ -102,12 +112,12 @@ TEST_F(GivenOthers, HopelessPlacementsAreNotMeasured) {
 
 TEST_F(GivenOthers, TheFirstInterpretationHoldsTheMostProbableThatDoNotConflict) {
   Candidates three(3);
-  three[0].probability = 0.5;
+  three[0].probability = 0.6;
   three[1].probability = 0.8;
   three[2].probability = 0.2;
   Overlaps overlaps(3);
   EXPECT_EQ(first_interpretation(three, overlaps), (std::vector{true, true, false}));
-  three[2].probability = 0.4;
+  three[2].probability = 0.55;
   overlaps[0] = {{1, 7, true}};
   overlaps[1] = {{0, 7, true}, {2, 7, false}};
   overlaps[2] = {{1, 7, false}};

@@ -123,7 +123,7 @@ std::vector<Candidate> row_of_candidates(int count, std::uint64_t seed) {
   for (int i = 0; i < count; ++i) {
     const int length = 800 + random.index(200);
     candidates.push_back(
-        candidate(i, random.uniform(0.3, 0.99), pixels(static_cast<int>(first), length)));
+        candidate(i, random.uniform(0.5, 0.99), pixels(static_cast<int>(first), length)));
     first += length * (1 - random.uniform(0, 0.42));
   }
   return candidates;

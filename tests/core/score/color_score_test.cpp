@@ -128,6 +128,7 @@ TEST_F(PlainBrick, LampsAndShadowsDoNotMatter) {
       const ColorAgreement same = compare(lit(seen, kRed), lit(model, kRed));
       EXPECT_NEAR(same.likelihood, 0, 1e-3) << light;
       EXPECT_NEAR(same.tint, 0, 1) << light;
+      EXPECT_NEAR(same.exposure, std::log(seen.x() / model.x()) / 3, 1e-3) << light;
     }
     EXPECT_GT(compare(lit(lamp, kRed), lit(kWhite, kBlue)).tint, 50) << light;
   }
@@ -156,6 +157,7 @@ TEST_F(ColorScore, WithoutColourNeitherForNorAgainst) {
         compare(observed_, {kBrickTruth.rotation, {0, 0, -1}})}) {
     EXPECT_TRUE(std::isnan(unknown.likelihood));
     EXPECT_TRUE(std::isnan(unknown.tint));
+    EXPECT_TRUE(std::isnan(unknown.exposure));
   }
   EXPECT_TRUE(test::brick_model()->index->cielab.empty());
 }

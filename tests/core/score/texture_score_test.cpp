@@ -3,6 +3,7 @@
 #include "core/score/texture_score.hpp"
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -49,6 +50,13 @@ struct Seen {
     return compare_texture(image, observed, *model, predicted(pose));
   }
 };
+
+// Whether a pixel's blurred colours are the object's alone: none beside the outline is that near.
+bool within(const PredictedSurface& predicted, int u, int v) {
+  constexpr int kBeside[4][2] = {{2, 0}, {-2, 0}, {0, 2}, {0, -2}};
+  return std::ranges::all_of(
+      kBeside, [&](const auto& step) { return predicted.depth_at(u + step[0], v + step[1]) > 0; });
+}
 
 const Pose kBrickPose = test::look_at({0.1, -0.5, 0.4}, {0, 0, 0});
 
@@ -110,8 +118,9 @@ TEST_F(TextureScore, IsTheGainOfLeastSquares) {
   for (int dv : {-2, 0, 2}) {
     for (int du : {-2, 0, 2}) {
       std::vector<Eigen::Matrix<double, 10, 1>> rows;  // 1, normal, three predicted, three observed
-      brick().predicted(kBrickPose).for_each([&](int u, int v, float, std::uint32_t point) {
-        if (u % 2 != 0 || v % 2 != 0) return;
+      const PredictedSurface predicted = brick().predicted(kBrickPose);
+      predicted.for_each([&](int u, int v, float, std::uint32_t point) {
+        if (u % 2 != 0 || v % 2 != 0 || !within(predicted, u, v)) return;
         Eigen::Matrix<double, 10, 1> row;
         row << 1, brick().model->surface.normals[point].cast<double>(),
             brick().model->index->log_light[point].cast<double>(),
@@ -136,6 +145,30 @@ TEST_F(TextureScore, IsTheGainOfLeastSquares) {
     }
   }
   EXPECT_NEAR(brick().compare(noisy, kBrickPose).log_ratio, best, 0.01);
+}
+
+// Infrared cameras do not see what is black; colour cameras do.
+TEST_F(TextureScore, APatternWithoutDepthCounts) {
+  Seen dark = brick();
+  const PredictedSurface predicted = brick().predicted(kBrickPose);
+  predicted.for_each([&](int u, int v, float, std::uint32_t point) {
+    const bool black = dark.model->surface.colors[point] == stripes({0.005f, 0, 0});
+    if (black) dark.image.pixels[dark.colors.index(u, v)].depth = 0;
+  });
+  const TextureAgreement before = brick().compare(brick().colors, kBrickPose),
+                         after = dark.compare(dark.colors, kBrickPose);
+  EXPECT_DOUBLE_EQ(after.log_ratio, before.log_ratio);
+  EXPECT_DOUBLE_EQ(after.total, before.total);
+}
+
+TEST_F(TextureScore, ColoursAtTheOutlineDoNotCount) {
+  LogLight mixed = brick().colors;
+  const PredictedSurface predicted = brick().predicted(kBrickPose);
+  predicted.for_each([&](int u, int v, float, std::uint32_t) {
+    if (!within(predicted, u, v)) mixed.at(u, v) = Eigen::Vector3f(1, 1, 1);
+  });
+  const TextureAgreement unmixed = brick().compare(brick().colors, kBrickPose);
+  EXPECT_GT(brick().compare(mixed, kBrickPose).log_ratio, 0.8 * unmixed.log_ratio);
 }
 
 TEST_F(TextureScore, OneColourSaysNothingAndNoneIsNotKnown) {
