@@ -55,7 +55,9 @@ class Questions : public test::LScene {
                                  folder, "--namespace", support::test_namespace(), "--domain",
                                  std::to_string(support::test_domain()), "--threads", "1", "--set",
                                  "detector.max_references=200", "--set", "detector.max_refined=10",
-                                 "--set", "detector.annealing_steps=3000"},
+                                 "--set", "detector.annealing_steps=3000",
+                                 // Four poses of a brick share its probability.
+                                 "--set", "detector.min_probability=0.2"},
         log_);
     auto client = Client::connect(support::client_options());
     ASSERT_TRUE(client.ok()) << client.status().message << support::read_text(log_);
