@@ -19,8 +19,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kTimeout(3000);
 constexpr milliseconds kRetry(1000);
+// No multiple of kRetry: sleep_through() must not take the watchdog's sleep for the capture
+// thread's.
+constexpr milliseconds kTimeout(3500);
 constexpr milliseconds kReadyPoll(2);  // of capture.cpp
 
 /// Waits for a condition, for 20 s at most.
