@@ -32,8 +32,8 @@ FREE = [
 POOLED = ["real", "clutter", "unseen-structured_light", "unseen-active_stereo",
           "unseen-time_of_flight"]
 POOLED_FREE = ["empty", "distractors", "osd"]
-DEFAULT_THRESHOLD = 0.3
-SHOWN_THRESHOLDS = [0.1, 0.3, 0.5, 0.7, 0.9]
+DEFAULT_THRESHOLD = 0.4
+SHOWN_THRESHOLDS = [0.1, 0.3, 0.4, 0.5, 0.7, 0.9]
 
 
 def summary(folder, name):
