@@ -23,14 +23,13 @@ struct Candidate {
   /// The pose (camera_from_object) with the information of the last alignment.
   Refinement refinement = {};
   Source found_by = Source::feature;
-  int scene_point = -1;   ///< Of the correspondence: index into SceneFeatures::surface (feature) or
-                          ///< ::coarse (pairs), of the region in ::flat; -1 for a prior.
-  int model_point = -1;   ///< Index into ModelIndex::features or ::coarse; -1 for a prior.
-  float check_score = 0;  ///< PoseCheck::score(); up to stage cluster.
+  int scene_point = -1;  ///< Of the correspondence: index into SceneFeatures::surface (feature) or
+                         ///< ::coarse (pairs), of the region in ::flat; -1 for a prior.
+  int model_point = -1;  ///< Index into ModelIndex::features or ::coarse; -1 for a prior.
 
   ScoreValues values{};    ///< Since refine.
   double prior = 0;        ///< Log odds that the caller's priors add; 0 without any.
-  double score = 0;        ///< Log odds by the learned layer, with `prior`; since round_two.
+  double score = 0;        ///< Log odds by the learned layer, with `prior`; since check_free_space.
   double probability = 0;  ///< Of that score, without rivals. Since refine.
   std::vector<std::uint32_t> explained = {};  ///< Sorted pixels of the reduced image on the model.
 

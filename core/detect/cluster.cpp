@@ -50,16 +50,16 @@ Pose aligned_pose(const Search& search, const Cluster& cluster) {
 
 // The best member, or the cluster aligned again where that scores better.
 Candidate best_of(const Search& search, const Cluster& cluster) {
-  const auto check_score = [&](const Pose& pose) {
-    return search.check(pose, search.options.check.recheck_points).score();
-  };
   Candidate best = *cluster.members.front();
-  best.check_score = check_score(best.pose());
+  const auto score = [&](const Pose& pose) {
+    return search.quick_score(pose, search.options.cluster.rank_points);
+  };
   const Pose aligned = aligned_pose(search, cluster);
-  const float score = check_score(aligned);
-  if (score > best.check_score) {
+  best.score = score(best.pose());
+  const double score_aligned = score(aligned);
+  if (score_aligned > best.score) {
     best.refinement.camera_from_object = aligned;
-    best.check_score = score;
+    best.score = score_aligned;
   }
   const auto of_prior = [](const Candidate* member) { return member->found_by == Source::prior; };
   if (std::ranges::any_of(cluster.members, of_prior)) best.found_by = Source::prior;
@@ -70,17 +70,16 @@ Candidate best_of(const Search& search, const Cluster& cluster) {
 void keep_clusters(const Search& search, Candidates& clusters) {
   const ClusterOptions& options = search.options.cluster;
   const int most_suggested = static_cast<int>(options.suggested_share * options.max_clusters);
-  sort_by_check_score(clusters);
+  sort_by_score(clusters);
   Candidates suggested, others;
   for (Candidate& cluster : clusters) {
     const bool first = cluster.found_by == Source::prior && std::ssize(suggested) < most_suggested;
     (first ? suggested : others).push_back(std::move(cluster));
   }
-  keep_best_of_places(search, options.max_clusters - static_cast<int>(suggested.size()),
-                      options.rank_penalty, others);
+  keep_first(search, options.max_clusters - static_cast<int>(suggested.size()), others);
   clusters = std::move(suggested);
   std::ranges::move(others, std::back_inserter(clusters));
-  sort_by_check_score(clusters);
+  sort_by_score(clusters);
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
+#include <atomic>
+#include <functional>
 
+#include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/detect/stages.hpp"
 
@@ -15,16 +18,20 @@ constexpr Stage kStages[] = {
      "from priors."},
     {"free_space", check_free_space, 0.4, "Checked against the depth image",
      "Poses with over 20 % of their points in free space are rejected, and poses without surface. "
-     "The best few of each place stay and get a first small correction."},
+     "The best of each place by score stay, then the best of all models.",
+     [](const DetectOptions& options) { return options.check.max_in_library; }},
+    {"corrected", correct, 0.4, "Corrected",
+     "Two Gauss-Newton steps move each pose onto the surface, where that improves it."},
     {"clusters", cluster, 1, "Clustered",
      "Poses within 2.5 cm and pi/16 are a cluster. BPA aligns each one again with the "
-     "correspondences of all its poses."},
+     "correspondences of all its poses. The best of all models go on.",
+     [](const DetectOptions& options) { return options.cluster.max_in_library; }},
     {"round_two", round_two, 0.5, "Aligned (round two)",
      "BPA and Gauss-Newton steps move each pose onto the surface around it. A step is accepted if "
-     "the score improves."},
+     "the score improves. After non-maximum suppression the best of all models go on.",
+     [](const DetectOptions& options) { return options.refine.max_in_library; }},
     {"aligned", refine, 0.5, "Refined",
-     "After non-maximum suppression the best are aligned once more and scored with all components "
-     "(round three)."},
+     "The best are aligned once more and scored with all components (round three)."},
     {"climbed", climb, 0.5, "Climbed",
      "The best climb the score by small steps, from where they are and from beside."},
     {"turned", try_turned, 0.7, "Turned",
@@ -37,31 +44,80 @@ constexpr Stage kStages[] = {
     {"final", select, 1, "Selected",
      "Distinct placements of sufficient score. Interpretations of the scene choose from these."},
 };
+constexpr std::size_t kRoundStages = 6;  // those that every round runs
 
-// Runs a stage and records what came of it.
-Candidates traced(const Stage& stage, Search& search, Candidates candidates, ObjectTrace* trace) {
+// Runs a stage and records its time and what it rejects.
+Candidates timed(const Stage& stage, Search& search, Candidates candidates, ObjectTrace* trace) {
   if (!trace) return stage.run(search, std::move(candidates));
-  trace->stages.push_back({stage.name, stage.title, stage.text, {}, 0, {}});
-  search.tracing = &trace->stages.back();
+  search.tracing = &trace->stage(stage.name, stage.title, stage.text);
   const Stopwatch watch;
   candidates = stage.run(search, std::move(candidates));
-  search.tracing->milliseconds = watch.milliseconds();
-  for (const Candidate& c : candidates) search.tracing->poses.push_back(to_fast(c.pose()));
+  search.tracing->milliseconds += watch.milliseconds();
   return candidates;
+}
+
+// Keeps the `most` best of all models, and what priors suggested.
+void compete(std::span<const Search> searches, int most, std::vector<Candidates>& found) {
+  std::vector<double> scores;
+  for (const Candidates& of_model : found) {
+    for (const Candidate& candidate : of_model) scores.push_back(candidate.score);
+  }
+  if (std::ssize(scores) <= most) return;
+  std::ranges::nth_element(scores, scores.begin() + most, std::greater());
+  const double threshold = scores[most];
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    std::erase_if(found[i], [&](const Candidate& candidate) {
+      const bool low = candidate.score <= threshold && candidate.found_by != Source::prior;
+      if (low) searches[i].reject("better ones of other models are enough", candidate.pose());
+      return low;
+    });
+  }
 }
 
 }  // namespace
 
 std::span<const Stage> detection_stages() { return kStages; }
+std::span<const Stage> round_stages() { return detection_stages().first(kRoundStages); }
+std::span<const Stage> final_stages() { return detection_stages().subspan(kRoundStages); }
+
+void run_stages(std::span<const Stage> stages, std::span<Search> searches, int num_threads,
+                std::vector<Candidates>& found, std::vector<ObjectTrace>* traces) {
+  if (searches.empty()) return;
+  if (traces) traces->resize(searches.size());
+  const Deadline deadline = searches.front().deadline;
+  const int threads = resolve_num_threads(num_threads);
+  for (const Stage& stage : stages) {
+    const Deadline end = deadline.part(stage.time_share);
+    std::atomic<int> waiting{static_cast<int>(searches.size())};
+    parallel_for(searches.size(), num_threads, [&](std::size_t i) {
+      searches[i].deadline = end.part(std::min(1.0, static_cast<double>(threads) / waiting--));
+      found[i] = timed(stage, searches[i], std::move(found[i]), traces ? &(*traces)[i] : nullptr);
+    });
+    if (stage.most_in_library) {
+      compete(searches, stage.most_in_library(searches.front().options), found);
+    }
+    if (!traces) continue;
+    for (std::size_t i = 0; i < searches.size(); ++i) {
+      for (const Candidate& c : found[i]) searches[i].tracing->poses.push_back(to_fast(c.pose()));
+    }
+  }
+  for (Search& search : searches) search.deadline = deadline;
+}
 
 Candidates detect_object(Search search, ObjectTrace* trace) {
-  const Deadline deadline = search.deadline;
-  Candidates found;
-  for (const Stage& stage : kStages) {
-    search.deadline = deadline.part(stage.time_share);
-    found = traced(stage, search, std::move(found), trace);
-  }
-  return found;
+  std::vector<Candidates> found(1);
+  std::vector<ObjectTrace> traces;
+  run_stages(kStages, {&search, 1}, 1, found, trace ? &traces : nullptr);
+  if (trace) *trace = std::move(traces.front());
+  return std::move(found.front());
+}
+
+TraceStage& ObjectTrace::stage(std::string_view name, std::string_view title,
+                               std::string_view text) {
+  const auto found = std::ranges::find(stages, name, &TraceStage::name);
+  if (found != stages.end()) return *found;
+  stages.push_back({name, title, text, {}, 0, {}});
+  return stages.back();
 }
 
 void TraceStage::reject(std::string_view reason, const FastPose& pose) {

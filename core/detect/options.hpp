@@ -49,10 +49,10 @@ struct AlignOptions {
 };
 
 struct SampleOptions {
-  int matches_per_keypoint = 2;
+  int matches_per_keypoint = 1;
   int draws_per_match = 3;
-  int peaks_per_reference = 12;
-  int rim_peaks_per_reference = 4;
+  int peaks_per_reference = 5;
+  int rim_peaks_per_reference = 2;
   int draws_per_prior = 300;
   double feature_sigma_m = 0.004;
   double pair_sigma_m = 0.008;
@@ -94,10 +94,11 @@ struct CheckOptions {
   double free_depth_m = 0.030;
   double normal_cosine = 0.7;
   int recheck_points = 256;
-  int max_kept = 1500;
-  int max_kept_per_cell = 3;
+  int rank_points = 24;
+  int max_kept = 200;
+  int max_kept_per_cell = 1;
+  int max_in_library = 5000;
   int max_suggested = 60;
-  double rank_penalty = 0.02;
   RefinementOptions correction{2, 64, 24, 0.020, 0.012};
 
   void visit_fields(auto&& visit) {
@@ -124,15 +125,15 @@ struct CheckOptions {
           {-1, 1, "Smallest cosine between the normals of model and surface."});
     visit("recheck_points", recheck_points,
           {1, 100000, "Model points of the second check, after the correction."});
+    visit("rank_points", rank_points,
+          {1, 100000, "Surface points of the round-two score that ranks the poses left."});
     visit("max_kept", max_kept, {1, 1000000, "Poses that go on."});
     visit("max_kept_per_cell", max_kept_per_cell,
           {1, 1000, "Poses that go on from one cell of 25 mm and 25 degrees."});
+    visit("max_in_library", max_in_library,
+          {1, 1000000, "Poses of all models together that go on."});
     visit("max_suggested", max_suggested,
           {0, 100000, "Poses drawn from priors that go on, beyond max_kept."});
-    visit("rank_penalty", rank_penalty,
-          {0, 10,
-           "Check score that a pose loses for each better pose within 5 cm, when the poses "
-           "that go on are chosen."});
   }
   void visit_groups(auto&& visit) {
     visit("correction", correction, "First small alignment of what passed the check.");
@@ -142,9 +143,10 @@ struct CheckOptions {
 struct ClusterOptions {
   int min_features = 2;
   int max_correspondences = 10;
-  int max_clusters = 400;
+  int rank_points = 64;
+  int max_clusters = 60;
+  int max_in_library = 800;
   double suggested_share = 0.25;
-  double rank_penalty = 0.04;
 
   void visit_fields(auto&& visit) {
     visit("min_features", min_features,
@@ -153,11 +155,14 @@ struct ClusterOptions {
            "stands for many pairs and is kept alone."});
     visit("max_correspondences", max_correspondences,
           {1, 100, "Correspondences that a cluster is aligned with."});
-    visit("max_clusters", max_clusters, {1, 10000, "Clusters that go on to round two."});
+    visit("rank_points", rank_points,
+          {1, 100000, "Surface points of the round-two score that ranks clusters."});
+    visit("max_clusters", max_clusters,
+          {1, 10000, "Clusters of one model that go on to round two."});
+    visit("max_in_library", max_in_library,
+          {1, 1000000, "Clusters of all models together that go on."});
     visit("suggested_share", suggested_share,
           {0, 1, "Share of max_clusters kept for poses drawn from priors."});
-    visit("rank_penalty", rank_penalty,
-          {0, 10, "As check.rank_penalty, when the clusters that go on are chosen."});
   }
 };
 
@@ -192,12 +197,15 @@ struct RoundTwoOptions {
 };
 
 struct RefineOptions {
-  int max_refined = 50;
+  int max_refined = 30;
+  int max_in_library = 250;
   RefinementOptions refinement{8, 500, 60, 0.015, 0.008};
 
   void visit_fields(auto&& visit) {
     visit("max_refined", max_refined,
-          {1, 10000, "Placements that are aligned to the end and scored in full."});
+          {1, 10000, "Placements of one model that are aligned to the end and scored in full."});
+    visit("max_in_library", max_in_library,
+          {1, 1000000, "Placements of all models together that are."});
   }
   void visit_groups(auto&& visit) {
     visit("refinement", refinement, "Gradient-based alignment (V.7).");
@@ -205,7 +213,7 @@ struct RefineOptions {
 };
 
 struct ClimbOptions {
-  int max_climbed = 8;
+  int max_climbed = 3;
   int rounds = 4;
   double step_m = 0.006;
   double beside_rad = 0.17;
@@ -238,8 +246,8 @@ struct TurnOptions {
 };
 
 struct FlatOptions {
-  int max_laid = 16;
-  int max_per_region = 8;
+  int max_laid = 4;
+  int max_per_region = 4;
   int slide_rounds = 5;
   double slide_step_m = 0.008;
 

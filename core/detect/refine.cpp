@@ -17,7 +17,6 @@ Pose turned_to_pattern(const Search& search, const Pose& pose) {
 
 Candidates refine(const Search& search, Candidates aligned) {
   const RefineOptions& options = search.options.refine;
-  suppress_duplicates(search, aligned);
   keep_first(search, options.max_refined, aligned);
   Candidates out;
   for (const Candidate& start : aligned) {

@@ -5,6 +5,7 @@
 #include "core/align/align.hpp"
 #include "core/base/random.hpp"
 #include "core/detect/matches.hpp"
+#include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
 #include "core/model/model_index.hpp"
 
@@ -114,6 +115,7 @@ Candidates round_two(const Search& search, Candidates clusters) {
     ++done;
   }
   clusters.resize(done);
+  suppress_duplicates(search, clusters);
   return clusters;
 }
 

@@ -15,15 +15,18 @@ namespace {
 void from_features(const Search& search, Candidates& out) {
   const SampleOptions& options = search.options.sample;
   const SceneFeatures& scene = search.scene;
-  RandomStream random(search.seed, Stream::feature_draws, search.model.number);
+  RandomStream random(search.seed + search.round, Stream::feature_draws, search.model.number);
+  const std::vector<int>& keypoints = search.sample->keypoints;
+  std::vector<Fpfh> fpfh;
+  for (const int k : keypoints) fpfh.push_back(scene.fpfh[k]);
   const auto matches =
-      search.model.index->feature_tree.nearest(scene.fpfh, options.matches_per_keypoint, 1);
+      search.model.index->feature_tree.nearest(fpfh, options.matches_per_keypoint, 1);
   for (std::size_t k = 0; k < matches.size(); ++k) {
     if (matches[k].index < 0) continue;
     if (search.late()) return;
     Candidate candidate{.model = &search.model,
                         .found_by = Source::feature,
-                        .scene_point = scene.keypoints[k / options.matches_per_keypoint],
+                        .scene_point = scene.keypoints[keypoints[k / options.matches_per_keypoint]],
                         .model_point = matches[k].index};
     const align::OrientedPair pair = oriented_pair(search, candidate);
     for (int draw = 0; draw < options.draws_per_match; ++draw) {
@@ -37,18 +40,18 @@ void from_features(const Search& search, Candidates& out) {
 // of their faces.
 void from_pairs(const Search& search, Candidates& out) {
   const SampleOptions& options = search.options.sample;
-  const SceneFeatures& scene = search.scene;
+  const SceneSample& sample = *search.sample;
   const ModelIndex& index = *search.model.index;
   const auto count = static_cast<int>(index.coarse.size());
-  auto poses = vote_poses(scene.pairs, index.pairs, count, options.peaks_per_reference);
+  auto poses = vote_poses(sample.pairs, index.pairs, count, options.peaks_per_reference);
   if (options.rim_peaks_per_reference > 0) {
     const auto by_rims =
-        vote_poses(scene.rim_pairs, index.rim_pairs, count, options.rim_peaks_per_reference);
+        vote_poses(sample.rim_pairs, index.rim_pairs, count, options.rim_peaks_per_reference);
     poses.insert(poses.end(), by_rims.begin(), by_rims.end());
   }
   std::vector<Eigen::Matrix3f> bases;
   for (const Eigen::Vector3f& normal : index.coarse.normals) bases.push_back(basis_of(normal));
-  const PointCloud& coarse = scene.coarse;
+  const PointCloud& coarse = search.scene.coarse;
   for (const VotedPose& voted : poses) {
     const int s = voted.reference, m = voted.model_point;
     FastPose pose;
@@ -96,7 +99,7 @@ align::OrientedPair oriented_pair(const Search& search, const Candidate& candida
 
 Candidates sample(const Search& search, Candidates) {
   Candidates out;
-  from_priors(search, out);
+  if (search.round == 0) from_priors(search, out);
   from_features(search, out);
   from_pairs(search, out);
   return out;

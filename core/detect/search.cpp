@@ -10,10 +10,21 @@ namespace bpa {
 
 Search::Search(const SceneFeatures& s, const ObjectModel& m, const DetectOptions& o,
                const ScoreLayers& l, std::span<const PosePrior> p, std::uint64_t random_seed)
-    : scene(s), model(m), options(o), layers(l), priors(p, m), seed(random_seed), places(m) {}
+    : scene(s),
+      sample(&s.sample),
+      image(&s.image),
+      model(m),
+      options(o),
+      layers(l),
+      priors(p, m),
+      seed(random_seed),
+      places(m) {}
 
 Search::Search(const SceneFeatures& s, const Search& other)
     : scene(s),
+      sample(&s.sample),
+      image(&s.image),
+      round(other.round),
       model(other.model),
       options(other.options),
       layers(other.layers),
@@ -36,7 +47,11 @@ Refinement Search::refine(const Pose& start, RefinementOptions refinement) const
 }
 
 double Search::quick_score(const Pose& pose) const {
-  Evidence evidence(scene, places, pose, options.score.quick_points);
+  return quick_score(pose, options.score.quick_points);
+}
+
+double Search::quick_score(const Pose& pose, int points) const {
+  Evidence evidence(scene, places, pose, points);
   return layers.round_two.log_odds(measure(evidence, Round::two)) + priors.evidence(pose);
 }
 
@@ -66,7 +81,7 @@ void Search::reject(std::string_view reason, const Pose& pose) const {
 }
 
 PoseCheck Search::check(const Pose& pose, int points, const CheckTolerance& tolerance) const {
-  return check_pose(scene.image, model.index->check, to_fast(pose), points, tolerance);
+  return check_pose(*image, model.index->check, to_fast(pose), points, tolerance);
 }
 
 PoseCheck Search::check(const Pose& pose, int points) const {

@@ -37,7 +37,10 @@ struct TraceStage {
 };
 
 struct ObjectTrace {
-  std::vector<TraceStage> stages;  ///< In the order of detection_stages().
+  std::vector<TraceStage> stages;  ///< In the order of detection_stages(); of all rounds.
+
+  /// The stage of that name; a new one unless a round before had it.
+  TraceStage& stage(std::string_view name, std::string_view title, std::string_view text);
 };
 
 /// Sets score and probability from values and prior.
@@ -54,6 +57,9 @@ struct Search {
   Search(const SceneFeatures& scene, const Search& other);
 
   const SceneFeatures& scene;
+  const SceneSample* sample;  ///< What this round looks up; at first that of the scene.
+  const CheckImage* image;    ///< What poses are checked with; at first that of the scene.
+  int round = 0;
   const ObjectModel& model;
   DetectOptions options;
   const ScoreLayers& layers;
@@ -68,8 +74,10 @@ struct Search {
   bool late() const;
   /// Gradient-based alignment, with edges unless AlignOptions leaves them out.
   Refinement refine(const Pose& start, RefinementOptions refinement) const;
-  /// Log odds of round two, from a few points, with the caller's priors.
+  /// Log odds of round two, from ScoreOptions::quick_points or so many surface points, with the
+  /// caller's priors.
   double quick_score(const Pose& pose) const;
+  double quick_score(const Pose& pose, int points) const;
   /// Scores a candidate at `refinement` with all components.
   Candidate scored(Refinement refinement, Source found_by) const;
   /// Sets score and probability by the last layer, or by that of round two without round three.

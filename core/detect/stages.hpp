@@ -8,9 +8,9 @@
 #include "core/align/correspondence.hpp"
 #include "core/detect/search.hpp"
 
-// The stages of the search for one object; README.md says what each does, why, and how to add one.
-// Each takes the candidates of the stage before and returns its own. A stage is deterministic, for
-// any number of threads, unless the deadline passes.
+// The stages of the search; README.md says what each does, why, and how to add one. A stage takes
+// the candidates of one model from the stage before and returns its own. A stage is deterministic,
+// for any number of threads, unless the deadline passes.
 
 namespace bpa {
 
@@ -21,15 +21,20 @@ Candidates sample(const Search& search, Candidates none);
 /// The oriented pair behind a candidate that a feature or a point pair suggested.
 align::OrientedPair oriented_pair(const Search& search, const Candidate& candidate);
 
-/// Rejects poses that hang in free space or find no surface (V.3); keeps the best of each place.
+/// Rejects poses that hang in free space or find no surface (V.3). Keeps the best of each place by
+/// the round-two score from a few points.
 Candidates check_free_space(const Search& search, Candidates sampled);
+
+/// Moves each pose by a few Gauss-Newton steps where the check score improves: a sampled pose is
+/// off by as much as the sampling of both surfaces is coarse. Rejects nothing.
+Candidates correct(const Search& search, Candidates checked);
 
 /// Groups poses within the pose tolerance, modulo the model's symmetry, and aligns each group again
 /// with BPA (V.3). Rejects single feature matches; single voted poses stay.
 Candidates cluster(const Search& search, Candidates checked);
 
-/// Aligns each candidate with BPA to sampled super-pixels (V.6) and scores it (V.5). Rejects
-/// nothing unless the deadline passes.
+/// Aligns each candidate with BPA to sampled super-pixels (V.6) and scores it (V.5). Non-maximum
+/// suppression (V.7).
 Candidates round_two(const Search& search, Candidates clusters);
 
 /// One alignment by BPA to sampled super-pixels (V.6). Model points within `gate` metres of these
@@ -38,8 +43,7 @@ Candidates round_two(const Search& search, Candidates clusters);
 Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
                       float gate, std::uint64_t seed, const DetectOptions& options = {});
 
-/// Non-maximum suppression (V.7); aligns the best by gradients (V.7) and scores them with all
-/// components (V.8).
+/// Aligns the best by gradients (V.7) and scores them with all components (V.8).
 Candidates refine(const Search& search, Candidates aligned);
 
 /// Hill climbing of the score from and beside the best candidates. Rejects nothing.
@@ -64,14 +68,26 @@ struct Stage {
   double time_share;       ///< Of the time left at its start, where there is a deadline.
   std::string_view title;  ///< For people.
   std::string_view text;
+  /// How many candidates of all models together go on, the best by score; null: all.
+  int (*most_in_library)(const DetectOptions&) = nullptr;
 };
 
-/// The stages in their order.
+/// The stages in their order. The first ones find placements in a sample of the scene, once in each
+/// round; the others see what all rounds have found.
 std::span<const Stage> detection_stages();
+std::span<const Stage> round_stages();
+std::span<const Stage> final_stages();
 
-/// Runs the stages: the best placements of one model in the scene (paper section V), best first.
-/// Deterministic unless the search's deadline passes: then the best so far. `trace`, if given,
-/// receives each stage.
+/// Runs stages for several models of one scene, each stage for all models before the next. Models
+/// compete: where a stage has `most_in_library`, the best of all go on. Priors' candidates always
+/// do. `found` holds the candidates of each search, before and after. Deterministic unless the
+/// deadline of the first search passes; all models get an equal share of the time. `traces`, if
+/// given, receives the stages of each search.
+void run_stages(std::span<const Stage> stages, std::span<Search> searches, int num_threads,
+                std::vector<Candidates>& found, std::vector<ObjectTrace>* traces = nullptr);
+
+/// Runs all stages for one model on the scene's first sample: the best placements of the model
+/// (paper section V), best first.
 Candidates detect_object(Search search, ObjectTrace* trace = nullptr);
 
 }  // namespace bpa

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/dispatch.hpp"
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 
@@ -54,22 +55,50 @@ constexpr int kTurnBins = 32;
 constexpr int kStepsPerBin = kTurnSteps / kTurnBins;
 constexpr int kMinVotes = 3;  // of a voted pose; chosen by hand
 
-// The best turn of one model point: votes in a bin and the one after it.
-struct Peak {
-  int model_point = 0, bin = 0, votes = 0;
-};
+// For each model point, the most votes in a bin and the one after it.
+BPA_DISPATCH void most_votes(const std::uint16_t* votes, int num_points, std::uint16_t* most) {
+  for (int i = 0; i < num_points; ++i) {
+    const std::uint16_t* bins = votes + i * kTurnBins;
+    auto best = static_cast<std::uint16_t>(bins[kTurnBins - 1] + bins[0]);
+    for (int b = 0; b + 1 < kTurnBins; ++b) {
+      const auto both = static_cast<std::uint16_t>(bins[b] + bins[b + 1]);
+      best = both > best ? both : best;
+    }
+    most[i] = best;
+  }
+}
 
-Peak best_turn(const std::uint16_t* bins, int model_point) {
-  Peak best{model_point, 0, 0};
-  for (int b = 0; b < kTurnBins; ++b) {
-    const int votes = bins[b] + bins[(b + 1) % kTurnBins];
-    if (votes > best.votes) {
-      best.bin = b;
-      best.votes = votes;
+// The first bin that has as many together with the one after it.
+int bin_of_most(const std::uint16_t* bins, int most) {
+  int b = 0;
+  while (b + 1 < kTurnBins && bins[b] + bins[b + 1] != most) ++b;
+  return b;
+}
+
+// The model points with the most votes, best first.
+class Peaks {
+ public:
+  explicit Peaks(std::size_t wanted) : wanted_(wanted) {}
+
+  void find(std::span<const std::uint16_t> most) {
+    points_.clear();
+    for (std::size_t i = 0; i < most.size(); ++i) {
+      const bool full = points_.size() == wanted_;
+      if (most[i] < kMinVotes || wanted_ == 0 || (full && most[i] <= most[points_.back()])) {
+        continue;
+      }
+      if (full) points_.pop_back();
+      auto at = points_.end();
+      while (at != points_.begin() && most[*(at - 1)] < most[i]) --at;
+      points_.insert(at, static_cast<int>(i));
     }
   }
-  return best;
-}
+  const std::vector<int>& points() const { return points_; }
+
+ private:
+  std::size_t wanted_;
+  std::vector<int> points_;
+};
 
 // The middle of the two bins' votes, in radians.
 float turn_between(const std::uint16_t* bins, int bin) {
@@ -240,8 +269,8 @@ ScenePairs scene_rim_pairs(const PointCloud& cloud, std::span<const RimPoint> ri
 std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable& table,
                                   int num_model_points, int peaks) {
   std::vector<VotedPose> out;
-  std::vector<std::uint16_t> votes(num_model_points * kTurnBins);
-  std::vector<Peak> best;
+  std::vector<std::uint16_t> votes(num_model_points * kTurnBins), most(num_model_points);
+  Peaks best(peaks);
   for (std::size_t r = 0; r < pairs.references.size(); ++r) {
     const bool votes_for_none = pairs.first[r] == pairs.first[r + 1] ||
                                 pairs.partners[pairs.first[r]].distance > table.max_distance();
@@ -255,18 +284,12 @@ std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable&
         ++votes[entry.point * kTurnBins + turn / kStepsPerBin];
       }
     }
-    best.clear();
-    for (int i = 0; i < num_model_points; ++i) {
-      const Peak peak = best_turn(&votes[i * kTurnBins], i);
-      if (peak.votes >= kMinVotes) best.push_back(peak);
-    }
-    const std::size_t keep = std::min<std::size_t>(best.size(), peaks);
-    std::ranges::partial_sort(best, best.begin() + keep, {}, [](const Peak& peak) {
-      return std::pair(-peak.votes, peak.model_point);
-    });
-    for (const Peak& peak : std::span(best).first(keep)) {
-      out.push_back({pairs.references[r], peak.model_point,
-                     turn_between(&votes[peak.model_point * kTurnBins], peak.bin), peak.votes});
+    most_votes(votes.data(), num_model_points, most.data());
+    best.find(most);
+    for (const int point : best.points()) {
+      const std::uint16_t* bins = &votes[point * kTurnBins];
+      const float turn = turn_between(bins, bin_of_most(bins, most[point]));
+      out.push_back({pairs.references[r], point, turn, most[point]});
     }
   }
   return out;

@@ -25,14 +25,13 @@ PointCloud searched_points(const SurfaceMap& map) {
   return cloud;
 }
 
-std::vector<int> choose(std::size_t available, int wanted, std::uint64_t seed) {
-  std::vector<int> all(available);
+std::vector<int> shuffled(std::size_t count, std::uint64_t seed) {
+  std::vector<int> all(count);
   std::iota(all.begin(), all.end(), 0);
   RandomStream random(seed, Stream::keypoints);
   for (std::size_t i = all.size(); i > 1; --i) {
     std::swap(all[i - 1], all[random.index(static_cast<int>(i))]);
   }
-  all.resize(std::min<std::size_t>(all.size(), wanted));
   return all;
 }
 
@@ -70,6 +69,32 @@ std::shared_ptr<const SceneFeatures> with_flat_regions(const SceneFeatures& scen
 
 }  // namespace
 
+SceneSample next_sample(const SceneFeatures& scene, const SceneSample& before,
+                        std::span<const std::uint8_t> explained,
+                        const SceneFeatureOptions& options) {
+  const auto wanted = [&](const Eigen::Vector3f& point) {
+    const int pixel = scene.image.pixel_of(point);
+    return explained.empty() || pixel < 0 || explained[pixel] == 0;
+  };
+  SceneSample out;
+  std::size_t k = before.keypoints_passed;
+  for (; k < scene.keypoints.size() && std::ssize(out.keypoints) < options.round_keypoints; ++k) {
+    if (wanted(scene.surface.points[scene.keypoints[k]])) out.keypoints.push_back(k);
+  }
+  out.keypoints_passed = k;
+  std::vector<int> references;
+  std::size_t r = before.references_passed;
+  for (; r < scene.references.size() && std::ssize(references) < options.max_references; ++r) {
+    if (wanted(scene.coarse.points[scene.references[r]])) references.push_back(scene.references[r]);
+  }
+  out.references_passed = r;
+  const auto reach = static_cast<float>(options.pair_reach_m);
+  out.pairs = scene_pairs(scene.coarse, references, reach, options.num_threads);
+  out.rim_pairs =
+      scene_rim_pairs(scene.coarse, scene.rims, std::move(references), reach, options.num_threads);
+  return out;
+}
+
 SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
                              const SceneFeatureOptions& options, ColorImages colors) {
   SceneFeatures scene;
@@ -97,14 +122,12 @@ SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
   scene.surface = downsample(searched, kFeatureSpacing);
   scene.coarse = downsample(searched, static_cast<float>(options.coarse_spacing_m));
   estimate_curvature(scene.surface, kCurvatureRadius, options.num_threads);
-  scene.keypoints = choose(scene.surface.size(), options.max_keypoints, options.seed);
+  scene.keypoints = shuffled(scene.surface.size(), options.seed);
+  scene.keypoints.resize(std::min<std::size_t>(scene.keypoints.size(), options.max_keypoints));
   scene.fpfh = compute_fpfh(scene.surface, scene.keypoints, kFeatureRadius, options.num_threads);
-  scene.pairs =
-      scene_pairs(scene.coarse, choose(scene.coarse.size(), options.max_references, options.seed),
-                  static_cast<float>(options.pair_reach_m), options.num_threads);
-  scene.rim_pairs =
-      scene_rim_pairs(scene.coarse, scene_rims(scene.image, scene.coarse), scene.pairs.references,
-                      static_cast<float>(options.pair_reach_m), options.num_threads);
+  scene.references = shuffled(scene.coarse.size(), options.seed);
+  scene.rims = scene_rims(scene.image, scene.coarse);
+  scene.sample = next_sample(scene, {}, {}, options);
   if (options.use_flat_regions) {
     // Pixels, against noise. The blur of `cielab` would smear thin objects.
     constexpr double kLittleBlur = 0.7;

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/cloud/planes.hpp"
@@ -17,17 +19,29 @@
 
 namespace bpa {
 
+/// Scene points that one round of the search looks up in the models.
+struct SceneSample {
+  std::vector<int> keypoints;  ///< Indices into SceneFeatures::keypoints.
+  ScenePairs pairs;            ///< Of points of SceneFeatures::coarse.
+  ScenePairs rim_pairs;        ///< Of points of `coarse` and the rims of their faces.
+  /// How many of SceneFeatures::keypoints and ::references this sample and those before it passed.
+  std::size_t keypoints_passed = 0, references_passed = 0;
+
+  bool empty() const { return keypoints.empty() && pairs.references.empty(); }
+};
+
 /// What detection reads of a frame; made once, shared by all models. Camera frame, metres.
 struct SceneFeatures {
   SurfaceMap map;
   CheckImage image;
-  std::vector<Plane> planes;   ///< Labelled background.
-  PointCloud surface;          ///< Searched surface, kFeatureSpacing apart, with curvature.
-  std::vector<int> keypoints;  ///< Indices into `surface` where FPFH was computed.
-  std::vector<Fpfh> fpfh;      ///< Of the keypoints.
-  PointCloud coarse;           ///< Searched surface, for point pairs.
-  ScenePairs pairs;            ///< Of points of `coarse`.
-  ScenePairs rim_pairs;        ///< Of points of `coarse` and the rims of their faces.
+  std::vector<Plane> planes;    ///< Labelled background.
+  PointCloud surface;           ///< Searched surface, kFeatureSpacing apart, with curvature.
+  std::vector<int> keypoints;   ///< Indices into `surface` where FPFH was computed; random order.
+  std::vector<Fpfh> fpfh;       ///< Of the keypoints.
+  PointCloud coarse;            ///< Searched surface, for point pairs.
+  std::vector<int> references;  ///< Indices into `coarse`, in random order: reference points.
+  std::vector<RimPoint> rims;   ///< Of the faces of `coarse`.
+  SceneSample sample;           ///< The first.
   SceneEdges edges;
   Image<Eigen::Vector3f> cielab;       ///< Blurred, of the map's size; empty without colour.
   Image<Eigen::Vector3f> log_light;    ///< log_light() of `cielab`; empty without patterns.
@@ -41,9 +55,10 @@ struct SceneFeatures {
 
 struct SceneFeatureOptions {
   int max_keypoints = 600;
-  int max_references = 800;
+  int round_keypoints = 200;
+  int max_references = 500;
   double coarse_spacing_m = 0.010;
-  double pair_reach_m = 0.30;
+  double pair_reach_m = 0.08;
   bool use_color = true;
   bool use_texture = true;
   bool use_outline = true;
@@ -56,12 +71,16 @@ struct SceneFeatureOptions {
 
   void visit_fields(auto&& visit) {
     visit("max_keypoints", max_keypoints,
-          {10, 100000, "Scene points whose features are matched with the models."});
+          {10, 100000, "Scene points whose features are compared with the models'."});
+    visit("round_keypoints", round_keypoints,
+          {1, 100000, "Of these, how many one round matches with the models."});
     visit("max_references", max_references,
-          {0, 100000, "Scene points whose pairs with others vote for poses."});
+          {0, 100000, "Scene points whose pairs with others vote for poses in one round."});
     visit("coarse_spacing_m", coarse_spacing_m,
           {0.002, 0.1, "Spacing of the points that make pairs, metres."});
-    visit("pair_reach_m", pair_reach_m, {0.01, 5, "Length of the longest pairs, metres."});
+    visit(
+        "pair_reach_m", pair_reach_m,
+        {0.01, 5, "Length of the longest pairs, metres. What is mostly hidden has no long ones."});
     visit("use_color", use_color, {0, 1, "Use the frame's colours; false ignores them."});
     visit("use_texture", use_texture,
           {0, 1, "Compare the patterns of surfaces in colour; false ignores them."});
@@ -83,6 +102,12 @@ struct ColorImages {
   Image<Eigen::Vector3f> reduced;    ///< reduced_color()
   Image<Eigen::Vector2f> gradients;  ///< color_gradients()
 };
+
+/// The sample after `before`: the next points in random order, without those on pixels that are
+/// `explained` (a flag for each pixel of the map; none given: no pixel is).
+SceneSample next_sample(const SceneFeatures& scene, const SceneSample& before,
+                        std::span<const std::uint8_t> explained,
+                        const SceneFeatureOptions& options);
 
 /// `map` with its background labelled.
 SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,

@@ -3,16 +3,14 @@
 #include "core/pipeline/detector.hpp"
 
 #include <algorithm>
-#include <atomic>
 
 #include "core/base/concat.hpp"
-#include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/cloud/cielab.hpp"
 #include "core/cloud/color_gradients.hpp"
-#include "core/detect/stages.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/options_yaml.hpp"
+#include "core/pipeline/library_search.hpp"
 #include "core/scene/given_others.hpp"
 #include "core/scene/interpretations.hpp"
 
@@ -84,35 +82,6 @@ SceneFeatures observe(const Frame& frame, const DetectRequest& request, Detector
   return scene;
 }
 
-// The candidates of all models. Where there is a deadline, each model gets an equal part of the
-// time that is left when its turn comes.
-struct ModelSearch {
-  const SceneFeatures& scene;
-  const DetectOptions& options;
-  const ScoreLayers& layers;
-  const DetectRequest& request;
-  Deadline deadline;
-
-  /// `cut`: whether time ran out for some model.
-  Candidates run(const Models& models, std::vector<ObjectTrace>* traces, bool& cut) const {
-    std::vector<std::uint8_t> late(models.size(), 0);
-    std::vector<Candidates> found(models.size());
-    std::atomic<int> waiting{static_cast<int>(models.size())};
-    const int threads = std::min(resolve_num_threads(request.num_threads), waiting.load());
-    if (traces) traces->resize(models.size());
-    parallel_for(models.size(), request.num_threads, [&](std::size_t i) {
-      Search search(scene, *models[i], options, layers, request.priors, request.seed);
-      search.deadline = deadline.part(std::min(1.0, static_cast<double>(threads) / waiting--));
-      search.cut = &late[i];
-      found[i] = detect_object(std::move(search), traces ? &(*traces)[i] : nullptr);
-    });
-    cut = std::ranges::count(late, 1) > 0;
-    Candidates all;
-    for (Candidates& of_model : found) std::ranges::move(of_model, std::back_inserter(all));
-    return all;
-  }
-};
-
 // The first `count`, their probabilities scaled to sum to 1 again.
 void keep_best(std::vector<Interpretation>& interpretations, std::size_t count) {
   if (interpretations.size() <= count) return;
@@ -181,7 +150,7 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   out.sensor = name_of(scene.map.sensor);
 
   Stopwatch stage;
-  Candidates candidates = ModelSearch{scene, options_.detect, layers_, request, deadline}.run(
+  Candidates candidates = LibrarySearch{scene, options_, layers_, request, deadline}.run(
       *models, trace ? &trace->objects : nullptr, out.budget_exhausted);
   out.timings.push_back({"objects", stage.lap_milliseconds()});
 

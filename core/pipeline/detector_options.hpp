@@ -13,12 +13,28 @@
 
 namespace bpa {
 
+/// How often the search looks at the scene.
+struct RoundOptions {
+  int max_rounds = 3;
+  double min_certain = 0.85;
+
+  void visit_fields(auto&& visit) {
+    visit("max_rounds", max_rounds,
+          {1, 100, "Rounds of the search, each with another sample of the scene."});
+    visit("min_certain", min_certain,
+          {0, 1,
+           "Surface that a placement of at least this probability explains is not searched in "
+           "later rounds."});
+  }
+};
+
 /// Every setting of the detector, a group for each stage. The defaults are meant for a Kinect-class
 /// sensor and household objects; config/detector.yaml lists them all.
 struct DetectorOptions {
   SurfaceMapOptions surface;
   PlaneOptions planes;
   SceneFeatureOptions features;
+  RoundOptions rounds;
   DetectOptions detect;  ///< Its groups are listed as the detector's own.
   InterpretationOptions scene;
 
@@ -26,6 +42,7 @@ struct DetectorOptions {
     visit("surface", surface, "The surface in the depth image.");
     visit("planes", planes, "Background planes.");
     visit("features", features, "What is computed once for all models.");
+    visit("rounds", rounds, "Rounds of the search.");
     detect.visit_groups(visit);
     visit("scene", scene, "Interpretations of the whole scene (paper section VI).");
   }

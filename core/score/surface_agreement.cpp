@@ -203,7 +203,10 @@ SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& mod
     out.shape = trace > 0 ? static_cast<double>(solver.eigenvalues()[1] / trace) : 0;
   }
   out.visibility = sums.facing > 0 ? static_cast<double>(sums.visible) / sums.facing : 0;
-  score_edges(image, model, view, fast, max_points > 0 ? 60 : 200, out);
+  // Of so many surface points, as many edge points.
+  constexpr int kAllEdges = 200, kMostEdges = 60;
+  score_edges(image, model, view, fast,
+              max_points > 0 ? std::min(max_points, kMostEdges) : kAllEdges, out);
   return out;
 }
 

@@ -24,6 +24,7 @@ PARTS = {
     "climb": ("climbing the score", "climb: {max_climbed: 0}"),
     "lay_flat": ("thin objects laid flat", "flat: {max_laid: 0}"),
     "rims": ("pairs with rims", "sample: {rim_peaks_per_reference: 0}"),
+    "rounds": ("rounds after the first", "rounds: {max_rounds: 1}"),
     "use_round_three": ("components of round three", "score: {use_round_three: false}"),
     "use_texture": ("patterns of surfaces", "features: {use_texture: false}"),
     "use_outline": ("outlines and figure-ground in colour", "features: {use_outline: false}"),

@@ -75,7 +75,7 @@ BENCHMARK(fpfh)->Name("features/fpfh")->UseRealTime()->Unit(benchmark::kMillisec
 // Votes of one model's point pairs.
 void voting(benchmark::State& state) {
   const ModelIndex& index = *heap().model->index;
-  const ScenePairs& pairs = scene().pairs;
+  const ScenePairs& pairs = scene().sample.pairs;
   const auto points = static_cast<int>(index.coarse.size());
   for (auto _ : state) {
     benchmark::DoNotOptimize(vote_poses(pairs, index.pairs, points, 1));

@@ -33,7 +33,7 @@ class LScene : public ::testing::Test {
     SurfaceMap map = surface_map(render(solids, kinect_camera(), noise, 8).frame, {});
     auto planes = label_background_planes(map, {});
     SceneFeatureOptions options;
-    options.max_keypoints = 2000;
+    options.max_keypoints = options.round_keypoints = 2000;
     options.num_threads = num_threads;
     return scene_features(std::move(map), std::move(planes), options);
   }

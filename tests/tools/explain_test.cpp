@@ -20,9 +20,10 @@ using cli::ExplainedFrame;
 using cli::ExplainFolder;
 
 constexpr const char* kModelPictures[] = {
-    "03_sampled.png", "04_free_space.png", "05_clusters.png", "06_round_two.png",
-    "07_aligned.png", "08_climbed.png",    "09_turned.png",   "10_laid.png",
-    "11_rivals.png",  "12_final.png",      "13_best.png",     "14_best_segments.png"};
+    "03_sampled.png",      "04_free_space.png", "05_corrected.png", "06_clusters.png",
+    "07_round_two.png",    "08_aligned.png",    "09_climbed.png",   "10_turned.png",
+    "11_laid.png",         "12_rivals.png",     "13_final.png",     "14_best.png",
+    "15_best_segments.png"};
 
 /// An L on a table, and a brick that is not there.
 class Explain : public ::testing::Test {
@@ -128,7 +129,7 @@ TEST_F(Explain, SeveralModelsHaveAFolderEach) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/03_sampled.png"));
   const std::string text = page("out/index.html");
   for (const char* name : {"l", "brick"}) {
-    expect_picture(std::string("out/") + name + "/12_final.png");
+    expect_picture(std::string("out/") + name + "/13_final.png");
     EXPECT_NE(text.find("href=\"" + std::string(name) + "/index.html\""), std::string::npos);
     EXPECT_FALSE(page(std::string("out/") + name + "/index.html").empty());
   }

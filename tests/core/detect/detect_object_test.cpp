@@ -100,10 +100,10 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
     }
   }
   EXPECT_EQ(names,
-            (std::vector<std::string>{"sampled", "free_space", "clusters", "round_two", "aligned",
-                                      "climbed", "turned", "laid", "rivals", "final"}));
+            (std::vector<std::string>{"sampled", "free_space", "corrected", "clusters", "round_two",
+                                      "aligned", "climbed", "turned", "laid", "rivals", "final"}));
   EXPECT_GT(trace.stages[0].poses.size(), 1000u);
-  EXPECT_TRUE(trace.stages[3].rejected.empty()) << "round two rejects nothing";
+  EXPECT_TRUE(trace.stages[2].rejected.empty()) << "a correction rejects nothing";
   ASSERT_EQ(trace.stages.back().poses.size(), plain.size());
   EXPECT_LT((trace.stages.back().poses[0].translation.cast<double>() - plain[0].pose().translation)
                 .norm(),

@@ -256,10 +256,7 @@ TEST_F(PriorsOf, WrongOnesDoNotHideAClearObject) {
 
 TEST_F(PriorsOf, FindWhatFeaturesDoNot) {
   SceneFeatures scene = features_of(everything(), 1);
-  scene.keypoints.clear();
-  scene.fpfh.clear();
-  scene.pairs = {};
-  scene.rim_pairs = {};
+  scene.sample = {};
   ASSERT_TRUE(detect_object(Search(scene, *l_)).empty()) << "nothing suggests a pose";
   // Off by what a tracker is off by.
   std::vector<PosePrior> given = {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <gtest/gtest.h>
 
@@ -32,14 +33,12 @@ void expect_same(const Candidates& a, const Candidates& b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     ASSERT_EQ(a[i].pose().rotation.coeffs(), b[i].pose().rotation.coeffs());
     ASSERT_EQ(a[i].pose().translation, b[i].pose().translation);
-    ASSERT_EQ(a[i].check_score, b[i].check_score);
+    ASSERT_EQ(a[i].score, b[i].score);
   }
 }
 
 void expect_best_first(const Candidates& hypotheses) {
-  EXPECT_TRUE(
-      std::is_sorted(hypotheses.begin(), hypotheses.end(),
-                     [](const auto& a, const auto& b) { return a.check_score > b.check_score; }));
+  EXPECT_TRUE(std::ranges::is_sorted(hypotheses, std::greater(), &Candidate::score));
 }
 
 // Sampled and checked.
@@ -92,25 +91,23 @@ TEST_F(Stages, NoiseDoesNotHideThem) {
 TEST_F(Stages, EachSourceAloneFindsTheL) {
   const SceneFeatures scene = features_of(everything());
   SceneFeatures without_pairs = scene;
-  without_pairs.pairs = {};
+  without_pairs.sample.pairs = {};
   SceneFeatures rims_alone = without_pairs;
-  without_pairs.rim_pairs = {};
+  without_pairs.sample.rim_pairs = {};
   const auto by_features = sampled_in(without_pairs, *l_);
   for (const Candidate& hypothesis : by_features) {
     ASSERT_EQ(hypothesis.found_by, Source::feature);
   }
   EXPECT_LT(first_right(by_features, l_truth_, l_->symmetry), by_features.size());
   SceneFeatures without_keypoints = scene;
-  without_keypoints.rim_pairs = {};
-  without_keypoints.keypoints.clear();
-  without_keypoints.fpfh.clear();
+  without_keypoints.sample.rim_pairs = {};
+  without_keypoints.sample.keypoints.clear();
   const auto by_pairs = sampled_in(without_keypoints, *l_);
   for (const Candidate& hypothesis : by_pairs) {
     ASSERT_EQ(hypothesis.found_by, Source::pairs);
   }
   EXPECT_LT(first_right(by_pairs, l_truth_, l_->symmetry), by_pairs.size());
-  rims_alone.keypoints.clear();
-  rims_alone.fpfh.clear();
+  rims_alone.sample.keypoints.clear();
   const auto by_rims = sampled_in(rims_alone, *l_);
   EXPECT_LT(first_right(by_rims, l_truth_, l_->symmetry), by_rims.size());
 }

@@ -56,8 +56,8 @@ TEST_F(DetectorOptionsFile, AFieldMayBeNamedWithoutItsGroupIfOnlyOneHasTheName) 
   ASSERT_TRUE(options.ok()) << options.status().message;
   EXPECT_EQ(options->features.max_keypoints, 700);
   EXPECT_FALSE(options->detect.align.use_orientation);
-  EXPECT_EQ(refusal("rank_penalty: 1\n", 1),
-            "unknown key rank_penalty; there is check.rank_penalty or cluster.rank_penalty");
+  EXPECT_EQ(refusal("rank_points: 1\n", 1),
+            "unknown key rank_points; there is check.rank_points or cluster.rank_points");
 }
 
 TEST_F(DetectorOptionsFile, EmptyFilesChangeNothing) {

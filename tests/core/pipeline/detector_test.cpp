@@ -116,6 +116,20 @@ TEST_F(DetectorOf, GivesTheSameAnswerForAnyThreads) {
   }
 }
 
+TEST_F(DetectorOf, LaterRoundsFindWhatTheFirstMisses) {
+  DetectorOptions options = quick();
+  options.features.max_references = 3;
+  options.features.round_keypoints = 1;
+  const auto found_in = [&](int rounds) {
+    options.rounds.max_rounds = rounds;
+    const auto result = Detector(library_, options).detect(frame_, {});
+    EXPECT_TRUE(result.ok()) << result.status().message;
+    return names(result->interpretations.at(0));
+  };
+  EXPECT_LT(found_in(1).size(), 2u);
+  EXPECT_EQ(found_in(40), (std::vector<std::string>{"brick", "l"}));
+}
+
 TEST_F(DetectorOf, LooksOnlyForTheModelsNamed) {
   DetectRequest request;
   request.models = {"brick"};

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/detect/ranking.hpp"
+#include "core/detect/stages.hpp"
+
+namespace bpa {
+
+Candidates correct(const Search& search, Candidates checked) {
+  const CheckOptions& options = search.options.check;
+  const auto check_score = [&](const Pose& pose) {
+    return search.check(pose, options.recheck_points).score();
+  };
+  for (Candidate& candidate : checked) {
+    if (search.late()) break;
+    const Pose corrected = search.refine(candidate.pose(), options.correction).camera_from_object;
+    if (check_score(corrected) <= check_score(candidate.pose())) continue;
+    candidate.refinement.camera_from_object = corrected;
+    candidate.score = search.quick_score(corrected, options.rank_points);
+  }
+  sort_by_score(checked);
+  return checked;
+}
+
+}  // namespace bpa

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/base/stopwatch.hpp"
+#include "core/detect/search.hpp"
+#include "core/pipeline/detector.hpp"
+
+namespace bpa {
+
+/// What a search reads; keeps references.
+struct LibrarySearch {
+  const SceneFeatures& scene;
+  const DetectorOptions& options;
+  const ScoreLayers& layers;
+  const DetectRequest& request;
+  Deadline deadline;
+
+  /// The candidates of all models. Searches in rounds: each takes another sample of the scene, and
+  /// surface that certain placements explain is searched no more. Models compete in each round.
+  /// `cut`: whether time ran out.
+  Candidates run(const std::vector<std::shared_ptr<const ObjectModel>>& models,
+                 std::vector<ObjectTrace>* traces, bool& cut) const;
+};
+
+}  // namespace bpa

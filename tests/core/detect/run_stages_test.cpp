@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "core/detect/stages.hpp"
+#include "tests/support/l_scene.hpp"
+
+namespace bpa {
+namespace {
+
+class RunStages : public test::LScene {
+ protected:
+  static std::vector<Search> searches_in(const SceneFeatures& scene, const DetectOptions& options) {
+    std::vector<Search> out;
+    out.emplace_back(scene, *l_, options);
+    out.emplace_back(scene, *brick_, options);
+    return out;
+  }
+  // The scores of all models' candidates after clustering, best first.
+  static std::vector<double> clustered(const SceneFeatures& scene, int most_in_library,
+                                       int num_threads) {
+    DetectOptions options;
+    options.cluster.max_in_library = most_in_library;
+    auto searches = searches_in(scene, options);
+    std::vector<Candidates> found(2);
+    run_stages(round_stages().first(4), searches, num_threads, found);
+    std::vector<double> scores;
+    for (const Candidates& of_model : found) {
+      for (const Candidate& candidate : of_model) scores.push_back(candidate.score);
+    }
+    std::ranges::sort(scores, std::greater());
+    return scores;
+  }
+};
+
+TEST_F(RunStages, TheBestOfAllModelsGoOn) {
+  const SceneFeatures scene = features_of(everything(), 1);
+  ASSERT_EQ(round_stages()[3].name, "clusters");
+  const auto all = clustered(scene, 100000, 1);
+  ASSERT_GT(all.size(), 20u);
+  const auto few = clustered(scene, 10, 2);
+  ASSERT_EQ(few.size(), 10u);
+  for (std::size_t i = 0; i < few.size(); ++i) EXPECT_EQ(few[i], all[i]);
+}
+
+TEST_F(RunStages, OneModelAfterAnotherFindsTheSameUnlessTheyCompete) {
+  const SceneFeatures scene = features_of(everything(), 1);
+  DetectOptions options;
+  options.check.max_in_library = options.cluster.max_in_library = options.refine.max_in_library =
+      100000;
+  auto searches = searches_in(scene, options);
+  std::vector<Candidates> found(2);
+  run_stages(detection_stages(), searches, 2, found);
+  const Candidates alone[] = {detect_object(Search(scene, *l_, options)),
+                              detect_object(Search(scene, *brick_, options))};
+  for (std::size_t m = 0; m < 2; ++m) {
+    ASSERT_EQ(found[m].size(), alone[m].size());
+    for (std::size_t i = 0; i < found[m].size(); ++i) {
+      EXPECT_EQ(found[m][i].pose().translation, alone[m][i].pose().translation);
+      EXPECT_EQ(found[m][i].score, alone[m][i].score);
+    }
+  }
+}
+
+TEST_F(RunStages, WhatPriorsSuggestGoesOnInAnyCase) {
+  const SceneFeatures scene = features_of(everything(), 1);
+  PosePrior prior;
+  prior.model = "l";
+  prior.position = PositionPrior{l_truth_.translation, 1e-4 * Eigen::Matrix3d::Identity()};
+  DetectOptions options;
+  options.check.max_in_library = 1;
+  std::vector<Search> searches;
+  searches.emplace_back(scene, *l_, options, default_score_layers(), std::span(&prior, 1));
+  std::vector<Candidates> found(1);
+  run_stages(round_stages().first(2), searches, 1, found);
+  const auto suggested = std::ranges::count(found[0], Source::prior, &Candidate::found_by);
+  EXPECT_GT(suggested, 1);
+  EXPECT_LE(std::ssize(found[0]) - suggested, 1);
+}
+
+}  // namespace
+}  // namespace bpa
