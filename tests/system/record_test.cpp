@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
@@ -63,7 +64,14 @@ TEST(RecordAndPlay, FramesAndResultsComeBackWithTheirTimes) {
   frame.cy = 23.5;
   frame.frame_id = "wall";
   // The recorder may need a moment until it hears us; what it has is what must come back.
-  constexpr std::int64_t kSecond = 1'000'000'000;
+  constexpr std::int64_t kSecond = 1'000'000'000, kMillisecond = 1'000'000;
+  const std::filesystem::path first = folder + "/test/000001/depth/000000.png";
+  for (int i = 1; i < 200 && !std::filesystem::exists(first); ++i) {
+    frame.stamp_ns = i * kMillisecond;
+    ASSERT_TRUE(client->publish_frame(frame).ok());
+    std::this_thread::sleep_for(milliseconds(60));
+  }
+  std::this_thread::sleep_for(milliseconds(500));  // until it hears the server as well
   for (int i = 1; i <= 15; ++i) {
     frame.stamp_ns = i * kSecond;
     ASSERT_TRUE(client->publish_frame(frame).ok());
@@ -79,7 +87,7 @@ TEST(RecordAndPlay, FramesAndResultsComeBackWithTheirTimes) {
   EXPECT_EQ(recording.back().at("frame_id"), "wall");
   const double length_s = recording.back().at("after_s");
   EXPECT_GT(length_s, 0.7);
-  EXPECT_GE(json_of(folder + "/results.json").at("frames").size(), recording.size());
+  EXPECT_GE(json_of(folder + "/results.json").at("frames").size(), 15U);
 
   // Played, the server finds the same in every frame, in the same order, and it takes as long.
   const std::string json = support::scratch_folder() + "/played.json";
