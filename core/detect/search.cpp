@@ -59,7 +59,7 @@ Candidate Search::scored(Refinement refinement, Source found_by) const {
   Candidate out{.model = &model, .refinement = refinement, .found_by = found_by};
   Evidence evidence(scene, places, out.pose());
   out.values = measure(evidence, options.score.use_round_three ? Round::three : Round::two);
-  out.explained = explained_pixels(scene.image, model, out.pose());
+  out.explained = evidence.take_explained();
   out.prior = priors.evidence(out.pose());
   apply_layer(out);
   return out;

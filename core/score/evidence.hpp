@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/model/model_index.hpp"
@@ -35,8 +37,16 @@ class Evidence {
   const Image<float>& edges() const { return scene_.edges.likelihood; }
 
   const SurfaceAgreement& surface() {
-    if (!surface_) surface_ = measure_surface(scene_.image, model(), pose_, max_points_);
+    if (!surface_) {
+      surface_ = measure_surface(scene_.image, model(), pose_, max_points_,
+                                 max_points_ == 0 ? &explained_ : nullptr);
+    }
     return *surface_;
+  }
+  /// The explained pixels, as of measure_surface(), if all points are looked at; moved out.
+  std::vector<std::uint32_t> take_explained() {
+    surface();
+    return std::move(explained_);
   }
   const PredictedSurface& predicted() {
     if (!predicted_) predicted_ = predict_surface(scene_.image, model(), pose_);
@@ -74,6 +84,7 @@ class Evidence {
   const FeaturePlaces& places_;
   const Pose& pose_;
   int max_points_;
+  std::vector<std::uint32_t> explained_;
   std::optional<SurfaceAgreement> surface_;
   std::optional<PredictedSurface> predicted_;
   std::optional<std::vector<SegmentMatch>> segments_;

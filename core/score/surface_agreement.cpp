@@ -162,7 +162,8 @@ std::size_t step_through(const ModelView& view, int max_points) {
 }  // namespace
 
 SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& model,
-                                 const Pose& pose, int max_points) {
+                                 const Pose& pose, int max_points,
+                                 std::vector<std::uint32_t>* explained) {
   const FastPose fast = to_fast(pose);
   const ModelView& view = nearest_view(model.index->views, fast);
   const std::size_t step = step_through(view, max_points);
@@ -188,7 +189,12 @@ SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& mod
       out.explained_pixels += covered;
       out.explained_area += model.index->point_area * static_cast<double>(step);
       sums.background += pixel.searched ? 0 : 1;
+      if (explained) explained->push_back(static_cast<std::uint32_t>(seen.pixel));
     }
+  }
+  if (explained) {
+    std::ranges::sort(*explained);
+    explained->erase(std::ranges::unique(*explained).begin(), explained->end());
   }
   out.relative_area = out.explained_area / (model.diameter * model.diameter);
   out.unknown = sums.facing > 0 ? static_cast<double>(sums.unknown) / sums.facing : 0;
@@ -212,19 +218,8 @@ SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& mod
 
 std::vector<std::uint32_t> explained_pixels(const CheckImage& image, const ObjectModel& model,
                                             const Pose& pose) {
-  const FastPose fast = to_fast(pose);
   std::vector<std::uint32_t> out;
-  const ModelView& view = nearest_view(model.index->views, fast);
-  SeenPoint seen;
-  Sums sums;
-  for (std::size_t k = 0; k < view.visible.size(); ++k) {
-    if (!see_point(image, model, view, fast, k, seen)) continue;
-    const CheckPixel& pixel = image.pixels[seen.pixel];
-    if (pixel.depth <= 0) continue;
-    if (add_point(image, seen, sums)) out.push_back(static_cast<std::uint32_t>(seen.pixel));
-  }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
+  measure_surface(image, model, pose, 0, &out);
   return out;
 }
 

@@ -43,11 +43,13 @@ struct SurfaceAgreement {
 };
 
 /// Compares `model` at `pose` with the image at about `max_points` of the surface points that its
-/// nearest view shows (0: all of them).
+/// nearest view shows (0: all of them). `explained`, if given, receives the sorted indices of the
+/// observed pixels that lie on the model.
 SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& model,
-                                 const Pose& pose, int max_points = 0);
+                                 const Pose& pose, int max_points = 0,
+                                 std::vector<std::uint32_t>* explained = nullptr);
 
-/// The sorted indices of the observed pixels that lie on the model.
+/// The explained pixels alone, of all points.
 std::vector<std::uint32_t> explained_pixels(const CheckImage& image, const ObjectModel& model,
                                             const Pose& pose);
 
