@@ -196,6 +196,48 @@ void derive_index(const ModelSource& source, ModelIndex& index) {
   }
 }
 
+ViewPoint view_point(const ObjectModel& model, const ModelView& view, std::size_t k) {
+  const std::uint32_t i = view.visible[k];
+  return {model.surface.points[i], model.surface.normals[i], model.index->soft_normals[i],
+          view.edge_distance[k], model.normal_variance[i]};
+}
+
+ViewEdge view_edge(const ObjectModel& model, const ModelView& view, std::size_t k) {
+  const std::uint32_t i = view.edges[k];
+  return {model.surface.points[i], model.surface.normals[i], view.outward[k]};
+}
+
+namespace {
+
+// Calls visit(k) for up to ViewSample::kMost of `size` items, spread evenly. Any first part of them
+// is spread as well: they come in the order of a van der Corput sequence.
+void for_each_spread(std::size_t size, const auto& visit) {
+  constexpr int kBits = 8;
+  static_assert(1 << kBits == ViewSample::kMost);
+  std::vector<bool> visited(size, false);
+  for (std::size_t i = 0; i < ViewSample::kMost && size > 0; ++i) {
+    std::size_t reversed = 0;
+    for (int bit = 0; bit < kBits; ++bit) reversed |= (i >> bit & 1) << (kBits - 1 - bit);
+    const std::size_t k = reversed * size / ViewSample::kMost;
+    if (!visited[k]) visit(k);
+    visited[k] = true;
+  }
+}
+
+std::vector<ViewSample> sample_views(const ObjectModel& model) {
+  std::vector<ViewSample> out;
+  for (const ModelView& view : model.index->views) {
+    ViewSample& sample = out.emplace_back();
+    for_each_spread(view.visible.size(),
+                    [&](std::size_t k) { sample.points.push_back(view_point(model, view, k)); });
+    for_each_spread(view.edges.size(),
+                    [&](std::size_t k) { sample.edges.push_back(view_edge(model, view, k)); });
+  }
+  return out;
+}
+
+}  // namespace
+
 Result<std::shared_ptr<const ObjectModel>> make_object_model(ModelSource source, int num_threads) {
   if (source.surface.size() < 20 || source.surface.normals.size() != source.surface.size()) {
     return invalid_argument("model " + source.name +
@@ -214,6 +256,7 @@ Result<std::shared_ptr<const ObjectModel>> make_object_model(ModelSource source,
   if (model->normal_variance.size() != model->surface.size()) {
     model->normal_variance = geometric_normal_variance(model->surface, num_threads);
   }
+  model->view_samples = sample_views(*model);
   return std::shared_ptr<const ObjectModel>(std::move(model));
 }
 

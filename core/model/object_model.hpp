@@ -13,7 +13,8 @@
 
 namespace bpa {
 
-struct ModelIndex;     // what detection computes from the source; see model_index.hpp
+struct ModelIndex;
+struct ModelView;      // what detection computes from the source; see model_index.hpp
 struct OccupancyGrid;  // see occupancy_grid.hpp
 
 /// Where a model's symmetries come from.
@@ -47,12 +48,38 @@ struct ModelSource {
   std::shared_ptr<const OccupancyGrid> occupancy;
 };
 
+/// A surface point that a view shows, with all that scoring reads of it.
+struct ViewPoint {
+  Eigen::Vector3f point, normal, soft_normal;  ///< See ModelIndex::soft_normals.
+  float edge_distance = 0;                     ///< See ModelView::edge_distance.
+  float normal_variance = 0;                   ///< See ModelSource::normal_variance.
+};
+
+/// A point on a range edge of a view; see ModelView::outward.
+struct ViewEdge {
+  Eigen::Vector3f point, normal, outward;
+};
+
+/// Points of one view, side by side in memory: the surface as a whole is larger than the cache. Any
+/// first part of them is spread over the view.
+struct ViewSample {
+  static constexpr std::size_t kMost = 256;  ///< Of each kind.
+  std::vector<ViewPoint> points;
+  std::vector<ViewEdge> edges;
+};
+
 /// A known object, ready for detection.
 struct ObjectModel : ModelSource {
   std::shared_ptr<const ModelIndex> index;
+  std::vector<ViewSample> view_samples;  ///< Of each of index->views.
   /// Of the surface's bounding box; object frame, metres. The origin may lie anywhere.
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
 };
+
+/// The k-th point that a view of the index shows.
+ViewPoint view_point(const ObjectModel& model, const ModelView& view, std::size_t k);
+/// The k-th edge point of a view of the index.
+ViewEdge view_edge(const ObjectModel& model, const ModelView& view, std::size_t k);
 
 /// The normal variances that follow from the surface alone: a sensor averages normals over its
 /// window, so that they vary as those of the surface within it do.

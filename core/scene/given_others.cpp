@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kNobody = -1;
 // Chosen by hand.
-constexpr int kJudgedPoints = 300;  // of the model that are looked at
+constexpr int kJudgedPoints = 256;  // of the model that are looked at
 constexpr double kPresent = 0.5;    // probability of what a first interpretation holds
 
 // Calls visit(pixel) for the pixels and their neighbours in an image: explained pixels are those of

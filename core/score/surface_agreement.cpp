@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/model/model_index.hpp"
 #include "core/score/likelihood.hpp"
@@ -81,20 +82,18 @@ bool add_point(const CheckImage& image, const SeenPoint& seen, Sums& sums) {
 
 // Beyond a range edge of the model the observed surface must not simply go on: it may be further
 // away, nearer (something in front), or turn (the object stands on it).
-void score_edges(const CheckImage& image, const ObjectModel& model, const ModelView& view,
-                 const FastPose& pose, std::size_t max_points, SurfaceAgreement& out) {
+void score_edges(const CheckImage& image, const ObjectModel& model, std::span<const ViewEdge> edges,
+                 const FastPose& pose, SurfaceAgreement& out) {
   if (!model.complete) {  // has no edges to speak for or against it
     out.edge = 0;
     out.edge_support = 0.5;
     return;
   }
-  const std::size_t step = std::max<std::size_t>(1, view.edges.size() / max_points);
   int visible = 0, total = 0, ends = 0, goes_on = 0;
-  for (std::size_t k = 0; k < view.edges.size(); k += step) {
-    const std::uint32_t i = view.edges[k];
-    const Eigen::Vector3f point = pose * model.surface.points[i];
-    const Eigen::Vector3f normal = pose.rotation * model.surface.normals[i];
-    const Eigen::Vector3f outward = pose.rotation * view.outward[k];
+  for (const ViewEdge& edge : edges) {
+    const Eigen::Vector3f point = pose * edge.point;
+    const Eigen::Vector3f normal = pose.rotation * edge.normal;
+    const Eigen::Vector3f outward = pose.rotation * edge.outward;
     const int at = image.pixel_of(point);
     ++total;
     if (at < 0) continue;  // the image border hides it
@@ -116,26 +115,22 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const ModelV
   out.edge = visible > 0 ? -static_cast<double>(goes_on) / visible : -1;
 }
 
-// The k-th visible point of the view: position, normal and slant. False where it faces away or is
-// behind the camera.
-bool place_point(const ObjectModel& model, const ModelView& view, const FastPose& pose,
-                 std::size_t k, SeenPoint& out) {
-  const std::uint32_t i = view.visible[k];
-  out.point = pose * model.surface.points[i];
-  out.normal = pose.rotation * model.surface.normals[i];
+// Position, normal and slant. False where the point faces away or is behind the camera.
+bool place_point(const ViewPoint& of_model, const FastPose& pose, SeenPoint& out) {
+  out.point = pose * of_model.point;
+  out.normal = pose.rotation * of_model.normal;
   out.slant = -out.normal.dot(out.point) / out.point.norm();
   return out.point.z() > kNearest_m && out.slant >= kMinSlant;
 }
 
 // The rest of a placed point; false outside the image.
-bool see_placed(const CheckImage& image, const ObjectModel& model, const ModelView& view,
-                const FastPose& pose, std::size_t k, SeenPoint& out) {
-  const std::uint32_t i = view.visible[k];
+bool see_placed(const CheckImage& image, const ObjectModel& model, const ViewPoint& of_model,
+                const FastPose& pose, SeenPoint& out) {
   const int pixel = image.pixel_of(out.point);
   if (pixel < 0) return false;
   out.pixel = static_cast<std::size_t>(pixel);
-  out.soft_normal = pose.rotation * model.index->soft_normals[i];
-  const float edge_distance = view.edge_distance[k];
+  out.soft_normal = pose.rotation * of_model.soft_normal;
+  const float edge_distance = of_model.edge_distance;
   const NoiseTable& noise = model.index->noise;
   const float sensor = noise.range(edge_distance, out.slant) * image.noise(out.point.z()) /
                        depth_noise(static_cast<float>(model.noise.depth));
@@ -143,43 +138,27 @@ bool see_placed(const CheckImage& image, const ObjectModel& model, const ModelVi
   out.noise.range = std::sqrt(sensor * sensor + off * off);
   const float normal = noise.normal(edge_distance, out.slant);
   out.noise.normal =
-      std::sqrt(std::max(normal * normal, model.normal_variance[i]) + kNormalSigma * kNormalSigma);
+      std::sqrt(std::max(normal * normal, of_model.normal_variance) + kNormalSigma * kNormalSigma);
   out.noise.inside = inside_probability(edge_distance, out.point.z() / image.fx);
   return true;
 }
 
-bool see_point(const CheckImage& image, const ObjectModel& model, const ModelView& view,
-               const FastPose& pose, std::size_t k, SeenPoint& out) {
-  return place_point(model, view, pose, k, out) && see_placed(image, model, view, pose, k, out);
-}
-
-// Every how many points of the view to look at; 0: all of them.
-std::size_t step_through(const ModelView& view, int max_points) {
-  if (max_points <= 0) return 1;
-  return std::max<std::size_t>(1, view.visible.size() / static_cast<std::size_t>(max_points));
-}
-
-}  // namespace
-
-SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& model,
-                                 const Pose& pose, int max_points,
-                                 std::vector<std::uint32_t>* explained) {
-  const FastPose fast = to_fast(pose);
-  const ModelView& view = nearest_view(model.index->views, fast);
-  const std::size_t step = step_through(view, max_points);
+// Adds every point of a view. Each of them stands for `share` surface points.
+void add_points(const CheckImage& image, const ObjectModel& model, const FastPose& pose,
+                double share, std::size_t count, const auto& point_at, Sums& sums,
+                SurfaceAgreement& out, std::vector<std::uint32_t>* explained) {
   // Pixels that a point's surface covers, seen from the front at one metre.
-  const double pixels_per_point = model.index->point_area * static_cast<double>(step) *
-                                  static_cast<double>(image.fx) * image.fy;
-  SurfaceAgreement out;
-  Sums sums;
+  const double area = model.index->point_area * share;
+  const double pixels_per_point = area * static_cast<double>(image.fx) * image.fy;
   SeenPoint seen;
-  for (std::size_t k = 0; k < view.visible.size(); k += step) {
-    if (!place_point(model, view, fast, k, seen)) continue;
+  for (std::size_t k = 0; k < count; ++k) {
+    const ViewPoint& of_model = point_at(k);
+    if (!place_point(of_model, pose, seen)) continue;
     ++sums.facing;
     const double z = seen.point.z();
     const double covered = pixels_per_point * seen.slant / (z * z);
     out.expected_pixels += covered;
-    if (!see_placed(image, model, view, fast, k, seen)) continue;  // the image border hides it
+    if (!see_placed(image, model, of_model, pose, seen)) continue;  // the image border hides it
     const CheckPixel& pixel = image.pixels[seen.pixel];
     if (pixel.depth <= 0) {
       ++sums.unknown;
@@ -187,10 +166,38 @@ SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& mod
     }
     if (add_point(image, seen, sums)) {
       out.explained_pixels += covered;
-      out.explained_area += model.index->point_area * static_cast<double>(step);
+      out.explained_area += area;
       sums.background += pixel.searched ? 0 : 1;
       if (explained) explained->push_back(static_cast<std::uint32_t>(seen.pixel));
     }
+  }
+}
+
+std::size_t index_of(const ObjectModel& model, const ModelView& view) {
+  return static_cast<std::size_t>(&view - model.index->views.data());
+}
+
+}  // namespace
+
+SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& model,
+                                 const Pose& pose, int max_points,
+                                 std::vector<std::uint32_t>* explained) {
+  constexpr std::size_t kAllEdges = 200, kMostEdges = 60;
+  const FastPose fast = to_fast(pose);
+  const ModelView& view = nearest_view(model.index->views, fast);
+  const ViewSample& sample = model.view_samples[index_of(model, view)];
+  const std::size_t all = view.visible.size();
+  const auto wanted = static_cast<std::size_t>(std::max(0, max_points));
+  SurfaceAgreement out;
+  Sums sums;
+  if (max_points <= 0 || wanted > sample.points.size()) {
+    add_points(
+        image, model, fast, 1, all, [&](std::size_t k) { return view_point(model, view, k); }, sums,
+        out, explained);
+  } else {
+    add_points(
+        image, model, fast, static_cast<double>(all) / max_points, wanted,
+        [&](std::size_t k) -> const ViewPoint& { return sample.points[k]; }, sums, out, explained);
   }
   if (explained) {
     std::ranges::sort(*explained);
@@ -210,9 +217,9 @@ SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& mod
   }
   out.visibility = sums.facing > 0 ? static_cast<double>(sums.visible) / sums.facing : 0;
   // Of so many surface points, as many edge points.
-  constexpr int kAllEdges = 200, kMostEdges = 60;
-  score_edges(image, model, view, fast,
-              max_points > 0 ? std::min(max_points, kMostEdges) : kAllEdges, out);
+  const std::size_t edges = max_points > 0 ? std::min(wanted, kMostEdges) : kAllEdges;
+  score_edges(image, model, std::span(sample.edges).first(std::min(edges, sample.edges.size())),
+              fast, out);
   return out;
 }
 
@@ -227,11 +234,11 @@ HiddenPoints hidden_points(const CheckImage& image, const ObjectModel& model, co
                            int max_points) {
   const FastPose fast = to_fast(pose);
   const ModelView& view = nearest_view(model.index->views, fast);
-  const std::size_t step = step_through(view, max_points);
+  const std::span<const ViewPoint> points = model.view_samples[index_of(model, view)].points;
   HiddenPoints out;
   SeenPoint seen;
-  for (std::size_t k = 0; k < view.visible.size(); k += step) {
-    if (!see_point(image, model, view, fast, k, seen)) continue;
+  for (const ViewPoint& point : points.first(std::min<std::size_t>(points.size(), max_points))) {
+    if (!place_point(point, fast, seen) || !see_placed(image, model, point, fast, seen)) continue;
     ++out.facing;
     if (hides(image.pixels[seen.pixel].depth, seen.point.z(), kHiding)) {
       out.pixels.push_back(static_cast<std::uint32_t>(seen.pixel));
