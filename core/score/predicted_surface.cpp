@@ -14,8 +14,23 @@ constexpr float kPointRadius = 0.0019f;  // metres; 0.75 of the usual spacing of
 constexpr float kMaxRadius = 4;          // pixels
 constexpr float kPlaneReach = 0.01f;     // metres in depth
 
+struct Span {
+  int first, last;  // both included
+};
+
+// The pixels whose centres are within the radius, the nearest one at least. `centre` is above -2.
+Span covered(float centre, float radius, int size) {
+  constexpr int kAbove = 16;  // makes every number positive, so that conversion rounds down
+  const auto floor_of = [](float x) { return static_cast<int>(x + kAbove) - kAbove; };
+  const int nearest = floor_of(centre + 0.5f);
+  const int first = std::min(nearest, -floor_of(radius - centre + static_cast<float>(size)) + size);
+  const int last = std::max(nearest, floor_of(centre + radius));
+  return {std::max(0, first), std::min(size - 1, last)};
+}
+
 struct DrawnPoint {
-  float u, v, z, radius;  // pixels, metres
+  float z;  // metres
+  Span us, vs;
   std::uint32_t index;
   Eigen::Vector3f normal;
   float offset;  // of the tangent plane: normal . x = offset
@@ -29,7 +44,7 @@ struct DrawnPoint {
   }
 };
 
-// Of the points with these indices.
+// Those of the points with these indices that face the camera.
 std::vector<DrawnPoint> facing_points(const CheckImage& image, const ObjectModel& model,
                                       const auto& indices, const FastPose& pose) {
   std::vector<DrawnPoint> drawn;
@@ -39,7 +54,7 @@ std::vector<DrawnPoint> facing_points(const CheckImage& image, const ObjectModel
     if (!(p.z() > kNearest_m)) continue;
     const Eigen::Vector3f normal = pose.rotation * model.surface.normals[i];
     const float offset = normal.dot(p);
-    if (offset > -kMinCosine * p.norm()) continue;
+    if (offset > 0 || offset * offset < kMinCosine * kMinCosine * p.squaredNorm()) continue;
     const Eigen::Vector2f at = image.project(p);
     const float u = at.x(), v = at.y();
     const float radius = std::min(kMaxRadius, kPointRadius * image.fx / p.z());
@@ -47,38 +62,25 @@ std::vector<DrawnPoint> facing_points(const CheckImage& image, const ObjectModel
           v < static_cast<float>(image.height))) {
       continue;
     }
-    drawn.push_back({u, v, p.z(), radius, i, normal, offset});
+    drawn.push_back({p.z(), covered(u, radius, image.width), covered(v, radius, image.height), i,
+                     normal, offset});
   }
   return drawn;
-}
-
-struct Span {
-  int first, last;  // both included
-};
-
-// The pixels whose centres are within the radius, the nearest one at least.
-Span covered(float centre, float radius, int size) {
-  const int nearest = static_cast<int>(std::lround(centre));
-  const int first = std::min(nearest, static_cast<int>(std::ceil(centre - radius)));
-  const int last = std::max(nearest, static_cast<int>(std::floor(centre + radius)));
-  return {std::max(0, first), std::min(size - 1, last)};
 }
 
 PredictedSurface draw(const CheckImage& image, const std::vector<DrawnPoint>& drawn) {
   if (drawn.empty()) return {};
   Span columns{image.width, -1}, rows{image.height, -1};
   for (const DrawnPoint& p : drawn) {
-    const Span u = covered(p.u, p.radius, image.width), v = covered(p.v, p.radius, image.height);
-    columns = {std::min(columns.first, u.first), std::max(columns.last, u.last)};
-    rows = {std::min(rows.first, v.first), std::max(rows.last, v.last)};
+    columns = {std::min(columns.first, p.us.first), std::max(columns.last, p.us.last)};
+    rows = {std::min(rows.first, p.vs.first), std::max(rows.last, p.vs.last)};
   }
   if (columns.last < columns.first || rows.last < rows.first) return {};
   const int width = columns.last - columns.first + 1, height = rows.last - rows.first + 1;
   PredictedSurface out{columns.first, rows.first, {width, height, 0.0f}, {width, height, 0u}};
   for (const DrawnPoint& p : drawn) {
-    const Span us = covered(p.u, p.radius, image.width), vs = covered(p.v, p.radius, image.height);
-    for (int v = vs.first; v <= vs.last; ++v) {
-      for (int u = us.first; u <= us.last; ++u) {
+    for (int v = p.vs.first; v <= p.vs.last; ++v) {
+      for (int u = p.us.first; u <= p.us.last; ++u) {
         const std::size_t i = out.depth.index(u - out.u0, v - out.v0);
         const float depth = p.depth_at(image, u, v);
         if (out.depth[i] > 0 && out.depth[i] <= depth) continue;
