@@ -28,8 +28,8 @@ struct ExplainedFrame {
 ///
 ///   index.html             the stages with counts and times, what each picture is
 ///   01_edges.png, 02_super_pixels.png           of the frame
-///   03_sampled.png ... 12_final.png             the hypotheses after each stage of the detector
-///   13_best.png, 14_best_segments.png           the best placement and its super-pixels;
+///   03_sampled.png ... 14_final.png             the hypotheses after each stage of the detector
+///   15_best.png, 16_best_segments.png           the best placement and its super-pixels;
 ///                                               the page has a table of its score components.
 ///
 /// Several frames have a folder each, several models one each for 03 to 14; index.html leads there.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <map>
+#include <vector>
 
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
@@ -9,22 +9,24 @@
 namespace bpa {
 namespace {
 
-// Null where there is none.
-const char* reason_to_reject(const Search& search, const Pose& pose) {
+struct Verdict {
+  const char* reason;  // to reject; null where there is none
+  float score;         // of the check
+};
+
+Verdict judge(const Search& search, const Pose& pose) {
   const CheckOptions& options = search.options.check;
-  PoseCheck result = search.check(pose, options.points);
   // Where most of the object is hidden, the few points in sight are too few to judge by.
-  if (result.seen < options.few_seen && result.agreeing > 0 &&
-      2 * result.free_space <= result.seen) {
-    result = search.check(pose, options.hidden_points);
+  const PoseCheck check =
+      search.check(pose, {options.points, options.few_seen, options.hidden_points});
+  const float score = check.score();
+  if (check.free_space > 0 &&
+      static_cast<double>(check.free_space) / check.seen > options.max_free_space) {
+    return {"too much in free space", score};
   }
-  if (result.free_space > 0 &&
-      static_cast<double>(result.free_space) / result.seen > options.max_free_space) {
-    return "too much in free space";
-  }
-  if (result.seen < options.min_seen) return "too few points in sight";
-  const bool off = result.score() < static_cast<float>(options.min_check_score);
-  return off ? "not on the surface" : nullptr;
+  if (check.seen < options.min_seen) return {"too few points in sight", score};
+  const bool off = score < static_cast<float>(options.min_check_score);
+  return {off ? "not on the surface" : nullptr, score};
 }
 
 // The cube of 25 mm that a position lies in.
@@ -54,50 +56,67 @@ std::uint64_t pose_cell(const SymmetryGroup& symmetry, const FastPose& pose) {
   return key;
 }
 
-// The best few of each pose cell, so that an easy object does not crowd out a hard one.
-struct PoseCells {
-  const Search& search;
-  std::map<std::uint64_t, Candidates> cells;
-
-  void add(Candidate candidate) {
-    Candidates& cell = cells[pose_cell(search.model.symmetry, to_fast(candidate.pose()))];
-    if (std::ssize(cell) < search.options.check.max_kept_per_cell) {
-      cell.push_back(std::move(candidate));
-      return;
-    }
-    Candidate& worst = *std::ranges::min_element(cell, {}, &Candidate::score);
-    if (candidate.score > worst.score) std::swap(worst, candidate);
-    search.reject("better ones beside it", candidate.pose());
-  }
-
-  // Ordered by cell.
-  Candidates take() {
-    Candidates out;
-    for (auto& [key, cell] : cells) std::ranges::move(cell, std::back_inserter(out));
-    return out;
-  }
+// A pose that passed the check: which of the sampled ones, and where it is.
+struct Passed {
+  std::uint64_t cell;
+  std::size_t index;
+  float check_score;
 };
+
+// Sorts by cell, the best first, and keeps the first few of each.
+void keep_best_of_cells(const Search& search, const Candidates& sampled, int most,
+                        std::vector<Passed>& passed, auto score) {
+  std::ranges::sort(passed, [&](const Passed& a, const Passed& b) {
+    if (a.cell != b.cell) return a.cell < b.cell;
+    if (score(a) != score(b)) return score(a) > score(b);
+    return a.index < b.index;
+  });
+  std::uint64_t cell = 0;
+  int count = 0;
+  std::erase_if(passed, [&](const Passed& pose) {
+    count = pose.cell == cell ? count + 1 : 1;
+    cell = pose.cell;
+    if (count > most) search.reject("better ones beside it", sampled[pose.index].pose());
+    return count > most;
+  });
+}
 
 }  // namespace
 
 Candidates check_free_space(const Search& search, Candidates sampled) {
   const CheckOptions& options = search.options.check;
-  PoseCells cells{search, {}};
-  Candidates suggested;
-  for (Candidate& candidate : sampled) {
+  std::vector<Passed> passed;
+  std::vector<std::size_t> of_priors;
+  for (std::size_t i = 0; i < sampled.size(); ++i) {
     if (search.late()) break;
-    if (const char* reason = reason_to_reject(search, candidate.pose())) {
-      search.reject(reason, candidate.pose());
-      continue;
-    }
-    candidate.score = search.quick_score(candidate.pose(), options.rank_points);
-    if (candidate.found_by == Source::prior) {
-      suggested.push_back(std::move(candidate));
+    const Candidate& candidate = sampled[i];
+    const Verdict verdict = judge(search, candidate.pose());
+    if (verdict.reason) {
+      search.reject(verdict.reason, candidate.pose());
+    } else if (candidate.found_by == Source::prior) {
+      of_priors.push_back(i);
     } else {
-      cells.add(std::move(candidate));
+      passed.push_back(
+          {pose_cell(search.model.symmetry, to_fast(candidate.pose())), i, verdict.score});
     }
   }
-  Candidates kept = cells.take();
+  const auto rank = [&](Candidate& candidate) {
+    candidate.score = search.quick_score(candidate.pose(), options.rank_points);
+  };
+  keep_best_of_cells(search, sampled, options.max_ranked_per_cell, passed,
+                     [](const Passed& pose) { return pose.check_score; });
+  for (const Passed& pose : passed) {
+    if (search.late()) break;
+    rank(sampled[pose.index]);
+  }
+  keep_best_of_cells(search, sampled, options.max_kept_per_cell, passed,
+                     [&](const Passed& pose) { return sampled[pose.index].score; });
+  Candidates kept, suggested;
+  for (const Passed& pose : passed) kept.push_back(std::move(sampled[pose.index]));
+  for (const std::size_t i : of_priors) {
+    rank(sampled[i]);
+    suggested.push_back(std::move(sampled[i]));
+  }
   keep_best(search, options.max_suggested, suggested);
   keep_best(search, options.max_kept, kept);
   std::ranges::move(suggested, std::back_inserter(kept));

@@ -64,16 +64,13 @@ void step_uphill(const Search& search, Best& best) {
 }  // namespace
 
 Candidates climb(const Search& search, Candidates refined) {
-  RefinementOptions still = search.options.refine.refinement;  // only measures what is known
-  still.iterations = 0;
-  still.start_gate_m = still.end_gate_m;
   const auto most = std::min<std::size_t>(refined.size(), search.options.climb.max_climbed);
   for (std::size_t i = 0; i < most; ++i) {
     if (search.late()) break;
     Best best{refined[i].pose(), search.quick_score(refined[i].pose())};
     align_from_beside(search, best);
     step_uphill(search, best);
-    Candidate moved = search.scored(search.refine(best.pose, still), refined[i].found_by);
+    Candidate moved = search.scored(search.measured(best.pose), refined[i].found_by);
     if (moved.score > refined[i].score) refined[i] = std::move(moved);
   }
   return refined;

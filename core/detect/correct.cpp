@@ -8,7 +8,7 @@ namespace bpa {
 Candidates correct(const Search& search, Candidates checked) {
   const CheckOptions& options = search.options.check;
   const auto check_score = [&](const Pose& pose) {
-    return search.check(pose, options.recheck_points).score();
+    return search.check(pose, {options.recheck_points}).score();
   };
   for (Candidate& candidate : checked) {
     if (search.late()) break;

@@ -31,7 +31,8 @@ constexpr Stage kStages[] = {
      "the score improves. After non-maximum suppression the best of all models go on.",
      [](const DetectOptions& options) { return options.refine.max_in_library; }},
     {"aligned", refine, 0.5, "Refined",
-     "The best are aligned once more and scored with all components (round three)."},
+     "The best are aligned once more by gradients. Non-maximum suppression follows."},
+    {"scored", score, 0.5, "Scored", "Each is scored with all components (round three)."},
     {"climbed", climb, 0.5, "Climbed",
      "The best climb the score by small steps, from where they are and from beside."},
     {"turned", try_turned, 0.7, "Turned",
@@ -44,7 +45,7 @@ constexpr Stage kStages[] = {
     {"final", select, 1, "Selected",
      "Distinct placements of sufficient score. Interpretations of the scene choose from these."},
 };
-constexpr std::size_t kRoundStages = 6;  // those that every round runs
+constexpr std::size_t kRoundStages = 7;  // those that every round runs
 
 // Runs a stage and records its time and what it rejects.
 Candidates timed(const Stage& stage, Search& search, Candidates candidates, ObjectTrace* trace) {

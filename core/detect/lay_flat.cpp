@@ -140,15 +140,12 @@ Candidates lay_flat(const Search& whole, Candidates found) {
   const bool thin = !whole.model.index->flat_rests.empty();
   if (!thin || !whole.scene.with_flat || whole.options.flat.max_laid == 0) return found;
   const Search search(*whole.scene.with_flat, whole);
-  RefinementOptions still = search.options.refine.refinement;  // only measures what is known
-  still.iterations = 0;
-  still.start_gate_m = still.end_gate_m;
   Candidates laid = resting_poses(search);
   keep_first(search, search.options.flat.max_laid, laid);
   for (Candidate& candidate : laid) {
     if (search.late()) break;
     slide(search, candidate);
-    found.push_back(search.scored(search.refine(candidate.pose(), still), Source::region));
+    found.push_back(search.scored(search.measured(candidate.pose()), Source::region));
   }
   return found;
 }

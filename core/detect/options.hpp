@@ -96,6 +96,7 @@ struct CheckOptions {
   int recheck_points = 256;
   int rank_points = 24;
   int max_kept = 200;
+  int max_ranked_per_cell = 2;
   int max_kept_per_cell = 1;
   int max_in_library = 5000;
   int max_suggested = 60;
@@ -105,7 +106,7 @@ struct CheckOptions {
     visit("points", points,
           {1, 100000, "Model points that a pose is checked with. The paper has 500."});
     visit("hidden_points", hidden_points,
-          {1, 100000, "The same where fewer than few_seen are in sight."});
+          {1, 100000, "At most so many, until few_seen are in sight."});
     visit("few_seen", few_seen,
           {0, 100000, "Points in sight below which hidden_points are checked."});
     visit("min_seen", min_seen, {0, 100000, "Poses with fewer points in sight are rejected."});
@@ -128,8 +129,11 @@ struct CheckOptions {
     visit("rank_points", rank_points,
           {1, 100000, "Surface points of the round-two score that ranks the poses left."});
     visit("max_kept", max_kept, {1, 1000000, "Poses that go on."});
-    visit("max_kept_per_cell", max_kept_per_cell,
-          {1, 1000, "Poses that go on from one cell of 25 mm and 25 degrees."});
+    visit("max_ranked_per_cell", max_ranked_per_cell,
+          {1, 1000,
+           "Poses in one cell of 25 mm and 25 degrees, the best by check score, that the round-two "
+           "score ranks."});
+    visit("max_kept_per_cell", max_kept_per_cell, {1, 1000, "Of these, poses that go on."});
     visit("max_in_library", max_in_library,
           {1, 1000000, "Poses of all models together that go on."});
     visit("max_suggested", max_suggested,
@@ -203,9 +207,9 @@ struct RefineOptions {
 
   void visit_fields(auto&& visit) {
     visit("max_refined", max_refined,
-          {1, 10000, "Placements of one model that are aligned to the end and scored in full."});
+          {1, 10000, "Placements of one model that are aligned to the end."});
     visit("max_in_library", max_in_library,
-          {1, 1000000, "Placements of all models together that are."});
+          {1, 1000000, "Placements of all models together that are, and scored in full."});
   }
   void visit_groups(auto&& visit) {
     visit("refinement", refinement, "Gradient-based alignment (V.7).");

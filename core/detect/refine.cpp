@@ -18,12 +18,24 @@ Pose turned_to_pattern(const Search& search, const Pose& pose) {
 Candidates refine(const Search& search, Candidates aligned) {
   const RefineOptions& options = search.options.refine;
   keep_first(search, options.max_refined, aligned);
+  std::size_t done = 0;
+  for (Candidate& candidate : aligned) {
+    if (search.late() && done > 0) break;
+    candidate.refinement = search.refine(candidate.pose(), options.refinement);
+    candidate.score = search.quick_score(candidate.pose());
+    ++done;
+  }
+  aligned.resize(done);
+  suppress_duplicates(search, aligned);
+  return aligned;
+}
+
+Candidates score(const Search& search, Candidates refined) {
   Candidates out;
-  for (const Candidate& start : aligned) {
+  for (const Candidate& start : refined) {
     if (search.late() && !out.empty()) break;
-    const Refinement refined =
-        search.refine(turned_to_pattern(search, start.pose()), options.refinement);
-    out.push_back(search.scored(refined, start.found_by));
+    const Pose pose = turned_to_pattern(search, start.pose());
+    out.push_back(search.scored(search.measured(pose), start.found_by));
   }
   sort_by_score(out);
   return out;

@@ -68,7 +68,7 @@ std::vector<align::PositionPair> edge_pairs(const SceneFeatures& scene, const Ob
 Pose aligned(const Search& search, const Pose& start) {
   const RoundTwoOptions& options = search.options.round_two;
   const auto check_score = [&](const Pose& pose) {
-    return search.check(pose, options.check_points, options.tolerance).score();
+    return search.check(pose, {options.check_points}, options.tolerance).score();
   };
   Pose best = start;
   float best_score = check_score(start);

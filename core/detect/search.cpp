@@ -46,6 +46,13 @@ Refinement Search::refine(const Pose& start, RefinementOptions refinement) const
   return refine_pose(scene, model, start, refinement);
 }
 
+Refinement Search::measured(const Pose& pose) const {
+  RefinementOptions still = options.refine.refinement;
+  still.iterations = 0;
+  still.start_gate_m = still.end_gate_m;
+  return refine(pose, still);
+}
+
 double Search::quick_score(const Pose& pose) const {
   return quick_score(pose, options.score.quick_points);
 }
@@ -80,14 +87,15 @@ void Search::reject(std::string_view reason, const Pose& pose) const {
   if (tracing) tracing->reject(reason, to_fast(pose));
 }
 
-PoseCheck Search::check(const Pose& pose, int points, const CheckTolerance& tolerance) const {
-  return check_pose(*image, model.index->check, to_fast(pose), points, tolerance);
+PoseCheck Search::check(const Pose& pose, const CheckCount& count,
+                        const CheckTolerance& tolerance) const {
+  return check_pose(*image, model.index->check, to_fast(pose), count, tolerance);
 }
 
-PoseCheck Search::check(const Pose& pose, int points) const {
+PoseCheck Search::check(const Pose& pose, const CheckCount& count) const {
   const CheckOptions& o = options.check;
   const double depth = std::clamp(o.depth_share * model.diameter, o.min_depth_m, o.max_depth_m);
-  return check(pose, points, {depth, o.free_depth_m, o.normal_cosine});
+  return check(pose, count, {depth, o.free_depth_m, o.normal_cosine});
 }
 
 }  // namespace bpa

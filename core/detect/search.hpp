@@ -74,6 +74,8 @@ struct Search {
   bool late() const;
   /// Gradient-based alignment, with edges unless AlignOptions leaves them out.
   Refinement refine(const Pose& start, RefinementOptions refinement) const;
+  /// What is known of a pose that stays as it is.
+  Refinement measured(const Pose& pose) const;
   /// Log odds of round two, from ScoreOptions::quick_points or so many surface points, with the
   /// caller's priors.
   double quick_score(const Pose& pose) const;
@@ -82,10 +84,10 @@ struct Search {
   Candidate scored(Refinement refinement, Source found_by) const;
   /// Sets score and probability by the last layer, or by that of round two without round three.
   void apply_layer(Candidate& candidate) const;
-  /// Compares `points` of the model's points at a pose with the depth image; without a tolerance,
+  /// Compares `count` of the model's points at a pose with the depth image; without a tolerance,
   /// with that of CheckOptions, whose depth follows the model's size.
-  PoseCheck check(const Pose& pose, int points, const CheckTolerance& tolerance) const;
-  PoseCheck check(const Pose& pose, int points) const;
+  PoseCheck check(const Pose& pose, const CheckCount& count, const CheckTolerance& tolerance) const;
+  PoseCheck check(const Pose& pose, const CheckCount& count) const;
   /// Notes a rejected pose in the trace.
   void reject(std::string_view reason, const Pose& pose) const;
 };

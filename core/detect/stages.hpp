@@ -43,8 +43,11 @@ Candidates round_two(const Search& search, Candidates clusters);
 Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
                       float gate, std::uint64_t seed, const DetectOptions& options = {});
 
-/// Aligns the best by gradients (V.7) and scores them with all components (V.8).
+/// Aligns the best by gradients and removes duplicates (V.7).
 Candidates refine(const Search& search, Candidates aligned);
+
+/// Scores each with all components (V.8), in the pose that its pattern shows.
+Candidates score(const Search& search, Candidates refined);
 
 /// Hill climbing of the score from and beside the best candidates. Rejects nothing.
 Candidates climb(const Search& search, Candidates refined);

@@ -62,7 +62,8 @@ inline FastPose to_fast(const Pose& pose) {
   return {pose.matrix().cast<float>(), pose.translation.cast<float>()};
 }
 inline Pose to_pose(const FastPose& pose) {
-  return Pose::from_matrix(pose.rotation.cast<double>(), pose.translation.cast<double>());
+  return {Eigen::Quaterniond(pose.rotation.cast<double>()).normalized(),
+          pose.translation.cast<double>()};
 }
 
 /// A Gaussian of a position: where an object's origin is in the camera frame.

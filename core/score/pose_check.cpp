@@ -62,9 +62,12 @@ BPA_DISPATCH void project_block(const CheckImage& image, const CheckPoints& mode
 }  // namespace
 
 PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const FastPose& pose,
-                     int count, const CheckTolerance& tolerance) {
+                     const CheckCount& count, const CheckTolerance& tolerance) {
   PoseCheck check;
-  const int last = std::min(count, static_cast<int>(model.points.size()));
+  const int size = static_cast<int>(model.points.size());
+  const int few_after = std::min(count.points, size);
+  const int most = std::min(count.most_points, size);
+  int last = few_after;
   const auto depth = static_cast<float>(tolerance.depth_m);
   const auto free_depth = static_cast<float>(tolerance.free_depth_m);
   const float cosine_127 = 127 * static_cast<float>(tolerance.normal_cosine);
@@ -72,6 +75,7 @@ PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const Fa
   const auto height = static_cast<float>(image.height);
   Block block;
   for (int first = 0; first < last; first += kCheckBlock) {
+    if (first >= few_after && check.seen >= count.few_seen) break;
     project_block(image, model, pose, first, block);
     for (int k = 0; k < std::min(kCheckBlock, last - first); ++k) {
       const float z = block.z[k];
@@ -97,6 +101,9 @@ PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const Fa
         ++check.free_space;
       }
     }
+    const bool few =
+        check.seen < count.few_seen && check.agreeing > 0 && 2 * check.free_space <= check.seen;
+    if (first < few_after && first + kCheckBlock >= last && few) last = std::max(last, most);
   }
   return check;
 }

@@ -45,9 +45,19 @@ struct CheckTolerance {
   }
 };
 
-/// Checks up to `count` of the model's points. Rejects early, with few agreeing points counted,
-/// when most of the first ones disagree.
+/// How many of the model's points a check looks at.
+struct CheckCount {
+  int points = 0;
+  /// Where fewer than `few_seen` of these are in sight, some agree and at most half of them are in
+  /// free space, the check goes on with further points: until `few_seen` are in sight, or up to
+  /// `most_points`.
+  int few_seen = 0;
+  int most_points = 0;
+};
+
+/// Checks a pose. Rejects early, with few agreeing points counted, when most of the first ones
+/// disagree.
 PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const FastPose& pose,
-                     int count, const CheckTolerance& tolerance);
+                     const CheckCount& count, const CheckTolerance& tolerance);
 
 }  // namespace bpa

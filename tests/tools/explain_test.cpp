@@ -20,10 +20,10 @@ using cli::ExplainedFrame;
 using cli::ExplainFolder;
 
 constexpr const char* kModelPictures[] = {
-    "03_sampled.png",      "04_free_space.png", "05_corrected.png", "06_clusters.png",
-    "07_round_two.png",    "08_aligned.png",    "09_climbed.png",   "10_turned.png",
-    "11_laid.png",         "12_rivals.png",     "13_final.png",     "14_best.png",
-    "15_best_segments.png"};
+    "03_sampled.png",   "04_free_space.png",   "05_corrected.png", "06_clusters.png",
+    "07_round_two.png", "08_aligned.png",      "09_scored.png",    "10_climbed.png",
+    "11_turned.png",    "12_laid.png",         "13_rivals.png",    "14_final.png",
+    "15_best.png",      "16_best_segments.png"};
 
 /// An L on a table, and a brick that is not there.
 class Explain : public ::testing::Test {

@@ -99,9 +99,9 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
       EXPECT_EQ(all, before) << stage.name;
     }
   }
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"sampled", "free_space", "corrected", "clusters", "round_two",
-                                      "aligned", "climbed", "turned", "laid", "rivals", "final"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"sampled", "free_space", "corrected", "clusters",
+                                             "round_two", "aligned", "scored", "climbed", "turned",
+                                             "laid", "rivals", "final"}));
   EXPECT_GT(trace.stages[0].poses.size(), 1000u);
   EXPECT_TRUE(trace.stages[2].rejected.empty()) << "a correction rejects nothing";
   ASSERT_EQ(trace.stages.back().poses.size(), plain.size());
@@ -114,7 +114,7 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
     int hanging = 0;
     for (const FastPose& pose : dropped.poses) {
       const CheckTolerance tolerance{0.010, CheckOptions().free_depth_m, 0.75};
-      const PoseCheck check = check_pose(scene.image, l_->index->check, pose, 1024, tolerance);
+      const PoseCheck check = check_pose(scene.image, l_->index->check, pose, {1024}, tolerance);
       hanging += check.free_space > 0;
     }
     EXPECT_GT(hanging, 0.98 * static_cast<double>(dropped.poses.size()));

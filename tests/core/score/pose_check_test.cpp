@@ -26,7 +26,7 @@ class PoseCheckOfAnL : public ::testing::Test {
     return make_check_image(surface_map(image.frame, {}));
   }
   static PoseCheck check(const CheckImage& image, const Pose& pose, int count = kAll) {
-    return check_pose(image, model_->index->check, to_fast(pose), count, {0.010, 0.030, 0.75});
+    return check_pose(image, model_->index->check, to_fast(pose), {count}, {0.010, 0.030, 0.75});
   }
   static std::vector<Solid> scene() {
     return test::together({test::table(camera_from_world_)}, test::l_solids(truth_));
