@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/concat.hpp"
+#include "core/base/guarded.hpp"
 
 namespace bpa::camera {
 namespace {
@@ -41,7 +42,8 @@ class Capture::Impl {
     while (!stopping() && !ended) {
       std::unique_ptr<CameraDevice> camera = open();
       if (camera) {
-        ended = stream(*camera);
+        const Status status = guarded("the camera failed", [&] { ended = stream(*camera); });
+        if (!status.ok()) set_state(LogLevel::error, status.message);
         if (recording_until_) (void)end_recording(camera.get());
         note_call("closing the device");
         camera.reset();
@@ -176,7 +178,7 @@ class Capture::Impl {
 
   std::unique_ptr<CameraDevice> open() {
     note_call("opening the device");
-    Result<std::unique_ptr<CameraDevice>> camera = open_();
+    Result<std::unique_ptr<CameraDevice>> camera = guarded("the camera cannot be opened", open_);
     note_call(nullptr);
     bool lost = false;
     {
@@ -268,7 +270,9 @@ class Capture::Impl {
     return std::exchange(tasks_, {});
   }
   void work_on_tasks(CameraDevice* camera) {
-    for (const Task& task : take_tasks()) task.done(task.work(camera));
+    for (const Task& task : take_tasks()) {
+      task.done(guarded("the recording failed", [&] { return task.work(camera); }));
+    }
   }
   void refuse_tasks(const Status& status) {
     for (const Task& task : take_tasks()) task.done(status);

@@ -153,8 +153,9 @@ int main(int argc, char** argv) {
   ServerOptions options;
   try {
     options = settle(line, *ros);
-  } catch (const bpa::Failure& failure) {
-    return fail(failure.status(), 2);
+  } catch (const std::exception& error) {
+    std::cerr << "bpa-server: " << error.what() << '\n';
+    return 2;
   }
   if (line.print_config) {
     std::cout << bpa::server::to_yaml(options, true);
@@ -170,8 +171,8 @@ int main(int argc, char** argv) {
   try {
     serve(options, hook, signals);
     return 0;
-  } catch (const bpa::Failure& failure) {
-    bpa::log(hook, LogLevel::error, failure.what());
+  } catch (const std::exception& error) {
+    bpa::log(hook, LogLevel::error, error.what());
     return 1;
   }
 }

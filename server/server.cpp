@@ -19,6 +19,7 @@
 #include "core/base/clock.hpp"
 #include "core/base/concat.hpp"
 #include "core/base/failure.hpp"
+#include "core/base/guarded.hpp"
 #include "idl/wire/participant.hpp"
 #include "server/diagnostics.hpp"
 #include "server/log_relay.hpp"
@@ -278,15 +279,20 @@ class Running : public Server {
     std::condition_variable_any wake;
     std::unique_lock<std::mutex> lock(mutex);
     while (!wake.wait_for(lock, stop, kReportPeriod, [&] { return stop.stop_requested(); })) {
-      rates.add(Clock::now(), statistics_.counts());
-      if (diagnostics_.wanted()) {
-        diagnostics_.send(diagnostics_message({participant_->node().full(), status(), rates.rates(),
-                                               drops(), source_reports(), fusion()},
-                                              unix_time_ns()),
-                          log_);
-      }
-      report_losses();
+      const Status status = guarded("no diagnostics", [&] { report_once(rates); });
+      if (!status.ok()) log(log_, LogLevel::error, status.message);
     }
+  }
+
+  void report_once(RateMeter& rates) {
+    rates.add(Clock::now(), statistics_.counts());
+    if (diagnostics_.wanted()) {
+      diagnostics_.send(diagnostics_message({participant_->node().full(), status(), rates.rates(),
+                                             drops(), source_reports(), fusion()},
+                                            unix_time_ns()),
+                        log_);
+    }
+    report_losses();
   }
 
   void report_losses() {
@@ -341,6 +347,8 @@ Result<std::unique_ptr<Server>> Server::create(const ServerOptions& options,
     server->start();
   } catch (const Failure& failure) {
     return failure.status();
+  } catch (const std::exception& error) {
+    return status_of("the server cannot start", error);
   }
   return std::unique_ptr<Server>(std::move(server));
 }

@@ -3,10 +3,10 @@
 #include "server/worker.hpp"
 
 #include <algorithm>
-#include <exception>
 #include <utility>
 
 #include "core/base/concat.hpp"
+#include "core/base/guarded.hpp"
 
 namespace bpa::server {
 namespace {
@@ -45,8 +45,8 @@ void Worker::stop() {
   wake_.notify_all();
   if (thread_.joinable()) thread_.join();
   const Status status = unavailable("the server is stopping");
-  while (const auto job = requests_.pop()) job->done(*job, nullptr, status);
-  for (const DetectJob& job : std::exchange(awaiting_frame_, {})) job.done(job, nullptr, status);
+  while (auto job = requests_.pop()) hand_over(*job, nullptr, status);
+  for (DetectJob& job : std::exchange(awaiting_frame_, {})) hand_over(job, nullptr, status);
 }
 
 void Worker::push(IncomingFrame frame) {
@@ -152,9 +152,9 @@ std::vector<DetectJob> Worker::take_expired() {
 void Worker::run() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopping_) {
-    if (const std::vector<DetectJob> expired = take_expired(); !expired.empty()) {
+    if (std::vector<DetectJob> expired = take_expired(); !expired.empty()) {
       lock.unlock();
-      for (const DetectJob& job : expired) {
+      for (DetectJob& job : expired) {
         refuse(job, Status(StatusCode::timeout,
                            "no usable frame came in time; is a camera publishing, or does the "
                            "request want to carry a frame of its own?"));
@@ -182,32 +182,61 @@ void Worker::run_one(std::unique_lock<std::mutex>& lock) {
     const std::function<void()> task = std::move(tasks_.front());
     tasks_.pop_front();
     lock.unlock();
-    task();
+    (void)guard("a change of the library failed", task);
   } else if (take_frame) {
     frame_was_last_ = true;
     std::vector<IncomingFrame> taken = take_frames(options);
     std::vector<DetectJob> waiting = std::exchange(awaiting_frame_, {});
     lock.unlock();
-    work_on_frames(options, std::move(taken), std::move(waiting));
+    const Status status = guard("the search of a frame failed",
+                                [&] { work_on_frames(options, std::move(taken), waiting); });
+    for (DetectJob& job : waiting) refuse_failed(job, status);
   } else {
     frame_was_last_ = false;
     DetectJob job = *requests_.pop();
     lock.unlock();
-    work_on_request(std::move(job));
+    refuse_failed(job, guard("a request failed", [&] { work_on_request(job); }));
   }
   lock.lock();
   busy_since_.reset();
 }
 
-void Worker::refuse(const DetectJob& job, const Status& status) {
-  statistics_.add(&Counts::requests_refused);
-  job.done(job, nullptr, status);
+/// The failure of work that threw, which is logged.
+Status Worker::guard(const char* about, const std::function<void()>& work) {
+  const Status status = guarded(about, work);
+  if (!status.ok()) log(log_, LogLevel::error, status.message);
+  return status;
 }
 
-void Worker::answer(const DetectJob& job, const Frame& frame, const DetectRequest& request) {
+DecodedFrame Worker::decoded(Once<DecodedFrame> decode) {
+  std::optional<DecodedFrame> frame;
+  const Status status =
+      guard("a frame cannot be decoded", [&] { frame.emplace(std::move(decode)()); });
+  if (!status.ok()) return {RejectionCause::frame, status};
+  return *std::move(frame);
+}
+
+/// Calls job.done, once.
+void Worker::hand_over(DetectJob& job, const Frame* frame,
+                       const Result<SceneInterpretations>& result) {
+  const auto done = std::exchange(job.done, nullptr);
+  (void)guard("a request was not answered", [&] { done(job, frame, result); });
+}
+
+void Worker::refuse(DetectJob& job, const Status& status) {
+  statistics_.add(&Counts::requests_refused);
+  hand_over(job, nullptr, status);
+}
+
+/// Answers a job that was not answered before its work failed.
+void Worker::refuse_failed(DetectJob& job, const Status& status) {
+  if (!status.ok() && job.done) refuse(job, status);
+}
+
+void Worker::answer(DetectJob& job, const Frame& frame, const DetectRequest& request) {
   const Result<SceneInterpretations> result = detect(frame, request);
   statistics_.add(result.ok() ? &Counts::requests_served : &Counts::requests_refused);
-  job.done(job, &frame, result);
+  hand_over(job, &frame, result);
 }
 
 /// The oldest, or all that wait where they are combined.
@@ -227,28 +256,30 @@ void Worker::note_restart(const std::string& reason) {
 }
 
 void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFrame> taken,
-                            std::vector<DetectJob> waiting) {
+                            std::vector<DetectJob>& waiting) {
   fusion_.set_max_frames(options.fuse_frames);
   std::optional<Frame> frame;  // the newest that can be used
   const IncomingFrame* newest = nullptr;
   for (IncomingFrame& incoming : taken) {
-    DecodedFrame decoded = std::move(incoming.decode)();
-    if (!decoded.ok()) {
-      statistics_.add_rejection(decoded.cause());
-      on_result_(incoming, nullptr, decoded.status());
+    DecodedFrame made = decoded(std::move(incoming.decode));
+    if (!made.ok()) {
+      statistics_.add_rejection(made.cause());
+      (void)guard("a result was not published",
+                  [&] { on_result_(incoming, nullptr, made.status()); });
       continue;
     }
     if (newest) {
       statistics_.add(&Counts::frames_fused);
       note_restart(fusion_.hold(*frame));
     }
-    frame = std::move(decoded).value();
+    frame = std::move(made).value();
     newest = &incoming;
   }
   if (!newest) {  // the jobs go on waiting for a better frame
     const std::lock_guard<std::mutex> lock(mutex_);
     awaiting_frame_.insert(awaiting_frame_.begin(), std::make_move_iterator(waiting.begin()),
                            std::make_move_iterator(waiting.end()));
+    waiting.clear();
     return;
   }
   FusedFrame fused = fusion_.add(*std::move(frame), options.request.num_threads);
@@ -259,20 +290,21 @@ void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFr
   if (options.continuous) {
     result.emplace(detect(*frame, with_priors(options.request, newest->priors)));
     statistics_.add(result->ok() ? &Counts::frames_processed : &Counts::frames_failed);
-    on_result_(*newest, &*frame, *result);
+    (void)guard("a result was not published", [&] { on_result_(*newest, &*frame, *result); });
   }
-  for (const DetectJob& job : waiting) {
-    answer_next_frame(options, *newest, *frame, job, result ? &*result : nullptr);
+  for (DetectJob& job : waiting) {
+    refuse_failed(job, guard("a request failed", [&] {
+                    answer_next_frame(options, *newest, *frame, job, result ? &*result : nullptr);
+                  }));
   }
 }
 
 void Worker::answer_next_frame(const WorkerOptions& options, const IncomingFrame& incoming,
-                               const Frame& frame, const DetectJob& job,
+                               const Frame& frame, DetectJob& job,
                                const Result<SceneInterpretations>* shared) {
   if (shared != nullptr && !job.restrict_frame && same_search(job.request, options.request)) {
     statistics_.add(&Counts::requests_served);
-    job.done(job, &frame, *shared);
-    return;
+    return hand_over(job, &frame, *shared);
   }
   Frame narrowed = frame;
   if (job.restrict_frame) {
@@ -281,25 +313,22 @@ void Worker::answer_next_frame(const WorkerOptions& options, const IncomingFrame
   answer(job, narrowed, with_priors(job.request, incoming.priors));
 }
 
-void Worker::work_on_request(DetectJob job) {
+void Worker::work_on_request(DetectJob& job) {
   if (clock_->now() >= job.deadline) {
     return refuse(job, Status(StatusCode::timeout, "its turn came after its time-out"));
   }
-  const Result<Frame> frame = std::move(job.decode)();
+  const DecodedFrame frame = decoded(std::move(job.decode));
   if (!frame.ok()) return refuse(job, frame.status());
   answer(job, *frame, job.request);
 }
 
 Result<SceneInterpretations> Worker::detect(const Frame& frame, const DetectRequest& request) {
-  try {
-    Result<SceneInterpretations> result = recognition_->detect(frame, request);
-    if (result.ok()) statistics_.add_timings(*result);
-    return result;
-  } catch (const std::exception& error) {
-    Status status(StatusCode::internal, std::string("the detector failed: ") + error.what());
-    log(log_, LogLevel::error, status.message);
-    return status;
-  }
+  std::optional<Result<SceneInterpretations>> result;
+  const Status status =
+      guard("the detector failed", [&] { result.emplace(recognition_->detect(frame, request)); });
+  if (!status.ok()) return status;
+  if (result->ok()) statistics_.add_timings(**result);
+  return *std::move(result);
 }
 
 }  // namespace bpa::server

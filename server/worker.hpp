@@ -25,7 +25,8 @@
 #include "server/statistics.hpp"
 
 // Between DDS and the detector: DDS threads put frames and requests into bounded queues and go; one
-// worker takes them out, computes with no lock held and hands the results on.
+// worker takes them out, computes with no lock held and hands the results on. An exception costs
+// the frame or request that caused it: it is counted, answered and logged.
 
 namespace bpa::server {
 
@@ -49,7 +50,8 @@ struct DetectJob {
   // Set by the worker when it accepts the job.
   std::size_t position = 0;  ///< Searches ahead of it.
   WaitableClock::TimePoint deadline{};
-  /// Called once: with the answer, or with why there is none. `frame` is null when there is none.
+  /// Called once, then empty: with the answer, or with why there is none. `frame` is null when
+  /// there is none.
   std::function<void(const DetectJob& job, const Frame* frame,
                      const Result<SceneInterpretations>& result)>
       done;
@@ -89,7 +91,8 @@ class Worker {
   /// For what comes from now on.
   void set_options(const WorkerOptions& options);
 
-  /// Runs a task (such as loading a model) between two searches; `busy` when too many wait.
+  /// Runs a task (such as loading a model) between two searches; `busy` when too many wait. What it
+  /// throws is logged.
   Status run_later(std::function<void()> task);
 
   /// Frames and requests that wait.
@@ -100,16 +103,20 @@ class Worker {
   bool has_work() const;
   double wait_ms(const DetectJob& job) const;
   std::vector<DetectJob> take_expired();
-  void refuse(const DetectJob& job, const Status& status);
-  void answer(const DetectJob& job, const Frame& frame, const DetectRequest& request);
+  Status guard(const char* about, const std::function<void()>& work);
+  DecodedFrame decoded(Once<DecodedFrame> decode);
+  void hand_over(DetectJob& job, const Frame* frame, const Result<SceneInterpretations>& result);
+  void refuse(DetectJob& job, const Status& status);
+  void refuse_failed(DetectJob& job, const Status& status);
+  void answer(DetectJob& job, const Frame& frame, const DetectRequest& request);
   void run_one(std::unique_lock<std::mutex>& lock);
   std::vector<IncomingFrame> take_frames(const WorkerOptions& options);
   void work_on_frames(const WorkerOptions& options, std::vector<IncomingFrame> taken,
-                      std::vector<DetectJob> waiting);
+                      std::vector<DetectJob>& waiting);
   void note_restart(const std::string& reason);
-  void work_on_request(DetectJob job);
+  void work_on_request(DetectJob& job);
   void answer_next_frame(const WorkerOptions& options, const IncomingFrame& incoming,
-                         const Frame& frame, const DetectJob& job,
+                         const Frame& frame, DetectJob& job,
                          const Result<SceneInterpretations>* shared);
   Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request);
 

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <exception>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -10,6 +9,7 @@
 #include <bpa/client.hpp>
 
 #include "client/src/convert.hpp"
+#include "core/base/guarded.hpp"
 #include "idl/wire/messages.hpp"
 #include "idl/wire/participant.hpp"
 #include "idl/wire/publisher.hpp"
@@ -73,12 +73,8 @@ Status outcome(const Result<Response>& response) {
 
 /// No exception may leave the SDK; what is left over (no memory, no thread) becomes a Status.
 template <class Call>
-auto guarded(Call call) -> decltype(call()) {
-  try {
-    return call();
-  } catch (const std::exception& error) {
-    return Status(StatusCode::internal, std::string("the SDK failed: ") + error.what());
-  }
+auto guarded(const Call& call) {
+  return bpa::guarded("the SDK failed", call);
 }
 
 }  // namespace
@@ -102,7 +98,7 @@ struct Client::Impl {
   std::optional<wire::Publisher<msgs::RgbdFrame>> frames = {};
   bool listened = false;  ///< The server has told that it takes our frames.
   /// So that a slow callback never holds up DDS.
-  wire::Worker callbacks{kMaxWaitingCallbacks};
+  wire::Worker callbacks{{}, kMaxWaitingCallbacks};
   // Last: they give the thread above work until they are destroyed.
   std::optional<wire::Subscriber<msgs::SceneInterpretations>> results = {};
   std::optional<wire::Subscriber<wire::sensor_msgs::Image>> images = {};
@@ -155,7 +151,8 @@ Status Client::Impl::subscribe(std::optional<wire::Subscriber<Message>>& slot, c
       [this, convert, call = std::move(call)](Message&& message, const wire::SampleMeta&) {
         using Value = std::decay_t<decltype(convert(std::move(message)))>;
         auto value = std::make_shared<const Value>(convert(std::move(message)));
-        callbacks.run_at(wire::Worker::Clock::now(), [call, value] { call(*value); });
+        // What the user's function throws is the user's: it ends the program.
+        callbacks.run_at(wire::Worker::Clock::now(), [call, value]() noexcept { call(*value); });
       });
   if (!subscriber.ok()) return subscriber.status();
   slot.emplace(std::move(subscriber).value());

@@ -43,7 +43,7 @@ struct SampleMeta {
 /// How many samples a subscriber or service has got.
 struct ReaderStatistics {
   std::uint64_t received = 0;   ///< Delivered to the callback.
-  std::uint64_t malformed = 0;  ///< Refused: not a legal encoding of the type.
+  std::uint64_t malformed = 0;  ///< Refused: no legal encoding of the type, or handling it failed.
   std::uint64_t lost = 0;       ///< Reported lost or rejected by DDS.
   /// Publishers that did not match because their QoS offers less than was asked for.
   std::uint64_t incompatible = 0;

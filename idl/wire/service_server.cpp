@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 
+#include "core/base/guarded.hpp"
 #include "idl/wire/private/service_framing.hpp"
 #include "idl/wire/service.hpp"
 #include "idl/wire/worker.hpp"
@@ -113,8 +114,8 @@ class Server : public RawServer, public std::enable_shared_from_this<Server> {
     pending->client = address.client;
     pending->send = [weak = weak_from_this(), address](const MessageRef& response) {
       const auto self = weak.lock();
-      return self ? self->send(address, response)
-                  : Status(StatusCode::unavailable, "the service has ended");
+      if (!self) return Status(StatusCode::unavailable, "the service has ended");
+      return guarded("the reply cannot be sent", [&] { return self->send(address, response); });
     };
     return pending;
   }

@@ -18,7 +18,8 @@ template <class T>
 class Subscriber : public detail::TopicEnd<detail::RawReader> {
  public:
   /// Runs on a DDS thread that other subscriptions share: move the message into a bounded queue and
-  /// return. It must not throw, and not destroy this object. It may run before `create` returns.
+  /// return. It must not destroy this object. It may run before `create` returns. A message for
+  /// which it throws counts as malformed.
   using Callback = std::function<void(T&&, const SampleMeta&)>;
 
   /// `topic` is resolved by the participant's node name and remaps.

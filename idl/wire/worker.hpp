@@ -13,6 +13,9 @@
 #include <thread>
 #include <utility>
 
+#include "core/base/guarded.hpp"
+#include "core/base/log.hpp"
+
 namespace bpa::wire {
 
 /// One thread that runs tasks at their time. What a DDS callback must not do itself goes here.
@@ -20,9 +23,11 @@ class Worker {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// When more than `max_waiting` tasks wait, the one that is due first is dropped.
-  explicit Worker(std::size_t max_waiting = std::numeric_limits<std::size_t>::max())
-      : max_waiting_(max_waiting), thread_([state = state_] { loop(*state); }) {}
+  /// When more than `max_waiting` tasks wait, the one that is due first is dropped. `log` is told
+  /// what a task throws.
+  explicit Worker(LogHook log, std::size_t max_waiting = std::numeric_limits<std::size_t>::max())
+      : max_waiting_(max_waiting),
+        thread_([state = state_, log = std::move(log)] { loop(*state, log); }) {}
   /// Drops what has not run yet and waits for what is running, unless that is the caller.
   ~Worker() {
     {
@@ -57,7 +62,7 @@ class Worker {
     bool stop = false;
   };
 
-  static void loop(State& state) {
+  static void loop(State& state, const LogHook& hook) {
     std::unique_lock<std::mutex> lock(state.mutex);
     while (!state.stop) {
       if (state.tasks.empty()) {
@@ -72,8 +77,9 @@ class Worker {
       std::function<void()> task = std::move(state.tasks.begin()->second);
       state.tasks.erase(state.tasks.begin());
       lock.unlock();
-      task();
+      const Status status = guarded("a task of DDS failed", task);
       task = nullptr;  // what it held may go here, not under the lock
+      if (!status.ok()) log(hook, LogLevel::error, status.message);
       lock.lock();
     }
   }

@@ -66,6 +66,19 @@ DetectJob job_of(std::shared_ptr<msgs::Detect_Request> request, const DetectRequ
   return job;
 }
 
+msgs::Detect_Response answer_of(const Recognition& recognition, const DetectJob& job,
+                                const Frame* frame, const Result<SceneInterpretations>& result) {
+  msgs::Detect_Response response = refusal(result.status());
+  response.success = result.ok();
+  response.queue_position = static_cast<std::uint32_t>(job.position);
+  if (frame == nullptr) return response;
+  const auto& named = job.request.models;
+  const auto models = named.empty() ? recognition.models().size() : named.size();
+  response.result = interpretations_message(
+      result, {frame->stamp_ns, frame->frame_id, static_cast<int>(models), job.request.seed});
+  return response;
+}
+
 msgs::ListModels_Response list(const Recognition& recognition,
                                const std::vector<std::string>& names) {
   msgs::ListModels_Response response;
@@ -115,7 +128,8 @@ void add_change(const ServiceContext& context, const char* name, Change change,
     const Status queued =
         context.worker.run_later([context, name, change, reply, request = std::move(request)] {
           typename Service::Response response;
-          const Status status = change(request, response);
+          const Status status =
+              guarded("the library cannot be changed", [&] { return change(request, response); });
           finish(context, name, status, response, reply);
         });
     if (queued.ok()) return;
@@ -143,18 +157,8 @@ void add_detect(const ServiceContext& context, ServiceSet& services) {
         job.done = [recognition = context.recognition, reply, hook = context.log](
                        const DetectJob& done, const Frame* frame,
                        const Result<SceneInterpretations>& result) {
-          msgs::Detect_Response response = refusal(result.status());
-          response.success = result.ok();
-          response.queue_position = static_cast<std::uint32_t>(done.position);
-          if (frame != nullptr) {
-            const auto& named = done.request.models;
-            const auto models = named.empty() ? recognition->models().size() : named.size();
-            response.result = interpretations_message(
-                result,
-                {frame->stamp_ns, frame->frame_id, static_cast<int>(models), done.request.seed});
-          }
           if (!result.ok()) log(hook, LogLevel::info, "detect failed: " + result.status().message);
-          reply.send(response);
+          reply.guard([&] { reply.send(answer_of(*recognition, done, frame, result)); });
         };
         const Status accepted = context.worker.push(std::move(job));
         if (!accepted.ok()) refuse(accepted);

@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "core/base/failure.hpp"
+#include "core/base/guarded.hpp"
 #include "core/base/log.hpp"
 #include "idl/wire/participant.hpp"
 #include "idl/wire/qos.hpp"
 #include "idl/wire/service.hpp"
+#include "server/convert/results.hpp"
 #include "server/recognition.hpp"
 #include "server/settings.hpp"
 #include "server/statistics.hpp"
@@ -34,6 +36,19 @@ class Reply {
     const Status sent = token_.reply(response);
     if (!sent.ok()) log(log_, LogLevel::info, service_ + ": reply not delivered: " + sent.message);
   }
+  /// Runs what answers the request. What it throws is logged and, where the response has room for
+  /// it, answered.
+  template <class Work>
+  void guard(const Work& work) const {
+    const Status status = guarded("the request failed", work);
+    if (status.ok()) return;
+    log(log_, LogLevel::error, service_ + ": " + status.message);
+    typename Service::Response response;
+    if constexpr (requires { response.status.code; }) {
+      response.status = to_message(status);
+      send(response);
+    }
+  }
   /// Who asks.
   wire::Guid client() const { return token_.client(); }
 
@@ -52,14 +67,15 @@ class ServiceSet {
       : participant_(participant), log_(std::move(log)), qos_(qos) {}
 
   /// `handle(request, reply)` runs on a DDS thread and must not block; the reply may come later.
-  /// Throws a Failure, as add_quick() does.
+  /// What it throws is answered. Throws a Failure, as add_quick() does.
   template <class Service, class Handle>
   void add(const std::string& name, Handle handle) {
     auto server = or_throw(wire::ServiceServer<Service>::create(
         participant_, name,
         [name, handle = std::move(handle), log = log_](typename Service::Request&& request,
                                                        wire::ReplyToken<Service> token) {
-          handle(std::move(request), Reply<Service>(std::move(token), name, log));
+          const Reply<Service> reply(std::move(token), name, log);
+          reply.guard([&] { handle(std::move(request), reply); });
         },
         qos_));
     servers_.push_back(std::make_shared<wire::ServiceServer<Service>>(std::move(server)));

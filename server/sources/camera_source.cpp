@@ -32,7 +32,7 @@ class CameraPublisher {
  public:
   /// Throws a Failure.
   CameraPublisher(const wire::Participant& participant, const CaptureOptions& options, LogHook log)
-      : log_(std::move(log)) {
+      : log_(std::move(log)), worker_(log_, 1) {
     const wire::Qos qos = wire::qos::frames();
     color_.open(participant, options.color_topic, qos);
     depth_.open(participant, options.depth_topic, qos);
@@ -71,7 +71,7 @@ class CameraPublisher {
   Output<wire::sensor_msgs::CameraInfo> color_info_, depth_info_;
   Output<wire::sensor_msgs::PointCloud2> points_;
   std::atomic<std::uint64_t> dropped_{0};
-  wire::Worker worker_{1};  ///< Last: ends while all else is there.
+  wire::Worker worker_;  ///< Last: ends while all else is there.
 };
 
 IncomingFrame incoming(const CameraImages& images) {

@@ -392,6 +392,40 @@ TEST_F(WorkerTest, SurvivesADetectorThatThrows) {
   EXPECT_EQ(answers.code(1), StatusCode::ok);
 }
 
+TEST_F(WorkerTest, WhatThrowsCostsItselfAlone) {
+  auto worker = make();
+  gate.open();
+  IncomingFrame broken = frame(1);
+  broken.decode = []() -> DecodedFrame { throw std::bad_alloc(); };
+  worker->push(std::move(broken));
+  ASSERT_TRUE(streamed.wait_for(1));
+  EXPECT_EQ(streamed.code(0), StatusCode::unavailable);
+  EXPECT_EQ(statistics.counts().frames_rejected, 1U);
+
+  DetectJob bomb = job(true);
+  bomb.decode = []() -> DecodedFrame { throw std::bad_alloc(); };
+  ASSERT_TRUE(worker->push(std::move(bomb)).ok());
+  ASSERT_TRUE(answers.wait_for(1));
+  EXPECT_EQ(answers.code(0), StatusCode::unavailable);
+
+  DetectJob narrow = job(false);
+  narrow.restrict_frame = [](Frame&) -> Status { throw std::length_error("mask"); };
+  ASSERT_TRUE(worker->push(std::move(narrow)).ok());
+  ASSERT_TRUE(worker->push(job(false)).ok());
+  worker->push(frame(2));
+  ASSERT_TRUE(answers.wait_for(3));
+  EXPECT_EQ(answers.code(1), StatusCode::internal);
+  EXPECT_EQ(answers.code(2), StatusCode::ok);
+
+  ASSERT_TRUE(worker->run_later([] { throw std::runtime_error("no such folder"); }).ok());
+  DetectJob rude = job(true);
+  rude.done = [](auto&&...) { throw std::runtime_error("the client is gone"); };
+  ASSERT_TRUE(worker->push(std::move(rude)).ok());
+  ASSERT_TRUE(worker->push(job(true)).ok());
+  ASSERT_TRUE(answers.wait_for(4));
+  EXPECT_EQ(answers.code(3), StatusCode::ok);
+}
+
 TEST_F(WorkerTest, StoppingAnswersWhatWaits) {
   auto worker = make();
   worker->push(frame(0));

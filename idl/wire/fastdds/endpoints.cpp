@@ -67,10 +67,9 @@ class Reader : public RawReader, private dds::DataReaderListener {
       if (!info.valid_data) continue;
       if (sample.deliver) {
         ++received_;
-        sample.deliver(to_meta(info));
-      } else {
-        refuse(sample.status);
+        sample.status = guarded("it cannot be taken", [&] { sample.deliver(to_meta(info)); });
       }
+      if (!sample.status.ok()) refuse(sample.status);
     }
   }
 

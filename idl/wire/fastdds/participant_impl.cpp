@@ -104,6 +104,15 @@ class Listener : public dds::DomainParticipantListener {
   /// `came` and `changed` are what the `change` may be, else the endpoint went.
   template <class Data, class Change>
   void tell(const Data& data, bool is_reader, Change change, Change came, Change changed) {
+    const Status status = guarded("a peer's endpoint was not noted", [&] {
+      participant_.on_peer(peer_of(data, is_reader, change, came, changed));
+    });
+    if (!status.ok()) participant_.log(LogLevel::error, status.message);
+  }
+
+  template <class Data, class Change>
+  static ParticipantImpl::Peer peer_of(const Data& data, bool is_reader, Change change, Change came,
+                                       Change changed) {
     ParticipantImpl::Peer peer;
     if (change == came) peer.change = ParticipantImpl::Peer::Change::came;
     if (change == changed) peer.change = ParticipantImpl::Peer::Change::changed;
@@ -120,7 +129,7 @@ class Listener : public dds::DomainParticipantListener {
     const auto& user_data = data.m_qos.m_userData.data_vec();
 #endif
     peer.user_data.assign(user_data.begin(), user_data.end());
-    participant_.on_peer(peer);
+    return peer;
   }
 
   ParticipantImpl& participant_;
@@ -131,7 +140,8 @@ class Listener : public dds::DomainParticipantListener {
 ParticipantImpl::ParticipantImpl(ParticipantOptions options, Discovery discovery)
     : options_(std::move(options)),
       discovery_(std::move(discovery)),
-      listener_(std::make_unique<Listener>(*this)) {}
+      listener_(std::make_unique<Listener>(*this)),
+      worker_(options_.log) {}
 
 Status ParticipantImpl::start() {
   auto* factory = dds::DomainParticipantFactory::get_instance();

@@ -9,6 +9,7 @@
 
 #include <fastdds/dds/topic/TopicDataType.hpp>
 
+#include "core/base/guarded.hpp"
 #include "idl/wire/endpoint.hpp"
 #include "idl/wire/fastdds/version.hpp"
 
@@ -95,7 +96,9 @@ class RawType : public dds::TopicDataType {
   }
   static bool read(const rtps::SerializedPayload_t& payload, void* data) {
     auto& sample = *static_cast<IncomingSample*>(data);
-    auto decoded = (*sample.decode)(payload.data, payload.length);
+    // Fast DDS is not written for exceptions, and holds locks here.
+    auto decoded = guarded("it cannot be decoded",
+                           [&] { return (*sample.decode)(payload.data, payload.length); });
     sample.status = decoded.status();
     if (decoded.ok()) sample.deliver = std::move(decoded).value();
     return true;  // a malformed sample is taken as well, to be counted

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <future>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -150,6 +151,23 @@ TEST(Service, MalformedRequestsAreCountedAndTheNextIsServed) {
   EXPECT_TRUE(client->call(request, seconds(5)).ok());
   EXPECT_EQ(server->statistics().malformed, 2U);
   EXPECT_EQ(server->statistics().received, 1U);
+}
+
+TEST(Service, AHandlerThatThrowsCostsItsRequestAlone) {
+  auto one = test_participant("server");
+  auto two = test_participant("client");
+  ASSERT_TRUE(one.ok() && two.ok());
+  auto server = UnloadServer::create(*one, "throws", [](Unload::Request&& request, auto token) {
+    if (request.name == "bad") throw std::runtime_error("out of luck");
+    answer(std::move(request), token);
+  });
+  auto client = UnloadClient::create(*two, "throws");
+  ASSERT_TRUE(server.ok() && client.ok());
+  Unload::Request request;
+  request.name = "bad";
+  EXPECT_EQ(client->call(request, milliseconds(2000)).status().code, StatusCode::timeout);
+  request.name = "good";
+  EXPECT_TRUE(client->call(request, seconds(5)).ok());
 }
 
 // A request as rmw_cyclonedds frames it, in both byte orders.
