@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "core/base/clock.hpp"
 #include "core/base/concat.hpp"
 #include "core/io/bop_dataset.hpp"
+#include "core/io/file_bytes.hpp"
 
 namespace bpa::camera {
 namespace {
@@ -138,7 +138,7 @@ Result<std::unique_ptr<CameraDevice>> open_bop_camera(const std::string& folder,
                                                       const CameraOptions& options) {
   std::string path = folder, split = "test";
   const std::size_t colon = folder.rfind(':');
-  if (colon != std::string::npos && !std::filesystem::is_directory(folder)) {
+  if (colon != std::string::npos && !io::is_folder(folder)) {
     path = folder.substr(0, colon);
     split = folder.substr(colon + 1);
   }

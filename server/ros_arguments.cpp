@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/ros_arguments.hpp"
 
-#include <filesystem>
-
 #include <yaml-cpp/yaml.h>
 
 #include "core/base/failure.hpp"
+#include "core/io/file_bytes.hpp"
 #include "idl/wire/names.hpp"
 
 namespace bpa::server {
@@ -74,7 +73,7 @@ void set_file(const std::string& path, const std::string& scope, const YAML::Nod
 }
 
 Status load_file(const std::string& path, ServerOptions& options) {
-  if (!std::filesystem::is_regular_file(path)) {
+  if (!io::is_file(path)) {
     return Status(StatusCode::not_found, path + ": there is no such file");
   }
   try {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
@@ -212,7 +211,7 @@ class SceneReader {
 }  // namespace
 
 Result<MeshFile> read_with_assimp(const std::string& path, double scale, bool colored) {
-  if (!std::filesystem::is_regular_file(path)) return not_found(path, " cannot be opened");
+  if (!is_file(path)) return not_found(path, " cannot be opened");
   try {
     Assimp::Importer importer;
     // COLLADA's up axis says how to stand the object up, not which axes it has.

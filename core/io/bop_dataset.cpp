@@ -35,8 +35,8 @@ SymmetryGroup read_symmetry(const Json& info) {
 /// The image with that number, whatever its extension; empty if there is none.
 std::string find_image(const fs::path& folder, int im_id) {
   for (const char* extension : {".png", ".jpg", ".jpeg"}) {
-    const fs::path path = folder / (bop_number(im_id) + extension);
-    if (fs::exists(path)) return path.string();
+    const std::string path = (folder / (bop_number(im_id) + extension)).string();
+    if (is_file(path)) return path;
   }
   return {};
 }
@@ -75,7 +75,7 @@ Result<BopFrame> read_frame_entry(const fs::path& folder, int scene_id, const st
 
 /// An empty object where there is no file.
 Result<Json> read_optional_json(const std::string& path) {
-  return fs::exists(path) ? read_json(path) : Json::object();
+  return is_file(path) ? read_json(path) : Json::object();
 }
 
 Status read_scene(const fs::path& folder, int scene_id, std::vector<BopFrame>& frames) {
@@ -88,7 +88,7 @@ Status read_scene(const fs::path& folder, int scene_id, std::vector<BopFrame>& f
     for (const auto& [key, camera] : cameras.items()) {
       Result<BopFrame> frame = read_frame_entry(folder, scene_id, key, camera);
       if (!frame.ok()) return frame.status();
-      frame->has_truth = fs::exists(gt_path);
+      frame->has_truth = is_file(gt_path);
       Status status = with_json(gt_path, [&]() { return read_truth(*gt, *info, key, *frame); });
       if (!status.ok()) return status;
       frames.push_back(std::move(*frame));

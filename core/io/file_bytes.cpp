@@ -17,11 +17,20 @@
 
 namespace bpa::io {
 namespace fs = std::filesystem;
-Result<std::string> read_file(const std::string& path) {
+
+bool is_file(const std::string& path) {
   std::error_code error;
-  if (fs::is_directory(path, error)) {
-    return invalid_argument(path, " is a folder; a file is needed");
-  }
+  return fs::is_regular_file(path, error);
+}
+
+bool is_folder(const std::string& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+Result<std::string> read_file(const std::string& path) {
+  if (is_folder(path)) return invalid_argument(path, " is a folder; a file is needed");
+  std::error_code error;
   std::ifstream in(path, std::ios::binary);
   if (!in) return not_found(path, " cannot be opened");
   std::string bytes;

@@ -10,6 +10,12 @@
 
 namespace bpa::io {
 
+/// Whether a file, not a folder, is there. False where that cannot be told: the path is too long,
+/// or may not be looked at. std::filesystem throws there unless it is given an error code.
+bool is_file(const std::string& path);
+/// The same of a folder.
+bool is_folder(const std::string& path);
+
 /// The whole file. Fails with not_found when it cannot be opened, corrupt when it cannot be read.
 Result<std::string> read_file(const std::string& path);
 

@@ -3,12 +3,12 @@
 #include "core/io/options_yaml.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <iomanip>
 
 #include <yaml-cpp/yaml.h>
 
 #include "core/base/concat.hpp"
+#include "core/io/file_bytes.hpp"
 
 namespace bpa::io {
 namespace {
@@ -149,7 +149,7 @@ struct ValueWriter {
 }  // namespace
 
 Status read_options(const std::string& path, const OptionsReading& reading) {
-  if (!std::filesystem::is_regular_file(path)) return not_found(path, ": there is no such file");
+  if (!is_file(path)) return not_found(path, ": there is no such file");
   try {
     return apply(path, reading, "", YAML::LoadFile(path));
   } catch (const YAML::Exception& error) {
