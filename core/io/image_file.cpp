@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// OpenCV's codecs are private to this file. libpng reports damage on stderr before OpenCV can say
-// anything, so PNG bytes are checked chunk by chunk first, and only sound files reach it.
+// OpenCV's codecs are private to this file. They allocate what a header says before anything here
+// can refuse it. So headers are read here first, and only a file reaches them whose header they
+// cannot read in another way: whatever stands in its place is refused, not skipped. libpng reports
+// damage on stderr before OpenCV can say anything, so PNG checksums are compared here, too.
 #include "core/io/image_file.hpp"
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 
 #include <opencv2/imgcodecs.hpp>
 
@@ -16,7 +19,9 @@ namespace bpa::io {
 namespace {
 
 constexpr std::string_view kPngSignature("\x89PNG\r\n\x1a\n", 8);
-constexpr int kMaxSide = 8192;
+constexpr std::string_view kJpegSignature("\xff\xd8\xff", 3);
+/// Each scan of a progressive JPEG costs time for all pixels. Encoders write about ten.
+constexpr int kMaxJpegScans = 32;
 
 std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
   std::uint32_t value = 0;
@@ -25,16 +30,20 @@ std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
 }
 
 Status check_sides(const std::string& path, const ImageSize& size) {
-  if (std::min(size.width, size.height) >= 1 && std::max(size.width, size.height) <= kMaxSide) {
+  if (std::min(size.width, size.height) >= 1 &&
+      std::max(size.width, size.height) <= kMaxImageSide) {
     return {};
   }
   return invalid_argument(path, " has ", size.width, "x", size.height,
-                          " pixels; each side must be 1 to ", kMaxSide);
+                          " pixels; each side must be 1 to ", kMaxImageSide);
 }
 
 Result<ImageSize> parse_png_header(const std::string& path, std::string_view bytes) {
   if (bytes.substr(0, 8) != kPngSignature) return corrupt(path, " is not a PNG image");
-  if (bytes.size() < 33 || bytes.substr(12, 4) != "IHDR") return corrupt(path, " is truncated");
+  if (bytes.size() < 33) return corrupt(path, " is truncated");
+  if (big_endian(bytes, 8) != 13 || bytes.substr(12, 4) != "IHDR") {
+    return corrupt(path, " is damaged: a PNG must begin with IHDR");
+  }
   ImageSize size;
   size.width = static_cast<int>(big_endian(bytes, 16) & 0x7fffffff);
   size.height = static_cast<int>(big_endian(bytes, 20) & 0x7fffffff);
@@ -45,25 +54,47 @@ Result<ImageSize> parse_png_header(const std::string& path, std::string_view byt
   return size;
 }
 
-/// Follows the segments of a JPEG to the frame header (ITU-T T.81, B.2.2).
+/// Follows the segments of a JPEG to the frame header (ITU-T T.81, B.2.2). Of the markers that may
+/// precede it (tables, restart interval, application data, comment), all begin a segment with a
+/// length; any number of 0xff may precede a marker.
 Result<ImageSize> parse_jpeg_header(const std::string& path, std::string_view bytes) {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
   const auto number = [&](std::size_t i) { return byte(i) << 8 | byte(i + 1); };
-  for (std::size_t at = 2; at + 10 <= bytes.size() && byte(at) == 0xff;) {
+  for (std::size_t at = 2; at + 10 <= bytes.size();) {
     const int marker = byte(at + 1);
-    const bool table = marker == 0xc4 || marker == 0xc8 || marker == 0xcc;
-    if (marker >= 0xc0 && marker <= 0xcf && !table) {
+    if (byte(at) == 0xff && marker == 0xff) {
+      ++at;
+      continue;
+    }
+    const bool table = marker == 0xc4 || marker == 0xcc || marker == 0xdb || marker == 0xdd;
+    const bool frame = marker >= 0xc0 && marker <= 0xcf && !table && marker != 0xc8;
+    const bool skipped = (marker >= 0xe0 && marker <= 0xef) || marker == 0xfe;
+    const int length = number(at + 2);
+    if (byte(at) != 0xff || length < 2 || !(table || frame || skipped)) {
+      return corrupt(path, " is damaged: something else stands before the JPEG's frame header");
+    }
+    if (frame) {
       const ImageSize size{number(at + 7), number(at + 5), byte(at + 4), byte(at + 9)};
       if (Status status = check_sides(path, size); !status.ok()) return status;
       return size;
     }
-    at += marker == 0xff ? 1 : 2 + static_cast<std::size_t>(number(at + 2));
+    at += 2 + static_cast<std::size_t>(length);
   }
   return corrupt(path, " is truncated");
 }
 
-/// Follows the chunks to IEND and compares every checksum.
-Status check_png_chunks(const std::string& path, std::string_view bytes) {
+Status check_jpeg_scans(const std::string& path, std::string_view bytes) {
+  int scans = 0;
+  for (std::size_t at = 0; (at = bytes.find("\xff\xda", at)) != bytes.npos; at += 2) ++scans;
+  if (scans <= kMaxJpegScans) return {};
+  return Status(StatusCode::unsupported, concat(path, " is a JPEG of ", scans, " scans; at most ",
+                                                kMaxJpegScans, " are read"));
+}
+
+/// The chunks that hold pixels, once every checksum to IEND was compared. All others, such as texts
+/// and colour profiles, are left out: they say nothing of pixels, and unpack to gigabytes.
+Result<std::string> pixel_chunks(const std::string& path, std::string_view bytes) {
+  std::string chunks(kPngSignature);
   std::size_t at = kPngSignature.size();
   while (bytes.size() - at >= 12) {
     const std::size_t length = big_endian(bytes, at);
@@ -72,32 +103,55 @@ Status check_png_chunks(const std::string& path, std::string_view bytes) {
     if (crc32(content) != big_endian(bytes, at + 8 + length)) {
       return corrupt(path, " is damaged: a PNG chunk does not match its checksum");
     }
-    if (content.substr(0, 4) == "IEND") return {};
+    const std::string_view type = content.substr(0, 4);
+    if (type == "IHDR" || type == "PLTE" || type == "IDAT" || type == "IEND") {
+      chunks += bytes.substr(at, 12 + length);
+    }
+    if (type == "IEND") return chunks;
     at += 12 + length;
   }
   return corrupt(path, " is truncated");
 }
 
-/// Decodes a PNG, or with `jpeg_too` a JPEG, whose header passes check(size).
-Result<cv::Mat> decode(const std::string& path, std::string_view bytes, int flags, bool jpeg_too,
-                       const auto& check) {
-  const bool jpeg = jpeg_too && bytes.starts_with("\xff\xd8\xff");
-  if (jpeg_too && !jpeg && !bytes.starts_with(kPngSignature)) {
-    return corrupt(path, " is not a PNG or JPEG image");
+/// Has OpenCV decode a file of that size.
+Result<cv::Mat> decode_checked(const std::string& path, std::string_view bytes, int flags,
+                               const ImageSize& size) {
+  if (bytes.size() > std::numeric_limits<int>::max()) {
+    return invalid_argument(path, " has ", bytes.size(),
+                            " bytes; an image must have less than 2 GB");
   }
-  const Result<ImageSize> size =
-      jpeg ? parse_jpeg_header(path, bytes) : parse_png_header(path, bytes);
-  if (!size.ok()) return size.status();
-  if (Status status = check(*size); !status.ok()) return status;
-  if (Status status = jpeg ? Status() : check_png_chunks(path, bytes); !status.ok()) return status;
   cv::Mat image;
   try {
     image = cv::imdecode(
         cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data())), flags);
   } catch (const std::exception&) {
   }
-  if (image.empty()) return corrupt(path, " is not an image that can be decoded");
+  if (image.empty() || image.cols != size.width || image.rows != size.height) {
+    return corrupt(path, " is not an image that can be decoded");
+  }
   return image;
+}
+
+/// Decodes a PNG, or with `jpeg_too` a JPEG, whose header passes check(size).
+Result<cv::Mat> decode(const std::string& path, std::string_view bytes, int flags, bool jpeg_too,
+                       const auto& check) {
+  const bool jpeg = jpeg_too && bytes.starts_with(kJpegSignature);
+  if (!jpeg && !bytes.starts_with(kPngSignature)) {
+    if (kPngSignature.starts_with(bytes)) return corrupt(path, " is truncated");
+    return Status(StatusCode::unsupported,
+                  path + (jpeg_too ? " is not a PNG or JPEG image" : " is not a PNG image"));
+  }
+  const Result<ImageSize> size =
+      jpeg ? parse_jpeg_header(path, bytes) : parse_png_header(path, bytes);
+  if (!size.ok()) return size.status();
+  if (Status status = check(*size); !status.ok()) return status;
+  if (jpeg) {
+    if (Status status = check_jpeg_scans(path, bytes); !status.ok()) return status;
+    return decode_checked(path, bytes, flags, *size);
+  }
+  const Result<std::string> chunks = pixel_chunks(path, bytes);
+  if (!chunks.ok()) return chunks.status();
+  return decode_checked(path, *chunks, flags, *size);
 }
 
 Result<cv::Mat> read_image(const std::string& path, int flags, bool jpeg_too, const auto& check) {
@@ -110,7 +164,7 @@ Result<cv::Mat> read_image(const std::string& path, int flags, bool jpeg_too, co
 template <class T>
 Status encode(const std::string& path, int width, int height, int type, int channels,
               const std::vector<T>& pixels) {
-  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
+  if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide ||
       pixels.size() != static_cast<std::size_t>(width * height * channels)) {
     return invalid_argument(path, ": the image has ", pixels.size(), " values; it must have ",
                             channels, " x ", width, " x ", height);
@@ -135,6 +189,13 @@ void swap_red_and_blue(std::vector<std::uint8_t>& pixels) {
 ColorImage to_color_image(const cv::Mat& bgr) {
   ColorImage image{bgr.cols, bgr.rows, {bgr.datastart, bgr.dataend}};
   swap_red_and_blue(image.pixels);
+  return image;
+}
+
+GrayImage to_gray_image(const cv::Mat& gray) {
+  GrayImage image{gray.cols, gray.rows, std::vector<std::uint16_t>(gray.total())};
+  cv::Mat pixels(gray.size(), CV_16U, image.pixels.data());
+  gray.convertTo(pixels, CV_16U);
   return image;
 }
 
@@ -179,10 +240,19 @@ Result<GrayImage> read_gray_png(const std::string& path) {
   };
   const Result<cv::Mat> image = read_image(path, cv::IMREAD_UNCHANGED, false, check);
   if (!image.ok()) return image.status();
-  GrayImage result{image->cols, image->rows, std::vector<std::uint16_t>(image->total())};
-  cv::Mat pixels(image->size(), CV_16U, result.pixels.data());
-  image->convertTo(pixels, CV_16U);
-  return result;
+  return to_gray_image(*image);
+}
+
+Result<GrayImage> decode_depth_png(std::string_view bytes, const std::string& name) {
+  const auto check = [&name](const ImageSize& size) -> Status {
+    if (size.channels == 1 && size.bit_depth == 16) return {};
+    return Status(StatusCode::unsupported,
+                  concat(name, " has ", size.channels, " channels of ", size.bit_depth,
+                         " bits; a depth image must have 1 of 16"));
+  };
+  const Result<cv::Mat> image = decode(name, bytes, cv::IMREAD_UNCHANGED, false, check);
+  if (!image.ok()) return image.status();
+  return to_gray_image(*image);
 }
 
 Status write_color_png(const std::string& path, const ColorImage& image) {

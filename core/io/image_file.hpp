@@ -26,6 +26,9 @@ struct GrayImage {
   std::vector<std::uint16_t> pixels;
 };
 
+/// Images with a longer side are refused before memory is taken for their pixels.
+inline constexpr int kMaxImageSide = 8192;
+
 struct ImageSize {
   int width = 0;
   int height = 0;
@@ -34,12 +37,15 @@ struct ImageSize {
 };
 
 /// Reads an 8-bit PNG or JPEG of 1, 3 or 4 channels as rgb; alpha is dropped. All readers fail with
-/// not_found, corrupt (the message names the file) or invalid_argument (wrong kind of image).
+/// not_found, corrupt (the message names the file), invalid_argument (wrong kind of image, or too
+/// large) or unsupported (another format, or a JPEG of more than 32 scans).
 Result<ColorImage> read_color_image(const std::string& path);
 /// The same of an image in memory, of any bit depth and at most `max_pixels`; `name` is for
 /// messages.
 Result<ColorImage> decode_color_image(std::string_view bytes, const std::string& name,
                                       std::size_t max_pixels);
+/// Decodes a PNG in memory that must have 1 channel of 16 bits, else `unsupported`.
+Result<GrayImage> decode_depth_png(std::string_view bytes, const std::string& name);
 /// Reads a 1-channel PNG of 8 or 16 bits.
 Result<GrayImage> read_gray_png(const std::string& path);
 /// Reads the header of a PNG only.

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstring>
-#include <exception>
 #include <string>
 #include <string_view>
-
-#include <opencv2/imgcodecs.hpp>
+#include <utility>
 
 #include "core/base/concat.hpp"
+#include "core/io/image_file.hpp"
 #include "server/convert/images.hpp"
 
 namespace bpa::server {
@@ -19,84 +18,25 @@ using wire::sensor_msgs::CompressedImage;
 
 constexpr std::size_t kDepthHeader = 12;
 
-struct Size {
-  std::uint32_t width = 0, height = 0;
-};
-
-std::uint32_t big_endian(const std::uint8_t* bytes, int count) {
-  std::uint32_t value = 0;
-  for (int i = 0; i < count; ++i) value = value << 8U | bytes[i];
-  return value;
+std::string_view text_of(ByteView bytes) {
+  return {reinterpret_cast<const char*>(bytes.data), bytes.size};
 }
 
-bool is_png(ByteView file) {
-  return file.size >= 24 && std::memcmp(file.data, "\x89PNG\r\n\x1a\n", 8) == 0;
-}
-
-/// The size that the frame header of a JPEG file gives; zero when there is none.
-Size jpeg_size(ByteView file) {
-  std::size_t at = 2;
-  while (at + 9 <= file.size && file.data[at] == 0xff) {
-    const std::uint8_t marker = file.data[at + 1];
-    const bool frame =
-        marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-    if (frame) return {big_endian(file.data + at + 7, 2), big_endian(file.data + at + 5, 2)};
-    at += 2 + big_endian(file.data + at + 2, 2);
-  }
-  return {};
-}
-
-/// The size of a PNG or JPEG file, from its first bytes.
-Result<Size> size_of(const char* field, ByteView file) {
-  Size size;
-  if (is_png(file)) {
-    size = {big_endian(file.data + 16, 4), big_endian(file.data + 20, 4)};
-  } else if (file.size >= 4 && file.data[0] == 0xff && file.data[1] == 0xd8) {
-    size = jpeg_size(file);
-  } else {
-    return Status(StatusCode::unsupported, concat(field, " data is neither a PNG nor a JPEG file"));
-  }
-  const Status status = check_size(std::string(field) + " image", size.width, size.height);
-  if (!status.ok()) return status;
-  return size;
-}
-
-Result<cv::Mat> decode_file(const char* field, ByteView file, int mode) {
-  const Result<Size> size = size_of(field, file);
-  if (!size.ok()) return size.status();
-  cv::Mat pixels;
-  try {
-    // Wrapped, not copied: imdecode only reads.
-    const cv::Mat wrapped(1, static_cast<int>(file.size), CV_8UC1,
-                          const_cast<std::uint8_t*>(file.data));
-    pixels = cv::imdecode(wrapped, mode);
-  } catch (const std::exception&) {
-    pixels.release();
-  }
-  if (pixels.empty()) {
-    return corrupt(field, " data is a damaged image file");
-  }
-  return pixels;
-}
+std::string name_of(const char* field) { return std::string(field) + " image"; }
 
 Result<Decoded<std::uint16_t>> decode_png16(const char* field, ByteView file) {
-  const Result<cv::Mat> pixels = decode_file(field, file, cv::IMREAD_UNCHANGED);
-  if (!pixels.ok()) return pixels.status();
-  if (pixels->type() != CV_16UC1) {
-    return Status(
-        StatusCode::unsupported,
-        concat(field, " data is no PNG of 16 bits and one channel, so it holds no depth"));
-  }
-  return Decoded<std::uint16_t>{static_cast<std::uint32_t>(pixels->cols),
-                                static_cast<std::uint32_t>(pixels->rows),
-                                {pixels->begin<std::uint16_t>(), pixels->end<std::uint16_t>()}};
+  auto image = io::decode_depth_png(text_of(file), name_of(field));
+  if (!image.ok()) return image.status();
+  return Decoded<std::uint16_t>{static_cast<std::uint32_t>(image->width),
+                                static_cast<std::uint32_t>(image->height),
+                                std::move(image->pixels)};
 }
 
 /// An RVL stream with its size in front: width and height, uint32 each.
 Result<Decoded<std::uint16_t>> decode_rvl_image(const char* field, ByteView stream) {
   std::uint32_t size[2] = {};
   if (stream.size >= sizeof size) std::memcpy(size, stream.data, sizeof size);
-  if (Status s = check_size(std::string(field) + " image", size[0], size[1]); !s.ok()) return s;
+  if (Status s = check_size(name_of(field), size[0], size[1]); !s.ok()) return s;
   Decoded<std::uint16_t> decoded{size[0], size[1], {}};
   const std::size_t count = std::size_t{size[0]} * size[1];
   if (!decode_rvl(stream.data + sizeof size, stream.size - sizeof size, count, decoded.pixels)) {
@@ -179,20 +119,19 @@ bool decode_rvl(const std::uint8_t* data, std::size_t size, std::size_t count,
 }
 
 Result<Decoded<std::uint8_t>> decode_color(const char* field, const CompressedImage& image) {
-  // IMREAD_COLOR gives blue, green, red; alpha and more than 8 bits go.
-  const auto decoded = decode_file(field, {image.data.data(), image.data.size()},
-                                   cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+  constexpr std::size_t kMaxPixels = std::size_t{io::kMaxImageSide} * io::kMaxImageSide;
+  auto decoded = io::decode_color_image(text_of({image.data.data(), image.data.size()}),
+                                        name_of(field), kMaxPixels);
   if (!decoded.ok()) return decoded.status();
-  const cv::Mat& bgr = *decoded;
+  std::vector<std::uint8_t>& rgb = decoded->pixels;
   const std::size_t split = image.format.find(';');
   const std::string_view encoded =
       split == std::string::npos ? "" : std::string_view(image.format).substr(split);
-  const char* order = has(encoded, "compressed rgb") ? "rgb8" : "bgr8";
-  const auto width = static_cast<std::uint32_t>(bgr.cols);
-  const auto height = static_cast<std::uint32_t>(bgr.rows);
-  auto rgb = color_from_image({field, order, width, height, 0, false, bgr.data, 3 * bgr.total()});
-  if (!rgb.ok()) return rgb.status();
-  return Decoded<std::uint8_t>{width, height, std::move(rgb).value()};
+  if (has(encoded, "compressed rgb")) {  // the file has red where readers expect blue
+    for (std::size_t i = 0; i + 2 < rgb.size(); i += 3) std::swap(rgb[i], rgb[i + 2]);
+  }
+  return Decoded<std::uint8_t>{static_cast<std::uint32_t>(decoded->width),
+                               static_cast<std::uint32_t>(decoded->height), std::move(rgb)};
 }
 
 Result<Decoded<float>> decode_depth(const char* field, const CompressedImage& image) {

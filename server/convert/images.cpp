@@ -12,6 +12,7 @@
 #include "core/base/concat.hpp"
 #include "core/cloud/frame.hpp"
 #include "core/geometry/camera.hpp"
+#include "core/io/image_file.hpp"
 
 namespace bpa::server {
 namespace {
@@ -75,7 +76,7 @@ constexpr ColorLayout kColorLayouts[] = {{"rgb8", CV_8UC3, -1},
 }  // namespace
 
 Status check_size(const std::string& what, std::uint32_t width, std::uint32_t height) {
-  constexpr std::uint32_t kMaxSide = 8192;
+  constexpr std::uint32_t kMaxSide = io::kMaxImageSide;
   if (width > 0 && height > 0 && width <= kMaxSide && height <= kMaxSide) return {};
   return invalid_argument(what, " is ", width, "x", height, "; each side must be between 1 and ",
                           kMaxSide);

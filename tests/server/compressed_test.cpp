@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "core/io/file_bytes.hpp"
 #include "server/convert/frames.hpp"
 #include "server/convert/images.hpp"
 #include "tests/support/depth_codecs.hpp"
@@ -139,6 +141,71 @@ TEST(DecodeDepth, RefusesWhatIsNoDepth) {
   image.data.assign(100, 7);
   image.format = "16UC1; compressedDepth png";
   refused(image, StatusCode::unsupported);
+}
+
+/// A file whose frame header says 9000 x 64, with something in front of that header.
+std::vector<std::uint8_t> jpeg_bomb(const std::vector<std::uint8_t>& before_frame) {
+  std::vector<std::uint8_t> file;
+  cv::imencode(".jpg", cv::Mat(64, 9000, CV_8UC3, cv::Scalar(30, 60, 200)), file);
+  const std::uint8_t frame[] = {0xff, 0xc0};
+  const auto at = std::search(file.begin(), file.end(), std::begin(frame), std::end(frame));
+  file.insert(at, before_frame.begin(), before_frame.end());
+  return file;
+}
+
+TEST(DecodeColor, SizesOfJpegFilesAreThoseThatTheDecoderSees) {
+  // Each makes the size that follows the 0xc0 look like 16 x 16 where it is not understood.
+  const std::vector<std::vector<std::uint8_t>> cases = {
+      {0xff},                                                      // fill byte
+      {0xff, 0xd0, 0, 2, 0xff, 0xc0, 0, 17, 8, 0, 16, 0, 16, 3},   // restart
+      {0xff, 0x01, 0, 2, 0xff, 0xc0, 0, 17, 8, 0, 16, 0, 16, 3},   // temporary
+      {0, 0xff, 0xc0, 0, 17, 8, 0, 16, 0, 16, 3},                  // garbage
+      {0xff, 0xfe, 0, 1, 0xff, 0xc0, 0, 17, 8, 0, 16, 0, 16, 3},   // short comment
+      {0xff, 0xfe, 0, 12, 0xff, 0xc0, 0, 17, 8, 0, 16, 0, 16, 3},  // comment
+  };
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    CompressedImage image;
+    image.format = "bgr8; jpeg compressed bgr8";
+    image.data = jpeg_bomb(cases[i]);
+    const auto decoded = decode_color("color", image);
+    ASSERT_FALSE(decoded.ok()) << i;
+    const bool understood = i == 0 || i == 5;
+    EXPECT_EQ(decoded.status().code,
+              understood ? StatusCode::invalid_argument : StatusCode::corrupt)
+        << i << ": " << decoded.status().message;
+  }
+}
+
+TEST(DecodeColor, ManyScansAreRefused) {
+  CompressedImage image;
+  cv::imencode(".jpg", cv::Mat(48, 64, CV_8UC3, cv::Scalar(30, 60, 200)), image.data,
+               {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
+  ASSERT_TRUE(decode_color("color", image).ok());
+  const std::uint8_t scan[] = {0xff, 0xda};
+  const auto last =
+      std::find_end(image.data.begin(), image.data.end(), std::begin(scan), std::end(scan));
+  const std::vector<std::uint8_t> again(last, image.data.end() - 2);
+  for (int i = 0; i < 100; ++i) {
+    image.data.insert(image.data.end() - 2, again.begin(), again.end());
+  }
+  EXPECT_EQ(decode_color("color", image).status().code, StatusCode::unsupported);
+}
+
+TEST(DecodeDepth, APngBeginsWithItsHeader) {
+  // The first chunk says 16 x 16 where readers look for the header; the real one says 9000 x 64.
+  cv::Mat large(64, 9000, CV_16UC1, cv::Scalar(1000));
+  CompressedImage image;
+  image.format = "16UC1; png compressed ";
+  cv::imencode(".png", large, image.data);
+  const std::string content = std::string("teXt\0\0\0\x10\0\0\0\x10\x10\0\0\0\0", 17);
+  const std::uint32_t sum = io::crc32(content);
+  std::vector<std::uint8_t> chunk = {0, 0, 0, 13};
+  chunk.insert(chunk.end(), content.begin(), content.end());
+  for (int shift = 24; shift >= 0; shift -= 8) {
+    chunk.push_back(static_cast<std::uint8_t>(sum >> static_cast<unsigned>(shift)));
+  }
+  image.data.insert(image.data.begin() + 8, chunk.begin(), chunk.end());
+  EXPECT_EQ(decode_depth("depth", image).status().code, StatusCode::corrupt);
 }
 
 TEST(FrameFromCompressedImages, CompressedImagesGiveTheFrameOfRawOnes) {
