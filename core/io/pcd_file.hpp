@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/status.hpp"
@@ -21,8 +22,11 @@ struct PcdCloud : PointCloud {
 };
 
 /// Reads ascii, binary and compressed PCD files with fields x y z. Optional fields: rgb or rgba,
-/// normal_x normal_y normal_z. Fails with not_found, corrupt or invalid_argument (no x y z).
+/// normal_x normal_y normal_z. Fails with not_found, corrupt or invalid_argument (no x y z). Memory
+/// is taken for 50 million points at most, and for no more than the bytes of the file can hold.
 Result<PcdCloud> read_pcd(const std::string& path);
+/// The same of the bytes of a file; `name` is for messages.
+Result<PcdCloud> parse_pcd(std::string_view bytes, const std::string& name);
 
 /// The finite points, scaled.
 PointCloud drop_invalid_points(const PointCloud& cloud, double scale = 1.0);

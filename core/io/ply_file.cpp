@@ -197,7 +197,8 @@ Columns find_columns(const Element& element) {
 
 std::uint8_t color_byte(double value, const NumberType& type) {
   const double scaled = type.real ? 255 * value : value;
-  return static_cast<std::uint8_t>(std::clamp(std::round(scaled), 0.0, 255.0));
+  return scaled > 0 ? static_cast<std::uint8_t>(std::lround(std::min(scaled, 255.0)))
+                    : 0;  // or NaN
 }
 
 void add_vertex(const Element& element, const Columns& columns, const Row& row, double scale,
@@ -297,6 +298,9 @@ Result<PlyFile> parse_ply_file(const std::string& bytes, const std::string& name
   std::vector<Corners> corners;
   Row row;
   for (const Element& element : header->elements) {
+    if (element.count > 0 && element.properties.empty()) {
+      return corrupt(name, " has PLY element ", element.name, " without a property");
+    }
     if (element.count > values.remaining() + 1) {
       return corrupt(name, " is truncated: ", element.count, " of PLY element ", element.name,
                      " do not fit");

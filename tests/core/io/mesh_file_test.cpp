@@ -79,6 +79,24 @@ TEST(MeshFile, AHugeCountIsRefusedBeforeMemoryIsTaken) {
   EXPECT_EQ(parse_ply(bytes, "a.ply").status().code, StatusCode::corrupt);
 }
 
+TEST(MeshFile, ElementsWithoutPropertiesAreRefused) {
+  std::string bytes = "ply\nformat binary_little_endian 1.0\n";
+  for (int i = 0; i < 1000; ++i) bytes += "element vertex 400000\n";
+  bytes += "end_header\n" + std::string(400'000, 'x');
+  EXPECT_EQ(parse_ply(bytes, "a.ply").status().message,
+            "a.ply has PLY element vertex without a property");
+}
+
+TEST(MeshFile, ColoursThatAreNoNumberAreBlack) {
+  const std::string bytes =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float red\nproperty float green\nproperty float blue\n"
+      "end_header\n0 0 0 nan 1e30 -1e30\n";
+  const Result<TriangleMesh> mesh = parse_ply(bytes, "a.ply");
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh->colors.at(0), (std::array<std::uint8_t, 3>{0, 255, 0}));
+}
+
 TEST(MeshFile, ObjAndStl) {
   const test::TemporaryFolder folder;
   spill(folder / "a.obj", "v 0 0 0\nv 10 0 0\nv 0 20 0\nv 0 0 30\nf 1 3 2\nf 1 2 4\n");

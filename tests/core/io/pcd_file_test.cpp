@@ -112,6 +112,84 @@ TEST(PcdFile, BadFilesAreStatuses) {
   EXPECT_EQ(read_pcd(folder.path()).status().code, StatusCode::not_found);
 }
 
+TEST(PcdFile, HeadersThatDoNotFitAreCorrupt) {
+  const std::string good =
+      "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\n"
+      "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n1 2 3\n";
+  ASSERT_TRUE(parse_pcd(good, "a").ok()) << parse_pcd(good, "a").status().message;
+  const std::pair<const char*, const char*> changes[] = {
+      {"VERSION 0.7\n", "#7\nVERSION \nF\n"},  // a line of its own that is none
+      {"TYPE F F F", "TYPE"},
+      {"TYPE F F F", "TYPE F F"},
+      {"TYPE F F F", "TYPE F F X"},
+      {"SIZE 4 4 4", "SIZE 4 "},
+      {"SIZE 4 4 4", "SIZE 4 4 3"},
+      {"SIZE 4 4 4", "SIZE 4 4 18446744073709551615"},
+      {"COUNT 1 1 1", "COUNT 1 1"},
+      {"COUNT 1 1 1", "COUNT 1 1 4000000000"},
+      {"COUNT 1 1 1", "COUNT 1 1 -1"},
+      {"FIELDS x y z", "FIELDS"},
+      {"FIELDS x y z", "FIELDS x y z w"},
+      {"WIDTH 1", "WIDTH"},
+      {"WIDTH 1", "WIDTH 1\nWIDTH 1"},
+      {"POINTS 1", "POINTS 2"},
+      {"DATA ascii", "DATA"},
+      {"DATA ascii", "DATA rubbish"},
+      {"DATA ascii", "DATA binary_compressed"},
+      {"1 2 3\n", "1 2\n"},
+      {"1 2 3\n", "1 2 3 4\n"},
+      {"1 2 3\n", "1 2 three\n"},
+  };
+  for (const auto& [part, other] : changes) {
+    std::string text = good;
+    text.replace(text.find(part), std::string(part).size(), other);
+    const auto cloud = parse_pcd(text, "a.pcd");
+    EXPECT_EQ(cloud.status().code, StatusCode::corrupt) << part << " -> " << other;
+    EXPECT_EQ(cloud.status().message.find("a.pcd "), 0U) << cloud.status().message;
+  }
+  for (std::size_t size = 0; size + 2 < good.size(); ++size) {
+    EXPECT_EQ(parse_pcd(good.substr(0, size), "a").status().code, StatusCode::corrupt) << size;
+  }
+}
+
+/// Points of three fields that are stored field by field, as literal runs of LZF.
+std::string compressed_pcd(std::uint32_t points, std::uint32_t claimed) {
+  std::string fields;
+  for (int k = 1; k <= 3; ++k) {
+    for (std::uint32_t i = 0; i < points; ++i) {
+      const float value = static_cast<float>(10 * k) + static_cast<float>(i);
+      fields.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+  }
+  std::string runs;
+  for (std::size_t at = 0; at < fields.size(); at += 32) {
+    const std::string run = fields.substr(at, 32);
+    runs += static_cast<char>(run.size() - 1);
+    runs += run;
+  }
+  const auto size = static_cast<std::uint32_t>(runs.size());
+  const std::uint32_t sizes[2] = {size, 12 * claimed};
+  const std::string width = std::to_string(claimed);
+  std::string bytes = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH " + width +
+                      "\nPOINTS " + width + "\nDATA binary_compressed\n";
+  bytes.append(reinterpret_cast<const char*>(sizes), sizeof sizes);
+  return bytes + runs;
+}
+
+TEST(PcdFile, CompressedPoints) {
+  const auto cloud = parse_pcd(compressed_pcd(50, 50), "a");
+  ASSERT_TRUE(cloud.ok()) << cloud.status().message;
+  ASSERT_EQ(cloud->points.size(), 50u);
+  EXPECT_EQ(cloud->points[49], Eigen::Vector3f(59, 69, 79));
+  // 600 bytes do not unpack to 600 MB, and no memory is taken for them.
+  EXPECT_EQ(parse_pcd(compressed_pcd(50, 50'000'000), "a").status().code, StatusCode::corrupt);
+  EXPECT_EQ(parse_pcd(compressed_pcd(50, 51), "a").status().code, StatusCode::corrupt);
+  std::string bytes = compressed_pcd(50, 50);
+  for (std::size_t size = bytes.size() - 1; size > bytes.size() - 600; size -= 37) {
+    EXPECT_EQ(parse_pcd(bytes.substr(0, size), "a").status().code, StatusCode::corrupt);
+  }
+}
+
 TEST(PcdFile, RealClouds) {
   const std::string data = test::real_data();
   if (data.empty()) GTEST_SKIP() << "no real frames";
