@@ -3,6 +3,7 @@
 #include "core/cloud/neighbor_grid.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace bpa {
@@ -19,8 +20,15 @@ std::uint64_t key_of(int x, int y, int z) {
   return (part(z) << (2 * kBits)) | (part(y) << kBits) | part(x);
 }
 
+// A number that no int holds, or NaN, is in a cell beyond all others.
 Eigen::Vector3i cell_at(const Eigen::Vector3f& point, float inverse_cell) {
-  return (point * inverse_cell).array().floor().cast<int>();
+  constexpr auto kBeyond = static_cast<float>(kOffset + 4);
+  const auto cell = [=](float value) {
+    if (!(value > -kBeyond)) return -kOffset - 4;
+    return static_cast<int>(std::floor(std::min(value, kBeyond)));
+  };
+  const Eigen::Vector3f scaled = point * inverse_cell;
+  return {cell(scaled.x()), cell(scaled.y()), cell(scaled.z())};
 }
 
 std::vector<std::uint64_t> keys_of(std::span<const Eigen::Vector3f> points, float inverse_cell) {

@@ -3,6 +3,7 @@
 #include "core/cloud/neighbor_grid.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -87,6 +88,15 @@ TEST_P(NeighborGridOf, FindsWhatLookingAtAllPointsFinds) {
       EXPECT_EQ(by_grid(grid, query), by_looking_at_all(points, query, radius)) << radius;
     }
   }
+}
+
+TEST(NeighborGrid, PointsBeyondAllCellsAreFoundByNobody) {
+  const float huge = 1e30f, nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Eigen::Vector3f> points = {
+      {0, 0, 0}, {huge, 0, 0}, {0, -huge, 0}, {nan, nan, nan}, {0.01f, 0, 0}};
+  const NeighborGrid grid(points, 0.02f);
+  EXPECT_EQ(by_grid(grid, {0, 0, 0}).size(), 2u);
+  EXPECT_EQ(by_grid(grid, {nan, 0, 0}).size(), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Clouds, NeighborGridOf,
