@@ -84,6 +84,8 @@ class CameraDevice {
     return Status(StatusCode::unsupported,
                   name() + " cannot be recorded to " + path + "; only OpenNI2 sensors can");
   }
+  /// Of the recording that is being made; fails when it cannot be written any further.
+  virtual Result<std::uint64_t> recorded_bytes() const { return std::uint64_t{0}; }
   /// Completes the file; `not_found` when nothing is being recorded.
   virtual Result<RecordingSummary> stop_recording() {
     return Status(StatusCode::not_found, "nothing is being recorded");

@@ -44,7 +44,7 @@ class Capture::Impl {
       if (camera) {
         const Status status = guarded("the camera failed", [&] { ended = stream(*camera); });
         if (!status.ok()) set_state(LogLevel::error, status.message);
-        if (recording_until_) (void)end_recording(camera.get());
+        if (recording_) (void)end_recording(camera.get());
         note_call("closing the device");
         camera.reset();
         note_call(nullptr);
@@ -120,11 +120,11 @@ class Capture::Impl {
   }
 
   Result<RecordingSummary> begin_recording(CameraDevice* camera, const std::string& path,
-                                           std::chrono::milliseconds limit) {
+                                           const RecordingLimits& limits) {
     if (camera == nullptr) {
       return unavailable("there is no camera to record: ", status().text);
     }
-    if (recording_until_) {
+    if (recording_) {
       return Status(StatusCode::busy, status().recording + " is being recorded; stop that first");
     }
     std::error_code error;
@@ -132,7 +132,7 @@ class Capture::Impl {
       return invalid_argument(path + " is there already; recordings replace no file");
     }
     if (Status s = camera->start_recording(path); !s.ok()) return s;
-    recording_until_ = clock_->now() + limit;
+    recording_ = Recording{clock_->now() + limits.time, limits.bytes};
     recorded_.reset();
     note_recording(path);
     log(log_, LogLevel::info, "capture: recording to " + path);
@@ -140,18 +140,17 @@ class Capture::Impl {
   }
 
   Result<RecordingSummary> end_recording(CameraDevice* camera) {
-    if (recording_until_ && camera != nullptr) {
-      recording_until_.reset();
-      Result<RecordingSummary> summary = camera->stop_recording();
+    if (recording_ && camera != nullptr) {
+      recording_.reset();
+      recorded_ = camera->stop_recording();
       const std::string path = note_recording("");
-      if (!summary.ok()) {
+      if (recorded_->ok()) {
+        log(log_, LogLevel::info,
+            concat("capture: recorded ", (*recorded_)->frames, " frames to ", (*recorded_)->path));
+      } else {
         log(log_, LogLevel::error,
-            "capture: recording to " + path + " failed: " + summary.status().message);
-        return summary;
+            "capture: recording to " + path + " failed: " + recorded_->status().message);
       }
-      log(log_, LogLevel::info,
-          concat("capture: recorded ", summary->frames, " frames to ", summary->path));
-      recorded_ = *summary;
     }
     if (!recorded_) return Status(StatusCode::not_found, "nothing is being recorded");
     return *recorded_;
@@ -203,7 +202,7 @@ class Capture::Impl {
     auto last_frame = clock_->now();
     while (!stopping()) {
       work_on_tasks(&camera);
-      if (recording_until_ && clock_->now() >= *recording_until_) (void)end_recording(&camera);
+      if (recording_ && recording_is_over(camera)) (void)end_recording(&camera);
       bool wanted = true;
       {
         const std::lock_guard<std::mutex> lock(deliver_mutex_);
@@ -242,6 +241,11 @@ class Capture::Impl {
       }
     }
     return false;
+  }
+
+  bool recording_is_over(const CameraDevice& camera) const {
+    const Result<std::uint64_t> bytes = camera.recorded_bytes();
+    return clock_->now() >= recording_->until || !bytes.ok() || *bytes >= recording_->most_bytes;
   }
 
   void deliver(SensorImages&& images) {
@@ -307,8 +311,12 @@ class Capture::Impl {
 
   // Of the capture thread alone.
   OpenCamera open_;
-  std::optional<TimePoint> recording_until_;
-  std::optional<RecordingSummary> recorded_;  ///< Of a recording that ended by itself.
+  struct Recording {
+    TimePoint until;
+    std::uint64_t most_bytes = 0;
+  };
+  std::optional<Recording> recording_;                ///< The one that is being made.
+  std::optional<Result<RecordingSummary>> recorded_;  ///< What became of the last one.
 
   mutable std::mutex mutex_;  ///< Guards what follows.
   std::condition_variable wake_;
@@ -338,10 +346,10 @@ Capture::~Capture() {
 
 CaptureStatus Capture::status() const { return impl_->status(); }
 
-void Capture::start_recording(const std::string& path, std::chrono::milliseconds limit,
+void Capture::start_recording(const std::string& path, const RecordingLimits& limits,
                               Recorded done) {
-  impl_->post({[impl = impl_.get(), path, limit](CameraDevice* camera) {
-                 return impl->begin_recording(camera, path, limit);
+  impl_->post({[impl = impl_.get(), path, limits](CameraDevice* camera) {
+                 return impl->begin_recording(camera, path, limits);
                },
                std::move(done)});
 }

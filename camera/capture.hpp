@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <thread>
@@ -25,6 +26,12 @@ struct CaptureStatus {
   std::uint64_t frames = 0;  ///< Sets of images so far.
   std::uint64_t opened = 0;  ///< How often the device was opened.
   std::string recording;     ///< File that is being written; empty: none.
+};
+
+/// A recording ends when it reaches one of these.
+struct RecordingLimits {
+  std::chrono::milliseconds time{};
+  std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();
 };
 
 struct CaptureTimes {
@@ -51,10 +58,11 @@ class Capture {
   CaptureStatus status() const;
 
   using Recorded = std::function<void(const Result<RecordingSummary>&)>;
-  /// Records to a file of this machine, for `limit` at most. `done` is called once, from another
+  /// Records to a file of this machine, up to its limits. `done` is called once, from another
   /// thread: `busy` while a recording runs, `unavailable` without a camera or when it hangs.
-  void start_recording(const std::string& path, std::chrono::milliseconds limit, Recorded done);
-  /// Ends it; also gives the summary of one that ended by itself since. Otherwise `not_found`.
+  void start_recording(const std::string& path, const RecordingLimits& limits, Recorded done);
+  /// Ends it; also gives the summary of one that ended by itself since, or why it failed (such as a
+  /// full disk). Otherwise `not_found`.
   void stop_recording(Recorded done);
 
  private:

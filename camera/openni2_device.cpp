@@ -64,6 +64,11 @@ class Openni2Device : public CameraDevice {
     return {};
   }
 
+  Result<std::uint64_t> recorded_bytes() const override {
+    if (!written_.ok()) return written_;
+    return writer_ ? writer_->bytes() : 0;
+  }
+
   Result<RecordingSummary> stop_recording() override {
     if (!writer_) return CameraDevice::stop_recording();
     if (written_.ok()) written_ = writer_->finish();

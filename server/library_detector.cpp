@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/concat.hpp"
 #include "core/draw/annotate.hpp"
+#include "core/io/file_bytes.hpp"
 #include "core/io/model_file.hpp"
 #include "core/pipeline/detector.hpp"
 #include "server/recognition.hpp"
@@ -20,13 +22,22 @@ Status add_model(ModelSource source, int num_threads, ModelLibrary& library) {
   return library.add(std::move(model).value());
 }
 
+Status check_name(const std::string& field, const std::string& name) {
+  if (io::clean_model_name(name) == name) return {};
+  return invalid_argument(field +
+                          " must have 1 to 100 letters, digits, '_', '-' and '.', and not "
+                          "begin with '.'");
+}
+
 /// A search that runs keeps the library it began with.
 class LibraryDetector : public Recognition {
  public:
-  LibraryDetector(std::string folder, const DetectorOptions& options, int num_threads,
+  LibraryDetector(const DetectionOptions& detection, const DetectorOptions& options,
                   ScoreLayers layers)
-      : folder_(std::move(folder)),
-        num_threads_(num_threads),
+      : folder_(detection.library),
+        model_folder_(detection.model_folder),
+        max_models_(detection.max_models),
+        num_threads_(detection.threads),
         layers_(std::move(layers)),
         detector_(std::make_shared<const Detector>(std::make_shared<const ModelLibrary>(), options,
                                                    layers_)) {}
@@ -63,12 +74,10 @@ class LibraryDetector : public Recognition {
 
   Result<std::shared_ptr<const ObjectModel>> load(const std::string& source,
                                                   const std::string& name) override {
+    if (Status s = name.empty() ? Status() : check_name("name", name); !s.ok()) return s;
     const std::lock_guard<std::mutex> lock(change_mutex_);
-    // A model of our folder by name, or the path of a model's folder anywhere.
-    const std::filesystem::path path(source);
     const bool is_path = source.find('/') != std::string::npos;
-    auto read = is_path ? io::load_model(path.parent_path().string(), path.filename().string())
-                        : io::load_model(folder_, source);
+    auto read = is_path ? read_path(source) : read_name(source);
     if (!read.ok()) return read.status();
     if (!name.empty()) read->name = name;
     const std::string wanted = read->name;
@@ -76,6 +85,10 @@ class LibraryDetector : public Recognition {
     if (const auto old = library.find(wanted)) {
       read->number = old->number;
       if (Status s = library.remove(wanted); !s.ok()) return s;
+    } else if (library.size() >= max_models_) {
+      return Status(StatusCode::busy, concat(library.size(),
+                                             " models are loaded, as many as may "
+                                             "(detection.max_models); unload one"));
     } else if (std::ranges::any_of(library.models(), [&](const auto& model) {
                  return model->number == read->number;
                })) {
@@ -106,6 +119,27 @@ class LibraryDetector : public Recognition {
   }
 
  private:
+  /// A model of our folder.
+  Result<ModelSource> read_name(const std::string& name) const {
+    if (Status s = check_name("source", name); !s.ok()) return s;
+    return io::load_model(folder_, name);
+  }
+
+  /// A model elsewhere: its folder, or the description in it.
+  Result<ModelSource> read_path(const std::string& source) const {
+    if (model_folder_.empty()) {
+      return Status(StatusCode::unsupported,
+                    "source is a path; without detection.model_folder it must be the name of a "
+                    "model in the library");
+    }
+    const Result<std::string> below = io::path_below(model_folder_, source);
+    if (!below.ok()) return below.status();
+    std::filesystem::path path(*below);
+    if (path.filename() == "model.json") path = path.parent_path();
+    if (Status s = check_name("the folder's name", path.filename()); !s.ok()) return s;
+    return io::load_model(path.parent_path().string(), path.filename().string());
+  }
+
   std::shared_ptr<const Detector> current() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return detector_;
@@ -126,6 +160,8 @@ class LibraryDetector : public Recognition {
   }
 
   const std::string folder_;
+  const std::string model_folder_;
+  const int max_models_;
   const int num_threads_;
   const ScoreLayers layers_;  ///< The library's own, or the built-in ones.
   std::mutex change_mutex_;   ///< Held while a change is being made.
@@ -137,17 +173,20 @@ class LibraryDetector : public Recognition {
 
 }  // namespace
 
-Result<std::shared_ptr<Recognition>> open_library(const std::string& folder,
-                                                  const DetectorOptions& options, int num_threads,
+Result<std::shared_ptr<Recognition>> open_library(const DetectionOptions& detection,
+                                                  const DetectorOptions& options,
                                                   const LogHook& hook) {
-  std::error_code error;
-  if (!std::filesystem::is_directory(folder, error)) {
+  const std::string& folder = detection.library;
+  if (!io::is_folder(folder)) {
     return Status(StatusCode::not_found, "library " + folder + ": there is no such folder");
   }
+  std::error_code error;
+  const std::filesystem::directory_iterator entries(folder, error);
+  if (error) return unavailable("library ", folder, " cannot be read: ", error.message());
   Result<ScoreLayers> layers = library_score_layers(folder);
   if (!layers.ok()) return layers.status();
   const auto self =
-      std::make_shared<LibraryDetector>(folder, options, num_threads, std::move(layers).value());
+      std::make_shared<LibraryDetector>(detection, options, std::move(layers).value());
   if (io::list_models(folder).empty()) {
     log(hook, LogLevel::warning,
         "library " + folder +
@@ -155,12 +194,12 @@ Result<std::shared_ptr<Recognition>> open_library(const std::string& folder,
             "with `bpa model from-mesh` or `bpa model from-bop`");
     return std::shared_ptr<Recognition>(self);
   }
-  auto contents = io::read_library(folder, num_threads);
+  auto contents = io::read_library(folder, detection.threads);
   if (!contents.ok()) return contents.status();
   ModelLibrary library;
   for (ModelSource& source : contents->models) {
     const std::string name = source.name;
-    Status s = add_model(std::move(source), num_threads, library);
+    Status s = add_model(std::move(source), detection.threads, library);
     if (!s.ok()) contents->broken.push_back({name, std::move(s)});
   }
   if (const Status s = io::explain_broken(folder, contents->broken); !s.ok()) {

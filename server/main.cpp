@@ -107,8 +107,7 @@ void serve(const ServerOptions& options, const bpa::LogHook& hook, const sigset_
   if (folder.empty()) {
     or_throw(bpa::invalid_argument("no model library: give --library DIR (or detection.library)"));
   }
-  auto library = or_throw(
-      bpa::server::open_library(folder, options.detector, options.detection.threads, hook));
+  auto library = or_throw(bpa::server::open_library(options.detection, options.detector, hook));
   const auto server = or_throw(bpa::server::Server::create(options, std::move(library), hook));
   bpa::log(hook, LogLevel::info, "ready in namespace " + options.node.ros_namespace);
   int signal = 0;

@@ -113,6 +113,8 @@ struct InputOptions {
 struct CaptureOptions : camera::CameraOptions {
   std::string frame_id = "camera_color_optical_frame";
   bool search = true;
+  std::string record_folder;
+  double record_max_mb = 20000;
   std::string color_topic = "/camera/color/image_raw";
   std::string color_info_topic = "/camera/color/camera_info";
   std::string depth_topic = "/camera/aligned_depth_to_color/image_raw";
@@ -123,6 +125,14 @@ struct CaptureOptions : camera::CameraOptions {
     CameraOptions::visit_fields(visit);
     visit("frame_id", frame_id, {0, 0, "Frame id of this camera's messages."});
     visit("search", search, {0, 0, "Search its frames; false: only publish them."});
+    visit("record_folder", record_folder,
+          {0, 0,
+           "Folder below which clients may have the sensor recorded; empty: nowhere. Links in "
+           "it are not followed."});
+    visit("record_max_mb", record_max_mb,
+          {1, 1e9,
+           "MB that the recordings in record_folder may take together; a recording that "
+           "reaches it ends. A second takes about 46 MB."});
     visit("color_topic", color_topic, {0, 0, "sensor_msgs/Image, rgb8; empty: none."});
     visit("color_info_topic", color_info_topic,
           {0, 0, "sensor_msgs/CameraInfo beside it; empty: none."});
@@ -183,6 +193,8 @@ struct OutputOptions {
 
 struct DetectionOptions {
   std::string library;
+  std::string model_folder;
+  int max_models = 500;
   std::string detector;
   bool continuous = true;
   int top_k = kDefaultTopK;
@@ -194,6 +206,12 @@ struct DetectionOptions {
 
   void visit_fields(auto&& visit) {
     visit("library", library, {0, 0, "Folder of the model library."});
+    visit("model_folder", model_folder,
+          {0, 0,
+           "Folder below which clients may name models by path; empty: they name those of the "
+           "library alone. Links in it are not followed."});
+    visit("max_models", max_models,
+          {1, 10000, "Models that clients may load, those of the library included."});
     visit("detector", detector,
           {0, 0, "File with settings of the detector (detector.yaml); empty: defaults."});
     visit("continuous", continuous,

@@ -14,6 +14,7 @@
 #include "core/pipeline/detector.hpp"
 #include "core/result/interpretation.hpp"
 #include "server/convert/results.hpp"
+#include "server/options.hpp"
 
 namespace bpa::server {
 
@@ -40,8 +41,8 @@ class Recognition {
   virtual std::vector<io::BrokenModel> broken() const = 0;
 
   /// Loads a model as `name` (empty: its own), replacing one of that name. `source`: a name in the
-  /// library's folder, or the path of a model's folder. `unsupported` where the library is fixed,
-  /// as for the next two.
+  /// library's folder, or the path of a model's folder or its model.json. `unsupported` where the
+  /// library is fixed, as for the next two, and for a path where none is allowed.
   virtual Result<std::shared_ptr<const ObjectModel>> load(const std::string& source,
                                                           const std::string& name) = 0;
   /// Forgets a model; `not_found` without one of that name.
@@ -51,10 +52,11 @@ class Recognition {
 };
 
 /// The detector with a library from disk, whose models may be loaded and unloaded at run time.
-/// Linked into bpa-server alone. A missing folder is a failure; a folder without models is none
-/// (searches fail until one is loaded). A broken model is left out and reported to `log`.
-Result<std::shared_ptr<Recognition>> open_library(const std::string& folder,
-                                                  const DetectorOptions& options, int num_threads,
+/// Linked into bpa-server alone. A missing folder is a failure, and one that cannot be read; a
+/// folder without models is none (searches fail until one is loaded). A broken model is left out
+/// and reported to `log`.
+Result<std::shared_ptr<Recognition>> open_library(const DetectionOptions& detection,
+                                                  const DetectorOptions& options,
                                                   const LogHook& log);
 
 }  // namespace bpa::server

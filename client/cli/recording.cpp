@@ -69,9 +69,8 @@ void wait(double seconds) {
 void record_there(Client client, const RecordOptions& options) {
   const bool limited = options.seconds > 0;
   const double seconds = limited ? options.seconds : kLongest;
-  const std::string path = fs::absolute(options.oni).lexically_normal();
-  or_throw(client.start_recording(path, seconds));
-  print_recording_to(path, limited ? "" : "; ends with Ctrl-C or after an hour");
+  const Recording begun = or_throw(client.start_recording(options.oni, seconds));
+  print_recording_to(begun.path, limited ? "" : "; ends with Ctrl-C or after an hour");
   wait(seconds);
   const Recording recording = or_throw(client.stop_recording());
   std::printf("%d frames, %.1f MB in %s\n", recording.frames,
@@ -228,7 +227,8 @@ void add_record(CLI::App& program, const Common& common) {
   auto options = std::make_shared<RecordOptions>();
   auto* oni =
       command->add_option("--oni", options->oni,
-                          "new OpenNI2 recording, on the server's machine (about 46 MB a second)");
+                          "new OpenNI2 recording, below the server's capture.record_folder (about "
+                          "46 MB a second)");
   command
       ->add_option("--to", options->folder,
                    "new folder for the results and the frames that clients publish: a BOP data set "

@@ -28,6 +28,43 @@ bool is_folder(const std::string& path) {
   return fs::is_directory(path, error);
 }
 
+Result<std::string> path_below(const std::string& folder, const std::string& path) {
+  const auto refused = [&](const char* what) {
+    return invalid_argument("the path ", what, "; it must be a path below ", folder);
+  };
+  std::error_code error;
+  const fs::path root = fs::canonical(folder, error);
+  if (error || !is_folder(root.string())) {
+    return unavailable(folder, ": there is no such folder", error ? ": " + error.message() : "");
+  }
+  constexpr std::size_t kLongest = 4096;
+  const auto control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  if (path.empty() || path.size() > kLongest || std::ranges::any_of(path, control)) {
+    return refused("is empty, has over 4096 characters or control characters");
+  }
+  fs::path rest = fs::path(path).lexically_normal();
+  if (rest.is_absolute()) {
+    // As it was given, or as it is once links are followed.
+    const fs::path given = fs::absolute(folder, error).lexically_normal();
+    const fs::path below =
+        rest.lexically_relative(given.has_filename() ? given : given.parent_path());
+    rest = below.empty() || *below.begin() == ".." ? rest.lexically_relative(root) : below;
+  }
+  fs::path whole = root;
+  for (const fs::path& part : rest) {
+    if (part == "..") return refused("leaves the folder");
+    if (part.empty() || part == ".") continue;
+    whole /= part;
+    const fs::file_status status = fs::symlink_status(whole, error);
+    if (status.type() == fs::file_type::symlink) return refused("goes through a symbolic link");
+    if (error && status.type() != fs::file_type::not_found) {
+      return refused("cannot be looked at");
+    }
+  }
+  if (whole == root) return refused("is that folder");
+  return whole.string();
+}
+
 Result<std::string> read_file(const std::string& path) {
   if (is_folder(path)) return invalid_argument(path, " is a folder; a file is needed");
   std::error_code error;

@@ -16,6 +16,12 @@ bool is_file(const std::string& path);
 /// The same of a folder.
 bool is_folder(const std::string& path);
 
+/// A path that another program sent, below `folder`: an absolute path must lie there, a relative
+/// one counts from there. The folder must exist; the last part of the path need not. Fails with
+/// invalid_argument where the path leaves the folder, has "..", a control character or a symbolic
+/// link in it, or is the folder itself; unavailable where the folder cannot be looked at.
+Result<std::string> path_below(const std::string& folder, const std::string& path);
+
 /// The whole file. Fails with not_found when it cannot be opened, corrupt when it cannot be read.
 Result<std::string> read_file(const std::string& path);
 

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <atomic>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "camera/capture.hpp"
 #include "camera/open_camera.hpp"
 #include "core/base/concat.hpp"
+#include "core/io/file_bytes.hpp"
 #include "idl/wire/messages.hpp"
 #include "idl/wire/time.hpp"
 #include "idl/wire/worker.hpp"
@@ -86,31 +88,52 @@ Record::Response response_of(const Result<RecordingSummary>& result) {
   return {result.ok(), to_message(result.status()), path, frames, bytes};
 }
 
-Status check_record(const Record::Request& request) {
-  if (request.path.empty() || request.path.front() != '/') {
-    return invalid_argument("path is \"", request.path,
-                            "\"; it must begin with / and is of the server's machine");
+/// The file that a request means.
+Result<std::string> file_of(const Record::Request& request, const std::string& folder) {
+  if (folder.empty()) {
+    return Status(StatusCode::unsupported,
+                  "recording is switched off: capture.record_folder names no folder");
+  }
+  if (!(request.seconds > 0 && request.seconds <= kLongestRecording)) {
+    return invalid_argument("seconds is " + std::to_string(request.seconds) +
+                            "; it must be more than 0 and at most 3600");
   }
   if (!request.path.ends_with(".oni")) {
     return invalid_argument("path is \"" + request.path + "\"; it must end with .oni");
   }
-  if (request.seconds > 0 && request.seconds <= kLongestRecording) return {};
-  return invalid_argument("seconds is " + std::to_string(request.seconds) +
-                          "; it must be more than 0 and at most 3600");
+  return io::path_below(folder, request.path);
 }
 
-void handle(camera::Capture& capture, const Record::Request& request, const Reply<Record>& reply) {
+/// What recordings may still take of their quota.
+Result<std::uint64_t> bytes_left(const CaptureOptions& options) {
+  namespace fs = std::filesystem;
+  const auto quota = static_cast<std::uint64_t>(options.record_max_mb * 1e6);
+  std::uint64_t used = 0;
+  std::error_code error;
+  fs::recursive_directory_iterator entry(options.record_folder, error), end;
+  for (; !error && entry != end; entry.increment(error)) {
+    std::error_code gone;
+    const auto bytes = entry->is_regular_file(gone) ? entry->file_size(gone) : 0;
+    if (!gone) used += bytes;
+  }
+  if (error) return unavailable(options.record_folder, ": ", error.message());
+  if (used < quota) return quota - used;
+  return unavailable("the files in ", options.record_folder, " have ", used / 1'000'000,
+                     " MB; recordings may take ", quota / 1'000'000, " (capture.record_max_mb)");
+}
+
+void handle(const CaptureOptions& options, camera::Capture& capture, const Record::Request& request,
+            const Reply<Record>& reply) {
   const auto answer = [reply](const Result<RecordingSummary>& result) {
     reply.send(response_of(result));
   };
-  if (request.stop) {
-    capture.stop_recording(answer);
-  } else if (const Status status = check_record(request); !status.ok()) {
-    answer(status);
-  } else {
-    const auto limit = milliseconds(std::llround(1000 * request.seconds));
-    capture.start_recording(request.path, limit, answer);
-  }
+  if (request.stop) return capture.stop_recording(answer);
+  const Result<std::string> path = file_of(request, options.record_folder);
+  if (!path.ok()) return answer(path.status());
+  const Result<std::uint64_t> bytes = bytes_left(options);
+  if (!bytes.ok()) return answer(bytes.status());
+  const auto time = milliseconds(std::llround(1000 * request.seconds));
+  capture.start_recording(*path, {time, *bytes}, answer);
 }
 
 std::byte level_of(LogLevel level) {
@@ -136,10 +159,10 @@ class CameraSource : public FrameSource {
             },
             camera::is_paced(options) ? std::move(idle) : nullptr, log),
         services_(participant, std::move(log)) {
-    services_.add<Record>("record",
-                          [this](const Record::Request& request, const Reply<Record>& reply) {
-                            handle(capture_, request, reply);
-                          });
+    services_.add<Record>(
+        "record", [this, options](const Record::Request& request, const Reply<Record>& reply) {
+          handle(options, capture_, request, reply);
+        });
   }
 
   std::vector<SourceReport> reports() const override {

@@ -49,6 +49,8 @@ struct Behaviour {
   std::atomic<int> opened{0};
   std::atomic<int> calls{0};  ///< Of next() that have returned.
   std::atomic<int> recordings_stopped{0};
+  std::atomic<std::uint64_t> recorded_bytes{0};
+  std::atomic<bool> disk_full{false};
 
   void hang(const std::atomic<bool>& while_set) {
     hanging = while_set.load();
@@ -72,8 +74,13 @@ class FakeDevice : public CameraDevice {
     return output;
   }
   Status start_recording(const std::string&) override { return {}; }
+  Result<std::uint64_t> recorded_bytes() const override {
+    if (b_->disk_full) return Status(StatusCode::unavailable, "the disk is full");
+    return b_->recorded_bytes.load();
+  }
   Result<RecordingSummary> stop_recording() override {
     ++b_->recordings_stopped;
+    if (b_->disk_full) return Status(StatusCode::unavailable, "the disk is full");
     return RecordingSummary{"r.oni", 7, 70};
   }
 
@@ -136,7 +143,10 @@ class CaptureThread : public ::testing::Test {
     return Status(StatusCode::internal, "no answer");
   }
   Result<RecordingSummary> begin_recording(const std::string& path, milliseconds limit) {
-    return answer_to([&](auto done) { capture->start_recording(path, limit, std::move(done)); });
+    return begin_recording(path, RecordingLimits{limit});
+  }
+  Result<RecordingSummary> begin_recording(const std::string& path, const RecordingLimits& limits) {
+    return answer_to([&](auto done) { capture->start_recording(path, limits, std::move(done)); });
   }
   Result<RecordingSummary> end_recording() {
     return answer_to([&](auto done) { capture->stop_recording(std::move(done)); });
@@ -285,6 +295,32 @@ TEST_F(CaptureThread, ARecordingThatEndsByItselfCanStillBeAskedAbout) {
   ASSERT_TRUE(eventually([&] { return behaviour->recordings_stopped == 1; }));
   EXPECT_TRUE(end_recording().ok());
   EXPECT_EQ(behaviour->recordings_stopped, 1);
+}
+
+TEST_F(CaptureThread, ARecordingEndsAtItsQuota) {
+  start();
+  ASSERT_TRUE(wait_for("images come from fake"));
+  ASSERT_TRUE(begin_recording("none/r.oni", RecordingLimits{kRetry, 1000}).ok());
+  behaviour->recorded_bytes = 999;
+  const int calls = behaviour->calls;
+  ASSERT_TRUE(eventually([&] { return behaviour->calls > calls + 3; }));
+  EXPECT_EQ(behaviour->recordings_stopped, 0);
+  behaviour->recorded_bytes = 1000;
+  ASSERT_TRUE(eventually([&] { return behaviour->recordings_stopped == 1; }));
+  EXPECT_TRUE(end_recording().ok());
+}
+
+TEST_F(CaptureThread, AFullDiskEndsARecordingInItsError) {
+  start();
+  ASSERT_TRUE(wait_for("images come from fake"));
+  ASSERT_TRUE(begin_recording("none/r.oni", kRetry).ok());
+  behaviour->disk_full = true;
+  ASSERT_TRUE(eventually([&] { return behaviour->recordings_stopped == 1; }));
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(end_recording().status().message, "the disk is full");
+  }
+  behaviour->disk_full = false;
+  EXPECT_TRUE(begin_recording("none/r.oni", kRetry).ok());
 }
 
 TEST_F(CaptureThread, RecordingsReplaceNoFile) {

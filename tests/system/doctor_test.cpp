@@ -30,7 +30,7 @@ using std::chrono::milliseconds;
 
 std::string scratch(const std::string& name) { return support::scratch_folder() + "/" + name; }
 
-struct Outcome {
+struct DoctorReport {
   int code = -1;
   std::string text;
   std::vector<std::pair<std::string, std::string>> findings;  ///< Subject and what.
@@ -50,11 +50,11 @@ struct Outcome {
 
 using Whats = std::vector<std::string>;
 
-Outcome doctor(std::vector<std::string> words) {
+DoctorReport doctor(std::vector<std::string> words) {
   const std::string json = scratch("doctor.json"), log = scratch("doctor.log");
   std::filesystem::remove(json);
   words.insert(words.begin(), {BPA_BINARY_DIR "/bin/bpa", "doctor", "--json", json});
-  Outcome outcome;
+  DoctorReport outcome;
   outcome.code = support::run(words, log);
   outcome.text = support::read_text(log);
   const auto written = nlohmann::json::parse(support::read_text(json), nullptr, false);
@@ -93,7 +93,7 @@ class Doctor : public test::LScene {
 TEST_F(Doctor, SaysNothingOfGoodFiles) {
   std::vector<std::string> words = files();
   words.insert(words.end(), {"--library", scratch("library")});
-  const Outcome outcome = doctor(words);
+  const DoctorReport outcome = doctor(words);
   EXPECT_EQ(outcome.code, 0) << outcome.text;
   EXPECT_EQ(outcome.text.rfind("nothing found", 0), 0u) << outcome.text;
   EXPECT_EQ(outcome.whats(), Whats{});
@@ -102,7 +102,7 @@ TEST_F(Doctor, SaysNothingOfGoodFiles) {
 TEST_F(Doctor, SaysWhatIsWrongWithFilesAndHowToMendIt) {
   Camera camera = test::kinect_camera();
   ASSERT_TRUE(io::write_camera(scratch("unit.json"), camera, 1000).ok());
-  Outcome outcome = doctor(files("unit.json"));
+  DoctorReport outcome = doctor(files("unit.json"));
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.whats(), Whats{"depth is in the wrong unit"});
   EXPECT_EQ(outcome.text.rfind("error: ", 0), 0u) << outcome.text;
@@ -158,7 +158,7 @@ std::vector<std::string> server_words(const std::string& timeout_s = "10") {
 }
 
 TEST_F(Doctor, SaysThatThereIsNoServer) {
-  const Outcome outcome = doctor(server_words("1"));
+  const DoctorReport outcome = doctor(server_words("1"));
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.whats(), Whats{"no server answers"});
 }
@@ -226,9 +226,9 @@ class DoctorOfAServer : public Doctor {
     ASSERT_TRUE(Client::connect(support::client_options()).ok()) << log();
   }
   static std::string log() { return support::read_text(scratch("server.log")); }
-  static Outcome ask() { return doctor(server_words()); }
+  static DoctorReport ask() { return doctor(server_words()); }
   /// While this camera has sent frames for a second.
-  static Outcome ask_with_camera(milliseconds color_late, milliseconds stamped_late) {
+  static DoctorReport ask_with_camera(milliseconds color_late, milliseconds stamped_late) {
     const Camera20Hz camera(wire::Reliability::best_effort, color_late, stamped_late);
     std::this_thread::sleep_for(milliseconds(1000));
     return ask();
@@ -240,27 +240,27 @@ class DoctorOfAServer : public Doctor {
 TEST_F(DoctorOfAServer, SaysNothingWhenFramesComeAndWhenTheyDoNotThatNobodySendsThem) {
   start();
   EXPECT_EQ(ask().whats(), Whats{"the server gets no frames"});
-  const Outcome outcome = ask_with_camera(milliseconds(0), milliseconds(0));
+  const DoctorReport outcome = ask_with_camera(milliseconds(0), milliseconds(0));
   EXPECT_EQ(outcome.whats(), Whats{}) << outcome.text << log();
 }
 
 TEST_F(DoctorOfAServer, SaysThatStampsAreApart) {
   start();
-  const Outcome outcome = ask_with_camera(milliseconds(22), milliseconds(0));
+  const DoctorReport outcome = ask_with_camera(milliseconds(22), milliseconds(0));
   EXPECT_EQ(outcome.whats(), Whats{"depth images come without a colour image of their time"})
       << outcome.text << log();
 }
 
 TEST_F(DoctorOfAServer, SaysThatQosDoesNotMatch) {
   start({"input.reliable=true"});
-  const Outcome outcome = ask_with_camera(milliseconds(0), milliseconds(0));
+  const DoctorReport outcome = ask_with_camera(milliseconds(0), milliseconds(0));
   EXPECT_EQ(outcome.whats(), Whats{"publishers and the server do not match in QoS"})
       << outcome.text << log();
 }
 
 TEST_F(DoctorOfAServer, SaysThatClocksAreApart) {
   start();
-  const Outcome outcome = ask_with_camera(milliseconds(0), milliseconds(60'000));
+  const DoctorReport outcome = ask_with_camera(milliseconds(0), milliseconds(60'000));
   EXPECT_EQ(outcome.whats(), Whats{"frames are stamped in the future"}) << outcome.text << log();
 }
 

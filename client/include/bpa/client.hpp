@@ -86,18 +86,20 @@ class Client {
 
   Result<ServerStatus> status();
 
-  /// Adds a model of the server's library directory by name, or a model file of the server's disk.
+  /// Adds a model of the server's library directory by name, or one below the server's
+  /// detection.model_folder by path. `name`: letters, digits, '_', '-' and '.'; empty: its own.
   Status load_model(const std::string& source, const std::string& name = "");
   /// Stops looking for a model.
   Status unload_model(const std::string& name);
 
-  /// Has the server record its own camera (not that of a ROS 2 driver). `path`: a new .oni file on
-  /// the server's machine, beginning with '/'. It ends after `seconds` (at most 3600) or with
-  /// stop_recording(). Fails with `unavailable` when the server has no camera, `busy` while it
-  /// records, `invalid_argument` on an unsuitable path.
+  /// Has the server record its own camera (not that of a ROS 2 driver). `path`: a new .oni file
+  /// below the server's capture.record_folder, absolute or from there. It ends after `seconds` (at
+  /// most 3600), at the server's quota or with stop_recording(). Fails with `unavailable` when the
+  /// server has no camera or the quota is used up, `unsupported` without such a folder, `busy`
+  /// while it records, `invalid_argument` on an unsuitable path.
   Result<Recording> start_recording(const std::string& path, double seconds = 60);
-  /// Completes the file; also tells about a recording that ended by itself. `not_found` without
-  /// one.
+  /// Completes the file; also tells about a recording that ended by itself, or why it failed.
+  /// `not_found` without one.
   Result<Recording> stop_recording();
 
   Client(Client&&) noexcept;

@@ -128,8 +128,10 @@ TEST_F(Playback, DamagedRecordings) {
     ASSERT_TRUE(server.wait_for("images come from")) << server.log();
     auto client = Client::connect(support::client_options());
     ASSERT_TRUE(client.ok()) << client.status().message;
-    EXPECT_EQ(client->start_recording("relative.oni").status().code, StatusCode::invalid_argument);
-    ASSERT_TRUE(client->start_recording(good, 30).ok());
+    for (const char* path : {"/tmp/elsewhere.oni", "../x.oni", "a/../../x.oni", "x.txt", ""}) {
+      EXPECT_EQ(client->start_recording(path).status().code, StatusCode::invalid_argument) << path;
+    }
+    ASSERT_TRUE(client->start_recording("good.oni", 30).ok());
     EXPECT_EQ(client->start_recording(folder / "b.oni", 30).status().code, StatusCode::busy);
     std::this_thread::sleep_for(std::chrono::milliseconds(400));
     const auto recording = client->stop_recording();

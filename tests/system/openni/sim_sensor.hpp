@@ -138,6 +138,7 @@ class SensorServer {
                                     "capture.timeout_ms=600",
                                     "capture.retry_ms=100"};
     if (library.empty()) all.push_back("capture.search=false");
+    if (!folder.empty()) all.push_back("capture.record_folder=" + folder);
     all.insert(all.end(), settings.begin(), settings.end());
     for (const std::string& setting : all) {
       command.push_back("--set");
