@@ -5,10 +5,21 @@
 #include <algorithm>
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <utility>
+#include <vector>
+
+#include "core/base/status.hpp"
 
 namespace bpa::server {
+
+/// A request that waits to be handled.
+struct Errand {
+  std::function<void()> handle;
+  /// Called instead, where others must go first.
+  std::function<void(const Status&)> refuse;
+};
 
 /// A queue in which clients take turns: first in, first out for each client, one item of each
 /// client in a round. A client that asks a lot delays itself, not the others. Not bounded and not
@@ -51,6 +62,38 @@ class FairQueue {
     return item;
   }
 
+  /// Makes room in a full queue: takes out the last item of the client that has most, if that is
+  /// not `client` and would still have as many as `client` then. Nothing else is fair to displace.
+  std::optional<T> displace_for(const Client& client) {
+    const auto most = std::ranges::max_element(lines_, {}, length_of);
+    if (most == lines_.end() || most->items.size() < count(client) + 2) return std::nullopt;
+    return pop_last(most->client);
+  }
+
+  /// The clients that have items, and how many.
+  std::vector<std::pair<Client, std::size_t>> counts() const {
+    std::vector<std::pair<Client, std::size_t>> counts;
+    for (const Line& line : lines_) counts.emplace_back(line.client, line.items.size());
+    return counts;
+  }
+
+  /// The item that this client added last; nothing without one.
+  std::optional<T> pop_last(const Client& client) {
+    const auto line = std::ranges::find(lines_, client, &Line::client);
+    if (line == lines_.end()) return std::nullopt;
+    std::optional<T> item(std::move(line->items.back()));
+    line->items.pop_back();
+    if (line->items.empty()) lines_.erase(line);
+    --size_;
+    return item;
+  }
+
+  /// Items of one client.
+  std::size_t count(const Client& client) const {
+    const auto line = std::ranges::find(lines_, client, &Line::client);
+    return line == lines_.end() ? 0 : line->items.size();
+  }
+
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
 
@@ -59,6 +102,7 @@ class FairQueue {
     Client client;
     std::deque<T> items;  ///< Never empty.
   };
+  static std::size_t length_of(const Line& line) { return line.items.size(); }
 
   std::deque<Line> lines_;  ///< In the order of their turns.
   std::size_t size_ = 0;

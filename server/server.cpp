@@ -172,7 +172,8 @@ class Running : public Server {
                                    publisher_->publish_vision_info();
                                  },
                                  log_};
-    services_.emplace(*participant_, log_);
+    services_.emplace(*participant_, log_, wire::qos::services(),
+                      [this] { statistics_.add(&Counts::requests_refused); });
     add_detect(context, *services_);
     add_library_services(context, *services_);
     services_->add_quick<msgs::GetStatus>(

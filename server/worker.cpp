@@ -3,6 +3,8 @@
 #include "server/worker.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <utility>
 
 #include "core/base/concat.hpp"
@@ -47,6 +49,7 @@ void Worker::stop() {
   const Status status = unavailable("the server is stopping");
   while (auto job = requests_.pop()) hand_over(*job, nullptr, status);
   for (DetectJob& job : std::exchange(awaiting_frame_, {})) hand_over(job, nullptr, status);
+  while (const auto errand = errands_.pop()) errand->refuse(status);
 }
 
 void Worker::push(IncomingFrame frame) {
@@ -84,14 +87,47 @@ double Worker::wait_ms(const DetectJob& job) const {
   return wait + (job.request.budget_ms > 0 ? std::min(own_ms, job.request.budget_ms) : own_ms);
 }
 
+/// Takes out the job that must make room for one of `client` in a full queue; nothing when no other
+/// client would still have as many.
+std::optional<DetectJob> Worker::displace_for(const wire::Guid& client) {
+  std::map<wire::Guid, std::size_t> held{{client, 0}};
+  for (const auto& [other, count] : requests_.counts()) held[other] += count;
+  for (const DetectJob& job : awaiting_frame_) ++held[job.client];
+  const auto most = std::ranges::max_element(held, {}, [](const auto& one) { return one.second; });
+  if (most->second < held[client] + 2) return std::nullopt;
+  if (auto job = requests_.pop_last(most->first)) return job;
+  const auto last = std::ranges::find(awaiting_frame_.rbegin(), awaiting_frame_.rend(), most->first,
+                                      &DetectJob::client);
+  std::optional<DetectJob> job(std::move(*last));
+  awaiting_frame_.erase(std::next(last).base());
+  return job;
+}
+
 Status Worker::push(DetectJob job) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  std::optional<DetectJob> displaced;
+  Status status;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status = admit(std::move(job), displaced);
+  }
+  if (displaced) {
+    refuse(*displaced, Status(StatusCode::busy,
+                              "other clients wait with fewer requests; ask for "
+                              "less at once, or try again later"));
+  }
+  return status;
+}
+
+Status Worker::admit(DetectJob job, std::optional<DetectJob>& displaced) {
   if (stopping_) return unavailable("the server is stopping");
   const std::size_t waiting = requests_.size() + awaiting_frame_.size();
   if (waiting >= options_.request_capacity) {
-    return Status(StatusCode::busy, concat(waiting,
-                                           " requests are waiting, as many as may "
-                                           "(queue.requests); try again later"));
+    displaced = displace_for(job.client);
+    if (!displaced) {
+      return Status(StatusCode::busy, concat(waiting,
+                                             " requests are waiting, as many as may "
+                                             "(queue.requests); try again later"));
+    }
   }
   if (job.decode) {
     job.position = requests_.ahead_of_next(job.client);
@@ -118,15 +154,20 @@ Status Worker::push(DetectJob job) {
   return {};
 }
 
-Status Worker::run_later(std::function<void()> task) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (tasks_.size() >= options_.request_capacity) {
-    return Status(StatusCode::busy,
-                  concat(tasks_.size(), " changes of the library are waiting, as many as may"));
-  }
-  tasks_.push_back(std::move(task));
+void Worker::run_later(const wire::Guid& client, Errand errand) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  const bool stopping = stopping_;
+  const bool full = errands_.size() >= options_.request_capacity;
+  std::optional<Errand> displaced =
+      full && !stopping ? errands_.displace_for(client) : std::nullopt;
+  const bool taken = !stopping && (!full || displaced);
+  if (taken) errands_.push(client, std::move(errand));
   wake_.notify_one();
-  return {};
+  lock.unlock();
+  const Status busy(StatusCode::busy,
+                    "as many changes of the library wait as may (queue.requests); try again later");
+  if (displaced) displaced->refuse(busy);
+  if (!taken) errand.refuse(stopping ? unavailable("the server is stopping") : busy);
 }
 
 std::size_t Worker::queue_length() const {
@@ -136,7 +177,7 @@ std::size_t Worker::queue_length() const {
 
 bool Worker::has_work() const {
   const bool frame_wanted = options_.continuous || !awaiting_frame_.empty();
-  return !tasks_.empty() || !requests_.empty() || (!frames_.empty() && frame_wanted);
+  return !errands_.empty() || !requests_.empty() || (!frames_.empty() && frame_wanted);
 }
 
 std::vector<DetectJob> Worker::take_expired() {
@@ -178,11 +219,9 @@ void Worker::run_one(std::unique_lock<std::mutex>& lock) {
   const bool take_frame =
       !frames_.empty() && frame_wanted && (requests_.empty() || !frame_was_last_);
   busy_since_ = clock_->now();
-  if (!tasks_.empty()) {
-    const std::function<void()> task = std::move(tasks_.front());
-    tasks_.pop_front();
+  if (const std::optional<Errand> errand = errands_.pop()) {
     lock.unlock();
-    (void)guard("a change of the library failed", task);
+    (void)guard("a change of the library failed", errand->handle);
   } else if (take_frame) {
     frame_was_last_ = true;
     std::vector<IncomingFrame> taken = take_frames(options);

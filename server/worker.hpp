@@ -85,21 +85,24 @@ class Worker {
   /// Never waits; the oldest frame goes when there are too many.
   void push(IncomingFrame frame);
   /// Accepts the job or refuses it: `busy` when the queue is full, `timeout` when, as searches go
-  /// at present, its answer would come after its deadline. `done` is not called then.
+  /// at present, its answer would come after its deadline. `done` is not called then. A full queue
+  /// has room for a client with fewer jobs than another: the other's last one is refused.
   Status push(DetectJob job);
 
   /// For what comes from now on.
   void set_options(const WorkerOptions& options);
 
-  /// Runs a task (such as loading a model) between two searches; `busy` when too many wait. What it
-  /// throws is logged.
-  Status run_later(std::function<void()> task);
+  /// Handles an errand (such as loading a model) between two searches, or refuses it as `busy`:
+  /// a full queue has room as for jobs. What it throws is logged.
+  void run_later(const wire::Guid& client, Errand errand);
 
   /// Frames and requests that wait.
   std::size_t queue_length() const;
 
  private:
   void run();
+  Status admit(DetectJob job, std::optional<DetectJob>& displaced);
+  std::optional<DetectJob> displace_for(const wire::Guid& client);
   bool has_work() const;
   double wait_ms(const DetectJob& job) const;
   std::vector<DetectJob> take_expired();
@@ -135,7 +138,7 @@ class Worker {
   std::deque<IncomingFrame> frames_;           ///< At most options_.frame_capacity.
   FairQueue<wire::Guid, DetectJob> requests_;  ///< With frames of their own.
   std::vector<DetectJob> awaiting_frame_;      ///< For the next frame.
-  std::deque<std::function<void()>> tasks_;
+  FairQueue<wire::Guid, Errand> errands_;
   bool frame_was_last_ = false;  ///< Whose turn it is when both wait.
   std::optional<WaitableClock::TimePoint> busy_since_;
   bool stopping_ = false;

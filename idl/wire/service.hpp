@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -68,7 +69,8 @@ Result<ServiceSpec> service_spec(const Participant& participant, std::string_vie
 
 /// Withdraws the service when the last copy of the pointer goes, even while requests are open.
 Result<std::shared_ptr<RawServer>> make_server(const Participant& participant,
-                                               const ServiceSpec& spec, RequestDecode decode);
+                                               const ServiceSpec& spec, std::size_t max_request,
+                                               RequestDecode decode);
 Result<std::unique_ptr<RawClient>> make_client(const Participant& participant,
                                                const ServiceSpec& spec);
 
@@ -106,8 +108,11 @@ class ServiceServer {
   /// before `create` returns.
   using Handler = std::function<void(Request&&, ReplyToken<Service>)>;
 
-  static Result<ServiceServer> create(const Participant& participant, std::string_view service,
-                                      Handler handler, const Qos& qos = qos::services()) {
+  /// Requests of more than `max_request` bytes count as malformed and are not decoded.
+  static Result<ServiceServer> create(
+      const Participant& participant, std::string_view service, Handler handler,
+      const Qos& qos = qos::services(),
+      std::size_t max_request = std::numeric_limits<std::size_t>::max()) {
     auto spec = detail::service_spec<Service>(participant, service, qos);
     if (!spec.ok()) return spec.status();
     auto decode = [handler = std::move(handler)](CdrReader& reader) -> Result<detail::Handle> {
@@ -118,7 +123,7 @@ class ServiceServer {
         handler(std::move(*request), ReplyToken<Service>(std::move(pending)));
       });
     };
-    auto impl = detail::make_server(participant, *spec, std::move(decode));
+    auto impl = detail::make_server(participant, *spec, max_request, std::move(decode));
     if (!impl.ok()) return impl.status();
     return ServiceServer(spec->name, std::move(impl).value());
   }

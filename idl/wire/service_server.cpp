@@ -47,8 +47,12 @@ using ReplyPtr = std::shared_ptr<const Reply>;
 
 class Server : public RawServer, public std::enable_shared_from_this<Server> {
  public:
-  Server(const Participant& participant, std::string name, RequestDecode decode)
-      : participant_(participant), name_(std::move(name)), decode_(std::move(decode)) {}
+  Server(const Participant& participant, std::string name, std::size_t max_request,
+         RequestDecode decode)
+      : participant_(participant),
+        name_(std::move(name)),
+        max_request_(max_request),
+        decode_(std::move(decode)) {}
 
   Status open(const ServiceSpec& spec) {
     auto writer = make_writer(participant_, spec.reply);
@@ -93,6 +97,10 @@ class Server : public RawServer, public std::enable_shared_from_this<Server> {
     std::size_t offset = 0;
     bool swap = false;
     Status status = read_request_frame(bytes, meta, &address, &offset, &swap);
+    if (bytes.size() > max_request_) {
+      status = invalid_argument("it has " + std::to_string(bytes.size()) + " bytes; at most " +
+                                std::to_string(max_request_) + " are read");
+    }
     if (status.ok()) {
       CdrReader reader(bytes.data() + offset, bytes.size() - offset, swap);
       auto handle = decode_(reader);
@@ -206,6 +214,7 @@ class Server : public RawServer, public std::enable_shared_from_this<Server> {
 
   const Participant participant_;
   const std::string name_;
+  const std::size_t max_request_;
   const RequestDecode decode_;
   std::unique_ptr<RawReader> requests_;
   std::mutex mutex_;
@@ -263,8 +272,10 @@ std::vector<std::uint8_t> frame_reply(const ReplyAddress& address, const Message
 }
 
 Result<std::shared_ptr<RawServer>> make_server(const Participant& participant,
-                                               const ServiceSpec& spec, RequestDecode decode) {
-  auto server = std::make_shared<Server>(participant, spec.request.dds_topic, std::move(decode));
+                                               const ServiceSpec& spec, std::size_t max_request,
+                                               RequestDecode decode) {
+  auto server =
+      std::make_shared<Server>(participant, spec.request.dds_topic, max_request, std::move(decode));
   if (Status s = server->open(spec); !s.ok()) return s;
   // What waits on the worker may hold the server for longer than its owner does.
   return std::shared_ptr<RawServer>(server.get(), [server](RawServer*) { server->stop(); });

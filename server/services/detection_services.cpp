@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -125,16 +126,17 @@ void add_change(const ServiceContext& context, const char* name, Change change,
                 ServiceSet& services) {
   services.add<Service>(name, [context, name, change](typename Service::Request&& request,
                                                       const Reply<Service>& reply) {
-    const Status queued =
-        context.worker.run_later([context, name, change, reply, request = std::move(request)] {
-          typename Service::Response response;
-          const Status status =
-              guarded("the library cannot be changed", [&] { return change(request, response); });
-          finish(context, name, status, response, reply);
-        });
-    if (queued.ok()) return;
-    typename Service::Response response;
-    finish(context, name, queued, response, reply);
+    const auto work = [context, name, change, reply, request = std::move(request)] {
+      typename Service::Response response;
+      const Status status =
+          guarded("the library cannot be changed", [&] { return change(request, response); });
+      finish(context, name, status, response, reply);
+    };
+    const auto refuse = [context, name, reply](const Status& status) {
+      typename Service::Response response;
+      finish(context, name, status, response, reply);
+    };
+    context.worker.run_later(reply.client(), {work, refuse});
   });
 }
 
@@ -142,7 +144,8 @@ void add_change(const ServiceContext& context, const char* name, Change change,
 
 void add_detect(const ServiceContext& context, ServiceSet& services) {
   services.add<msgs::Detect>(
-      "detect", [context](msgs::Detect_Request&& message, const Reply<msgs::Detect>& reply) {
+      "detect",
+      [context](msgs::Detect_Request&& message, const Reply<msgs::Detect>& reply) {
         const auto refuse = [&](const Status& status) {
           context.statistics.add(&Counts::requests_refused);
           log(context.log, LogLevel::info, "detect refused: " + status.message);
@@ -162,7 +165,8 @@ void add_detect(const ServiceContext& context, ServiceSet& services) {
         };
         const Status accepted = context.worker.push(std::move(job));
         if (!accepted.ok()) refuse(accepted);
-      });
+      },
+      std::numeric_limits<std::size_t>::max());
 }
 
 void add_library_services(const ServiceContext& context, ServiceSet& services) {

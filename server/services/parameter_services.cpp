@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "core/base/clock.hpp"
+#include "core/base/concat.hpp"
 #include "core/base/failure.hpp"
 #include "idl/wire/msg/rcl_interfaces.hpp"
 #include "idl/wire/time.hpp"
@@ -13,6 +14,9 @@ namespace bpa::server {
 namespace {
 
 namespace rcl = wire::rcl_interfaces;
+
+/// Names that a request may have. There are about 150 parameters.
+constexpr std::size_t kMaxNames = 1000;
 
 /// The settings, and who is told of their changes.
 struct Parameters {
@@ -30,6 +34,9 @@ struct Parameters {
 
   /// Sets all of them or none, and announces what changed.
   rcl::SetParametersResult set(const std::vector<rcl::Parameter>& parameters) {
+    if (parameters.size() > kMaxNames) {
+      return {false, concat(parameters.size(), " parameters; at most ", kMaxNames, " may be set")};
+    }
     ServerOptions before, after;
     const Status status = settings.change([&](ServerOptions& options) -> Status {
       before = options;
@@ -54,11 +61,21 @@ struct Parameters {
   }
 };
 
-/// The response with `answer(name)` for every name of the request.
+/// Whether a request may be answered; otherwise it is logged, since these responses cannot say it.
+bool is_short(const std::vector<std::string>& names, const LogHook& hook) {
+  if (names.size() <= kMaxNames) return true;
+  log(hook, LogLevel::warning,
+      concat("a request about ", names.size(), " parameters has an empty answer; at most ",
+             kMaxNames, " may be named"));
+  return false;
+}
+
+/// The response with `answer(name)` for every name of the request; none where there are too many.
 template <class Response, class Element, class Answer>
-Response each(const std::vector<std::string>& names, std::vector<Element> Response::*list,
-              Answer answer) {
+Response each(const std::vector<std::string>& names, const LogHook& hook,
+              std::vector<Element> Response::*list, Answer answer) {
   Response response;
+  if (!is_short(names, hook)) return response;
   for (const std::string& name : names) (response.*list).push_back(answer(name));
   return response;
 }
@@ -71,28 +88,33 @@ void add_parameter_services(const wire::Participant& participant, Settings& sett
       std::make_shared<Parameters>(Parameters{participant.node().full(), settings, hook, {}});
   self->events.open(participant, "/parameter_events", wire::qos::parameters());
   services.add_quick<rcl::ListParameters>(
-      "~/list_parameters", [](const rcl::ListParameters_Request& request) {
+      "~/list_parameters", [hook](const rcl::ListParameters_Request& request) {
+        if (!is_short(request.prefixes, hook)) return rcl::ListParameters_Response();
         return rcl::ListParameters_Response{list_parameters(request.prefixes, request.depth)};
       });
   services.add_quick<rcl::GetParameters>(
       "~/get_parameters", [self](const rcl::GetParameters_Request& request) {
         const Settings::Snapshot options = self->settings.get();
-        return each(request.names, &rcl::GetParameters_Response::values,
+        return each(request.names, self->log, &rcl::GetParameters_Response::values,
                     [&](const std::string& name) { return parameter(*options, name); });
       });
   services.add_quick<rcl::GetParameterTypes>(
-      "~/get_parameter_types", [](const rcl::GetParameterTypes_Request& request) {
-        return each(request.names, &rcl::GetParameterTypes_Response::types,
+      "~/get_parameter_types", [hook](const rcl::GetParameterTypes_Request& request) {
+        return each(request.names, hook, &rcl::GetParameterTypes_Response::types,
                     [](const std::string& name) { return describe_parameter(name).type; });
       });
   services.add_quick<rcl::DescribeParameters>(
-      "~/describe_parameters", [](const rcl::DescribeParameters_Request& request) {
-        return each(request.names, &rcl::DescribeParameters_Response::descriptors,
+      "~/describe_parameters", [hook](const rcl::DescribeParameters_Request& request) {
+        return each(request.names, hook, &rcl::DescribeParameters_Response::descriptors,
                     describe_parameter);
       });
   services.add_quick<rcl::SetParameters>(
       "~/set_parameters", [self](const rcl::SetParameters_Request& request) {
         rcl::SetParameters_Response response;
+        if (request.parameters.size() > kMaxNames) {
+          response.results.push_back(self->set(request.parameters));  // which says so
+          return response;
+        }
         for (const rcl::Parameter& parameter : request.parameters) {
           response.results.push_back(self->set({parameter}));
         }

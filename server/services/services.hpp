@@ -16,6 +16,7 @@
 #include "idl/wire/service.hpp"
 #include "server/convert/results.hpp"
 #include "server/recognition.hpp"
+#include "server/services/request_thread.hpp"
 #include "server/settings.hpp"
 #include "server/statistics.hpp"
 #include "server/worker.hpp"
@@ -36,18 +37,20 @@ class Reply {
     const Status sent = token_.reply(response);
     if (!sent.ok()) log(log_, LogLevel::info, service_ + ": reply not delivered: " + sent.message);
   }
-  /// Runs what answers the request. What it throws is logged and, where the response has room for
-  /// it, answered.
-  template <class Work>
-  void guard(const Work& work) const {
-    const Status status = guarded("the request failed", work);
-    if (status.ok()) return;
-    log(log_, LogLevel::error, service_ + ": " + status.message);
+  /// Says why the request is not answered, where the response has room for it; logs it anyway.
+  void refuse(const Status& status, LogLevel severity = LogLevel::info) const {
+    log(log_, severity, service_ + " refused: " + status.message);
     typename Service::Response response;
     if constexpr (requires { response.status.code; }) {
       response.status = to_message(status);
       send(response);
     }
+  }
+  /// Runs what answers the request. What it throws is a refusal.
+  template <class Work>
+  void guard(const Work& work) const {
+    const Status status = guarded("the request failed", work);
+    if (!status.ok()) refuse(status, LogLevel::error);
   }
   /// Who asks.
   wire::Guid client() const { return token_.client(); }
@@ -58,26 +61,42 @@ class Reply {
   LogHook log_;
 };
 
-/// Services that are offered from their add() until this is destroyed.
+/// Largest request of any service whose requests carry no frame, in bytes; larger ones are refused
+/// before they are decoded.
+inline constexpr std::size_t kMaxSmallRequest = 1 << 20;
+
+/// Services that are offered from their add() until this is destroyed. One thread of its own
+/// handles their requests.
 class ServiceSet {
  public:
-  /// `participant` outlives it.
+  /// `participant` outlives it. `on_refused` is called for each request that finds no place.
   ServiceSet(const wire::Participant& participant, LogHook log,
-             const wire::Qos& qos = wire::qos::services())
-      : participant_(participant), log_(std::move(log)), qos_(qos) {}
+             const wire::Qos& qos = wire::qos::services(), std::function<void()> on_refused = {})
+      : participant_(participant),
+        log_(std::move(log)),
+        qos_(qos),
+        on_refused_(std::move(on_refused)) {}
 
-  /// `handle(request, reply)` runs on a DDS thread and must not block; the reply may come later.
-  /// What it throws is answered. Throws a Failure, as add_quick() does.
+  /// `handle(request, reply)` runs on the thread of these services; the reply may come later. What
+  /// it throws is answered. Throws a Failure, as add_quick() does.
   template <class Service, class Handle>
-  void add(const std::string& name, Handle handle) {
+  void add(const std::string& name, Handle handle, std::size_t max_request = kMaxSmallRequest) {
+    using Request = typename Service::Request;
+    const auto shared = std::make_shared<const Handle>(std::move(handle));
     auto server = or_throw(wire::ServiceServer<Service>::create(
         participant_, name,
-        [name, handle = std::move(handle), log = log_](typename Service::Request&& request,
-                                                       wire::ReplyToken<Service> token) {
-          const Reply<Service> reply(std::move(token), name, log);
-          reply.guard([&] { handle(std::move(request), reply); });
+        [this, name, shared](Request&& request, wire::ReplyToken<Service> token) {
+          const Reply<Service> reply(std::move(token), name, log_);
+          const auto own = std::make_shared<Request>(std::move(request));
+          const auto work = [shared, own, reply] {
+            reply.guard([&] { (*shared)(std::move(*own), reply); });
+          };
+          thread_.push(reply.client(), {work, [this, reply](const Status& status) {
+                                          if (on_refused_) on_refused_();
+                                          reply.refuse(status);
+                                        }});
         },
-        qos_));
+        qos_, max_request));
     servers_.push_back(std::make_shared<wire::ServiceServer<Service>>(std::move(server)));
   }
   /// `answer(request)` gives the response at once.
@@ -93,7 +112,9 @@ class ServiceSet {
   const wire::Participant& participant_;
   const LogHook log_;
   const wire::Qos qos_;
-  std::vector<std::shared_ptr<void>> servers_;
+  const std::function<void()> on_refused_;
+  RequestThread thread_;
+  std::vector<std::shared_ptr<void>> servers_;  ///< Last: they give the thread work.
 };
 
 /// What the services need of the server; all of it outlives them.

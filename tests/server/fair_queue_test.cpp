@@ -23,6 +23,23 @@ TEST(FairQueue, ClientsTakeTurnsInTheOrderTheyCame) {
   EXPECT_TRUE(queue.empty());
 }
 
+TEST(FairQueue, WhoHasMostMakesRoom) {
+  FairQueue<char, int> queue;
+  EXPECT_FALSE(queue.displace_for('a'));
+  for (const int item : {1, 2, 3}) queue.push('a', item);
+  queue.push('b', 10);
+  EXPECT_FALSE(queue.displace_for('a'));
+  EXPECT_EQ(queue.displace_for('b'), 3);
+  EXPECT_FALSE(queue.displace_for('b'));  // they would only change places
+  EXPECT_EQ(queue.displace_for('c'), 2);
+  EXPECT_FALSE(queue.displace_for('c'));
+  EXPECT_EQ(queue.size(), 2U);
+  EXPECT_EQ(queue.pop_last('b'), 10);
+  EXPECT_FALSE(queue.pop_last('b'));
+  EXPECT_EQ(queue.pop(), 1);
+  EXPECT_TRUE(queue.empty());
+}
+
 /// Against the queue itself: emptied, the item comes out after just so many others.
 TEST(FairQueue, AheadOfNextIsWhatComesOutFirst) {
   std::mt19937 random(5);

@@ -189,6 +189,38 @@ TEST_F(WorkerTest, FullQueueOfRequestsIsBusyAndFramesDoNotCount) {
   EXPECT_EQ(statistics.counts().requests_served, 2U);
 }
 
+TEST_F(WorkerTest, AGreedyClientMakesRoomForOthers) {
+  WorkerOptions options;
+  options.request_capacity = 4;
+  auto worker = make(options);
+  worker->push(frame(0));
+  ASSERT_TRUE(gate.wait_for_started(1));
+  const auto ask = [&](std::uint8_t client, bool with_frame = true) {
+    return worker->push(job(with_frame, milliseconds(5000), client, client)).code;
+  };
+  EXPECT_EQ(ask(1), StatusCode::ok);
+  EXPECT_EQ(ask(1, false), StatusCode::ok);
+  EXPECT_EQ(ask(1), StatusCode::ok);
+  EXPECT_EQ(ask(1, false), StatusCode::ok);
+  EXPECT_EQ(ask(1), StatusCode::busy);
+  EXPECT_EQ(answers.size(), 0U);
+  EXPECT_EQ(ask(2), StatusCode::ok);  // of client 1 there are three left
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers.code(0), StatusCode::busy);
+  EXPECT_EQ(ask(2, false), StatusCode::ok);  // two each
+  EXPECT_EQ(ask(2), StatusCode::busy);
+  EXPECT_EQ(ask(1), StatusCode::busy);
+  EXPECT_EQ(ask(3), StatusCode::ok);
+  EXPECT_EQ(ask(4), StatusCode::ok);  // one each
+  EXPECT_EQ(ask(5), StatusCode::busy);
+  EXPECT_EQ(worker->queue_length(), 4U);
+  EXPECT_EQ(statistics.counts().requests_refused, 4U);  // the callers count the other four
+  gate.open();
+  worker->push(frame(1));
+  ASSERT_TRUE(answers.wait_for(8));
+  for (std::size_t i = 4; i < 8; ++i) EXPECT_EQ(answers.code(i), StatusCode::ok);
+}
+
 TEST_F(WorkerTest, FramesAndRequestsTakeTurns) {
   WorkerOptions options;
   options.frame_capacity = 10;
@@ -417,7 +449,7 @@ TEST_F(WorkerTest, WhatThrowsCostsItselfAlone) {
   EXPECT_EQ(answers.code(1), StatusCode::internal);
   EXPECT_EQ(answers.code(2), StatusCode::ok);
 
-  ASSERT_TRUE(worker->run_later([] { throw std::runtime_error("no such folder"); }).ok());
+  worker->run_later({}, {[] { throw std::runtime_error("no such folder"); }, {}});
   DetectJob rude = job(true);
   rude.done = [](auto&&...) { throw std::runtime_error("the client is gone"); };
   ASSERT_TRUE(worker->push(std::move(rude)).ok());

@@ -194,6 +194,31 @@ TEST_F(ParametersOfAServer, ListGetDescribeSetAndEvents) {
   EXPECT_FALSE(told("detection.top_k", 6));
 }
 
+TEST_F(ParametersOfAServer, RequestsAboutTooManyHaveAnEmptyAnswer) {
+  start();
+  const std::vector<std::string> many(100'000);
+  EXPECT_TRUE(call<rcl::GetParameters>("get_parameters", {many}).values.empty());
+  EXPECT_TRUE(call<rcl::GetParameterTypes>("get_parameter_types", {many}).types.empty());
+  EXPECT_TRUE(call<rcl::DescribeParameters>("describe_parameters", {many}).descriptors.empty());
+  EXPECT_TRUE(call<rcl::ListParameters>("list_parameters", {many, 0}).result.names.empty());
+  EXPECT_NE(server->log().find("100000 parameters has an empty answer"), std::string::npos);
+  const std::vector<rcl::Parameter> settings(2000, integer("detection.top_k", 5));
+  const auto results = call<rcl::SetParameters>("set_parameters", {settings}).results;
+  ASSERT_EQ(results.size(), 1U);
+  EXPECT_NE(results[0].reason.find("at most 1000"), std::string::npos) << results[0].reason;
+  EXPECT_FALSE(call<rcl::SetParametersAtomically>("set_parameters_atomically", {settings})
+                   .result.successful);
+  EXPECT_EQ(get("detection.top_k"), 20);
+
+  // What is too large is not even decoded; meanwhile and after it all others are served.
+  const auto flood = wire::ServiceClient<rcl::GetParameters>::create(
+      *participant, node + "/get_parameters", wire::qos::parameters());
+  const std::vector<std::string> more(2'000'000);
+  EXPECT_EQ(flood->call({more}, milliseconds(1500)).status().code, StatusCode::timeout);
+  EXPECT_EQ(get("detection.top_k"), 20);
+  EXPECT_NE(server->log().find("at most 1048576 are read"), std::string::npos) << server->log();
+}
+
 TEST_F(ParametersOfAServer, PausingStopsTheStreamAndNotTheRequests) {
   start();
   auto client = Client::connect(support::client_options());

@@ -153,6 +153,21 @@ TEST(Service, MalformedRequestsAreCountedAndTheNextIsServed) {
   EXPECT_EQ(server->statistics().received, 1U);
 }
 
+TEST(Service, LargeRequestsAreRefusedBeforeTheyAreDecoded) {
+  auto one = test_participant("server");
+  auto two = test_participant("client");
+  ASSERT_TRUE(one.ok() && two.ok());
+  auto server = UnloadServer::create(*one, "small", answer, qos::services(), 100);
+  auto client = UnloadClient::create(*two, "small");
+  ASSERT_TRUE(server.ok() && client.ok());
+  Unload::Request request;
+  request.name = std::string(100, 'x');
+  EXPECT_EQ(client->call(request, milliseconds(1000)).status().code, StatusCode::timeout);
+  EXPECT_EQ(server->statistics().malformed, 1U);
+  request.name = std::string(80, 'x');
+  EXPECT_TRUE(client->call(request, seconds(5)).ok());
+}
+
 TEST(Service, AHandlerThatThrowsCostsItsRequestAlone) {
   auto one = test_participant("server");
   auto two = test_participant("client");
