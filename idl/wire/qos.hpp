@@ -32,9 +32,10 @@ inline Qos frames() { return {Reliability::reliable, Durability::volatile_, 10, 
 inline Qos results() { return {Reliability::reliable, Durability::volatile_, 10, 0}; }
 /// What a late subscriber must still get: vision_info, static transforms.
 inline Qos latched() { return {Reliability::reliable, Durability::transient_local, 1, 0}; }
-/// Both topics of a service.
-inline Qos services() { return {Reliability::reliable, Durability::volatile_, 10, 0}; }
-/// Services and events of parameters.
+/// Both topics of a service. Of requests and replies that are on their way, those that do not fit
+/// are lost without a word: a reader that misses one holds back all that follow.
+inline Qos services() { return {Reliability::reliable, Durability::volatile_, 1000, 0}; }
+/// Events of parameters.
 inline Qos parameters() { return {Reliability::reliable, Durability::volatile_, 1000, 0}; }
 /// /tf.
 inline Qos transforms() { return {Reliability::reliable, Durability::volatile_, 100, 0}; }

@@ -5,6 +5,7 @@
 #include <map>
 #include <mutex>
 
+#include "core/base/concat.hpp"
 #include "idl/wire/service.hpp"
 
 namespace bpa::wire::detail {
@@ -18,6 +19,7 @@ class Client : public RawClient {
  public:
   Status open(const Participant& participant, const ServiceSpec& spec) {
     name_ = spec.request.dds_topic;
+    max_calls_ = static_cast<std::size_t>(spec.request.qos.depth);
     // The reader is a member: while it calls back, this exists.
     auto take = copy_bytes(
         [this](Bytes&& bytes, const SampleMeta& meta) { on_reply(std::move(bytes), meta); });
@@ -43,6 +45,10 @@ class Client : public RawClient {
     if (!wait(timeout)) return Status(StatusCode::unavailable, "nobody serves " + name_);
     {
       const std::lock_guard<std::mutex> lock(mutex_);
+      if (calls_.size() + static_cast<std::size_t>(writing_) >= max_calls_) {
+        return Status(StatusCode::busy, concat(max_calls_, " calls of ", name_,
+                                               " wait for their replies, as many as may"));
+      }
       ++writing_;
     }
     const SampleId related{replies_->guid()};
@@ -82,6 +88,7 @@ class Client : public RawClient {
   }
 
   std::string name_;
+  std::size_t max_calls_ = 0;  ///< More would push others out of DDS's history.
   std::mutex mutex_;
   std::condition_variable answered_;
   std::vector<Guid> our_ids_;            ///< Of the reply reader and the request writer.

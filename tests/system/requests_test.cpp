@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <future>
 #include <limits>
+#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -175,6 +178,35 @@ TEST(Requests, AFullQueueIsBusyAndNobodyWaitsForEver) {
   EXPECT_GE(served, 2);
   EXPECT_GE(busy, 3);  // one is searched and two wait
   EXPECT_EQ(last_place, 1);
+}
+
+TEST(Requests, AThousandAtOnceAreEachAnswered) {
+  support::StubServer server;
+  auto participant = support::test_participant("tester");
+  ASSERT_TRUE(participant.ok()) << participant.status().message;
+  auto service = wire::ServiceClient<msgs::Detect>::create(*participant, "detect");
+  ASSERT_TRUE(service.ok());
+  ASSERT_TRUE(service->wait_for_service(milliseconds(10000))) << server.log();
+  msgs::Detect_Request request;
+  request.has_frame = true;
+  request.frame = support::wall_frame();
+  constexpr int kCalls = 1000;
+  std::atomic<int> served{0}, refused{0}, lost{0};
+  std::vector<std::thread> callers;
+  for (int i = 0; i < kCalls; ++i) {
+    callers.emplace_back([&] {
+      const auto reply = service->call(request, milliseconds(20000));
+      ++(!reply.ok() ? lost : reply->success ? served : refused);
+    });
+  }
+  for (std::thread& caller : callers) caller.join();
+  EXPECT_EQ(lost, 0) << served << " served, " << refused << " refused";
+  EXPECT_GT(served, 0);
+  auto client = Client::connect(support::client_options());
+  ASSERT_TRUE(client.ok()) << client.status().message;
+  const auto status = client->status();
+  ASSERT_TRUE(status.ok()) << status.status().message;
+  EXPECT_EQ(status->requests_served + status->requests_refused, kCalls);
 }
 
 TEST(Requests, WithoutAFrameTheNextOneIsAwaitedInVainAndSaidSo) {
