@@ -7,10 +7,12 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <utility>
+#include <vector>
 
-#include "core/base/clock.hpp"
 #include "idl/wire/time.hpp"
+#include "server/log_filter.hpp"
 
 namespace bpa::server {
 namespace {
@@ -32,6 +34,9 @@ std::string logger_name(std::string node) {
 struct LogRelay::State {
   LogHook sink;
   std::atomic<LogLevel> least;
+  std::shared_ptr<WaitableClock> clock;
+  std::mutex filter_mutex;
+  LogFilter filter;
   std::mutex mutex;
   std::condition_variable_any changed;
   std::deque<Log> waiting;
@@ -39,6 +44,15 @@ struct LogRelay::State {
 
   void take(LogLevel level, std::string_view text) {
     if (level < least) return;
+    std::optional<std::string> line;
+    {
+      const std::lock_guard<std::mutex> lock(filter_mutex);
+      line = filter.pass(level, text, clock->now());
+    }
+    if (line) say(level, *line);
+  }
+
+  void say(LogLevel level, const std::string& text) {
     log(sink, level, text);
     Log message;
     message.stamp = wire::builtin_interfaces::from_ns(unix_time_ns());
@@ -54,7 +68,9 @@ struct LogRelay::State {
   }
 };
 
-LogRelay::LogRelay(LogHook sink, LogLevel least) : state_(std::make_shared<State>()) {
+LogRelay::LogRelay(LogHook sink, LogLevel least, std::shared_ptr<WaitableClock> clock)
+    : state_(std::make_shared<State>()) {
+  state_->clock = std::move(clock);
   state_->sink = std::move(sink);
   state_->least = least;
 }
@@ -64,6 +80,15 @@ LogHook LogRelay::hook() const {
 }
 
 void LogRelay::set_level(LogLevel least) { state_->least = least; }
+
+void LogRelay::report_left_out() {
+  std::vector<std::string> lines;
+  {
+    const std::lock_guard<std::mutex> lock(state_->filter_mutex);
+    lines = state_->filter.left_out(state_->clock->now());
+  }
+  for (const std::string& line : lines) state_->say(LogLevel::warning, line);
+}
 
 void LogRelay::connect(const wire::Participant& participant, const std::string& topic) {
   rosout_.open(participant, topic, wire::qos::rosout());

@@ -286,6 +286,7 @@ class Running : public Server {
   }
 
   void report_once(RateMeter& rates) {
+    relay_.report_left_out();
     rates.add(Clock::now(), statistics_.counts());
     if (diagnostics_.wanted()) {
       diagnostics_.send(diagnostics_message({participant_->node().full(), status(), rates.rates(),

@@ -101,8 +101,8 @@ struct EndpointSpec {
 
 template <class T>
 EndpointSpec endpoint_spec(std::string dds_topic, const Qos& qos, std::size_t shared_bytes) {
-  return {std::move(dds_topic), dds_type_name(T::kType),
-          std::string("typehash=") + T::kTypeHash + ";", qos, shared_bytes};
+  return {std::move(dds_topic), dds_type_name(T::kType), concat("typehash=", T::kTypeHash, ";"),
+          qos, shared_bytes};
 }
 
 /// The remote endpoints that one of ours is matched with.
