@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <filesystem>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -122,6 +123,33 @@ TEST(PubSub, OverUdp) { exchange_frames(0, 0); }
 TEST(PubSub, ThroughSharedMemory) { exchange_frames(kFrameBytes, kFrameBytes); }
 TEST(PubSub, SharingPublisherToPlainSubscriber) { exchange_frames(kFrameBytes, 0); }
 TEST(PubSub, PlainPublisherToSharingSubscriber) { exchange_frames(0, kFrameBytes); }
+
+/// Files of shared memory that other users may read or write.
+std::vector<std::string> open_files(const std::string& folder) {
+  std::vector<std::string> open;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    using std::filesystem::perms;
+    const bool others =
+        (entry.status().permissions() & (perms::group_all | perms::others_all)) != perms::none;
+    if (name.starts_with("fast_datasharing_") && others) open.push_back(name);
+  }
+  return open;
+}
+
+TEST(PubSub, SharedMemoryIsForItsUserAlone) {
+  const std::vector<std::string> before = open_files("/dev/shm");  // of others
+  auto one = test_participant("one");
+  ASSERT_TRUE(one.ok());
+  const auto publisher =
+      Publisher<bpa_msgs::RgbdFrame>::create(*one, "frames", {qos::frames(), 1U << 20U});
+  const auto subscriber = Subscriber<bpa_msgs::RgbdFrame>::create(
+      *one, "frames", {qos::frames(), 1U << 20U}, [](auto&&, const SampleMeta&) {});
+  ASSERT_TRUE(publisher.ok() && subscriber.ok());
+  for (const std::string& name : open_files("/dev/shm")) {
+    EXPECT_NE(std::find(before.begin(), before.end(), name), before.end()) << name;
+  }
+}
 
 TEST(PubSub, WithoutRoomForSharedMemoryFramesGoOverUdp) {
   struct statvfs shm = {};
