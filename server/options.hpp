@@ -36,6 +36,7 @@ struct NetworkOptions {
   std::string range = "environment";
   std::vector<std::string> peers;
   int shared_frame_mb = 24;
+  int datagram_bytes = 8900;
   std::string graph_layout = "automatic";
   std::string profiles;
 
@@ -51,6 +52,11 @@ struct NetworkOptions {
           {0, 256,
            "Largest frame in MB that comes through shared memory from clients on this machine; "
            "larger ones are refused. 0: always over UDP."});
+    visit("datagram_bytes", datagram_bytes,
+          {1400, 65500,
+           "Largest UDP datagram to send. Smaller ones lose less on a lossy network, where each "
+           "packet of a datagram counts: 1472 is one packet of Ethernet. Larger ones cost less "
+           "time."});
     visit("graph_layout", graph_layout,
           {0, 0,
            "Size of ids in the ROS 2 graph: humble (24 bytes), iron (16: Iron and later), "

@@ -3,6 +3,7 @@
 #include "server/server.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <fstream>
@@ -118,6 +119,7 @@ class Running : public Server {
     });
     parameters_.emplace(*participant_, log_, wire::qos::parameters());
     add_parameter_services(*participant_, settings_, log_, *parameters_);
+    ready_ = true;
     reporter_ = std::jthread([this](const std::stop_token& stop) { report(stop); });
   }
 
@@ -128,6 +130,7 @@ class Running : public Server {
     seat.discovery = discovery_of(options.network);
     seat.graph_layout = graph_layout_of(options.network.graph_layout);
     seat.profiles = options.network.profiles;
+    seat.datagram_bytes = options.network.datagram_bytes;
     seat.log = log_;
     for (const std::string& text : options.node.remaps) {
       seat.remaps.push_back(or_throw(wire::parse_remap(text)));
@@ -268,6 +271,13 @@ class Running : public Server {
     details.push_back({"ms from the last frame's stamp until it came",
                        std::to_string(statistics_.last_age_ns() / 1'000'000)});
     for (const auto& [cause, count] : drops()) details.push_back({cause, std::to_string(count)});
+    if (ready_) {
+      const wire::ReaderStatistics requests = services_->statistics();
+      const wire::ReaderStatistics others = parameters_->statistics();
+      details.push_back(
+          {"requests malformed", std::to_string(requests.malformed + others.malformed)});
+      details.push_back({"requests lost by DDS", std::to_string(requests.lost + others.lost)});
+    }
     for (const SourceReport& report : source_reports()) {
       details.insert(details.end(), report.values.begin(), report.values.end());
     }
@@ -332,7 +342,8 @@ class Running : public Server {
   Output<wire::diagnostic_msgs::DiagnosticArray> diagnostics_;
   std::unique_ptr<Worker> worker_;
   std::vector<std::unique_ptr<FrameSource>> sources_;
-  TopicSource* topics_ = nullptr;  ///< One of them.
+  TopicSource* topics_ = nullptr;   ///< One of them.
+  std::atomic<bool> ready_{false};  ///< All services are there.
   std::optional<ServiceSet> services_;
   std::optional<ServiceSet> parameters_;
   std::jthread reporter_;

@@ -55,7 +55,9 @@ struct ParticipantOptions {
   /// "bpa_reader" and those named like a DDS topic set what Qos leaves open.
   std::string profiles;
   int socket_buffer_bytes = 8'388'608;  ///< Asked of the kernel, which may give less (rmem_max).
-  LogHook log;                          ///< Called from DDS threads.
+  /// Largest UDP datagram that is sent. A lost packet of some 1500 bytes costs all of its datagram.
+  int datagram_bytes = 8900;
+  LogHook log;  ///< Called from DDS threads.
 };
 
 /// A process's seat in the DDS domain and its node in the ROS 2 graph; one a process. UDP over IPv4

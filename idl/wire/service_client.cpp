@@ -64,7 +64,12 @@ class Client : public RawClient {
     const bool answered = answered_.wait_until(lock, deadline, [&] { return !reply.empty(); });
     Bytes result = std::move(reply);
     calls_.erase(written.sequence);
-    if (!answered) return Status(StatusCode::timeout, name_ + " did not answer in time");
+    if (!answered) {
+      return Status(StatusCode::timeout,
+                    name_ +
+                        " did not answer in time: it is busy for longer, or the network lost "
+                        "the request or its reply");
+    }
     return result;
   }
 

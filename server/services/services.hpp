@@ -97,7 +97,9 @@ class ServiceSet {
                                         }});
         },
         qos_, max_request));
-    servers_.push_back(std::make_shared<wire::ServiceServer<Service>>(std::move(server)));
+    const auto kept = std::make_shared<wire::ServiceServer<Service>>(std::move(server));
+    statistics_.push_back([raw = kept.get()] { return raw->statistics(); });
+    servers_.push_back(kept);
   }
   /// `answer(request)` gives the response at once.
   template <class Service, class Answer>
@@ -108,11 +110,24 @@ class ServiceSet {
     });
   }
 
+  /// Of all services that were added.
+  wire::ReaderStatistics statistics() const {
+    wire::ReaderStatistics sum;
+    for (const auto& of_one : statistics_) {
+      const wire::ReaderStatistics one = of_one();
+      sum.received += one.received;
+      sum.malformed += one.malformed;
+      sum.lost += one.lost;
+    }
+    return sum;
+  }
+
  private:
   const wire::Participant& participant_;
   const LogHook log_;
   const wire::Qos qos_;
   const std::function<void()> on_refused_;
+  std::vector<std::function<wire::ReaderStatistics()>> statistics_;
   RequestThread thread_;
   std::vector<std::shared_ptr<void>> servers_;  ///< Last: they give the thread work.
 };

@@ -62,14 +62,26 @@ Status set_peers(const Discovery& discovery, dds::DomainParticipantQos& qos) {
   return {};
 }
 
+/// UDP that receives what peers send, up to 65 500 bytes, and sends less at once. The descriptor's
+/// own maxMessageSize is both: what exceeds it is cut off when it is received.
+class UdpTransport : public UDPv4TransportDescriptor {
+ public:
+  explicit UdpTransport(int datagram_bytes)
+      : datagram_bytes_(static_cast<std::uint32_t>(datagram_bytes)) {}
+  std::uint32_t max_message_size() const override { return datagram_bytes_; }
+
+ private:
+  std::uint32_t datagram_bytes_;
+};
+
 /// UDP, and a short lease.
-void use_our_transport(const Discovery& discovery, int socket_buffer_bytes,
+void use_our_transport(const Discovery& discovery, const ParticipantOptions& options,
                        dds::DomainParticipantQos& qos) {
   // Not the built-in ones: the shared-memory transport of Fast DDS 2.9.1 does not agree with that
   // of any other release, and the process that comes second aborts.
-  auto udp = std::make_shared<UDPv4TransportDescriptor>();
-  udp->sendBufferSize = static_cast<std::uint32_t>(socket_buffer_bytes);
-  udp->receiveBufferSize = static_cast<std::uint32_t>(socket_buffer_bytes);
+  auto udp = std::make_shared<UdpTransport>(options.datagram_bytes);
+  udp->sendBufferSize = static_cast<std::uint32_t>(options.socket_buffer_bytes);
+  udp->receiveBufferSize = static_cast<std::uint32_t>(options.socket_buffer_bytes);
   udp->maxInitialPeersRange = kPeersOnOneHost;
   if (discovery.range == DiscoveryRange::humble_localhost) {
     udp->interfaceWhiteList.push_back("127.0.0.1");
@@ -143,7 +155,7 @@ EndpointQos endpoint_qos(const EndpointSpec& spec, EndpointQos qos, const char* 
 }  // namespace
 
 Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
-                                                  int socket_buffer_bytes,
+                                                  const ParticipantOptions& options,
                                                   const dds::DomainParticipantQos* base) {
   dds::DomainParticipantQos qos = base != nullptr ? *base : dds::PARTICIPANT_QOS_DEFAULT;
   qos.name(kRosParticipantName);
@@ -155,7 +167,7 @@ Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
   qos.properties().properties().emplace_back("fastdds.type_propagation", "disabled");
 #endif
 
-  if (base == nullptr) use_our_transport(discovery, socket_buffer_bytes, qos);
+  if (base == nullptr) use_our_transport(discovery, options, qos);
   if (discovery.range == DiscoveryRange::localhost || discovery.range == DiscoveryRange::off) {
     leave_multicast(qos);
   }

@@ -22,7 +22,7 @@ namespace bpa::wire::detail {
 /// which ROS 2 knows one of its own. `base` is the user's participant profile, which then says the
 /// transports and time-outs; null: none. `invalid_argument` when a static peer's name is unknown.
 Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
-                                                  int socket_buffer_bytes,
+                                                  const ParticipantOptions& options,
                                                   const dds::DomainParticipantQos* base);
 
 /// The QoS of an endpoint. What spec.qos leaves open may come from the user's XML profiles: those

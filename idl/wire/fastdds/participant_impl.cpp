@@ -153,7 +153,7 @@ Status ParticipantImpl::start() {
   const bool has_profile =
       succeeded(factory->get_participant_qos_from_profile(kParticipantProfile, profile));
   Result<dds::DomainParticipantQos> qos =
-      participant_qos(discovery_, options_.socket_buffer_bytes, has_profile ? &profile : nullptr);
+      participant_qos(discovery_, options_, has_profile ? &profile : nullptr);
   if (!qos.ok()) return qos.status();
   if (has_profile && qos->transport().use_builtin_transports) {
     log(LogLevel::warning,

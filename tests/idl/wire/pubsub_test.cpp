@@ -151,6 +151,29 @@ TEST(PubSub, SharedMemoryIsForItsUserAlone) {
   }
 }
 
+TEST(PubSub, LargeDatagramsOfOthersAreReceivedWhole) {
+  ParticipantOptions large;
+  large.node.name = "large";
+  large.discovery = test_discovery();
+  large.datagram_bytes = 65500;
+  auto one = Participant::create(std::move(large));
+  auto two = test_participant("two");
+  ASSERT_TRUE(one.ok() && two.ok());
+  for (auto* const sender : {&*one, &*two}) {
+    Inbox<std::size_t> inbox;
+    auto publisher = Publisher<bpa_msgs::RgbdFrame>::create(*sender, "frames", {qos::frames(), 0});
+    const auto subscriber = Subscriber<bpa_msgs::RgbdFrame>::create(
+        sender == &*one ? *two : *one, "frames", {qos::frames(), 0},
+        [&](bpa_msgs::RgbdFrame&& frame, const SampleMeta&) { inbox.put(frame.color.size()); });
+    ASSERT_TRUE(publisher.ok() && subscriber.ok());
+    ASSERT_TRUE(publisher->wait_for_matched(seconds(5)));
+    ASSERT_TRUE(subscriber->wait_for_matched(seconds(5)));
+    ASSERT_TRUE(publisher->publish(frame_of(320, 240)).ok());
+    ASSERT_TRUE(inbox.wait_for(1));
+    EXPECT_EQ(inbox.values()[0], 3U * 320 * 240);
+  }
+}
+
 TEST(PubSub, WithoutRoomForSharedMemoryFramesGoOverUdp) {
   struct statvfs shm = {};
   ASSERT_EQ(statvfs("/dev/shm", &shm), 0);
