@@ -270,6 +270,9 @@ class Running : public Server {
     std::vector<KeyValue> details = fusion();
     details.push_back({"ms from the last frame's stamp until it came",
                        std::to_string(statistics_.last_age_ns() / 1'000'000)});
+    if (const std::optional<double> silence = statistics_.seconds_since_frame()) {
+      details.push_back({"s since the last frame came", fixed(*silence, 1)});
+    }
     for (const auto& [cause, count] : drops()) details.push_back({cause, std::to_string(count)});
     if (ready_) {
       const wire::ReaderStatistics requests = services_->statistics();

@@ -21,7 +21,7 @@ void print(const KnownModel& model) {
 }
 
 void print(const ServerStatus& s) {
-  std::printf("bpa-server %s, %s for %.0f s, %.0f MB\n", s.version.c_str(), s.state.c_str(),
+  std::printf("bpa-server %s, %s, up for %.0f s, %.0f MB\n", s.version.c_str(), s.state.c_str(),
               s.uptime_s, 1e-6 * static_cast<double>(s.memory_bytes));
   std::printf("library   %s, %d models\n", s.library.c_str(), s.model_count);
   const auto count = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };

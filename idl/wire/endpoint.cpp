@@ -19,6 +19,17 @@ std::size_t Matches::count() const {
   return peers_.size();
 }
 
+std::set<Guid> Matches::peers() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return peers_;
+}
+
+bool Matches::contains_any(const std::set<Guid>& peers) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::any_of(peers.begin(), peers.end(),
+                     [this](const Guid& peer) { return peers_.count(peer) != 0; });
+}
+
 bool Matches::wait_for(std::size_t count, std::chrono::milliseconds timeout) const {
   std::unique_lock<std::mutex> lock(mutex_);
   return changed_.wait_for(lock, timeout, [&] { return peers_.size() >= count; });

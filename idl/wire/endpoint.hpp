@@ -111,6 +111,9 @@ class Matches {
   /// Adds a peer if `change`, DDS's change of the number of matches, is positive, else removes it.
   void update(const Guid& peer, int change);
   std::size_t count() const;
+  std::set<Guid> peers() const;
+  /// Whether any of these is still matched.
+  bool contains_any(const std::set<Guid>& peers) const;
   /// Whether there are `count` of them or more, or were before the time was over.
   bool wait_for(std::size_t count, std::chrono::milliseconds timeout) const;
   /// An entity id of zero stands for any endpoint of that participant.

@@ -160,8 +160,9 @@ class ServiceClient {
   bool wait_for_service(std::chrono::milliseconds timeout) const { return impl_->wait(timeout); }
 
   /// Sends a request and waits for its reply. The time includes waiting for a server: `unavailable`
-  /// when none came, `timeout` when no answer did, `corrupt` when the answer cannot be read, `busy`
-  /// when as many calls wait as the history of `qos` holds requests.
+  /// when none came or it went (a server that was killed counts as there for 5 s), `timeout` when
+  /// no answer did, `corrupt` when the answer cannot be read, `busy` when as many calls wait as the
+  /// history of `qos` holds requests.
   Result<Response> call(const Request& request, std::chrono::milliseconds timeout) const {
     auto bytes = impl_->call(detail::message_ref(request), timeout);
     if (!bytes.ok()) return bytes.status();

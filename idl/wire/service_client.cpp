@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <set>
 
 #include "core/base/concat.hpp"
 #include "idl/wire/service.hpp"
@@ -14,6 +15,9 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 using Bytes = std::vector<std::uint8_t>;
+
+/// A call that waits looks so often whether its server is still there.
+constexpr milliseconds kLookAfterServer{100};
 
 class Client : public RawClient {
  public:
@@ -51,6 +55,7 @@ class Client : public RawClient {
       }
       ++writing_;
     }
+    const std::set<Guid> servers = requests_->matches().peers();
     const SampleId related{replies_->guid()};
     SampleId written;
     const Status status = requests_->write(request, &related, &written);
@@ -61,10 +66,16 @@ class Client : public RawClient {
     Bytes& reply = calls_[written.sequence];
     if (auto early = early_.extract(written.sequence)) reply = std::move(early.mapped());
     if (writing_ == 0) early_.clear();
-    const bool answered = answered_.wait_until(lock, deadline, [&] { return !reply.empty(); });
+    const auto gone = [&] { return !requests_->matches().contains_any(servers); };
+    while (reply.empty() && Clock::now() < deadline && !gone()) {
+      answered_.wait_until(lock, std::min(deadline, Clock::now() + kLookAfterServer));
+    }
     Bytes result = std::move(reply);
     calls_.erase(written.sequence);
-    if (!answered) {
+    if (result.empty() && gone()) {
+      return Status(StatusCode::unavailable, "the server of " + name_ + " has gone");
+    }
+    if (result.empty()) {
       return Status(StatusCode::timeout,
                     name_ +
                         " did not answer in time: it is busy for longer, or the network lost "

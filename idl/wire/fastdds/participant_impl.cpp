@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "idl/wire/fastdds/participant_impl.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -25,6 +26,7 @@ namespace {
 /// So many endpoints of peers are remembered, for topics that we open later.
 constexpr std::size_t kMaxPeers = 4096;
 constexpr const char* kParticipantProfile = "bpa";
+constexpr const char* kRequestPrefix = "rq/";
 
 // Numbers of this process's participants. A participant's ports follow from its number, and
 // discovery by unicast tries those of the first 32 alone. Fast DDS before 2.11 gives none a second
@@ -229,7 +231,47 @@ Status ParticipantImpl::open(const EndpointSpec& spec, bool is_reader,
     (is_reader ? readers_ : writers_).insert(guid);
   }
   publish_graph();
+  if (is_reader && spec.dds_topic.rfind(kRequestPrefix, 0) == 0) serve(spec.dds_topic);
   return {};
+}
+
+namespace {
+
+/// The GUID with entity 0.
+Guid participant_of(Guid guid) {
+  std::fill(guid.begin() + 12, guid.end(), std::uint8_t{0});
+  return guid;
+}
+
+}  // namespace
+
+/// From now on we offer the service of this request topic.
+void ParticipantImpl::serve(const std::string& dds_topic) {
+  std::vector<Peer> there;
+  {
+    const std::lock_guard<std::mutex> lock(discovery_mutex_);
+    our_services_.insert(dds_topic);
+    ours_ = participant_of(to_guid(participant_->guid()));
+    for (const auto& [guid, peer] : peers_) {
+      if (peer.topic == dds_topic) there.push_back(peer);
+    }
+  }
+  for (const Peer& peer : there) check_servers(peer);
+}
+
+void ParticipantImpl::check_servers(const Peer& peer) {
+  if (!peer.is_reader || peer.change == Peer::Change::went) return;
+  const Guid participant = participant_of(peer.guid);
+  {
+    const std::lock_guard<std::mutex> lock(discovery_mutex_);
+    if (participant == ours_ || our_services_.count(peer.topic) == 0) return;
+    if (rivals_.size() >= kMaxPeers) return;
+    if (!rivals_.insert(participant).second) return;  // said already
+  }
+  log(LogLevel::warning,
+      concat("another process offers ", peer.topic,
+             ", as this one does: clients get the answer of ",
+             "either; give one of them another namespace (--namespace) or domain"));
 }
 
 void ParticipantImpl::close(const EndpointSpec& spec, const Guid& guid,
@@ -286,6 +328,7 @@ void ParticipantImpl::release_topic(const std::string& dds_topic) {
   topics_.erase(entry);
   const std::lock_guard<std::mutex> lock(discovery_mutex_);
   our_types_.erase(dds_topic);
+  our_services_.erase(dds_topic);
 }
 
 GraphLayout ParticipantImpl::graph_layout() const {
@@ -329,6 +372,7 @@ void ParticipantImpl::on_peer(const Peer& peer) {
     }
   }
   check_type(peer, ours);
+  if (peer.change == Peer::Change::came) check_servers(peer);
   if (graph_layout() == before) return;
   // Not from here: the caller holds the locks of the discovery protocol.
   worker_.run_at(Worker::Clock::now(), [this] { publish_graph(); });

@@ -75,6 +75,9 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
   void release_topic(const std::string& dds_topic);
   /// Says so when a peer uses one of our topics with another type: DDS itself is silent.
   void check_type(const Peer& peer, const std::string& ours) const;
+  /// Says so when another process offers a service that we offer: clients get two answers.
+  void check_servers(const Peer& peer);
+  void serve(const std::string& dds_topic);
   void publish_graph();
 
   const ParticipantOptions options_;
@@ -98,6 +101,9 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
   GraphLayoutGuess guess_;
   std::map<std::string, std::string> our_types_;  // by DDS name of the topic
   std::map<Guid, Peer> peers_;                    // those of ROS 2, as many as kMaxPeers
+  std::set<std::string> our_services_;            // DDS names of their request topics
+  Guid ours_{};                                   // our participant, entity 0
+  std::set<Guid> rivals_;                         // participants that offer one of them, too
 
   Worker worker_;
 };

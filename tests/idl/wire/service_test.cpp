@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <future>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -104,6 +105,56 @@ TEST(Service, SaysWhyThereIsNoAnswer) {
   }
   ASSERT_TRUE(kept);
   EXPECT_EQ(kept->reply({}).code, StatusCode::unavailable);
+}
+
+TEST(Service, ACallThatWaitsLearnsThatItsServerHasGone) {
+  auto one = test_participant("server");
+  auto two = test_participant("client");
+  ASSERT_TRUE(one.ok() && two.ok());
+  std::promise<void> asked;
+  std::optional<UnloadServer> server;
+  auto made = UnloadServer::create(*one, "goes", [&asked](auto&&, auto) { asked.set_value(); });
+  ASSERT_TRUE(made.ok());
+  server.emplace(std::move(made).value());
+  auto client = UnloadClient::create(*two, "goes");
+  ASSERT_TRUE(client.ok());
+  auto call = std::async(std::launch::async, [&] { return client->call({}, seconds(60)); });
+  ASSERT_EQ(asked.get_future().wait_for(seconds(10)), std::future_status::ready);
+  made = Status(StatusCode::not_found, "gone");
+  server.reset();
+  const Status status = call.get().status();
+  EXPECT_EQ(status.code, StatusCode::unavailable) << status.message;
+}
+
+TEST(Service, TwoServersOfOneNameAreSaid) {
+  std::mutex mutex;
+  std::vector<std::string> said;
+  const auto hook = [&](LogLevel, std::string_view text) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (text.find("another process offers") != text.npos) said.emplace_back(text);
+  };
+  auto one = test_participant("one", hook);
+  auto two = test_participant("two", hook);
+  auto three = test_participant("three");
+  ASSERT_TRUE(one.ok() && two.ok() && three.ok());
+  auto client = UnloadClient::create(*three, "twice");  // a client is no rival
+  const auto first = UnloadServer::create(*one, "twice", answer);
+  ASSERT_TRUE(client.ok() && first.ok());
+  ASSERT_TRUE(client->wait_for_service(seconds(10)));
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    EXPECT_TRUE(said.empty()) << said.front();
+  }
+  const auto second = UnloadServer::create(*two, "twice", answer);
+  ASSERT_TRUE(second.ok());
+  for (int i = 0; i < 500; ++i) {
+    std::this_thread::sleep_for(milliseconds(10));
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (said.size() >= 2) break;
+  }
+  const std::lock_guard<std::mutex> lock(mutex);
+  ASSERT_EQ(said.size(), 2U);  // each of the two
+  EXPECT_NE(said[0].find("rq/twiceRequest"), std::string::npos) << said[0];
 }
 
 TEST(Service, ClientGoesOnWithTheNextServer) {
