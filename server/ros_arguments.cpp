@@ -124,6 +124,8 @@ Result<RosArguments> take_ros_arguments(const std::vector<std::string>& command_
       taken.own.push_back(word);
       continue;
     }
+    // ROS 2's loggers are configured by it; log.level and output.rosout decide here.
+    const bool ignored = word == "--log-config-file";
     std::vector<std::string>* list = word == "-r" || word == "--remap"   ? &taken.remaps
                                      : word == "-p" || word == "--param" ? &taken.parameters
                                      : word == "--params-file"           ? &taken.files
@@ -132,11 +134,12 @@ Result<RosArguments> take_ros_arguments(const std::vector<std::string>& command_
       return Status(StatusCode::unsupported, "--enclave: there is no security (SROS2) here");
     }
     if (is_log_switch(word)) continue;  // legal; log.level and output.rosout decide here
-    if (list == nullptr && word != "--log-level") {
+    if (list == nullptr && word != "--log-level" && !ignored) {
       return invalid_argument("'" + word + "' after --ros-args is not known; end it with --");
     }
     if (i + 1 == command_line.size()) return invalid_argument(word + " needs a value");
     const std::string& value = command_line[++i];
+    if (ignored) continue;
     if (list == nullptr) {
       const wire::Remap level = split(value);  // LOGGER:=LEVEL or LEVEL
       taken.log_level = level.to.empty() ? value : level.to;

@@ -3,6 +3,8 @@
 #include "server/convert/frames.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/base/concat.hpp"
@@ -16,6 +18,11 @@ namespace msgs = wire::bpa_msgs;
 namespace sensor = wire::sensor_msgs;
 
 Status check_distortion(const std::vector<double>& d) {
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    if (!std::isfinite(d[i])) {
+      return invalid_argument("distortion d[", i, "] is ", d[i], "; it must be finite");
+    }
+  }
   if (d.size() <= 8) return {};
   return Status(StatusCode::unsupported,
                 concat("distortion d has ", d.size(),
@@ -24,7 +31,28 @@ Status check_distortion(const std::vector<double>& d) {
 }
 
 /// Held by an int; validate() refuses what is larger.
-int clamped(std::uint32_t pixels) { return static_cast<int>(std::min(pixels, 1U << 20U)); }
+int clamped(std::uint32_t pixels) {
+  constexpr std::uint32_t kMost = std::numeric_limits<int>::max();
+  return static_cast<int>(std::min(pixels, kMost));
+}
+
+/// The images of a part of the sensor, or of fewer pixels, are not those that k is of.
+Status check_whole(const sensor::CameraInfo& info) {
+  if (info.binning_x > 1 || info.binning_y > 1) {
+    return Status(StatusCode::unsupported,
+                  concat("camera info has binning ", info.binning_x, "x", info.binning_y,
+                         "; it must be 0 or 1: publish k of the images as they are"));
+  }
+  const sensor::RegionOfInterest& roi = info.roi;
+  const bool whole = roi.width == info.width && roi.height == info.height;
+  const bool none = roi.width == 0 && roi.height == 0;
+  if (roi.x_offset == 0 && roi.y_offset == 0 && (whole || none)) return {};
+  return Status(StatusCode::unsupported,
+                concat("camera info has roi ", roi.width, "x", roi.height, " at (", roi.x_offset,
+                       ", ", roi.y_offset,
+                       "); it must be empty or the whole image: publish k of "
+                       "the images as they are"));
+}
 
 /// The camera of a row-major 3x3 matrix whose rows are `stride` long.
 Camera camera_of(std::uint32_t width, std::uint32_t height, const double* k, std::size_t stride) {
@@ -201,6 +229,7 @@ Result<std::vector<PosePrior>> priors_from_messages(const std::vector<msgs::Pose
 
 DecodedFrame frame_from_images(const CameraImages& images, bool rectified) {
   const sensor::CameraInfo& info = *images.info;
+  if (Status status = check_whole(info); !status.ok()) return {RejectionCause::camera, status};
   Frame frame;
   frame.stamp_ns = to_ns(header_of(*images.depth).stamp);
   frame.frame_id = header_of(*images.depth).frame_id;

@@ -3,6 +3,7 @@
 #include "server/convert/frames.hpp"
 
 #include <functional>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -138,6 +139,31 @@ TEST(FrameFromImages, RectifiedImagesUseTheProjectionMatrix) {
   ASSERT_TRUE(frame.ok());
   EXPECT_EQ(frame->camera.fx, 58);
   EXPECT_EQ(frame->camera.cy, 23);
+}
+
+TEST(FrameFromImages, RefusesPartsOfASensorAndWhatIsNoNumber) {
+  const auto refusal = [](const std::function<void(wire::sensor_msgs::CameraInfo&)>& spoil) {
+    CameraImages images = wall_images();
+    wire::sensor_msgs::CameraInfo info = *images.info;
+    spoil(info);
+    images.info = std::make_shared<const wire::sensor_msgs::CameraInfo>(info);
+    const auto frame = frame_from_images(images, false);
+    return frame.ok() ? std::string() : frame.status().message;
+  };
+  EXPECT_EQ(refusal([](auto& info) { info.binning_x = info.binning_y = 1; }), "");
+  EXPECT_EQ(refusal([](auto& info) { info.roi = {0, 0, info.height, info.width, false}; }), "");
+  EXPECT_EQ(refusal([](auto& info) { info.binning_x = 2; }).rfind("camera info has binning 2x0", 0),
+            0U);
+  EXPECT_EQ(refusal([](auto& info) {
+              info.roi = {3, 4, 20, 10, false};
+            }).rfind("camera info has roi 10x20 at (3, 4)", 0),
+            0U);
+  EXPECT_EQ(refusal([](auto& info) {
+              info.d = {0, std::numeric_limits<double>::quiet_NaN()};
+            }).rfind("distortion d[1] is nan", 0),
+            0U);
+  EXPECT_EQ(refusal([](auto& info) { info.width = 3'000'000; }).rfind("camera width is 3000000", 0),
+            0U);
 }
 
 TEST(FrameFromImages, RefusesUnregisteredDepth) {

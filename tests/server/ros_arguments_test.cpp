@@ -48,7 +48,9 @@ TEST(RosArguments, NamesRemapsParametersAndLevel) {
                              "input.color:=/camera/rgb",
                              "--log-level",
                              "WARN",
-                             "--disable-stdout-logs"});
+                             "--disable-stdout-logs",
+                             "--log-config-file",
+                             "log.config"});
   ASSERT_TRUE(options.ok()) << options.status().message;
   EXPECT_EQ(options->node.name, "eyes");
   EXPECT_EQ(options->node.ros_namespace, "/left");
