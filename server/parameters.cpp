@@ -22,6 +22,8 @@ template <class... Functions>
 struct Overloaded : Functions... {
   using Functions::operator()...;
 };
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;  // Clang 14 does not deduce it
 
 std::uint8_t type_of(const Option& setting) {
   constexpr std::uint8_t kTypes[] = {ParameterType::kNotSet,     ParameterType::kBool,

@@ -89,7 +89,8 @@ Status read_scene(const fs::path& folder, int scene_id, std::vector<BopFrame>& f
       Result<BopFrame> frame = read_frame_entry(folder, scene_id, key, camera);
       if (!frame.ok()) return frame.status();
       frame->has_truth = is_file(gt_path);
-      Status status = with_json(gt_path, [&]() { return read_truth(*gt, *info, key, *frame); });
+      Status status =
+          with_json(gt_path, [&, &of = key]() { return read_truth(*gt, *info, of, *frame); });
       if (!status.ok()) return status;
       frames.push_back(std::move(*frame));
     }
