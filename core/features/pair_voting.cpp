@@ -50,6 +50,15 @@ void for_each_key(const PointPairFeature& f, float inverse_step, const auto& vis
   }
 }
 
+// The first key beyond those that pairs of kMaxPairLength are looked up under. A pair measured in
+// another frame may be longer by rounding.
+std::uint32_t end_of_keys(float inverse_step) {
+  constexpr float kRounding = 1.001f;
+  constexpr auto kLongest = kRounding * static_cast<float>(kMaxPairLength);
+  const auto last_bin = static_cast<std::uint32_t>(kLongest * inverse_step);
+  return (last_bin + 1) * PointPairTable::kAngleKeys;
+}
+
 constexpr std::size_t kMaxPoints = 65535;  // of a table: an entry's index has 16 bits
 constexpr int kTurnBins = 32;
 constexpr int kStepsPerBin = kTurnSteps / kTurnBins;
@@ -162,9 +171,11 @@ std::uint8_t turn_of(const Eigen::Matrix3f& basis, const Eigen::Vector3f& line) 
 // Calls for_each_pair(visit(index of the first point, second point, feature)) twice: how many pairs
 // there are of each key, then where each goes.
 void PointPairTable::fill(const PointCloud& points, const auto& for_each_pair) {
+  const std::uint32_t end = end_of_keys(inverse_step_);
   for_each_pair([&](std::size_t, const Eigen::Vector3f&, const PointPairFeature& feature) {
     max_distance_ = std::max(max_distance_, feature.distance);
     for_each_key(feature, inverse_step_, [&](std::uint32_t key) {
+      if (key >= end) return;
       if (key + 2 > first_.size()) first_.resize(key + 2, 0);
       ++first_[key + 1];
     });
@@ -176,7 +187,9 @@ void PointPairTable::fill(const PointCloud& points, const auto& for_each_pair) {
   std::vector<std::uint32_t> next = first_;
   for_each_pair([&](std::size_t i, const Eigen::Vector3f& second, const PointPairFeature& feature) {
     const Entry entry{static_cast<std::uint16_t>(i), turn_of(bases[i], second - points.points[i])};
-    for_each_key(feature, inverse_step_, [&](std::uint32_t key) { entries_[next[key]++] = entry; });
+    for_each_key(feature, inverse_step_, [&](std::uint32_t key) {
+      if (key < end) entries_[next[key]++] = entry;
+    });
   });
 }
 

@@ -35,6 +35,10 @@ bool fixes_pose(const PointPairFeature& feature);
 std::optional<PointPairFeature> rim_feature(const Eigen::Vector3f& p, const Eigen::Vector3f& np,
                                             const RimPoint& rim);
 
+/// The longest pair that a search may look up, metres. Tables hold no longer ones, which would be
+/// most of the pairs of a large model. What is mostly hidden has no long pairs.
+constexpr double kMaxPairLength = 0.08;
+
 constexpr int kPairAngleBins = 12;  ///< 15 degrees each.
 constexpr int kTurnSteps = 256;     ///< Of a full turn about a normal.
 
@@ -42,8 +46,9 @@ constexpr int kTurnSteps = 256;     ///< Of a full turn about a normal.
 /// about a normal are measured from the first axis toward the second.
 Eigen::Matrix3f basis_of(const Eigen::Vector3f& normal);
 
-/// All ordered pairs of a model's points that fix a pose, hashed by their quantised feature. Pairs
-/// in the outer quarter of a bin are also found from the next bin: noise seldom hides them.
+/// The ordered pairs of a model's points that fix a pose, hashed by their quantised feature: those
+/// found under distances up to kMaxPairLength. Pairs in the outer quarter of a bin are also found
+/// from the next bin: noise seldom hides them.
 class PointPairTable {
  public:
   /// `distance_step` in metres.
@@ -65,6 +70,7 @@ class PointPairTable {
     if (key + 1 >= first_.size()) return {};
     return {entries_.data() + first_[key], first_[key + 1] - first_[key]};
   }
+  /// Of all pairs that fix a pose, also of those not held, metres.
   float max_distance() const { return max_distance_; }
 
   static constexpr std::uint32_t kAngleKeys = kPairAngleBins * kPairAngleBins * kPairAngleBins;

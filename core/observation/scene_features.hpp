@@ -58,7 +58,7 @@ struct SceneFeatureOptions {
   int round_keypoints = 100;
   int max_references = 500;
   double coarse_spacing_m = 0.010;
-  double pair_reach_m = 0.08;
+  double pair_reach_m = kMaxPairLength;
   bool use_color = true;
   bool use_texture = true;
   bool use_outline = true;
@@ -78,9 +78,9 @@ struct SceneFeatureOptions {
           {0, 100000, "Scene points whose pairs with others vote for poses in one round."});
     visit("coarse_spacing_m", coarse_spacing_m,
           {0.002, 0.1, "Spacing of the points that make pairs, metres."});
-    visit(
-        "pair_reach_m", pair_reach_m,
-        {0.01, 5, "Length of the longest pairs, metres. What is mostly hidden has no long ones."});
+    visit("pair_reach_m", pair_reach_m,
+          {0.01, kMaxPairLength,
+           "Length of the longest pairs, metres. What is mostly hidden has no long ones."});
     visit("use_color", use_color, {0, 1, "Use the frame's colours; false ignores them."});
     visit("use_texture", use_texture,
           {0, 1, "Compare the patterns of surfaces in colour; false ignores them."});

@@ -22,7 +22,7 @@ PointCloud random_oriented_points(int count, std::uint64_t seed) {
   RandomStream random(seed);
   PointCloud cloud;
   for (int i = 0; i < count; ++i) {
-    cloud.points.push_back(0.05f * random_vector(random));
+    cloud.points.push_back(0.025f * random_vector(random));
     cloud.normals.push_back(random_vector(random).normalized());
   }
   return cloud;
@@ -132,15 +132,25 @@ TEST(PointPairTable, HoldsEveryPairInItsCellAndInTheNextOneWhenItIsNear) {
   const PointPairTable table(cloud, kDistanceStep);
   RandomStream random(3);
   std::size_t total = 0;
-  for (int k = 0; k < 300; ++k) {
+  float longest = 0;
+  constexpr double kFarthest = kMaxPairLength + kDistanceStep;  // no cell goes on beyond it
+  for (int k = 0; k < 600; ++k) {
     const auto angle = [&] { return static_cast<float>(random.uniform(0, M_PI)); };
     PointPairFeature f{static_cast<float>(random.uniform(0, 0.3)), angle(), angle(), angle()};
     if (k % 2 == 0) f = feature_of(cloud, static_cast<std::size_t>(random.index(60)), 7);
+    const auto found = looked_up(table, f);
+    if (f.distance > kFarthest) {
+      EXPECT_TRUE(found.empty()) << f.distance;
+      continue;
+    }
+    if (f.distance > kMaxPairLength) continue;
     const auto expected = expected_points(cloud, f);
-    EXPECT_EQ(looked_up(table, f), expected);
+    EXPECT_EQ(found, expected);
     total += expected.size();
+    longest = std::max(longest, f.distance);
   }
   EXPECT_GT(total, 300u);
+  EXPECT_GT(longest, 0.95 * kMaxPairLength);
 }
 
 TEST(PointPairTable, FindsThePairsOfAMovedCopy) {
@@ -151,13 +161,15 @@ TEST(PointPairTable, FindsThePairsOfAMovedCopy) {
     for (std::size_t j = 0; j < cloud.size(); ++j) {
       const auto f = feature_of(other, i, j);
       if (i == j || f.distance < kDistanceStep || !fixes_pose(f)) continue;
+      if (f.distance > kMaxPairLength) continue;
       EXPECT_EQ(looked_up(table, f).count(static_cast<int>(i)) > 0, true) << i << ' ' << j;
     }
   }
 }
 
 TEST(PointPairTable, KnowsWhereTheSecondPointLies) {
-  const PointCloud cloud = random_oriented_points(2, 8);
+  PointCloud cloud = random_oriented_points(2, 8);
+  cloud.points[1] = cloud.points[0] + 0.05f * (cloud.points[1] - cloud.points[0]).normalized();
   const PointPairTable table(cloud, kDistanceStep);
   const auto f = feature_of(cloud, 0, 1);
   for (const auto& entry : table.lookup(f.distance, pair_angle_key(f))) {
