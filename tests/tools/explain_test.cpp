@@ -129,7 +129,7 @@ TEST_F(Explain, SeveralModelsHaveAFolderEach) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/03_sampled.png"));
   const std::string text = page("out/index.html");
   for (const char* name : {"l", "brick"}) {
-    expect_picture(std::string("out/") + name + "/13_final.png");
+    expect_picture(std::string("out/") + name + "/14_final.png");
     EXPECT_NE(text.find("href=\"" + std::string(name) + "/index.html\""), std::string::npos);
     EXPECT_FALSE(page(std::string("out/") + name + "/index.html").empty());
   }

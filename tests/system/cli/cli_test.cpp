@@ -352,8 +352,8 @@ TEST(Commands, FromADataSetToFigures) {
   EXPECT_EQ(results->at(0).im_id, 9);
   for (const char* picture :
        {"pictures/000003_000009.png", "pictures/contact_sheet.png", "pictures/worst_frames.png",
-        "why/01_edges.png", "why/02_super_pixels.png", "why/03_sampled.png", "why/13_final.png",
-        "why/14_best.png"}) {
+        "why/01_edges.png", "why/02_super_pixels.png", "why/03_sampled.png", "why/14_final.png",
+        "why/15_best.png"}) {
     EXPECT_TRUE(io::read_color_image(folder / picture).ok()) << picture;
   }
   EXPECT_NE(slurp(folder / "why/index.html").find("box in scene 3 image 9"), std::string::npos);
