@@ -10,6 +10,7 @@
 #include "core/io/file_bytes.hpp"
 #include "core/io/mesh_file.hpp"
 #include "core/io/model_file.hpp"
+#include "core/model/model_index.hpp"
 #include "core/model/occupancy_grid.hpp"
 #include "core/model/view_sphere.hpp"
 #include "core/modeling/model_source.hpp"
@@ -102,7 +103,14 @@ std::string symmetry_text(const ModelSource& model) {
 /// `bpa model symmetry`: the user's answer.
 void set_symmetry(const ModelArguments& a) {
   ModelSource model = or_throw(io::load_model(a.library, a.name));
-  if (a.symmetry == "none") model.symmetry = {};
+  if (a.symmetry == "none") {
+    model.symmetry = {};
+    if (model.prepared) {  // all else of an index does not depend on the symmetries
+      auto index = std::make_shared<ModelIndex>(*model.prepared);
+      index->near_symmetries = near_symmetries_of(model, *index);
+      model.prepared = std::move(index);
+    }
+  }
   if (a.symmetry != "find") {
     model.symmetry_origin = SymmetryOrigin::declared;
     model.occupancy = or_throw(io::load_occupancy(a.library, a.name));

@@ -172,25 +172,42 @@ std::uint8_t turn_of(const Eigen::Matrix3f& basis, const Eigen::Vector3f& line) 
 // there are of each key, then where each goes.
 void PointPairTable::fill(const PointCloud& points, const auto& for_each_pair) {
   const std::uint32_t end = end_of_keys(inverse_step_);
+  std::vector<std::uint32_t> first;
   for_each_pair([&](std::size_t, const Eigen::Vector3f&, const PointPairFeature& feature) {
     max_distance_ = std::max(max_distance_, feature.distance);
     for_each_key(feature, inverse_step_, [&](std::uint32_t key) {
       if (key >= end) return;
-      if (key + 2 > first_.size()) first_.resize(key + 2, 0);
-      ++first_[key + 1];
+      if (key + 2 > first.size()) first.resize(key + 2, 0);
+      ++first[key + 1];
     });
   });
-  for (std::size_t k = 1; k < first_.size(); ++k) first_[k] += first_[k - 1];
-  entries_.resize(first_.empty() ? 0 : first_.back());
+  for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
+  std::vector<Entry> entries(first.empty() ? 0 : first.back());
   std::vector<Eigen::Matrix3f> bases;
   for (const Eigen::Vector3f& normal : points.normals) bases.push_back(basis_of(normal));
-  std::vector<std::uint32_t> next = first_;
+  std::vector<std::uint32_t> next = first;
   for_each_pair([&](std::size_t i, const Eigen::Vector3f& second, const PointPairFeature& feature) {
-    const Entry entry{static_cast<std::uint16_t>(i), turn_of(bases[i], second - points.points[i])};
+    const Entry entry{static_cast<std::uint16_t>(i), turn_of(bases[i], second - points.points[i]),
+                      0};
     for_each_key(feature, inverse_step_, [&](std::uint32_t key) {
-      if (key < end) entries_[next[key]++] = entry;
+      if (key < end) entries[next[key]++] = entry;
     });
   });
+  first_ = std::move(first);
+  entries_ = std::move(entries);
+}
+
+bool PointPairTable::Arrays::fit(std::size_t num_points) const {
+  // Of any table: what is beyond is no number of metres, and bins would overflow.
+  constexpr float kMostPerMetre = 1e4f, kLongest = 1e3f;
+  const bool numbers = inverse_step > 1 / kLongest && inverse_step < kMostPerMetre &&
+                       max_distance >= 0 && max_distance < kLongest;
+  if (!numbers || entries.size() != (first.empty() ? 0 : first.back())) return false;
+  std::uint32_t falling = 0;
+  for (std::size_t k = 1; k < first.size(); ++k) falling |= first[k] < first[k - 1];
+  std::uint16_t largest = 0;
+  for (const Entry& entry : entries) largest = std::max(largest, entry.point);
+  return falling == 0 && (entries.empty() || largest < num_points);
 }
 
 PointPairTable::PointPairTable(const PointCloud& points, float distance_step)

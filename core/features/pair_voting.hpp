@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/shared_array.hpp"
 #include "core/cloud/point_cloud.hpp"
 #include "core/features/rim_points.hpp"
 
@@ -61,7 +62,28 @@ class PointPairTable {
   struct Entry {
     std::uint16_t point = 0;
     std::uint8_t turn = 0;  ///< In kTurnSteps.
+    std::uint8_t unused = 0;
+
+    bool operator==(const Entry&) const = default;
   };
+  /// What a table consists of; for files.
+  struct Arrays {
+    float inverse_step = 1;            ///< One over the distance step, 1 / metres.
+    float max_distance = 0;            ///< See max_distance().
+    SharedArray<std::uint32_t> first;  ///< first[key]..first[key + 1] is the cell; may be empty.
+    SharedArray<Entry> entries;
+
+    /// Whether no lookup can leave the arrays, and all points are below `num_points`.
+    bool fit(std::size_t num_points) const;
+  };
+  /// `arrays` must fit the points that the table is of.
+  explicit PointPairTable(Arrays arrays)
+      : inverse_step_(arrays.inverse_step),
+        max_distance_(arrays.max_distance),
+        first_(std::move(arrays.first)),
+        entries_(std::move(arrays.entries)) {}
+  Arrays arrays() const { return {inverse_step_, max_distance_, first_, entries_}; }
+
   /// The pairs found under a distance and three angles quantised by pair_angle_key().
   std::span<const Entry> lookup(float distance, std::uint16_t angle_key) const {
     if (!(distance <= max_distance_ + 1 / inverse_step_)) return {};
@@ -80,8 +102,8 @@ class PointPairTable {
 
   float inverse_step_ = 1;
   float max_distance_ = 0;
-  std::vector<std::uint32_t> first_;  // first_[key]..first_[key + 1] is the cell
-  std::vector<Entry> entries_;
+  SharedArray<std::uint32_t> first_;  // first_[key]..first_[key + 1] is the cell
+  SharedArray<Entry> entries_;
 };
 
 /// The three angles, quantised.

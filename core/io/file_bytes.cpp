@@ -3,13 +3,18 @@
 #include "core/io/file_bytes.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <system_error>
 
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -17,6 +22,39 @@
 
 namespace bpa::io {
 namespace fs = std::filesystem;
+namespace {
+
+// XXH64: its primes, and the mixing of eight bytes into a lane.
+constexpr std::uint64_t kPrime1 = 0x9E3779B185EBCA87, kPrime2 = 0xC2B2AE3D27D4EB4F,
+                        kPrime3 = 0x165667B19E3779F9, kPrime4 = 0x85EBCA77C2B2AE63,
+                        kPrime5 = 0x27D4EB2F165667C5;
+
+std::uint64_t mixed(std::uint64_t lane, std::uint64_t word) {
+  return std::rotl(lane + word * kPrime2, 31) * kPrime1;
+}
+
+// The next bytes of `left` as a little-endian number.
+template <class Number>
+std::uint64_t take(std::string_view& left) {
+  static_assert(std::endian::native == std::endian::little);
+  Number number = 0;
+  std::memcpy(&number, left.data(), sizeof number);
+  left.remove_prefix(sizeof number);
+  return number;
+}
+
+// A file descriptor that closes itself.
+struct Descriptor {
+  int number = -1;
+  explicit Descriptor(int n) : number(n) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (number >= 0) ::close(number);
+  }
+};
+
+}  // namespace
 
 bool is_file(const std::string& path) {
   std::error_code error;
@@ -86,6 +124,22 @@ Result<std::string> read_file(const std::string& path) {
   return bytes;
 }
 
+Result<MappedFile> map_file(const std::string& path) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  struct stat about {};
+  if (file.number < 0 || ::fstat(file.number, &about) != 0) {
+    return not_found(path, " cannot be opened");
+  }
+  if (!S_ISREG(about.st_mode)) return invalid_argument(path, " is no file that can be mapped");
+  const auto size = static_cast<std::size_t>(about.st_size);
+  if (size == 0) return MappedFile{};  // which mmap refuses
+  void* start = ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, file.number, 0);
+  if (start == MAP_FAILED) return corrupt(path, " cannot be read");
+  return MappedFile{
+      {static_cast<const char*>(start), size},
+      std::shared_ptr<const void>(start, [size](void* memory) { ::munmap(memory, size); })};
+}
+
 Status make_folder(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
@@ -114,6 +168,36 @@ Status write_file(const std::string& path, std::string_view bytes) {
 std::uint32_t crc32(std::string_view bytes, std::uint32_t seed) {
   const auto* data = reinterpret_cast<const Bytef*>(bytes.data());
   return static_cast<std::uint32_t>(::crc32_z(seed, data, bytes.size()));
+}
+
+std::uint64_t xxh64(std::string_view bytes) {
+  std::string_view left = bytes;
+  std::uint64_t hash = kPrime5;
+  constexpr std::size_t kStripe = 32;
+  if (left.size() >= kStripe) {
+    std::uint64_t a = kPrime1 + kPrime2, b = kPrime2, c = 0, d = 0 - kPrime1;
+    while (left.size() >= kStripe) {
+      a = mixed(a, take<std::uint64_t>(left));
+      b = mixed(b, take<std::uint64_t>(left));
+      c = mixed(c, take<std::uint64_t>(left));
+      d = mixed(d, take<std::uint64_t>(left));
+    }
+    hash = std::rotl(a, 1) + std::rotl(b, 7) + std::rotl(c, 12) + std::rotl(d, 18);
+    for (const std::uint64_t lane : {a, b, c, d}) {
+      hash = (hash ^ mixed(0, lane)) * kPrime1 + kPrime4;
+    }
+  }
+  hash += bytes.size();
+  while (left.size() >= 8) {
+    hash = std::rotl(hash ^ mixed(0, take<std::uint64_t>(left)), 27) * kPrime1 + kPrime4;
+  }
+  if (left.size() >= 4) {
+    hash = std::rotl(hash ^ take<std::uint32_t>(left) * kPrime1, 23) * kPrime2 + kPrime3;
+  }
+  while (!left.empty()) hash = std::rotl(hash ^ take<std::uint8_t>(left) * kPrime5, 11) * kPrime1;
+  hash = (hash ^ hash >> 33) * kPrime2;
+  hash = (hash ^ hash >> 29) * kPrime3;
+  return hash ^ hash >> 32;
 }
 
 std::string lower_extension(const std::string& path) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/status.hpp"
@@ -46,7 +47,6 @@ std::string ply_bytes(const PointCloud& cloud, double scale = 1.0);
 
 /// Reads PLY (ascii, binary of either byte order) from memory, without textures; `name` is for
 /// messages.
-Result<TriangleMesh> parse_ply(const std::string& bytes, const std::string& name,
-                               double scale = 1.0);
+Result<TriangleMesh> parse_ply(std::string_view bytes, const std::string& name, double scale = 1.0);
 
 }  // namespace bpa::io

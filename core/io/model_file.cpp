@@ -3,6 +3,9 @@
 #include "core/io/model_file.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cinttypes>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 
@@ -46,29 +49,35 @@ Result<ModelDescription> find_description(const std::string& library, const std:
   return description;
 }
 
+std::string checksum(std::string_view bytes) {
+  std::array<char, 17> digits{};
+  std::snprintf(digits.data(), digits.size(), "%016" PRIx64, xxh64(bytes));
+  return digits.data();
+}
+
 /// A file's bytes if they are those that the description was written with.
-Result<std::string> read_checked(const fs::path& folder, const char* name,
-                                 const ModelDescription& description) {
+Result<MappedFile> map_checked(const fs::path& folder, const char* name,
+                               const ModelDescription& description) {
   const std::string path = (folder / name).string();
   const auto record = description.files.find(name);
   if (record == description.files.end()) return corrupt(path, " is not in ", kModelFile);
-  Result<std::string> bytes = read_file(path);
-  if (!bytes.ok()) return bytes.status();
-  const auto& [size, checksum] = record->second;
-  if (bytes->size() < size) {
-    return corrupt(path, " is truncated: ", bytes->size(), " of ", size, " bytes");
+  Result<MappedFile> file = map_file(path);
+  if (!file.ok()) return file.status();
+  const auto& [size, xxh64] = record->second;
+  if (file->bytes.size() < size) {
+    return corrupt(path, " is truncated: ", file->bytes.size(), " of ", size, " bytes");
   }
-  if (bytes->size() != size || crc32(*bytes) != checksum) {
+  if (file->bytes.size() != size || checksum(file->bytes) != xxh64) {
     return corrupt(path, " was altered: it does not match the checksum in ", kModelFile);
   }
-  return bytes;
+  return file;
 }
 
 Status read_surface(const fs::path& folder, ModelDescription& description) {
-  const Result<std::string> bytes = read_checked(folder, kSurfaceFile, description);
-  if (!bytes.ok()) return bytes.status();
+  const Result<MappedFile> file = map_checked(folder, kSurfaceFile, description);
+  if (!file.ok()) return file.status();
   const std::string path = (folder / kSurfaceFile).string();
-  Result<TriangleMesh> mesh = parse_ply(*bytes, path);
+  Result<TriangleMesh> mesh = parse_ply(file->bytes, path);
   if (!mesh.ok()) return mesh.status();
   PointCloud& surface = description.model.surface;
   surface.points = std::move(mesh->vertices);
@@ -80,9 +89,9 @@ Status read_surface(const fs::path& folder, ModelDescription& description) {
 }
 
 Status read_index(const fs::path& folder, ModelDescription& description) {
-  const Result<std::string> bytes = read_checked(folder, kIndexFile, description);
-  if (!bytes.ok()) return bytes.status();
-  Result<IndexFile> file = parse_index(*bytes, description.points, (folder / kIndexFile).string());
+  const Result<MappedFile> mapped = map_checked(folder, kIndexFile, description);
+  if (!mapped.ok()) return mapped.status();
+  Result<IndexFile> file = parse_index(*mapped, description.points, (folder / kIndexFile).string());
   if (!file.ok()) return file.status();
   description.model.normal_variance = std::move(file->normal_variance);
   if (file->index == nullptr) return {};
@@ -92,9 +101,9 @@ Status read_index(const fs::path& folder, ModelDescription& description) {
 }
 
 /// The bytes of the occupancy grid; empty when the model has none.
-Result<std::string> read_occupancy(const fs::path& folder, const ModelDescription& description) {
-  if (description.files.count(kOccupancyFile) == 0) return std::string();
-  return read_checked(folder, kOccupancyFile, description);
+Result<MappedFile> map_occupancy(const fs::path& folder, const ModelDescription& description) {
+  if (description.files.count(kOccupancyFile) == 0) return MappedFile{};
+  return map_checked(folder, kOccupancyFile, description);
 }
 
 /// The files of a model, by name.
@@ -109,7 +118,7 @@ Result<std::map<std::string, std::string>> model_files(const ObjectModel& model)
   }
   ModelDescription description{model, model.surface.size(), {}};
   for (const auto& [name, bytes] : files) {
-    description.files[name] = {bytes.size(), crc32(bytes)};
+    description.files[name] = {bytes.size(), checksum(bytes)};
   }
   files[kModelFile] = description_text(description);
   return files;
@@ -177,7 +186,7 @@ Result<ModelSource> load_model(const std::string& library, const std::string& na
   const fs::path folder = fs::path(library) / name;
   if (Status s = read_surface(folder, *description); !s.ok()) return s;
   if (Status s = read_index(folder, *description); !s.ok()) return s;
-  if (auto bytes = read_occupancy(folder, *description); !bytes.ok()) return bytes.status();
+  if (auto file = map_occupancy(folder, *description); !file.ok()) return file.status();
   return std::move(description->model);
 }
 
@@ -186,10 +195,10 @@ Result<std::shared_ptr<const OccupancyGrid>> load_occupancy(const std::string& l
   const Result<ModelDescription> description = find_description(library, name);
   if (!description.ok()) return description.status();
   const fs::path folder = fs::path(library) / name;
-  const Result<std::string> bytes = read_occupancy(folder, *description);
-  if (!bytes.ok()) return bytes.status();
-  if (bytes->empty()) return std::shared_ptr<const OccupancyGrid>();
-  Result<OccupancyGrid> grid = parse_occupancy(*bytes, (folder / kOccupancyFile).string());
+  const Result<MappedFile> file = map_occupancy(folder, *description);
+  if (!file.ok()) return file.status();
+  if (file->bytes.empty()) return std::shared_ptr<const OccupancyGrid>();
+  Result<OccupancyGrid> grid = parse_occupancy(file->bytes, (folder / kOccupancyFile).string());
   if (!grid.ok()) return grid.status();
   return std::shared_ptr<const OccupancyGrid>(std::make_shared<OccupancyGrid>(std::move(*grid)));
 }

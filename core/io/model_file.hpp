@@ -13,12 +13,13 @@
 //
 //   LIBRARY/NAME/model.json     its description; size and checksum of the other files
 //   LIBRARY/NAME/surface.ply    its surface: binary; points, normals, colours; metres
-//   LIBRARY/NAME/index.bin      what was computed from it, so that loading is quick
+//   LIBRARY/NAME/index.bin      what was computed from it, so that loading is quick; mapped into
+//                               memory, so never write into it: replace the model
 //   LIBRARY/NAME/occupancy.bin  its occupancy grid, if it was made from views
 
 namespace bpa::io {
 
-constexpr int kModelFileVersion = 3;
+constexpr int kModelFileVersion = 4;
 
 /// Writes a model into a library, replacing one of the same name. The old model stays whole until
 /// the new one is. Computes the index unless model.prepared has it. The name has letters, digits,

@@ -3,8 +3,10 @@
 #include "core/io/private/model_parts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string_view>
 
 #include "core/io/model_file.hpp"
@@ -45,7 +47,7 @@ static constexpr const char* kFormat = "bpa model";
 
 static void fields(auto& visit, Is<FileRecord> auto& record) {
   visit("bytes", record.bytes);
-  visit("crc32", record.crc32);
+  visit("xxh64", record.xxh64);
 }
 
 static void fields(auto& visit, Is<ModelDescription> auto& description) {
@@ -90,9 +92,25 @@ namespace {
 
 constexpr std::string_view kIndexMagic = "bpaindex";
 
-// Calls visit(array) for every array of the file. `index` is const when writing.
-void for_each_array(auto& index, const auto& visit) {
+using Tables = std::array<PointPairTable::Arrays, 2>;    // `pairs` and `rim_pairs` of an index
+using StoredPoses = std::vector<std::array<double, 7>>;  // rotation x y z w, translation
+
+// Calls visit(number) for every number of the file. `index` is const when writing.
+void for_each_number(auto& index, auto& tables, const auto& visit) {
+  visit(index.distances.low);
+  visit(index.distances.cell);
+  visit(index.distances.size);
+  visit(index.point_area);
+  for (auto& table : tables) visit(table.inverse_step), visit(table.max_distance);
+}
+
+// Calls visit(array) for every array of the file but the normal variances.
+void for_each_array(auto& index, auto& tables, auto& near_symmetries, const auto& visit) {
+  visit(near_symmetries);
+  visit(index.flat_rests);
   visit(index.soft_normals);
+  visit(index.cielab);
+  visit(index.log_light);
   for (auto* cloud : {&index.features, &index.coarse}) {
     visit(cloud->points);
     visit(cloud->normals);
@@ -108,10 +126,48 @@ void for_each_array(auto& index, const auto& visit) {
     visit(view.outward);
   }
   visit(index.distances.nearest);
+  for (auto& table : tables) {
+    visit(table.first);
+    visit(table.entries);
+  }
 }
 
-bool below(const std::vector<std::uint32_t>& indices, std::size_t limit) {
-  return std::all_of(indices.begin(), indices.end(), [limit](auto i) { return i < limit; });
+StoredPoses stored(const std::vector<Pose>& poses) {
+  StoredPoses out;
+  for (const Pose& pose : poses) {
+    const Eigen::Vector4d& q = pose.rotation.coeffs();
+    const Eigen::Vector3d& t = pose.translation;
+    out.push_back({q[0], q[1], q[2], q[3], t[0], t[1], t[2]});
+  }
+  return out;
+}
+
+std::vector<Pose> restored(const StoredPoses& poses) {
+  std::vector<Pose> out;
+  for (const auto& [x, y, z, w, a, b, c] : poses) {
+    out.push_back({Eigen::Quaterniond(w, x, y, z), {a, b, c}});
+  }
+  return out;
+}
+
+// The loop ends late but is made of vector instructions.
+bool below(const SharedArray<std::uint32_t>& indices, std::size_t limit) {
+  std::uint32_t largest = 0;
+  for (const std::uint32_t i : indices) largest = std::max(largest, i);
+  return indices.empty() || largest < limit;
+}
+
+bool finite(const ModelIndex& index) {
+  return std::isfinite(index.point_area) && index.distances.low.allFinite() &&
+         std::ranges::all_of(index.near_symmetries,
+                             [](const Pose& pose) {
+                               return pose.rotation.coeffs().allFinite() &&
+                                      pose.translation.allFinite();
+                             }) &&
+         std::ranges::all_of(index.flat_rests, [](const FlatRest& rest) {
+           return rest.up.allFinite() && rest.axis.allFinite() && rest.centre.allFinite() &&
+                  std::isfinite(rest.length) && std::isfinite(rest.width);
+         });
 }
 
 bool fits_cloud(const PointCloud& cloud, bool curved) {
@@ -122,11 +178,14 @@ bool fits_cloud(const PointCloud& cloud, bool curved) {
 }
 
 // Whatever the bytes were, nothing that reads the index may leave an array.
-bool fits_together(const IndexFile& file, std::size_t points) {
+bool fits_together(const IndexFile& file, const Tables& tables, std::size_t points) {
   const ModelIndex& index = *file.index;
   bool fits = file.normal_variance.size() == points && index.soft_normals.size() == points &&
               fits_cloud(index.features, true) && fits_cloud(index.coarse, false) &&
               index.fpfh.size() == index.features.size() && below(index.distances.nearest, points);
+  fits = fits && (index.cielab.empty() || index.cielab.size() == points) &&
+         index.log_light.size() == index.cielab.size() && finite(index);
+  for (const PointPairTable::Arrays& table : tables) fits = fits && table.fit(index.coarse.size());
   for (const ModelView& view : index.views) {
     fits = fits && view.edge_distance.size() == view.visible.size() &&
            view.outward.size() == view.edges.size() && below(view.visible, points) &&
@@ -137,6 +196,22 @@ bool fits_together(const IndexFile& file, std::size_t points) {
   return fits && t.cell > 0 && t.size.minCoeff() >= 1 && t.size.maxCoeff() <= kMostCells &&
          static_cast<double>(t.nearest.size()) == t.size.cast<double>().prod();
 }
+
+// Reads arrays: those of an index that are shared stay in the file's memory.
+struct ArrayReader {
+  ByteReader& reader;
+  const std::shared_ptr<const void>& owner;
+
+  template <class T>
+  void operator()(std::vector<T>& out) const {
+    const std::span<const T> values = reader.aligned<T>();
+    out.assign(values.begin(), values.end());
+  }
+  template <class T>
+  void operator()(SharedArray<T>& out) const {
+    out = SharedArray<T>(reader.aligned<T>(), owner);
+  }
+};
 
 constexpr std::string_view kOccupancyMagic = "bpaoccup";
 constexpr std::uint32_t kOccupancyVersion = 1;
@@ -216,38 +291,45 @@ bool read_cells(ByteReader& reader, std::uint64_t count, OccupancyGrid& grid) {
 
 std::string index_bytes(const ModelIndex& index, const std::vector<float>& normal_variance) {
   std::string bytes(kIndexMagic);
+  const Tables tables{index.pairs.arrays(), index.rim_pairs.arrays()};
+  const StoredPoses near_symmetries = stored(index.near_symmetries);
+  const auto append_one = [&bytes](const auto& array) {
+    using Array = std::remove_cvref_t<decltype(array)>;
+    append_aligned(bytes, std::span<const typename Array::value_type>(array));
+  };
   append(bytes, static_cast<std::uint32_t>(kIndexVersion));
-  append(bytes, index.distances.low);
-  append(bytes, index.distances.cell);
-  append(bytes, index.distances.size);
-  append_array(bytes, normal_variance);
-  for_each_array(index, [&bytes](const auto& array) { append_array(bytes, array); });
+  append_one(normal_variance);
+  for_each_number(index, tables, [&bytes](const auto& number) { append(bytes, number); });
+  for_each_array(index, tables, near_symmetries, append_one);
   return bytes;
 }
 
-Result<IndexFile> parse_index(const std::string& bytes, std::size_t points,
+Result<IndexFile> parse_index(const MappedFile& mapped, std::size_t points,
                               const std::string& name) {
   const Status damaged = corrupt(name, " does not fit the surface beside it");
-  if (std::string_view(bytes).substr(0, kIndexMagic.size()) != kIndexMagic) return damaged;
-  ByteReader reader(std::string_view(bytes).substr(kIndexMagic.size()));
+  ByteReader reader(mapped.bytes);
+  if (!reader.skip(kIndexMagic)) return damaged;
   const auto version = reader.next<std::uint32_t>();
   IndexFile file;
-  file.index = std::make_shared<ModelIndex>();
-  ModelIndex& index = *file.index;
-  reader.value(index.distances.low);
-  reader.value(index.distances.cell);
-  reader.value(index.distances.size);
-  reader.array(file.normal_variance);
+  const ArrayReader read_array{reader, mapped.owner};
+  read_array(file.normal_variance);
   if (version != kIndexVersion) {  // what follows may be anything
-    file.index.reset();
     if (file.normal_variance.size() != points) return damaged;
     return file;
   }
+  file.index = std::make_shared<ModelIndex>();
+  ModelIndex& index = *file.index;
+  Tables tables;
+  StoredPoses near_symmetries;
   index.views.resize(kNumViews);
   const auto directions = view_directions();
   for (std::size_t k = 0; k < index.views.size(); ++k) index.views[k].direction = directions[k];
-  for_each_array(index, [&reader](auto& array) { reader.array(array); });
-  if (!reader.finished() || !fits_together(file, points)) return damaged;
+  for_each_number(index, tables, [&reader](auto& number) { reader.value(number); });
+  for_each_array(index, tables, near_symmetries, read_array);
+  index.near_symmetries = restored(near_symmetries);
+  if (!reader.finished() || !fits_together(file, tables, points)) return damaged;
+  index.pairs = PointPairTable(std::move(tables[0]));
+  index.rim_pairs = PointPairTable(std::move(tables[1]));
   return file;
 }
 
@@ -273,11 +355,9 @@ Result<std::string> occupancy_bytes(const OccupancyGrid& grid) {
   return bytes;
 }
 
-Result<OccupancyGrid> parse_occupancy(const std::string& bytes, const std::string& name) {
-  if (std::string_view(bytes).substr(0, kOccupancyMagic.size()) != kOccupancyMagic) {
-    return corrupt(name, " is not an occupancy grid");
-  }
-  ByteReader reader(std::string_view(bytes).substr(kOccupancyMagic.size()));
+Result<OccupancyGrid> parse_occupancy(std::string_view bytes, const std::string& name) {
+  ByteReader reader(bytes);
+  if (!reader.skip(kOccupancyMagic)) return corrupt(name, " is not an occupancy grid");
   if (const auto version = reader.next<std::uint32_t>(); version != kOccupancyVersion) {
     return corrupt(name, " has format version ", version, "; this program reads version ",
                    kOccupancyVersion, ": make the model again");

@@ -90,14 +90,14 @@ Status parse_property(const std::string& name, std::istringstream& words, Header
   return {};
 }
 
-Result<Header> parse_header(const std::string& bytes, const std::string& name) {
+Result<Header> parse_header(std::string_view bytes, const std::string& name) {
   Header header;
   std::string key;
   for (bool first = true; key != "end_header"; first = false) {
     const std::size_t end = bytes.find('\n', header.size);
     if (end == std::string::npos)
       return corrupt(name, " is truncated: its PLY header does not end");
-    std::istringstream words(bytes.substr(header.size, end - header.size));
+    std::istringstream words(std::string(bytes.substr(header.size, end - header.size)));
     header.size = end + 1;
     key.clear();
     words >> key;
@@ -289,10 +289,10 @@ Status check_indices(const TriangleMesh& mesh, const std::string& name) {
 
 }  // namespace
 
-Result<PlyFile> parse_ply_file(const std::string& bytes, const std::string& name, double scale) {
+Result<PlyFile> parse_ply_file(std::string_view bytes, const std::string& name, double scale) {
   const Result<Header> header = parse_header(bytes, name);
   if (!header.ok()) return header.status();
-  Values values(std::string_view(bytes).substr(header->size), header->format);
+  Values values(bytes.substr(header->size), header->format);
   PlyFile file{{}, header->textures};
   TriangleMesh& mesh = file.mesh;
   std::vector<Corners> corners;
@@ -321,7 +321,7 @@ Result<PlyFile> parse_ply_file(const std::string& bytes, const std::string& name
   return file;
 }
 
-Result<TriangleMesh> parse_ply(const std::string& bytes, const std::string& name, double scale) {
+Result<TriangleMesh> parse_ply(std::string_view bytes, const std::string& name, double scale) {
   Result<PlyFile> file = parse_ply_file(bytes, name, scale);
   if (!file.ok()) return file.status();
   clear_textures(file->mesh);

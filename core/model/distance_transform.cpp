@@ -57,10 +57,13 @@ struct Line {
   }
 };
 
-// Replaces the first nearest points found by better ones that neighbouring cells know of.
-void refine(std::span<const Eigen::Vector3f> points, const std::vector<std::uint32_t>& order,
-            const std::vector<std::uint32_t>& first, const std::vector<std::int32_t>& site,
-            DistanceTransform& t) {
+// For each cell of the grid, the nearest point of those that it and the neighbouring cells found.
+std::vector<std::uint32_t> refined(std::span<const Eigen::Vector3f> points,
+                                   const std::vector<std::uint32_t>& order,
+                                   const std::vector<std::uint32_t>& first,
+                                   const std::vector<std::int32_t>& site,
+                                   const DistanceTransform& t) {
+  std::vector<std::uint32_t> nearest(site.size(), 0);
   const int nx = t.size.x(), ny = t.size.y(), nz = t.size.z();
   for (int z = 0; z < nz; ++z) {
     for (int y = 0; y < ny; ++y) {
@@ -77,7 +80,7 @@ void refine(std::span<const Eigen::Vector3f> points, const std::vector<std::uint
             const float squared = (points[order[k]] - centre).squaredNorm();
             if (squared >= best) continue;
             best = squared;
-            t.nearest[at(x, y, z)] = order[k];
+            nearest[at(x, y, z)] = order[k];
           }
         };
         consider(at(x, y, z));
@@ -90,6 +93,7 @@ void refine(std::span<const Eigen::Vector3f> points, const std::vector<std::uint
       }
     }
   }
+  return nearest;
 }
 
 }  // namespace
@@ -149,8 +153,7 @@ DistanceTransform distance_transform(std::span<const Eigen::Vector3f> points, fl
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return t.cell_of(points[i]); });
-  t.nearest.assign(count, 0);
-  refine(points, order, first, nearest_marked_cells(marked, t.size), t);
+  t.nearest = refined(points, order, first, nearest_marked_cells(marked, t.size), t);
   return t;
 }
 

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "core/base/shared_array.hpp"
+
 namespace bpa {
 
 /// The nearest model point to each cell of a grid round the model (paper section III): one lookup
@@ -15,7 +17,7 @@ struct DistanceTransform {
   Eigen::Vector3f low = Eigen::Vector3f::Zero();  ///< Corner of cell (0, 0, 0), metres.
   float cell = 1;                                 ///< Side of a cell, metres.
   Eigen::Vector3i size = Eigen::Vector3i::Zero();
-  std::vector<std::uint32_t> nearest;  ///< Point nearest to each cell's centre; x fastest.
+  SharedArray<std::uint32_t> nearest;  ///< Point nearest to each cell's centre; x fastest.
 
   /// The cell of a point, -1 outside the grid.
   std::int64_t cell_of(const Eigen::Vector3f& point) const {

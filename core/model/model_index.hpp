@@ -56,14 +56,17 @@ struct ModelIndex {
 
 /// Counts up whenever build_index() gives another index for the same surface, so that stored ones
 /// are told from current ones.
-constexpr int kIndexVersion = 1;
+constexpr int kIndexVersion = 2;
 
 /// The index of a model's surface, which must have normals.
 std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threads);
 
-/// The parts of an index that are quicker to compute than to read from a file: check points, the
-/// tree over `fpfh`, the pairs of `coarse`, the noise table, CIELAB colours, flat rests, near
-/// symmetries, the area of a point.
+/// The parts of an index that are not in a file because they are quick to compute: check points,
+/// the tree over `fpfh`, the noise table.
 void derive_index(const ModelSource& source, ModelIndex& index);
+
+/// near_symmetries() of a model's surface, by `distances` and `check` of its index. An index is of
+/// one symmetry group: these change with it.
+std::vector<Pose> near_symmetries_of(const ModelSource& source, const ModelIndex& index);
 
 }  // namespace bpa

@@ -130,6 +130,31 @@ std::vector<float> geometric_normal_variance(const PointCloud& surface, int num_
   return variance;
 }
 
+// The rims beside `points`: where the tangent plane leaves the surface.
+std::vector<RimPoint> model_rims(const PointCloud& surface, const DistanceTransform& distances,
+                                 const PointCloud& points) {
+  // Off the surface by more than this, it has ended; chosen by hand.
+  constexpr float kOff = 0.005f, kSpacings = 1.2f;  // metres; mean spacings of the points
+  const float off = std::max(kOff, kSpacings * mean_spacing(surface, -2));
+  return find_rims(points, [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
+    const int nearest = distances.nearest_to(at);
+    const bool goes_on = nearest >= 0 && (surface.points[nearest] - at).norm() < off &&
+                         surface.normals[nearest].dot(normal) > kSameFace;
+    return goes_on ? Beside::surface : Beside::end;
+  });
+}
+
+// The tables of `index.coarse`.
+void make_pair_tables(const ModelSource& source, ModelIndex& index) {
+  constexpr float kDistanceStep = 0.006f;  // metres; chosen by hand
+  index.pairs = PointPairTable(
+      index.coarse, std::max(kDistanceStep, 0.05f * static_cast<float>(source.diameter)));
+  // An incomplete model ends where its scans do.
+  if (!source.complete) return;
+  const auto rims = model_rims(source.surface, index.distances, index.coarse);
+  index.rim_pairs = PointPairTable(index.coarse, rims, kDistanceStep);
+}
+
 std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threads) {
   constexpr float kDistanceCell = 0.004f, kDistanceMargin = 0.03f;  // metres
   auto index = std::make_shared<ModelIndex>();
@@ -145,55 +170,40 @@ std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threa
   index->views = render_views(source.surface, spacing, num_threads);
   if (!source.complete) {
     for (ModelView& view : index->views) {
-      view.edges.clear(), view.outward.clear();
-      std::fill(view.edge_distance.begin(), view.edge_distance.end(), kMaxEdgeDistance);
+      view = {view.direction,
+              view.visible,
+              std::vector<float>(view.visible.size(), kMaxEdgeDistance),
+              {},
+              {}};
     }
   }
   index->distances = distance_transform(source.surface.points, kDistanceCell, kDistanceMargin);
   derive_index(source, *index);
+  make_pair_tables(source, *index);
+  const CielabConverter convert;
+  for (const auto& [r, g, b] : source.surface.colors) {
+    index->cielab.push_back(convert(Eigen::Vector3f(r, g, b)));
+    index->log_light.push_back(log_light(index->cielab.back()));
+  }
+  index->flat_rests = flat_rests(source.surface.points);
+  index->near_symmetries = near_symmetries_of(source, *index);
+  index->point_area = mean_point_area(source.surface);
   return index;
-}
-
-// The rims beside `points`: where the tangent plane leaves the surface.
-std::vector<RimPoint> model_rims(const PointCloud& surface, const DistanceTransform& distances,
-                                 const PointCloud& points) {
-  // Off the surface by more than this, it has ended; chosen by hand.
-  constexpr float kOff = 0.005f, kSpacings = 1.2f;  // metres; mean spacings of the points
-  const float off = std::max(kOff, kSpacings * mean_spacing(surface, -2));
-  return find_rims(points, [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
-    const int nearest = distances.nearest_to(at);
-    const bool goes_on = nearest >= 0 && (surface.points[nearest] - at).norm() < off &&
-                         surface.normals[nearest].dot(normal) > kSameFace;
-    return goes_on ? Beside::surface : Beside::end;
-  });
 }
 
 void derive_index(const ModelSource& source, ModelIndex& index) {
   index.check = check_points(source.surface);
   index.noise = NoiseTable(source.noise);
-  const CielabConverter convert;
-  index.cielab.clear(), index.log_light.clear();
-  for (const auto& [r, g, b] : source.surface.colors) {
-    index.cielab.push_back(convert(Eigen::Vector3f(r, g, b)));
-    index.log_light.push_back(log_light(index.cielab.back()));
-  }
-  index.flat_rests = flat_rests(source.surface.points);
+  index.feature_tree = FeatureTree(index.fpfh);
+}
+
+std::vector<Pose> near_symmetries_of(const ModelSource& source, const ModelIndex& index) {
   constexpr std::size_t kSelfSample = 256;
   const std::span<const std::uint32_t> sample(index.check.surface);
-  index.near_symmetries = near_symmetries(
+  return near_symmetries(
       {source.surface.points, source.surface.normals,
        sample.first(std::min(sample.size(), kSelfSample)), index.distances, source.diameter},
       source.symmetry);
-  index.point_area = mean_point_area(source.surface);
-  index.feature_tree = FeatureTree(index.fpfh);
-  constexpr float kDistanceStep = 0.006f;  // metres; chosen by hand
-  index.pairs = PointPairTable(
-      index.coarse, std::max(kDistanceStep, 0.05f * static_cast<float>(source.diameter)));
-  // An incomplete model ends where its scans do.
-  if (source.complete) {
-    const auto rims = model_rims(source.surface, index.distances, index.coarse);
-    index.rim_pairs = PointPairTable(index.coarse, rims, kDistanceStep);
-  }
 }
 
 ViewPoint view_point(const ObjectModel& model, const ModelView& view, std::size_t k) {

@@ -125,8 +125,9 @@ struct SeenPoints {
 
 ModelView render_view(const SeenPoints& all, const Eigen::Matrix3f& axes, float spacing) {
   const std::vector<Eigen::Vector3f>& seen = all.points;
-  ModelView view;
-  view.direction = axes.row(2);
+  std::vector<std::uint32_t> visible, edges;
+  std::vector<float> edge_distance;
+  std::vector<Eigen::Vector3f> outward_of;  // the edges
   const DepthBuffer buffer = draw(seen, spacing);
   const auto slope_of = [](float cosine) {
     return std::min(4.0f, std::sqrt(1 - cosine * cosine) / cosine);
@@ -136,19 +137,20 @@ ModelView render_view(const SeenPoints& all, const Eigen::Matrix3f& axes, float 
     if (cosine <= 0.05f) continue;
     const float nearest = buffer.nearest[buffer.cell_of(seen[i])];
     if (seen[i].z() < nearest - spacing * (1 + 2 * slope_of(cosine))) continue;
-    view.visible.push_back(i);
+    visible.push_back(i);
   }
-  const EdgeDistance edge_distance(buffer, seen, view.visible);
-  for (const std::uint32_t i : view.visible) {
-    view.edge_distance.push_back(edge_distance(seen[i]));
+  const EdgeDistance distance_of(buffer, seen, visible);
+  for (const std::uint32_t i : visible) {
+    edge_distance.push_back(distance_of(seen[i]));
     const float slope = slope_of(all.cosine[i]);
     const Eigen::Vector2f outward = edge_direction(buffer, seen[i], kDrop + 1.5f * spacing * slope);
     if (outward.squaredNorm() < 4) continue;
-    view.edges.push_back(i);
+    edges.push_back(i);
     const Eigen::Vector2f unit = outward.normalized();
-    view.outward.push_back(axes.transpose() * Eigen::Vector3f(unit.x(), unit.y(), 0));
+    outward_of.push_back(axes.transpose() * Eigen::Vector3f(unit.x(), unit.y(), 0));
   }
-  return view;
+  return {axes.row(2), std::move(visible), std::move(edge_distance), std::move(edges),
+          std::move(outward_of)};
 }
 
 float cosine_of(const PointCloud& surface, std::size_t i, const Eigen::Vector3f& to_camera) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/shared_array.hpp"
 #include "core/cloud/point_cloud.hpp"
 #include "core/geometry/pose.hpp"
 
@@ -18,13 +19,13 @@ constexpr int kNumViews = 66;  ///< Paper section III: 66 viewing angles across 
 /// What a camera far away in one direction sees of a model.
 struct ModelView {
   Eigen::Vector3f direction;             ///< From the object to the camera, unit length.
-  std::vector<std::uint32_t> visible;    ///< Surface points that are seen, by index.
-  std::vector<float> edge_distance;      ///< For each visible point, how far the nearest range edge
+  SharedArray<std::uint32_t> visible;    ///< Surface points that are seen, by index.
+  SharedArray<float> edge_distance;      ///< For each visible point, how far the nearest range edge
                                          ///< is in the view plane, metres (paper section III); at
                                          ///< most kMaxEdgeDistance.
-  std::vector<std::uint32_t> edges;      ///< Those on a range edge, where the surface ends in this
+  SharedArray<std::uint32_t> edges;      ///< Those on a range edge, where the surface ends in this
                                          ///< view (paper section III).
-  std::vector<Eigen::Vector3f> outward;  ///< For each edge point, the unit direction across the
+  SharedArray<Eigen::Vector3f> outward;  ///< For each edge point, the unit direction across the
                                          ///< edge, away from the surface, in the view plane.
 };
 

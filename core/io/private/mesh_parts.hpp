@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/status.hpp"
@@ -19,7 +20,7 @@ struct PlyFile {
 };
 
 /// As parse_ply().
-Result<PlyFile> parse_ply_file(const std::string& bytes, const std::string& name, double scale);
+Result<PlyFile> parse_ply_file(std::string_view bytes, const std::string& name, double scale);
 
 /// Reads any other format of read_mesh_file(), by Assimp; `colored` = false as read_mesh().
 Result<MeshFile> read_with_assimp(const std::string& path, double scale, bool colored);

@@ -6,8 +6,10 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "core/base/status.hpp"
+#include "core/io/file_bytes.hpp"
 #include "core/model/model_index.hpp"
 #include "core/model/occupancy_grid.hpp"
 
@@ -18,7 +20,7 @@ namespace bpa::io {
 /// What model.json says of another file of the folder.
 struct FileRecord {
   std::size_t bytes = 0;
-  std::uint32_t crc32 = 0;
+  std::string xxh64;  ///< xxh64() as 16 hexadecimal digits.
 };
 
 /// model.json.
@@ -33,9 +35,9 @@ std::string description_text(const ModelDescription& description);
 /// Fails with not_found, or with corrupt: not JSON, without a field, or of another version.
 Result<ModelDescription> read_description(const std::string& path);
 
-/// index.bin, little-endian. The header: "bpaindex", kIndexVersion as u32, the distance transform's
-/// corner, cell and size. Then arrays: a u64 with the number of elements, then these. It lacks what
-/// derive_index() computes. A file of another program version reads as null: compute again.
+/// index.bin, little-endian. The header: "bpaindex", kIndexVersion as u32, an IndexHeader. Then
+/// arrays, aligned (append_aligned), the normal variances first. It lacks what derive_index()
+/// computes. A file of another program version reads as null: compute again.
 struct IndexFile {
   std::shared_ptr<ModelIndex> index;
   std::vector<float> normal_variance;
@@ -43,9 +45,10 @@ struct IndexFile {
 
 std::string index_bytes(const ModelIndex& index, const std::vector<float>& normal_variance);
 
-/// `points` is the size of the model's surface, which the index must fit.
-Result<IndexFile> parse_index(const std::string& bytes, std::size_t points,
-                              const std::string& name);
+/// `points` is the size of the model's surface, which the index must fit. The large arrays (point
+/// pairs, views, distance transform) stay in the file's memory; the others are copied. All indices
+/// are checked, so that detection need not: this reads the file once.
+Result<IndexFile> parse_index(const MappedFile& file, std::size_t points, const std::string& name);
 
 /// occupancy.bin, little-endian, packed. The header: "bpaoccup", version u32, corner of cell (0, 0,
 /// 0) 3 f32, side of a cell f32, size 3 i32; cell count u64. Each cell in which a ray ended: place
@@ -54,6 +57,6 @@ Result<IndexFile> parse_index(const std::string& bytes, std::size_t points,
 Result<std::string> occupancy_bytes(const OccupancyGrid& grid);
 
 /// What occupancy_bytes wrote, exact to the units of StoredBucket.
-Result<OccupancyGrid> parse_occupancy(const std::string& bytes, const std::string& name);
+Result<OccupancyGrid> parse_occupancy(std::string_view bytes, const std::string& name);
 
 }  // namespace bpa::io

@@ -114,7 +114,7 @@ TEST_F(RefinementOf, WithoutEdgesIsAsIfTheModelHadNone) {
   const auto index = std::make_shared<ModelIndex>();  // what alignment reads
   index->check = l_->index->check;
   index->views = l_->index->views;
-  for (ModelView& view : index->views) view.edges.clear();
+  for (ModelView& view : index->views) view.edges = {};
   smooth.index = index;
   DetectOptions no_edges;
   no_edges.align.use_edges = false;

@@ -198,6 +198,36 @@ TEST(PointPairTable, HasNothingBeyondItsLongestPair) {
   (void)table.lookup(table.max_distance() + 0.9f * kDistanceStep, kLastKey);
 }
 
+TEST(PointPairTable, ArraysThatDoNotFitAreTold) {
+  using Arrays = PointPairTable::Arrays;
+  const PointCloud cloud = random_oriented_points(30, 14);
+  const Arrays good = PointPairTable(cloud, kDistanceStep).arrays();
+  EXPECT_TRUE(good.fit(30));
+  EXPECT_FALSE(good.fit(29)) << "a point that is not there";
+  EXPECT_TRUE(Arrays{}.fit(0));
+  const auto with = [&good](auto change) {
+    std::vector<std::uint32_t> first(good.first.begin(), good.first.end());
+    std::vector<PointPairTable::Entry> entries(good.entries.begin(), good.entries.end());
+    Arrays arrays = good;
+    change(arrays, first, entries);
+    arrays.first = std::move(first);
+    arrays.entries = std::move(entries);
+    return arrays.fit(30);
+  };
+  EXPECT_TRUE(with([](auto&, auto&, auto&) {}));
+  EXPECT_FALSE(with([](auto&, auto& first, auto&) { ++first.back(); })) << "beyond the entries";
+  EXPECT_FALSE(with([](auto&, auto& first, auto&) { first[first.size() / 2] = 1u << 31; }));
+  EXPECT_FALSE(with([](auto&, auto& first, auto&) { first.clear(); }));
+  EXPECT_FALSE(with([](auto&, auto&, auto& entries) { entries.pop_back(); }));
+  for (const float number : {std::nanf(""), -1.0f, 1e30f, INFINITY}) {
+    EXPECT_FALSE(with([number](Arrays& arrays, auto&, auto&) { arrays.inverse_step = number; }));
+    EXPECT_FALSE(with([number](Arrays& arrays, auto&, auto&) { arrays.max_distance = number; }));
+  }
+  const PointPairTable again(good);
+  const auto f = feature_of(cloud, 3, 4);
+  EXPECT_EQ(looked_up(again, f), looked_up(PointPairTable(cloud, kDistanceStep), f));
+}
+
 TEST(PointPairTable, OfNothingHoldsNothing) {
   const PointPairTable table({}, 1);
   EXPECT_TRUE(table.lookup(0, 0).empty());

@@ -105,38 +105,150 @@ TEST(ModelFile, StoredIndexIsTheComputedOne) {
   }
 }
 
+void expect_same(const PointCloud& a, const PointCloud& b) {
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.normals, b.normals);
+  EXPECT_EQ(a.colors, b.colors);
+  EXPECT_EQ(a.curvatures, b.curvatures);
+  EXPECT_EQ(a.principal_directions, b.principal_directions);
+}
+
+void expect_same(const PointPairTable::Arrays& a, const PointPairTable::Arrays& b) {
+  EXPECT_EQ(a.inverse_step, b.inverse_step);
+  EXPECT_EQ(a.max_distance, b.max_distance);
+  EXPECT_EQ(a.first, b.first);
+  EXPECT_EQ(a.entries, b.entries);
+}
+
+void expect_same(const ModelView& a, const ModelView& b) {
+  EXPECT_EQ(a.direction, b.direction);
+  EXPECT_EQ(a.visible, b.visible);
+  EXPECT_EQ(a.edge_distance, b.edge_distance);
+  EXPECT_EQ(a.edges, b.edges);
+  EXPECT_EQ(a.outward, b.outward);
+}
+
+// A model with everything that a file of an index holds: colours, near symmetries and flat rests.
+ModelSource coloured_brick() {
+  ModelSource source = *model_source_from_mesh(test::box_mesh({0.06f, 0.04f, 0.02f}), "brick", 1);
+  for (std::size_t i = 0; i < source.surface.size(); ++i) {
+    source.surface.colors.push_back({static_cast<std::uint8_t>(i % 251), 80, 200});
+  }
+  return source;
+}
+
+TEST(ModelFile, MappedIndexIsTheBuiltOneFieldByField) {
+  const test::TemporaryFolder folder;
+  const ModelSource source = coloured_brick();
+  const auto made = make_object_model(source);
+  ASSERT_TRUE(made.ok());
+  ASSERT_TRUE(save_model(folder.path(), source).ok());
+  const auto stored = load_model(folder.path(), "brick");
+  ASSERT_TRUE(stored.ok()) << stored.status().message;
+  ASSERT_TRUE(remove_model(folder.path(), "brick").ok()) << "what was loaded stays";
+  const ModelIndex &read = *stored->prepared, &built = *(*made)->index;
+  ASSERT_FALSE(built.near_symmetries.empty());
+  ASSERT_FALSE(built.flat_rests.empty());
+  ASSERT_FALSE(built.pairs.arrays().entries.empty());
+  ASSERT_FALSE(built.rim_pairs.arrays().entries.empty());
+  EXPECT_EQ(read.soft_normals, built.soft_normals);
+  EXPECT_EQ(read.check.points, built.check.points);
+  EXPECT_EQ(read.check.surface, built.check.surface);
+  EXPECT_EQ(read.fpfh, built.fpfh);
+  EXPECT_EQ(read.cielab, built.cielab);
+  EXPECT_EQ(read.log_light, built.log_light);
+  EXPECT_EQ(read.point_area, built.point_area);
+  EXPECT_EQ(read.distances.low, built.distances.low);
+  EXPECT_EQ(read.distances.cell, built.distances.cell);
+  EXPECT_EQ(read.distances.size, built.distances.size);
+  EXPECT_EQ(read.distances.nearest, built.distances.nearest);
+  expect_same(read.features, built.features);
+  expect_same(read.coarse, built.coarse);
+  expect_same(read.pairs.arrays(), built.pairs.arrays());
+  expect_same(read.rim_pairs.arrays(), built.rim_pairs.arrays());
+  ASSERT_EQ(read.views.size(), built.views.size());
+  for (std::size_t v = 0; v < read.views.size(); ++v) expect_same(read.views[v], built.views[v]);
+  ASSERT_EQ(read.near_symmetries.size(), built.near_symmetries.size());
+  for (std::size_t k = 0; k < read.near_symmetries.size(); ++k) {
+    const Pose &a = read.near_symmetries[k], &b = built.near_symmetries[k];
+    EXPECT_EQ(a.rotation.coeffs(), b.rotation.coeffs());
+    EXPECT_EQ(a.translation, b.translation);
+  }
+  ASSERT_EQ(read.flat_rests.size(), built.flat_rests.size());
+  for (std::size_t k = 0; k < read.flat_rests.size(); ++k) {
+    const FlatRest &a = read.flat_rests[k], &b = built.flat_rests[k];
+    EXPECT_EQ(a.up, b.up);
+    EXPECT_EQ(a.axis, b.axis);
+    EXPECT_EQ(a.centre, b.centre);
+    EXPECT_EQ(a.length, b.length);
+    EXPECT_EQ(a.width, b.width);
+  }
+  EXPECT_EQ(read.feature_tree.nearest(built.fpfh, 1, 1).front().index, 0);
+  // What was read is written as it was.
+  EXPECT_EQ(index_bytes(read, source.normal_variance), index_bytes(built, source.normal_variance));
+}
+
 TEST(ModelFile, IndexOfAnotherVersionIsComputedAgain) {
   const ModelSource model = some_model("a", 1);
   const auto made = make_object_model(model);
   ASSERT_TRUE(made.ok());
   std::string bytes = index_bytes(*(*made)->index, model.normal_variance);
-  ASSERT_TRUE(parse_index(bytes, model.surface.size(), "x").ok());
+  ASSERT_TRUE(parse_index({bytes, nullptr}, model.surface.size(), "x").ok());
   bytes[8] = static_cast<char>(bytes[8] + 1);  // the version, after "bpaindex"
-  const auto other = parse_index(bytes, model.surface.size(), "x");
+  const auto other = parse_index({bytes, nullptr}, model.surface.size(), "x");
   ASSERT_TRUE(other.ok()) << other.status().message;
   EXPECT_EQ(other->index, nullptr);
   EXPECT_EQ(other->normal_variance, model.normal_variance);
 }
 
+void expect_below(const SharedArray<std::uint32_t>& indices, std::size_t limit) {
+  EXPECT_TRUE(std::ranges::all_of(indices, [limit](std::uint32_t i) { return i < limit; }));
+}
+
+// Every index that detection may meet is one of its array.
+void expect_inside(const ModelIndex& index, std::size_t points) {
+  expect_below(index.distances.nearest, points);
+  EXPECT_EQ(index.distances.nearest.size(), index.distances.size.prod());
+  for (const ModelView& view : index.views) {
+    expect_below(view.visible, points);
+    expect_below(view.edges, points);
+    EXPECT_EQ(view.edge_distance.size(), view.visible.size());
+    EXPECT_EQ(view.outward.size(), view.edges.size());
+  }
+  for (const PointPairTable* table : {&index.pairs, &index.rim_pairs}) {
+    for (float distance = 0; distance < 0.1f; distance += 0.003f) {
+      for (std::uint16_t key = 0; key < PointPairTable::kAngleKeys; ++key) {
+        for (const auto& entry : table->lookup(distance, key)) {
+          ASSERT_LT(entry.point, index.coarse.size());
+        }
+      }
+    }
+    (void)table->lookup(table->max_distance(), 0);
+  }
+}
+
 // A file whose checksum was made to fit must not make anything read outside an array either.
 TEST(ModelFile, NoIndexLeavesItsArrays) {
-  const ModelSource model = some_model("a", 1);
+  const ModelSource model = coloured_brick();
   const auto made = make_object_model(model);
   ASSERT_TRUE(made.ok());
+  const std::size_t points = model.surface.size();
   const std::string bytes = index_bytes(*(*made)->index, model.normal_variance);
-  EXPECT_FALSE(parse_index(bytes, model.surface.size() - 1, "x").ok());
-  EXPECT_FALSE(parse_index(bytes + "x", model.surface.size(), "x").ok());
+  const auto parse = [points](const std::string& text, std::size_t skipped = 0) {
+    return parse_index({std::string_view(text).substr(skipped), nullptr}, points, "x");
+  };
+  EXPECT_FALSE(parse_index({bytes, nullptr}, points - 1, "x").ok());
+  EXPECT_FALSE(parse(bytes + "x").ok());
+  EXPECT_FALSE(parse("x" + bytes, 1).ok()) << "no array is where it may be read";
   for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 7) {
-    EXPECT_FALSE(parse_index(bytes.substr(0, size), model.surface.size(), "x").ok()) << size;
+    EXPECT_FALSE(parse(bytes.substr(0, size)).ok()) << size;
   }
   for (std::size_t at = 12; at + 8 < bytes.size(); at += 1 + at / 50) {
-    std::string damaged = bytes;
-    damaged.replace(at, 8, 8, '\xff');
-    const auto file = parse_index(damaged, model.surface.size(), "x");  // must not crash
-    if (file.ok() && file->index) {
-      for (const std::uint32_t i : file->index->distances.nearest) {
-        ASSERT_LT(i, model.surface.size());
-      }
+    for (const char value : {'\xff', '\x7f', '\x01'}) {
+      std::string damaged = bytes;
+      damaged.replace(at, 8, 8, value);
+      const auto file = parse(damaged);  // must not crash
+      if (file.ok() && file->index) expect_inside(*file->index, points);
     }
   }
 }
@@ -283,9 +395,9 @@ TEST(ModelFile, DamageIsSaid) {
   spill(folder / "a/model.json", json.substr(0, json.size() / 2));
   EXPECT_NE(message().find("truncated"), std::string::npos);
   std::string newer = json;
-  newer.replace(newer.find("\"version\": 3"), 12, "\"version\": 2");
+  newer.replace(newer.find("\"version\": 4"), 12, "\"version\": 3");
   spill(folder / "a/model.json", newer);
-  EXPECT_NE(message().find("has format version 2; this program reads version 3: make the model "
+  EXPECT_NE(message().find("has format version 3; this program reads version 4: make the model "
                            "again (bpa model from-mesh"),
             std::string::npos);
   spill(folder / "a/model.json", json);
@@ -338,6 +450,41 @@ TEST(FileBytes, ChecksumIsThatOfPngAndZip) {
     EXPECT_EQ(crc32(bytes), ~crc) << i;
     bytes += static_cast<char>(37 * i + 200);
   }
+}
+
+// Of the specification and of the program xxhsum.
+TEST(FileBytes, HashIsXxh64) {
+  EXPECT_EQ(xxh64(""), 0xef46db3751d8e999u);
+  EXPECT_EQ(xxh64("a"), 0xd24ec4f1a98c6e5bu);
+  EXPECT_EQ(xxh64("abc"), 0x44bc2cf5ad770999u);
+  EXPECT_EQ(xxh64("Nobody inspects the spammish repetition"), 0xfbcea83c8a378bf1u);
+}
+
+TEST(FileBytes, HashDiffersWhereverABitIs) {
+  std::string bytes(77, 'b');  // every kind of step: stripes of 32, 8, 4 and 1 byte
+  const std::uint64_t hash = xxh64(bytes);
+  for (char& byte : bytes) {
+    for (int bit = 0; bit < 8; ++bit) {
+      byte = static_cast<char>(byte ^ 1 << bit);
+      EXPECT_NE(xxh64(bytes), hash);
+      byte = static_cast<char>(byte ^ 1 << bit);
+    }
+  }
+}
+
+TEST(FileBytes, MappedBytesAreThoseOfTheFile) {
+  const test::TemporaryFolder folder;
+  for (const std::size_t size : {0, 1, 4096, 70001}) {
+    std::string bytes(size, 'x');
+    for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<char>(i * i);
+    spill(folder / "file", bytes);
+    const auto mapped = map_file(folder / "file");
+    ASSERT_TRUE(mapped.ok()) << mapped.status().message;
+    std::filesystem::remove(folder / "file");
+    EXPECT_EQ(mapped->bytes, bytes);
+  }
+  EXPECT_EQ(map_file(folder / "none").status().code, StatusCode::not_found);
+  EXPECT_EQ(map_file(folder.path()).status().code, StatusCode::invalid_argument);
 }
 
 TEST(ModelFile, EmptyAndMissingLibraries) {
