@@ -99,6 +99,7 @@ class TriangleImage {
     height_ = static_cast<int>(box.sizes().y() / pixel) + 1;
     nearest_.assign(width_ * height_, -std::numeric_limits<float>::infinity());
     triangle_.assign(width_ * height_, -1);
+    triangles_.resize(mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) draw(t);
   }
 
@@ -107,18 +108,24 @@ class TriangleImage {
     const int x = static_cast<int>((p.x() - low_.x()) / pixel_);
     const int y = static_cast<int>((p.y() - low_.y()) / pixel_);
     float farthest = std::numeric_limits<float>::infinity();
-    int last = own;
-    for (int v = std::max(0, y - 1); v <= std::min(height_ - 1, y + 1); ++v) {
-      for (int u = std::max(0, x - 1); u <= std::min(width_ - 1, x + 1); ++u) {
-        const int i = v * width_ + u;
-        farthest = std::min(farthest, nearest_[i]);
-        if (triangle_[i] == last) continue;
-        last = triangle_[i];
-        if (last >= 0 && last != own && covers(last, p)) return true;
+    const auto for_each_pixel = [&](const auto& visit) {
+      for (int v = std::max(0, y - 1); v <= std::min(height_ - 1, y + 1); ++v) {
+        for (int u = std::max(0, x - 1); u <= std::min(width_ - 1, x + 1); ++u) {
+          visit(v * width_ + u);
+        }
       }
-    }
+    };
+    for_each_pixel([&](int i) { farthest = std::min(farthest, nearest_[i]); });
     // Triangles smaller than pixels may be missing in the image, but where it is covered, so is p.
-    return farthest > p.z() + 4 * pixel_;
+    if (farthest > p.z() + 4 * pixel_) return true;
+    int last = own;
+    bool hidden = false;
+    for_each_pixel([&](int i) {
+      if (hidden || triangle_[i] == last) return;
+      last = triangle_[i];
+      hidden = last >= 0 && last != own && covers(last, p);
+    });
+    return hidden;
   }
 
  private:
@@ -129,7 +136,7 @@ class TriangleImage {
 
   // Whether a triangle lies above p.
   bool covers(int triangle, const Eigen::Vector3f& p) const {
-    const SeenTriangle t = seen(triangle);
+    const SeenTriangle& t = triangles_[triangle];
     if (t.flat()) return false;
     const Eigen::Vector2f w = t.weights(p.x(), p.y());
     constexpr float kSlack = 1e-3f;
@@ -138,7 +145,8 @@ class TriangleImage {
   }
 
   void draw(int triangle) {
-    const SeenTriangle t = seen(triangle);
+    triangles_[triangle] = seen(triangle);
+    const SeenTriangle& t = triangles_[triangle];
     if (t.flat()) return;
     Eigen::AlignedBox2f box;
     for (const std::uint32_t c : mesh_.triangles[triangle]) box.extend(vertices_[c].head<2>());
@@ -167,6 +175,7 @@ class TriangleImage {
   int width_ = 0, height_ = 0;
   std::vector<float> nearest_;
   std::vector<int> triangle_;
+  std::vector<SeenTriangle> triangles_;  // of the mesh
 };
 
 // How many directions see a point of a mesh, or whether any does: before and behind its triangle.
