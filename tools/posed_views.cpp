@@ -67,6 +67,48 @@ std::vector<std::uint8_t> near(const Frame& frame, const Pose& box_from_camera,
   return mask;
 }
 
+// Marks the pixels up to `reach` beside a marked one, in x and in y.
+void widen(std::vector<std::uint8_t>& mask, int width, int height, int reach) {
+  std::vector<std::uint8_t> out(mask.size(), 0);
+  // One line of `count` pixels that are `step` apart: marks reach forward, then backward.
+  const auto widen_line = [&](int begin, int count, int step) {
+    int forth = 0, back = 0;
+    for (int k = 0; k < count; ++k) {
+      const int i = begin + k * step, j = begin + (count - 1 - k) * step;
+      forth = mask[i] ? reach + 1 : forth - 1;
+      back = mask[j] ? reach + 1 : back - 1;
+      if (forth > 0) out[i] = 1;
+      if (back > 0) out[j] = 1;
+    }
+  };
+  for (int y = 0; y < height; ++y) widen_line(y * width, width, 1);
+  mask = out;
+  for (int x = 0; x < width; ++x) widen_line(x, height, width);
+  mask = std::move(out);
+}
+
+// Marks at least the pixels that show a mesh, and those up to `reach` pixels beside them.
+std::vector<std::uint8_t> outline(const TriangleMesh& mesh, const Pose& camera_from_mesh,
+                                  const Camera& camera, int reach) {
+  std::vector<Eigen::Vector2i> pixels;
+  for (const Eigen::Vector3f& v : mesh.vertices) {
+    const Eigen::Vector2d p = camera.project(camera_from_mesh * v.cast<double>());
+    pixels.emplace_back(p.array().round().cast<int>());
+  }
+  std::vector<std::uint8_t> mask(camera.width * camera.height, 0);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Eigen::Vector2i low = pixels[a].cwiseMin(pixels[b]).cwiseMin(pixels[c]).cwiseMax(0);
+    const Eigen::Vector2i high = pixels[a].cwiseMax(pixels[b]).cwiseMax(pixels[c]);
+    for (int y = low.y(); y <= std::min(high.y(), camera.height - 1); ++y) {
+      for (int x = low.x(); x <= std::min(high.x(), camera.width - 1); ++x) {
+        mask[y * camera.width + x] = 1;
+      }
+    }
+  }
+  widen(mask, camera.width, camera.height, reach);
+  return mask;
+}
+
 Pose look_from(const Eigen::Vector3d& direction, double distance, const Eigen::Vector3d& at) {
   Eigen::Matrix3d axes;  // columns: right, down, forward, of the camera in the object's frame
   axes.col(2) = -direction;
@@ -165,14 +207,19 @@ std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::
   const sim::Shading shading{.materials = {sim::Material{}, sim::Material{}}};
   const sim::KinectOptions kinect{.registered = false};
 
+  // Rays that pass the object farther away than its measurements scatter tell nothing of it.
+  constexpr double kScatter = 0.015;  // metres
+  const int reach = sim::kLookAround + static_cast<int>(std::ceil(kScatter * kFocal / nearest));
+
   std::vector<PosedView> views(static_cast<std::size_t>(count));
   run_all(title, count, num_threads, [&](int k) {
     const Pose object_from_camera =
         look_from(sphere_direction(k, count), distance, box.center().cast<double>());
-    const Frame frame = sim::simulate_depth({scene, shading, camera, object_from_camera}, kinect,
-                                            RandomStream(seed, k)(), 0, 1);
-    views[k] =
-        make_posed_view(frame, near(frame, object_from_camera, box), object_from_camera.inverse());
+    const auto wanted = outline(mesh, object_from_camera.inverse(), camera, reach);
+    const Frame frame = sim::simulate_depth({scene, shading, camera, object_from_camera, wanted},
+                                            kinect, RandomStream(seed, k)(), 0, 1);
+    views[k] = make_posed_view(frame, near(frame, object_from_camera, box),
+                               object_from_camera.inverse(), "structured_light");
   });
   return views;
 }

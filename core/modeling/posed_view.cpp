@@ -121,9 +121,11 @@ struct PointSums {
 }  // namespace
 
 PosedView make_posed_view(const Frame& frame, const std::vector<std::uint8_t>& object,
-                          const Pose& camera_from_object) {
-  const SurfaceMapOptions options{
-      .max_range_m = 20, .max_width = std::max(1, frame.camera.width / 2), .num_threads = 1};
+                          const Pose& camera_from_object, const std::string& sensor) {
+  const SurfaceMapOptions options{.max_range_m = 20,
+                                  .max_width = std::max(1, frame.camera.width / 2),
+                                  .sensor = sensor,
+                                  .num_threads = 1};
   PosedView view;
   view.map = surface_map(frame, options);
   view.camera_from_object = camera_from_object;

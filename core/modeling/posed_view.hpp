@@ -24,9 +24,10 @@ struct PosedView {
 };
 
 /// Halves the frame as the detector does and takes its normals. `object` is a mask over the frame's
-/// pixels (1 = object), or empty: then every pixel may belong to it.
+/// pixels (1 = object), or empty: then every pixel may belong to it. `sensor` as
+/// SurfaceMapOptions::sensor.
 PosedView make_posed_view(const Frame& frame, const std::vector<std::uint8_t>& object,
-                          const Pose& camera_from_object);
+                          const Pose& camera_from_object, const std::string& sensor = "auto");
 
 /// One bin of errors that were observed at nearly the same edge distance and surface angle.
 struct NoiseBin {

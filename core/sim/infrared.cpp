@@ -84,16 +84,19 @@ SensorView infrared_view(const SensorView& color, const Camera& infrared, double
 }
 
 std::vector<float> noise_field(int width, int height, int radius, std::uint64_t seed,
-                               int num_threads) {
+                               int num_threads, const std::optional<Eigen::AlignedBox2i>& part) {
   const std::vector<float> weights = tent(radius);
-  const int taps = 2 * radius + 1, padded_height = height + 2 * radius;
-  // White noise, smoothed along its rows as it is made.
-  std::vector<float> smooth_rows(width * padded_height);
-  parallel_for(padded_height, num_threads, [&](int y) {
+  const int taps = 2 * radius + 1;
+  const Eigen::Vector2i first = part ? part->min() : Eigen::Vector2i::Zero();
+  const Eigen::Vector2i last = part ? part->max() : Eigen::Vector2i(width - 1, height - 1);
+  // White noise, smoothed along its rows as it is made. A row's numbers are drawn from its begin.
+  std::vector<float> smooth_rows(width * (height + 2 * radius), 0);
+  parallel_for(last.y() - first.y() + taps, num_threads, [&](int row) {
+    const int y = first.y() + row;
     RandomStream random(seed, y);
-    std::vector<float> white(width + 2 * radius);
+    std::vector<float> white(last.x() + taps);
     for (float& value : white) value = static_cast<float>(random.normal());
-    for (int x = 0; x < width; ++x) {
+    for (int x = first.x(); x <= last.x(); ++x) {
       float sum = 0;
       for (int t = 0; t < taps; ++t) sum += weights[t] * white[x + t];
       smooth_rows[y * width + x] = sum;
@@ -101,9 +104,10 @@ std::vector<float> noise_field(int width, int height, int radius, std::uint64_t 
   });
   if (radius == 0) return smooth_rows;
   std::vector<float> field(width * height, 0);
-  parallel_for(height, num_threads, [&](int y) {
+  parallel_for(last.y() - first.y() + 1, num_threads, [&](int row) {
+    const int y = first.y() + row;
     for (int t = 0; t < taps; ++t) {
-      for (int x = 0; x < width; ++x) {
+      for (int x = first.x(); x <= last.x(); ++x) {
         field[y * width + x] += weights[t] * smooth_rows[(y + t) * width + x];
       }
     }
@@ -117,12 +121,13 @@ std::uint64_t shot_seed(std::uint64_t seed, int shot) {
 
 std::vector<float> NoiseFields::next(int radius) {
   const std::uint64_t drawn = RandomStream(seed_, stream_++)();
-  return noise_field(camera_.width, camera_.height, radius, shot_seed(drawn, shot_), num_threads_);
+  return noise_field(camera_.width, camera_.height, radius, shot_seed(drawn, shot_), num_threads_,
+                     part_);
 }
 
 std::vector<float> NoiseFields::next_of_all_shots(int radius) {
   const std::uint64_t drawn = RandomStream(seed_, stream_++)();
-  return noise_field(camera_.width, camera_.height, radius, drawn, num_threads_);
+  return noise_field(camera_.width, camera_.height, radius, drawn, num_threads_, part_);
 }
 
 std::vector<float> carried_over(const std::vector<float>& depth, const Camera& infrared,

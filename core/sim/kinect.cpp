@@ -29,6 +29,18 @@ struct Measurement {
   std::vector<float> glare;      // in [0, 1]
 };
 
+// The smallest box about the pixels that are measured; none where there are none.
+std::optional<Eigen::AlignedBox2i> measured_part(const InfraredCamera& infrared) {
+  Eigen::AlignedBox2i box;
+  for (int y = 0, i = 0; y < infrared.camera().height; ++y) {
+    for (int x = 0; x < infrared.camera().width; ++x, ++i) {
+      if (infrared.wanted(i)) box.extend(Eigen::Vector2i(x, y));
+    }
+  }
+  if (box.isEmpty()) return std::nullopt;
+  return box;
+}
+
 // Steps 1 and 3.
 Measurement see(const InfraredCamera& infrared, const KinectOptions& options, int num_threads) {
   const Camera& camera = infrared.camera();
@@ -36,6 +48,7 @@ Measurement see(const InfraredCamera& infrared, const KinectOptions& options, in
   Measurement m{camera, zeros, zeros, zeros, zeros, zeros};
   const Eigen::Vector3f projector = infrared.beside(options.baseline);
   for_each_pixel(m.camera, num_threads, [&](int x, int y, int i) {
+    if (!infrared.wanted(i)) return;
     const auto seen = infrared.look(infrared.origin(), infrared.direction(x, y));
     if (!seen) return;
     const RayHit& hit = seen->hit;
@@ -56,24 +69,28 @@ Measurement see(const InfraredCamera& infrared, const KinectOptions& options, in
   return m;
 }
 
-// The share of the matching window round (x, y) that is lit and has about this disparity.
-float window_agreement(const Measurement& m, int x, int y, float disparity) {
+// Whether at least a share of the matching window round (x, y) is lit and has about this disparity.
+bool window_agrees(const Measurement& m, int x, int y, float disparity, float share) {
+  constexpr float kPixels = (2 * kWindow + 1) * (2 * kWindow + 1);
   int agree = 0;
   for (int v = std::max(y - kWindow, 0); v <= std::min(y + kWindow, m.camera.height - 1); ++v) {
     const float* row = m.disparity.data() + v * m.camera.width;
     for (int u = std::max(x - kWindow, 0); u <= std::min(x + kWindow, m.camera.width - 1); ++u) {
       agree += std::abs(row[u] - disparity) <= kSameDisparity;
     }
+    if (static_cast<float>(agree) / kPixels >= share) return true;
   }
-  return static_cast<float>(agree) / ((2 * kWindow + 1) * (2 * kWindow + 1));
+  return false;
 }
 
 // The random images that the measurement draws on.
 struct Noise {
   std::vector<float> lateral_x, lateral_y, shared, own, match, drop, smooth;
 
-  Noise(const Camera& camera, bool with_smooth, std::uint64_t seed, int shot, int num_threads) {
-    NoiseFields fields(camera, seed, shot, num_threads);
+  Noise(const InfraredCamera& infrared, bool with_smooth, std::uint64_t seed, int shot,
+        int num_threads) {
+    const Camera& camera = infrared.camera();
+    NoiseFields fields(camera, seed, shot, num_threads, measured_part(infrared));
     lateral_x = fields.next(3);
     lateral_y = fields.next(3);
     shared = fields.next(6);
@@ -107,7 +124,7 @@ bool drops_out(const Measurement& m, const Noise& noise, const KinectOptions& op
   const int i = y * m.camera.width + x;
   const auto gaps = static_cast<float>(options.edge_gaps);
   const float enough = gaps * (source != i ? kEnoughOfOther : kEnoughOfWindow);
-  if (window_agreement(m, x, y, m.disparity[source]) < enough + 0.06f * noise.match[i]) return true;
+  if (!window_agrees(m, x, y, m.disparity[source], enough + 0.06f * noise.match[i])) return true;
   constexpr float kWeakSignal = 0.032f;
   const float faint = 1 / (1 + std::pow(m.signal[source] / kWeakSignal, 6.0f));
   const float chance = dropouts * (0.0001f + faint + 0.9f * m.glare[source]);
@@ -180,10 +197,11 @@ Frame simulate_depth(const SensorView& view, const KinectOptions& options, std::
   constexpr int kWidth = 640, kHeight = 480;  // of a Kinect's infrared image
   const InfraredCamera infrared = infrared_camera(view, kWidth, kHeight, options);
   const Measurement m = see(infrared, options, num_threads);
-  const Noise noise(m.camera, options.calibration_error > 0, seed, shot, num_threads);
+  const Noise noise(infrared, options.calibration_error > 0, seed, shot, num_threads);
   std::vector<float> depth(m.depth.size(), 0);
-  for_each_pixel(m.camera, num_threads,
-                 [&](int x, int y, int i) { depth[i] = measure(m, noise, options, x, y); });
+  for_each_pixel(m.camera, num_threads, [&](int x, int y, int i) {
+    if (infrared.wanted(i)) depth[i] = measure(m, noise, options, x, y);
+  });
   const double pixels_per_inverse = m.camera.fx * std::max(options.baseline, 1e-3);
   return depth_frame(view, m.camera, without_specks(depth, m.camera, pixels_per_inverse), options,
                      pixels_per_inverse);

@@ -40,6 +40,8 @@ class InfraredCamera {
   const Eigen::Vector3f& origin() const { return pose_.translation; }
   /// World frame; depth along it is distance along the optical axis.
   Eigen::Vector3f direction(int x, int y) const;
+  /// Whether a pixel, by its index, is measured: SensorView::wanted.
+  bool wanted(int pixel) const { return view_.wanted.empty() || view_.wanted[pixel] != 0; }
   /// A point `offset` metres to the right of the camera.
   Eigen::Vector3f beside(double offset) const;
   std::optional<InfraredHit> look(const Eigen::Vector3f& from,
@@ -70,8 +72,10 @@ InfraredCamera infrared_camera(const SensorView& view, int width, int height, co
 
 /// Row-major standard normal numbers, each of variance 1; with `radius` > 0 neighbours correlate:
 /// white noise under a tent of half width `radius` + 1 pixels. The same for any number of threads.
+/// Zero outside of `part`, if given, which saves time.
 std::vector<float> noise_field(int width, int height, int radius, std::uint64_t seed,
-                               int num_threads);
+                               int num_threads,
+                               const std::optional<Eigen::AlignedBox2i>& part = {});
 
 /// The seed of what differs from shot to shot.
 std::uint64_t shot_seed(std::uint64_t seed, int shot);
@@ -79,8 +83,10 @@ std::uint64_t shot_seed(std::uint64_t seed, int shot);
 /// The random images of one measurement, each of a stream of its own.
 class NoiseFields {
  public:
-  NoiseFields(const Camera& camera, std::uint64_t seed, int shot, int num_threads)
-      : camera_(camera), seed_(seed), shot_(shot), num_threads_(num_threads) {}
+  /// As noise_field(): only `part` of the images is needed.
+  NoiseFields(const Camera& camera, std::uint64_t seed, int shot, int num_threads,
+              const std::optional<Eigen::AlignedBox2i>& part = {})
+      : camera_(camera), part_(part), seed_(seed), shot_(shot), num_threads_(num_threads) {}
 
   /// The next noise_field(); it differs from shot to shot.
   std::vector<float> next(int radius);
@@ -89,6 +95,7 @@ class NoiseFields {
 
  private:
   const Camera& camera_;
+  std::optional<Eigen::AlignedBox2i> part_;
   std::uint64_t seed_, stream_ = 0;
   int shot_, num_threads_;
 };

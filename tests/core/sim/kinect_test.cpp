@@ -212,6 +212,40 @@ TEST(Kinect, AnotherShotHasOtherNoiseAndTheSameErrorsOfTheCamera) {
   EXPECT_EQ(third.frame.color, fourth.frame.color);
 }
 
+// A tilted square before a wall: edges, shadows, grazing surface and noise of every kind.
+TEST(Kinect, WantedPixelsAreAsIfAllWere) {
+  const TriangleMesh square = quad(0.05, 0.07), wall = quad(20, 20);
+  const RayMeshes meshes({&square, &wall});
+  const Pose tilted{rotation_from_vector(1.1 * Eigen::Vector3d::UnitY()), {0.02, 0, 0.8}};
+  const RayScene scene(meshes, {{0, tilted}, {1, {Eigen::Quaterniond::Identity(), {0, 0, 1.3}}}});
+  const Shading shading = with_material({0.5, 0});
+  KinectOptions options;
+  options.registered = false;
+  options.calibration_error = 0.3;
+  const Frame all = simulate_depth({scene, shading, kKinect, Pose{}}, options, 7);
+  constexpr int kFirst = 100, kLast = 210, kHeight = 150;
+  std::vector<std::uint8_t> wanted(all.depth.size(), 0);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = kFirst; x <= kLast; ++x) wanted[y * kKinect.width + x] = 1;
+  }
+  const Frame some = simulate_depth({scene, shading, kKinect, Pose{}, wanted}, options, 7);
+  int square_pixels = 0;
+  for (int y = 0; y < kKinect.height; ++y) {
+    for (int x = 0; x < kKinect.width; ++x) {
+      const int i = y * kKinect.width + x;
+      if (!wanted[i]) {
+        EXPECT_EQ(some.depth[i], 0);
+      }
+      const bool inside = x >= kFirst + kLookAround && x <= kLast - kLookAround &&
+                          y < kHeight - kLookAround;  // the image ends above
+      if (!inside) continue;
+      ASSERT_EQ(some.depth[i], all.depth[i]) << x << ' ' << y;
+      square_pixels += all.depth[i] > 0 && all.depth[i] < 1;
+    }
+  }
+  EXPECT_GT(square_pixels, 1000);
+}
+
 TEST(Kinect, IsTheSameForAnyNumberOfThreads) {
   SensorOptions options;
   options.color.misregistration = 2;
