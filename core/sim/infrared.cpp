@@ -23,6 +23,19 @@ std::vector<float> tent(int radius) {
   return weights;
 }
 
+std::optional<InfraredHit> seen_along(const Eigen::Vector3f& from, const Eigen::Vector3f& direction,
+                                      const std::optional<RayHit>& hit) {
+  constexpr float kLift = 3e-4f;  // metres
+  if (!hit) return std::nullopt;
+  InfraredHit seen;
+  seen.hit = *hit;
+  seen.point = from + hit->distance * direction;
+  seen.lifted = seen.point + kLift * hit->face_normal;
+  seen.to_camera = -direction.normalized();
+  seen.angle = std::acos(std::clamp(hit->normal.dot(seen.to_camera), 0.0f, 1.0f));
+  return seen;
+}
+
 }  // namespace
 
 float smooth_step(float low, float high, float x) {
@@ -50,15 +63,16 @@ Eigen::Vector3f InfraredCamera::beside(double offset) const {
 
 std::optional<InfraredHit> InfraredCamera::look(const Eigen::Vector3f& from,
                                                 const Eigen::Vector3f& direction) const {
-  constexpr float kLift = 3e-4f;  // metres
-  const std::optional<RayHit> hit = view_.scene.cast(from, direction);
-  if (!hit) return std::nullopt;
-  InfraredHit seen;
-  seen.hit = *hit;
-  seen.point = from + hit->distance * direction;
-  seen.lifted = seen.point + kLift * hit->face_normal;
-  seen.to_camera = -direction.normalized();
-  seen.angle = std::acos(std::clamp(hit->normal.dot(seen.to_camera), 0.0f, 1.0f));
+  return seen_along(from, direction, view_.scene.cast(from, direction));
+}
+
+std::vector<std::optional<InfraredHit>> InfraredCamera::look(
+    std::span<const Eigen::Vector3f> directions) const {
+  const auto hits = view_.scene.cast(origin(), directions);
+  std::vector<std::optional<InfraredHit>> seen(directions.size());
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    seen[k] = seen_along(origin(), directions[k], hits[k]);
+  }
   return seen;
 }
 

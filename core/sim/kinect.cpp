@@ -41,30 +41,78 @@ std::optional<Eigen::AlignedBox2i> measured_part(const InfraredCamera& infrared)
   return box;
 }
 
+// Where a pixel sees a surface, and how it faces the projector.
+struct SeenPixel {
+  int pixel = 0;
+  InfraredHit seen;
+  float lit = 0;  // cosine
+};
+
+// What the wanted pixels of a row see within the sensor's range.
+std::vector<SeenPixel> see_row(const InfraredCamera& infrared, const KinectOptions& options,
+                               const Eigen::Vector3f& projector, int y) {
+  const int width = infrared.camera().width;
+  std::vector<int> pixels;
+  std::vector<Eigen::Vector3f> directions;
+  for (int x = 0; x < width; ++x) {
+    if (!infrared.wanted(y * width + x)) continue;
+    pixels.push_back(y * width + x);
+    directions.push_back(infrared.direction(x, y));
+  }
+  const auto all = infrared.look(directions);
+  std::vector<SeenPixel> out;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (!all[k]) continue;
+    const RayHit& hit = all[k]->hit;
+    if (hit.distance < options.min_range || hit.distance > options.max_range) continue;
+    out.push_back(
+        {pixels[k], *all[k], hit.face_normal.dot((projector - all[k]->point).normalized())});
+  }
+  return out;
+}
+
+// Takes out what the projector does not reach.
+void drop_shadows(const RayScene& scene, const Eigen::Vector3f& projector,
+                  std::vector<SeenPixel>& row) {
+  std::erase_if(row, [](const SeenPixel& p) { return p.lit <= 0; });
+  std::vector<Eigen::Vector3f> from;
+  for (const SeenPixel& p : row) from.push_back(p.seen.lifted);
+  const std::vector<std::uint8_t> blocked = scene.blocked(from, projector);
+  std::vector<SeenPixel> reached;
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    if (blocked[k] == 0) reached.push_back(row[k]);
+  }
+  row = std::move(reached);
+}
+
+// What the projector's light makes of a pixel that it reaches.
+void light_up(const InfraredCamera& infrared, const KinectOptions& options,
+              const Eigen::Vector3f& projector, const SeenPixel& p, Measurement& m) {
+  const RayHit& hit = p.seen.hit;
+  const Material material = infrared.material(hit);
+  const auto shine = static_cast<float>(material.shine);
+  const float away = 1 - 0.6f * shine * p.seen.angle / (std::numbers::pi_v<float> / 2);
+  m.signal[p.pixel] = infrared.reflectance(hit) * std::sqrt(std::max(p.lit, 0.0f)) * away /
+                      std::pow(hit.distance, 1.5f);
+  m.glare[p.pixel] = p.seen.glare(material, projector);
+  m.disparity[p.pixel] =
+      static_cast<float>(m.camera.fx * std::max(options.baseline, 1e-3) / hit.distance);
+}
+
 // Steps 1 and 3.
 Measurement see(const InfraredCamera& infrared, const KinectOptions& options, int num_threads) {
   const Camera& camera = infrared.camera();
   const std::vector<float> zeros(camera.width * camera.height, 0);
   Measurement m{camera, zeros, zeros, zeros, zeros, zeros};
   const Eigen::Vector3f projector = infrared.beside(options.baseline);
-  for_each_pixel(m.camera, num_threads, [&](int x, int y, int i) {
-    if (!infrared.wanted(i)) return;
-    const auto seen = infrared.look(infrared.origin(), infrared.direction(x, y));
-    if (!seen) return;
-    const RayHit& hit = seen->hit;
-    if (hit.distance < options.min_range || hit.distance > options.max_range) return;
-    const float lit = hit.face_normal.dot((projector - seen->point).normalized());
-    m.depth[i] = hit.distance;
-    m.angle[i] = seen->angle;
-    if (options.shadows && (lit <= 0 || infrared.scene().blocked(seen->lifted, projector))) return;
-    const Material material = infrared.material(hit);
-    const auto shine = static_cast<float>(material.shine);
-    const float away = 1 - 0.6f * shine * m.angle[i] / (std::numbers::pi_v<float> / 2);
-    m.signal[i] = infrared.reflectance(hit) * std::sqrt(std::max(lit, 0.0f)) * away /
-                  std::pow(hit.distance, 1.5f);
-    m.glare[i] = seen->glare(material, projector);
-    m.disparity[i] =
-        static_cast<float>(m.camera.fx * std::max(options.baseline, 1e-3) / hit.distance);
+  parallel_for(camera.height, num_threads, [&](int y) {
+    std::vector<SeenPixel> row = see_row(infrared, options, projector, y);
+    for (const SeenPixel& p : row) {
+      m.depth[p.pixel] = p.seen.hit.distance;
+      m.angle[p.pixel] = p.seen.angle;
+    }
+    if (options.shadows) drop_shadows(infrared.scene(), projector, row);
+    for (const SeenPixel& p : row) light_up(infrared, options, projector, p, m);
   });
   return m;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <type_traits>
 
 #if __has_include(<embree4/rtcore.h>)  // Debian 13
 #include <embree4/rtcore.h>
@@ -25,6 +26,12 @@ RTCRay ray_of(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, f
       far,        kMask,      0,          0};
 }
 
+RTCRay ray_between(const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
+  const Eigen::Vector3f direction = to - from;
+  const float margin = 2e-4f / direction.norm();
+  return ray_of(from, direction, margin, 1 - margin);
+}
+
 /// rtcIntersect1 or rtcOccluded1 by either version's signature.
 template <auto Function, class Query>
 void ask(RTCScene scene, Query& query) {
@@ -34,6 +41,43 @@ void ask(RTCScene scene, Query& query) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   Function(scene, &context, &query);
+#endif
+}
+
+// A packet of rays, and which of its lanes hold one.
+constexpr std::size_t kPacket = 8;
+struct alignas(32) Lanes {
+  std::array<int, kPacket> valid{};
+
+  explicit Lanes(std::size_t count) { std::fill_n(valid.begin(), std::min(count, kPacket), -1); }
+};
+
+void set_lane(RTCRay8& rays, std::size_t lane, const RTCRay& ray) {
+  rays.org_x[lane] = ray.org_x, rays.org_y[lane] = ray.org_y, rays.org_z[lane] = ray.org_z;
+  rays.dir_x[lane] = ray.dir_x, rays.dir_y[lane] = ray.dir_y, rays.dir_z[lane] = ray.dir_z;
+  rays.tnear[lane] = ray.tnear, rays.tfar[lane] = ray.tfar;
+  rays.time[lane] = ray.time, rays.mask[lane] = ray.mask;
+  rays.id[lane] = ray.id, rays.flags[lane] = ray.flags;
+}
+
+/// rtcIntersect8 or rtcOccluded8 of rays that are close together, by either version's signature.
+template <auto Function, class Query>
+void ask_packet(RTCScene scene, const Lanes& lanes, Query& query) {
+#if RTC_VERSION_MAJOR >= 4
+  std::conditional_t<std::is_same_v<Query, RTCRayHit8>, RTCIntersectArguments, RTCOccludedArguments>
+      arguments;
+  if constexpr (std::is_same_v<Query, RTCRayHit8>) {
+    rtcInitIntersectArguments(&arguments);
+  } else {
+    rtcInitOccludedArguments(&arguments);
+  }
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  Function(lanes.valid.data(), scene, &query, &arguments);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  Function(lanes.valid.data(), scene, &context, &query);
 #endif
 }
 
@@ -109,19 +153,46 @@ std::optional<RayHit> RayScene::cast(const Eigen::Vector3f& origin,
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   ask<rtcIntersect1>(scene_.get(), query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  return hit_at(query.ray.tfar, query.hit.instID[0], query.hit.primID, {query.hit.u, query.hit.v},
+                direction);
+}
 
+std::vector<std::optional<RayHit>> RayScene::cast(
+    const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> directions) const {
+  std::vector<std::optional<RayHit>> out(directions.size());
+  for (std::size_t first = 0; first < directions.size(); first += kPacket) {
+    const Lanes lanes(directions.size() - first);
+    RTCRayHit8 query{};
+    for (std::size_t k = 0; k < kPacket && first + k < directions.size(); ++k) {
+      set_lane(query.ray, k,
+               ray_of(origin, directions[first + k], 0, std::numeric_limits<float>::infinity()));
+      query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+      query.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
+    ask_packet<rtcIntersect8>(scene_.get(), lanes, query);
+    for (std::size_t k = 0; k < kPacket && first + k < directions.size(); ++k) {
+      if (query.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+      out[first + k] = hit_at(query.ray.tfar[k], query.hit.instID[0][k], query.hit.primID[k],
+                              {query.hit.u[k], query.hit.v[k]}, directions[first + k]);
+    }
+  }
+  return out;
+}
+
+RayHit RayScene::hit_at(float distance, std::uint32_t instance, std::uint32_t triangle_index,
+                        const Eigen::Vector2f& weights, const Eigen::Vector3f& direction) const {
   RayHit hit;
-  hit.distance = query.ray.tfar;
-  hit.instance = static_cast<int>(query.hit.instID[0]);
+  hit.distance = distance;
+  hit.instance = static_cast<int>(instance);
   const TriangleMesh& mesh = meshes_->mesh(instances_[hit.instance].mesh);
-  const auto& triangle = mesh.triangles[query.hit.primID];
-  const std::array<float, 3> weight{1 - query.hit.u - query.hit.v, query.hit.u, query.hit.v};
+  const auto& triangle = mesh.triangles[triangle_index];
+  const std::array<float, 3> weight{1 - weights.x() - weights.y(), weights.x(), weights.y()};
   const Eigen::Vector3f& a = mesh.vertices[triangle[0]];
   const Eigen::Vector3f edge = mesh.vertices[triangle[1]] - a;
   hit.face_normal = edge.cross(mesh.vertices[triangle[2]] - a).normalized();
   hit.normal = hit.face_normal;
-  hit.triangle = query.hit.primID;
-  hit.weights = {query.hit.u, query.hit.v};
+  hit.triangle = triangle_index;
+  hit.weights = weights;
   if (!mesh.normals.empty()) {
     hit.normal.setZero();
     for (int k = 0; k < 3; ++k) hit.normal += weight[k] * mesh.normals[triangle[k]];
@@ -149,9 +220,24 @@ Eigen::Vector3f RayScene::color(const RayHit& hit, float side) const {
 }
 
 bool RayScene::blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
-  const Eigen::Vector3f direction = to - from;
-  const float margin = 2e-4f / direction.norm();
-  return hits_anything(scene_.get(), ray_of(from, direction, margin, 1 - margin));
+  return hits_anything(scene_.get(), ray_between(from, to));
+}
+
+std::vector<std::uint8_t> RayScene::blocked(std::span<const Eigen::Vector3f> from,
+                                            const Eigen::Vector3f& to) const {
+  std::vector<std::uint8_t> out(from.size());
+  for (std::size_t first = 0; first < from.size(); first += kPacket) {
+    const Lanes lanes(from.size() - first);
+    RTCRay8 rays{};
+    for (std::size_t k = 0; k < kPacket && first + k < from.size(); ++k) {
+      set_lane(rays, k, ray_between(from[first + k], to));
+    }
+    ask_packet<rtcOccluded8>(scene_.get(), lanes, rays);
+    for (std::size_t k = 0; k < kPacket && first + k < from.size(); ++k) {
+      out[first + k] = rays.tfar[k] < 0;
+    }
+  }
+  return out;
 }
 
 }  // namespace bpa::sim

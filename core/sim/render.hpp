@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/parallel.hpp"
@@ -64,12 +65,22 @@ class RayScene {
 
   /// The first surface along the ray, seen from either side.
   std::optional<RayHit> cast(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;
+  /// The same of many rays from one point, in their order: takes a third of the time where
+  /// neighbours are close together.
+  std::vector<std::optional<RayHit>> cast(const Eigen::Vector3f& origin,
+                                          std::span<const Eigen::Vector3f> directions) const;
   /// rgb in [0, 1], averaged over a square of `side` metres; grey for a mesh without colours.
   Eigen::Vector3f color(const RayHit& hit, float side) const;
   /// Whether a surface lies between two points, except in the first and last 0.2 mm.
   bool blocked(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
+  /// The same of many points `from`, in their order: 1 where a surface lies between. As quick.
+  std::vector<std::uint8_t> blocked(std::span<const Eigen::Vector3f> from,
+                                    const Eigen::Vector3f& to) const;
 
  private:
+  RayHit hit_at(float distance, std::uint32_t instance, std::uint32_t triangle,
+                const Eigen::Vector2f& weights, const Eigen::Vector3f& direction) const;
+
   const RayMeshes* meshes_;
   std::vector<PosedMesh> instances_;
   std::vector<Eigen::Matrix3f> rotations_;  // world from mesh, of the instances

@@ -46,6 +46,8 @@ class InfraredCamera {
   Eigen::Vector3f beside(double offset) const;
   std::optional<InfraredHit> look(const Eigen::Vector3f& from,
                                   const Eigen::Vector3f& direction) const;
+  /// The same of many directions from the camera, in their order.
+  std::vector<std::optional<InfraredHit>> look(std::span<const Eigen::Vector3f> directions) const;
   /// Matt unless the scene says otherwise.
   Material material(const RayHit& hit) const;
   /// The share of infrared light that a surface returns: its material's, less where it looks dark.
