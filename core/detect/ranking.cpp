@@ -19,6 +19,12 @@ bool duplicates(const Search& search, const Pose& a, const Pose& b) {
   return error.position < options.duplicate_m && error.angle < options.duplicate_rad;
 }
 
+bool found_before(const Search& search, const Pose& pose) {
+  return search.before && std::ranges::any_of(*search.before, [&](const Candidate& other) {
+    return duplicates(search, pose, other.pose());
+  });
+}
+
 void suppress_duplicates(const Search& search, Candidates& candidates) {
   sort_by_score(candidates);
   Candidates kept;
@@ -26,7 +32,9 @@ void suppress_duplicates(const Search& search, Candidates& candidates) {
     const bool seen = std::ranges::any_of(kept, [&](const Candidate& other) {
       return duplicates(search, candidate.pose(), other.pose());
     });
-    if (seen) {
+    if (found_before(search, candidate.pose())) {
+      search.reject("found in an earlier round", candidate.pose());
+    } else if (seen) {
       search.reject("duplicate of a better one", candidate.pose());
     } else {
       kept.push_back(std::move(candidate));

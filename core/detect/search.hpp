@@ -60,6 +60,7 @@ struct Search {
   const SceneSample* sample;  ///< What this round looks up; at first that of the scene.
   const CheckImage* image;    ///< What poses are checked with; at first that of the scene.
   int round = 0;
+  const Candidates* before = nullptr;  ///< What earlier rounds have scored; null in the first.
   const ObjectModel& model;
   DetectOptions options;
   const ScoreLayers& layers;

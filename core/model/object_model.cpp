@@ -212,6 +212,16 @@ ViewPoint view_point(const ObjectModel& model, const ModelView& view, std::size_
           view.edge_distance[k], model.normal_variance[i]};
 }
 
+void ViewBlock::set(int lane, const ViewPoint& from) {
+  for (int axis = 0; axis < 3; ++axis) {
+    point[axis][lane] = from.point[axis];
+    normal[axis][lane] = from.normal[axis];
+    soft_normal[axis][lane] = from.soft_normal[axis];
+  }
+  edge_distance[lane] = from.edge_distance;
+  normal_variance[lane] = from.normal_variance;
+}
+
 ViewEdge view_edge(const ObjectModel& model, const ModelView& view, std::size_t k) {
   const std::uint32_t i = view.edges[k];
   return {model.surface.points[i], model.surface.normals[i], view.outward[k]};
@@ -238,8 +248,11 @@ std::vector<ViewSample> sample_views(const ObjectModel& model) {
   std::vector<ViewSample> out;
   for (const ModelView& view : model.index->views) {
     ViewSample& sample = out.emplace_back();
-    for_each_spread(view.visible.size(),
-                    [&](std::size_t k) { sample.points.push_back(view_point(model, view, k)); });
+    for_each_spread(view.visible.size(), [&](std::size_t k) {
+      const auto lane = static_cast<int>(sample.num_points++ % ViewBlock::kSize);
+      if (lane == 0) sample.points.emplace_back();
+      sample.points.back().set(lane, view_point(model, view, k));
+    });
     for_each_spread(view.edges.size(),
                     [&](std::size_t k) { sample.edges.push_back(view_edge(model, view, k)); });
   }

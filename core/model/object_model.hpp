@@ -55,6 +55,16 @@ struct ViewPoint {
   float normal_variance = 0;                   ///< See ModelSource::normal_variance.
 };
 
+/// Surface points that a view shows, number beside number, for vector instructions. Lanes that hold
+/// no point have a normal of zero.
+struct ViewBlock {
+  static constexpr int kSize = 32;
+  float point[3][kSize] = {}, normal[3][kSize] = {}, soft_normal[3][kSize] = {};
+  float edge_distance[kSize] = {}, normal_variance[kSize] = {};
+
+  void set(int lane, const ViewPoint& from);
+};
+
 /// A point on a range edge of a view; see ModelView::outward.
 struct ViewEdge {
   Eigen::Vector3f point, normal, outward;
@@ -64,7 +74,8 @@ struct ViewEdge {
 /// first part of them is spread over the view.
 struct ViewSample {
   static constexpr std::size_t kMost = 256;  ///< Of each kind.
-  std::vector<ViewPoint> points;
+  std::size_t num_points = 0;
+  std::vector<ViewBlock> points;
   std::vector<ViewEdge> edges;
 };
 

@@ -64,6 +64,7 @@ Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectMode
     }
     for (Search& search : searches) {
       search.round = round;
+      search.before = &found[&search - searches.data()];
       search.sample = &sample;
       search.image = &explained.image;
       search.deadline = rounds_end;
@@ -75,6 +76,7 @@ Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectMode
     }
   }
   for (std::size_t i = 0; i < models.size(); ++i) {
+    searches[i].before = nullptr;
     suppress_duplicates(searches[i], found[i]);
     searches[i].deadline = deadline;
   }

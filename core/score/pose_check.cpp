@@ -30,8 +30,9 @@ struct Block {
 
 // Straight-line code over arrays, so that the compiler uses the widest vectors there are.
 BPA_DISPATCH void project_block(const CheckImage& image, const CheckPoints& model,
-                                const FastPose& pose, int first, Block& out) {
-  const float* r = pose.rotation.data();  // column by column
+                                const FastPose& pose, int first, Block& __restrict out) {
+  float r[9];  // column by column
+  std::copy_n(pose.rotation.data(), 9, r);
   const Eigen::Vector3f& t = pose.translation;
   const float tx = t.x(), ty = t.y(), tz = t.z();
   const float fx = image.fx, fy = image.fy, cx = image.cx + 0.5f, cy = image.cy + 0.5f;

@@ -4,9 +4,13 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <numeric>
 #include <span>
 
+#include "core/base/dispatch.hpp"
 #include "core/model/model_index.hpp"
 #include "core/score/likelihood.hpp"
 
@@ -18,66 +22,188 @@ constexpr float kLateralSigma = 0.003f;  // metres, beside a pixel: the same acr
 constexpr float kTruncation = 4.5f;      // three standard deviations, squared and halved
 constexpr float kModelSigma = 0.0025f;   // metres: what models and their poses are off by
 constexpr float kOnSurface = 0.006f;     // metres, plus noise
+constexpr float kSameDirection = 0.6f;   // cosine of normals on one surface
+constexpr float kVisibilitySigma_m = 0.01f;  // as of visibility_probability()
 constexpr float kMinSlant = 0.3f;        // cosine; the sensor sees little of steeper surface
 // Beside model edges: metres in front that hide, metres beyond the edge that are looked at, metres
 // and cosine up to which surface goes on.
 constexpr float kHiding = 0.015f, kBeyond = 0.012f, kGoesOn = 0.012f, kTurned = 0.8f;
 
-struct Sums {
-  double weight = 0, range = 0, normal = 0, free = 0, agreeing = 0;
-  double background = 0;
-  int facing = 0, visible = 0, unknown = 0;
-  Eigen::Matrix3f normals = Eigen::Matrix3f::Zero();  // of agreeing points, squared
-};
+// Functions without branches and library calls, so that loops become vectors.
+inline float lesser(float a, float b) { return a < b ? a : b; }
+inline float greater(float a, float b) { return a > b ? a : b; }
+inline float one_if(bool condition) { return condition ? 1.0f : 0.0f; }
 
-// The probability that the pixel of a point so far from a range edge of the view shows the model
-// and not what is behind it: the pixel is as large as it is, and the pose is a little off.
-float inside_probability(float edge_distance, float pixel_size) {
-  const float z = edge_distance / (kLateralSigma + pixel_size);
-  return 1 - std::exp(-z * z);
+// exp(x) for x <= 0, to 2e-6 of its value.
+inline float exp_negative(float x) {
+  constexpr float kLog2e = 1.44269504f, kLog2 = 0.69314718f;
+  constexpr float kLeast = -80;  // below, the result is 0 to every sum here
+  const float scaled = greater(x, kLeast) * kLog2e;
+  const int whole = static_cast<int>(scaled - 0.5f);  // to the nearest
+  const float r = (scaled - static_cast<float>(whole)) * kLog2;
+  const float series =
+      1 + r * (1 + r * (1 / 2.0f + r * (1 / 6.0f + r * (1 / 24.0f + r * (1 / 120.0f)))));
+  return series * std::bit_cast<float>((whole + 127) << 23);
 }
 
-// What the noise model says of a point's differences, standard deviations.
-struct PointNoise {
-  float inside = 1;  // the probability that its pixel shows the model
-  float range = 0;   // metres along the ray
-  float normal = 0;  // radians
+// acos(cosine) to 7e-5 radians (Abramowitz and Stegun, 4.4.45).
+inline float acos_of(float cosine) {
+  const float c = lesser(std::abs(cosine), 1);
+  const float angle =
+      std::sqrt(1 - c) * (1.5707288f + c * (-0.2121144f + c * (0.0742610f - c * 0.0187293f)));
+  const float negative = one_if(cosine < 0);
+  return angle + negative * (3.14159265f - 2 * angle);
+}
+
+// Where the model's surface points fall, and what is observed there.
+struct SeenBlock {
+  static constexpr int kSize = ViewBlock::kSize;
+  float x[kSize], y[kSize], z[kSize];  // camera frame
+  float normal[3][kSize], soft_normal[3][kSize];
+  float slant[kSize];  // cosine of the angle between the normal and the line of sight
+  float u[kSize], v[kSize];
+  int pixel[kSize];    // -1: outside the image, or facing away
+  float facing[kSize], in_image[kSize], seen[kSize];  // 1 or 0; seen: a depth is known there
+  float depth[kSize], observed[3][kSize];
+  float noise_range[kSize], noise_normal[kSize];  // of the model, by edge distance and slant
 };
 
-// A surface point as the camera sees it.
-struct SeenPoint {
-  Eigen::Vector3f point, normal, soft_normal;
-  std::size_t pixel = 0;
-  float slant = 0;  // cosine of the angle between the normal and the line of sight
-  PointNoise noise;
+// Straight-line code over arrays, so that the compiler uses the widest vectors there are.
+BPA_DISPATCH void place_block(const CheckImage& image, const ViewBlock& model, const FastPose& pose,
+                              int count, SeenBlock& __restrict out) {
+  float r[9];  // column by column
+  std::copy_n(pose.rotation.data(), 9, r);
+  const float tx = pose.translation.x(), ty = pose.translation.y(), tz = pose.translation.z();
+  const float fx = image.fx, fy = image.fy, cx = image.cx + 0.5f, cy = image.cy + 0.5f;
+  for (int k = 0; k < SeenBlock::kSize; ++k) {
+    const float px = model.point[0][k], py = model.point[1][k], pz = model.point[2][k];
+    const float nx = model.normal[0][k], ny = model.normal[1][k], nz = model.normal[2][k];
+    const float sx = model.soft_normal[0][k], sy = model.soft_normal[1][k],
+                sz = model.soft_normal[2][k];
+    const float x = r[0] * px + r[3] * py + r[6] * pz + tx;
+    const float y = r[1] * px + r[4] * py + r[7] * pz + ty;
+    const float z = r[2] * px + r[5] * py + r[8] * pz + tz;
+    const float a = r[0] * nx + r[3] * ny + r[6] * nz;
+    const float b = r[1] * nx + r[4] * ny + r[7] * nz;
+    const float c = r[2] * nx + r[5] * ny + r[8] * nz;
+    const float slant = -(a * x + b * y + c * z) / std::sqrt(x * x + y * y + z * z);
+    out.x[k] = x, out.y[k] = y, out.z[k] = z;
+    out.normal[0][k] = a, out.normal[1][k] = b, out.normal[2][k] = c;
+    out.soft_normal[0][k] = r[0] * sx + r[3] * sy + r[6] * sz;
+    out.soft_normal[1][k] = r[1] * sx + r[4] * sy + r[7] * sz;
+    out.soft_normal[2][k] = r[2] * sx + r[5] * sy + r[8] * sz;
+    out.slant[k] = slant;
+    out.u[k] = fx * x / z + cx;
+    out.v[k] = fy * y / z + cy;
+    out.facing[k] = one_if((z > kNearest_m) & (slant >= kMinSlant) & (k < count));
+  }
+}
+
+// Looks up what is observed at each point that faces the camera, and the noise there.
+void look_up_block(const CheckImage& image, const NoiseTable& noise, const ViewBlock& model,
+                   SeenBlock& block) {
+  const auto width = static_cast<float>(image.width), height = static_cast<float>(image.height);
+  for (int k = 0; k < SeenBlock::kSize; ++k) {
+    const float u = block.u[k], v = block.v[k];
+    const bool facing = block.facing[k] > 0;
+    const bool inside = facing && u >= 0 && v >= 0 && u < width && v < height;
+    const int at = inside ? static_cast<int>(v) * image.width + static_cast<int>(u) : -1;
+    const CheckPixel pixel = inside ? image.pixels[static_cast<std::size_t>(at)] : CheckPixel{};
+    if (!facing) block.z[k] = block.slant[k] = 1;
+    block.pixel[k] = at;
+    block.in_image[k] = one_if(inside);
+    block.seen[k] = one_if(pixel.depth > 0);
+    block.depth[k] = pixel.depth;
+    for (int axis = 0; axis < 3; ++axis) block.observed[axis][k] = pixel.normal[axis];
+    block.noise_range[k] = noise.range(model.edge_distance[k], block.slant[k]);
+    block.noise_normal[k] = noise.normal(model.edge_distance[k], block.slant[k]);
+  }
+}
+
+// Sums of what the points say, lane by lane: the same for any width of vectors.
+struct Sums {
+  using Lanes = std::array<float, ViewBlock::kSize>;
+  Lanes facing{}, visible{}, unknown{}, agreeing{}, on_background{};  // numbers; agreeing weighted
+  Lanes weight{}, range{}, normal{}, free{};
+  Lanes expected{}, explained{};      // squared metres, seen from the front at one metre
+  Lanes explained_points{};           // number
+  std::array<Lanes, 6> normals{};     // of agreeing points, squared: xx, xy, xz, yy, yz, zz
+
+  static double of(const Lanes& lanes) { return std::accumulate(lanes.begin(), lanes.end(), 0.0); }
 };
 
-// Adds the pixel's part of the likelihoods; true when it shows the model's surface.
-bool add_point(const CheckImage& image, const SeenPoint& seen, Sums& sums) {
-  const CheckPixel& pixel = image.pixels[seen.pixel];
-  const Eigen::Vector3f& point = seen.point;
-  const Eigen::Vector3f& normal = seen.normal;
-  const float difference = pixel.depth - point.z();
-  const float visible = visibility_probability(pixel.depth, point.z());
-  const float weight = visible * seen.noise.inside;
-  sums.visible += visible > 0.5f;
-  // Depth errors along the ray grow with the slant of the surface.
-  const float slant = std::max(0.25f, seen.slant);
-  const float noise = image.noise(point.z());
-  const float z = difference / seen.noise.range;
-  sums.weight += weight;
-  sums.range += weight * -std::min(0.5f * z * z, kTruncation);
-  // Beside a crease either the face's own normal is seen or the mean across the crease.
-  const Eigen::Vector3f observed = pixel.direction();
-  const float cosine = std::max(normal.dot(observed), seen.soft_normal.dot(observed));
-  const float angle = std::acos(std::clamp(cosine, -1.0f, 1.0f)) / seen.noise.normal;
-  const bool known = pixel.normal[0] != 0 || pixel.normal[1] != 0 || pixel.normal[2] != 0;
-  sums.normal += weight * (known ? -std::min(0.5f * angle * angle, kTruncation) : -1.0f);
-  sums.free += weight * (difference > 0.02f);
-  const bool on_surface = std::abs(difference) < (kOnSurface + 2 * noise) / slant && cosine > 0.6f;
-  sums.agreeing += weight * on_surface;
-  if (on_surface) sums.normals += normal * normal.transpose();
-  return on_surface && visible > 0.5f;
+// Adds the likelihoods of a block. `shows` receives whether a point's pixel shows the model.
+BPA_DISPATCH void add_block(const CheckImage& image, float usual_noise, const ViewBlock& model,
+                            const SeenBlock& block, Sums& __restrict sums, float* __restrict shows) {
+  const SensorNoise depth_noise = image.noise;
+  const float pixel_size = 1 / image.fx;
+  for (int k = 0; k < SeenBlock::kSize; ++k) {
+    const float z = block.z[k], slant = block.slant[k], seen = block.seen[k];
+    const float area = slant / (z * z);
+    sums.facing[k] += block.facing[k];
+    sums.expected[k] += block.facing[k] * area;
+    sums.unknown[k] += block.in_image[k] - seen;
+
+    // What the noise model says of the differences, standard deviations.
+    const float noise = depth_noise(z);
+    const float sensor = block.noise_range[k] * noise / usual_noise, off = kModelSigma / slant;
+    const float sigma_range = std::sqrt(sensor * sensor + off * off);
+    const float by_view = block.noise_normal[k] * block.noise_normal[k];
+    const float sigma_normal =
+        std::sqrt(greater(by_view, model.normal_variance[k]) + kNormalSigma * kNormalSigma);
+    // The probability that the pixel of a point so far from a range edge of the view shows the
+    // model and not what is behind it: the pixel is as large as it is, and the pose is a little
+    // off.
+    const float edge = lesser(model.edge_distance[k], 1) / (kLateralSigma + z * pixel_size);
+    const float inside = 1 - exp_negative(-edge * edge);
+
+    const float difference = block.depth[k] - z;
+    const float hidden = lesser(difference, 0) / kVisibilitySigma_m;
+    const float visible = seen * exp_negative(-0.5f * hidden * hidden);
+    const float in_sight = one_if(visible > 0.5f);
+    const float weight = visible * inside;
+    sums.visible[k] += in_sight;
+    sums.weight[k] += weight;
+    const float deviation = difference / sigma_range;
+    sums.range[k] -= weight * lesser(0.5f * deviation * deviation, kTruncation);
+    // Beside a crease either the face's own normal is seen or the mean across the crease.
+    const float ox = block.observed[0][k], oy = block.observed[1][k], oz = block.observed[2][k];
+    const float nx = block.normal[0][k], ny = block.normal[1][k], nz = block.normal[2][k];
+    const float hard = nx * ox + ny * oy + nz * oz;
+    const float soft = block.soft_normal[0][k] * ox + block.soft_normal[1][k] * oy +
+                       block.soft_normal[2][k] * oz;
+    const float cosine = greater(hard, soft) / 127;
+    const float angle = acos_of(cosine) / sigma_normal;
+    const float known = one_if(ox * ox + oy * oy + oz * oz > 0);
+    sums.normal[k] -= weight * (known * lesser(0.5f * angle * angle, kTruncation) + 1 - known);
+    sums.free[k] += weight * one_if(difference > kHidden_m);
+    // Depth errors along the ray grow with the slant of the surface.
+    const float on_surface = seen *
+                             one_if(std::abs(difference) * slant < kOnSurface + 2 * noise) *
+                             one_if(cosine > kSameDirection);
+    sums.agreeing[k] += weight * on_surface;
+    sums.normals[0][k] += on_surface * nx * nx;
+    sums.normals[1][k] += on_surface * nx * ny;
+    sums.normals[2][k] += on_surface * nx * nz;
+    sums.normals[3][k] += on_surface * ny * ny;
+    sums.normals[4][k] += on_surface * ny * nz;
+    sums.normals[5][k] += on_surface * nz * nz;
+    const float shown = on_surface * in_sight;
+    sums.explained[k] += shown * area;
+    sums.explained_points[k] += shown;
+    shows[k] = shown;
+  }
+}
+
+Eigen::Matrix3f symmetric(const std::array<Sums::Lanes, 6>& lanes) {
+  Eigen::Matrix3f out;
+  int entry = 0;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) {
+      out(row, column) = out(column, row) = static_cast<float>(Sums::of(lanes[entry++]));
+    }
+  }
+  return out;
 }
 
 // Beyond a range edge of the model the observed surface must not simply go on: it may be further
@@ -115,63 +241,44 @@ void score_edges(const CheckImage& image, const ObjectModel& model, std::span<co
   out.edge = visible > 0 ? -static_cast<double>(goes_on) / visible : -1;
 }
 
-// Position, normal and slant. False where the point faces away or is behind the camera.
-bool place_point(const ViewPoint& of_model, const FastPose& pose, SeenPoint& out) {
-  out.point = pose * of_model.point;
-  out.normal = pose.rotation * of_model.normal;
-  out.slant = -out.normal.dot(out.point) / out.point.norm();
-  return out.point.z() > kNearest_m && out.slant >= kMinSlant;
-}
+// A view's points, block after block. Calls visit(model block, block as seen).
+class ViewLook {
+ public:
+  ViewLook(const CheckImage& image, const ObjectModel& model, const FastPose& pose)
+      : image_(image), model_(model), pose_(pose) {}
 
-// The rest of a placed point; false outside the image.
-bool see_placed(const CheckImage& image, const ObjectModel& model, const ViewPoint& of_model,
-                const FastPose& pose, SeenPoint& out) {
-  const int pixel = image.pixel_of(out.point);
-  if (pixel < 0) return false;
-  out.pixel = static_cast<std::size_t>(pixel);
-  out.soft_normal = pose.rotation * of_model.soft_normal;
-  const float edge_distance = of_model.edge_distance;
-  const NoiseTable& noise = model.index->noise;
-  const float sensor = noise.range(edge_distance, out.slant) * image.noise(out.point.z()) /
-                       depth_noise(static_cast<float>(model.noise.depth));
-  const float off = kModelSigma / out.slant;
-  out.noise.range = std::sqrt(sensor * sensor + off * off);
-  const float normal = noise.normal(edge_distance, out.slant);
-  out.noise.normal =
-      std::sqrt(std::max(normal * normal, of_model.normal_variance) + kNormalSigma * kNormalSigma);
-  out.noise.inside = inside_probability(edge_distance, out.point.z() / image.fx);
-  return true;
-}
-
-// Adds every point of a view. Each of them stands for `share` surface points.
-void add_points(const CheckImage& image, const ObjectModel& model, const FastPose& pose,
-                double share, std::size_t count, const auto& point_at, Sums& sums,
-                SurfaceAgreement& out, std::vector<std::uint32_t>* explained) {
-  // Pixels that a point's surface covers, seen from the front at one metre.
-  const double area = model.index->point_area * share;
-  const double pixels_per_point = area * static_cast<double>(image.fx) * image.fy;
-  SeenPoint seen;
-  for (std::size_t k = 0; k < count; ++k) {
-    const ViewPoint& of_model = point_at(k);
-    if (!place_point(of_model, pose, seen)) continue;
-    ++sums.facing;
-    const double z = seen.point.z();
-    const double covered = pixels_per_point * seen.slant / (z * z);
-    out.expected_pixels += covered;
-    if (!see_placed(image, model, of_model, pose, seen)) continue;  // the image border hides it
-    const CheckPixel& pixel = image.pixels[seen.pixel];
-    if (pixel.depth <= 0) {
-      ++sums.unknown;
-      continue;
-    }
-    if (add_point(image, seen, sums)) {
-      out.explained_pixels += covered;
-      out.explained_area += area;
-      sums.background += pixel.searched ? 0 : 1;
-      if (explained) explained->push_back(static_cast<std::uint32_t>(seen.pixel));
+  // The first `count` points of a sample.
+  void at(const ViewSample& sample, std::size_t count, const auto& visit) {
+    for (std::size_t first = 0; first < count; first += ViewBlock::kSize) {
+      look(sample.points[first / ViewBlock::kSize], count - first, visit);
     }
   }
-}
+  // All points.
+  void at(const ModelView& view, const auto& visit) {
+    ViewBlock block;
+    for (std::size_t first = 0; first < view.visible.size(); first += ViewBlock::kSize) {
+      const std::size_t left = view.visible.size() - first;
+      const auto lanes = std::min<std::size_t>(left, ViewBlock::kSize);
+      for (std::size_t k = 0; k < lanes; ++k) {
+        block.set(static_cast<int>(k), view_point(model_, view, first + k));
+      }
+      look(block, left, visit);
+    }
+  }
+
+ private:
+  void look(const ViewBlock& block, std::size_t left, const auto& visit) {
+    const auto count = static_cast<int>(std::min<std::size_t>(left, ViewBlock::kSize));
+    place_block(image_, block, pose_, count, seen_);
+    look_up_block(image_, model_.index->noise, block, seen_);
+    visit(block, seen_);
+  }
+
+  const CheckImage& image_;
+  const ObjectModel& model_;
+  const FastPose& pose_;
+  SeenBlock seen_;
+};
 
 std::size_t index_of(const ObjectModel& model, const ModelView& view) {
   return static_cast<std::size_t>(&view - model.index->views.data());
@@ -188,34 +295,55 @@ SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& mod
   const ViewSample& sample = model.view_samples[index_of(model, view)];
   const std::size_t all = view.visible.size();
   const auto wanted = static_cast<std::size_t>(std::max(0, max_points));
+  const bool whole = max_points <= 0 || wanted > sample.num_points;
   SurfaceAgreement out;
   Sums sums;
-  if (max_points <= 0 || wanted > sample.points.size()) {
-    add_points(
-        image, model, fast, 1, all, [&](std::size_t k) { return view_point(model, view, k); }, sums,
-        out, explained);
+  const auto usual_noise = static_cast<float>(depth_noise(static_cast<float>(model.noise.depth)));
+  const auto add = [&](const ViewBlock& block, const SeenBlock& seen) {
+    float shows[ViewBlock::kSize];
+    add_block(image, usual_noise, block, seen, sums, shows);
+    for (int k = 0; k < ViewBlock::kSize; ++k) {
+      if (shows[k] == 0) continue;
+      const auto pixel = static_cast<std::uint32_t>(seen.pixel[k]);
+      sums.on_background[k] += image.pixels[pixel].searched ? 0.0f : 1.0f;
+      if (explained) explained->push_back(pixel);
+    }
+  };
+  ViewLook look(image, model, fast);
+  if (whole) {
+    look.at(view, add);
   } else {
-    add_points(
-        image, model, fast, static_cast<double>(all) / max_points, wanted,
-        [&](std::size_t k) -> const ViewPoint& { return sample.points[k]; }, sums, out, explained);
+    look.at(sample, wanted, add);
   }
+  // Each point stands for so much surface.
+  const double share = whole ? 1 : static_cast<double>(all) / max_points;
+  const double area = model.index->point_area * share;
+  const double pixels = area * static_cast<double>(image.fx) * static_cast<double>(image.fy);
+  out.expected_pixels = pixels * Sums::of(sums.expected);
+  out.explained_pixels = pixels * Sums::of(sums.explained);
+  out.explained_area = area * Sums::of(sums.explained_points);
   if (explained) {
     std::ranges::sort(*explained);
     explained->erase(std::ranges::unique(*explained).begin(), explained->end());
   }
   out.relative_area = out.explained_area / (model.diameter * model.diameter);
-  out.unknown = sums.facing > 0 ? static_cast<double>(sums.unknown) / sums.facing : 0;
-  if (sums.agreeing > 0) out.background = std::min(1.0, sums.background / sums.agreeing);
-  if (sums.weight > 1) {
-    out.range = sums.range / (kTruncation * sums.weight);
-    out.normal = sums.normal / (kTruncation * sums.weight);
-    out.free_space = sums.free / sums.weight;
-    out.agreeing = sums.agreeing / sums.weight;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver(sums.normals);
-    const float trace = sums.normals.trace();
+  const double facing = Sums::of(sums.facing), weight = Sums::of(sums.weight);
+  const double agreeing = Sums::of(sums.agreeing);
+  if (facing > 0) {
+    out.unknown = Sums::of(sums.unknown) / facing;
+    out.visibility = Sums::of(sums.visible) / facing;
+  }
+  if (agreeing > 0) out.background = std::min(1.0, Sums::of(sums.on_background) / agreeing);
+  if (weight > 1) {
+    out.range = Sums::of(sums.range) / (kTruncation * weight);
+    out.normal = Sums::of(sums.normal) / (kTruncation * weight);
+    out.free_space = Sums::of(sums.free) / weight;
+    out.agreeing = agreeing / weight;
+    const Eigen::Matrix3f normals = symmetric(sums.normals);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver(normals, Eigen::EigenvaluesOnly);
+    const float trace = normals.trace();
     out.shape = trace > 0 ? static_cast<double>(solver.eigenvalues()[1] / trace) : 0;
   }
-  out.visibility = sums.facing > 0 ? static_cast<double>(sums.visible) / sums.facing : 0;
   // Of so many surface points, as many edge points.
   const std::size_t edges = max_points > 0 ? std::min(wanted, kMostEdges) : kAllEdges;
   score_edges(image, model, std::span(sample.edges).first(std::min(edges, sample.edges.size())),
@@ -234,16 +362,19 @@ HiddenPoints hidden_points(const CheckImage& image, const ObjectModel& model, co
                            int max_points) {
   const FastPose fast = to_fast(pose);
   const ModelView& view = nearest_view(model.index->views, fast);
-  const std::span<const ViewPoint> points = model.view_samples[index_of(model, view)].points;
+  const ViewSample& sample = model.view_samples[index_of(model, view)];
   HiddenPoints out;
-  SeenPoint seen;
-  for (const ViewPoint& point : points.first(std::min<std::size_t>(points.size(), max_points))) {
-    if (!place_point(point, fast, seen) || !see_placed(image, model, point, fast, seen)) continue;
-    ++out.facing;
-    if (hides(image.pixels[seen.pixel].depth, seen.point.z(), kHiding)) {
-      out.pixels.push_back(static_cast<std::uint32_t>(seen.pixel));
-    }
-  }
+  ViewLook(image, model, fast)
+      .at(sample, std::min<std::size_t>(sample.num_points, max_points),
+          [&](const ViewBlock&, const SeenBlock& seen) {
+            for (int k = 0; k < ViewBlock::kSize; ++k) {
+              if (seen.pixel[k] < 0) continue;
+              ++out.facing;
+              if (hides(seen.depth[k], seen.z[k], kHiding)) {
+                out.pixels.push_back(static_cast<std::uint32_t>(seen.pixel[k]));
+              }
+            }
+          });
   return out;
 }
 
