@@ -50,6 +50,9 @@ DiagnosticStatus detection_line(const Health& health) {
   for (const auto& timing : status.stage_timings) {
     values.push_back({"median ms of " + timing.name, text(timing.duration_ms, "%.3f")});
   }
+  for (const auto& [name, count] : health.effort) {
+    values.push_back({"median " + name, text(count, "%.0f")});
+  }
   values.push_back({"memory MB", text(1e-6 * static_cast<double>(status.memory_bytes), "%.1f")});
   values.push_back({"uptime s", text(status.uptime_s, "%.0f")});
   const bool empty = status.model_count == 0;

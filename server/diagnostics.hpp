@@ -49,6 +49,7 @@ struct Health {
   std::vector<std::pair<std::string, std::uint64_t>> drops;  ///< Cause and count.
   std::vector<SourceReport> sources;
   std::vector<wire::diagnostic_msgs::KeyValue> fusion = {};  ///< What became of frames combined.
+  std::vector<std::pair<std::string, double>> effort = {};   ///< Medians of a search's counts.
 };
 
 /// One status each for detection, drops, queue and models, and one for every source. Names read

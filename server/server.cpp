@@ -302,10 +302,11 @@ class Running : public Server {
     relay_.report_left_out();
     rates.add(Clock::now(), statistics_.counts());
     if (diagnostics_.wanted()) {
-      diagnostics_.send(diagnostics_message({participant_->node().full(), status(), rates.rates(),
-                                             drops(), source_reports(), fusion()},
-                                            unix_time_ns()),
-                        log_);
+      diagnostics_.send(
+          diagnostics_message({participant_->node().full(), status(), rates.rates(), drops(),
+                               source_reports(), fusion(), statistics_.median_effort()},
+                              unix_time_ns()),
+          log_);
     }
     report_losses();
   }

@@ -67,6 +67,8 @@ class Statistics {
   void add_timings(const SceneInterpretations& result) {
     const std::lock_guard<std::mutex> lock(mutex_);
     remember(totals_, result.total_milliseconds);
+    remember(rounds_, static_cast<double>(result.effort.rounds));
+    remember(full_scores_, static_cast<double>(result.effort.full_scores));
     for (const StageTiming& timing : result.timings) {
       auto stage = std::ranges::find(stages_, timing.stage, &Stage::first);
       if (stage == stages_.end()) stage = stages_.insert(stage, {timing.stage, {}});
@@ -106,6 +108,11 @@ class Statistics {
     if (!totals_.empty()) timings.push_back({"total", median(totals_)});
     return timings;
   }
+  /// Medians of a search's counts over the last 50 frames; 0 before the first.
+  std::vector<std::pair<std::string, double>> median_effort() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return {{"rounds", median(rounds_)}, {"full scores", median(full_scores_)}};
+  }
   /// Median of the whole search; 0 before the first.
   double median_total_ms() const {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -121,6 +128,8 @@ class Statistics {
     const std::lock_guard<std::mutex> lock(mutex_);
     stages_.clear();
     totals_.clear();
+    rounds_.clear();
+    full_scores_.clear();
   }
 
  private:
@@ -145,7 +154,7 @@ class Statistics {
   std::array<std::uint64_t, std::size(kRejectionCauses)> rejections_{};
   std::string fusion_restart_;
   std::vector<Stage> stages_;
-  std::deque<double> totals_;
+  std::deque<double> totals_, rounds_, full_scores_;
 };
 
 }  // namespace bpa::server

@@ -147,6 +147,7 @@ Candidates lay_flat(const Search& whole, Candidates found) {
     slide(search, candidate);
     found.push_back(search.scored(search.measured(candidate.pose()), Source::region));
   }
+  whole.effort += search.effort;
   return found;
 }
 

@@ -43,6 +43,7 @@ bool Search::late() const {
 
 Refinement Search::refine(const Pose& start, RefinementOptions refinement) const {
   if (!options.align.use_edges) refinement.max_edges = 0;
+  effort.alignments += refinement.iterations > 0;
   return refine_pose(scene, model, start, refinement);
 }
 
@@ -58,11 +59,13 @@ double Search::quick_score(const Pose& pose) const {
 }
 
 double Search::quick_score(const Pose& pose, int points) const {
+  ++effort.quick_scores;
   Evidence evidence(scene, places, pose, points);
   return layers.round_two.log_odds(measure(evidence, Round::two)) + priors.evidence(pose);
 }
 
 Candidate Search::scored(Refinement refinement, Source found_by) const {
+  ++effort.full_scores;
   Candidate out{.model = &model, .refinement = refinement, .found_by = found_by};
   Evidence evidence(scene, places, out.pose());
   out.values = measure(evidence, options.score.use_round_three ? Round::three : Round::two);
@@ -89,6 +92,7 @@ void Search::reject(std::string_view reason, const Pose& pose) const {
 
 PoseCheck Search::check(const Pose& pose, const CheckCount& count,
                         const CheckTolerance& tolerance) const {
+  ++effort.pose_checks;
   return check_pose(*image, model.index->check, to_fast(pose), count, tolerance);
 }
 

@@ -12,6 +12,7 @@
 #include "core/detect/options.hpp"
 #include "core/detect/pose_prior.hpp"
 #include "core/observation/scene_features.hpp"
+#include "core/result/search_effort.hpp"
 #include "core/score/feature_score.hpp"
 #include "core/score/score_layer.hpp"
 
@@ -70,6 +71,7 @@ struct Search {
   Deadline deadline;              ///< Stages return what they have when it has passed.
   std::uint8_t* cut = nullptr;    ///< Set to 1 when a stage stopped for that; may be null.
   TraceStage* tracing = nullptr;  ///< Of the stage that runs; null unless traced.
+  mutable SearchEffort effort;    ///< Counts so far, by the one thread that runs the search.
 
   /// Whether the deadline has passed; says so in `cut`.
   bool late() const;

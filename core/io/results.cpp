@@ -76,6 +76,10 @@ static void fields(auto& visit, io::Is<StageTiming> auto& timing) {
   visit("milliseconds", timing.milliseconds);
 }
 
+static void fields(auto& visit, io::Is<SearchEffort> auto& effort) {
+  for (const auto& [name, count] : kEffortCounts) visit(name, effort.*count, kOptional);
+}
+
 namespace io {
 
 constexpr const char* kJsonFormat = "bpa results";
@@ -94,6 +98,7 @@ static void fields(auto& visit, Is<FrameResult> auto& frame) {
   }
   if (!frame.server) {
     visit("sensor", frame.sensor, kOptional);
+    visit("effort", frame.effort, kOptional);
     return;
   }
   visit("frame_id", frame.frame_id, kOptional);

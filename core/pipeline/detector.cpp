@@ -151,7 +151,7 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
 
   Stopwatch stage;
   Candidates candidates = LibrarySearch{scene, options_, layers_, request, deadline}.run(
-      *models, trace ? &trace->objects : nullptr, out.budget_exhausted);
+      *models, trace ? &trace->objects : nullptr, out.budget_exhausted, out.effort);
   out.timings.push_back({"objects", stage.lap_milliseconds()});
 
   out.interpretations = interpret_scene(scene, layers_, candidates, request, options_);

@@ -38,7 +38,8 @@ struct Explained {
 }  // namespace
 
 Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectModel>>& models,
-                              std::vector<ObjectTrace>* traces, bool& cut) const {
+                              std::vector<ObjectTrace>* traces, bool& cut,
+                              SearchEffort& effort) const {
   std::vector<std::uint8_t> late(models.size(), 0);
   std::vector<Search> searches;
   searches.reserve(models.size());
@@ -69,6 +70,7 @@ Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectMode
       search.image = &explained.image;
       search.deadline = rounds_end;
     }
+    ++effort.rounds;
     std::vector<Candidates> now(models.size());
     run_stages(round_stages(), searches, request.num_threads, now, traces);
     for (std::size_t i = 0; i < models.size(); ++i) {
@@ -81,6 +83,7 @@ Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectMode
     searches[i].deadline = deadline;
   }
   run_stages(final_stages(), searches, request.num_threads, found, traces);
+  for (const Search& search : searches) effort += search.effort;
   cut = std::ranges::count(late, 1) > 0;
   return joined(found);
 }

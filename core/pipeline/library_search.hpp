@@ -21,9 +21,9 @@ struct LibrarySearch {
 
   /// The candidates of all models. Searches in rounds: each takes another sample of the scene, and
   /// surface that certain placements explain is searched no more. Models compete in each round.
-  /// `cut`: whether time ran out.
+  /// `cut`: whether time ran out. `effort`: the counts of all models.
   Candidates run(const std::vector<std::shared_ptr<const ObjectModel>>& models,
-                 std::vector<ObjectTrace>* traces, bool& cut) const;
+                 std::vector<ObjectTrace>* traces, bool& cut, SearchEffort& effort) const;
 };
 
 }  // namespace bpa

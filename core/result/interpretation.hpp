@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/result/placement.hpp"
+#include "core/result/search_effort.hpp"
 
 namespace bpa {
 
@@ -35,6 +36,7 @@ struct SceneInterpretations {
   std::vector<StageTiming> timings;             ///< In the order the stages ran.
   double total_milliseconds = 0;                ///< Of the whole search.
   bool budget_exhausted = false;                ///< True: the time budget ended the search.
+  SearchEffort effort;                          ///< The work that the search did.
   std::string sensor;    ///< Kind of depth camera that the frame was taken for (SensorKind).
   int fused_frames = 1;  ///< Number of frames combined into the searched depth.
 };

@@ -79,12 +79,15 @@ TEST_F(Diagnostics, RatesTimesAndMemory) {
   health.status.stage_timings = {{"cloud", 12.5}};
   health.status.memory_bytes = 123'400'000;
   health.fusion = {{"frames combined anew", "2"}};
+  health.effort = {{"rounds", 4}, {"full scores", 87}};
   EXPECT_EQ(status("detection").level, DiagnosticStatus::kOk);
   EXPECT_EQ(status("detection").hardware_id, "bpa-server 9.1");
   EXPECT_EQ(values("detection").at("frames received per s"), "29.97");
   EXPECT_EQ(values("detection").at("median ms of cloud"), "12.500");
   EXPECT_EQ(values("detection").at("memory MB"), "123.4");
   EXPECT_EQ(values("detection").at("frames combined anew"), "2");
+  EXPECT_EQ(values("detection").at("median rounds"), "4");
+  EXPECT_EQ(values("detection").at("median full scores"), "87");
 }
 
 TEST_F(Diagnostics, DropsByCauseWarnWhileFramesAreBad) {

@@ -34,6 +34,7 @@ std::vector<FrameResult> some_results() {
   frame.fused_frames = 5;
   frame.sensor = "active_stereo";
   frame.timings = {{"edges", 12.5}};
+  frame.effort = {.rounds = 4, .full_scores = 87};
   frame.interpretations.resize(2);
   frame.interpretations[0].placements = {some_placement(3, 0.9), some_placement(4, 0.1)};
   frame.interpretations[1].rank = 2;
@@ -57,6 +58,7 @@ TEST(Results, JsonKeepsEverythingToTheLastBit) {
   EXPECT_EQ(frame.seconds, 0.1);
   EXPECT_EQ(frame.fused_frames, 5);
   EXPECT_EQ(frame.sensor, "active_stereo");
+  EXPECT_EQ(frame.effort, (SearchEffort{.rounds = 4, .full_scores = 87}));
   ASSERT_EQ(frame.interpretations.size(), 2u);
   const Placement& a = results[0].interpretations[0].placements[1];
   const Placement& b = frame.interpretations[0].placements.at(1);
