@@ -10,6 +10,7 @@
 #include "core/eval/pose_errors.hpp"
 #include "core/io/file_bytes.hpp"
 #include "tools/search.hpp"
+#include "tools/search_tally.hpp"
 
 namespace bpa::cli {
 namespace {
@@ -38,14 +39,9 @@ struct Tally {
   std::vector<std::string> stages;
   std::map<std::string, Survival> by_object;
   Survival all;
-  std::map<std::string, double> milliseconds;  // Summed over frames (and models, within a model).
-  std::vector<std::string> order;              // Of `milliseconds`.
-  int reported = 0, right = 0, frames = 0;
-
-  void add_time(const std::string& stage, double value) {
-    if (!milliseconds.contains(stage)) order.push_back(stage);
-    milliseconds[stage] += value;
-  }
+  RightPlacements placements;
+  StageTimes times;
+  int frames = 0;
 };
 
 // The index of a model in the trace, or -1.
@@ -61,10 +57,8 @@ void add_instance(const io::BopInstance& truth, const FrameTrace& trace,
   const auto is_right = [&](const Pose& pose) {
     return eval::is_right(pose, truth.camera_from_object, trace.models[m]->symmetry);
   };
-  const auto holds = [&](const Interpretation& interpretation) {
-    return std::ranges::any_of(interpretation.placements, [&](const Placement& p) {
-      return p.model_number == truth.obj_id && is_right(p.camera_from_object);
-    });
+  const auto holds_it = [&](const Interpretation& interpretation) {
+    return holds(interpretation, truth, *trace.models[m]);
   };
   tally.stages.clear();
   std::vector<bool> alive;
@@ -73,33 +67,10 @@ void add_instance(const io::BopInstance& truth, const FrameTrace& trace,
     alive.push_back(std::ranges::any_of(stage.poses, is_right, to_pose));
   }
   tally.stages.insert(tally.stages.end(), {"best 20", "best"});
-  alive.push_back(std::ranges::any_of(result.interpretations, holds));
-  alive.push_back(holds(result.interpretations.front()));
+  alive.push_back(std::ranges::any_of(result.interpretations, holds_it));
+  alive.push_back(holds_it(result.interpretations.front()));
   tally.all.add(alive);
   tally.by_object[io::bop_object_name(truth.obj_id)].add(alive);
-}
-
-void add_reported(const std::vector<io::BopInstance>& truth, const FrameTrace& trace,
-                  const Interpretation& best, Tally& tally) {
-  for (const Placement& placement : best.placements) {
-    const std::ptrdiff_t m = index_of(trace, placement.model_number);
-    ++tally.reported;
-    tally.right += eval::is_right_about_any(placement.camera_from_object, *trace.models[m], truth);
-  }
-}
-
-void add_times(const FrameTrace& trace, const SceneInterpretations& result, Tally& tally) {
-  for (const StageTiming& timing : result.timings) {
-    if (timing.stage == "objects") {
-      for (const ObjectTrace& object : trace.objects) {
-        for (const auto& stage : object.stages) {
-          tally.add_time("objects: " + std::string(stage.name), stage.milliseconds);
-        }
-      }
-    }
-    tally.add_time(timing.stage, timing.milliseconds);
-  }
-  tally.add_time("total", result.total_milliseconds);
 }
 
 void print_row(const std::string& name, const Survival& survival) {
@@ -117,12 +88,12 @@ void print_tally(const Tally& tally) {
   std::printf("\n");
   for (const auto& [name, survival] : tally.by_object) print_row(name, survival);
   print_row("all", tally.all);
-  std::printf("best interpretation: %d of %d reported are right\n", tally.right, tally.reported);
+  std::printf("best interpretation: %d of %d reported are right\n", tally.placements.reported.hits,
+              tally.placements.reported.total);
   std::printf(
       "mean milliseconds a frame (stages of objects summed over models, on one core each)\n");
-  for (const std::string& stage : tally.order) {
-    std::printf("  %-22s %9.1f\n", stage.c_str(),
-                tally.milliseconds.at(stage) / std::max(1, tally.frames));
+  for (const auto& [stage, milliseconds] : tally.times.means()) {
+    std::printf("  %-22s %9.1f\n", stage.c_str(), milliseconds);
   }
 }
 
@@ -134,10 +105,13 @@ nlohmann::json to_json(const Tally& tally) {
   };
   nlohmann::json objects, times;
   for (const auto& [name, s] : tally.by_object) objects[name] = survival(s);
-  for (const auto& [stage, sum] : tally.milliseconds) times[stage] = sum / tally.frames;
-  return {{"experiment", "bpa bench accuracy"}, {"frames", tally.frames},
-          {"alive", survival(tally.all)},       {"objects", objects},
-          {"reported", tally.reported},         {"right", tally.right},
+  for (const auto& [stage, milliseconds] : tally.times.means()) times[stage] = milliseconds;
+  return {{"experiment", "bpa bench accuracy"},
+          {"frames", tally.frames},
+          {"alive", survival(tally.all)},
+          {"objects", objects},
+          {"reported", tally.placements.reported.total},
+          {"right", tally.placements.reported.hits},
           {"mean_milliseconds", times}};
 }
 
@@ -152,8 +126,8 @@ void bench_accuracy(const AccuracyArguments& a) {
           if (instance.visible_fraction < a.min_visible) continue;
           add_instance(instance, trace, result, tally);
         }
-        add_reported(frame.truth, trace, result.interpretations.front(), tally);
-        add_times(trace, result, tally);
+        tally.placements.add(frame.truth, result, detector.library(), a.min_visible);
+        tally.times.add(result, trace);
       });
   print_tally(tally);
   if (!a.json.empty()) or_throw(io::write_file(a.json, to_json(tally).dump(2) + "\n"));

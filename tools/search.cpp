@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/io/camera_file.hpp"
 #include "core/io/model_file.hpp"
@@ -13,22 +14,16 @@
 namespace bpa::cli {
 namespace {
 
-/// The models of a library; a broken one is a failure only where it is asked for. No names: all.
-std::vector<ModelSource> wanted_models(const std::string& folder,
-                                       const std::vector<std::string>& names, int num_threads) {
+/// The models of a library; reads no others. No names: all.
+std::vector<ModelSource> wanted_models(const std::string& folder, std::vector<std::string> names,
+                                       int num_threads) {
   if (names.empty()) return or_throw(io::load_library(folder, num_threads));
-  io::LibraryContents contents = or_throw(io::read_library(folder, num_threads));
-  std::vector<ModelSource>& models = contents.models;
-  for (const io::BrokenModel& broken : contents.broken) {
-    if (std::ranges::count(names, broken.name) > 0) or_throw(broken.reason);
-  }
-  for (const std::string& name : names) {
-    if (std::ranges::count(models, name, &ModelSource::name) > 0) continue;
-    throw Failure({StatusCode::not_found, "library " + folder + " has no model \"" + name + "\""});
-  }
-  std::erase_if(
-      models, [&](const ModelSource& model) { return std::ranges::count(names, model.name) == 0; });
-  return std::move(models);
+  std::ranges::sort(names);
+  names.erase(std::ranges::unique(names).begin(), names.end());
+  std::vector<ModelSource> models(names.size());
+  parallel_for(names.size(), num_threads,
+               [&](std::size_t i) { models[i] = or_throw(io::load_model(folder, names[i])); });
+  return models;
 }
 
 void print_note(const std::string& path, const std::string& note) {
