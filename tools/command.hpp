@@ -121,8 +121,12 @@ class Progress {
 void run_all(const std::string& title, int count, int num_threads,
              const std::function<void(int)>& work);
 
-/// The program bpa. Returns its exit code: 0, 1 after a failure, 2 after wrong usage.
-int run_bpa(int argc, char** argv);
+/// Calls of operator new so far, by all threads.
+using CountAllocations = std::uint64_t (*)();
+
+/// The program bpa. Returns its exit code: 0, 1 after a failure, 2 after wrong usage. Without
+/// `allocations`, bpa bench speed does not know their number.
+int run_bpa(int argc, char** argv, CountAllocations allocations = nullptr);
 
 void add_model_command(CLI::App& program);
 void add_detect_command(CLI::App& program);
@@ -136,5 +140,6 @@ void add_bench_alignment(CLI::App& bench);
 void add_bench_accuracy(CLI::App& bench);
 void add_bench_models(CLI::App& bench);
 void add_bench_sensor(CLI::App& bench);
+void add_bench_speed(CLI::App& bench, CountAllocations allocations);
 
 }  // namespace bpa::cli

@@ -7,7 +7,7 @@
 
 namespace bpa::cli {
 
-int run_bpa(int argc, char** argv) {
+int run_bpa(int argc, char** argv, CountAllocations allocations) {
   CLI::App program{"bpa: known objects in RGB-D frames, by Bingham Procrustean Alignment", "bpa"};
   program.require_subcommand(1);
   program.set_version_flag("--version", BPA_VERSION);
@@ -23,6 +23,7 @@ int run_bpa(int argc, char** argv) {
   add_bench_accuracy(bench);
   add_bench_models(bench);
   add_bench_sensor(bench);
+  add_bench_speed(bench, allocations);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

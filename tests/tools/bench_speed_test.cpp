@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// bpa bench speed on a frame of an L and a brick.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "core/io/bop_dataset.hpp"
+#include "core/io/image_file.hpp"
+#include "core/io/model_file.hpp"
+#include "tests/support/posed_models.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tools/command.hpp"
+
+namespace bpa::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class BenchSpeed : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const Pose camera_from_world = test::look_at({0.1, -0.6, 0.5}, {0, 0, 0});
+    const Pose l_truth = camera_from_world * test::standing_at(-0.08, 0, 0.02, 0.7);
+    const auto solids = test::together({test::table(camera_from_world)}, test::l_solids(l_truth));
+    io::BopSceneWriter writer(folder_ / "set", "test", 1);
+    const Frame frame = test::render(solids, test::kinect_camera(), 1, 8).frame;
+    ASSERT_TRUE(writer.add(0, frame, {{1, l_truth, {}, {}, 1}}).ok());
+    ASSERT_TRUE(writer.finish().ok());
+    save(test::l_mesh(), "l", 1);
+    save(test::box_mesh(test::kBrickHalf), "brick", 2);
+  }
+  void save(const TriangleMesh& mesh, const std::string& name, int number) const {
+    const auto source = model_source_from_mesh(mesh, name, number);
+    ASSERT_TRUE(source.ok()) << source.status().message;
+    ASSERT_TRUE(io::save_model(folder_ / "library", *source).ok());
+  }
+
+  struct Run {
+    int exit_code;
+    std::string out, error;
+  };
+  Run run(std::vector<std::string> options, CountAllocations allocations = nullptr) const {
+    options.insert(options.begin(), {"bpa", "bench", "speed", "--bop", folder_ / "set", "--library",
+                                     folder_ / "library"});
+    std::vector<char*> arguments;
+    for (std::string& option : options) arguments.push_back(option.data());
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    const int code = run_bpa(static_cast<int>(arguments.size()), arguments.data(), allocations);
+    const std::string out = testing::internal::GetCapturedStdout();
+    return {code, out, testing::internal::GetCapturedStderr()};
+  }
+  Json report(const std::string& name) const { return Json::parse(test::slurp(folder_ / name)); }
+
+  const test::TemporaryFolder folder_;
+};
+
+TEST_F(BenchSpeed, ReportsWhatIsFoundAndWhatItCosts) {
+  const Run done = run({"--budgets", "0.000001,0", "--model-counts", "1,2,50", "--threads", "2",
+                        "--json", folder_ / "r.json", "--plot", folder_ / "r.png"},
+                       [] { return std::uint64_t{0}; });
+  ASSERT_EQ(done.exit_code, 0) << done.error;
+  EXPECT_NE(done.out.find("The library has 2 models; no more are searched for."),
+            std::string::npos);
+  const Json json = report("r.json");
+  EXPECT_EQ(json.at("format"), "bpa speed bench");
+  EXPECT_EQ(json.at("version"), 1);
+  EXPECT_EQ(json.at("dataset"), "set");
+  EXPECT_EQ(json.at("threads"), 2);
+  EXPECT_EQ(json.at("frames"), 1);
+  EXPECT_FALSE(json.at("cpu").get<std::string>().empty());
+  ASSERT_EQ(json.at("budgets").size(), 2u);
+  const Json &hurried = json.at("budgets").at(0), &whole = json.at("budgets").at(1);
+  EXPECT_EQ(hurried.at("found"), 0);
+  EXPECT_TRUE(whole.at("budget_s").is_null());
+  EXPECT_EQ(whole.at("found"), 1);
+  EXPECT_EQ(whole.at("found_in_twenty"), 1);
+  EXPECT_EQ(whole.at("instances"), 1);
+  EXPECT_GE(whole.at("reported"), 1);
+  EXPECT_EQ(whole.at("right"), 1);
+  EXPECT_EQ(whole.at("allocations"), 0);
+  for (const char* cost : {"median_ms", "max_ms", "cpu_s", "rounds", "full_scores"}) {
+    EXPECT_GT(whole.at(cost), 0) << cost;
+  }
+  ASSERT_EQ(json.at("models").size(), 2u);
+  for (int i = 0; i < 2; ++i) {
+    const Json& row = json.at("models").at(i);
+    EXPECT_EQ(row.at("models"), i + 1);
+    EXPECT_EQ(row.at("loaded"), i + 1);
+    EXPECT_GT(row.at("load_ms"), 0);
+    EXPECT_EQ(row.at("found"), 1) << "the model of the truth is always searched for";
+  }
+  EXPECT_GT(json.at("models").at(1).at("pose_checks"), json.at("models").at(0).at("pose_checks"));
+  EXPECT_TRUE(json.at("stages_ms").contains("objects: sampled"));
+  EXPECT_EQ(json.at("stages_ms").back(), json.at("stages_ms").at("total"));
+  EXPECT_TRUE(io::read_color_image(folder_ / "r.png").ok());
+}
+
+TEST_F(BenchSpeed, ComparesWithAnEarlierReport) {
+  const std::vector<std::string> once = {"--budgets", "0", "--model-counts", "1"};
+  auto options = once;
+  options.insert(options.end(), {"--json", folder_ / "r.json"});
+  ASSERT_EQ(run(options).exit_code, 0);
+  Json earlier = report("r.json");
+  EXPECT_TRUE(earlier.at("budgets").at(0).at("allocations").is_null());
+  Json& row = earlier.at("budgets").at(0);
+  row["full_scores"] = row.at("full_scores").get<double>() / 4;
+  row["pose_checks"] = 0;
+  earlier["cpu"] = "abacus";
+  test::spill(folder_ / "r.json", earlier.dump());
+  options = once;
+  options.insert(options.end(), {"--compare", folder_ / "r.json"});
+  const Run compared = run(options);
+  ASSERT_EQ(compared.exit_code, 0) << compared.error;
+  const std::size_t ratios = compared.out.find("now/earlier, seconds allowed");
+  ASSERT_NE(ratios, std::string::npos);
+  EXPECT_NE(compared.out.find("earlier, cpu was \"abacus\"; now it is "), std::string::npos);
+  const auto line = [&](const std::string& name) {
+    const std::size_t start = compared.out.find("\n" + name, ratios) + 1;
+    return compared.out.substr(start, compared.out.find('\n', start) - start);
+  };
+  EXPECT_NE(line("full scores").find(" 4.000"), std::string::npos) << line("full scores");
+  EXPECT_NE(line("quick scores").find(" 1.000"), std::string::npos) << line("quick scores");
+  EXPECT_EQ(line("pose checks").back(), '-') << line("pose checks");
+}
+
+TEST_F(BenchSpeed, SaysWhatIsWrong) {
+  const auto refusal = [&](const std::vector<std::string>& options) {
+    const Run failed = run(options);
+    EXPECT_EQ(failed.exit_code, 1);
+    return failed.error;
+  };
+  const std::string wrong = folder_ / "wrong.json";
+  EXPECT_NE(refusal({"--compare", wrong}).find("wrong.json"), std::string::npos);
+  for (const char* text : {"", "[]", R"({"format": "bpa results", "version": 1})",
+                           R"({"format": "bpa speed bench", "version": 1, "budgets": [1]})"}) {
+    test::spill(wrong, text);
+    EXPECT_EQ(refusal({"--compare", wrong}),
+              "bpa: " + wrong +
+                  " is not a report of version 1; --compare takes what 'bpa bench speed --json' "
+                  "writes\n");
+  }
+  EXPECT_EQ(run({"--budgets", "-1"}).exit_code, 2);
+  EXPECT_EQ(run({"--model-counts", "0"}).exit_code, 2);
+  EXPECT_NE(refusal({"--scenes", "7"}).find("has no scene 7"), std::string::npos);
+  std::filesystem::remove_all(folder_ / "library");
+  EXPECT_NE(refusal({}).find("library is not there"), std::string::npos) << refusal({});
+}
+
+}  // namespace
+}  // namespace bpa::cli
