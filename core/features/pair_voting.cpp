@@ -16,11 +16,11 @@ namespace {
 constexpr float kPi = 3.14159265f;
 constexpr float kAngleStep = kPi / kPairAngleBins;
 constexpr float kFixingAngle = 0.35f;  // radians, 20 degrees; chosen by hand
-constexpr float kOuterPart = 0.25f;    // of a bin, from which the next bin is searched too
+constexpr float kOuterPart = 0.15f;    // of a bin, from which the next bin is searched too
 
 float safe_acos(float cosine) { return std::acos(std::clamp(cosine, -1.0f, 1.0f)); }
 
-// The bins a value is found in: its own, and the next one where it lies in the outer quarter.
+// The bins a value is found in: its own, and the next one where it lies near the border.
 struct Bins {
   int first = 0, last = 0;
 };
