@@ -50,7 +50,8 @@ bool match_surface(const SceneFeatures& scene, const CheckPoints& points, std::s
   const int pixel = scene.image.pixel_of(p);
   if (pixel < 0) return false;
   match.pixel = static_cast<std::size_t>(pixel);
-  if (!scene.map.searched[match.pixel]) return false;
+  const CheckPixel& seen = scene.image.pixels[match.pixel];  // rejects most of the others
+  if (!seen.searched || std::abs(seen.depth - p.z()) >= gate) return false;
   match.scene_point = scene.map.points[match.pixel];
   match.scene_normal = scene.map.normals[match.pixel];
   return (match.scene_point - p).squaredNorm() < gate * gate &&
@@ -62,6 +63,10 @@ EdgePoint edge_point(const ObjectModel& model, const ModelView& view, const Fast
   return {pose * model.surface.points[view.edges[k]], pose.rotation * view.outward[k]};
 }
 
+EdgePoint edge_point(const ViewEdge& edge, const FastPose& pose) {
+  return {pose * edge.point, pose.rotation * edge.outward};
+}
+
 std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, float reach) {
   const Eigen::Vector3f& p = edge.point;
   if (!(p.z() > kNearest_m)) return std::nullopt;
@@ -70,7 +75,7 @@ std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, 
   const float x = p.x() * inverse_z, y = p.y() * inverse_z;
   const float du = image.fx * inverse_z * (edge.outward.x() - x * edge.outward.z());
   const float dv = image.fy * inverse_z * (edge.outward.y() - y * edge.outward.z());
-  const float pixels_per_metre = std::hypot(du, dv);
+  const float pixels_per_metre = std::sqrt(du * du + dv * dv);
   if (!(pixels_per_metre > 1)) return std::nullopt;
   const float step = 1 / pixels_per_metre;
   const Eigen::Vector2f at = image.project(p);

@@ -34,6 +34,9 @@ struct EdgePoint {
 EdgePoint edge_point(const ObjectModel& model, const ModelView& view, const FastPose& pose,
                      std::size_t k);
 
+/// The same of an edge of a view's sample.
+EdgePoint edge_point(const ViewEdge& edge, const FastPose& pose);
+
 /// How far outward of a model edge point the observed surface ends, metres, in [-reach, reach].
 /// None where it does not end within reach or a nearer surface hides the end. Follows the surface
 /// from inside the model outward, pixel by pixel. It ends where depth jumps back, is unknown or

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <span>
 
 #include "core/detect/matches.hpp"
 #include "core/model/model_index.hpp"
@@ -41,7 +42,7 @@ float weight_of(float residual, float gate, float sigma) {
 struct Problem {
   const SceneFeatures& scene;
   const ObjectModel& model;
-  const ModelView& view;
+  const ViewSample& view;  // the nearest one's
   const RefinementOptions& options;
 
   NormalEquations build(const Pose& pose, float gate) const {
@@ -75,10 +76,9 @@ struct Problem {
                  NormalEquations& equations) const {
     // Of the edges of the nearest of 66 views; a pixel's half width is added.
     constexpr float kEdgeSigma = 0.004f;
-    if (options.max_edges == 0 || view.edges.empty()) return;
-    const std::size_t step = std::max<std::size_t>(1, view.edges.size() / options.max_edges);
-    for (std::size_t k = 0; k < view.edges.size(); k += step) {
-      const EdgePoint edge = edge_point(model, view, pose, k);
+    const std::size_t last = std::min<std::size_t>(view.edges.size(), options.max_edges);
+    for (const ViewEdge& of_view : std::span(view.edges).first(last)) {
+      const EdgePoint edge = edge_point(of_view, pose);
       const std::optional<float> offset = match_edge(scene.image, edge, gate);
       if (!offset) continue;
       const float sigma = kEdgeSigma + 0.5f * edge.point.z() / scene.image.fx;
@@ -106,7 +106,7 @@ Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, con
   Refinement out;
   Pose pose = start;
   const Matrix6f prior = damping(model.diameter);
-  const ModelView& view = nearest_view(model.index->views, to_fast(start));
+  const ViewSample& view = sample_of(model, nearest_view(model.index->views, to_fast(start)));
   const Problem problem{scene, model, view, options};
   const auto start_gate = static_cast<float>(options.start_gate_m);
   const auto end_gate = static_cast<float>(options.end_gate_m);

@@ -62,34 +62,60 @@ std::uint32_t end_of_keys(float inverse_step) {
 constexpr std::size_t kMaxPoints = 65535;  // of a table: an entry's index has 16 bits
 constexpr int kTurnBins = 32;
 constexpr int kStepsPerBin = kTurnSteps / kTurnBins;
+using Count = std::int16_t;   // signed: x86-64 without SSE4.1 has no largest of unsigned ones
 constexpr int kMinVotes = 3;  // of a voted pose; chosen by hand
 
-// For each model point, the most votes in a bin and the one after it.
-BPA_DISPATCH void most_votes(const std::uint16_t* votes, int num_points, std::uint16_t* most) {
-  for (int i = 0; i < num_points; ++i) {
-    const std::uint16_t* bins = votes + i * kTurnBins;
-    auto best = static_cast<std::uint16_t>(bins[kTurnBins - 1] + bins[0]);
-    for (int b = 0; b + 1 < kTurnBins; ++b) {
-      const auto both = static_cast<std::uint16_t>(bins[b] + bins[b + 1]);
-      best = both > best ? both : best;
-    }
-    most[i] = best;
+// Raises each to the sum of both, where that is larger.
+BPA_DISPATCH void raise_to_sums(const Count* first, const Count* second, std::size_t size,
+                                Count* __restrict most) {
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto both = static_cast<Count>(first[i] + second[i]);
+    most[i] = both > most[i] ? both : most[i];
   }
 }
 
-// The first bin that has as many together with the one after it.
-int bin_of_most(const std::uint16_t* bins, int most) {
-  int b = 0;
-  while (b + 1 < kTurnBins && bins[b] + bins[b + 1] != most) ++b;
-  return b;
-}
+// The votes about one reference point. Those of one bin lie side by side.
+class Votes {
+ public:
+  explicit Votes(std::size_t num_points)
+      : num_points_(num_points), votes_(num_points * kTurnBins), most_(num_points) {}
+
+  void clear() { std::fill(votes_.begin(), votes_.end(), Count{0}); }
+  void add(std::size_t point, std::uint8_t turn) {
+    ++votes_[turn / kStepsPerBin * num_points_ + point];
+  }
+  // For each model point, the most votes in a bin and the one after it.
+  std::span<const Count> most() {
+    std::fill(most_.begin(), most_.end(), Count{0});
+    for (int b = 0; b < kTurnBins; ++b) {
+      raise_to_sums(bin(b).data(), bin((b + 1) % kTurnBins).data(), num_points_, most_.data());
+    }
+    return most_;
+  }
+  // The middle of these two bins' votes, in radians.
+  float turn_of_most(std::size_t point) const {
+    int b = 0;
+    while (b + 1 < kTurnBins && bin(b)[point] + bin(b + 1)[point] != most_[point]) ++b;
+    const float here = bin(b)[point], after = bin((b + 1) % kTurnBins)[point];
+    const float middle = static_cast<float>(b) + after / std::max(1.0f, here + after);
+    return (middle * kStepsPerBin + 0.5f * (kStepsPerBin - 1)) * (2 * kPi / kTurnSteps);
+  }
+
+ private:
+  std::span<const Count> bin(int b) const {
+    return std::span(votes_).subspan(static_cast<std::size_t>(b) * num_points_, num_points_);
+  }
+
+  std::size_t num_points_;
+  std::vector<Count> votes_, most_;
+};
 
 // The model points with the most votes, best first.
 class Peaks {
  public:
   explicit Peaks(std::size_t wanted) : wanted_(wanted) {}
 
-  void find(std::span<const std::uint16_t> most) {
+  void find(std::span<const Count> most) {
     points_.clear();
     for (std::size_t i = 0; i < most.size(); ++i) {
       const bool full = points_.size() == wanted_;
@@ -108,14 +134,6 @@ class Peaks {
   std::size_t wanted_;
   std::vector<int> points_;
 };
-
-// The middle of the two bins' votes, in radians.
-float turn_between(const std::uint16_t* bins, int bin) {
-  const float here = bins[bin];
-  const float after = bins[(bin + 1) % kTurnBins];
-  const float middle = static_cast<float>(bin) + after / std::max(1.0f, here + after);
-  return (middle * kStepsPerBin + 0.5f * (kStepsPerBin - 1)) * (2 * kPi / kTurnSteps);
-}
 
 }  // namespace
 
@@ -269,7 +287,7 @@ ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, flo
   const NeighborGrid grid(cloud.points, reach);
   const auto add = [&](std::size_t i, const Eigen::Matrix3f& basis, auto& partners) {
     grid.for_each_neighbor(cloud.points[i], [&](std::size_t j, float) {
-      if (i == j || (i + j) % 2 != 0) return;  // half of them
+      if (i == j || (i + j) % 3 != 0) return;  // a third of them
       const PointPairFeature feature =
           point_pair_feature(cloud.points[i], cloud.normals[i], cloud.points[j], cloud.normals[j]);
       if (!fixes_pose(feature)) return;
@@ -299,27 +317,24 @@ ScenePairs scene_rim_pairs(const PointCloud& cloud, std::span<const RimPoint> ri
 std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable& table,
                                   int num_model_points, int peaks) {
   std::vector<VotedPose> out;
-  std::vector<std::uint16_t> votes(num_model_points * kTurnBins), most(num_model_points);
+  Votes votes(static_cast<std::size_t>(num_model_points));
   Peaks best(peaks);
   for (std::size_t r = 0; r < pairs.references.size(); ++r) {
     const bool votes_for_none = pairs.first[r] == pairs.first[r + 1] ||
                                 pairs.partners[pairs.first[r]].distance > table.max_distance();
     if (votes_for_none) continue;
-    std::fill(votes.begin(), votes.end(), std::uint16_t{0});
+    votes.clear();
     for (std::uint32_t k = pairs.first[r]; k < pairs.first[r + 1]; ++k) {
       const ScenePairs::Partner& partner = pairs.partners[k];
       if (partner.distance > table.max_distance()) break;
       for (const auto& entry : table.lookup(partner.distance, partner.angle_key)) {
-        const auto turn = static_cast<std::uint8_t>(partner.turn - entry.turn);
-        ++votes[entry.point * kTurnBins + turn / kStepsPerBin];
+        votes.add(entry.point, static_cast<std::uint8_t>(partner.turn - entry.turn));
       }
     }
-    most_votes(votes.data(), num_model_points, most.data());
+    const std::span<const Count> most = votes.most();
     best.find(most);
     for (const int point : best.points()) {
-      const std::uint16_t* bins = &votes[point * kTurnBins];
-      const float turn = turn_between(bins, bin_of_most(bins, most[point]));
-      out.push_back({pairs.references[r], point, turn, most[point]});
+      out.push_back({pairs.references[r], point, votes.turn_of_most(point), most[point]});
     }
   }
   return out;

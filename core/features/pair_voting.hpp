@@ -123,8 +123,8 @@ struct ScenePairs {
   std::vector<Partner> partners;     ///< by rising distance.
 };
 
-/// Half of the pairs within `reach` metres that fix a pose, about the points `references`: those
-/// whose indices are both even or both odd.
+/// A third of the pairs within `reach` metres that fix a pose, about the points `references`: those
+/// whose indices add up to a multiple of three.
 ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, float reach,
                        int num_threads);
 

@@ -212,6 +212,10 @@ ViewPoint view_point(const ObjectModel& model, const ModelView& view, std::size_
           view.edge_distance[k], model.normal_variance[i]};
 }
 
+const ViewSample& sample_of(const ObjectModel& model, const ModelView& view) {
+  return model.view_samples[static_cast<std::size_t>(&view - model.index->views.data())];
+}
+
 void ViewBlock::set(int lane, const ViewPoint& from) {
   for (int axis = 0; axis < 3; ++axis) {
     point[axis][lane] = from.point[axis];

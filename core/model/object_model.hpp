@@ -91,6 +91,8 @@ struct ObjectModel : ModelSource {
 ViewPoint view_point(const ObjectModel& model, const ModelView& view, std::size_t k);
 /// The k-th edge point of a view of the index.
 ViewEdge view_edge(const ObjectModel& model, const ModelView& view, std::size_t k);
+/// The sample of a view of the index.
+const ViewSample& sample_of(const ObjectModel& model, const ModelView& view);
 
 /// The normal variances that follow from the surface alone: a sensor averages normals over its
 /// window, so that they vary as those of the surface within it do.

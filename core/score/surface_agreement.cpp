@@ -17,14 +17,14 @@
 namespace bpa {
 namespace {
 
-constexpr float kNormalSigma = 0.15f;    // radians: what poses and models are off by
-constexpr float kLateralSigma = 0.003f;  // metres, beside a pixel: the same across the view
-constexpr float kTruncation = 4.5f;      // three standard deviations, squared and halved
-constexpr float kModelSigma = 0.0025f;   // metres: what models and their poses are off by
-constexpr float kOnSurface = 0.006f;     // metres, plus noise
-constexpr float kSameDirection = 0.6f;   // cosine of normals on one surface
+constexpr float kNormalSigma = 0.15f;        // radians: what poses and models are off by
+constexpr float kLateralSigma = 0.003f;      // metres, beside a pixel: the same across the view
+constexpr float kTruncation = 4.5f;          // three standard deviations, squared and halved
+constexpr float kModelSigma = 0.0025f;       // metres: what models and their poses are off by
+constexpr float kOnSurface = 0.006f;         // metres, plus noise
+constexpr float kSameDirection = 0.6f;       // cosine of normals on one surface
 constexpr float kVisibilitySigma_m = 0.01f;  // as of visibility_probability()
-constexpr float kMinSlant = 0.3f;        // cosine; the sensor sees little of steeper surface
+constexpr float kMinSlant = 0.3f;            // cosine; the sensor sees little of steeper surface
 // Beside model edges: metres in front that hide, metres beyond the edge that are looked at, metres
 // and cosine up to which surface goes on.
 constexpr float kHiding = 0.015f, kBeyond = 0.012f, kGoesOn = 0.012f, kTurned = 0.8f;
@@ -62,7 +62,7 @@ struct SeenBlock {
   float normal[3][kSize], soft_normal[3][kSize];
   float slant[kSize];  // cosine of the angle between the normal and the line of sight
   float u[kSize], v[kSize];
-  int pixel[kSize];    // -1: outside the image, or facing away
+  int pixel[kSize];                                   // -1: outside the image, or facing away
   float facing[kSize], in_image[kSize], seen[kSize];  // 1 or 0; seen: a depth is known there
   float depth[kSize], observed[3][kSize];
   float noise_range[kSize], noise_normal[kSize];  // of the model, by edge distance and slant
@@ -125,16 +125,17 @@ struct Sums {
   using Lanes = std::array<float, ViewBlock::kSize>;
   Lanes facing{}, visible{}, unknown{}, agreeing{}, on_background{};  // numbers; agreeing weighted
   Lanes weight{}, range{}, normal{}, free{};
-  Lanes expected{}, explained{};      // squared metres, seen from the front at one metre
-  Lanes explained_points{};           // number
-  std::array<Lanes, 6> normals{};     // of agreeing points, squared: xx, xy, xz, yy, yz, zz
+  Lanes expected{}, explained{};   // squared metres, seen from the front at one metre
+  Lanes explained_points{};        // number
+  std::array<Lanes, 6> normals{};  // of agreeing points, squared: xx, xy, xz, yy, yz, zz
 
   static double of(const Lanes& lanes) { return std::accumulate(lanes.begin(), lanes.end(), 0.0); }
 };
 
 // Adds the likelihoods of a block. `shows` receives whether a point's pixel shows the model.
 BPA_DISPATCH void add_block(const CheckImage& image, float usual_noise, const ViewBlock& model,
-                            const SeenBlock& block, Sums& __restrict sums, float* __restrict shows) {
+                            const SeenBlock& block, Sums& __restrict sums,
+                            float* __restrict shows) {
   const SensorNoise depth_noise = image.noise;
   const float pixel_size = 1 / image.fx;
   for (int k = 0; k < SeenBlock::kSize; ++k) {
@@ -170,16 +171,15 @@ BPA_DISPATCH void add_block(const CheckImage& image, float usual_noise, const Vi
     const float ox = block.observed[0][k], oy = block.observed[1][k], oz = block.observed[2][k];
     const float nx = block.normal[0][k], ny = block.normal[1][k], nz = block.normal[2][k];
     const float hard = nx * ox + ny * oy + nz * oz;
-    const float soft = block.soft_normal[0][k] * ox + block.soft_normal[1][k] * oy +
-                       block.soft_normal[2][k] * oz;
+    const float soft =
+        block.soft_normal[0][k] * ox + block.soft_normal[1][k] * oy + block.soft_normal[2][k] * oz;
     const float cosine = greater(hard, soft) / 127;
     const float angle = acos_of(cosine) / sigma_normal;
     const float known = one_if(ox * ox + oy * oy + oz * oz > 0);
     sums.normal[k] -= weight * (known * lesser(0.5f * angle * angle, kTruncation) + 1 - known);
     sums.free[k] += weight * one_if(difference > kHidden_m);
     // Depth errors along the ray grow with the slant of the surface.
-    const float on_surface = seen *
-                             one_if(std::abs(difference) * slant < kOnSurface + 2 * noise) *
+    const float on_surface = seen * one_if(std::abs(difference) * slant < kOnSurface + 2 * noise) *
                              one_if(cosine > kSameDirection);
     sums.agreeing[k] += weight * on_surface;
     sums.normals[0][k] += on_surface * nx * nx;
@@ -280,10 +280,6 @@ class ViewLook {
   SeenBlock seen_;
 };
 
-std::size_t index_of(const ObjectModel& model, const ModelView& view) {
-  return static_cast<std::size_t>(&view - model.index->views.data());
-}
-
 }  // namespace
 
 SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& model,
@@ -292,7 +288,7 @@ SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& mod
   constexpr std::size_t kAllEdges = 200, kMostEdges = 60;
   const FastPose fast = to_fast(pose);
   const ModelView& view = nearest_view(model.index->views, fast);
-  const ViewSample& sample = model.view_samples[index_of(model, view)];
+  const ViewSample& sample = sample_of(model, view);
   const std::size_t all = view.visible.size();
   const auto wanted = static_cast<std::size_t>(std::max(0, max_points));
   const bool whole = max_points <= 0 || wanted > sample.num_points;
@@ -362,7 +358,7 @@ HiddenPoints hidden_points(const CheckImage& image, const ObjectModel& model, co
                            int max_points) {
   const FastPose fast = to_fast(pose);
   const ModelView& view = nearest_view(model.index->views, fast);
-  const ViewSample& sample = model.view_samples[index_of(model, view)];
+  const ViewSample& sample = sample_of(model, view);
   HiddenPoints out;
   ViewLook(image, model, fast)
       .at(sample, std::min<std::size_t>(sample.num_points, max_points),

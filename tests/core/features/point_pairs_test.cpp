@@ -96,12 +96,12 @@ constexpr float kDistanceStep = 0.006f;
 constexpr float kAngleStep = 0.26179939f;
 
 // What a table should hold, found the slow way: the pairs whose feature lies in the cell, or less
-// than a quarter of a cell beside it.
+// than 15 % of a cell beside it.
 bool belongs(float value, float step, int bins, float looked_up) {
   const auto bin = [&](float v) { return std::min(bins - 1, static_cast<int>(v / step)); };
   const auto lower = static_cast<float>(bin(looked_up)) * step;
   const bool last = bin(looked_up) == bins - 1;
-  return value >= lower - 0.25f * step && (last || value <= lower + 1.25f * step);
+  return value >= lower - 0.15f * step && (last || value <= lower + 1.15f * step);
 }
 
 std::multiset<int> expected_points(const PointCloud& cloud, const PointPairFeature& f) {
@@ -273,7 +273,7 @@ TEST(PairVoting, PartnersAreThoseWithinReachThatFixAPose) {
     const auto i = static_cast<std::size_t>(pairs.references[r]);
     for (std::size_t j = 0; j < cloud.size(); ++j) {
       const auto f = feature_of(cloud, i, j);
-      if (i == j || (i + j) % 2 != 0 || f.distance > reach || !fixes_pose(f)) continue;
+      if (i == j || (i + j) % 3 != 0 || f.distance > reach || !fixes_pose(f)) continue;
       expected.insert({f.distance, pair_angle_key(f)});
     }
     for (auto k = pairs.first[r]; k < pairs.first[r + 1]; ++k) {
