@@ -206,6 +206,7 @@ struct DetectionOptions {
   int top_k = kDefaultTopK;
   double budget_ms = 0;
   int fuse_frames = 1;
+  bool follow = true;
   std::uint64_t seed = 0;
   int threads = 0;
   double request_timeout_ms = 30000;
@@ -229,7 +230,15 @@ struct DetectionOptions {
           at_run_time({1, 30,
                        "Latest frames that are combined before the search, for a static camera "
                        "and scene; 1: each frame by itself."}));
-    visit("seed", seed, at_run_time({0, 9.0e15, "Same frame, library and seed: same answer."}));
+    visit("follow", follow,
+          at_run_time({0, 0,
+                       "Look first for what the camera's frame before showed; false: search each "
+                       "frame as if it were the first."}));
+    visit(
+        "seed", seed,
+        at_run_time({0, 9.0e15,
+                     "Same frame, library and seed: same answer. With follow, frames before count "
+                     "too."}));
     visit("threads", threads,
           at_run_time({0, 256, "0: one per core. Does not change the answer."}));
     visit("request_timeout_ms", request_timeout_ms,

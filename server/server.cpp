@@ -66,12 +66,15 @@ int frame_capacity(const ServerOptions& options) {
 
 WorkerOptions worker_options(const ServerOptions& options) {
   const DetectionOptions& detection = options.detection;
-  return {
-      .frame_capacity = static_cast<std::size_t>(frame_capacity(options)),
-      .request_capacity = static_cast<std::size_t>(options.queue.requests),
-      .continuous = detection.continuous,
-      .fuse_frames = detection.fuse_frames,
-      .request = {{}, {}, detection.top_k, detection.budget_ms, detection.seed, detection.threads}};
+  return {.frame_capacity = static_cast<std::size_t>(frame_capacity(options)),
+          .request_capacity = static_cast<std::size_t>(options.queue.requests),
+          .continuous = detection.continuous,
+          .fuse_frames = detection.fuse_frames,
+          .follow = detection.follow,
+          .request = {.top_k = detection.top_k,
+                      .budget_ms = detection.budget_ms,
+                      .seed = detection.seed,
+                      .num_threads = detection.threads}};
 }
 
 /// Resident memory of this process in bytes; 0 when unknown.

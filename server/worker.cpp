@@ -18,6 +18,9 @@ bool same_search(const DetectRequest& a, const DetectRequest& b) {
          a.seed == b.seed;
 }
 
+// Cameras whose last result is remembered; names of frames come from the wire.
+constexpr std::size_t kFollowedCameras = 16;
+
 /// The request about a frame that came with priors of its own.
 DetectRequest with_priors(DetectRequest request, const std::vector<PosePrior>& priors) {
   request.priors.insert(request.priors.end(), priors.begin(), priors.end());
@@ -327,7 +330,10 @@ void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFr
   frame = std::move(fused.frame);
   std::optional<Result<SceneInterpretations>> result;
   if (options.continuous) {
-    result.emplace(detect(*frame, with_priors(options.request, newest->priors)));
+    DetectRequest request = with_priors(options.request, newest->priors);
+    if (options.follow) request.expected = expected_[frame->frame_id];
+    result.emplace(detect(*frame, request));
+    remember(*frame, *result);
     statistics_.add(result->ok() ? &Counts::frames_processed : &Counts::frames_failed);
     (void)guard("a result was not published", [&] { on_result_(*newest, &*frame, *result); });
   }
@@ -336,6 +342,12 @@ void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFr
                     answer_next_frame(options, *newest, *frame, job, result ? &*result : nullptr);
                   }));
   }
+}
+
+void Worker::remember(const Frame& frame, const Result<SceneInterpretations>& result) {
+  if (expected_.size() > kFollowedCameras) expected_.clear();
+  expected_[frame.frame_id] =
+      result.ok() ? expected_after(*result) : std::vector<ExpectedPlacement>{};
 }
 
 void Worker::answer_next_frame(const WorkerOptions& options, const IncomingFrame& incoming,

@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -62,6 +63,7 @@ struct WorkerOptions {
   std::size_t request_capacity = QueueOptions().requests;
   bool continuous = DetectionOptions().continuous;
   int fuse_frames = DetectionOptions().fuse_frames;
+  bool follow = DetectionOptions().follow;
   DetectRequest request;  ///< For every frame of the stream.
 };
 
@@ -117,6 +119,7 @@ class Worker {
   void work_on_frames(const WorkerOptions& options, std::vector<IncomingFrame> taken,
                       std::vector<DetectJob>& waiting);
   void note_restart(const std::string& reason);
+  void remember(const Frame& frame, const Result<SceneInterpretations>& result);
   void work_on_request(DetectJob& job);
   void answer_next_frame(const WorkerOptions& options, const IncomingFrame& incoming,
                          const Frame& frame, DetectJob& job,
@@ -131,6 +134,7 @@ class Worker {
   // Of the worker's thread alone.
   FrameFusion fusion_;
   int last_fused_ = 1;  ///< How many frames the last one was made of.
+  std::map<std::string, std::vector<ExpectedPlacement>> expected_;  ///< By frame_id.
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;

@@ -131,10 +131,12 @@ class DetectRun {
     for (const PosePrior& prior : given_.priors) {
       request_.priors.push_back(transformed(input.reported_from_camera.inverse(), prior));
     }
+    if (std::exchange(scene_id_, entry.scene_id) != entry.scene_id) request_.expected.clear();
     const Stopwatch watch;
     FrameTrace trace;
     const SceneInterpretations scene =
         or_throw(detector_.detect(input.frame, request_, explain_ ? &trace : nullptr), input.name);
+    if (a_.follow) request_.expected = expected_after(scene);
     results_.push_back(reported(scene, input.reported_from_camera, entry, watch.seconds()));
     print_result(input.name, results_.back());
     std::fflush(stdout);
@@ -163,7 +165,8 @@ class DetectRun {
   const Detector& detector_;
   const Given& given_;
   FrameFusion fusion_;
-  int combined_ = 0;  ///< Frames since the last search.
+  int combined_ = 0;   ///< Frames since the last search.
+  int scene_id_ = -1;  ///< Of the frame before.
   std::optional<ExplainFolder> explain_;
   DetectRequest request_;
   std::vector<io::FrameResult> results_;
@@ -204,6 +207,10 @@ void add_inputs(CLI::App& command, DetectArguments& a) {
              "and scene must stand still",
              "N")
       ->check(CLI::Range(1, 30));
+  command
+      .add_flag("--follow", a.follow,
+                "Frames of a scene follow each other: look first for what the one before showed")
+      ->needs("--bop");
 }
 
 void add_question(CLI::App& command, DetectArguments& a) {

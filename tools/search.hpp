@@ -39,6 +39,7 @@ struct DetectArguments {
   std::string priors, mask;
   std::vector<int> roi;
   int fuse = 1;
+  bool follow = false;
   int top = 20;
   double budget_ms = 0;
   std::string csv, json, annotate, explain;

@@ -45,7 +45,8 @@ constexpr Stage kStages[] = {
     {"final", select, 1, "Selected",
      "Distinct placements of sufficient score. Interpretations of the scene choose from these."},
 };
-constexpr std::size_t kRoundStages = 7;  // those that every round runs
+constexpr std::size_t kRoundStages = 7;    // those that every round runs
+constexpr std::size_t kScoringStages = 2;  // aligned, scored
 
 // Runs a stage and records its time and what it rejects.
 Candidates timed(const Stage& stage, Search& search, Candidates candidates, ObjectTrace* trace) {
@@ -79,6 +80,7 @@ void compete(std::span<const Search> searches, int most, std::vector<Candidates>
 
 std::span<const Stage> detection_stages() { return kStages; }
 std::span<const Stage> round_stages() { return detection_stages().first(kRoundStages); }
+std::span<const Stage> scoring_stages() { return round_stages().last(kScoringStages); }
 std::span<const Stage> final_stages() { return detection_stages().subspan(kRoundStages); }
 
 void run_stages(std::span<const Stage> stages, std::span<Search> searches, int num_threads,

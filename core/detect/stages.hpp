@@ -80,6 +80,8 @@ struct Stage {
 std::span<const Stage> detection_stages();
 std::span<const Stage> round_stages();
 std::span<const Stage> final_stages();
+/// The last ones of a round: what aligns and scores a pose that is known well.
+std::span<const Stage> scoring_stages();
 
 /// Runs stages for several models of one scene, each stage for all models before the next. Models
 /// compete: where a stage has `most_in_library`, the best of all go on. Priors' candidates always

@@ -55,7 +55,7 @@ struct SceneFeatures {
 
 struct SceneFeatureOptions {
   int max_keypoints = 600;
-  int round_keypoints = 100;
+  int round_keypoints = 30;
   int max_references = 500;
   double coarse_spacing_m = 0.010;
   double pair_reach_m = kMaxPairLength;

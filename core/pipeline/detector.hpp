@@ -28,9 +28,13 @@ struct FrameTrace {
 
 /// What to look for in one frame.
 struct DetectRequest {
-  std::vector<std::string> models;  ///< Names; empty means every model of the library.
-  std::vector<PosePrior> priors;    ///< What is known beforehand, in the camera frame.
-  int top_k = kDefaultTopK;         ///< Number of interpretations to return, 1 to 100.
+  std::vector<std::string> models = {};  ///< Names; empty means every model of the library.
+  std::vector<PosePrior> priors = {};    ///< What is known beforehand, in the camera frame.
+  /// What an earlier frame of the same view showed: aligned and scored first, as any other
+  /// placement. Where it is certain again, its surface is not searched, and a standing scene takes
+  /// a fraction of the time. Models that are not searched are ignored.
+  std::vector<ExpectedPlacement> expected = {};
+  int top_k = kDefaultTopK;  ///< Number of interpretations to return, 1 to 100.
   /// Time for the search, milliseconds; 0: no limit. Preparing the frame (about 0.2 s at 640 x 480)
   /// is not cut; models share the rest equally. Returns the best found by then. With a budget, the
   /// answer depends on the machine's speed.

@@ -15,8 +15,11 @@ namespace bpa {
 
 /// How often the search looks at the scene.
 struct RoundOptions {
-  int max_rounds = 3;
+  int max_rounds = 6;
   double min_certain = 0.85;
+  double min_likely = 0.1;
+  int min_gain_px = 10;
+  double expected_share = 0.3;
 
   void visit_fields(auto&& visit) {
     visit("max_rounds", max_rounds,
@@ -25,6 +28,18 @@ struct RoundOptions {
           {0, 1,
            "Surface that a placement of at least this probability explains is not searched in "
            "later rounds."});
+    visit(
+        "min_likely", min_likely,
+        {0, 1, "A round gains the surface that placements of at least this probability explain."});
+    visit(
+        "min_gain_px", min_gain_px,
+        {0, 1000000,
+         "The search ends after a round, beyond the first, that gains fewer pixels of the reduced "
+         "image. 0: after max_rounds."});
+    visit("expected_share", expected_share,
+          {0.01, 1,
+           "Of a round's sample, what the first round takes where an earlier frame says what to "
+           "expect. The search may end after it."});
   }
 };
 

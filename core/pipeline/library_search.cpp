@@ -3,6 +3,8 @@
 #include "core/pipeline/library_search.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
@@ -19,23 +21,52 @@ Candidates joined(const std::vector<Candidates>& found) {
   return all;
 }
 
-// Surface that needs no further search.
+// What the placements found so far explain.
 struct Explained {
-  std::vector<std::uint8_t> pixels;  // flags
-  CheckImage image;                  // where these are not searched
+  std::vector<std::uint8_t> certain,
+      likely;        // flags of pixels; the certain ones are searched no more
+  CheckImage image;  // where these are not searched
 
   explicit Explained(const CheckImage& observed)
-      : pixels(observed.pixels.size(), 0), image(observed) {}
+      : certain(observed.pixels.size(), 0), likely(certain), image(observed) {}
 
-  void add(const std::vector<std::uint32_t>& explained) {
-    for (const std::uint32_t pixel : explained) {
-      pixels[pixel] = 1;
-      image.pixels[pixel].searched = 0;
+  // Returns the number of pixels that have become likely. `found` are placements that compete.
+  int add(const Candidates& found, const RoundOptions& options) {
+    int gained = 0;
+    for (const Candidate& candidate : found) {
+      if (candidate.probability < std::min(options.min_likely, options.min_certain)) continue;
+      const bool is_certain = candidate.probability >= options.min_certain;
+      for (const std::uint32_t pixel : candidate.explained) {
+        gained += std::exchange(likely[pixel], 1) == 0;
+        if (is_certain) certain[pixel] = 1, image.pixels[pixel].searched = 0;
+      }
     }
+    return gained;
   }
 };
 
+SceneFeatureOptions smaller_sample(SceneFeatureOptions options, double share) {
+  const auto part = [share](int number) { return static_cast<int>(std::ceil(share * number)); };
+  options.round_keypoints = part(options.round_keypoints);
+  options.max_references = part(options.max_references);
+  return options;
+}
+
 }  // namespace
+
+void LibrarySearch::score_expected(std::vector<Search>& searches, std::vector<Candidates>& found,
+                                   std::vector<ObjectTrace>* traces) const {
+  for (const ExpectedPlacement& expected : request.expected) {
+    for (std::size_t i = 0; i < searches.size(); ++i) {
+      const ObjectModel& model = searches[i].model;
+      if (model.name != expected.model) continue;
+      found[i].push_back({.model = &model,
+                          .refinement = {expected.camera_from_object},
+                          .found_by = Source::prior});
+    }
+  }
+  run_stages(scoring_stages(), searches, request.num_threads, found, traces);
+}
 
 Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectModel>>& models,
                               std::vector<ObjectTrace>* traces, bool& cut,
@@ -50,25 +81,27 @@ Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectMode
   }
   std::vector<Candidates> found(models.size());
   Explained explained(scene.image);
-  SceneSample sample = scene.sample;
+  const auto explain = [&] {
+    Candidates all = joined(found);
+    let_compete(all, find_overlaps(all, options.scene.max_shared));
+    return explained.add(all, options.rounds);
+  };
   const Deadline rounds_end = deadline.part(kTimeOfRounds);
-  for (int round = 0; round < options.rounds.max_rounds; ++round) {
-    if (round > 0) {
-      if (rounds_end.passed()) break;
-      Candidates all = joined(found);
-      let_compete(all, find_overlaps(all, options.scene.max_shared));
-      for (const Candidate& candidate : all) {
-        if (candidate.probability >= options.rounds.min_certain) explained.add(candidate.explained);
-      }
-      sample = next_sample(scene, sample, explained.pixels, options.features);
-      if (sample.empty()) break;
-    }
+  for (Search& search : searches) search.deadline = rounds_end;
+  SceneSample sample = scene.sample;
+  const bool follows = !request.expected.empty();
+  if (follows) {
+    score_expected(searches, found, traces);
+    explain();
+    sample = next_sample(scene, {}, explained.certain,
+                         smaller_sample(options.features, options.rounds.expected_share));
+  }
+  for (int round = 0; round < options.rounds.max_rounds && !sample.empty(); ++round) {
     for (Search& search : searches) {
       search.round = round;
       search.before = &found[&search - searches.data()];
       search.sample = &sample;
       search.image = &explained.image;
-      search.deadline = rounds_end;
     }
     ++effort.rounds;
     std::vector<Candidates> now(models.size());
@@ -76,6 +109,11 @@ Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectMode
     for (std::size_t i = 0; i < models.size(); ++i) {
       std::ranges::move(now[i], std::back_inserter(found[i]));
     }
+    if (rounds_end.passed()) break;
+    const int gained = explain();
+    const bool may_end = follows || round > 0;
+    if (may_end && gained < options.rounds.min_gain_px) break;
+    sample = next_sample(scene, sample, explained.certain, options.features);
   }
   for (std::size_t i = 0; i < models.size(); ++i) {
     searches[i].before = nullptr;

@@ -21,9 +21,14 @@ struct LibrarySearch {
 
   /// The candidates of all models. Searches in rounds: each takes another sample of the scene, and
   /// surface that certain placements explain is searched no more. Models compete in each round.
-  /// `cut`: whether time ran out. `effort`: the counts of all models.
+  /// What is expected of an earlier frame is scored first. `cut`: whether time ran out. `effort`:
+  /// the counts of all models.
   Candidates run(const std::vector<std::shared_ptr<const ObjectModel>>& models,
                  std::vector<ObjectTrace>* traces, bool& cut, SearchEffort& effort) const;
+
+ private:
+  void score_expected(std::vector<Search>& searches, std::vector<Candidates>& found,
+                      std::vector<ObjectTrace>* traces) const;
 };
 
 }  // namespace bpa

@@ -41,4 +41,13 @@ struct SceneInterpretations {
   int fused_frames = 1;  ///< Number of frames combined into the searched depth.
 };
 
+/// A placement of an earlier frame.
+struct ExpectedPlacement {
+  std::string model;        ///< The model's name.
+  Pose camera_from_object;  ///< Optical frame of the camera, metres.
+};
+
+/// The placements of the best interpretation, for the next frame.
+std::vector<ExpectedPlacement> expected_after(const SceneInterpretations& result);
+
 }  // namespace bpa

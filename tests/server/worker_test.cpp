@@ -29,12 +29,17 @@ class Gate {
     fused_.push_back(frame.fused);
     priors_.push_back({});
     for (const bpa::PosePrior& prior : request.priors) priors_.back() += prior.model + " ";
+    expected_.push_back({});
+    for (const ExpectedPlacement& expected : request.expected) expected_.back() += expected.model;
     changed_.notify_all();
     changed_.wait(lock, [this] { return open_; });
     if (request.seed == 666) throw std::runtime_error("out of luck");
     SceneInterpretations result;
     result.stamp_ns = frame.stamp_ns;
     result.total_milliseconds = 1;
+    Placement placement;
+    placement.model = "found at " + std::to_string(frame.stamp_ns);
+    result.interpretations = {{.placements = {placement}}, {.rank = 2, .placements = {}}};
     return result;
   }
   void open() {
@@ -56,6 +61,11 @@ class Gate {
     const std::lock_guard<std::mutex> lock(mutex_);
     return fused_;
   }
+  /// The models that each search was told to expect.
+  std::vector<std::string> expected() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return expected_;
+  }
   /// The models of the priors that each search was asked with.
   std::vector<std::string> priors() {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -67,7 +77,7 @@ class Gate {
   std::condition_variable changed_;
   std::vector<std::int64_t> stamps_;
   std::vector<int> fused_;
-  std::vector<std::string> priors_;
+  std::vector<std::string> priors_, expected_;
   bool open_ = false;
 };
 
@@ -322,6 +332,41 @@ TEST_F(WorkerTest, FramesBringTheirPriors) {
   worker->push(frame(6));
   ASSERT_TRUE(streamed.wait_for(2));
   EXPECT_EQ(gate.priors(), (std::vector<std::string>{"bowl ", "mug bowl ", ""}));
+}
+
+TEST_F(WorkerTest, AFrameIsSearchedForWhatItsCameraShowedBefore) {
+  gate.open();
+  auto worker = make();
+  const auto of_camera = [](std::int64_t stamp, const std::string& camera) {
+    IncomingFrame incoming = frame(stamp);
+    incoming.decode = [stamp, camera] {
+      auto message = support::wall_frame(stamp);
+      message.header.frame_id = camera;
+      return frame_from_message(message);
+    };
+    return incoming;
+  };
+  int searched = 0;
+  const auto search = [&](IncomingFrame incoming) {
+    worker->push(std::move(incoming));
+    ASSERT_TRUE(streamed.wait_for(static_cast<std::size_t>(++searched)));
+  };
+  search(of_camera(1, "left"));
+  search(of_camera(2, "right"));
+  search(of_camera(3, "left"));
+  WorkerOptions options;
+  options.follow = false;
+  worker->set_options(options);
+  search(of_camera(4, "left"));
+  options.follow = true;
+  options.request.seed = 666;  // the search fails
+  worker->set_options(options);
+  search(of_camera(5, "left"));
+  options.request.seed = 0;
+  worker->set_options(options);
+  search(of_camera(6, "left"));
+  EXPECT_EQ(gate.expected(),
+            (std::vector<std::string>{"", "", "found at 1", "", "found at 4", ""}));
 }
 
 TEST_F(WorkerTest, FramesThatWaitAreCombinedAndTheNewestIsSearched) {
