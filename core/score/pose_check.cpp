@@ -12,6 +12,7 @@ namespace {
 // Facing points after which a hopeless pose is rejected. Most poses are rejected at the first look.
 constexpr int kFirstLook = 8;
 constexpr int kLastLook = 24;
+constexpr float kMinFacing = 0.15f;  // cosine between normal and line of sight, on the optical axis
 
 bool hopeless(const PoseCheck& check) {
   if (check.facing == kFirstLook) {
@@ -23,9 +24,9 @@ bool hopeless(const PoseCheck& check) {
 
 // What a block of model points looks like from the camera.
 struct Block {
-  float u[kCheckBlock], v[kCheckBlock], z[kCheckBlock];
-  float facing[kCheckBlock];  // negative where the surface faces the camera
+  float z[kCheckBlock];
   float normal[3][kCheckBlock];
+  int pixel[kCheckBlock];  // negative where the point faces away or is outside the image
 };
 
 // Straight-line code over arrays, so that the compiler uses the widest vectors there are.
@@ -36,6 +37,8 @@ BPA_DISPATCH void project_block(const CheckImage& image, const CheckPoints& mode
   const Eigen::Vector3f& t = pose.translation;
   const float tx = t.x(), ty = t.y(), tz = t.z();
   const float fx = image.fx, fy = image.fy, cx = image.cx + 0.5f, cy = image.cy + 0.5f;
+  const int width = image.width, height = image.height;
+  const auto right = static_cast<float>(width), bottom = static_cast<float>(height);
   const float* px = model.coordinates[0].data() + first;
   const float* py = model.coordinates[1].data() + first;
   const float* pz = model.coordinates[2].data() + first;
@@ -50,10 +53,13 @@ BPA_DISPATCH void project_block(const CheckImage& image, const CheckPoints& mode
     const float b = r[1] * nx[k] + r[4] * ny[k] + r[7] * nz[k];
     const float c = r[2] * nx[k] + r[5] * ny[k] + r[8] * nz[k];
     const float inverse_z = 1 / z;
-    out.u[k] = fx * x * inverse_z + cx;
-    out.v[k] = fy * y * inverse_z + cy;
+    const float u = fx * x * inverse_z + cx, v = fy * y * inverse_z + cy;
+    const bool faces = (a * x + b * y + c * z + kMinFacing * z <= 0) & (z > kNearest_m);
+    const bool inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom);
+    // Of points outside, numbers that an int holds.
+    const int column = static_cast<int>(inside ? u : 0), row = static_cast<int>(inside ? v : 0);
+    out.pixel[k] = faces & inside ? row * width + column : -1;
     out.z[k] = z;
-    out.facing[k] = a * x + b * y + c * z + 0.15f * z;
     out.normal[0][k] = a;
     out.normal[1][k] = b;
     out.normal[2][k] = c;
@@ -72,25 +78,18 @@ PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const Fa
   const auto depth = static_cast<float>(tolerance.depth_m);
   const auto free_depth = static_cast<float>(tolerance.free_depth_m);
   const float cosine_127 = 127 * static_cast<float>(tolerance.normal_cosine);
-  const auto width = static_cast<float>(image.width);
-  const auto height = static_cast<float>(image.height);
   Block block;
   for (int first = 0; first < last; first += kCheckBlock) {
     if (first >= few_after && check.seen >= count.few_seen) break;
     project_block(image, model, pose, first, block);
     for (int k = 0; k < std::min(kCheckBlock, last - first); ++k) {
-      const float z = block.z[k];
-      if (block.facing[k] > 0 || !(z > kNearest_m)) continue;
-      if (!(block.u[k] >= 0 && block.v[k] >= 0 && block.u[k] < width && block.v[k] < height)) {
-        continue;
-      }
+      if (block.pixel[k] < 0) continue;
       const bool look = check.facing == kFirstLook || check.facing == kLastLook;
       if (look && hopeless(check)) return check;
       ++check.facing;
-      const CheckPixel& pixel = image.pixels[static_cast<std::size_t>(
-          static_cast<int>(block.v[k]) * image.width + static_cast<int>(block.u[k]))];
+      const CheckPixel& pixel = image.pixels[static_cast<std::size_t>(block.pixel[k])];
       if (pixel.depth <= 0) continue;
-      const float difference = pixel.depth - z;
+      const float difference = pixel.depth - block.z[k];
       if (difference < -depth) continue;  // hidden behind something
       ++check.seen;
       if (difference <= depth) {

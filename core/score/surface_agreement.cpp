@@ -58,11 +58,10 @@ inline float acos_of(float cosine) {
 // Where the model's surface points fall, and what is observed there.
 struct SeenBlock {
   static constexpr int kSize = ViewBlock::kSize;
-  float x[kSize], y[kSize], z[kSize];  // camera frame
+  float z[kSize];  // metres; 1 where a point faces away
   float normal[3][kSize], soft_normal[3][kSize];
   float slant[kSize];  // cosine of the angle between the normal and the line of sight
-  float u[kSize], v[kSize];
-  int pixel[kSize];                                   // -1: outside the image, or facing away
+  int pixel[kSize];    // -1: outside the image, or facing away
   float facing[kSize], in_image[kSize], seen[kSize];  // 1 or 0; seen: a depth is known there
   float depth[kSize], observed[3][kSize];
   float noise_range[kSize], noise_normal[kSize];  // of the model, by edge distance and slant
@@ -75,6 +74,8 @@ BPA_DISPATCH void place_block(const CheckImage& image, const ViewBlock& model, c
   std::copy_n(pose.rotation.data(), 9, r);
   const float tx = pose.translation.x(), ty = pose.translation.y(), tz = pose.translation.z();
   const float fx = image.fx, fy = image.fy, cx = image.cx + 0.5f, cy = image.cy + 0.5f;
+  const int width = image.width;
+  const auto right = static_cast<float>(image.width), bottom = static_cast<float>(image.height);
   for (int k = 0; k < SeenBlock::kSize; ++k) {
     const float px = model.point[0][k], py = model.point[1][k], pz = model.point[2][k];
     const float nx = model.normal[0][k], ny = model.normal[1][k], nz = model.normal[2][k];
@@ -87,30 +88,29 @@ BPA_DISPATCH void place_block(const CheckImage& image, const ViewBlock& model, c
     const float b = r[1] * nx + r[4] * ny + r[7] * nz;
     const float c = r[2] * nx + r[5] * ny + r[8] * nz;
     const float slant = -(a * x + b * y + c * z) / std::sqrt(x * x + y * y + z * z);
-    out.x[k] = x, out.y[k] = y, out.z[k] = z;
     out.normal[0][k] = a, out.normal[1][k] = b, out.normal[2][k] = c;
     out.soft_normal[0][k] = r[0] * sx + r[3] * sy + r[6] * sz;
     out.soft_normal[1][k] = r[1] * sx + r[4] * sy + r[7] * sz;
     out.soft_normal[2][k] = r[2] * sx + r[5] * sy + r[8] * sz;
-    out.slant[k] = slant;
-    out.u[k] = fx * x / z + cx;
-    out.v[k] = fy * y / z + cy;
-    out.facing[k] = one_if((z > kNearest_m) & (slant >= kMinSlant) & (k < count));
+    const float u = fx * x / z + cx, v = fy * y / z + cy;
+    const bool facing = (z > kNearest_m) & (slant >= kMinSlant) & (k < count);
+    const bool inside = facing & (u >= 0) & (v >= 0) & (u < right) & (v < bottom);
+    // Of points outside, numbers that an int holds.
+    const int column = static_cast<int>(inside ? u : 0), row = static_cast<int>(inside ? v : 0);
+    out.pixel[k] = inside ? row * width + column : -1;
+    out.facing[k] = one_if(facing);
+    out.z[k] = facing ? z : 1;
+    out.slant[k] = facing ? slant : 1;
   }
 }
 
 // Looks up what is observed at each point that faces the camera, and the noise there.
 void look_up_block(const CheckImage& image, const NoiseTable& noise, const ViewBlock& model,
                    SeenBlock& block) {
-  const auto width = static_cast<float>(image.width), height = static_cast<float>(image.height);
   for (int k = 0; k < SeenBlock::kSize; ++k) {
-    const float u = block.u[k], v = block.v[k];
-    const bool facing = block.facing[k] > 0;
-    const bool inside = facing && u >= 0 && v >= 0 && u < width && v < height;
-    const int at = inside ? static_cast<int>(v) * image.width + static_cast<int>(u) : -1;
-    const CheckPixel pixel = inside ? image.pixels[static_cast<std::size_t>(at)] : CheckPixel{};
-    if (!facing) block.z[k] = block.slant[k] = 1;
-    block.pixel[k] = at;
+    const bool inside = block.pixel[k] >= 0;
+    const CheckPixel pixel =
+        inside ? image.pixels[static_cast<std::size_t>(block.pixel[k])] : CheckPixel{};
     block.in_image[k] = one_if(inside);
     block.seen[k] = one_if(pixel.depth > 0);
     block.depth[k] = pixel.depth;
