@@ -99,7 +99,8 @@ std::vector<sim::SimulatedObject> household_objects(const std::vector<std::strin
 }
 
 std::vector<sim::SimulatedObject> chosen_objects(const SimulateArguments& a) {
-  if (!a.meshes.empty() && fs::exists(fs::path(a.meshes) / "models_info.json")) {
+  std::error_code error;  // read_objects() says what is wrong with the folder
+  if (!a.meshes.empty() && fs::exists(fs::path(a.meshes) / "models_info.json", error)) {
     return read_bop_objects(a.meshes);
   }
   if (!a.meshes.empty()) return read_objects(meshes_in(a.meshes), a.scale);

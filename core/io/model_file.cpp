@@ -37,7 +37,9 @@ bool legal_name(const std::string& name) {
 /// The description of LIBRARY/NAME.
 Result<ModelDescription> find_description(const std::string& library, const std::string& name) {
   const fs::path folder = fs::path(library) / name;
-  if (!legal_name(name) || !fs::exists(folder / kModelFile)) {
+  std::error_code error;
+  if (!legal_name(name) || !fs::exists(folder / kModelFile, error)) {
+    if (error) return unavailable(folder.string(), " cannot be read: ", error.message());
     return not_found("library ", library, " has no model \"", name, "\"");
   }
   Result<ModelDescription> description = read_description((folder / kModelFile).string());
@@ -173,7 +175,7 @@ Status save_model(const std::string& library, const ModelSource& source, int num
     if (Status s = write_file((fresh / name).string(), bytes); !s.ok()) return s;
   }
   fs::remove_all(old, error);
-  if (fs::exists(target)) fs::rename(target, old, error);
+  if (fs::exists(target, error)) fs::rename(target, old, error);
   if (!error) fs::rename(fresh, target, error);
   if (error) return unavailable(target.string(), " cannot be written: ", error.message());
   fs::remove_all(old, error);

@@ -492,6 +492,8 @@ TEST(ModelFile, EmptyAndMissingLibraries) {
   EXPECT_EQ(load_library(folder.path()).status().code, StatusCode::invalid_argument);
   EXPECT_EQ(load_library(folder / "none").status().code, StatusCode::not_found);
   EXPECT_EQ(load_model(folder.path(), "../x").status().code, StatusCode::not_found);
+  const std::string too_long(5000, 'x');  // as a path: no system call takes it
+  EXPECT_EQ(load_model(too_long, "x").status().code, StatusCode::unavailable);
   EXPECT_EQ(save_model(folder.path(), some_model("../x", 1)).code, StatusCode::invalid_argument);
   EXPECT_EQ(save_model(folder.path(), some_model("x", 0)).code, StatusCode::invalid_argument);
   EXPECT_EQ(clean_model_name("a b/c"), "a_b_c");
