@@ -92,8 +92,8 @@ Candidates cluster(const Search& search, Candidates checked) {
     const bool few = std::ssize(group_of_poses.members) < search.options.cluster.min_features;
     if (few && first.found_by == Source::feature) {
       search.reject("too few feature matches", first.pose());
-    } else if (found_before(search, first.pose())) {
-      search.reject("found in an earlier round", first.pose());
+    } else if (rejected_before(search, first.pose())) {
+      search.reject("scored low in an earlier round", first.pose());
     } else {
       out.push_back(best_of(search, group_of_poses));
     }

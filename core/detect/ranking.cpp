@@ -19,9 +19,10 @@ bool duplicates(const Search& search, const Pose& a, const Pose& b) {
   return error.position < options.duplicate_m && error.angle < options.duplicate_rad;
 }
 
-bool found_before(const Search& search, const Pose& pose) {
+bool rejected_before(const Search& search, const Pose& pose) {
+  constexpr double kHopeless = -5;  // log odds; chosen by hand
   return search.before && std::ranges::any_of(*search.before, [&](const Candidate& other) {
-    return duplicates(search, pose, other.pose());
+    return other.score < kHopeless && duplicates(search, pose, other.pose());
   });
 }
 
@@ -32,8 +33,8 @@ void suppress_duplicates(const Search& search, Candidates& candidates) {
     const bool seen = std::ranges::any_of(kept, [&](const Candidate& other) {
       return duplicates(search, candidate.pose(), other.pose());
     });
-    if (found_before(search, candidate.pose())) {
-      search.reject("found in an earlier round", candidate.pose());
+    if (rejected_before(search, candidate.pose())) {
+      search.reject("scored low in an earlier round", candidate.pose());
     } else if (seen) {
       search.reject("duplicate of a better one", candidate.pose());
     } else {

@@ -14,11 +14,12 @@ void sort_by_score(Candidates& candidates);
 /// True where two poses of the model are duplicates by SelectOptions, modulo its symmetry.
 bool duplicates(const Search& search, const Pose& a, const Pose& b);
 
-/// True where the pose is a duplicate of one that an earlier round has scored.
-bool found_before(const Search& search, const Pose& pose);
+/// True where the pose is a duplicate of one that an earlier round has scored low. One that scored
+/// high is worth another alignment.
+bool rejected_before(const Search& search, const Pose& pose);
 
-/// Non-maximum suppression: sorts by score and rejects duplicates of better candidates, and of
-/// those of earlier rounds.
+/// Non-maximum suppression: sorts by score and rejects duplicates of better candidates, and what
+/// an earlier round has scored low.
 void suppress_duplicates(const Search& search, Candidates& candidates);
 
 /// Sorts by score and rejects all but the best `count`.

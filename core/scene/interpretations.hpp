@@ -13,7 +13,7 @@
 namespace bpa {
 
 struct InterpretationOptions {
-  double min_probability = 0.4;
+  double min_probability = 0.5;
   double object_penalty = 0;
   double explained_weight = 2;
   double max_shared = 0.3;
