@@ -28,4 +28,10 @@ void parallel_for(Index count, int num_threads, const Body& body) {
   });
 }
 
+/// Calls both, at the same time where `num_threads` (0 = one per core) is not 1.
+inline void run_both(int num_threads, const std::function<void()>& first,
+                     const std::function<void()>& second) {
+  parallel_for_pieces(2, 1, num_threads, [&](int k, int, int) { (k == 0 ? first : second)(); });
+}
+
 }  // namespace bpa

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace bpa {
 namespace {
@@ -41,10 +41,17 @@ std::vector<std::uint64_t> keys_of(std::span<const Eigen::Vector3f> points, floa
   return keys;
 }
 
+// The indices of the points in the order of their keys.
 std::vector<std::uint32_t> sort_by_key(const std::vector<std::uint64_t>& keys) {
-  std::vector<std::uint32_t> order(keys.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::pair(keys[i], i); });
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted;
+  sorted.reserve(keys.size());
+  for (const std::uint64_t key : keys) {
+    sorted.emplace_back(key, static_cast<std::uint32_t>(sorted.size()));
+  }
+  std::ranges::sort(sorted);
+  std::vector<std::uint32_t> order;
+  order.reserve(keys.size());
+  for (const auto& [key, i] : sorted) order.push_back(i);
   return order;
 }
 

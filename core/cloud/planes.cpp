@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/dispatch.hpp"
 #include "core/base/random.hpp"
 
 namespace bpa {
@@ -59,20 +60,57 @@ PlaneFit fit(const SurfaceMap& map, const Indices& candidates, const Plane& star
   return result;
 }
 
+// How many pixels are on the plane and have about its normal. Straight-line code over arrays, so
+// that the compiler uses the widest vectors there are.
+BPA_DISPATCH int count_inliers(const float* __restrict x, const float* __restrict y,
+                               const float* __restrict z, const float* __restrict nx,
+                               const float* __restrict ny, const float* __restrict nz,
+                               const float* __restrict tolerance, int size, float a, float b,
+                               float c, float offset) {
+  int count = 0;
+  for (int k = 0; k < size; ++k) {
+    const float height = a * x[k] + b * y[k] + c * z[k] - offset;
+    const float cosine = nx[k] * a + ny[k] * b + nz[k] * c;
+    count += (std::abs(height) < tolerance[k]) & (cosine > kMinNormalCosine);
+  }
+  return count;
+}
+
+// The pixels that draws are tested on, every few of the candidates, in the form that the test reads.
+class Counted {
+ public:
+  Counted(const SurfaceMap& map, const Indices& candidates) {
+    const std::size_t step = std::max<std::size_t>(1, candidates.size() / kCountedPixels);
+    for (std::size_t k = 0; k < candidates.size(); k += step) {
+      const std::size_t i = candidates[k];
+      for (int axis = 0; axis < 3; ++axis) {
+        point_[axis].push_back(map.points[i][axis]);
+        normal_[axis].push_back(map.normals[i][axis]);
+      }
+      tolerance_.push_back(plane_tolerance(map.noise, map.depth[i]));
+    }
+  }
+  int inliers(const Plane& plane) const {
+    return count_inliers(point_[0].data(), point_[1].data(), point_[2].data(), normal_[0].data(),
+                         normal_[1].data(), normal_[2].data(), tolerance_.data(),
+                         static_cast<int>(tolerance_.size()), plane.normal.x(), plane.normal.y(),
+                         plane.normal.z(), plane.offset);
+  }
+
+ private:
+  std::vector<float> point_[3], normal_[3], tolerance_;
+};
+
 PlaneFit best_plane(const SurfaceMap& map, const Indices& candidates, const PlaneOptions& options,
                     std::uint64_t stream) {
   RandomStream random(options.seed, stream);
   Plane best;
   int best_count = -1;
-  const std::size_t step = std::max<std::size_t>(1, candidates.size() / kCountedPixels);
+  const Counted counted(map, candidates);
   for (int draw = 0; draw < options.num_samples; ++draw) {
     const std::size_t i = candidates[random.index(static_cast<int>(candidates.size()))];
     const Plane plane{map.normals[i], map.normals[i].dot(map.points[i])};
-    int count = 0;
-    for (std::size_t k = 0; k < candidates.size(); k += step) {
-      const std::size_t j = candidates[k];
-      count += on_plane(map, j, plane) && map.normals[j].dot(plane.normal) > kMinNormalCosine;
-    }
+    const int count = counted.inliers(plane);
     if (count > best_count) {
       best_count = count;
       best = plane;

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/features/rim_points.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
+#include "core/base/parallel.hpp"
 #include "core/features/pair_voting.hpp"
 
 namespace bpa {
@@ -41,15 +44,24 @@ std::optional<float> distance_to_end(const Eigen::Vector3f& point, const Eigen::
   return {};
 }
 
+// Cosine and sine of each direction.
+std::array<std::pair<float, float>, kDirections> circle() {
+  std::array<std::pair<float, float>, kDirections> out;
+  for (int k = 0; k < kDirections; ++k) {
+    const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / kDirections;
+    out[k] = {std::cos(angle), std::sin(angle)};
+  }
+  return out;
+}
+
 std::optional<RimPoint> rim_beside(const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
                                    const Look& look) {
   const Eigen::Matrix3f basis = basis_of(normal);
   std::vector<Eigen::Vector3f> ends;
   Eigen::Vector3f outward = Eigen::Vector3f::Zero();
-  for (int k = 0; k < kDirections; ++k) {
-    const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / kDirections;
-    const Eigen::Vector3f direction =
-        std::cos(angle) * basis.col(0) + std::sin(angle) * basis.col(1);
+  static const auto kCirclePoints = circle();
+  for (const auto& [cosine, sine] : kCirclePoints) {
+    const Eigen::Vector3f direction = cosine * basis.col(0) + sine * basis.col(1);
     const auto distance = distance_to_end(point, normal, direction, look);
     if (!distance) continue;
     ends.push_back(*distance * direction);
@@ -66,10 +78,13 @@ std::optional<RimPoint> rim_beside(const Eigen::Vector3f& point, const Eigen::Ve
 
 }  // namespace
 
-std::vector<RimPoint> find_rims(const PointCloud& points, const Look& look) {
+std::vector<RimPoint> find_rims(const PointCloud& points, const Look& look, int num_threads) {
+  std::vector<std::optional<RimPoint>> rims(points.size());
+  parallel_for(points.size(), num_threads, [&](std::size_t i) {
+    rims[i] = rim_beside(points.points[i], points.normals[i], look);
+  });
   std::vector<RimPoint> out;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto rim = rim_beside(points.points[i], points.normals[i], look);
+  for (const auto& rim : rims) {
     if (rim) out.push_back(*rim);
   }
   return out;
