@@ -76,7 +76,8 @@ BPA_DISPATCH int count_inliers(const float* __restrict x, const float* __restric
   return count;
 }
 
-// The pixels that draws are tested on, every few of the candidates, in the form that the test reads.
+// The pixels that draws are tested on, every few of the candidates, in the form that the test
+// reads.
 class Counted {
  public:
   Counted(const SurfaceMap& map, const Indices& candidates) {
