@@ -28,10 +28,18 @@ void parallel_for(Index count, int num_threads, const Body& body) {
   });
 }
 
-/// Calls both, at the same time where `num_threads` (0 = one per core) is not 1.
-inline void run_both(int num_threads, const std::function<void()>& first,
-                     const std::function<void()>& second) {
-  parallel_for_pieces(2, 1, num_threads, [&](int k, int, int) { (k == 0 ? first : second)(); });
+/// Calls both, each with its share of `num_threads` (0 = one per core). At the same time where that
+/// is not 1.
+inline void run_both(int num_threads, const std::function<void(int threads)>& first,
+                     const std::function<void(int threads)>& second) {
+  const int all = resolve_num_threads(num_threads), half = all / 2;
+  parallel_for_pieces(2, 1, all, [&](int k, int, int) {
+    if (k == 0) {
+      first(all - half);
+    } else {
+      second(half > 0 ? half : 1);
+    }
+  });
 }
 
 }  // namespace bpa

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/dispatch.hpp"
 #include "core/base/parallel.hpp"
 
 namespace bpa {
@@ -26,7 +27,8 @@ std::vector<float> gaussian(double sigma) {
 }
 
 // Runs over plain rows of floats, so that the compiler can use wide vectors.
-void add_row(const float* from, float weight, int count, float* to) {
+BPA_DISPATCH void add_row(const float* __restrict from, float weight, int count,
+                          float* __restrict to) {
   for (int j = 0; j < count; ++j) to[j] += weight * from[j];
 }
 

@@ -41,10 +41,11 @@ Image<Eigen::Vector3f> log_light_of(Image<Eigen::Vector3f> lab, int num_threads)
 }
 
 // The rims of the observed surface beside `points`: range edges and creases.
-std::vector<RimPoint> scene_rims(const CheckImage& image, const PointCloud& points) {
+std::vector<RimPoint> scene_rims(const CheckImage& image, const PointCloud& points,
+                                 int num_threads) {
   constexpr float kTolerance = 0.006f;  // metres; chosen by hand
   constexpr float kDeviations = 3;      // of depth, added to it
-  return find_rims(points, [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
+  const auto look = [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
     const int pixel = image.pixel_of(at);
     if (pixel < 0) return Beside::hidden;
     const CheckPixel& seen = image.pixels[static_cast<std::size_t>(pixel)];
@@ -54,7 +55,8 @@ std::vector<RimPoint> scene_rims(const CheckImage& image, const PointCloud& poin
     if (seen.depth > at.z() + tolerance) return Beside::end;
     const Eigen::Vector3f there = seen.direction();
     return there.isZero() || there.dot(normal) > kSameFace ? Beside::surface : Beside::end;
-  });
+  };
+  return find_rims(points, look, num_threads);
 }
 
 std::shared_ptr<const SceneFeatures> with_flat_regions(const SceneFeatures& scene) {
@@ -65,6 +67,49 @@ std::shared_ptr<const SceneFeatures> with_flat_regions(const SceneFeatures& scen
     out->map.searched[i] = out->image.pixels[i].searched = 1;
   }
   return out;
+}
+
+SceneFeatureOptions with_threads(SceneFeatureOptions options, int num_threads) {
+  options.num_threads = options.edges.num_threads = options.segments.num_threads = num_threads;
+  return options;
+}
+
+// What is made of images: edges, colours, super-pixels and flat regions.
+void add_images(ColorImages colors, const SceneFeatureOptions& options, SceneFeatures& scene) {
+  const Image<Eigen::Vector3f>& rgb = colors.reduced;
+  const int threads = options.num_threads;
+  scene.edges = scene_edges(scene.map, rgb, options.edges);
+  Image<Eigen::Vector3f> sharp_lab;  // without blur
+  if (!rgb.empty()) {
+    sharp_lab = cielab(rgb, threads);
+    scene.cielab = cielab(blur(rgb, options.color_blur_px, threads), threads);
+    if (options.use_texture) scene.log_light = log_light_of(scene.cielab, threads);
+    if (options.use_outline) {
+      scene.sharp_light = log_light_of(sharp_lab, threads);
+      scene.gradients = std::move(colors.gradients);
+    }
+  }
+  scene.segmentation =
+      super_pixels(scene.map, scene.cielab, scene.edges.likelihood, options.segments);
+  if (!options.use_flat_regions) return;
+  // Pixels, against noise. The blur of `cielab` would smear thin objects.
+  constexpr double kLittleBlur = 0.7;
+  scene.flat = find_flat_regions(scene.map, scene.planes, blur(sharp_lab, kLittleBlur, threads));
+}
+
+// What is made of the searched points.
+void add_points(const SceneFeatureOptions& options, SceneFeatures& scene) {
+  const int threads = options.num_threads;
+  const PointCloud searched = searched_points(scene.map);
+  scene.surface = downsample(searched, kFeatureSpacing);
+  scene.coarse = downsample(searched, static_cast<float>(options.coarse_spacing_m));
+  estimate_curvature(scene.surface, kCurvatureRadius, threads);
+  scene.keypoints = shuffled(scene.surface.size(), options.seed);
+  scene.keypoints.resize(std::min<std::size_t>(scene.keypoints.size(), options.max_keypoints));
+  scene.fpfh = compute_fpfh(scene.surface, scene.keypoints, kFeatureRadius, threads);
+  scene.references = shuffled(scene.coarse.size(), options.seed);
+  scene.rims = scene_rims(scene.image, scene.coarse, threads);
+  scene.sample = next_sample(scene, {}, {}, options);
 }
 
 }  // namespace
@@ -98,43 +143,14 @@ SceneSample next_sample(const SceneFeatures& scene, const SceneSample& before,
 SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
                              const SceneFeatureOptions& options, ColorImages colors) {
   SceneFeatures scene;
-  const Image<Eigen::Vector3f>& rgb = colors.reduced;
-  EdgeImageOptions edge_options = options.edges;
-  SuperPixelOptions segment_options = options.segments;
-  edge_options.num_threads = segment_options.num_threads = options.num_threads;
-  scene.edges = scene_edges(map, rgb, edge_options);
-  Image<Eigen::Vector3f> sharp_lab;  // without blur
-  if (!rgb.empty()) {
-    sharp_lab = cielab(rgb, options.num_threads);
-    scene.cielab =
-        cielab(blur(rgb, options.color_blur_px, options.num_threads), options.num_threads);
-    if (options.use_texture) scene.log_light = log_light_of(scene.cielab, options.num_threads);
-    if (options.use_outline) {
-      scene.sharp_light = log_light_of(sharp_lab, options.num_threads);
-      scene.gradients = std::move(colors.gradients);
-    }
-  }
-  scene.segmentation = super_pixels(map, scene.cielab, scene.edges.likelihood, segment_options);
   scene.image = make_check_image(map);
-  scene.planes = std::move(planes);
-  const PointCloud searched = searched_points(map);
   scene.map = std::move(map);
-  scene.surface = downsample(searched, kFeatureSpacing);
-  scene.coarse = downsample(searched, static_cast<float>(options.coarse_spacing_m));
-  estimate_curvature(scene.surface, kCurvatureRadius, options.num_threads);
-  scene.keypoints = shuffled(scene.surface.size(), options.seed);
-  scene.keypoints.resize(std::min<std::size_t>(scene.keypoints.size(), options.max_keypoints));
-  scene.fpfh = compute_fpfh(scene.surface, scene.keypoints, kFeatureRadius, options.num_threads);
-  scene.references = shuffled(scene.coarse.size(), options.seed);
-  scene.rims = scene_rims(scene.image, scene.coarse);
-  scene.sample = next_sample(scene, {}, {}, options);
-  if (options.use_flat_regions) {
-    // Pixels, against noise. The blur of `cielab` would smear thin objects.
-    constexpr double kLittleBlur = 0.7;
-    scene.flat = find_flat_regions(scene.map, scene.planes,
-                                   blur(sharp_lab, kLittleBlur, options.num_threads));
-    scene.with_flat = with_flat_regions(scene);
-  }
+  scene.planes = std::move(planes);
+  run_both(
+      options.num_threads,
+      [&](int threads) { add_images(std::move(colors), with_threads(options, threads), scene); },
+      [&](int threads) { add_points(with_threads(options, threads), scene); });
+  scene.with_flat = with_flat_regions(scene);
   return scene;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/base/concat.hpp"
+#include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/cloud/cielab.hpp"
 #include "core/cloud/color_gradients.hpp"
@@ -68,14 +69,18 @@ SceneFeatures observe(const Frame& frame, const DetectRequest& request, Detector
   SurfaceMap map = surface_map(frame, options.surface);
   finish_stage("surface");
   std::vector<Plane> planes;
-  if (frame.background.empty()) planes = label_background_planes(map, options.planes);
-  finish_stage("planes");
   ColorImages colors;
-  if (options.features.use_color) {
-    colors.reduced = reduced_color(frame, map, request.num_threads);
-    if (options.features.use_outline)
-      colors.gradients = color_gradients(frame, request.num_threads);
-  }
+  run_both(
+      request.num_threads,
+      [&](int threads) {
+        if (!options.features.use_color) return;
+        colors.reduced = reduced_color(frame, map, threads);
+        if (options.features.use_outline) colors.gradients = color_gradients(frame, threads);
+      },
+      [&](int) {
+        if (frame.background.empty()) planes = label_background_planes(map, options.planes);
+      });
+  finish_stage("planes");
   SceneFeatures scene =
       scene_features(std::move(map), std::move(planes), options.features, std::move(colors));
   finish_stage("features");
