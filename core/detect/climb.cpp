@@ -35,7 +35,7 @@ Eigen::Vector3d direction(int move) {
 void align_from_beside(const Search& search, Best& best) {
   const ClimbOptions& options = search.options.climb;
   const Pose start = best.pose;
-  for (int turn = 0; turn < 6; ++turn) {
+  for (int turn = 0; turn < 6 && !search.late(); ++turn) {
     const Pose beside = turned(start, options.beside_rad * direction(turn));
     const Pose refined = search.refine(beside, options.refinement).camera_from_object;
     best.offer(refined, search.quick_score(refined));
@@ -45,7 +45,7 @@ void align_from_beside(const Search& search, Best& best) {
 // Small steps along and about each axis of the camera; smaller ones when none improves.
 void step_uphill(const Search& search, Best& best) {
   double step = search.options.climb.step_m;
-  for (int round = 0; round < search.options.climb.rounds; ++round) {
+  for (int round = 0; round < search.options.climb.rounds && !search.late(); ++round) {
     const double angle = step / (0.5 * search.model.diameter);
     bool improved = false;
     for (int move = 0; move < 12; ++move) {

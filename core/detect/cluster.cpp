@@ -88,6 +88,7 @@ void keep_clusters(const Search& search, Candidates& clusters) {
 Candidates cluster(const Search& search, Candidates checked) {
   Candidates out;
   for (const Cluster& group_of_poses : group(search, checked)) {
+    if (search.late()) break;
     const Candidate& first = *group_of_poses.members.front();
     const bool few = std::ssize(group_of_poses.members) < search.options.cluster.min_features;
     if (few && first.found_by == Source::feature) {

@@ -22,7 +22,7 @@ constexpr Stage kStages[] = {
      [](const DetectOptions& options) { return options.check.max_in_library; }},
     {"corrected", correct, 0.4, "Corrected",
      "Two Gauss-Newton steps move each pose onto the surface, where that improves it."},
-    {"clusters", cluster, 1, "Clustered",
+    {"clusters", cluster, 0.6, "Clustered",
      "Poses within 2.5 cm and pi/16 are a cluster. BPA aligns each one again with the "
      "correspondences of all its poses. The best of all models go on.",
      [](const DetectOptions& options) { return options.cluster.max_in_library; }},
@@ -32,7 +32,7 @@ constexpr Stage kStages[] = {
      [](const DetectOptions& options) { return options.refine.max_in_library; }},
     {"aligned", refine, 0.5, "Refined",
      "The best are aligned once more by gradients. Non-maximum suppression follows."},
-    {"scored", score, 0.5, "Scored", "Each is scored with all components (round three)."},
+    {"scored", score, 1, "Scored", "Each is scored with all components (round three)."},
     {"climbed", climb, 0.5, "Climbed",
      "The best climb the score by small steps, from where they are and from beside."},
     {"turned", try_turned, 0.7, "Turned",
@@ -91,9 +91,14 @@ void run_stages(std::span<const Stage> stages, std::span<Search> searches, int n
   const int threads = resolve_num_threads(num_threads);
   for (const Stage& stage : stages) {
     const Deadline end = deadline.part(stage.time_share);
-    std::atomic<int> waiting{static_cast<int>(searches.size())};
+    // A model's share grows with its candidates.
+    const auto work = [&](std::size_t i) { return 1 + static_cast<int>(found[i].size()); };
+    std::atomic<int> waiting{0};
+    for (std::size_t i = 0; i < searches.size(); ++i) waiting += work(i);
     parallel_for(searches.size(), num_threads, [&](std::size_t i) {
-      searches[i].deadline = end.part(std::min(1.0, static_cast<double>(threads) / waiting--));
+      const int own = work(i);
+      const double share = static_cast<double>(threads * own) / waiting.fetch_sub(own);
+      searches[i].deadline = end.part(std::min(1.0, share));
       found[i] = timed(stage, searches[i], std::move(found[i]), traces ? &(*traces)[i] : nullptr);
     });
     if (stage.most_in_library) {

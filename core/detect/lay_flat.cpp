@@ -63,7 +63,7 @@ void add_resting(const Search& search, int index, const FlatRest& rest, Candidat
   const int turns = elongated ? 2 : kTurnsOfRound;
   const bool whole = !elongated || region.length > kNearlyWhole * rest.length;
   const float hidden = (rest.length - region.length) / 2;
-  for (int k = 0; k < turns; ++k) {
+  for (int k = 0; k < turns && !search.late(); ++k) {
     const Eigen::AngleAxisf turn(static_cast<float>(2 * k * M_PI / turns), region.up);
     FastPose pose;
     pose.rotation =
@@ -120,7 +120,7 @@ Pose moved(const Search& search, const Candidate& candidate, int move, double st
 // Small steps on the plane; smaller ones when none improves. Depth would drag the pose off it.
 void slide(const Search& search, Candidate& candidate) {
   double step = search.options.flat.slide_step_m;
-  for (int round = 0; round < search.options.flat.slide_rounds; ++round) {
+  for (int round = 0; round < search.options.flat.slide_rounds && !search.late(); ++round) {
     bool improved = false;
     for (int move = 0; move < 6; ++move) {
       const Pose pose = moved(search, candidate, move, step);

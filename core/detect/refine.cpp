@@ -20,7 +20,7 @@ Candidates refine(const Search& search, Candidates aligned) {
   keep_first(search, options.max_refined, aligned);
   std::size_t done = 0;
   for (Candidate& candidate : aligned) {
-    if (search.late() && done > 0) break;
+    if (search.late()) break;
     candidate.refinement = search.refine(candidate.pose(), options.refinement);
     candidate.score = search.quick_score(candidate.pose());
     ++done;
@@ -33,7 +33,7 @@ Candidates refine(const Search& search, Candidates aligned) {
 Candidates score(const Search& search, Candidates refined) {
   Candidates out;
   for (const Candidate& start : refined) {
-    if (search.late() && !out.empty()) break;
+    if (search.late()) break;
     const Pose pose = turned_to_pattern(search, start.pose());
     out.push_back(search.scored(search.measured(pose), start.found_by));
   }

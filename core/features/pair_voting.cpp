@@ -315,13 +315,15 @@ ScenePairs scene_rim_pairs(const PointCloud& cloud, std::span<const RimPoint> ri
 }
 
 std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable& table,
-                                  int num_model_points, int peaks) {
+                                  int num_model_points, int peaks,
+                                  const std::function<bool()>& late) {
   std::vector<VotedPose> out;
   Votes votes(static_cast<std::size_t>(num_model_points));
   Peaks best(peaks);
   for (std::size_t r = 0; r < pairs.references.size(); ++r) {
     const bool votes_for_none = pairs.first[r] == pairs.first[r + 1] ||
                                 pairs.partners[pairs.first[r]].distance > table.max_distance();
+    if (late && late()) break;
     if (votes_for_none) continue;
     votes.clear();
     for (std::uint32_t k = pairs.first[r]; k < pairs.first[r + 1]; ++k) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -143,8 +144,9 @@ struct VotedPose {
 
 /// Each reference point's pairs vote for its model point and the turn about its normal (Drost et
 /// al., section 3.4). Returns the `peaks` best model points of each reference point, best first.
-/// `num_model_points` is the size of the cloud of `table`.
+/// `num_model_points` is the size of the cloud of `table`. Ends once `late`, if given, says so.
 std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable& table,
-                                  int num_model_points, int peaks);
+                                  int num_model_points, int peaks,
+                                  const std::function<bool()>& late = {});
 
 }  // namespace bpa

@@ -12,11 +12,14 @@
 #include "core/io/file_bytes.hpp"
 #include "core/io/options_yaml.hpp"
 #include "core/pipeline/library_search.hpp"
+#include "core/pipeline/search_plan.hpp"
 #include "core/scene/given_others.hpp"
 #include "core/scene/interpretations.hpp"
 
 namespace bpa {
 namespace {
+
+constexpr double kTimeOfSearch = 0.93;  // after preparation; the rest interprets. By hand.
 
 using Models = std::vector<std::shared_ptr<const ObjectModel>>;
 
@@ -62,6 +65,8 @@ SceneFeatures observe(const Frame& frame, const DetectRequest& request, Detector
                       std::vector<StageTiming>& timings) {
   options.surface.num_threads = options.features.num_threads = request.num_threads;
   options.planes.seed = options.features.seed = request.seed;
+  // With a budget, the search draws the first sample, as large as the time left allows.
+  if (request.budget_ms > 0) options.features.max_references = options.features.round_keypoints = 0;
   Stopwatch stage;
   const auto finish_stage = [&](const char* name) {
     timings.push_back({name, stage.lap_milliseconds()});
@@ -146,20 +151,25 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   if (Status status = check_priors(*library_, request.priors); !status.ok()) return status;
 
   const Deadline deadline = Deadline::after(request.budget_ms);
+  DetectorOptions options = options_;
+  const double prepared_share = shorten_preparation(request.budget_ms, options);
   const Stopwatch total;
   SceneInterpretations out;
   out.stamp_ns = frame.stamp_ns;
   out.frame_id = frame.frame_id;
   out.fused_frames = frame.fused;
-  SceneFeatures scene = observe(frame, request, options_, out.timings);
+  SceneFeatures scene = observe(frame, request, options, out.timings);
+  const double preparation_ms = total.milliseconds() / prepared_share;
   out.sensor = name_of(scene.map.sensor);
 
   Stopwatch stage;
-  Candidates candidates = LibrarySearch{scene, options_, layers_, request, deadline}.run(
-      *models, trace ? &trace->objects : nullptr, out.budget_exhausted, out.effort);
+  const Deadline search_end = deadline.part(kTimeOfSearch);
+  const LibrarySearch search{scene, options, layers_, request, search_end, preparation_ms};
+  Candidates candidates =
+      search.run(*models, trace ? &trace->objects : nullptr, out.budget_exhausted, out.effort);
   out.timings.push_back({"objects", stage.lap_milliseconds()});
 
-  out.interpretations = interpret_scene(scene, layers_, candidates, request, options_);
+  out.interpretations = interpret_scene(scene, layers_, candidates, request, options);
   out.timings.push_back({"interpretations", stage.lap_milliseconds()});
   out.total_milliseconds = total.milliseconds();
   if (trace) {

@@ -8,12 +8,15 @@
 
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
+#include "core/pipeline/search_plan.hpp"
 #include "core/scene/interpretations.hpp"
 
 namespace bpa {
 namespace {
 
-constexpr double kTimeOfRounds = 0.7;  // of a search; the rest is for the final stages
+// Chosen by hand: of the search, for the rounds, so that the final stages have time too; and of
+// what the rounds have left, for one of them, which is guessed.
+constexpr double kTimeOfRounds = 0.7, kTimeOfFirstRound = 0.5, kTimeOfNextRound = 0.8;
 
 Candidates joined(const std::vector<Candidates>& found) {
   Candidates all;
@@ -45,11 +48,11 @@ struct Explained {
   }
 };
 
-SceneFeatureOptions smaller_sample(SceneFeatureOptions options, double share) {
-  const auto part = [share](int number) { return static_cast<int>(std::ceil(share * number)); };
-  options.round_keypoints = part(options.round_keypoints);
-  options.max_references = part(options.max_references);
-  return options;
+// The share of a whole round that the next one is; 0 where no other fits.
+double next_share(const SearchPace& pace, int round, const Deadline& rounds_end) {
+  const double part = round == 0 ? kTimeOfFirstRound : kTimeOfNextRound;
+  const double share = pace.share_of_round(part * rounds_end.milliseconds_left());
+  return round == 0 ? std::max(share, kSmallestRound) : share;
 }
 
 }  // namespace
@@ -86,22 +89,38 @@ Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectMode
     let_compete(all, find_overlaps(all, options.scene.max_shared));
     return explained.add(all, options.rounds);
   };
+  const bool limited = !deadline.never();
   const Deadline rounds_end = deadline.part(kTimeOfRounds);
   for (Search& search : searches) search.deadline = rounds_end;
-  SceneSample sample = scene.sample;
   const bool follows = !request.expected.empty();
   if (follows) {
     score_expected(searches, found, traces);
     explain();
-    sample = next_sample(scene, {}, explained.certain,
-                         smaller_sample(options.features, options.rounds.expected_share));
   }
-  for (int round = 0; round < options.rounds.max_rounds && !sample.empty(); ++round) {
+  SearchPace pace(preparation_ms, static_cast<int>(models.size()));
+  SceneSample sample;
+  double looked_at = 0;                 // of the scene, in whole rounds
+  double gained = 0, looked_since = 0;  // pixels, and whole rounds, since the gain was last judged
+  bool ended = false;                   // before time did
+  for (int round = 0; !ended && looked_at < options.rounds.max_rounds; ++round) {
+    const bool first_after_another = follows && round == 0;
+    double share = first_after_another ? options.rounds.expected_share : 1;
+    if (limited) share = std::min(share, next_share(pace, round, rounds_end));
+    if (share == 0) break;
+    const Stopwatch watch;
+    DetectorOptions sized = share < 1 ? sized_round(options, share) : options;
+    sized.features.num_threads = request.num_threads;
+    sample = next_sample(scene, sample, explained.certain, sized.features);
+    if (round > 0 && sample.empty()) {
+      ended = true;
+      break;
+    }
     for (Search& search : searches) {
       search.round = round;
       search.before = &found[&search - searches.data()];
       search.sample = &sample;
       search.image = &explained.image;
+      search.options = sized.detect;
     }
     ++effort.rounds;
     std::vector<Candidates> now(models.size());
@@ -109,20 +128,26 @@ Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectMode
     for (std::size_t i = 0; i < models.size(); ++i) {
       std::ranges::move(now[i], std::back_inserter(found[i]));
     }
-    if (rounds_end.passed()) break;
-    const int gained = explain();
-    const bool may_end = follows || round > 0;
-    if (may_end && gained < options.rounds.min_gain_px) break;
-    sample = next_sample(scene, sample, explained.certain, options.features);
+    pace.took(share, watch.milliseconds());
+    looked_at += share;
+    looked_since += share;
+    gained += explain();
+    if (looked_since < 1 && !first_after_another) continue;
+    ended = (follows || looked_at > 1) && gained < options.rounds.min_gain_px;
+    gained = looked_since = 0;
   }
+  const double final_share = limited ? pace.share_of_final(deadline.milliseconds_left()) : 1;
   for (std::size_t i = 0; i < models.size(); ++i) {
     searches[i].before = nullptr;
     suppress_duplicates(searches[i], found[i]);
     searches[i].deadline = deadline;
+    searches[i].options =
+        final_share < 1 ? sized_final(options.detect, final_share) : options.detect;
   }
   run_stages(final_stages(), searches, request.num_threads, found, traces);
   for (const Search& search : searches) effort += search.effort;
-  cut = std::ranges::count(late, 1) > 0;
+  const bool whole = ended || looked_at >= options.rounds.max_rounds;
+  cut = std::ranges::count(late, 1) > 0 || !whole || final_share < 1;
   return joined(found);
 }
 

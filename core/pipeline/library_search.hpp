@@ -18,11 +18,13 @@ struct LibrarySearch {
   const ScoreLayers& layers;
   const DetectRequest& request;
   Deadline deadline;
+  double preparation_ms = 0;  ///< Of the whole preparation; the search may be that much slower.
 
   /// The candidates of all models. Searches in rounds: each takes another sample of the scene, and
   /// surface that certain placements explain is searched no more. Models compete in each round.
-  /// What is expected of an earlier frame is scored first. `cut`: whether time ran out. `effort`:
-  /// the counts of all models.
+  /// What is expected of an earlier frame is scored first. With a deadline, rounds are as large as
+  /// fits (search_plan.hpp), and there are more of them. `cut`: whether time ran out. `effort`: the
+  /// counts of all models.
   Candidates run(const std::vector<std::shared_ptr<const ObjectModel>>& models,
                  std::vector<ObjectTrace>* traces, bool& cut, SearchEffort& effort) const;
 

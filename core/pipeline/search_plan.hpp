@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/pipeline/detector_options.hpp"
+
+// How a time budget is kept: what is searched follows from the time there is. No function looks at
+// a clock.
+
+namespace bpa {
+
+/// Lets the preparation of a frame do less where `budget_ms` > 0 is small: below 200 ms fewer
+/// keypoints, below 80 ms a smaller image too, without outlines and flat regions. Returns about
+/// which share of the whole preparation's time is left, (0, 1].
+double shorten_preparation(double budget_ms, DetectorOptions& options);
+
+/// `options` for a round that looks at `share` (0 to 1) of what a whole round looks at: reference
+/// points, keypoints, and the candidates of all models that go on. Each is at least one.
+DetectorOptions sized_round(const DetectorOptions& options, double share);
+
+/// `options` for final stages that try `share` (0 to 1) of what they would, at least one of each.
+DetectOptions sized_final(const DetectOptions& options, double share);
+
+/// How much of the search fits in a time: the work of a round grows with its share, and with the
+/// number of models.
+class SearchPace {
+ public:
+  /// A first guess, from the time that the whole preparation of this frame takes on this machine.
+  SearchPace(double preparation_ms, int models);
+
+  /// The share of a whole round that fits, at most 1; 0 where that is too small for a round.
+  double share_of_round(double milliseconds) const;
+  /// The share of the final stages that fits, at most 1.
+  double share_of_final(double milliseconds) const;
+  /// A round of that share took so long: later guesses are made from this.
+  void took(double share, double milliseconds);
+
+ private:
+  double round_ms_;  // of a whole round for all models
+};
+
+/// The smallest share of a whole round: with less, most objects have no reference point. Chosen by
+/// hand.
+constexpr double kSmallestRound = 0.03;
+
+}  // namespace bpa

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/search_plan.hpp"
+
+#include <gtest/gtest.h>
+
+namespace bpa {
+namespace {
+
+TEST(SearchPlan, NoBudgetShortensNothing) {
+  DetectorOptions options;
+  EXPECT_EQ(shorten_preparation(0, options), 1);
+  EXPECT_EQ(shorten_preparation(1000, options), 1);
+  EXPECT_EQ(options.features.max_keypoints, DetectorOptions().features.max_keypoints);
+  EXPECT_EQ(options.surface.max_width, DetectorOptions().surface.max_width);
+  EXPECT_TRUE(options.features.use_outline);
+}
+
+TEST(SearchPlan, SmallerBudgetsPrepareLess) {
+  double before = 0;
+  int keypoints = 0, width = 0;
+  for (const double budget_ms : {20, 50, 79, 80, 150, 200, 500}) {
+    DetectorOptions options;
+    const double share = shorten_preparation(budget_ms, options);
+    EXPECT_GT(share, 0);
+    EXPECT_GE(share, before) << budget_ms;
+    EXPECT_GE(options.features.max_keypoints, keypoints) << budget_ms;
+    EXPECT_GE(options.surface.max_width, width) << budget_ms;
+    before = share;
+    keypoints = options.features.max_keypoints;
+    width = options.surface.max_width;
+  }
+}
+
+TEST(SearchPlan, AWholeRoundHasItsOptions) {
+  const DetectorOptions options, whole = sized_round(options, 1);
+  EXPECT_EQ(whole.features.max_references, options.features.max_references);
+  EXPECT_EQ(whole.features.round_keypoints, options.features.round_keypoints);
+  EXPECT_EQ(whole.detect.check.max_in_library, options.detect.check.max_in_library);
+  EXPECT_EQ(whole.detect.cluster.max_in_library, options.detect.cluster.max_in_library);
+  EXPECT_EQ(whole.detect.refine.max_in_library, options.detect.refine.max_in_library);
+  EXPECT_EQ(sized_final(options.detect, 1).flat.max_laid, options.detect.flat.max_laid);
+}
+
+TEST(SearchPlan, SmallSharesLookAtLessButAtSomething) {
+  const DetectorOptions options, half = sized_round(options, 0.5);
+  EXPECT_EQ(half.features.max_references, options.features.max_references / 2);
+  EXPECT_EQ(half.detect.refine.max_in_library, options.detect.refine.max_in_library / 2);
+  const DetectorOptions least = sized_round(options, 1e-6);
+  EXPECT_EQ(least.features.max_references, 1);
+  EXPECT_EQ(least.detect.check.max_in_library, 1);
+  EXPECT_EQ(sized_final(options.detect, 1e-6).climb.max_climbed, 1);
+}
+
+TEST(SearchPlan, WhatIsOffStaysOff) {
+  DetectorOptions options;
+  options.features.max_references = 0;
+  options.detect.flat.max_laid = 0;
+  EXPECT_EQ(sized_round(options, 0.5).features.max_references, 0);
+  EXPECT_EQ(sized_final(options.detect, 0.5).flat.max_laid, 0);
+}
+
+TEST(SearchPace, MoreTimeIsALargerRound) {
+  const SearchPace pace(60, 21);
+  double before = 0;
+  for (double milliseconds = 0; milliseconds < 2000; milliseconds += 10) {
+    const double share = pace.share_of_round(milliseconds);
+    EXPECT_GE(share, before);
+    EXPECT_LE(share, 1);
+    EXPECT_TRUE(share == 0 || share >= kSmallestRound) << share;
+    before = share;
+  }
+  EXPECT_EQ(before, 1);
+}
+
+TEST(SearchPace, MoreModelsAreASmallerRoundOfEach) {
+  EXPECT_GT(SearchPace(60, 5).share_of_round(100), SearchPace(60, 21).share_of_round(100));
+  EXPECT_GT(SearchPace(60, 5).share_of_final(20), SearchPace(60, 21).share_of_final(20));
+}
+
+TEST(SearchPace, LearnsFromRounds) {
+  SearchPace pace(60, 21);
+  pace.took(0.1, 50);
+  EXPECT_NEAR(pace.share_of_round(100), 0.2, 1e-9);
+  pace.took(0.2, 50);
+  EXPECT_NEAR(pace.share_of_round(100), 0.4, 1e-9);
+}
+
+}  // namespace
+}  // namespace bpa
