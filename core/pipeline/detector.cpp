@@ -62,7 +62,7 @@ Result<Models> chosen_models(const ModelLibrary& library, const DetectRequest& r
 
 // What detection reads of the frame, with the time of each step.
 SceneFeatures observe(const Frame& frame, const DetectRequest& request, DetectorOptions options,
-                      std::vector<StageTiming>& timings) {
+                      const Deadline& deadline, std::vector<StageTiming>& timings) {
   options.surface.num_threads = options.features.num_threads = request.num_threads;
   options.planes.seed = options.features.seed = request.seed;
   // With a budget, the search draws the first sample, as large as the time left allows.
@@ -73,6 +73,9 @@ SceneFeatures observe(const Frame& frame, const DetectRequest& request, Detector
   };
   SurfaceMap map = surface_map(frame, options.surface);
   finish_stage("surface");
+  if (!details_fit(timings.back().milliseconds, deadline.milliseconds_left())) {
+    leave_out_details(options.features);
+  }
   std::vector<Plane> planes;
   ColorImages colors;
   run_both(
@@ -152,13 +155,14 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
 
   const Deadline deadline = Deadline::after(request.budget_ms);
   DetectorOptions options = options_;
-  const double prepared_share = shorten_preparation(request.budget_ms, options);
+  const double prepared_share =
+      shorten_preparation(request.budget_ms, resolve_num_threads(request.num_threads), options);
   const Stopwatch total;
   SceneInterpretations out;
   out.stamp_ns = frame.stamp_ns;
   out.frame_id = frame.frame_id;
   out.fused_frames = frame.fused;
-  SceneFeatures scene = observe(frame, request, options, out.timings);
+  SceneFeatures scene = observe(frame, request, options, deadline, out.timings);
   const double preparation_ms = total.milliseconds() / prepared_share;
   out.sensor = name_of(scene.map.sensor);
 

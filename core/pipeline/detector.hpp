@@ -35,9 +35,11 @@ struct DetectRequest {
   /// a fraction of the time. Models that are not searched are ignored.
   std::vector<ExpectedPlacement> expected = {};
   int top_k = kDefaultTopK;  ///< Number of interpretations to return, 1 to 100.
-  /// Time for the search, milliseconds; 0: no limit. Preparing the frame (about 0.2 s at 640 x 480)
-  /// is not cut; models share the rest equally. Returns the best found by then. With a budget, the
-  /// answer depends on the machine's speed.
+  /// Time for the frame, milliseconds; 0: no limit. The less time, the smaller the part of the
+  /// scene that is searched, for all models alike; below 200 ms the frame is prepared in less
+  /// detail (see search_plan.hpp). Preparation is not cut: 25 ms at 640 x 480 on two cores, 60 ms
+  /// from 200 ms on. Returns the best found by then. With a budget, the answer depends on the
+  /// machine's speed.
   double budget_ms = 0;
   std::uint64_t seed = 0;  ///< Same frame, library, options and seed: same answer.
   int num_threads = 0;     ///< 0 = one per core. Does not change the answer.

@@ -8,14 +8,24 @@
 namespace bpa {
 namespace {
 
-// Times on two cores of a 2.5 GHz EPYC, at 640 x 480: a whole preparation takes 60 ms.
-constexpr double kFewKeypointsBelow_ms = 200, kSmallImageBelow_ms = 80;
-constexpr double kFewKeypointsShare = 0.9, kSmallImageShare = 0.4;  // of the time; measured
-constexpr int kFewKeypoints = 200, kSmallWidth = 240;               // chosen by hand
+// What a small budget leaves of the preparation. Budgets and sizes are chosen by hand on real and
+// simulated frames of 640 x 480, on two cores of a 2.5 GHz EPYC: a whole preparation takes 60 ms.
+struct Shortened {
+  double below_ms;  // of the budget
+  int max_width, max_keypoints;
+  bool details;  // outlines and flat regions
+  double share;  // of the whole preparation's time; measured
+};
+constexpr int kAnyWidth = 1 << 20;
+constexpr Shortened kShortened[] = {
+    {70, 160, 200, false, 0.3}, {120, 240, 200, false, 0.4}, {200, kAnyWidth, 200, true, 0.9}};
+constexpr double kOneThread = 0.55;         // what two do in a time, one does in so much of it
+constexpr double kRestOfPreparation = 5;    // times the surface; measured
+constexpr double kTimeOfPreparation = 0.7;  // of what is left after the surface, at most; by hand
 
 // Measured with 21 models: of the whole preparation's time, for each model. Not the mean but some
 // 20 % more, as a late answer is worse than a little less of the search.
-constexpr double kRoundTime = 0.5, kFinalTime = 0.2;
+constexpr double kRoundTime = 0.45, kFinalTime = 0.2;
 
 int part_of(int count, double share) {
   return std::min(count, std::max(1, static_cast<int>(std::lround(share * count))));
@@ -23,13 +33,26 @@ int part_of(int count, double share) {
 
 }  // namespace
 
-double shorten_preparation(double budget_ms, DetectorOptions& options) {
-  if (!(budget_ms > 0) || budget_ms >= kFewKeypointsBelow_ms) return 1;
-  options.features.max_keypoints = std::min(options.features.max_keypoints, kFewKeypoints);
-  if (budget_ms >= kSmallImageBelow_ms) return kFewKeypointsShare;
-  options.surface.max_width = std::min(options.surface.max_width, kSmallWidth);
-  options.features.use_outline = options.features.use_flat_regions = false;
-  return kSmallImageShare;
+double shorten_preparation(double budget_ms, int num_threads, DetectorOptions& options) {
+  if (!(budget_ms > 0)) return 1;
+  if (num_threads == 1) budget_ms *= kOneThread;
+  for (const Shortened& shortened : kShortened) {
+    if (budget_ms >= shortened.below_ms) continue;
+    options.surface.max_width = std::min(options.surface.max_width, shortened.max_width);
+    options.features.max_keypoints =
+        std::min(options.features.max_keypoints, shortened.max_keypoints);
+    if (!shortened.details) leave_out_details(options.features);
+    return shortened.share;
+  }
+  return 1;
+}
+
+bool details_fit(double surface_ms, double milliseconds_left) {
+  return kRestOfPreparation * surface_ms <= kTimeOfPreparation * milliseconds_left;
+}
+
+void leave_out_details(SceneFeatureOptions& options) {
+  options.use_outline = options.use_flat_regions = false;
 }
 
 DetectorOptions sized_round(const DetectorOptions& options, double share) {

@@ -10,9 +10,17 @@
 namespace bpa {
 
 /// Lets the preparation of a frame do less where `budget_ms` > 0 is small: below 200 ms fewer
-/// keypoints, below 80 ms a smaller image too, without outlines and flat regions. Returns about
-/// which share of the whole preparation's time is left, (0, 1].
-double shorten_preparation(double budget_ms, DetectorOptions& options);
+/// keypoints, below 120 ms an image of at most 240 pixels a row too, without outlines and flat
+/// regions, below 70 ms of 160. With one of `num_threads` (1 or more) so from 1.8 times the budget.
+/// Returns about which share of the whole preparation's time is left, (0, 1].
+double shorten_preparation(double budget_ms, int num_threads, DetectorOptions& options);
+
+/// Whether the rest of the preparation leaves time for a search: on a slow or busy machine outlines
+/// and flat regions may not. `surface_ms`: what the surface took.
+bool details_fit(double surface_ms, double milliseconds_left);
+
+/// No outlines and flat regions.
+void leave_out_details(SceneFeatureOptions& options);
 
 /// `options` for a round that looks at `share` (0 to 1) of what a whole round looks at: reference
 /// points, keypoints, and the candidates of all models that go on. Each is at least one.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/pipeline/search_plan.hpp"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace bpa {
@@ -9,8 +11,8 @@ namespace {
 
 TEST(SearchPlan, NoBudgetShortensNothing) {
   DetectorOptions options;
-  EXPECT_EQ(shorten_preparation(0, options), 1);
-  EXPECT_EQ(shorten_preparation(1000, options), 1);
+  EXPECT_EQ(shorten_preparation(0, 2, options), 1);
+  EXPECT_EQ(shorten_preparation(1000, 2, options), 1);
   EXPECT_EQ(options.features.max_keypoints, DetectorOptions().features.max_keypoints);
   EXPECT_EQ(options.surface.max_width, DetectorOptions().surface.max_width);
   EXPECT_TRUE(options.features.use_outline);
@@ -19,9 +21,9 @@ TEST(SearchPlan, NoBudgetShortensNothing) {
 TEST(SearchPlan, SmallerBudgetsPrepareLess) {
   double before = 0;
   int keypoints = 0, width = 0;
-  for (const double budget_ms : {20, 50, 79, 80, 150, 200, 500}) {
+  for (const double budget_ms : {20, 50, 70, 119, 120, 150, 200, 500}) {
     DetectorOptions options;
-    const double share = shorten_preparation(budget_ms, options);
+    const double share = shorten_preparation(budget_ms, 2, options);
     EXPECT_GT(share, 0);
     EXPECT_GE(share, before) << budget_ms;
     EXPECT_GE(options.features.max_keypoints, keypoints) << budget_ms;
@@ -30,6 +32,19 @@ TEST(SearchPlan, SmallerBudgetsPrepareLess) {
     keypoints = options.features.max_keypoints;
     width = options.surface.max_width;
   }
+}
+
+TEST(SearchPlan, OneThreadPreparesLess) {
+  DetectorOptions one, two;
+  EXPECT_LT(shorten_preparation(150, 1, one), shorten_preparation(150, 2, two));
+  EXPECT_LT(one.surface.max_width, two.surface.max_width);
+}
+
+TEST(SearchPlan, DetailsAreLeftOutWhereTimeIsShort) {
+  EXPECT_TRUE(details_fit(10, std::numeric_limits<double>::infinity()));
+  EXPECT_TRUE(details_fit(10, 200));
+  EXPECT_FALSE(details_fit(10, 50));
+  EXPECT_FALSE(details_fit(50, 200));
 }
 
 TEST(SearchPlan, AWholeRoundHasItsOptions) {
