@@ -16,7 +16,7 @@ namespace {
 
 // Chosen by hand: of the search, for the rounds, so that the final stages have time too; and of
 // what the rounds have left, for one of them, which is guessed.
-constexpr double kTimeOfRounds = 0.85, kTimeOfFirstRound = 0.6, kTimeOfNextRound = 0.8;
+constexpr double kTimeOfRounds = 0.7, kTimeOfFirstRound = 0.5, kTimeOfNextRound = 0.8;
 
 Candidates joined(const std::vector<Candidates>& found) {
   Candidates all;

@@ -12,13 +12,12 @@ namespace {
 // simulated frames of 640 x 480, on two cores of a 2.5 GHz EPYC: a whole preparation takes 60 ms.
 struct Shortened {
   double below_ms;  // of the budget
-  int max_width, max_keypoints;
-  bool details;  // outlines and flat regions
-  double share;  // of the whole preparation's time; measured
+  int max_width;    // pixels
+  double share;     // of the whole preparation's time; measured
 };
 constexpr int kAnyWidth = 1 << 20;
-constexpr Shortened kShortened[] = {
-    {70, 160, 200, false, 0.3}, {120, 240, 200, false, 0.4}, {200, kAnyWidth, 200, true, 0.9}};
+constexpr Shortened kShortened[] = {{70, 160, 0.3}, {140, 240, 0.4}, {200, kAnyWidth, 0.75}};
+constexpr int kFewKeypoints = 200;          // with any of them
 constexpr double kOneThread = 0.55;         // what two do in a time, one does in so much of it
 constexpr double kRestOfPreparation = 5;    // times the surface; measured
 constexpr double kTimeOfPreparation = 0.7;  // of what is left after the surface, at most; by hand
@@ -39,9 +38,8 @@ double shorten_preparation(double budget_ms, int num_threads, DetectorOptions& o
   for (const Shortened& shortened : kShortened) {
     if (budget_ms >= shortened.below_ms) continue;
     options.surface.max_width = std::min(options.surface.max_width, shortened.max_width);
-    options.features.max_keypoints =
-        std::min(options.features.max_keypoints, shortened.max_keypoints);
-    if (!shortened.details) leave_out_details(options.features);
+    options.features.max_keypoints = std::min(options.features.max_keypoints, kFewKeypoints);
+    leave_out_details(options.features);
     return shortened.share;
   }
   return 1;

@@ -10,8 +10,8 @@
 namespace bpa {
 
 /// Lets the preparation of a frame do less where `budget_ms` > 0 is small: below 200 ms fewer
-/// keypoints, below 120 ms an image of at most 240 pixels a row too, without outlines and flat
-/// regions, below 70 ms of 160. With one of `num_threads` (1 or more) so from 1.8 times the budget.
+/// keypoints, no outlines and no flat regions; below 140 ms an image of at most 240 pixels a row
+/// too, and below 70 ms of 160. With one of `num_threads` (1 or more) so from 1.8 times the budget.
 /// Returns about which share of the whole preparation's time is left, (0, 1].
 double shorten_preparation(double budget_ms, int num_threads, DetectorOptions& options);
 

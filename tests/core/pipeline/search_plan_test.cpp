@@ -21,7 +21,7 @@ TEST(SearchPlan, NoBudgetShortensNothing) {
 TEST(SearchPlan, SmallerBudgetsPrepareLess) {
   double before = 0;
   int keypoints = 0, width = 0;
-  for (const double budget_ms : {20, 50, 70, 119, 120, 150, 200, 500}) {
+  for (const double budget_ms : {20, 50, 70, 139, 140, 150, 200, 500}) {
     DetectorOptions options;
     const double share = shorten_preparation(budget_ms, 2, options);
     EXPECT_GT(share, 0);
