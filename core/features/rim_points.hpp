@@ -30,8 +30,8 @@ enum class Beside : std::uint8_t {
 
 /// The rims within 2 cm of `points`, which have normals: at most one beside each point. `look` says
 /// what is at a point (metres, the cloud's frame) of the tangent plane that has this normal. A rim
-/// is exact to about 2 mm where the surface is flat. `look` is called by `num_threads` threads (0: one
-/// per core).
+/// is exact to about 2 mm where the surface is flat. `look` is called by `num_threads` threads (0:
+/// one per core).
 std::vector<RimPoint> find_rims(
     const PointCloud& points,
     const std::function<Beside(const Eigen::Vector3f& at, const Eigen::Vector3f& normal)>& look,
