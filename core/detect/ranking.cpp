@@ -22,8 +22,8 @@ bool duplicates(const Search& search, const Pose& a, const Pose& b) {
 bool rejected_before(const Search& search, const Pose& pose) {
   constexpr double kHopeless = -5;  // log odds; chosen by hand
   return search.before && std::ranges::any_of(*search.before, [&](const Candidate& other) {
-    return other.score < kHopeless && duplicates(search, pose, other.pose());
-  });
+           return other.score < kHopeless && duplicates(search, pose, other.pose());
+         });
 }
 
 void suppress_duplicates(const Search& search, Candidates& candidates) {

@@ -33,16 +33,21 @@ struct Explained {
   explicit Explained(const CheckImage& observed)
       : certain(observed.pixels.size(), 0), likely(certain), image(observed) {}
 
-  // Returns the number of pixels that have become likely. `found` are placements that compete.
-  int add(const Candidates& found, const RoundOptions& options) {
+  // Returns the number of pixels that have become likely; with `new_places`, only those of
+  // placements where nothing was likely. `found` are placements that compete.
+  int add(const Candidates& found, const RoundOptions& options, bool new_places) {
+    constexpr double kNewPlace = 0.5;  // of its pixels: not likely before. Chosen by hand.
     int gained = 0;
     for (const Candidate& candidate : found) {
       if (candidate.probability < std::min(options.min_likely, options.min_certain)) continue;
       const bool is_certain = candidate.probability >= options.min_certain;
+      int fresh = 0;
       for (const std::uint32_t pixel : candidate.explained) {
-        gained += std::exchange(likely[pixel], 1) == 0;
+        fresh += std::exchange(likely[pixel], 1) == 0;
         if (is_certain) certain[pixel] = 1, image.pixels[pixel].searched = 0;
       }
+      const auto size = static_cast<double>(candidate.explained.size());
+      if (!new_places || fresh > kNewPlace * size) gained += fresh;
     }
     return gained;
   }
@@ -84,15 +89,16 @@ Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectMode
   }
   std::vector<Candidates> found(models.size());
   Explained explained(scene.image);
+  // Then poses were aligned well before: another round is worth its time for new places alone.
+  const bool follows = !request.expected.empty();
   const auto explain = [&] {
     Candidates all = joined(found);
     let_compete(all, find_overlaps(all, options.scene.max_shared));
-    return explained.add(all, options.rounds);
+    return explained.add(all, options.rounds, follows);
   };
   const bool limited = !deadline.never();
   const Deadline rounds_end = deadline.part(kTimeOfRounds);
   for (Search& search : searches) search.deadline = rounds_end;
-  const bool follows = !request.expected.empty();
   if (follows) {
     score_expected(searches, found, traces);
     explain();
