@@ -116,7 +116,9 @@ Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectMode
     const Stopwatch watch;
     DetectorOptions sized = share < 1 ? sized_round(options, share) : options;
     sized.features.num_threads = request.num_threads;
-    sample = next_sample(scene, sample, explained.certain, sized.features);
+    const bool prepared = round == 0 && share == 1 && !limited && !follows;
+    sample =
+        prepared ? scene.sample : next_sample(scene, sample, explained.certain, sized.features);
     if (round > 0 && sample.empty()) {
       ended = true;
       break;
