@@ -58,11 +58,6 @@ bool match_surface(const SceneFeatures& scene, const CheckPoints& points, std::s
          match.scene_normal.dot(match.model_normal) > kMinCosine;
 }
 
-EdgePoint edge_point(const ObjectModel& model, const ModelView& view, const FastPose& pose,
-                     std::size_t k) {
-  return {pose * model.surface.points[view.edges[k]], pose.rotation * view.outward[k]};
-}
-
 EdgePoint edge_point(const ViewEdge& edge, const FastPose& pose) {
   return {pose * edge.point, pose.rotation * edge.outward};
 }

@@ -30,11 +30,7 @@ struct EdgePoint {
   Eigen::Vector3f outward;  ///< Unit length: across the edge, away from the model.
 };
 
-/// The k-th edge point of a view of `model` at `pose`.
-EdgePoint edge_point(const ObjectModel& model, const ModelView& view, const FastPose& pose,
-                     std::size_t k);
-
-/// The same of an edge of a view's sample.
+/// An edge point of a view, at `pose`.
 EdgePoint edge_point(const ViewEdge& edge, const FastPose& pose);
 
 /// How far outward of a model edge point the observed surface ends, metres, in [-reach, reach].

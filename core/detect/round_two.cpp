@@ -54,7 +54,7 @@ std::vector<align::PositionPair> edge_pairs(const SceneFeatures& scene, const Ob
   if (view.edges.empty()) return pairs;
   for (int t = 0; t < kEdgeTries * count && std::ssize(pairs) < count; ++t) {
     const int k = random.index(static_cast<int>(view.edges.size()));
-    const EdgePoint edge = edge_point(model, view, pose, k);
+    const EdgePoint edge = edge_point(view_edge(model, view, k), pose);
     const std::optional<float> offset = match_edge(scene.image, edge, gate);
     if (!offset) continue;
     const Eigen::Vector3f observed = edge.point + *offset * edge.outward;

@@ -46,7 +46,7 @@ TEST_F(EdgeMatches, AreAsFarOffAsThePose) {
   int found = 0;
   double squares = 0;
   for (std::size_t k = 0; k < view.edges.size(); ++k) {
-    const EdgePoint edge = edge_point(*brick_, view, pose, k);
+    const EdgePoint edge = edge_point(view_edge(*brick_, view, k), pose);
     const auto offset = match_edge(scene.image, edge, 0.02f);
     if (!offset) continue;
     // The brick's sides are straight: across them the edge is where it was before the shift.
@@ -82,7 +82,7 @@ TEST_F(EdgeMatches, AreNotFoundWhereTheSurfaceGoesOn) {
   const FastPose pose = to_fast(kTruth);
   const ModelView& view = nearest_view(brick_->index->views, pose);
   for (std::size_t k = 0; k < view.edges.size(); ++k) {
-    EXPECT_FALSE(match_edge(scene.image, edge_point(*brick_, view, pose, k), 0.02f));
+    EXPECT_FALSE(match_edge(scene.image, edge_point(view_edge(*brick_, view, k), pose), 0.02f));
   }
 }
 
@@ -96,7 +96,7 @@ TEST_F(EdgeMatches, AreNotFoundBehindWhatHidesThem) {
   const ModelView& view = nearest_view(brick_->index->views, pose);
   int left = 0, right = 0;
   for (std::size_t k = 0; k < view.edges.size(); ++k) {
-    const EdgePoint edge = edge_point(*brick_, view, pose, k);
+    const EdgePoint edge = edge_point(view_edge(*brick_, view, k), pose);
     const bool found = match_edge(scene.image, edge, 0.01f).has_value();
     if (edge.point.x() < -0.01f) left += found;
     if (edge.point.x() > 0.05f) right += found;

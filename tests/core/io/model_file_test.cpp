@@ -70,6 +70,14 @@ TEST(ModelFile, SurvivesToTheLastBit) {
   EXPECT_EQ(back->warnings, model.warnings);
 }
 
+void expect_same(const ModelView& a, const ModelView& b) {
+  EXPECT_EQ(a.direction, b.direction);
+  EXPECT_EQ(a.visible, b.visible);
+  EXPECT_EQ(a.edge_distance, b.edge_distance);
+  EXPECT_EQ(a.edges, b.edges);
+  EXPECT_EQ(a.outward, b.outward);
+}
+
 // What detection reads from the file is what it would compute from the surface.
 TEST(ModelFile, StoredIndexIsTheComputedOne) {
   const test::TemporaryFolder folder;
@@ -98,10 +106,7 @@ TEST(ModelFile, StoredIndexIsTheComputedOne) {
   EXPECT_EQ(read.distances.low, index->distances.low);
   ASSERT_EQ(read.views.size(), index->views.size());
   for (std::size_t v = 0; v < read.views.size(); ++v) {
-    EXPECT_EQ(read.views[v].direction, index->views[v].direction);
-    EXPECT_EQ(read.views[v].visible, index->views[v].visible);
-    EXPECT_EQ(read.views[v].edge_distance, index->views[v].edge_distance);
-    EXPECT_EQ(read.views[v].outward, index->views[v].outward);
+    expect_same(read.views[v], index->views[v]);
   }
 }
 
@@ -118,14 +123,6 @@ void expect_same(const PointPairTable::Arrays& a, const PointPairTable::Arrays& 
   EXPECT_EQ(a.max_distance, b.max_distance);
   EXPECT_EQ(a.first, b.first);
   EXPECT_EQ(a.entries, b.entries);
-}
-
-void expect_same(const ModelView& a, const ModelView& b) {
-  EXPECT_EQ(a.direction, b.direction);
-  EXPECT_EQ(a.visible, b.visible);
-  EXPECT_EQ(a.edge_distance, b.edge_distance);
-  EXPECT_EQ(a.edges, b.edges);
-  EXPECT_EQ(a.outward, b.outward);
 }
 
 // A model with everything that a file of an index holds: colours, near symmetries and flat rests.
