@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <initializer_list>
 #include <utility>
 
 #include "core/base/concat.hpp"
+#include "core/io/image_file.hpp"
 #include "idl/wire/time.hpp"
 #include "server/convert/images.hpp"
 
@@ -30,10 +31,30 @@ Status check_distortion(const std::vector<double>& d) {
                        "rectify the images"));
 }
 
-/// Held by an int; validate() refuses what is larger.
-int clamped(std::uint32_t pixels) {
-  constexpr std::uint32_t kMost = std::numeric_limits<int>::max();
-  return static_cast<int>(std::min(pixels, kMost));
+struct Pixels {
+  const char* field;
+  std::uint32_t count;
+};
+
+/// An int holds what this accepts; the rest is refused with the number that was sent.
+Status check_pixels(std::initializer_list<Pixels> all) {
+  for (const Pixels& pixels : all) {
+    if (pixels.count <= io::kMaxImageSide) continue;
+    return invalid_argument(pixels.field, " is ", pixels.count, "; it must be at most ",
+                            io::kMaxImageSide, " pixels");
+  }
+  return {};
+}
+
+Status check_pixels(std::uint32_t width, std::uint32_t height) {
+  return check_pixels({{"camera width", width}, {"camera height", height}});
+}
+
+Status check_pixels(const sensor::RegionOfInterest& roi) {
+  return check_pixels({{"roi.x_offset", roi.x_offset},
+                       {"roi.y_offset", roi.y_offset},
+                       {"roi.width", roi.width},
+                       {"roi.height", roi.height}});
 }
 
 /// The images of a part of the sensor, or of fewer pixels, are not those that k is of.
@@ -54,10 +75,10 @@ Status check_whole(const sensor::CameraInfo& info) {
                        "the images as they are"));
 }
 
-/// The camera of a row-major 3x3 matrix whose rows are `stride` long.
+/// The camera of a row-major 3x3 matrix whose rows are `stride` long. The size has been checked.
 Camera camera_of(std::uint32_t width, std::uint32_t height, const double* k, std::size_t stride) {
-  return {.width = clamped(width),
-          .height = clamped(height),
+  return {.width = static_cast<int>(width),
+          .height = static_cast<int>(height),
           .fx = k[0],
           .fy = k[stride + 1],
           .cx = k[2],
@@ -83,7 +104,8 @@ void undistort(const std::vector<double>& distortion, Frame& frame) {
 }
 
 RegionOfInterest roi_of(const sensor::RegionOfInterest& roi) {
-  return {clamped(roi.x_offset), clamped(roi.y_offset), clamped(roi.width), clamped(roi.height)};
+  return {static_cast<int>(roi.x_offset), static_cast<int>(roi.y_offset),
+          static_cast<int>(roi.width), static_cast<int>(roi.height)};
 }
 
 /// The frame with its pixels, from which the lens distortion is taken out, once all is legal.
@@ -180,6 +202,10 @@ PosePrior prior_from(const msgs::PosePrior& message) {
 }  // namespace
 
 DecodedFrame frame_from_message(msgs::RgbdFrame message) {
+  Status status = check_pixels(message.width, message.height);
+  if (!status.ok()) return {RejectionCause::camera, status};
+  status = check_pixels(message.roi);
+  if (!status.ok()) return {RejectionCause::frame, status};
   Frame frame;
   frame.stamp_ns = to_ns(message.header.stamp);
   frame.frame_id = message.header.frame_id;
@@ -201,6 +227,7 @@ Status restrict_frame(const msgs::RgbdFrame& message, Frame& frame) {
                             "\", which priors are in; it must be empty or that of the camera, \"",
                             frame.frame_id, "\"");
   }
+  if (Status status = check_pixels(message.roi); !status.ok()) return status;
   const RegionOfInterest roi = roi_of(message.roi);
   if (roi.empty() && message.mask.empty()) return {};
   if (!roi.empty()) frame.roi = roi;
@@ -229,7 +256,9 @@ Result<std::vector<PosePrior>> priors_from_messages(const std::vector<msgs::Pose
 
 DecodedFrame frame_from_images(const CameraImages& images, bool rectified) {
   const sensor::CameraInfo& info = *images.info;
-  if (Status status = check_whole(info); !status.ok()) return {RejectionCause::camera, status};
+  for (const Status& status : {check_pixels(info.width, info.height), check_whole(info)}) {
+    if (!status.ok()) return {RejectionCause::camera, status};
+  }
   Frame frame;
   frame.stamp_ns = to_ns(header_of(*images.depth).stamp);
   frame.frame_id = header_of(*images.depth).frame_id;

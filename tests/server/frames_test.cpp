@@ -77,7 +77,7 @@ const BadFrame kBadFrames[] = {
     {"ZeroFocalLength", [](RgbdFrame& f) { f.k[0] = 0; }, {"fx", "0"}},
     {"NanPrincipalPoint", [](RgbdFrame& f) { f.k[2] = std::nan(""); }, {"cx", "nan"}},
     {"ZeroWidth", [](RgbdFrame& f) { f.width = 0; }, {"width", "0"}},
-    {"HugeSize", [](RgbdFrame& f) { f.width = f.height = 4000000000U; }, {"width"}},
+    {"HugeSize", [](RgbdFrame& f) { f.width = f.height = 4000000000U; }, {"width is 4000000000"}},
     {"AllZeroDepth", [](RgbdFrame& f) { f.depth.assign(f.depth.size(), 0); }, {"depth", "500"}},
     {"AllNanDepth",
      [](RgbdFrame& f) {
@@ -90,6 +90,9 @@ const BadFrame kBadFrames[] = {
        f.roi = {60, 0, 10, 10, false};
      },
      {"roi", "inside"}},
+    {"RoiBeyondAnInt",
+     [](RgbdFrame& f) { f.roi.x_offset = 4000000000U; },
+     {"roi.x_offset is 4000000000", "8192"}},
     {"MaskSize", [](RgbdFrame& f) { f.mask.resize(3); }, {"mask", "3"}},
     {"ManyDistortions",
      [](RgbdFrame& f) { f.d.resize(14); },
