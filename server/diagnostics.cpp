@@ -73,13 +73,16 @@ DiagnosticStatus drops_line(const Health& health) {
 }
 
 DiagnosticStatus queue_line(const Health& health) {
-  const bool refuses = health.rates.requests_refused > 0;
-  return line(health, "queue", refuses ? DiagnosticStatus::kWarn : DiagnosticStatus::kOk,
-              refuses ? text(health.rates.requests_refused) + " requests per s are refused"
-                      : "no request is refused",
-              {{"length", text(health.status.queue_length)},
-               {"capacity", text(health.status.queue_capacity)},
-               {"requests refused", text(health.status.requests_refused)}});
+  const double refused = health.rates.requests_refused, lost = health.rates.requests_lost;
+  std::vector<KeyValue> values = {{"length", text(health.status.queue_length)},
+                                  {"capacity", text(health.status.queue_capacity)},
+                                  {"requests refused", text(health.status.requests_refused)}};
+  for (KeyValue& loss : loss_values(health.losses)) values.push_back(std::move(loss));
+  const bool bad = refused > 0 || lost > 0;
+  return line(health, "queue", bad ? DiagnosticStatus::kWarn : DiagnosticStatus::kOk,
+              bad ? text(refused) + " requests per s are refused, " + text(lost) + " get lost"
+                  : "no request is refused or lost",
+              std::move(values));
 }
 
 DiagnosticStatus models_line(const Health& health) {
@@ -109,12 +112,21 @@ Rates RateMeter::rates() const {
   const auto rate = [&](std::uint64_t Counts::*counter) {
     return static_cast<double>(after.second.*counter - before.second.*counter) / seconds;
   };
+  const auto lost = [](const RequestLosses& l) { return l.malformed + l.lost + l.replies_dropped; };
+  const std::uint64_t losses = lost(after.second.losses) - lost(before.second.losses);
   return {.frames_received = rate(&Counts::frames_received),
           .frames_processed = rate(&Counts::frames_processed),
           .frames_dropped = rate(&Counts::frames_dropped),
           .frames_bad = rate(&Counts::frames_rejected) + rate(&Counts::frames_failed),
           .requests_served = rate(&Counts::requests_served),
-          .requests_refused = rate(&Counts::requests_refused)};
+          .requests_refused = rate(&Counts::requests_refused),
+          .requests_lost = static_cast<double>(losses) / seconds};
+}
+
+std::vector<KeyValue> loss_values(const RequestLosses& losses) {
+  return {{"requests malformed", text(losses.malformed)},
+          {"requests lost by DDS", text(losses.lost)},
+          {"replies not delivered", text(losses.replies_dropped)}};
 }
 
 wire::diagnostic_msgs::DiagnosticArray diagnostics_message(const Health& health,

@@ -26,6 +26,7 @@ struct Rates {
   double frames_bad = 0;  ///< Rejected or failed.
   double requests_served = 0;
   double requests_refused = 0;
+  double requests_lost = 0;  ///< Malformed, lost by DDS, or their reply was dropped.
 };
 
 /// Turns counters that are read now and then into rates.
@@ -50,7 +51,11 @@ struct Health {
   std::vector<SourceReport> sources;
   std::vector<wire::diagnostic_msgs::KeyValue> fusion = {};  ///< What became of frames combined.
   std::vector<std::pair<std::string, double>> effort = {};   ///< Medians of a search's counts.
+  RequestLosses losses = {};
 };
+
+/// The losses by name; those refused are counted with others.
+std::vector<wire::diagnostic_msgs::KeyValue> loss_values(const RequestLosses& losses);
 
 /// One status each for detection, drops, queue and models, and one for every source. Names read
 /// "NODE: detection", as diagnostic_updater makes them.

@@ -67,9 +67,10 @@ bool LogFilter::Bucket::take(TimePoint now) {
   return true;
 }
 
-std::optional<std::string> LogFilter::pass(LogLevel level, std::string_view text, TimePoint now) {
-  if (level == LogLevel::debug) return printable(text);
-  const std::string key = cause_of(text);
+std::optional<std::string> LogFilter::pass(LogLevel level, const LogMessage& message,
+                                           TimePoint now) {
+  if (level == LogLevel::debug) return printable(message.text);
+  const std::pair key(cause_of(message.text), std::string(message.peer));
   if (causes_.size() >= kMaxCauses && causes_.count(key) == 0) forget_oldest();
   Cause& cause = causes_[key];
   cause.last = now;
@@ -77,7 +78,7 @@ std::optional<std::string> LogFilter::pass(LogLevel level, std::string_view text
     ++cause.left_out;
     return std::nullopt;
   }
-  std::string line = printable(text);
+  std::string line = printable(message.text);
   if (const auto count = std::exchange(cause.left_out, 0); count > 0) {
     line += concat(" (", count, " like it before were not logged)");
   }
@@ -88,8 +89,10 @@ std::vector<std::string> LogFilter::left_out(TimePoint now) {
   std::vector<std::string> lines;
   for (auto& [key, cause] : causes_) {
     if (cause.left_out == 0 || now - cause.last < kQuiet) continue;
-    lines.push_back(concat(std::exchange(cause.left_out, 0),
-                           " messages were not logged: ", printable(key), " ..."));
+    const auto& [text, peer] = key;
+    lines.push_back(concat(std::exchange(cause.left_out, 0), " messages ",
+                           peer.empty() ? "" : "caused by " + printable(peer) + " ",
+                           "were not logged: ", printable(text), " ..."));
   }
   return lines;
 }
@@ -101,7 +104,7 @@ void LogFilter::forget_oldest() {
   const Cause gone = oldest->second;
   causes_.erase(oldest);
   if (gone.left_out == 0) return;
-  Cause& others = causes_["others"];
+  Cause& others = causes_[{"others", ""}];
   others.left_out += gone.left_out;
   others.last = std::max(others.last, gone.last);
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/base/log.hpp"
@@ -18,17 +19,17 @@ namespace bpa::server {
 /// and no more than `most` bytes of it.
 std::string printable(std::string_view text, std::size_t most = 1000);
 
-/// What peers say ends up in the log. This keeps them from filling it: of one cause, which is the
-/// text before the first colon without its digits, ten lines pass at once and then one in two
-/// seconds; of all causes together 200 and then 50 a second. Messages below info are not limited.
-/// Not locked.
+/// What peers say ends up in the log. This keeps them from filling it: of one cause by one peer,
+/// ten lines pass at once and then one in two seconds; of all together 200 and then 50 a second.
+/// The cause is the text before the first colon without its digits. Messages below info are not
+/// limited. Not locked.
 class LogFilter {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
   /// The line to log, printable; nothing when it is one too many. It ends with how many of its
   /// cause were left out before it.
-  std::optional<std::string> pass(LogLevel level, std::string_view text, TimePoint now);
+  std::optional<std::string> pass(LogLevel level, const LogMessage& message, TimePoint now);
 
   /// A line for each cause of which lines were left out and none passed since, for 5 s.
   std::vector<std::string> left_out(TimePoint now);
@@ -52,7 +53,7 @@ class LogFilter {
 
   void forget_oldest();
 
-  std::map<std::string, Cause> causes_;
+  std::map<std::pair<std::string, std::string>, Cause> causes_;  ///< By cause and peer.
   Bucket all_{200, 50};
 };
 

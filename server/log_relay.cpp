@@ -29,6 +29,15 @@ std::string logger_name(std::string node) {
   return node.substr(1);
 }
 
+/// "server/server.cpp" of a file of this project, wherever it was compiled.
+std::string below_sources(const char* file) {
+  constexpr std::string_view kThis = __FILE__, kBelow = "server/log_relay.cpp";
+  static_assert(kThis.substr(kThis.size() - kBelow.size()) == kBelow);
+  constexpr std::string_view kSources = kThis.substr(0, kThis.size() - kBelow.size());
+  const std::string_view path = file;
+  return std::string(path.substr(path.rfind(kSources, 0) == 0 ? kSources.size() : 0));
+}
+
 }  // namespace
 
 struct LogRelay::State {
@@ -42,22 +51,26 @@ struct LogRelay::State {
   std::deque<Log> waiting;
   std::uint64_t lost = 0;
 
-  void take(LogLevel level, std::string_view text) {
+  void take(LogLevel level, const LogMessage& said) {
     if (level < least) return;
     std::optional<std::string> line;
     {
       const std::lock_guard<std::mutex> lock(filter_mutex);
-      line = filter.pass(level, text, clock->now());
+      line = filter.pass(level, said, clock->now());
     }
-    if (line) say(level, *line);
+    if (line) say(level, *line, said.location);
   }
 
-  void say(LogLevel level, const std::string& text) {
-    log(sink, level, text);
+  void say(LogLevel level, const std::string& text,
+           SourceLocation location = SourceLocation::current()) {
+    log(sink, level, text, location);
     Log message;
     message.stamp = wire::builtin_interfaces::from_ns(unix_time_ns());
     message.level = kRosLevels[static_cast<std::size_t>(level)];
     message.msg = text;
+    message.file = below_sources(location.file);
+    message.function = location.function;
+    message.line = static_cast<std::uint32_t>(location.line);
     const std::lock_guard<std::mutex> lock(mutex);
     if (waiting.size() >= kMaxWaiting) {
       waiting.pop_front();
@@ -76,7 +89,7 @@ LogRelay::LogRelay(LogHook sink, LogLevel least, std::shared_ptr<WaitableClock> 
 }
 
 LogHook LogRelay::hook() const {
-  return [state = state_](LogLevel level, std::string_view text) { state->take(level, text); };
+  return [state = state_](LogLevel level, const LogMessage& said) { state->take(level, said); };
 }
 
 void LogRelay::set_level(LogLevel least) { state_->least = least; }

@@ -121,7 +121,7 @@ class Running : public Server {
       return apply(before, after);
     });
     parameters_.emplace(*participant_, log_, wire::qos::parameters());
-    add_parameter_services(*participant_, settings_, log_, *parameters_);
+    add_parameter_services(*participant_, settings_, *parameters_);
     ready_ = true;
     reporter_ = std::jthread([this](const std::stop_token& stop) { report(stop); });
   }
@@ -178,8 +178,7 @@ class Running : public Server {
                                    publisher_->publish_vision_info();
                                  },
                                  log_};
-    services_.emplace(*participant_, log_, wire::qos::services(),
-                      [this] { statistics_.add(&Counts::requests_refused); });
+    services_.emplace(*participant_, log_, wire::qos::services());
     add_detect(context, *services_);
     add_library_services(context, *services_);
     services_->add_quick<msgs::GetStatus>(
@@ -209,8 +208,19 @@ class Running : public Server {
     log(log_, LogLevel::error, "frame not searched: " + status.message);
   }
 
+  Counts counts() const {
+    Counts counts = statistics_.counts();
+    for (const auto& source : sources_) counts.losses += source->losses();
+    if (ready_) {
+      counts.losses += services_->losses();
+      counts.losses += parameters_->losses();
+    }
+    counts.requests_refused += counts.losses.refused;
+    return counts;
+  }
+
   msgs::GetStatus_Response status() const {
-    const Counts counts = statistics_.counts();
+    const Counts counts = this->counts();
     const Settings::Snapshot options = settings_.get();
     const std::optional<double> silence = statistics_.seconds_since_frame();
     const bool idle = !silence || *silence > options->input.silence_s;
@@ -277,13 +287,7 @@ class Running : public Server {
       details.push_back({"s since the last frame came", fixed(*silence, 1)});
     }
     for (const auto& [cause, count] : drops()) details.push_back({cause, std::to_string(count)});
-    if (ready_) {
-      const wire::ReaderStatistics requests = services_->statistics();
-      const wire::ReaderStatistics others = parameters_->statistics();
-      details.push_back(
-          {"requests malformed", std::to_string(requests.malformed + others.malformed)});
-      details.push_back({"requests lost by DDS", std::to_string(requests.lost + others.lost)});
-    }
+    for (KeyValue& loss : loss_values(counts().losses)) details.push_back(std::move(loss));
     for (const SourceReport& report : source_reports()) {
       details.insert(details.end(), report.values.begin(), report.values.end());
     }
@@ -303,13 +307,14 @@ class Running : public Server {
 
   void report_once(RateMeter& rates) {
     relay_.report_left_out();
-    rates.add(Clock::now(), statistics_.counts());
+    const Counts counts = this->counts();
+    rates.add(Clock::now(), counts);
     if (diagnostics_.wanted()) {
-      diagnostics_.send(
-          diagnostics_message({participant_->node().full(), status(), rates.rates(), drops(),
-                               source_reports(), fusion(), statistics_.median_effort()},
-                              unix_time_ns()),
-          log_);
+      diagnostics_.send(diagnostics_message({participant_->node().full(), status(), rates.rates(),
+                                             drops(), source_reports(), fusion(),
+                                             statistics_.median_effort(), counts.losses},
+                                            unix_time_ns()),
+                        log_);
     }
     report_losses();
   }

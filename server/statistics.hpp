@@ -19,6 +19,22 @@
 
 namespace bpa::server {
 
+/// Requests that got no answer from their handler, or whose answer got lost.
+struct RequestLosses {
+  std::uint64_t refused = 0;          ///< No place in the queue of their services.
+  std::uint64_t malformed = 0;        ///< No legal encoding, or too large.
+  std::uint64_t lost = 0;             ///< DDS reported them lost.
+  std::uint64_t replies_dropped = 0;  ///< The client went or does not listen.
+
+  RequestLosses& operator+=(const RequestLosses& other) {
+    refused += other.refused;
+    malformed += other.malformed;
+    lost += other.lost;
+    replies_dropped += other.replies_dropped;
+    return *this;
+  }
+};
+
 /// What the server counted since it started.
 struct Counts {
   std::uint64_t frames_received = 0;
@@ -30,6 +46,7 @@ struct Counts {
   std::uint64_t frames_failed = 0;    ///< Legal, but the search failed.
   std::uint64_t requests_served = 0;
   std::uint64_t requests_refused = 0;  ///< Busy, too late or not legal.
+  RequestLosses losses;                ///< Of all services.
 };
 
 /// The server's memory of how it is doing. Thread-safe.

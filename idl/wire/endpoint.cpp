@@ -5,7 +5,37 @@
 #include <algorithm>
 #include <cstring>
 
-namespace bpa::wire::detail {
+namespace bpa::wire {
+
+namespace {
+constexpr std::size_t kPrefixSize = 12;  // of a GUID: the participant
+}  // namespace
+
+Guid participant_of(Guid guid) {
+  std::fill(guid.begin() + kPrefixSize, guid.end(), std::uint8_t{0});
+  return guid;
+}
+
+std::string to_text(const Guid& guid) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  for (std::size_t i = 0; i < kPrefixSize; ++i) {
+    if (i > 0) text += '.';
+    text += {kDigits[guid[i] >> 4U], kDigits[guid[i] & 15U]};
+  }
+  return text;
+}
+
+namespace detail {
+
+std::uint64_t PeerCounts::add(const Guid& peer) {
+  constexpr std::size_t kMaxCounted = 1024;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const Guid participant = participant_of(peer);
+  if (counts_.size() >= kMaxCounted && counts_.count(participant) == 0) counts_.clear();
+  const std::uint64_t count = ++counts_[participant];
+  return (count & (count - 1)) == 0 ? count : 0;
+}
 
 void Matches::update(const Guid& peer, int change) {
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -36,14 +66,10 @@ bool Matches::wait_for(std::size_t count, std::chrono::milliseconds timeout) con
 }
 
 bool Matches::contains(const Guid& peer) const {
-  constexpr std::ptrdiff_t kPrefix = 12;
-  const bool any_entity =
-      std::all_of(peer.begin() + kPrefix, peer.end(), [](std::uint8_t byte) { return byte == 0; });
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!any_entity) return peers_.count(peer) != 0;
-  return std::any_of(peers_.begin(), peers_.end(), [&peer](const Guid& guid) {
-    return std::equal(guid.begin(), guid.begin() + kPrefix, peer.begin());
-  });
+  if (peer != participant_of(peer)) return peers_.count(peer) != 0;
+  return std::any_of(peers_.begin(), peers_.end(),
+                     [&peer](const Guid& guid) { return participant_of(guid) == peer; });
 }
 
 MessageRef bytes_ref(const std::vector<std::uint8_t>& bytes) {
@@ -65,4 +91,5 @@ RawDecode copy_bytes(std::function<void(std::vector<std::uint8_t>&&, const Sampl
   };
 }
 
-}  // namespace bpa::wire::detail
+}  // namespace detail
+}  // namespace bpa::wire

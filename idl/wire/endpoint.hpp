@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -26,6 +27,11 @@ namespace bpa::wire {
 
 /// A DDS GUID: 12 bytes of participant prefix, 4 of entity id. All zero: unknown.
 using Guid = std::array<std::uint8_t, 16>;
+
+/// The participant of an endpoint: the same GUID with entity 0.
+Guid participant_of(Guid guid);
+/// A participant's id as Fast DDS prints it: "01.0f.22.cd....". The entity is left out.
+std::string to_text(const Guid& guid);
 
 /// Identifies a sample: its writer, and its place in the order of that writer.
 struct SampleId {
@@ -178,8 +184,17 @@ using RawDecode = std::function<Result<Deliver>(const std::uint8_t*, std::size_t
 /// Copies the bytes, for samples that cannot be decoded before their SampleMeta is known.
 RawDecode copy_bytes(std::function<void(std::vector<std::uint8_t>&&, const SampleMeta&)> callback);
 
-/// Of events that a peer can cause at will, the 1st, 2nd, 4th, 8th ... are logged.
-inline bool is_power_of_two(std::uint64_t count) { return (count & (count - 1)) == 0; }
+/// Counts what peers can cause at will, each participant by itself, and says what of it to log.
+class PeerCounts {
+ public:
+  /// Counts one event of `peer`. Of those of its participant, the 1st, 2nd, 4th, 8th ... give their
+  /// number; the others 0.
+  std::uint64_t add(const Guid& peer);
+
+ private:
+  std::mutex mutex_;
+  std::map<Guid, std::uint64_t> counts_;  ///< By participant; begins anew with too many.
+};
 
 /// What services need of their participant.
 const LogHook& participant_log(const Participant& participant);

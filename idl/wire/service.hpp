@@ -22,6 +22,14 @@
 
 namespace bpa::wire {
 
+/// What became of a service's requests and replies.
+struct ServiceStatistics {
+  std::uint64_t received = 0;         ///< Handed to the handler.
+  std::uint64_t malformed = 0;        ///< No legal encoding of a request, or too large.
+  std::uint64_t lost = 0;             ///< Requests that DDS reported lost or rejected.
+  std::uint64_t replies_dropped = 0;  ///< Not sent: the client went or does not listen.
+};
+
 namespace detail {
 
 /// One request that waits for its reply.
@@ -38,7 +46,7 @@ using RequestDecode = std::function<Result<Handle>(CdrReader& reader)>;
 class RawServer {
  public:
   virtual ~RawServer() = default;
-  virtual ReaderStatistics statistics() const = 0;
+  virtual ServiceStatistics statistics() const = 0;
 };
 
 class RawClient {
@@ -130,7 +138,7 @@ class ServiceServer {
 
   /// The resolved name.
   const std::string& name() const { return name_; }
-  ReaderStatistics statistics() const { return impl_->statistics(); }
+  ServiceStatistics statistics() const { return impl_->statistics(); }
 
  private:
   ServiceServer(std::string name, std::shared_ptr<detail::RawServer> impl)

@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 
+#include "core/base/concat.hpp"
 #include "core/base/guarded.hpp"
 #include "idl/wire/private/service_framing.hpp"
 #include "idl/wire/service.hpp"
@@ -26,16 +27,10 @@ constexpr int kMaxWaitingReplies = 256;  ///< Of which a client that does not li
 constexpr int kMaxWaitingOfClient = 32;  ///< no more than these.
 constexpr std::size_t kMaxGreeted = 1024;
 constexpr int kMaxRepeated = 16;  ///< Replies to one new client that go out again.
-constexpr std::size_t kPrefixSize = 12;
 
 bool is_reader(const Guid& guid) {
   const int kind = guid[15] & 0x3f;  // with a key 0x07, without 0x04
   return kind == 0x04 || kind == 0x07;
-}
-
-Guid any_entity_of(Guid guid) {
-  std::fill(guid.begin() + kPrefixSize, guid.end(), std::uint8_t{0});
-  return guid;
 }
 
 struct Reply {
@@ -75,17 +70,19 @@ class Server : public RawServer, public std::enable_shared_from_this<Server> {
     last.swap(replies_);
   }
 
-  ReaderStatistics statistics() const override {
-    return {received_, malformed_, requests_ ? requests_->statistics().lost : 0};
+  ServiceStatistics statistics() const override {
+    return {received_, malformed_, requests_ ? requests_->statistics().lost : 0, replies_dropped_};
   }
 
   Status send(const ReplyAddress& address, const MessageRef& response) {
     const auto reply = std::make_shared<const Reply>(
         Reply{address, frame_reply(address, response), Clock::now() + kClientPatience});
     if (reply->bytes.empty()) {
+      ++replies_dropped_;
       return invalid_argument("the reply of " + name_ + " breaks one of its bounds");
     }
     if (!start_waiting(*reply)) {
+      ++replies_dropped_;
       return Status(StatusCode::busy, "too many replies of " + name_ + " wait for their clients");
     }
     return send_when_matched(reply);
@@ -111,10 +108,11 @@ class Server : public RawServer, public std::enable_shared_from_this<Server> {
       }
       status = handle.status();
     }
-    const std::uint64_t count = ++malformed_;
-    if (!is_power_of_two(count)) return;
-    log(participant_log(participant_), LogLevel::warning,
-        name_ + ": refused a request (" + std::to_string(count) + " so far): " + status.message);
+    ++malformed_;
+    const std::uint64_t count = malformed_of_.add(meta.id.writer);
+    if (count == 0) return;
+    log(log_of(meta.id.writer), LogLevel::warning,
+        concat(name_, ": refused a request (", count, " of this client so far): ", status.message));
   }
 
   std::shared_ptr<PendingReply> pending_reply(const ReplyAddress& address) {
@@ -142,7 +140,8 @@ class Server : public RawServer, public std::enable_shared_from_this<Server> {
     if (!to->matches().contains(reply->address.reader)) {
       if (Clock::now() > reply->deadline) {
         stop_waiting(*reply);
-        log(participant_log(participant_), LogLevel::info,
+        ++replies_dropped_;
+        log(log_of(reply->address.client), LogLevel::info,
             name_ + ": dropped a reply, its client does not listen any more");
       } else {
         run_after(kRetryPeriod, [reply = std::move(reply)](Server& self) {
@@ -153,6 +152,7 @@ class Server : public RawServer, public std::enable_shared_from_this<Server> {
     }
     stop_waiting(*reply);
     Status status = write(*to, *reply);
+    if (!status.ok()) ++replies_dropped_;
     if (reply->address.framing == Framing::cyclone) repeat_if_new(reply);
     return status;
   }
@@ -208,6 +208,10 @@ class Server : public RawServer, public std::enable_shared_from_this<Server> {
         });
   }
 
+  LogHook log_of(const Guid& client) const {
+    return hook_of_peer(participant_log(participant_), to_text(client));
+  }
+
   void warn(const Status& status) {
     if (!status.ok()) log(participant_log(participant_), LogLevel::warning, status.message);
   }
@@ -226,7 +230,8 @@ class Server : public RawServer, public std::enable_shared_from_this<Server> {
   std::map<Guid, Greeting> greeted_;  ///< Clients on Cyclone that have been answered.
   std::map<Guid, int> waiting_of_;    ///< By client: replies that are not sent yet.
   int waiting_ = 0;                   ///< All of them.
-  std::atomic<std::uint64_t> received_{0}, malformed_{0};
+  std::atomic<std::uint64_t> received_{0}, malformed_{0}, replies_dropped_{0};
+  PeerCounts malformed_of_;
 };
 
 }  // namespace
@@ -236,12 +241,12 @@ Status read_request_frame(const std::vector<std::uint8_t>& bytes, const SampleMe
   if (!read_cdr_header(bytes.data(), bytes.size(), swap)) {
     return Status(StatusCode::corrupt, "not plain CDR");
   }
-  address->client = any_entity_of(meta.id.writer);
+  address->client = participant_of(meta.id.writer);
   if (meta.related.writer != Guid{}) {
     const Guid& client = meta.related.writer;
     address->framing = Framing::fastdds;
     address->related = {client, meta.id.sequence};
-    address->reader = is_reader(client) ? client : any_entity_of(client);
+    address->reader = is_reader(client) ? client : participant_of(client);
     *body_offset = kCdrHeaderSize;
     return {};
   }
@@ -249,7 +254,7 @@ Status read_request_frame(const std::vector<std::uint8_t>& bytes, const SampleMe
     return Status(StatusCode::corrupt, "neither a related sample identity nor a request header");
   }
   address->framing = Framing::cyclone;
-  address->reader = any_entity_of(meta.id.writer);
+  address->reader = participant_of(meta.id.writer);
   std::memcpy(address->header.data(), bytes.data() + kCdrHeaderSize, kCycloneHeaderSize);
   if (*swap) {  // two integers of 8 bytes; replies are in this host's order
     std::reverse(address->header.begin(), address->header.begin() + 8);

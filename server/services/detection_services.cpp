@@ -16,13 +16,6 @@ namespace {
 
 namespace msgs = wire::bpa_msgs;
 
-msgs::Detect_Response refusal(const Status& status) {
-  msgs::Detect_Response response;
-  response.status = to_message(status);
-  response.result.status = response.status;
-  return response;
-}
-
 /// The server's settings where the request leaves the choice.
 Result<DetectRequest> search_of(const msgs::Detect_Request& request,
                                 const DetectionOptions& options) {
@@ -67,9 +60,11 @@ DetectJob job_of(std::shared_ptr<msgs::Detect_Request> request, const DetectRequ
   return job;
 }
 
+/// `refusal` is what the response is without a frame.
 msgs::Detect_Response answer_of(const Recognition& recognition, const DetectJob& job,
-                                const Frame* frame, const Result<SceneInterpretations>& result) {
-  msgs::Detect_Response response = refusal(result.status());
+                                const Frame* frame, const Result<SceneInterpretations>& result,
+                                msgs::Detect_Response refusal) {
+  msgs::Detect_Response response = std::move(refusal);
   response.success = result.ok();
   response.queue_position = static_cast<std::uint32_t>(job.position);
   if (frame == nullptr) return response;
@@ -113,7 +108,7 @@ void finish(const ServiceContext& context, const char* what, const Status& statu
   response.success = status.ok();
   response.status = to_message(status);
   response.database_version = context.recognition->version();
-  log(context.log, LogLevel::info,
+  log(reply.log(), LogLevel::info,
       std::string(what) + (status.ok() ? ": done" : " failed: " + status.message));
   if (status.ok()) context.library_changed();
   reply.send(response);
@@ -148,8 +143,7 @@ void add_detect(const ServiceContext& context, ServiceSet& services) {
       [context](msgs::Detect_Request&& message, const Reply<msgs::Detect>& reply) {
         const auto refuse = [&](const Status& status) {
           context.statistics.add(&Counts::requests_refused);
-          log(context.log, LogLevel::info, "detect refused: " + status.message);
-          reply.send(refusal(status));
+          reply.refuse(status);
         };
         const Settings::Snapshot options = context.settings.get();
         auto request = std::make_shared<msgs::Detect_Request>(std::move(message));
@@ -157,11 +151,14 @@ void add_detect(const ServiceContext& context, ServiceSet& services) {
         if (!search.ok()) return refuse(search.status());
         DetectJob job = job_of(std::move(request), *search, options->detection);
         job.client = reply.client();
-        job.done = [recognition = context.recognition, reply, hook = context.log](
+        job.done = [recognition = context.recognition, reply](
                        const DetectJob& done, const Frame* frame,
                        const Result<SceneInterpretations>& result) {
-          if (!result.ok()) log(hook, LogLevel::info, "detect failed: " + result.status().message);
-          reply.guard([&] { reply.send(answer_of(*recognition, done, frame, result)); });
+          const Status& status = result.status();
+          if (!status.ok()) log(reply.log(), LogLevel::info, "detect failed: " + status.message);
+          reply.guard([&] {
+            reply.send(answer_of(*recognition, done, frame, result, reply.refusal(status)));
+          });
         };
         const Status accepted = context.worker.push(std::move(job));
         if (!accepted.ok()) refuse(accepted);

@@ -22,7 +22,6 @@ constexpr std::size_t kMaxNames = 1000;
 struct Parameters {
   std::string node;
   Settings& settings;
-  LogHook log;
   Output<rcl::ParameterEvent> events;
 
   rcl::ParameterEvent new_event() const {
@@ -33,7 +32,7 @@ struct Parameters {
   }
 
   /// Sets all of them or none, and announces what changed.
-  rcl::SetParametersResult set(const std::vector<rcl::Parameter>& parameters) {
+  rcl::SetParametersResult set(const std::vector<rcl::Parameter>& parameters, const LogHook& hook) {
     if (parameters.size() > kMaxNames) {
       return {false, concat(parameters.size(), " parameters; at most ", kMaxNames, " may be set")};
     }
@@ -47,16 +46,16 @@ struct Parameters {
       return {};
     });
     if (!status.ok()) {
-      bpa::log(log, LogLevel::info, "parameters refused: " + status.message);
+      log(hook, LogLevel::info, "parameters refused: " + status.message);
       return {false, status.message};
     }
     rcl::ParameterEvent event = new_event();
     event.changed_parameters = changed_parameters(before, after);
     if (event.changed_parameters.empty()) return {true, ""};
     for (const rcl::Parameter& parameter : event.changed_parameters) {
-      bpa::log(log, LogLevel::info, "parameter " + parameter.name + " changed");
+      log(hook, LogLevel::info, "parameter " + parameter.name + " changed");
     }
-    events.send(event, log);
+    events.send(event, hook);
     return {true, ""};
   }
 };
@@ -83,46 +82,49 @@ Response each(const std::vector<std::string>& names, const LogHook& hook,
 }  // namespace
 
 void add_parameter_services(const wire::Participant& participant, Settings& settings,
-                            const LogHook& hook, ServiceSet& services) {
+                            ServiceSet& services) {
   const auto self =
-      std::make_shared<Parameters>(Parameters{participant.node().full(), settings, hook, {}});
+      std::make_shared<Parameters>(Parameters{participant.node().full(), settings, {}});
   self->events.open(participant, "/parameter_events", wire::qos::parameters());
   services.add_quick<rcl::ListParameters>(
-      "~/list_parameters", [hook](const rcl::ListParameters_Request& request) {
+      "~/list_parameters", [](const rcl::ListParameters_Request& request, const LogHook& hook) {
         if (!is_short(request.prefixes, hook)) return rcl::ListParameters_Response();
         return rcl::ListParameters_Response{list_parameters(request.prefixes, request.depth)};
       });
   services.add_quick<rcl::GetParameters>(
-      "~/get_parameters", [self](const rcl::GetParameters_Request& request) {
+      "~/get_parameters", [self](const rcl::GetParameters_Request& request, const LogHook& hook) {
         const Settings::Snapshot options = self->settings.get();
-        return each(request.names, self->log, &rcl::GetParameters_Response::values,
+        return each(request.names, hook, &rcl::GetParameters_Response::values,
                     [&](const std::string& name) { return parameter(*options, name); });
       });
   services.add_quick<rcl::GetParameterTypes>(
-      "~/get_parameter_types", [hook](const rcl::GetParameterTypes_Request& request) {
+      "~/get_parameter_types",
+      [](const rcl::GetParameterTypes_Request& request, const LogHook& hook) {
         return each(request.names, hook, &rcl::GetParameterTypes_Response::types,
                     [](const std::string& name) { return describe_parameter(name).type; });
       });
   services.add_quick<rcl::DescribeParameters>(
-      "~/describe_parameters", [hook](const rcl::DescribeParameters_Request& request) {
+      "~/describe_parameters",
+      [](const rcl::DescribeParameters_Request& request, const LogHook& hook) {
         return each(request.names, hook, &rcl::DescribeParameters_Response::descriptors,
                     describe_parameter);
       });
   services.add_quick<rcl::SetParameters>(
-      "~/set_parameters", [self](const rcl::SetParameters_Request& request) {
+      "~/set_parameters", [self](const rcl::SetParameters_Request& request, const LogHook& hook) {
         rcl::SetParameters_Response response;
         if (request.parameters.size() > kMaxNames) {
-          response.results.push_back(self->set(request.parameters));  // which says so
+          response.results.push_back(self->set(request.parameters, hook));  // which says so
           return response;
         }
         for (const rcl::Parameter& parameter : request.parameters) {
-          response.results.push_back(self->set({parameter}));
+          response.results.push_back(self->set({parameter}, hook));
         }
         return response;
       });
   services.add_quick<rcl::SetParametersAtomically>(
-      "~/set_parameters_atomically", [self](const rcl::SetParametersAtomically_Request& request) {
-        return rcl::SetParametersAtomically_Response{self->set(request.parameters)};
+      "~/set_parameters_atomically",
+      [self](const rcl::SetParametersAtomically_Request& request, const LogHook& hook) {
+        return rcl::SetParametersAtomically_Response{self->set(request.parameters, hook)};
       });
   rcl::ParameterEvent event = self->new_event();
   event.new_parameters = all_parameters(*settings.get());

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -29,22 +32,37 @@ namespace bpa::server {
 template <class Service>
 class Reply {
  public:
-  Reply(wire::ReplyToken<Service> token, std::string service, LogHook log)
-      : token_(std::move(token)), service_(std::move(service)), log_(std::move(log)) {}
+  using Request = typename Service::Request;
+  using Response = typename Service::Response;
+
+  Reply(wire::ReplyToken<Service> token, const Request& request, std::string service,
+        const LogHook& log)
+      : token_(std::move(token)),
+        service_(std::move(service)),
+        log_(hook_of_peer(log, wire::to_text(token_.client()))) {
+    if constexpr (requires { request.frame.header; }) header_ = request.frame.header;
+  }
 
   /// Never blocks; a reply that cannot be delivered is logged.
-  void send(const typename Service::Response& response) const {
+  void send(const Response& response) const {
     const Status sent = token_.reply(response);
-    if (!sent.ok()) log(log_, LogLevel::info, service_ + ": reply not delivered: " + sent.message);
+    if (!sent.ok())
+      bpa::log(log_, LogLevel::info, service_ + ": reply not delivered: " + sent.message);
+  }
+  /// The response that says why there is no other. A result in it has the request's header.
+  Response refusal(const Status& status) const {
+    Response response;
+    if constexpr (requires { response.status.code; }) response.status = to_message(status);
+    if constexpr (requires { response.result.header; }) {
+      response.result.header = header_;
+      response.result.status = response.status;
+    }
+    return response;
   }
   /// Says why the request is not answered, where the response has room for it; logs it anyway.
   void refuse(const Status& status, LogLevel severity = LogLevel::info) const {
-    log(log_, severity, service_ + " refused: " + status.message);
-    typename Service::Response response;
-    if constexpr (requires { response.status.code; }) {
-      response.status = to_message(status);
-      send(response);
-    }
+    bpa::log(log_, severity, service_ + " refused: " + status.message);
+    if constexpr (requires(Response response) { response.status.code; }) send(refusal(status));
   }
   /// Runs what answers the request. What it throws is a refusal.
   template <class Work>
@@ -54,11 +72,14 @@ class Reply {
   }
   /// Who asks.
   wire::Guid client() const { return token_.client(); }
+  /// For what this client causes.
+  const LogHook& log() const { return log_; }
 
  private:
   wire::ReplyToken<Service> token_;
   std::string service_;
   LogHook log_;
+  wire::std_msgs::Header header_;  ///< Of the request's frame.
 };
 
 /// Largest request of any service whose requests carry no frame, in bytes; larger ones are refused
@@ -69,13 +90,10 @@ inline constexpr std::size_t kMaxSmallRequest = 1 << 20;
 /// handles their requests.
 class ServiceSet {
  public:
-  /// `participant` outlives it. `on_refused` is called for each request that finds no place.
+  /// `participant` outlives it.
   ServiceSet(const wire::Participant& participant, LogHook log,
-             const wire::Qos& qos = wire::qos::services(), std::function<void()> on_refused = {})
-      : participant_(participant),
-        log_(std::move(log)),
-        qos_(qos),
-        on_refused_(std::move(on_refused)) {}
+             const wire::Qos& qos = wire::qos::services())
+      : participant_(participant), log_(std::move(log)), qos_(qos) {}
 
   /// `handle(request, reply)` runs on the thread of these services; the reply may come later. What
   /// it throws is answered. Throws a Failure, as add_quick() does.
@@ -86,13 +104,13 @@ class ServiceSet {
     auto server = or_throw(wire::ServiceServer<Service>::create(
         participant_, name,
         [this, name, shared](Request&& request, wire::ReplyToken<Service> token) {
-          const Reply<Service> reply(std::move(token), name, log_);
+          const Reply<Service> reply(std::move(token), request, name, log_);
           const auto own = std::make_shared<Request>(std::move(request));
           const auto work = [shared, own, reply] {
             reply.guard([&] { (*shared)(std::move(*own), reply); });
           };
           thread_.push(reply.client(), {work, [this, reply](const Status& status) {
-                                          if (on_refused_) on_refused_();
+                                          ++refused_;
                                           reply.refuse(status);
                                         }});
         },
@@ -101,23 +119,26 @@ class ServiceSet {
     statistics_.push_back([raw = kept.get()] { return raw->statistics(); });
     servers_.push_back(kept);
   }
-  /// `answer(request)` gives the response at once.
+  /// `answer(request)` or `answer(request, hook)` gives the response at once; what the client
+  /// causes is logged by the hook.
   template <class Service, class Answer>
   void add_quick(const std::string& name, Answer answer) {
     add<Service>(name, [answer = std::move(answer)](typename Service::Request&& request,
                                                     const Reply<Service>& reply) {
-      reply.send(answer(std::move(request)));
+      if constexpr (std::is_invocable_v<Answer, typename Service::Request&&, const LogHook&>) {
+        reply.send(answer(std::move(request), reply.log()));
+      } else {
+        reply.send(answer(std::move(request)));
+      }
     });
   }
 
   /// Of all services that were added.
-  wire::ReaderStatistics statistics() const {
-    wire::ReaderStatistics sum;
+  RequestLosses losses() const {
+    RequestLosses sum{.refused = refused_};
     for (const auto& of_one : statistics_) {
-      const wire::ReaderStatistics one = of_one();
-      sum.received += one.received;
-      sum.malformed += one.malformed;
-      sum.lost += one.lost;
+      const wire::ServiceStatistics one = of_one();
+      sum += {0, one.malformed, one.lost, one.replies_dropped};
     }
     return sum;
   }
@@ -126,8 +147,8 @@ class ServiceSet {
   const wire::Participant& participant_;
   const LogHook log_;
   const wire::Qos qos_;
-  const std::function<void()> on_refused_;
-  std::vector<std::function<wire::ReaderStatistics()>> statistics_;
+  std::atomic<std::uint64_t> refused_{0};  ///< Found no place in the queue.
+  std::vector<std::function<wire::ServiceStatistics()>> statistics_;
   RequestThread thread_;
   std::vector<std::shared_ptr<void>> servers_;  ///< Last: they give the thread work.
 };
@@ -153,6 +174,6 @@ void add_library_services(const ServiceContext& context, ServiceSet& services);
 /// /parameter_events: all parameters at the start, then each change. `participant` and `settings`
 /// outlive the services.
 void add_parameter_services(const wire::Participant& participant, Settings& settings,
-                            const LogHook& log, ServiceSet& services);
+                            ServiceSet& services);
 
 }  // namespace bpa::server

@@ -165,6 +165,8 @@ class CameraSource : public FrameSource {
         });
   }
 
+  RequestLosses losses() const override { return services_.losses(); }
+
   std::vector<SourceReport> reports() const override {
     const camera::CaptureStatus status = capture_.status();
     return {{level_of(status.level),

@@ -14,6 +14,7 @@
 #include "idl/wire/participant.hpp"
 #include "server/convert/frames.hpp"
 #include "server/sources/synchronizer.hpp"
+#include "server/statistics.hpp"
 
 namespace bpa::server {
 
@@ -36,6 +37,8 @@ class FrameSource {
   virtual ~FrameSource() = default;
   /// From any thread, at any time.
   virtual std::vector<SourceReport> reports() const = 0;
+  /// Of the services of this source.
+  virtual RequestLosses losses() const { return {}; }
 };
 
 /// Frames from topics: whole ones (bpa_msgs/RgbdFrame), organised clouds, and the images of a ROS 2

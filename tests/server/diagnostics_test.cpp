@@ -26,11 +26,13 @@ TEST(RateMeter, CountsOverTheLastTenSeconds) {
     counts.frames_processed += 5;
     counts.frames_failed += 1;
     counts.frames_rejected += 2;
+    counts.losses += {1, 2, 3, 4};
   }
   EXPECT_DOUBLE_EQ(meter.rates().frames_received, 10);
   EXPECT_DOUBLE_EQ(meter.rates().frames_processed, 5);
   EXPECT_DOUBLE_EQ(meter.rates().frames_bad, 3);
   EXPECT_DOUBLE_EQ(meter.rates().requests_served, 0);
+  EXPECT_DOUBLE_EQ(meter.rates().requests_lost, 9);  // those refused count as refused
 }
 
 TEST(RateMeter, KeepsTheLastReadingBeforeTheWindow) {
@@ -101,6 +103,14 @@ TEST_F(Diagnostics, DropsByCauseWarnWhileFramesAreBad) {
 TEST_F(Diagnostics, RefusedRequestsAndAnEmptyLibraryAreSeen) {
   EXPECT_EQ(status("queue").level, DiagnosticStatus::kOk);
   health.rates.requests_refused = 1;
+  EXPECT_EQ(status("queue").level, DiagnosticStatus::kWarn);
+  health.rates = {};
+  health.losses = {.refused = 9, .malformed = 1, .lost = 2, .replies_dropped = 3};
+  EXPECT_EQ(status("queue").level, DiagnosticStatus::kOk);  // that was long ago
+  EXPECT_EQ(values("queue").at("requests malformed"), "1");
+  EXPECT_EQ(values("queue").at("requests lost by DDS"), "2");
+  EXPECT_EQ(values("queue").at("replies not delivered"), "3");
+  health.rates.requests_lost = 0.1;
   EXPECT_EQ(status("queue").level, DiagnosticStatus::kWarn);
   EXPECT_EQ(status("models").level, DiagnosticStatus::kOk);
   health.status.model_count = 0;

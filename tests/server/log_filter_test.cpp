@@ -14,6 +14,11 @@ using std::chrono::seconds;
 
 const LogFilter::TimePoint kStart{std::chrono::hours(1)};
 
+std::optional<std::string> pass(LogFilter& filter, LogLevel level, const std::string& text,
+                                LogFilter::TimePoint now, const std::string& peer = "") {
+  return filter.pass(level, {text, SourceLocation::current(), peer}, now);
+}
+
 TEST(Printable, OneLineForATerminal) {
   EXPECT_EQ(printable("plain text, \"quoted\" \\ 100 %"), "plain text, \"quoted\" \\ 100 %");
   EXPECT_EQ(printable("a\nb\tc\r"), "a\\nb\\tc\\x0d");
@@ -34,10 +39,10 @@ TEST(LogFilter, AFloodOfOneCauseIsCountedAndHidesNoOther) {
   int passed = 0;
   for (int i = 0; i < 30'000; ++i) {  // in 15 s
     const auto now = kStart + milliseconds(i / 2);
-    passed += filter.pass(LogLevel::info, concat("detect refused: no model x", i), now) ? 1 : 0;
+    passed += pass(filter, LogLevel::info, concat("detect refused: no model x", i), now) ? 1 : 0;
   }
   EXPECT_EQ(passed, 10 + 7);
-  EXPECT_TRUE(filter.pass(LogLevel::info, "library l: 3 models", kStart + seconds(15)));
+  EXPECT_TRUE(pass(filter, LogLevel::info, "library l: 3 models", kStart + seconds(15)));
   EXPECT_TRUE(filter.left_out(kStart + seconds(16)).empty());
   const auto lines = filter.left_out(kStart + seconds(20));
   ASSERT_EQ(lines.size(), 1U);
@@ -45,10 +50,21 @@ TEST(LogFilter, AFloodOfOneCauseIsCountedAndHidesNoOther) {
   EXPECT_TRUE(filter.left_out(kStart + seconds(21)).empty());
 }
 
+TEST(LogFilter, AFloodOfOneClientHidesNoOther) {
+  LogFilter filter;
+  const std::string text = "detect refused: no model x";
+  for (int i = 0; i < 50; ++i) (void)pass(filter, LogLevel::info, text, kStart, "01.0f.aa");
+  EXPECT_FALSE(pass(filter, LogLevel::info, text, kStart, "01.0f.aa"));
+  EXPECT_EQ(pass(filter, LogLevel::info, text, kStart, "01.0f.bb"), text);
+  const auto lines = filter.left_out(kStart + seconds(6));
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0], "41 messages caused by 01.0f.aa were not logged: detect refused ...");
+}
+
 TEST(LogFilter, WhatPassesSaysHowManyDidNot) {
   LogFilter filter;
-  for (int i = 0; i < 15; ++i) (void)filter.pass(LogLevel::error, "disk: full", kStart);
-  const auto line = filter.pass(LogLevel::error, "disk: full", kStart + seconds(2));
+  for (int i = 0; i < 15; ++i) (void)pass(filter, LogLevel::error, "disk: full", kStart);
+  const auto line = pass(filter, LogLevel::error, "disk: full", kStart + seconds(2));
   EXPECT_EQ(line, "disk: full (5 like it before were not logged)");
 }
 
@@ -58,7 +74,7 @@ TEST(LogFilter, AllCausesTogetherAreLimited) {
   std::uint64_t left_out = 0;
   for (int i = 0; i < 10'000; ++i) {
     const std::string cause(1 + i % 70, static_cast<char>('a' + i / 70 % 26));
-    const auto line = filter.pass(LogLevel::info, cause, kStart + milliseconds(i / 10));
+    const auto line = pass(filter, LogLevel::info, cause, kStart + milliseconds(i / 10));
     if (!line) continue;
     ++passed;
     const std::size_t count = line->find(" (");
@@ -75,7 +91,7 @@ TEST(LogFilter, AllCausesTogetherAreLimited) {
 TEST(LogFilter, DebugMessagesPass) {
   LogFilter filter;
   for (int i = 0; i < 1000; ++i) {
-    EXPECT_EQ(filter.pass(LogLevel::debug, "frame: 1\n", kStart), "frame: 1\\n");
+    EXPECT_EQ(pass(filter, LogLevel::debug, "frame: 1\n", kStart), "frame: 1\\n");
   }
 }
 

@@ -42,6 +42,7 @@ TEST(LogRelay, LevelsAreFilteredAndChangeAtRunTime) {
 TEST(LogRelay, RosoutGetsWhatWasSaidAlsoBeforeAnybodyListened) {
   const wire::Participant speaker = seat("speaker");
   LogHook hook;
+  int line = 0;
   std::mutex mutex;
   std::condition_variable changed;
   std::vector<Log> heard;
@@ -51,6 +52,7 @@ TEST(LogRelay, RosoutGetsWhatWasSaidAlsoBeforeAnybodyListened) {
     log(hook, LogLevel::warning, "before there was a participant");
     relay.connect(speaker, "rosout");
     log(hook, LogLevel::error, "then");
+    line = __LINE__ - 1;
     wire::SubscriberOptions options;
     options.qos = wire::qos::rosout();
     const wire::Participant listener = seat("listener");
@@ -71,6 +73,9 @@ TEST(LogRelay, RosoutGetsWhatWasSaidAlsoBeforeAnybodyListened) {
   EXPECT_GT(heard[0].stamp.sec, 1'600'000'000);
   EXPECT_EQ(heard[1].msg, "then");
   EXPECT_EQ(heard[1].level, Log::kError);
+  EXPECT_EQ(heard[1].file, "tests/server/log_relay_test.cpp");
+  EXPECT_EQ(heard[1].function, "TestBody");
+  EXPECT_EQ(heard[1].line, static_cast<std::uint32_t>(line));
   log(hook, LogLevel::error, "after it has gone");  // goes nowhere, harms nobody
 }
 

@@ -6,6 +6,8 @@
 #include <functional>
 #include <future>
 #include <limits>
+#include <map>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -13,6 +15,7 @@
 
 #include "idl/wire/messages.hpp"
 #include "idl/wire/service.hpp"
+#include "idl/wire/subscriber.hpp"
 #include "tests/support/stub_server.hpp"
 #include "tests/support/wall_messages.hpp"
 
@@ -22,6 +25,7 @@ namespace bpa {
 namespace {
 
 namespace msgs = wire::bpa_msgs;
+namespace rcl = wire::rcl_interfaces;
 using std::chrono::milliseconds;
 
 struct WallView {
@@ -108,7 +112,7 @@ TEST(Requests, BadInputIsAFailedReplyAndTheServerGoesOn) {
       {"NaN focal length", [](auto& r) { r.frame.k[4] = std::nan(""); }, "fy"},
       {"empty intrinsics", [](auto& r) { r.frame.k = {}; }, "fx"},
       {"zero size", [](auto& r) { r.frame.width = 0; }, "width"},
-      {"huge size", [](auto& r) { r.frame.height = 0xffffffffU; }, "height"},
+      {"huge size", [](auto& r) { r.frame.height = 0xffffffffU; }, "camera height is 4294967295"},
       {"all-zero depth", [](auto& r) { r.frame.depth.assign(r.frame.depth.size(), 0); }, "500"},
       {"all-NaN depth",
        [nan](auto& r) {
@@ -141,6 +145,7 @@ TEST(Requests, BadInputIsAFailedReplyAndTheServerGoesOn) {
     msgs::Detect_Request request;
     request.has_frame = true;
     request.frame = support::wall_frame();
+    request.frame.header = {{17, 23}, "wrist_camera"};
     c.spoil(request);
     const auto reply = service->call(request, milliseconds(5000));
     ASSERT_TRUE(reply.ok()) << c.name << ": " << reply.status().message;
@@ -148,6 +153,9 @@ TEST(Requests, BadInputIsAFailedReplyAndTheServerGoesOn) {
     EXPECT_NE(reply->status.code, 0) << c.name;
     EXPECT_NE(reply->status.message.find(c.word), std::string::npos)
         << c.name << ": " << reply->status.message;
+    EXPECT_EQ(to_ns(reply->result.header.stamp), 17'000'000'023) << c.name;
+    EXPECT_EQ(reply->result.header.frame_id, "wrist_camera") << c.name;
+    EXPECT_EQ(reply->result.status.message, reply->status.message) << c.name;
   }
   msgs::Detect_Request good;
   good.has_frame = true;
@@ -207,6 +215,50 @@ TEST(Requests, AThousandAtOnceAreEachAnswered) {
   const auto status = client->status();
   ASSERT_TRUE(status.ok()) << status.status().message;
   EXPECT_EQ(status->requests_served + status->requests_refused, kCalls);
+}
+
+// Each loss of a request or reply is a number in /diagnostics.
+TEST(Requests, DiagnosticsCountWhatGetsLost) {
+  support::StubServer server;
+  auto participant = support::test_participant("tester");
+  ASSERT_TRUE(participant.ok()) << participant.status().message;
+  auto service = wire::ServiceClient<msgs::GetStatus>::create(*participant, "get_status");
+  ASSERT_TRUE(service.ok());
+  ASSERT_TRUE(service->wait_for_service(milliseconds(10000))) << server.log();
+  const auto spec = wire::detail::service_spec<rcl::ListParameters>(
+      *participant, "server/list_parameters", wire::qos::services());
+  ASSERT_TRUE(spec.ok());
+  auto writer = wire::detail::make_writer(*participant, spec->request);
+  ASSERT_TRUE(writer.ok()) << writer.status().message;
+  ASSERT_TRUE((*writer)->matches().wait_for(1, milliseconds(10000)));
+  const std::vector<std::uint8_t> nonsense = {0, 1, 0, 0, 9};
+  ASSERT_TRUE((*writer)->write(wire::detail::bytes_ref(nonsense), nullptr, nullptr).ok());
+  // A legal request without a reader for its reply, in the framing of rmw_cyclonedds.
+  std::vector<std::uint8_t> unheard = {0, 1, 0, 0};
+  unheard.resize(4 + 16 + 4 + 4 + 8, 0);
+  ASSERT_TRUE((*writer)->write(wire::detail::bytes_ref(unheard), nullptr, nullptr).ok());
+
+  std::mutex mutex;
+  std::map<std::string, std::string> values;
+  const auto diagnostics = wire::Subscriber<wire::diagnostic_msgs::DiagnosticArray>::create(
+      *participant, "diagnostics", {.qos = wire::qos::results()},
+      [&](wire::diagnostic_msgs::DiagnosticArray&& array, const wire::SampleMeta&) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        for (const auto& status : array.status) {
+          for (const auto& pair : status.values) values[pair.key] = pair.value;
+        }
+      });
+  ASSERT_TRUE(diagnostics.ok());
+  const auto value = [&](const std::string& key) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return values[key];
+  };
+  for (int i = 0; i < 1000 && value("replies not delivered") != "1"; ++i) {
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  EXPECT_EQ(value("requests malformed"), "1") << server.log();
+  EXPECT_EQ(value("replies not delivered"), "1") << server.log();
+  EXPECT_EQ(value("requests lost by DDS"), "0");
 }
 
 TEST(Requests, WithoutAFrameTheNextOneIsAwaitedInVainAndSaidSo) {

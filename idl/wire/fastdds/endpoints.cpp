@@ -113,15 +113,17 @@ class Reader : public RawReader, private dds::DataReaderListener {
         ++received_;
         sample.status = guarded("it cannot be taken", [&] { sample.deliver(to_meta(info)); });
       }
-      if (!sample.status.ok()) refuse(sample.status);
+      if (!sample.status.ok()) refuse(sample.status, to_guid(info.sample_identity.writer_guid()));
     }
   }
 
-  void refuse(const Status& status) {
-    const std::uint64_t count = ++malformed_;
-    if (!is_power_of_two(count)) return;  // a bad peer must not fill the log
-    participant_->log(LogLevel::warning, concat("topic ", spec_.dds_topic, ": refused a sample (",
-                                                count, " so far): ", status.message));
+  void refuse(const Status& status, const Guid& publisher) {
+    ++malformed_;
+    const std::uint64_t count = malformed_of_.add(publisher);
+    if (count == 0) return;  // a bad peer must not fill the log
+    participant_->log_peer(LogLevel::warning, publisher,
+                           concat("topic ", spec_.dds_topic, ": refused a sample (", count,
+                                  " of this publisher so far): ", status.message));
   }
 
   void on_subscription_matched(dds::DataReader*,
@@ -149,6 +151,7 @@ class Reader : public RawReader, private dds::DataReaderListener {
   const RawDecode decode_;
   Guid guid_{};
   std::atomic<std::uint64_t> received_{0}, malformed_{0}, lost_{0}, incompatible_{0};
+  PeerCounts malformed_of_;
   std::mutex callback_mutex_;
   bool closed_ = false;
   dds::DataReader* reader_ = nullptr;

@@ -235,16 +235,6 @@ Status ParticipantImpl::open(const EndpointSpec& spec, bool is_reader,
   return {};
 }
 
-namespace {
-
-/// The GUID with entity 0.
-Guid participant_of(Guid guid) {
-  std::fill(guid.begin() + 12, guid.end(), std::uint8_t{0});
-  return guid;
-}
-
-}  // namespace
-
 /// From now on we offer the service of this request topic.
 void ParticipantImpl::serve(const std::string& dds_topic) {
   std::vector<Peer> there;
@@ -349,10 +339,10 @@ void ParticipantImpl::publish_graph() {
 
 void ParticipantImpl::check_type(const Peer& peer, const std::string& ours) const {
   if (ours.empty() || ours == peer.type) return;
-  log(LogLevel::warning,
-      concat("topic ", peer.topic, ": a peer's ", peer.is_reader ? "subscriber" : "publisher",
-             " has type ", peer.type, ", ours is ", ours,
-             "; they will not talk: remap one of them or correct its type"));
+  log_peer(LogLevel::warning, peer.guid,
+           concat("topic ", peer.topic, ": a peer's ", peer.is_reader ? "subscriber" : "publisher",
+                  " has type ", peer.type, ", ours is ", ours,
+                  "; they will not talk: remap one of them or correct its type"));
 }
 
 void ParticipantImpl::on_peer(const Peer& peer) {
@@ -391,7 +381,9 @@ class Bridge : public LogConsumer {
 
   void Consume(const Log::Entry& entry) override {
     const bool error = entry.kind == Log::Kind::Error;
-    log(hook_, error ? LogLevel::warning : LogLevel::debug, "Fast DDS: " + entry.message);
+    const SourceLocation location{entry.context.filename, entry.context.function,
+                                  entry.context.line};
+    log(hook_, error ? LogLevel::warning : LogLevel::debug, "Fast DDS: " + entry.message, location);
   }
 
  private:

@@ -40,7 +40,15 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
   const ParticipantOptions& options() const { return options_; }
   int domain_id() const { return discovery_.domain_id; }
   GraphLayout graph_layout() const;
-  void log(LogLevel level, const std::string& text) const { bpa::log(options_.log, level, text); }
+  void log(LogLevel level, const std::string& text,
+           SourceLocation location = SourceLocation::current()) const {
+    bpa::log(options_.log, level, text, location);
+  }
+  /// The same of what a peer's endpoint caused.
+  void log_peer(LogLevel level, const Guid& peer, const std::string& text,
+                SourceLocation location = SourceLocation::current()) const {
+    bpa::log(hook_of_peer(options_.log, to_text(peer)), level, text, location);
+  }
 
   dds::Publisher* publisher() { return publisher_; }
   dds::Subscriber* subscriber() { return subscriber_; }
