@@ -1,19 +1,22 @@
 # SPDX-FileCopyrightText: 2026 The bpa authors
 # SPDX-License-Identifier: Apache-2.0
-"""The C++ headers of the messages: one a package, and messages.hpp, which includes all.
+"""The C++ headers of the messages: one a package; messages.hpp, which includes all;
+and type_descriptions.hpp, what ROS 2's service get_type_description says of the types.
 
 A struct has what idl/wire/field.hpp asks for. ROS names stay, with three exceptions:
 constants become kCamelCase, without the prefix that all of a struct share (PARAMETER_BOOL of
 ParameterType is ParameterType::kBool); a service gets a struct of its Request and Response;
 RENAMED has members that C++ cannot call by their ROS names.
 """
+import json
 import os
 import textwrap
 
 from generator.interfaces import ARRAY, PLAIN
-from generator.type_hash import type_hash
+from generator.type_hash import full_description, type_hash
 
-RENAMED = {('sensor_msgs/msg/PointCloud2', 'fields'): 'point_fields'}
+RENAMED = {('sensor_msgs/msg/PointCloud2', 'fields'): 'point_fields',
+           ('type_description_interfaces/msg/IndividualTypeDescription', 'fields'): 'type_fields'}
 
 # These can be published without a copy of their images: their byte sequences are a parameter.
 VIEWED = {'bpa_msgs/msg/RgbdFrame'}
@@ -22,6 +25,8 @@ VIEW_COMMENT = '/// `Bytes` is std::vector<std::uint8_t>, or ByteView to publish
 SCALARS = {'boolean': 'bool', 'octet': 'std::byte', 'float': 'float', 'double': 'double',
            **{f'{sign}int{bits}': f'std::{sign}int{bits}_t' for sign in ('', 'u')
               for bits in (8, 16, 32, 64)}}
+
+BOOLEANS = {'TRUE': 'true', 'FALSE': 'false'}
 
 HEAD = """\
 // SPDX-FileCopyrightText: 2026 The bpa authors
@@ -42,7 +47,25 @@ def headers(structs):
         HEAD.format(source='all .idl files') + '// All message and service types.\n'
         + ''.join(f'#include "idl/wire/msg/{package}.hpp"\n' for package in packages)
         + '#include "idl/wire/time.hpp"\n')
+    result['type_descriptions.hpp'] = descriptions_header(structs)
     return result
+
+
+def descriptions_header(structs):
+    text = HEAD.format(source='all .idl files') + '#include "idl/wire/field.hpp"\n'
+    text += '\nnamespace bpa::wire {\n\n'
+    text += '/// All types that have a type hash.\n'
+    text += 'inline constexpr TypeDescriptionText kTypeDescriptions[] = {\n'
+    for struct in structs.values():
+        description = json.dumps(full_description(struct, structs, with_defaults=True))
+        text += f'  {{"{struct.name}",\n   "{type_hash(struct, structs)}",\n'
+        text += f'   {raw(description)},\n   {raw(struct.source)}}},\n'
+    return text + '};\n\n}  // namespace bpa::wire\n'
+
+
+def raw(text):
+    assert ')idl"' not in text
+    return f'R"idl({text})idl"'
 
 
 def package_header(package, structs):
@@ -124,7 +147,7 @@ def field_text(struct, field):
         viewed = struct.name in VIEWED and type_.element == 'uint8'
         element = 'Bytes' if viewed else f'std::vector<{element}>'
     elif type_.element in SCALARS:
-        initial = '{}' if field.value is None else f'{{{field.value}}}'
+        initial = '{}' if field.value is None else f'{{{BOOLEANS.get(field.value, field.value)}}}'
     return f'{element} {member(struct, field)}{initial};'
 
 

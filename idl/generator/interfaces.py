@@ -44,6 +44,7 @@ class Struct:
     fields: tuple
     constants: tuple
     comment: tuple             # lines
+    source: str = dataclasses.field(default='', compare=False)  # text of the file
 
     @property
     def package(self):
@@ -61,7 +62,8 @@ class Struct:
 def read(path):
     """The structs of one file, in its order."""
     try:
-        return Parser(path.read_text()).structs()
+        text = path.read_text()
+        return [dataclasses.replace(struct, source=text) for struct in Parser(text).structs()]
     except (IndexError, ValueError) as error:
         raise ValueError(f'{path}: {error}') from error
 

@@ -17,6 +17,12 @@ SCALARS = {'int8': 2, 'uint8': 3, 'int16': 4, 'uint16': 5, 'int32': 6, 'uint32':
 
 def type_hash(struct, structs):
     """"RIHS01_" and 64 hex digits. `structs` holds every struct by its name."""
+    description = full_description(struct, structs)
+    return 'RIHS01_' + hashlib.sha256(json.dumps(description).encode()).hexdigest()
+
+
+def full_description(struct, structs, with_defaults=False):
+    """The JSON value of a struct and of all that it refers to; defaults are not part of the hash."""
     referenced = set()
 
     def refer(name):
@@ -27,18 +33,20 @@ def type_hash(struct, structs):
 
     for name in struct.references():
         refer(name)
-    description = {
-        'type_description': describe(struct),
-        'referenced_type_descriptions': [describe(structs[name]) for name in sorted(referenced)],
+    return {
+        'type_description': describe(struct, with_defaults),
+        'referenced_type_descriptions': [describe(structs[name], with_defaults)
+                                         for name in sorted(referenced)],
     }
-    return 'RIHS01_' + hashlib.sha256(json.dumps(description).encode()).hexdigest()
 
 
-def describe(struct):
+def describe(struct, with_defaults):
     """The JSON value of one struct; its keys and their order are part of the hash."""
-    return {'type_name': struct.name,
-            'fields': [{'name': field.name, 'type': describe_type(field.type)}
-                       for field in struct.fields]}
+    fields = [{'name': field.name, 'type': describe_type(field.type)} for field in struct.fields]
+    if with_defaults:
+        for description, field in zip(fields, struct.fields):
+            description['default_value'] = field.value or ''
+    return {'type_name': struct.name, 'fields': fields}
 
 
 def describe_type(type_):

@@ -36,4 +36,12 @@ struct ByteView {
   bool empty() const { return size == 0; }
 };
 
+/// A type as ROS 2's service get_type_description tells of it.
+struct TypeDescriptionText {
+  const char* name;  ///< "pkg/msg/Name"
+  const char* hash;
+  const char* json;    ///< A type_description_interfaces/msg/TypeDescription.
+  const char* source;  ///< The text of the .idl file.
+};
+
 }  // namespace bpa::wire

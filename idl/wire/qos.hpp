@@ -35,6 +35,8 @@ inline Qos latched() { return {Reliability::reliable, Durability::transient_loca
 /// Both topics of a service. Of requests and replies that are on their way, those that do not fit
 /// are lost without a word: a reader that misses one holds back all that follow.
 inline Qos services() { return {Reliability::reliable, Durability::volatile_, 1000, 0}; }
+/// /clock, as rclcpp subscribes to it.
+inline Qos clock() { return {Reliability::best_effort, Durability::volatile_, 1, 0}; }
 /// Events of parameters.
 inline Qos parameters() { return {Reliability::reliable, Durability::volatile_, 1000, 0}; }
 /// /tf.

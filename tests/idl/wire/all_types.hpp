@@ -40,7 +40,11 @@ using AllTypes = std::tuple<
     vision_msgs::BoundingBox3D, vision_msgs::Detection3D, vision_msgs::Detection3DArray,
     vision_msgs::VisionInfo, vision_msgs::VisionClass, vision_msgs::LabelInfo,
     visualization_msgs::UVCoordinate, visualization_msgs::MeshFile, visualization_msgs::Marker,
-    visualization_msgs::MarkerArray>;
+    visualization_msgs::MarkerArray, rosgraph_msgs::Clock, type_description_interfaces::FieldType,
+    type_description_interfaces::Field, type_description_interfaces::IndividualTypeDescription,
+    type_description_interfaces::TypeDescription, type_description_interfaces::TypeSource,
+    type_description_interfaces::KeyValue, type_description_interfaces::GetTypeDescription_Request,
+    type_description_interfaces::GetTypeDescription_Response>;
 
 /// Calls visit with the address of an empty message of every type.
 template <class Visitor>

@@ -124,6 +124,12 @@ TEST(TypeHash, StandardTypes) {
       "87d7ec5ef545d4daa289d500025d31fb2437bc8b8365ca367161c4dac4be33fd");
   expect_hash<rcl_interfaces::GetParameterTypes_Response>(
       "ac1335dce67c478e669434f6ac2fbff34fcd529580f272d3006785ba8b54e47f");
+  expect_hash<rosgraph_msgs::Clock>(
+      "692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564");
+  expect_hash<type_description_interfaces::GetTypeDescription_Request>(
+      "470f56ccbcf13d55c78c8b735fb12da03e639e5acded994426c89d94778d9e28");
+  expect_hash<type_description_interfaces::GetTypeDescription_Response>(
+      "648c49d976240861a482f961c5621ddd0d2135d8cce6f297a76d4f6376d93b75");
 }
 
 }  // namespace
