@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstdio>
 
+#include "core/base/concat.hpp"
 #include "idl/wire/time.hpp"
 
 namespace bpa::server {
@@ -56,8 +57,10 @@ DiagnosticStatus detection_line(const Health& health) {
   values.push_back({"memory MB", text(1e-6 * static_cast<double>(status.memory_bytes), "%.1f")});
   values.push_back({"uptime s", text(status.uptime_s, "%.0f")});
   const bool empty = status.model_count == 0;
-  return line(health, "detection", empty ? DiagnosticStatus::kError : DiagnosticStatus::kOk,
-              empty ? "the model library is empty" : state_name(status.state), std::move(values));
+  const bool bad = empty || !health.hang.empty();
+  const std::string message = empty ? "the model library is empty" : state_name(status.state);
+  return line(health, "detection", bad ? DiagnosticStatus::kError : DiagnosticStatus::kOk,
+              health.hang.empty() ? message : health.hang, std::move(values));
 }
 
 DiagnosticStatus drops_line(const Health& health) {
@@ -121,6 +124,38 @@ Rates RateMeter::rates() const {
           .requests_served = rate(&Counts::requests_served),
           .requests_refused = rate(&Counts::requests_refused),
           .requests_lost = static_cast<double>(losses) / seconds};
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> drop_counts(const Statistics& statistics) {
+  std::vector<std::pair<std::string, std::uint64_t>> drops = {
+      {"frames failed in the search", statistics.counts().frames_failed}};
+  for (const auto& [cause, count] : statistics.rejections()) {
+    drops.emplace_back("rejected: " + cause, count);
+  }
+  return drops;
+}
+
+std::vector<KeyValue> fusion_values(const Statistics& statistics, int fuse_frames) {
+  const Counts counts = statistics.counts();
+  if (fuse_frames == 1 && counts.fusion_restarts == 0) return {};
+  std::vector<KeyValue> values = {
+      {"frames searched as a part of newer ones", text(counts.frames_fused)},
+      {"frames combined anew", text(counts.fusion_restarts)}};
+  const std::string reason = statistics.fusion_restart();
+  if (!reason.empty()) values.push_back({"frames last combined anew because", reason});
+  return values;
+}
+
+std::string sync_complaint(const SyncCounts& sync, const InputOptions& input) {
+  const std::string cause =
+      sync.nearest_miss_ns > 0
+          ? concat("the nearest one was ", static_cast<double>(sync.nearest_miss_ns) * 1e-6,
+                   " ms away (input.sync_tolerance_ms is ", input.sync_tolerance_ms, ")")
+          : concat("are ", input.color, " and ", input.camera_info, " published?");
+  return concat(sync.depth_without_color + sync.depth_without_info,
+                " depth images had no partner: ", sync.depth_without_color,
+                " without a colour image, ", sync.depth_without_info, " without a camera info; ",
+                cause);
 }
 
 std::vector<KeyValue> loss_values(const RequestLosses& losses) {

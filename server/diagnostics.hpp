@@ -11,6 +11,7 @@
 
 #include "idl/wire/msg/bpa_msgs.hpp"
 #include "idl/wire/msg/diagnostic_msgs.hpp"
+#include "server/options.hpp"
 #include "server/sources/frame_source.hpp"
 #include "server/statistics.hpp"
 
@@ -52,8 +53,16 @@ struct Health {
   std::vector<wire::diagnostic_msgs::KeyValue> fusion = {};  ///< What became of frames combined.
   std::vector<std::pair<std::string, double>> effort = {};   ///< Medians of a search's counts.
   RequestLosses losses = {};
+  std::string hang = {};  ///< What hangs; empty: nothing does.
 };
 
+/// Frames that no result was made of, by cause.
+std::vector<std::pair<std::string, std::uint64_t>> drop_counts(const Statistics& statistics);
+/// What became of frames that are combined; empty while each is searched by itself.
+std::vector<wire::diagnostic_msgs::KeyValue> fusion_values(const Statistics& statistics,
+                                                           int fuse_frames);
+/// That depth images had no partner, and why.
+std::string sync_complaint(const SyncCounts& sync, const InputOptions& input);
 /// The losses by name; those refused are counted with others.
 std::vector<wire::diagnostic_msgs::KeyValue> loss_values(const RequestLosses& losses);
 

@@ -14,9 +14,10 @@
 #include "server/recognition.hpp"
 #include "server/ros_arguments.hpp"
 #include "server/server.hpp"
+#include "server/supervision.hpp"
 
 // The daemon: command line, log and signals. Exits 0 after SIGINT or SIGTERM, 1 when it cannot
-// start (one clear line), 2 on a wrong command line.
+// start (one clear line), 2 on a wrong command line, 3 when a search hangs.
 
 namespace {
 
@@ -108,15 +109,9 @@ void serve(const ServerOptions& options, const bpa::LogHook& hook, const sigset_
     or_throw(bpa::invalid_argument("no model library: give --library DIR (or detection.library)"));
   }
   auto library = or_throw(bpa::server::open_library(options.detection, options.detector, hook));
-  const auto server = or_throw(bpa::server::Server::create(options, std::move(library), hook));
+  auto server = or_throw(bpa::server::Server::create(options, std::move(library), hook));
   bpa::log(hook, LogLevel::info, "ready in namespace " + options.node.ros_namespace);
-  int signal = 0;
-  sigwait(&signals, &signal);
-  bpa::log(hook, LogLevel::info,
-           "stopping; a second signal does not wait for the search that runs");
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
-  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  bpa::server::serve_until_signal(std::move(server), signals, hook);
 }
 
 int fail(const Status& status, int exit_code) {
@@ -139,7 +134,9 @@ int main(int argc, char** argv) {
   CLI::App program("Finds known objects in the RGB-D frames of a DDS domain.", "bpa-server");
   program.footer(
       "ROS 2's own arguments come after --ros-args: -r FROM:=TO, -r __node:=NAME, "
-      "-r __ns:=NAMESPACE,\n-p NAME:=VALUE, --params-file FILE, --log-level LEVEL.");
+      "-r __ns:=NAMESPACE,\n-p NAME:=VALUE, --params-file FILE, --log-level LEVEL.\n"
+      "Exits with 0 after SIGINT or SIGTERM, 1 when it cannot start, 2 on a wrong command line, 3 "
+      "when a search hangs.");
   program.set_version_flag("--version", BPA_VERSION);
   CommandLine line;
   add_options(program, line);

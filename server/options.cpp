@@ -42,6 +42,11 @@ Status validate(const ServerOptions& options) {
        options.input.depth_transport,
        {"raw", "compressed", "compressedDepth"}},
       {"log.level", options.log.level, {"debug", "info", "warning", "error"}}};
+  if (status.ok() && options.node.use_sim_time && !options.capture.source.empty()) {
+    status = invalid_argument(
+        "node.use_sim_time is true and capture.source is \"", options.capture.source,
+        "\"; a camera of the server's own has this machine's time: set one of them alone");
+  }
   for (const Choice& choice : choices) {
     if (status.ok()) status = check(choice);
   }

@@ -22,12 +22,17 @@ struct NodeOptions {
   std::string name = "server";
   std::string ros_namespace = "/bpa";
   std::vector<std::string> remaps;
+  bool use_sim_time = false;
 
   void visit_fields(auto&& visit) {
     visit("name", name, {0, 0, "How ROS 2 tools show the server in its namespace."});
     visit("namespace", ros_namespace,
           {0, 0, "Goes in front of every name below that has no leading '/'."});
     visit("remaps", remaps, {0, 0, "Other names for topics and services: [from:=to]."});
+    visit("use_sim_time", use_sim_time,
+          at_run_time({0, 0,
+                       "Take the time from /clock: stamps, time-outs of requests, silence of "
+                       "cameras. The ROS 2 parameter has this name alone."}));
   }
 };
 
@@ -210,6 +215,7 @@ struct DetectionOptions {
   std::uint64_t seed = 0;
   int threads = 0;
   double request_timeout_ms = 30000;
+  double hang_s = 600;
 
   void visit_fields(auto&& visit) {
     visit("library", library, {0, 0, "Folder of the model library."});
@@ -243,6 +249,10 @@ struct DetectionOptions {
           at_run_time({0, 256, "0: one per core. Does not change the answer."}));
     visit("request_timeout_ms", request_timeout_ms,
           at_run_time({1, 1e7, "Longest wait of a detect request that names none, milliseconds."}));
+    visit("hang_s", hang_s,
+          at_run_time({0, 86400,
+                       "Seconds after which a search that has not returned hangs: the server says "
+                       "so and ends with exit code 3, for systemd to start it anew; 0: never."}));
   }
 };
 

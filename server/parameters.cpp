@@ -79,10 +79,13 @@ Status set_value(const Option& setting, const ParameterValue& value) {
                           "; it is out of range");
 }
 
-/// Every setting; the values point into `options`.
+/// Every setting by the name of its parameter; the values point into `options`.
 std::vector<Option> settings_of(ServerOptions& options) {
   std::vector<Option> settings = options_of(options);
   std::erase_if(settings, [](const Option& option) { return option.is_group(); });
+  for (Option& setting : settings) {
+    if (setting.value == Option::Value(&options.node.use_sim_time)) setting.path = kUseSimTime;
+  }
   return settings;
 }
 
@@ -164,7 +167,9 @@ wire::rcl_interfaces::ListParametersResult list_parameters(const std::vector<std
     }
     if (!wanted) continue;
     result.names.push_back(name);
-    const std::string group = name.substr(0, name.rfind('.'));
+    const std::size_t dot = name.rfind('.');
+    if (dot == std::string::npos) continue;
+    const std::string group = name.substr(0, dot);
     if (result.prefixes.empty() || result.prefixes.back() != group) {
       result.prefixes.push_back(group);
     }

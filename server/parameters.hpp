@@ -10,10 +10,13 @@
 #include "idl/wire/msg/rcl_interfaces.hpp"
 #include "server/options.hpp"
 
-// The settings as ROS 2 parameters: "group.key", such as detection.top_k. The types are those of
-// the fields; the ranges are their rules; what may not change at run time is read-only.
+// The settings as ROS 2 parameters: "group.key", such as detection.top_k; node.use_sim_time is
+// use_sim_time, as every node has it. The types are those of the fields; the ranges are their
+// rules; what may not change at run time is read-only.
 
 namespace bpa::server {
+
+inline constexpr const char* kUseSimTime = "use_sim_time";
 
 /// Every parameter, in the order of the settings.
 std::vector<wire::rcl_interfaces::Parameter> all_parameters(const ServerOptions& options);

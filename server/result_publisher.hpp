@@ -24,8 +24,12 @@ class ResultPublisher {
  public:
   /// Opens the topics; `settings` outlives it. Throws a Failure.
   ResultPublisher(const wire::Participant& participant, const Settings& settings,
-                  std::shared_ptr<const Recognition> recognition, LogHook log)
-      : settings_(settings), recognition_(std::move(recognition)), log_(std::move(log)) {
+                  std::shared_ptr<const Recognition> recognition,
+                  std::shared_ptr<const WaitableClock> clock, LogHook log)
+      : settings_(settings),
+        recognition_(std::move(recognition)),
+        clock_(std::move(clock)),
+        log_(std::move(log)) {
     tf_prefix_ = participant.node().node_namespace.substr(1);
     if (tf_prefix_.empty()) tf_prefix_ = participant.node().name;
     const OutputOptions options = settings.get()->output;
@@ -63,7 +67,7 @@ class ResultPublisher {
   /// The latched vision_info: again after each change of the library.
   void publish_vision_info() {
     wire::vision_msgs::VisionInfo info;
-    info.header.stamp = wire::builtin_interfaces::from_ns(unix_time_ns());
+    info.header.stamp = wire::builtin_interfaces::from_ns(clock_->stamp_ns());
     info.method = "Bingham Procrustean Alignment";
     info.database_location = recognition_->library();
     info.database_version = recognition_->version();
@@ -73,6 +77,7 @@ class ResultPublisher {
  private:
   const Settings& settings_;
   const std::shared_ptr<const Recognition> recognition_;
+  const std::shared_ptr<const WaitableClock> clock_;
   const LogHook log_;
   std::string tf_prefix_;
   Output<wire::bpa_msgs::SceneInterpretations> interpretations_;

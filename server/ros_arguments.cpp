@@ -7,11 +7,10 @@
 #include "core/base/failure.hpp"
 #include "core/io/file_bytes.hpp"
 #include "idl/wire/names.hpp"
+#include "server/parameters.hpp"
 
 namespace bpa::server {
 namespace {
-
-constexpr const char* kIgnored = "use_sim_time";
 
 bool is_log_switch(const std::string& word) {
   for (const std::string what : {"stdout", "rosout", "external-lib"}) {
@@ -28,8 +27,7 @@ wire::Remap split(const std::string& text) {
 
 Status set_parameter_text(const std::string& name, const std::string& value,
                           ServerOptions& options) {
-  if (name == kIgnored) return {};
-  return set_option(name + "=" + value, options);
+  return set_option((name == kUseSimTime ? "node." : "") + name + "=" + value, options);
 }
 
 std::string text_of(const YAML::Node& node) {

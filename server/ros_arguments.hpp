@@ -28,8 +28,7 @@ Result<RosArguments> take_ros_arguments(const std::vector<std::string>& command_
 
 /// Sets what they say, files first, as ROS does. Parameters are the settings, "group.key"; in a
 /// file they stand under the node's name (or /**) and ros__parameters. A parameter that does not
-/// exist is an error, but for use_sim_time, which launch files give to every node: results carry
-/// the stamps of the frames, so that it changes nothing here.
+/// exist is an error.
 Status apply(const RosArguments& arguments, ServerOptions& options);
 
 }  // namespace bpa::server

@@ -22,11 +22,14 @@
 #include "core/base/failure.hpp"
 #include "core/base/guarded.hpp"
 #include "idl/wire/participant.hpp"
+#include "server/busy.hpp"
 #include "server/diagnostics.hpp"
 #include "server/log_relay.hpp"
 #include "server/output.hpp"
 #include "server/parameters.hpp"
+#include "server/participant_options.hpp"
 #include "server/result_publisher.hpp"
+#include "server/ros_clock.hpp"
 #include "server/services/services.hpp"
 #include "server/settings.hpp"
 #include "server/sources/frame_source.hpp"
@@ -46,18 +49,6 @@ using wire::diagnostic_msgs::KeyValue;
 
 constexpr auto kReportPeriod = std::chrono::seconds(1);
 constexpr auto kRepeatAfter = std::chrono::seconds(10);
-
-wire::Discovery discovery_of(const NetworkOptions& options) {
-  wire::Discovery discovery = or_throw(wire::discovery_from_environment());
-  if (options.domain >= 0) discovery.domain_id = options.domain;
-  if (options.range == "subnet") discovery.range = wire::DiscoveryRange::subnet;
-  if (options.range == "localhost") discovery.range = wire::DiscoveryRange::localhost;
-  if (options.range == "humble_localhost") discovery.range = wire::DiscoveryRange::humble_localhost;
-  if (options.range == "off") discovery.range = wire::DiscoveryRange::off;
-  discovery.static_peers.insert(discovery.static_peers.end(), options.peers.begin(),
-                                options.peers.end());
-  return discovery;
-}
 
 /// Frames that are to be combined must be able to wait for one another.
 int frame_capacity(const ServerOptions& options) {
@@ -85,18 +76,14 @@ std::uint64_t resident_bytes() {
   return file ? resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
 }
 
-wire::GraphLayout graph_layout_of(const std::string& word) {
-  if (word == "humble") return wire::GraphLayout::humble24;
-  return word == "iron" ? wire::GraphLayout::iron16 : wire::GraphLayout::automatic;
-}
-
 class Running : public Server {
  public:
   Running(const ServerOptions& options, std::shared_ptr<Recognition> recognition, LogHook log)
       : settings_(options),
         recognition_(std::move(recognition)),
         relay_(std::move(log), log_level(options.log.level)),
-        log_(relay_.hook()) {}
+        log_(relay_.hook()),
+        statistics_(clock_) {}
 
   ~Running() override {
     if (worker_) worker_->stop();  // answers what waits, while the services can still send it
@@ -106,7 +93,9 @@ class Running : public Server {
   void start() {
     const ServerOptions options = *settings_.get();
     join(options);
-    publisher_ = std::make_unique<ResultPublisher>(*participant_, settings_, recognition_, log_);
+    or_throw(clock_->simulate(*participant_, options.node.use_sim_time));
+    publisher_ =
+        std::make_unique<ResultPublisher>(*participant_, settings_, recognition_, clock_, log_);
     publisher_->publish_vision_info();
     diagnostics_.open(*participant_, options.output.diagnostics, wire::qos::results());
 
@@ -114,31 +103,58 @@ class Running : public Server {
         recognition_, worker_options(options), statistics_,
         [this](const IncomingFrame& incoming, const Frame* frame,
                const Result<SceneInterpretations>& result) { on_result(incoming, frame, result); },
-        log_);
+        log_, steady_clock(), clock_);
     start_sources(options);
     offer_services();
     settings_.on_change([this](const ServerOptions& before, const ServerOptions& after) {
       return apply(before, after);
     });
     parameters_.emplace(*participant_, log_, wire::qos::parameters());
-    add_parameter_services(*participant_, settings_, *parameters_);
+    add_parameter_services(*participant_, settings_, clock_, *parameters_);
+    add_type_description_service(*parameters_);
     ready_ = true;
     reporter_ = std::jthread([this](const std::stop_token& stop) { report(stop); });
   }
 
- private:
-  void join(const ServerOptions& options) {
-    wire::ParticipantOptions seat;
-    seat.node = {options.node.ros_namespace, options.node.name};
-    seat.discovery = discovery_of(options.network);
-    seat.graph_layout = graph_layout_of(options.network.graph_layout);
-    seat.profiles = options.network.profiles;
-    seat.datagram_bytes = options.network.datagram_bytes;
-    seat.log = log_;
-    for (const std::string& text : options.node.remaps) {
-      seat.remaps.push_back(or_throw(wire::parse_remap(text)));
+  Status health() const override {
+    const double limit = settings_.get()->detection.hang_s;
+    if (limit == 0) return {};
+    for (const Busy* busy : threads()) {
+      const std::optional<Busy::Work> work = busy->work();
+      if (!work || work->seconds <= limit) continue;
+      return Status(StatusCode::internal,
+                    concat(work->name, " has not returned for ", fixed(work->seconds, 1),
+                           " s (detection.hang_s is ", limit, "): it hangs"));
     }
-    participant_.emplace(or_throw(wire::Participant::create(std::move(seat))));
+    return {};
+  }
+
+  void abandon(const Status& why) override {
+    log(log_, LogLevel::error, why.message + "; the server ends");
+    worker_->abandon(why);
+    ready_ = false;
+    services_.reset();
+    parameters_.reset();
+    reporter_.request_stop();
+    reporter_.join();
+    RateMeter no_rates;
+    report_once(no_rates);
+    sources_.clear();
+  }
+
+ private:
+  /// What each thread that must not hang does now.
+  std::vector<const Busy*> threads() const {
+    std::vector<const Busy*> threads = {&worker_->busy(), &services_->busy(), &parameters_->busy(),
+                                        &reporting_};
+    for (const auto& source : sources_) {
+      for (const Busy* busy : source->threads()) threads.push_back(busy);
+    }
+    return threads;
+  }
+
+  void join(const ServerOptions& options) {
+    participant_.emplace(or_throw(wire::Participant::create(participant_options(options, log_))));
     const std::string& rosout = options.output.rosout;
     if (!rosout.empty()) relay_.connect(*participant_, rosout);
   }
@@ -147,7 +163,7 @@ class Running : public Server {
     const auto on_frame = [this](IncomingFrame&& frame) { worker_->push(std::move(frame)); };
     ServerOptions topics = options;
     if (!options.capture.source.empty()) topics.input.depth.clear();  // they may be our own
-    auto source = open_topic_source(*participant_, topics, on_frame, log_);
+    auto source = open_topic_source(*participant_, topics, on_frame, clock_, log_);
     topics_ = source.get();
     sources_.push_back(std::move(source));
     if (options.capture.source.empty()) return;
@@ -162,6 +178,8 @@ class Running : public Server {
       if (Status status = recognition_->set_options(after.detector); !status.ok()) return status;
       statistics_.forget_timings();
     }
+    Status status = clock_->simulate(*participant_, after.node.use_sim_time);
+    if (!status.ok()) return status;
     worker_->set_options(worker_options(after));
     topics_->set_options(after.input);
     relay_.set_level(log_level(after.log.level));
@@ -250,33 +268,17 @@ class Running : public Server {
             .frame_publishers = static_cast<std::uint32_t>(topics_->frame_publishers())};
   }
 
-  std::vector<std::pair<std::string, std::uint64_t>> drops() const {
-    std::vector<std::pair<std::string, std::uint64_t>> drops = {
-        {"frames failed in the search", statistics_.counts().frames_failed}};
-    for (const auto& [cause, count] : statistics_.rejections()) {
-      drops.emplace_back("rejected: " + cause, count);
-    }
-    return drops;
-  }
-
   std::vector<SourceReport> source_reports() const {
     std::vector<SourceReport> reports;
     for (const auto& source : sources_) {
       for (SourceReport& report : source->reports()) reports.push_back(std::move(report));
     }
+    if (!clock_->is_real()) reports.push_back(clock_->report());
     return reports;
   }
 
-  /// Empty while frames are searched each by itself.
   std::vector<KeyValue> fusion() const {
-    const Counts counts = statistics_.counts();
-    if (settings_.get()->detection.fuse_frames == 1 && counts.fusion_restarts == 0) return {};
-    std::vector<KeyValue> values = {
-        {"frames searched as a part of newer ones", std::to_string(counts.frames_fused)},
-        {"frames combined anew", std::to_string(counts.fusion_restarts)}};
-    const std::string reason = statistics_.fusion_restart();
-    if (!reason.empty()) values.push_back({"frames last combined anew because", reason});
-    return values;
+    return fusion_values(statistics_, settings_.get()->detection.fuse_frames);
   }
 
   std::vector<KeyValue> details() const {
@@ -286,7 +288,8 @@ class Running : public Server {
     if (const std::optional<double> silence = statistics_.seconds_since_frame()) {
       details.push_back({"s since the last frame came", fixed(*silence, 1)});
     }
-    for (const auto& [cause, count] : drops()) details.push_back({cause, std::to_string(count)});
+    for (const auto& [cause, count] : drop_counts(statistics_))
+      details.push_back({cause, std::to_string(count)});
     for (KeyValue& loss : loss_values(counts().losses)) details.push_back(std::move(loss));
     for (const SourceReport& report : source_reports()) {
       details.insert(details.end(), report.values.begin(), report.values.end());
@@ -300,7 +303,9 @@ class Running : public Server {
     std::condition_variable_any wake;
     std::unique_lock<std::mutex> lock(mutex);
     while (!wake.wait_for(lock, stop, kReportPeriod, [&] { return stop.stop_requested(); })) {
+      reporting_.begin("a report to /diagnostics");
       const Status status = guarded("no diagnostics", [&] { report_once(rates); });
+      reporting_.end();
       if (!status.ok()) log(log_, LogLevel::error, status.message);
     }
   }
@@ -310,13 +315,19 @@ class Running : public Server {
     const Counts counts = this->counts();
     rates.add(Clock::now(), counts);
     if (diagnostics_.wanted()) {
-      diagnostics_.send(diagnostics_message({participant_->node().full(), status(), rates.rates(),
-                                             drops(), source_reports(), fusion(),
-                                             statistics_.median_effort(), counts.losses},
-                                            unix_time_ns()),
-                        log_);
+      diagnostics_.send(
+          diagnostics_message({participant_->node().full(), status(), rates.rates(),
+                               drop_counts(statistics_), source_reports(), fusion(),
+                               statistics_.median_effort(), counts.losses, health().message},
+                              clock_->stamp_ns()),
+          log_);
     }
     report_losses();
+    const bool stands_still = clock_->stands_still();
+    if (stands_still && !std::exchange(clock_reported_, stands_still)) {
+      log(log_, LogLevel::warning, clock_->report().message);
+    }
+    clock_reported_ = stands_still;
   }
 
   void report_losses() {
@@ -325,16 +336,7 @@ class Running : public Server {
     // Says it at 10, 100, 1000 ... so that a camera that never fits is heard, and not for ever.
     if (losses < 10 || losses < 10 * losses_reported_) return;
     losses_reported_ = losses;
-    const InputOptions input = settings_.get()->input;
-    const std::string cause =
-        sync.nearest_miss_ns > 0
-            ? concat("the nearest one was ", static_cast<double>(sync.nearest_miss_ns) * 1e-6,
-                     " ms away (input.sync_tolerance_ms is ", input.sync_tolerance_ms, ")")
-            : concat("are ", input.color, " and ", input.camera_info, " published?");
-    log(log_, LogLevel::warning,
-        concat(losses, " depth images had no partner: ", sync.depth_without_color,
-               " without a colour image, ", sync.depth_without_info, " without a camera info; ",
-               cause));
+    log(log_, LogLevel::warning, sync_complaint(sync, settings_.get()->input));
   }
 
   Settings settings_;
@@ -342,11 +344,14 @@ class Running : public Server {
   LogRelay relay_;
   const LogHook log_;
   const Clock::time_point started_ = Clock::now();
+  const std::shared_ptr<RosClock> clock_ = std::make_shared<RosClock>();
   Statistics statistics_;
   std::mutex failure_mutex_;
   std::string last_failure_;       ///< Text of the last failed frame, and
   Clock::time_point last_logged_;  ///< when one was logged: the same is said once in 10 s.
   std::uint64_t losses_reported_ = 0;
+  bool clock_reported_ = false;  ///< That it stands still.
+  Busy reporting_;
 
   // In the order in which they come up; destroyed in reverse: nothing calls into what is gone.
   std::optional<wire::Participant> participant_;

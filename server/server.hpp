@@ -21,6 +21,13 @@ class Server {
                                                 std::shared_ptr<Recognition> recognition,
                                                 LogHook log);
   virtual ~Server() = default;
+
+  /// Whether all threads do their work: `internal` names what has not returned for
+  /// detection.hang_s. From any thread.
+  virtual Status health() const = 0;
+  /// For a server that hangs, before its process ends: says why, answers requests that wait, ends
+  /// recordings and withdraws the services. It must not be used or destroyed after this.
+  virtual void abandon(const Status& why) = 0;
 };
 
 }  // namespace bpa::server

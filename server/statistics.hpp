@@ -8,12 +8,14 @@
 #include <cstdint>
 #include <deque>
 #include <iterator>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/base/clock.hpp"
 #include "core/result/interpretation.hpp"
 #include "server/convert/frames.hpp"
 
@@ -52,6 +54,10 @@ struct Counts {
 /// The server's memory of how it is doing. Thread-safe.
 class Statistics {
  public:
+  /// `clock` measures how long no frame came.
+  explicit Statistics(std::shared_ptr<const WaitableClock> clock = steady_clock())
+      : clock_(std::move(clock)) {}
+
   /// Adds to one counter: add(&Counts::frames_dropped).
   void add(std::uint64_t Counts::*counter) {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -62,15 +68,15 @@ class Statistics {
     const std::lock_guard<std::mutex> lock(mutex_);
     ++counts_.frames_received;
     last_age_ns_ = age_ns;
-    last_frame_ = std::chrono::steady_clock::now();
+    last_frame_ = clock_->now();
   }
   /// Since the last frame came in; nothing before the first.
   std::optional<double> seconds_since_frame() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!last_frame_) return std::nullopt;
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - *last_frame_).count();
+    return std::chrono::duration<double>(clock_->now() - *last_frame_).count();
   }
-  /// From the last frame's stamp until it came in, by this machine's clock; 0 before the first.
+  /// From the last frame's stamp until it came in; 0 before the first.
   std::int64_t last_age_ns() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return last_age_ns_;
@@ -164,9 +170,10 @@ class Statistics {
     return *middle;
   }
 
+  const std::shared_ptr<const WaitableClock> clock_;
   mutable std::mutex mutex_;
   Counts counts_;
-  std::optional<std::chrono::steady_clock::time_point> last_frame_;
+  std::optional<WaitableClock::TimePoint> last_frame_;
   std::int64_t last_age_ns_ = 0;
   std::array<std::uint64_t, std::size(kRejectionCauses)> rejections_{};
   std::string fusion_restart_;

@@ -31,33 +31,52 @@ DetectRequest with_priors(DetectRequest request, const std::vector<PosePrior>& p
 
 Worker::Worker(std::shared_ptr<const Recognition> recognition, const WorkerOptions& options,
                Statistics& statistics, OnResult on_result, LogHook log,
-               std::shared_ptr<WaitableClock> clock)
+               std::shared_ptr<WaitableClock> clock, std::shared_ptr<WaitableClock> ros_clock)
     : recognition_(std::move(recognition)),
       statistics_(statistics),
       on_result_(std::move(on_result)),
       log_(std::move(log)),
       clock_(std::move(clock)),
+      ros_clock_(ros_clock ? std::move(ros_clock) : clock_),
+      busy_(clock_),
       options_(options),
       thread_([this] { run(); }) {}
 
 Worker::~Worker() { stop(); }
 
 void Worker::stop() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    stopping_ = true;
-  }
-  wake_.notify_all();
+  stop_taking(unavailable("the server is stopping"));
   if (thread_.joinable()) thread_.join();
-  const Status status = unavailable("the server is stopping");
-  while (auto job = requests_.pop()) hand_over(*job, nullptr, status);
-  for (DetectJob& job : std::exchange(awaiting_frame_, {})) hand_over(job, nullptr, status);
-  while (const auto errand = errands_.pop()) errand->refuse(status);
+  refuse_waiting();
+}
+
+void Worker::abandon(const Status& why) {
+  stop_taking(why);
+  refuse_waiting();
+}
+
+void Worker::stop_taking(const Status& why) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!stopping_) why_stopping_ = why;
+  stopping_ = true;
+  wake_.notify_all();
+}
+
+void Worker::refuse_waiting() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  const Status why = why_stopping_;
+  std::vector<DetectJob> jobs = std::exchange(awaiting_frame_, {});
+  while (auto job = requests_.pop()) jobs.push_back(*std::move(job));
+  std::vector<Errand> errands;
+  while (auto errand = errands_.pop()) errands.push_back(*std::move(errand));
+  lock.unlock();
+  for (DetectJob& job : jobs) hand_over(job, nullptr, why);
+  for (const Errand& errand : errands) errand.refuse(why);
 }
 
 void Worker::push(IncomingFrame frame) {
   std::optional<IncomingFrame> displaced;  // freed outside the lock
-  statistics_.add_frame(unix_time_ns() - frame.stamp_ns);
+  statistics_.add_frame(ros_clock_->stamp_ns() - frame.stamp_ns);
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!frames_.empty() && frames_.size() >= options_.frame_capacity) {
     displaced = std::move(frames_.front());
@@ -80,10 +99,7 @@ void Worker::set_options(const WorkerOptions& options) {
 double Worker::wait_ms(const DetectJob& job) const {
   const double search_ms = statistics_.median_total_ms();
   double wait = 0;
-  if (busy_since_) {
-    const std::chrono::duration<double, std::milli> so_far = clock_->now() - *busy_since_;
-    wait += std::max(0.0, search_ms - so_far.count());
-  }
+  if (const auto work = busy_.work()) wait += std::max(0.0, search_ms - 1e3 * work->seconds);
   if (job.decode) wait += search_ms * static_cast<double>(job.position);
   if (!job.request.models.empty()) return wait;
   const double own_ms = statistics_.shortest_total_ms();
@@ -122,7 +138,7 @@ Status Worker::push(DetectJob job) {
 }
 
 Status Worker::admit(DetectJob job, std::optional<DetectJob>& displaced) {
-  if (stopping_) return unavailable("the server is stopping");
+  if (stopping_) return why_stopping_;
   const std::size_t waiting = requests_.size() + awaiting_frame_.size();
   if (waiting >= options_.request_capacity) {
     displaced = displace_for(job.client);
@@ -140,9 +156,9 @@ Status Worker::admit(DetectJob job, std::optional<DetectJob>& displaced) {
   } else {
     job.position = awaiting_frame_.size();
   }
-  job.deadline = clock_->now() + job.timeout;
+  job.deadline = ros_clock_->now() + job.timeout;
   const double wait = wait_ms(job);
-  if (std::chrono::duration<double, std::milli>(wait) > job.timeout) {
+  if (ros_clock_->is_real() && std::chrono::duration<double, std::milli>(wait) > job.timeout) {
     return Status(StatusCode::timeout,
                   concat("its answer would come in about ", static_cast<long>(wait),
                          " ms, after its time-out; allow more time or try again later"));
@@ -160,6 +176,7 @@ Status Worker::admit(DetectJob job, std::optional<DetectJob>& displaced) {
 void Worker::run_later(const wire::Guid& client, Errand errand) {
   std::unique_lock<std::mutex> lock(mutex_);
   const bool stopping = stopping_;
+  const Status why = why_stopping_;
   const bool full = errands_.size() >= options_.request_capacity;
   std::optional<Errand> displaced =
       full && !stopping ? errands_.displace_for(client) : std::nullopt;
@@ -170,7 +187,7 @@ void Worker::run_later(const wire::Guid& client, Errand errand) {
   const Status busy(StatusCode::busy,
                     "as many changes of the library wait as may (queue.requests); try again later");
   if (displaced) displaced->refuse(busy);
-  if (!taken) errand.refuse(stopping ? unavailable("the server is stopping") : busy);
+  if (!taken) errand.refuse(stopping ? why : busy);
 }
 
 std::size_t Worker::queue_length() const {
@@ -186,7 +203,7 @@ bool Worker::has_work() const {
 std::vector<DetectJob> Worker::take_expired() {
   const auto end = std::stable_partition(
       awaiting_frame_.begin(), awaiting_frame_.end(),
-      [now = clock_->now()](const DetectJob& job) { return job.deadline > now; });
+      [now = ros_clock_->now()](const DetectJob& job) { return job.deadline > now; });
   std::vector<DetectJob> expired(std::make_move_iterator(end),
                                  std::make_move_iterator(awaiting_frame_.end()));
   awaiting_frame_.erase(end, awaiting_frame_.end());
@@ -210,7 +227,7 @@ void Worker::run() {
       wake_.wait(lock);
     } else {
       const auto first = std::ranges::min_element(awaiting_frame_, {}, &DetectJob::deadline);
-      clock_->wait_until(wake_, lock, first->deadline);
+      ros_clock_->wait_until(wake_, lock, first->deadline);
     }
   }
 }
@@ -221,12 +238,13 @@ void Worker::run_one(std::unique_lock<std::mutex>& lock) {
   const bool frame_wanted = options.continuous || !awaiting_frame_.empty();
   const bool take_frame =
       !frames_.empty() && frame_wanted && (requests_.empty() || !frame_was_last_);
-  busy_since_ = clock_->now();
   if (const std::optional<Errand> errand = errands_.pop()) {
+    busy_.begin("a change of the library");
     lock.unlock();
     (void)guard("a change of the library failed", errand->handle);
   } else if (take_frame) {
     frame_was_last_ = true;
+    busy_.begin("the search of a frame");
     std::vector<IncomingFrame> taken = take_frames(options);
     std::vector<DetectJob> waiting = std::exchange(awaiting_frame_, {});
     lock.unlock();
@@ -235,12 +253,13 @@ void Worker::run_one(std::unique_lock<std::mutex>& lock) {
     for (DetectJob& job : waiting) refuse_failed(job, status);
   } else {
     frame_was_last_ = false;
+    busy_.begin("the search of a request's frame");
     DetectJob job = *requests_.pop();
     lock.unlock();
     refuse_failed(job, guard("a request failed", [&] { work_on_request(job); }));
   }
   lock.lock();
-  busy_since_.reset();
+  busy_.end();
 }
 
 /// The failure of work that threw, which is logged.
@@ -365,7 +384,7 @@ void Worker::answer_next_frame(const WorkerOptions& options, const IncomingFrame
 }
 
 void Worker::work_on_request(DetectJob& job) {
-  if (clock_->now() >= job.deadline) {
+  if (ros_clock_->now() >= job.deadline) {
     return refuse(job, Status(StatusCode::timeout, "its turn came after its time-out"));
   }
   const DecodedFrame frame = decoded(std::move(job.decode));

@@ -18,6 +18,7 @@
 #include "core/base/status.hpp"
 #include "core/cloud/frame_fusion.hpp"
 #include "idl/wire/endpoint.hpp"
+#include "server/busy.hpp"
 #include "server/convert/frames.hpp"
 #include "server/fair_queue.hpp"
 #include "server/once.hpp"
@@ -73,9 +74,11 @@ class Worker {
   using OnResult = std::function<void(const IncomingFrame& incoming, const Frame* frame,
                                       const Result<SceneInterpretations>& result)>;
 
+  /// `clock` measures work; `ros_clock` frames' ages and requests' time-outs, null: `clock` does.
   Worker(std::shared_ptr<const Recognition> recognition, const WorkerOptions& options,
          Statistics& statistics, OnResult on_result, LogHook log,
-         std::shared_ptr<WaitableClock> clock = steady_clock());
+         std::shared_ptr<WaitableClock> clock = steady_clock(),
+         std::shared_ptr<WaitableClock> ros_clock = nullptr);
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -83,6 +86,11 @@ class Worker {
   /// Ends after the search that runs now; jobs that wait or come later are answered with
   /// `unavailable`. Not to be called from two threads at once.
   void stop();
+
+  /// What the worker does now: a search, or a change of the library.
+  const Busy& busy() const { return busy_; }
+  /// For a worker that hangs: answers what waits or comes later with `why`, and waits for nothing.
+  void abandon(const Status& why);
 
   /// Never waits; the oldest frame goes when there are too many.
   void push(IncomingFrame frame);
@@ -103,6 +111,8 @@ class Worker {
 
  private:
   void run();
+  void stop_taking(const Status& why);
+  void refuse_waiting();
   Status admit(DetectJob job, std::optional<DetectJob>& displaced);
   std::optional<DetectJob> displace_for(const wire::Guid& client);
   bool has_work() const;
@@ -131,6 +141,8 @@ class Worker {
   const OnResult on_result_;
   const LogHook log_;
   const std::shared_ptr<WaitableClock> clock_;
+  const std::shared_ptr<WaitableClock> ros_clock_;
+  Busy busy_;
   // Of the worker's thread alone.
   FrameFusion fusion_;
   int last_fused_ = 1;  ///< How many frames the last one was made of.
@@ -144,8 +156,8 @@ class Worker {
   std::vector<DetectJob> awaiting_frame_;      ///< For the next frame.
   FairQueue<wire::Guid, Errand> errands_;
   bool frame_was_last_ = false;  ///< Whose turn it is when both wait.
-  std::optional<WaitableClock::TimePoint> busy_since_;
   bool stopping_ = false;
+  Status why_stopping_;
   std::thread thread_;  ///< Last: starts when all else is there.
 };
 

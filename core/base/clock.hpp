@@ -24,6 +24,10 @@ class WaitableClock {
   virtual ~WaitableClock() = default;
 
   virtual TimePoint now() const { return std::chrono::steady_clock::now(); }
+  /// Time as stamps of messages have it, in nanoseconds.
+  virtual std::int64_t stamp_ns() const { return unix_time_ns(); }
+  /// Whether it goes as fast as this machine's time, as work does.
+  virtual bool is_real() const { return true; }
   /// Waits until `wake` is notified or `until` is reached; may return earlier, so call it in a loop
   /// that checks its condition. `lock` is held.
   virtual void wait_until(std::condition_variable& wake, std::unique_lock<std::mutex>& lock,

@@ -22,11 +22,12 @@ constexpr std::size_t kMaxNames = 1000;
 struct Parameters {
   std::string node;
   Settings& settings;
+  std::shared_ptr<const WaitableClock> clock;
   Output<rcl::ParameterEvent> events;
 
   rcl::ParameterEvent new_event() const {
     rcl::ParameterEvent event;
-    event.stamp = wire::builtin_interfaces::from_ns(unix_time_ns());
+    event.stamp = wire::builtin_interfaces::from_ns(clock->stamp_ns());
     event.node = node;
     return event;
   }
@@ -82,9 +83,9 @@ Response each(const std::vector<std::string>& names, const LogHook& hook,
 }  // namespace
 
 void add_parameter_services(const wire::Participant& participant, Settings& settings,
-                            ServiceSet& services) {
-  const auto self =
-      std::make_shared<Parameters>(Parameters{participant.node().full(), settings, {}});
+                            std::shared_ptr<const WaitableClock> clock, ServiceSet& services) {
+  const auto self = std::make_shared<Parameters>(
+      Parameters{participant.node().full(), settings, std::move(clock), {}});
   self->events.open(participant, "/parameter_events", wire::qos::parameters());
   services.add_quick<rcl::ListParameters>(
       "~/list_parameters", [](const rcl::ListParameters_Request& request, const LogHook& hook) {

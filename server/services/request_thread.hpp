@@ -12,6 +12,7 @@
 #include "core/base/concat.hpp"
 #include "core/base/status.hpp"
 #include "idl/wire/endpoint.hpp"
+#include "server/busy.hpp"
 #include "server/fair_queue.hpp"
 
 namespace bpa::server {
@@ -37,19 +38,24 @@ class RequestThread {
                   concat(capacity_, " requests wait, as many as may; try again later")));
   }
 
+  const Busy& busy() const { return busy_; }
+
  private:
   void run(const std::stop_token& stop) {
     std::unique_lock<std::mutex> lock(mutex_);
     while (changed_.wait(lock, stop, [this] { return !queue_.empty(); }) &&
            !stop.stop_requested()) {
       const std::optional<Errand> errand = queue_.pop();
+      busy_.begin("a request");
       lock.unlock();
       errand->handle();
       lock.lock();
+      busy_.end();
     }
   }
 
   const std::size_t capacity_;
+  Busy busy_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
   FairQueue<wire::Guid, Errand> queue_;

@@ -133,6 +133,8 @@ class ServiceSet {
     });
   }
 
+  /// What their thread does now.
+  const Busy& busy() const { return thread_.busy(); }
   /// Of all services that were added.
   RequestLosses losses() const {
     RequestLosses sum{.refused = refused_};
@@ -172,8 +174,12 @@ void add_library_services(const ServiceContext& context, ServiceSet& services);
 /// Offers the services of every ROS 2 node for `ros2 param`: NODE/list_parameters, get_parameters,
 /// get_parameter_types, describe_parameters, set_parameters and set_parameters_atomically. Also
 /// /parameter_events: all parameters at the start, then each change. `participant` and `settings`
-/// outlive the services.
+/// outlive the services. `clock` stamps the events.
 void add_parameter_services(const wire::Participant& participant, Settings& settings,
-                            ServiceSet& services);
+                            std::shared_ptr<const WaitableClock> clock, ServiceSet& services);
+
+/// Offers NODE/get_type_description: what the types of this node's topics and services are made of.
+/// Without a type_hash the name alone decides.
+void add_type_description_service(ServiceSet& services);
 
 }  // namespace bpa::server

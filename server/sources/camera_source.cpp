@@ -166,6 +166,7 @@ class CameraSource : public FrameSource {
   }
 
   RequestLosses losses() const override { return services_.losses(); }
+  std::vector<const Busy*> threads() const override { return {&services_.busy()}; }
 
   std::vector<SourceReport> reports() const override {
     const camera::CaptureStatus status = capture_.status();

@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "camera/camera_device.hpp"
+#include "core/base/clock.hpp"
 #include "core/base/log.hpp"
 #include "core/cloud/frame.hpp"
 #include "idl/wire/msg/diagnostic_msgs.hpp"
 #include "idl/wire/participant.hpp"
+#include "server/busy.hpp"
 #include "server/convert/frames.hpp"
 #include "server/sources/synchronizer.hpp"
 #include "server/statistics.hpp"
@@ -39,6 +41,8 @@ class FrameSource {
   virtual std::vector<SourceReport> reports() const = 0;
   /// Of the services of this source.
   virtual RequestLosses losses() const { return {}; }
+  /// What threads of its own do now that must not hang.
+  virtual std::vector<const Busy*> threads() const { return {}; }
 };
 
 /// Frames from topics: whole ones (bpa_msgs/RgbdFrame), organised clouds, and the images of a ROS 2
@@ -54,9 +58,10 @@ class TopicSource : public FrameSource {
 };
 
 /// Subscribes to what the options name. `on_frame` runs on DDS threads; `participant` outlives the
-/// source. Throws a Failure.
+/// source. `clock` measures how long no message came. Throws a Failure.
 std::unique_ptr<TopicSource> open_topic_source(const wire::Participant& participant,
                                                const ServerOptions& options, OnFrame on_frame,
+                                               std::shared_ptr<const WaitableClock> clock,
                                                LogHook log);
 
 /// The server's own camera. Its frames go to the search and to camera topics. A service records it,

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/clock.hpp"
 #include "core/base/failure.hpp"
 #include "idl/wire/messages.hpp"
 #include "idl/wire/subscriber.hpp"
@@ -75,15 +76,14 @@ struct Topic {
   std::function<std::size_t()> publishers;
   std::function<wire::ReaderStatistics()> statistics;
   std::shared_ptr<void> subscriber;
-  std::atomic<std::int64_t> last_ns{0};  ///< When the last message came (steady_clock); 0: none.
+  std::atomic<WaitableClock::TimePoint> last{};  ///< When the last message came; zero: none.
 
   bool open() const { return subscriber != nullptr; }
   /// Seconds since the last message; nothing before the first. Reports tell by it that a camera is
   /// gone: publishers on Eclipse Cyclone DDS count as matched for seconds after they went.
-  std::optional<double> silence() const {
-    if (last_ns == 0) return std::nullopt;
-    const std::int64_t now_ns = std::chrono::steady_clock::now().time_since_epoch().count();
-    return 1e-9 * static_cast<double>(now_ns - last_ns);
+  std::optional<double> silence(const WaitableClock& clock) const {
+    if (last.load() == WaitableClock::TimePoint()) return std::nullopt;
+    return std::chrono::duration<double>(clock.now() - last.load()).count();
   }
 };
 
@@ -91,9 +91,10 @@ struct Topic {
 class Topics : public TopicSource {
  public:
   Topics(const wire::Participant& participant, const ServerOptions& options, OnFrame on_frame,
-         LogHook hook)
+         std::shared_ptr<const WaitableClock> clock, LogHook hook)
       : participant_(participant),
         on_frame_(std::move(on_frame)),
+        clock_(std::move(clock)),
         log_(std::move(hook)),
         options_(options.input),
         synchronizer_(synchronizer_options(options.input)) {
@@ -148,11 +149,12 @@ class Topics : public TopicSource {
   template <class T, class OnMessage>
   void subscribe(const std::string& topic, const wire::SubscriberOptions& options,
                  OnMessage on_message, Topic& place) {
-    const auto subscriber = std::make_shared<Subscriber<T>>(or_throw(Subscriber<T>::create(
-        participant_, topic, options, [&place, on_message](T&& message, const wire::SampleMeta&) {
-          place.last_ns = std::chrono::steady_clock::now().time_since_epoch().count();
-          on_message(std::move(message));
-        })));
+    const auto subscriber = std::make_shared<Subscriber<T>>(or_throw(
+        Subscriber<T>::create(participant_, topic, options,
+                              [this, &place, on_message](T&& message, const wire::SampleMeta&) {
+                                place.last = clock_->now();
+                                on_message(std::move(message));
+                              })));
     place.name = subscriber->topic();
     place.publishers = [raw = subscriber.get()] { return raw->matched_count(); };
     place.statistics = [raw = subscriber.get()] { return raw->statistics(); };
@@ -202,7 +204,7 @@ class Topics : public TopicSource {
     report.name = what;
     report.hardware_id = topic.name;
     const std::size_t publishers = topic.publishers();
-    const auto silence = topic.silence();
+    const auto silence = topic.silence(*clock_);
     if (!silence) {
       report.message = publishers > 0 ? "a publisher is there and has sent nothing yet" : "unused";
     } else if (*silence > longest_silence()) {
@@ -227,7 +229,7 @@ class Topics : public TopicSource {
     bool alive = false, seen = false;
     const auto judge = [&](const char* what, const Topic& topic) {
       if (!topic.open()) return;
-      const auto silence = topic.silence();
+      const auto silence = topic.silence(*clock_);
       seen = seen || silence;
       if (silence && *silence <= limit) {
         alive = true;
@@ -253,7 +255,7 @@ class Topics : public TopicSource {
       report.level = SourceReport::kError;
       report.message = trouble;
     } else {
-      report.message = depth_.silence() ? "images come" : "unused";
+      report.message = depth_.silence(*clock_) ? "images come" : "unused";
     }
     const SyncCounts sync = sync_counts();
     Values& values = report.values;
@@ -291,6 +293,7 @@ class Topics : public TopicSource {
 
   const wire::Participant& participant_;
   const OnFrame on_frame_;
+  const std::shared_ptr<const WaitableClock> clock_;
   const LogHook log_;
   mutable std::mutex mutex_;  ///< Guards the options and the synchronizer.
   InputOptions options_;
@@ -303,8 +306,10 @@ class Topics : public TopicSource {
 
 std::unique_ptr<TopicSource> open_topic_source(const wire::Participant& participant,
                                                const ServerOptions& options, OnFrame on_frame,
+                                               std::shared_ptr<const WaitableClock> clock,
                                                LogHook log) {
-  return std::make_unique<Topics>(participant, options, std::move(on_frame), std::move(log));
+  return std::make_unique<Topics>(participant, options, std::move(on_frame), std::move(clock),
+                                  std::move(log));
 }
 
 }  // namespace bpa::server

@@ -113,10 +113,20 @@ TEST(CaptureOptions, RulesNameTheField) {
        {std::pair("capture.source=kinect", "capture.source"),
         std::pair("capture.depth_mode=vga", "capture.depth_mode"),
         std::pair("capture.registration=perhaps", "auto, device, software, off"),
-        std::pair("capture.speed=0", "speed")}) {
+        std::pair("capture.speed=0", "speed"), std::pair("detection.hang_s=-1", "hang_s")}) {
     ServerOptions changed;
     const Status status = set_option(setting, changed);
     EXPECT_EQ(status.code, StatusCode::invalid_argument) << setting;
+    EXPECT_NE(status.message.find(word), std::string::npos) << status.message;
+  }
+}
+
+TEST(CaptureOptions, AnOwnCameraHasNoSimulatedTime) {
+  ServerOptions options;
+  ASSERT_TRUE(set_option("node.use_sim_time=true", options).ok());
+  const Status status = set_option("capture.source=openni2", options);
+  EXPECT_EQ(status.code, StatusCode::invalid_argument);
+  for (const char* word : {"node.use_sim_time", "capture.source", "openni2"}) {
     EXPECT_NE(status.message.find(word), std::string::npos) << status.message;
   }
 }

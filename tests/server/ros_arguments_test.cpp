@@ -59,6 +59,7 @@ TEST(RosArguments, NamesRemapsParametersAndLevel) {
   EXPECT_EQ(options->detection.top_k, 3);
   EXPECT_EQ(options->input.color, "/camera/rgb");
   EXPECT_EQ(options->log.level, "warning");
+  EXPECT_TRUE(options->node.use_sim_time);
 }
 
 TEST(RosArguments, RefusesWhatItCannotDo) {
@@ -72,6 +73,7 @@ TEST(RosArguments, RefusesWhatItCannotDo) {
                {{"-p", "detection.top:=1"}, "unknown key"},
                {{"--log-level", "loud"}, "log.level"},
                {{"--params-file", "nowhere.yaml"}, "no such file"},
+               {{"-p", "use_sim_time:=maybe"}, "node.use_sim_time"},
                {{"--enclave", "/x"}, "security"}};
   for (const auto& c : cases) {
     std::vector<std::string> words = {"x", "--ros-args"};
@@ -94,6 +96,7 @@ TEST(RosArguments, ParameterFilesAsLaunchWritesThem) {
                          "/elsewhere:\n  server:\n    ros__parameters: {no_such: 1}\n";
   const auto options = read({"x", "--ros-args", "--params-file", path, "-p", "queue.requests:=6"});
   ASSERT_TRUE(options.ok()) << options.status().message;
+  EXPECT_TRUE(options->node.use_sim_time);
   EXPECT_EQ(options->detection.top_k, 4);
   EXPECT_EQ(options->detection.seed, 11U);
   EXPECT_EQ(options->queue.frames, 5);

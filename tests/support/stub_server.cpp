@@ -11,6 +11,7 @@
 
 #include "server/ros_arguments.hpp"
 #include "server/server.hpp"
+#include "server/supervision.hpp"
 #include "tests/support/stub_recognition.hpp"
 
 namespace {
@@ -98,11 +99,11 @@ int main(int argc, char** argv) {
   if (Status s = bpa::server::apply(*ros, options); !s.ok()) {
     return std::cerr << s.message << '\n', 2;
   }
-  const auto server = bpa::server::Server::create(
-      options, std::make_shared<Stub>(delay_ms),
-      [](bpa::LogLevel, std::string_view text) { std::cerr << text << std::endl; });
+  const bpa::LogHook hook = [](bpa::LogLevel, std::string_view text) {
+    std::cerr << text << std::endl;
+  };
+  auto server = bpa::server::Server::create(options, std::make_shared<Stub>(delay_ms), hook);
   if (!server.ok()) return std::cerr << server.status().message << '\n', 1;
-  int signal = 0;
-  sigwait(&signals, &signal);
+  bpa::server::serve_until_signal(std::move(server).value(), signals, hook);
   return 0;
 }

@@ -110,6 +110,8 @@ TEST_F(ParametersOfAServer, AgreeWithPrintConfigAndDetectorYaml) {
 
   std::map<std::string, YAML::Node> printed, documented;
   add_fields(YAML::LoadFile(path), "", printed);
+  printed["use_sim_time"] = printed.at("node.use_sim_time");
+  printed.erase("node.use_sim_time");
   add_fields(detector_yaml(), "detector", documented);
 
   const auto names = call<rcl::ListParameters>("list_parameters", {{}, 0}).result.names;
