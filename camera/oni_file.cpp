@@ -6,7 +6,9 @@
 #include <array>
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
 #include <limits>
+#include <utility>
 
 #include "core/base/concat.hpp"
 
@@ -214,10 +216,9 @@ Result<OniWriter> OniWriter::create(const std::string& path,
         concat("frames of ", format.frame_bytes,
                " bytes cannot be recorded; players of .oni files have room for ", kMaxFrameBytes));
   }
-  OniWriter writer(path, std::ofstream(path, std::ios::binary | std::ios::trunc));
-  if (!writer.file_) {
-    return unavailable(path, " cannot be written: ", std::strerror(errno));
-  }
+  auto file = io::NewFile::create(path, path + ".part");
+  if (!file.ok()) return file.status();
+  OniWriter writer(path, std::move(file).value());
   std::string header(kIdentity);
   header += {1, 0, 1, 0};  // version 1.0.1
   put(header, std::uint32_t{0});
@@ -227,7 +228,7 @@ Result<OniWriter> OniWriter::create(const std::string& path,
   // Players take all streams whose NODE_ADDED comes before the first STATE_READY.
   for (const OniStreamFormat& format : streams) {
     const auto node = static_cast<std::uint32_t>(writer.streams_.size() + 1);
-    const Stream& stream = writer.streams_.emplace_back(Stream{format, node, writer.position_});
+    const Stream& stream = writer.streams_.emplace_back(Stream{format, node, writer.bytes()});
     writer.append(node_added(stream));
     writer.write_properties(stream, registered);
   }
@@ -299,17 +300,16 @@ Status OniWriter::add(std::size_t index, std::int64_t stamp_us, const void* data
   std::string fields;
   put(fields, FrameFields{stamp, static_cast<std::uint32_t>(stream.frames.size())});
   const std::uint64_t previous = stream.frames.back().position;
-  stream.frames.push_back({stamp, 0, position_});
+  stream.frames.push_back({stamp, 0, bytes()});
   append(record(RecordType::new_data, stream.node, fields, previous, size));
-  file_.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
-  position_ += size;
+  append({static_cast<const char*>(data), size});
   return state();
 }
 
 Status OniWriter::finish() {
   for (Stream& stream : streams_) {
     append(record(RecordType::node_removed, stream.node, "", stream.added_position));
-    stream.table_position = position_;
+    stream.table_position = bytes();
     std::string table;
     for (const SeekEntry& frame : stream.frames) put(table, frame);
     append(record(RecordType::seek_table, stream.node, "", 0, table.size()) + table);
@@ -317,11 +317,9 @@ Status OniWriter::finish() {
   append(record(RecordType::end, 0));
   // Again, now with the number of frames.
   for (const Stream& stream : streams_) {
-    file_.seekp(static_cast<std::streamoff>(stream.added_position));
-    const std::string added = node_added(stream);
-    file_.write(added.data(), static_cast<std::streamsize>(added.size()));
+    if (state_.ok()) state_ = file_.overwrite(stream.added_position, node_added(stream));
   }
-  file_.close();
+  if (state_.ok()) state_ = file_.commit();
   return state();
 }
 
@@ -330,14 +328,13 @@ std::uint32_t OniWriter::frames(std::size_t index) const {
                                  : 0;
 }
 
-void OniWriter::append(const std::string& bytes) {
-  file_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  position_ += bytes.size();
+void OniWriter::append(std::string_view bytes) {
+  if (state_.ok()) state_ = file_.append(bytes);
 }
 
 Status OniWriter::state() const {
-  if (file_) return {};
-  return unavailable(path_, " cannot be written any further: is the disk full?");
+  if (state_.ok()) return {};
+  return unavailable(state_.message, "; what was recorded before is in ", path_, ".part");
 }
 
 }  // namespace bpa::camera

@@ -4,11 +4,12 @@
 
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/status.hpp"
+#include "core/io/new_file.hpp"
 
 // The .oni files of OpenNI2: what is needed to check one and to write one. OpenNI2 plays them and
 // trusts them: a damaged file makes its driver spin or crash. So every file is checked first.
@@ -159,11 +160,12 @@ class OniWriter {
 
   /// Adds a frame to stream `index`. Stamps of one stream grow; the first of all counts as 0.
   Status add(std::size_t index, std::int64_t stamp_us, const void* data, std::size_t size);
-  /// Completes the file. Without it, inspect_oni_file refuses the file.
+  /// Completes the file, which gets its name then: a recording that did not come to its end, also
+  /// by a crash of the machine, is left as PATH.part, which the next of that name replaces.
   Status finish();
 
   const std::string& path() const { return path_; }
-  std::uint64_t bytes() const { return position_; }
+  std::uint64_t bytes() const { return file_.size(); }
   std::uint32_t frames(std::size_t index) const;
 
  private:
@@ -175,16 +177,15 @@ class OniWriter {
     std::vector<oni::SeekEntry> frames = {oni::SeekEntry()};  ///< By number; they count from 1.
   };
 
-  OniWriter(std::string path, std::ofstream file)
-      : path_(std::move(path)), file_(std::move(file)) {}
+  OniWriter(std::string path, io::NewFile file) : path_(std::move(path)), file_(std::move(file)) {}
   static std::string node_added(const Stream& stream);
   void write_properties(const Stream& stream, bool registered);
-  void append(const std::string& bytes);
+  void append(std::string_view bytes);
   Status state() const;
 
   std::string path_;
-  std::ofstream file_;
-  std::uint64_t position_ = 0;
+  io::NewFile file_;
+  Status state_;  ///< The first thing that could not be written.
   std::int64_t first_us_ = -1;
   std::vector<Stream> streams_;
 };

@@ -111,9 +111,11 @@ class FrameRecorder {
                       {"frame_id", frame.frame_id}});
   }
 
-  /// Writes what is known at the end.
+  /// Writes what is known at the end. recording.json comes last: all that it tells of is on the
+  /// disk.
   void finish() const {
     write_json(folder_ / kScene / "scene_camera.json", cameras_);
+    or_throw(io::sync_folder(folder_));
     write_json(folder_ / "recording.json",
                {{"format", "bpa recording"}, {"version", 1}, {"frames", times_}});
   }
@@ -160,8 +162,8 @@ void record_here(const Common& common, const RecordOptions& options) {
     wait(options.seconds > 0 ? options.seconds : std::numeric_limits<double>::infinity());
   }
   const std::vector<DetectionSet> sets = results.take_all();
-  frames.finish();
   write_results(folder / "results.json", sets);
+  frames.finish();
   std::printf("%zu frames and %zu results in %s\n", frames.count(), sets.size(),
               options.folder.c_str());
   or_throw(frames.trouble());

@@ -147,22 +147,17 @@ Status make_folder(const std::string& path) {
   return unavailable(path, " cannot be made: ", error ? error.message() : "it is not a folder");
 }
 
-Status write_file(const std::string& path, std::string_view bytes) {
+Status write_file(const std::string& path, std::string_view bytes, Sync sync) {
   const fs::path parent = fs::path(path).parent_path();
   if (!parent.empty()) {
     if (Status status = make_folder(parent.string()); !status.ok()) return status;
   }
-  const std::string temporary = path + ".part" + std::to_string(::getpid());
-  bool written = false;
-  {
-    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    out.flush();
-    written = out.good();
-  }
-  if (written && std::rename(temporary.c_str(), path.c_str()) == 0) return {};
-  std::remove(temporary.c_str());
-  return unavailable(path, " cannot be written");
+  auto file = NewFile::create(path, path + ".part" + std::to_string(::getpid()));
+  if (!file.ok()) return file.status();
+  Status status = file->append(bytes);
+  if (status.ok()) status = file->commit(sync);
+  if (!status.ok()) file->discard();
+  return status;
 }
 
 std::uint32_t crc32(std::string_view bytes, std::uint32_t seed) {

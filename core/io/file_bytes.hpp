@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/base/status.hpp"
+#include "core/io/new_file.hpp"
 
 namespace bpa::io {
 
@@ -38,8 +39,8 @@ struct MappedFile {
 Result<MappedFile> map_file(const std::string& path);
 
 /// Replaces the file's content in one step: readers see the old bytes or the new ones, never a
-/// part. Makes missing parent folders. Fails with unavailable.
-Status write_file(const std::string& path, std::string_view bytes);
+/// part, also after a crash of the machine. Makes missing parent folders. Fails with unavailable.
+Status write_file(const std::string& path, std::string_view bytes, Sync sync = Sync::now);
 
 /// Makes a folder and its parents; an existing one is fine. Fails with unavailable.
 Status make_folder(const std::string& path);

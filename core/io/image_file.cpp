@@ -177,7 +177,8 @@ Status encode(const std::string& path, int width, int height, int type, int chan
   } catch (const std::exception&) {
   }
   if (!encoded) return Status(StatusCode::internal, path + " cannot be encoded");
-  return write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  // Of many images each would have to wait for the disk.
+  return write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, Sync::later);
 }
 
 constexpr int kColorFlags = cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION;

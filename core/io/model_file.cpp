@@ -166,7 +166,6 @@ Status save_model(const std::string& library, const ModelSource& source, int num
   const ObjectModel& model = **made;
   const fs::path target = fs::path(library) / model.name;
   const fs::path fresh = fs::path(library) / ("." + model.name + ".new");
-  const fs::path old = fs::path(library) / ("." + model.name + ".old");
   std::error_code error;
   fs::remove_all(fresh, error);
   const auto files = model_files(model);
@@ -174,12 +173,7 @@ Status save_model(const std::string& library, const ModelSource& source, int num
   for (const auto& [name, bytes] : *files) {
     if (Status s = write_file((fresh / name).string(), bytes); !s.ok()) return s;
   }
-  fs::remove_all(old, error);
-  if (fs::exists(target, error)) fs::rename(target, old, error);
-  if (!error) fs::rename(fresh, target, error);
-  if (error) return unavailable(target.string(), " cannot be written: ", error.message());
-  fs::remove_all(old, error);
-  return {};
+  return replace_folder(fresh.string(), target.string());
 }
 
 Result<ModelSource> load_model(const std::string& library, const std::string& name) {

@@ -85,7 +85,22 @@ TEST_F(OniFile, EveryTruncationIsRefused) {
 
 TEST_F(OniFile, ARecordingThatWasNotFinishedIsTruncated) {
   write(false);
+  EXPECT_EQ(inspect_oni_file(folder_ / "a.oni").status().code, StatusCode::not_found);
+  std::filesystem::rename(folder_ / "a.oni.part", folder_ / "a.oni");
   expect_refusal(StatusCode::corrupt, {"truncated", "after 3 frames"});
+}
+
+TEST_F(OniFile, AFullDiskIsNamedAndWhatWasWrittenStaysBeside) {
+  std::filesystem::create_symlink("/dev/full", folder_ / "a.oni.part");
+  const OniStreamFormat depth{Kind::depth, kWidth, kHeight, 30,    100, 2 * kWidth * kHeight,
+                              10000,       1.0,    0.8,     false, 2.5};
+  auto writer = OniWriter::create(folder_ / "a.oni", {depth}, true);
+  const Status status = writer.ok() ? writer->finish() : writer.status();
+  EXPECT_EQ(status.code, StatusCode::unavailable);
+  for (const char* words : {"a.oni cannot be written", "No space left on device", "a.oni.part"}) {
+    EXPECT_NE(status.message.find(words), std::string::npos) << status.message;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.oni"));
 }
 
 TEST_F(OniFile, DamagedRecordsAreRefused) {
