@@ -2,16 +2,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/geometry/camera.hpp"
 
+#include <string>
+
 #include "core/base/concat.hpp"
 
 namespace bpa {
+namespace {
+
+constexpr int kMinCameraSide = 16;
+constexpr int kMaxCameraSide = 8192;
+
+}  // namespace
 
 Status validate(const Camera& camera) {
-  const auto broken = [](const char* field, auto value, const char* rule) {
+  const auto broken = [](const char* field, auto value, const std::string& rule) {
     return invalid_argument("camera ", field, " is ", value, "; it must be ", rule);
   };
-  const auto size_fits = [](int size) { return size >= 16 && size <= 8192; };
-  const char* size_rule = "between 16 and 8192 pixels";
+  const auto size_fits = [](int size) { return size >= kMinCameraSide && size <= kMaxCameraSide; };
+  const std::string size_rule =
+      concat("between ", kMinCameraSide, " and ", kMaxCameraSide, " pixels");
   if (!size_fits(camera.width)) return broken("width", camera.width, size_rule);
   if (!size_fits(camera.height)) return broken("height", camera.height, size_rule);
   const auto focal_fits = [](double focal) { return focal > 0 && focal < 1e6; };

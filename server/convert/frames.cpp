@@ -24,11 +24,11 @@ Status check_distortion(const std::vector<double>& d) {
       return invalid_argument("distortion d[", i, "] is ", d[i], "; it must be finite");
     }
   }
-  if (d.size() <= 8) return {};
+  constexpr std::size_t kMaxDistortion = 8;
+  if (d.size() <= kMaxDistortion) return {};
   return Status(StatusCode::unsupported,
-                concat("distortion d has ", d.size(),
-                       " coefficients; at most 8 are supported (plumb_bob, rational_polynomial): "
-                       "rectify the images"));
+                concat("distortion d has ", d.size(), " coefficients; at most ", kMaxDistortion,
+                       " are supported (plumb_bob, rational_polynomial): rectify the images"));
 }
 
 struct Pixels {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -16,20 +15,26 @@ namespace {
 
 namespace msgs = wire::bpa_msgs;
 
+constexpr std::uint32_t kMaxTopK = 100;
+constexpr int kMaxBudgetMs = 1'000'000;
+constexpr int kMaxTimeoutMs = 10'000'000;
+/// A frame of the largest sides has 604 MB: rgba, depth in metres and a mask.
+constexpr std::size_t kMaxFrameRequest = std::size_t{640} << 20U;
+
 /// The server's settings where the request leaves the choice.
 Result<DetectRequest> search_of(const msgs::Detect_Request& request,
                                 const DetectionOptions& options) {
-  if (request.top_k > 100) {
-    return invalid_argument("top_k is ", request.top_k,
-                            "; it must be between 1 and 100, or 0 for the server's setting");
+  if (request.top_k > kMaxTopK) {
+    return invalid_argument("top_k is ", request.top_k, "; it must be between 1 and ", kMaxTopK,
+                            ", or 0 for the server's setting");
   }
-  if (!(request.time_budget_ms >= 0 && request.time_budget_ms <= 1e6)) {
-    return invalid_argument("time_budget_ms is " + std::to_string(request.time_budget_ms) +
-                            "; it must be between 0 and 1000000");
+  if (!(request.time_budget_ms >= 0 && request.time_budget_ms <= kMaxBudgetMs)) {
+    return invalid_argument("time_budget_ms is ", request.time_budget_ms,
+                            "; it must be between 0 and ", kMaxBudgetMs);
   }
-  if (!(request.timeout_ms >= 0 && request.timeout_ms <= 1e7)) {
-    return invalid_argument("timeout_ms is " + std::to_string(request.timeout_ms) +
-                            "; it must be between 0 and 10000000");
+  if (!(request.timeout_ms >= 0 && request.timeout_ms <= kMaxTimeoutMs)) {
+    return invalid_argument("timeout_ms is ", request.timeout_ms, "; it must be between 0 and ",
+                            kMaxTimeoutMs);
   }
   auto priors = priors_from_messages(request.frame.priors);
   if (!priors.ok()) return priors.status();
@@ -163,7 +168,7 @@ void add_detect(const ServiceContext& context, ServiceSet& services) {
         const Status accepted = context.worker.push(std::move(job));
         if (!accepted.ok()) refuse(accepted);
       },
-      std::numeric_limits<std::size_t>::max());
+      kMaxFrameRequest);
 }
 
 void add_library_services(const ServiceContext& context, ServiceSet& services) {

@@ -21,7 +21,9 @@ namespace bpa::server {
 /// its kind, not what DDS receives. Neither function of an errand may throw.
 class RequestThread {
  public:
-  explicit RequestThread(std::size_t capacity = 1024)
+  static constexpr std::size_t kMaxWaitingRequests = 1024;
+
+  explicit RequestThread(std::size_t capacity = kMaxWaitingRequests)
       : capacity_(capacity), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
   void push(const wire::Guid& client, Errand errand) {

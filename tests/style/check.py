@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The bpa authors
 # SPDX-License-Identifier: Apache-2.0
-"""usage: check.py arrows|sources|formatting ROOT. Exits 1 with one line for each thing wrong."""
+"""usage: check.py arrows|sources|formatting|limits ROOT. Exits 1 with one line for each thing wrong."""
 
 import importlib
 import sys

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import arrows
 import formatting
+import limits
 import sources
 
 ARCHITECTURE = """
@@ -25,6 +26,14 @@ ARCHITECTURE = """
 """
 SPDX = ("// SPDX-FileCopyrightText: 2026 The bpa authors\n"
         "// SPDX-License-Identifier: Apache-2.0\n")
+
+
+SECURITY = """
+| input | limit | beyond it | where |
+|-------|-------|-----------|-------|
+| a name | `247` characters | refused | `idl/wire/names.cpp` `kMaxName` |
+| requests | `8` | busy | `config/server.yaml` `queue.requests` |
+"""
 
 
 class StyleChecks(unittest.TestCase):
@@ -51,6 +60,30 @@ class StyleChecks(unittest.TestCase):
         self.assertEqual(len(problems), 1, problems)
         self.assertIn(problem, problems[0])
         (self.root / path).unlink()
+
+    def write_limits(self):
+        self.write("SECURITY.md", SECURITY)
+        self.write("idl/wire/names.cpp", SPDX + "constexpr std::size_t kMaxName = 247;\n")
+        self.write("config/server.yaml", "queue:\n  # Of all.\n  requests: 8\n")
+
+    def test_limits_of_security_are_those_of_the_code(self):
+        self.write_limits()
+        self.expect(limits, "idl/wire/more.cpp", "constexpr int kMaxMore = 1 << 4;\n", "kMaxMore")
+        self.expect(limits, "idl/wire/most.hpp", "inline constexpr int kMostThings{7};\n",
+                    "kMostThings")
+        for path, text, words in [
+                ("idl/wire/names.cpp", "constexpr std::size_t kMaxName{248};\n", "248"),
+                ("idl/wire/names.cpp", "", "no kMaxName"),
+                ("config/server.yaml", "queue:\n  requests: 9\n", "9"),
+                ("SECURITY.md", "nothing", "no table")]:
+            self.write_limits()
+            self.expect_changed(path, text, words)
+
+    def expect_changed(self, path, text, words):
+        self.assertEqual(limits.check(self.root), [])
+        self.write(path, text)
+        problems = limits.check(self.root)
+        self.assertTrue(any(words in problem for problem in problems), problems)
 
     def test_allowed_arrows_pass(self):
         self.write("core/cloud/frame.cpp", '#include "core/base/status.hpp"\n#include <vector>\n')
