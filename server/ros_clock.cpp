@@ -36,8 +36,8 @@ Status RosClock::simulate(const wire::Participant& participant, bool simulated) 
     moved_ = real;
   } else {
     shift_ = now_ - real;
-    stamp_ns_.reset();
   }
+  stamp_ns_.reset();
   simulated_ = simulated;
   subscriber_.swap(subscriber);
   lock.unlock();  // the old one waits for its callback, which takes the lock

@@ -45,7 +45,9 @@ def describe(struct, with_defaults):
     fields = [{'name': field.name, 'type': describe_type(field.type)} for field in struct.fields]
     if with_defaults:
         for description, field in zip(fields, struct.fields):
-            description['default_value'] = field.value or ''
+            value = field.value or ''
+            boolean = value in ('TRUE', 'FALSE')
+            description['default_value'] = value.capitalize() if boolean else value  # as Python's
     return {'type_name': struct.name, 'fields': fields}
 
 

@@ -152,6 +152,8 @@ TEST_F(RosNode, TellsOfItsTypesWhatTheirHashesSay) {
   const auto quaternion = ask("geometry_msgs/msg/Quaternion", "", false);
   EXPECT_EQ(quaternion.type_description.type_description.type_fields.at(3).default_value, "1.0");
   EXPECT_TRUE(quaternion.type_sources.empty());
+  const auto own = ask(types::GetTypeDescription_Request::kType, "");
+  EXPECT_EQ(own.type_description.type_description.type_fields.at(2).default_value, "True");
   const auto other = ask("sensor_msgs/msg/Image", "RIHS01_00");
   EXPECT_FALSE(other.successful);
   EXPECT_NE(other.failure_reason.find(wire::sensor_msgs::Image::kTypeHash), std::string::npos)

@@ -69,10 +69,14 @@ def of_rosidl(root, path):
 def of_ours(path):
     def type_(of):
         return of.element, of.form, of.capacity, of.string_capacity
+
+    def default(value):
+        booleans = {'TRUE': True, 'FALSE': False}
+        return None if value is None else float(booleans.get(value, value))
     return {
         struct.name: (
-            [(field.name, type_(field.type), None if field.value is None else float(field.value),
-              field.comment) for field in struct.fields],
+            [(field.name, type_(field.type), default(field.value), field.comment)
+             for field in struct.fields],
             [(constant.name, type_(constant.type), int(constant.value), constant.comment)
              for constant in struct.constants],
             struct.comment if '/msg/' in struct.name else ())
