@@ -188,6 +188,19 @@ TEST(Requests, AFullQueueIsBusyAndNobodyWaitsForEver) {
   EXPECT_EQ(last_place, 1);
 }
 
+// A client knows its server before the server knows it: a reply that is sent at once is lost.
+TEST(Requests, ThoseRightAfterDiscoveryAreAnswered) {
+  support::StubServer server;
+  for (int i = 0; i < 15; ++i) {
+    auto participant = support::test_participant("newcomer" + std::to_string(i));
+    ASSERT_TRUE(participant.ok()) << participant.status().message;
+    auto service = wire::ServiceClient<msgs::GetStatus>::create(*participant, "get_status");
+    ASSERT_TRUE(service.ok());
+    const auto reply = service->call({}, milliseconds(10000));
+    EXPECT_TRUE(reply.ok()) << i << ": " << reply.status().message << server.log();
+  }
+}
+
 TEST(Requests, AThousandAtOnceAreEachAnswered) {
   support::StubServer server;
   auto participant = support::test_participant("tester");
