@@ -52,6 +52,8 @@ const NumberType* find_type(const std::string& name) {
   return found == std::end(kTypes) ? nullptr : found;
 }
 
+constexpr std::size_t kMostElements = 100;  // files have two or three
+
 struct Property {
   std::string name;
   const NumberType* type = nullptr;
@@ -117,6 +119,11 @@ Result<Header> parse_header(std::string_view bytes, const std::string& name) {
       Element& element = header.elements.emplace_back();
       words >> element.name >> element.count;
       if (!words) return corrupt(name, " has a PLY element without a count");
+      if (header.elements.size() > kMostElements ||
+          std::ranges::count(header.elements, element.name, &Element::name) > 1) {
+        return corrupt(name, " has PLY element ", element.name, " twice, or more than ",
+                       kMostElements, " elements");
+      }
     } else if (key == "property") {
       if (Status status = parse_property(name, words, header); !status.ok()) return status;
     }
