@@ -231,7 +231,8 @@ class Points {
 
   /// One point a line. Only fields of four bytes are kept.
   bool parse(std::string_view bytes) {
-    if (header_->points > bytes.size()) return false;  // a line has a character
+    // Each value has a character and another one behind it, but for the last one.
+    if (header_->points * header_->columns > (bytes.size() + 1) / 2) return false;
     for (std::size_t i = 0; i < header_->points;) {
       if (bytes.empty()) return false;
       const std::size_t length = std::min(bytes.find('\n'), bytes.size());
