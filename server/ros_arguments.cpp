@@ -6,6 +6,7 @@
 
 #include "core/base/failure.hpp"
 #include "core/io/file_bytes.hpp"
+#include "core/io/yaml_text.hpp"
 #include "idl/wire/names.hpp"
 #include "server/parameters.hpp"
 
@@ -74,8 +75,10 @@ Status load_file(const std::string& path, ServerOptions& options) {
   if (!io::is_file(path)) {
     return Status(StatusCode::not_found, path + ": there is no such file");
   }
+  const Result<std::string> text = io::read_file(path);
+  if (!text.ok()) return text.status();
   try {
-    set_file(path, "", YAML::LoadFile(path), options);
+    set_file(path, "", io::parse_yaml(*text), options);
     return {};
   } catch (const Failure& failure) {
     return failure.status();

@@ -9,6 +9,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/io/file_bytes.hpp"
+#include "core/io/yaml_text.hpp"
 
 namespace bpa::io {
 namespace {
@@ -150,8 +151,10 @@ struct ValueWriter {
 
 Status read_options(const std::string& path, const OptionsReading& reading) {
   if (!is_file(path)) return not_found(path, ": there is no such file");
+  const Result<std::string> text = read_file(path);
+  if (!text.ok()) return text.status();
   try {
-    return apply(path, reading, "", YAML::LoadFile(path));
+    return apply(path, reading, "", parse_yaml(*text));
   } catch (const YAML::Exception& error) {
     return at(path, error.mark, "not YAML: " + error.msg);
   }
@@ -163,7 +166,7 @@ Status set_option(const std::string& assignment, const OptionsReading& reading) 
     return invalid_argument("\"", assignment, "\" must read group.key=value");
   }
   try {
-    return set(reading, assignment.substr(0, equals), YAML::Load(assignment.substr(equals + 1)));
+    return set(reading, assignment.substr(0, equals), parse_yaml(assignment.substr(equals + 1)));
   } catch (const YAML::Exception& error) {
     return invalid_argument("\"", assignment, "\" is not YAML: ", error.msg);
   }

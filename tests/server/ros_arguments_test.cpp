@@ -85,6 +85,19 @@ TEST(RosArguments, RefusesWhatItCannotDo) {
   }
 }
 
+TEST(RosArguments, ParameterFilesHaveNoAliases) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.path() + "/params.yaml";
+  for (const char* text :
+       {"a: &x\n  b: *x\n", "/**:\n  ros__parameters: &x\n    detection: *x\n"}) {
+    std::ofstream(path) << text;
+    const auto options = read({"x", "--ros-args", "--params-file", path});
+    ASSERT_FALSE(options.ok());
+    EXPECT_NE(options.status().message.find("aliases"), std::string::npos)
+        << options.status().message;
+  }
+}
+
 TEST(RosArguments, ParameterFilesAsLaunchWritesThem) {
   const test::TemporaryFolder folder;
   const std::string path = folder.path() + "/params.yaml";
