@@ -45,7 +45,7 @@ Status read_truth(const Json& gt, const Json& info, const std::string& key, BopF
   if (!gt.contains(key)) return {};
   for (const Json& json : gt.at(key)) {
     BopInstance& instance = frame.truth.emplace_back();
-    instance.obj_id = json.at("obj_id").get<int>();
+    instance.obj_id = whole_number<int>(json.at("obj_id"));
     instance.camera_from_object =
         Pose::from_matrix(json.at("cam_R_m2c").get<Eigen::Matrix3d>(),
                           kMetres * json.at("cam_t_m2c").get<Eigen::Vector3d>());

@@ -8,6 +8,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "core/io/private/json_file.hpp"
+#include "core/io/yaml_text.hpp"
 
 namespace bpa::io {
 namespace {
@@ -33,8 +34,8 @@ CameraFile from_json(const Json& json) {
   } else {
     camera = {0, 0, json.at("fx"), json.at("fy"), json.at("cx"), json.at("cy")};
   }
-  camera.width = json.value("width", 0);
-  camera.height = json.value("height", 0);
+  camera.width = whole_number(json, "width", 0);
+  camera.height = whole_number(json, "height", 0);
   file.depth_scale_mm = json.value("depth_scale", 1.0);
   return file;
 }
@@ -58,7 +59,7 @@ Result<CameraFile> read_yaml(const std::string& path) {
   const Result<std::string> bytes = read_file(path);
   if (!bytes.ok()) return bytes.status();
   try {
-    return from_yaml(YAML::Load(*bytes));
+    return from_yaml(parse_yaml(*bytes));
   } catch (const std::exception& error) {
     return corrupt(path,
                    " is not a ROS camera_info file (image_width, image_height, "

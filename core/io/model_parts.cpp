@@ -80,7 +80,7 @@ Result<ModelDescription> read_description(const std::string& path) {
     if (json.value("format", "") != kFormat) {
       return corrupt(path, " is not a model of this program");
     }
-    const int version = json.at("version").get<int>();
+    const int version = whole_number<int>(json.at("version"));
     if (version == kModelFileVersion) return json.get<ModelDescription>();
     return corrupt(path, " has format version ", version, "; this program reads version ",
                    kModelFileVersion,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <span>
 #include <sstream>
@@ -121,7 +122,8 @@ Status write_results_json(const std::string& path, const std::vector<FrameResult
 
 Result<std::vector<FrameResult>> read_results_json(const std::string& path) {
   return read_json(path, [&](const Json& json) -> Result<std::vector<FrameResult>> {
-    if (json.value("format", "") != kJsonFormat || json.at("version").get<int>() != kJsonVersion) {
+    if (json.value("format", "") != kJsonFormat ||
+        whole_number<int>(json.at("version")) != kJsonVersion) {
       return corrupt(path, " is not a result file of version ", kJsonVersion);
     }
     return json.at("frames").get<std::vector<FrameResult>>();
@@ -164,6 +166,10 @@ bool parse_numbers(std::string_view text, std::span<double> values) {
   return at == end;
 }
 
+bool whole_int(double value) {
+  return value == std::trunc(value) && std::abs(value) <= std::numeric_limits<int>::max();
+}
+
 struct CsvRow {
   double scene[1], image[1], object[1], score[1], rotation[9], translation[3], time[1];
 };
@@ -184,7 +190,8 @@ std::string parse_row(const std::string& line, CsvRow& row) {
     rest.remove_prefix(std::min(cell.size() + 1, rest.size()));
     if (!parse_numbers(cell, values)) return name;
   }
-  return {};
+  const bool whole = whole_int(row.scene[0]) && whole_int(row.image[0]) && whole_int(row.object[0]);
+  return whole ? "" : "scene_id, im_id or obj_id (whole numbers)";
 }
 
 Placement placement_of(const CsvRow& row) {

@@ -3,10 +3,15 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <concepts>
+#include <cstdint>
 #include <exception>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -58,13 +63,47 @@ namespace bpa::io {
 
 using Json = nlohmann::json;
 
-/// Fails with not_found, or with corrupt when the file is not JSON.
+/// Fails with not_found, or with corrupt when the file is not JSON or nested deeper than any file
+/// of this project: copies of JSON take stack for each level.
 inline Result<Json> read_json(const std::string& path) {
+  constexpr int kDeepest = 64;
   const Result<std::string> bytes = read_file(path);
   if (!bytes.ok()) return bytes.status();
-  Json json = Json::parse(*bytes, nullptr, false);
+  bool shallow = true;
+  const auto keep = [&shallow](int depth, Json::parse_event_t, Json&) {
+    shallow = shallow && depth <= kDeepest;
+    return shallow;
+  };
+  Json json = Json::parse(*bytes, keep, false);
+  if (!shallow) return corrupt(path, " is JSON of more than ", kDeepest, " levels");
   if (json.is_discarded()) return corrupt(path, " is truncated or not JSON");
   return json;
+}
+
+/// A whole number that T holds, also where it is written as 5.0; anything else is an error.
+template <std::integral T>
+T whole_number(const Json& json) {
+  const auto exact = [](auto number) -> std::optional<T> {
+    if (!std::in_range<T>(number)) return std::nullopt;
+    return static_cast<T>(number);
+  };
+  std::optional<T> number;
+  if (json.is_number_unsigned()) {
+    number = exact(json.get<std::uint64_t>());
+  } else if (json.is_number_integer()) {
+    number = exact(json.get<std::int64_t>());
+  } else if (const double real = json.get<double>();
+             real == std::trunc(real) && std::abs(real) < 0x1p53) {
+    number = exact(static_cast<std::int64_t>(real));
+  }
+  if (!number) throw std::out_of_range(json.dump() + " is not a whole number that fits");
+  return *number;
+}
+
+/// The same of a key; `otherwise` without it.
+template <std::integral T>
+T whole_number(const Json& json, const char* key, T otherwise) {
+  return json.contains(key) ? whole_number<T>(json.at(key)) : otherwise;
 }
 
 /// Runs body(), which reads values out of JSON and returns a Status or a Result; what is missing or
@@ -113,7 +152,13 @@ struct JsonReader {
   const Json& json;
 
   void operator()(const char* key, auto& value, bool optional = false) {
-    if (!optional || json.contains(key)) json.at(key).get_to(value);
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if (optional && !json.contains(key)) return;
+    if constexpr (std::integral<Value> && !std::same_as<Value, bool>) {
+      value = whole_number<Value>(json.at(key));
+    } else {
+      json.at(key).get_to(value);
+    }
   }
   void group(const char* key, const auto& body) { body(JsonReader{json.at(key)}); }
   bool has(const char* key) const { return json.contains(key); }

@@ -55,6 +55,15 @@ TEST(BopDataset, ModelsSurviveWritingAndReading) {
   EXPECT_LT((mesh->vertices[2] - some_mesh().mesh.vertices[2]).norm(), 1e-6f);
 }
 
+TEST(BopDataset, DeepSymmetriesAreRefused) {
+  const test::TemporaryFolder folder;
+  const std::size_t levels = 200'000;
+  test::spill(folder / "models_info.json", R"({"7": {"diameter": 1, "symmetries_continuous": )" +
+                                               std::string(levels, '[') + std::string(levels, ']') +
+                                               "}}");
+  EXPECT_EQ(read_bop_models_folder(folder.path()).status().code, StatusCode::corrupt);
+}
+
 TEST(BopDataset, FramesSurviveWritingAndReading) {
   const test::TemporaryFolder folder;
   const Frame frame = some_frame();

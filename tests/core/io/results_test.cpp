@@ -46,6 +46,31 @@ std::vector<FrameResult> some_results() {
   return {frame, empty};
 }
 
+TEST(Results, WholeNumbersAreWholeAndFit) {
+  const test::TemporaryFolder folder;
+  const auto with_id = [&](const std::string& id) {
+    test::spill(folder / "r.json",
+                R"({"format": "bpa results", "version": 1.0, "frames": [{"scene_id": )" + id +
+                    R"(, "im_id": 1, "seconds": 0, "interpretations": []}]})");
+    return read_results_json(folder / "r.json");
+  };
+  EXPECT_EQ(with_id("-7.0")->front().scene_id, -7);
+  for (const char* id : {"1e300", "-1e300", "2147483648", "18446744073709551615", "1.5", "null"}) {
+    EXPECT_EQ(with_id(id).status().code, StatusCode::corrupt) << id;
+  }
+  test::spill(folder / "r.csv", "1e300,5,3,0.9,1 0 0 0 1 0 0 0 1,10 20 900,0.1\n");
+  EXPECT_EQ(read_results_csv(folder / "r.csv").status().code, StatusCode::corrupt);
+}
+
+TEST(Results, DeepJsonIsRefused) {
+  const test::TemporaryFolder folder;
+  const std::size_t levels = 1'000'000;
+  test::spill(folder / "r.json", std::string(levels, '[') + std::string(levels, ']'));
+  const Status status = read_results_json(folder / "r.json").status();
+  EXPECT_EQ(status.code, StatusCode::corrupt);
+  EXPECT_NE(status.message.find("64 levels"), std::string::npos) << status.message;
+}
+
 TEST(Results, JsonKeepsEverythingToTheLastBit) {
   const test::TemporaryFolder folder;
   const std::vector<FrameResult> results = some_results();
