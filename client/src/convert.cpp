@@ -219,6 +219,7 @@ Result<FrameView> to_view(const msgs::RgbdFrame& message) {
   view.cy = message.k[5];
   view.stamp_ns = to_ns(message.header.stamp);
   view.frame_id = message.header.frame_id;
+  if (Status status = check(view); !status.ok()) return status;
   return view;
 }
 
