@@ -42,6 +42,11 @@ function(bpa_compile_options target)
       -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
   endif()
+  if(BPA_FUZZ)  # what libFuzzer and llvm-cov ask of the compiler
+    target_compile_options(${target} PRIVATE
+      -fsanitize=fuzzer-no-link,float-cast-overflow -fprofile-instr-generate -fcoverage-mapping)
+    target_link_options(${target} PUBLIC -fprofile-instr-generate)
+  endif()
   if(BPA_SANITIZE_THREAD)
     target_compile_options(${target} PRIVATE -fsanitize=thread)
     target_link_options(${target} PUBLIC -fsanitize=thread)

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// CDR: every type that this project receives, requests in both framings, and what is made of them.
+#include "idl/wire/messages.hpp"
+
+#include <tuple>
+
+#include "client/src/convert.hpp"
+#include "idl/wire/cdr.hpp"
+#include "idl/wire/private/service_framing.hpp"
+#include "server/parameters.hpp"
+#include "tests/fuzz/target.hpp"
+#include "tests/support/wall_messages.hpp"
+
+namespace bpa::fuzz {
+namespace {
+
+namespace msgs = wire::bpa_msgs;
+namespace rcl = wire::rcl_interfaces;
+namespace sensor = wire::sensor_msgs;
+
+const std::uint8_t* data_of(std::string_view bytes) {
+  return reinterpret_cast<const std::uint8_t*>(bytes.data());
+}
+
+template <class T>
+std::string encoded(const T& message) {
+  const std::vector<std::uint8_t> bytes = wire::encode(message);
+  return {bytes.begin(), bytes.end()};
+}
+
+/// By number; the message types of topics and services, those inside of them included.
+using Received = std::tuple<
+    msgs::RgbdFrame, msgs::SceneInterpretations, msgs::Detect_Request, msgs::Detect_Response,
+    msgs::GetStatus_Request, msgs::GetStatus_Response, msgs::ListModels_Request,
+    msgs::ListModels_Response, msgs::LoadModel_Request, msgs::LoadModel_Response,
+    msgs::Record_Request, msgs::Record_Response, msgs::UnloadModel_Request,
+    msgs::UnloadModel_Response, sensor::Image, sensor::CompressedImage, sensor::CameraInfo,
+    sensor::PointCloud2, rcl::DescribeParameters_Request, rcl::DescribeParameters_Response,
+    rcl::GetParameterTypes_Request, rcl::GetParameterTypes_Response, rcl::GetParameters_Request,
+    rcl::GetParameters_Response, rcl::ListParameters_Request, rcl::ListParameters_Response,
+    rcl::SetParameters_Request, rcl::SetParameters_Response, rcl::SetParametersAtomically_Request,
+    rcl::SetParametersAtomically_Response, rcl::ParameterEvent, rcl::Log,
+    wire::rmw_dds_common::ParticipantEntitiesInfo, wire::diagnostic_msgs::DiagnosticArray,
+    wire::std_srvs::Trigger_Request, wire::std_srvs::Trigger_Response, wire::tf2_msgs::TFMessage,
+    wire::vision_msgs::Detection3DArray, wire::vision_msgs::VisionInfo,
+    wire::visualization_msgs::MarkerArray>;
+constexpr std::size_t kTypes = std::tuple_size_v<Received>;
+
+/// What was decoded, encoded again, is its own decoding.
+template <class T>
+void run_one(std::string_view bytes) {
+  T message{};
+  if (!wire::decode(data_of(bytes), bytes.size(), message).ok()) return;
+  const std::string once = encoded(message);
+  T again{};
+  require(wire::decode(data_of(once), once.size(), again).ok(), "what was encoded can be decoded");
+  require(encoded(again) == once, "decoding loses nothing");
+}
+
+template <std::size_t... k>
+void run_type(std::size_t type, std::string_view bytes, std::index_sequence<k...>) {
+  ((type == k ? run_one<std::tuple_element_t<k, Received>>(bytes) : void()), ...);
+}
+
+/// The first byte is the type's number.
+void run_cdr(std::string_view bytes) {
+  if (bytes.empty()) return;
+  run_type(static_cast<std::uint8_t>(bytes[0]) % kTypes, bytes.substr(1),
+           std::make_index_sequence<kTypes>());
+}
+
+template <std::size_t... k>
+std::vector<std::string> empty_messages(std::index_sequence<k...>) {
+  return {(static_cast<char>(k) + encoded(std::tuple_element_t<k, Received>()))...};
+}
+
+std::vector<std::string> cdr_seeds() {
+  std::vector<std::string> seeds = empty_messages(std::make_index_sequence<kTypes>());
+  std::string info = std::string(1, 16) + encoded(support::wall_camera_info(7));
+  seeds.push_back(info);
+  rcl::SetParameters_Request request;
+  request.parameters = server::all_parameters(server::ServerOptions());
+  request.parameters.resize(9);
+  seeds.push_back(std::string(1, 26) + encoded(request));
+  return seeds;
+}
+
+/// A first byte with the framing of the metadata, then a request.
+void run_request(std::string_view bytes) {
+  if (bytes.empty()) return;
+  wire::SampleMeta meta;
+  if ((bytes[0] & 1) != 0) meta.related.writer.fill(1);
+  const std::vector<std::uint8_t> request(bytes.begin() + 1, bytes.end());
+  wire::detail::ReplyAddress address;
+  std::size_t offset = 0;
+  bool swap = false;
+  if (!wire::detail::read_request_frame(request, meta, &address, &offset, &swap).ok()) return;
+  require(offset <= request.size(), "a request begins inside its bytes");
+  wire::CdrReader reader(request.data() + offset, request.size() - offset, swap);
+  msgs::Detect_Request message;
+  reader.read(message);
+  (void)reader.status(msgs::Detect_Request::kType);
+}
+
+std::vector<std::string> request_seeds() {
+  const std::string plain = encoded(msgs::Detect_Request());
+  return {'\1' + plain, '\0' + plain.substr(0, 4) + std::string(16, '\7') + plain.substr(4)};
+}
+
+/// What a server answers, as the SDK takes it.
+void run_answers(std::string_view bytes) {
+  msgs::SceneInterpretations scene;
+  if (wire::decode(data_of(bytes), bytes.size(), scene).ok()) (void)sdk::to_detections(scene);
+  msgs::GetStatus_Response status;
+  if (wire::decode(data_of(bytes), bytes.size(), status).ok()) (void)sdk::to_server_status(status);
+  msgs::ModelInfo model;
+  if (wire::decode(data_of(bytes), bytes.size(), model).ok()) (void)sdk::to_model(model);
+  sensor::Image image;
+  if (wire::decode(data_of(bytes), bytes.size(), image).ok()) {
+    const auto annotated = sdk::to_image(std::move(image));
+    require(annotated.rgb.size() >=
+                std::size_t{3} * static_cast<std::size_t>(annotated.width * annotated.height),
+            "an annotated image has all its pixels");
+  }
+  msgs::RgbdFrame frame;
+  if (!wire::decode(data_of(bytes), bytes.size(), frame).ok()) return;
+  if (const auto view = sdk::to_view(frame); view.ok()) {
+    require(sdk::check(*view).ok(), "a frame of another client has all its pixels");
+  }
+}
+
+std::vector<std::string> answer_seeds() {
+  msgs::SceneInterpretations scene;
+  scene.header = support::header(5);
+  scene.interpretations.resize(1);
+  scene.interpretations[0].placements.resize(1);
+  sensor::Image image = support::wall_color_image(1);
+  image.width = 4;
+  image.height = 2;
+  image.step = 12;
+  image.data.resize(24);
+  msgs::RgbdFrame frame = support::wall_frame();
+  frame.width = 4;
+  frame.height = 2;
+  frame.color.resize(24);
+  frame.depth.resize(16);
+  return {encoded(scene), encoded(msgs::GetStatus_Response()), encoded(msgs::ModelInfo()),
+          encoded(image), encoded(frame)};
+}
+
+/// SetParameters, and what a client may ask of parameters by name.
+void run_parameters(std::string_view bytes) {
+  rcl::SetParameters_Request request;
+  if (wire::decode(data_of(bytes), bytes.size(), request).ok()) {
+    server::ServerOptions options;
+    for (const rcl::Parameter& parameter : request.parameters) {
+      (void)server::set_parameter(parameter, options);
+      (void)server::describe_parameter(parameter.name);
+    }
+    (void)server::validate(options);
+  }
+  rcl::ListParameters_Request list;
+  if (wire::decode(data_of(bytes), bytes.size(), list).ok()) {
+    (void)server::list_parameters(list.prefixes, list.depth);
+  }
+}
+
+std::vector<std::string> parameter_seeds() {
+  std::vector<std::string> seeds;
+  for (const rcl::Parameter& parameter : server::all_parameters(server::ServerOptions())) {
+    if (parameter.name.find("detector.") == 0) continue;
+    rcl::SetParameters_Request request;
+    request.parameters = {parameter};
+    seeds.push_back(encoded(request));
+  }
+  rcl::ListParameters_Request list;
+  list.prefixes = {"detection", "log.level"};
+  list.depth = 2;
+  seeds.push_back(encoded(list));
+  return seeds;
+}
+
+}  // namespace
+
+std::vector<Target> message_targets() {
+  return {{"cdr", "idl/wire/cdr.hpp", run_cdr, cdr_seeds, 2048, 4},
+          {"request", "idl/wire/service_server.cpp", run_request, request_seeds, 1024, 4},
+          {"answers", "client/src/convert.cpp", run_answers, answer_seeds, 2048, 4},
+          {"parameters", "server/parameters.cpp", run_parameters, parameter_seeds, 1024, 4}};
+}
+
+}  // namespace bpa::fuzz
