@@ -193,7 +193,7 @@ std::vector<int> possible_counts(std::vector<int> wanted, int most) {
     std::printf("The library has %d models; no more are searched for.\n", most);
   }
   for (int& count : wanted) count = std::min(count, most);
-  wanted.erase(std::ranges::unique(wanted).begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
   return wanted;
 }
 

@@ -345,9 +345,9 @@ void add_symmetry(CLI::App& model) {
   const auto [command, a] =
       add(model, "symmetry", "Show, confirm or drop the symmetries of a model", set_symmetry);
   add_name(command, "name", a);
-  const auto answer = [&, &symmetry = a.symmetry](const char* option, const char* value,
-                                                  const char* text) {
-    return command.add_flag_callback(
+  const auto answer = [&to = command, &symmetry = a.symmetry](const char* option, const char* value,
+                                                              const char* text) {
+    return to.add_flag_callback(
         option, [&symmetry, value] { symmetry = value; }, text);
   };
   answer("--none", "none", "The object has none")

@@ -19,7 +19,7 @@ std::vector<ModelSource> wanted_models(const std::string& folder, std::vector<st
                                        int num_threads) {
   if (names.empty()) return or_throw(io::load_library(folder, num_threads));
   std::ranges::sort(names);
-  names.erase(std::ranges::unique(names).begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   std::vector<ModelSource> models(names.size());
   parallel_for(names.size(), num_threads,
                [&](std::size_t i) { models[i] = or_throw(io::load_model(folder, names[i])); });

@@ -73,10 +73,11 @@ Table table_of(const SpeedReport& report, const TablePart& part) {
   for (const SpeedReport& row : rows) table.columns.push_back(row_name(row, part));
   if (rows.empty()) return table;
   for (const auto& [key, first] : rows.front().items()) {
-    const auto is_total = [&key](const auto& share) { return key == share.second; };
+    const auto is_total = [&name = key](const auto& share) { return name == share.second; };
     if (key == part.row_key || std::ranges::any_of(kShares, is_total)) continue;
     auto& cells = table.lines.emplace_back(words(key), std::vector<std::string>()).second;
-    const auto share = std::ranges::find_if(kShares, [&](const auto& s) { return key == s.first; });
+    const auto share =
+        std::ranges::find_if(kShares, [&name = key](const auto& s) { return name == s.first; });
     for (const SpeedReport& row : rows) {
       cells.push_back(text(row.at(key)));
       if (share != std::end(kShares)) cells.back() += "/" + text(row.at(share->second));

@@ -117,8 +117,8 @@ std::vector<FlatRest> flat_rests(std::span<const Eigen::Vector3f> surface) {
   std::ranges::stable_sort(stable, {}, &std::pair<float, Eigen::Vector3f>::first);
   std::vector<FlatRest> out;
   for (const auto& [height, down] : stable) {
-    const bool known =
-        std::ranges::any_of(out, [&](const FlatRest& rest) { return rest.up.dot(-down) > kApart; });
+    const bool known = std::ranges::any_of(
+        out, [&toward = down](const FlatRest& rest) { return rest.up.dot(-toward) > kApart; });
     if (known || out.size() >= kMostRests) continue;
     const FlatExtent extent = flat_extent(silhouette(centred, -down), -down);
     if (height + reach(hull, -down) > kFlattest * extent.length) continue;

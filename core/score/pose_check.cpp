@@ -58,7 +58,7 @@ BPA_DISPATCH void project_block(const CheckImage& image, const CheckPoints& mode
     const bool inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom);
     // Of points outside, numbers that an int holds.
     const int column = static_cast<int>(inside ? u : 0), row = static_cast<int>(inside ? v : 0);
-    out.pixel[k] = faces & inside ? row * width + column : -1;
+    out.pixel[k] = (faces & inside) ? row * width + column : -1;
     out.z[k] = z;
     out.normal[0][k] = a;
     out.normal[1][k] = b;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
+#include <numeric>
 
 namespace bpa {
 namespace {
@@ -103,8 +103,8 @@ PredictedSurface predict_surface(const CheckImage& image, const ObjectModel& mod
 
 PredictedSurface predict_whole_surface(const CheckImage& image, const ObjectModel& model,
                                        const Pose& camera_from_object) {
-  const auto all =
-      std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(model.surface.points.size()));
+  std::vector<std::uint32_t> all(model.surface.points.size());
+  std::iota(all.begin(), all.end(), 0U);
   return draw(image, facing_points(image, model, all, to_fast(camera_from_object)));
 }
 

@@ -37,7 +37,7 @@ ScoreLayer from_json(const nlohmann::json& json) {
   layer.provenance = json.at("provenance").get<std::string>();
   for (const auto& [name, curve] : json.at("components").items()) {
     const auto type = std::find_if(kScoreComponents.begin(), kScoreComponents.end(),
-                                   [&](const ComponentType& t) { return t.name == name; });
+                                   [&key = name](const ComponentType& t) { return t.name == key; });
     if (type == kScoreComponents.end()) throw std::runtime_error("unknown component " + name);
     ScoreLayer::Component& component =
         layer.components[static_cast<std::size_t>(type - kScoreComponents.begin())];

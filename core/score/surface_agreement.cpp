@@ -320,7 +320,7 @@ SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& mod
   out.explained_area = area * Sums::of(sums.explained_points);
   if (explained) {
     std::ranges::sort(*explained);
-    explained->erase(std::ranges::unique(*explained).begin(), explained->end());
+    explained->erase(std::unique(explained->begin(), explained->end()), explained->end());
   }
   out.relative_area = out.explained_area / (model.diameter * model.diameter);
   const double facing = Sums::of(sums.facing), weight = Sums::of(sums.weight);
