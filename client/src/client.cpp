@@ -299,9 +299,12 @@ Status Client::subscribe_frames(std::function<void(const FrameView&)> on_frame) 
 }
 
 Status Client::subscribe_annotated(std::function<void(const AnnotatedImage&)> on_image) {
+  const auto call = [on_image = std::move(on_image)](const Result<AnnotatedImage>& image) {
+    if (image.ok()) on_image(*image);
+  };
   return guarded([&] {
     return impl_->subscribe(impl_->images, "annotated", wire::qos::results(), true, sdk::to_image,
-                            std::move(on_image));
+                            call);
   });
 }
 

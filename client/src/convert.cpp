@@ -174,9 +174,16 @@ ServerStatus to_server_status(const msgs::GetStatus_Response& message) {
   return status;
 }
 
-AnnotatedImage to_image(wire::sensor_msgs::Image&& message) {
-  return {to_ns(message.header.stamp), message.header.frame_id, static_cast<int>(message.width),
-          static_cast<int>(message.height), std::move(message.data)};
+Result<AnnotatedImage> to_image(wire::sensor_msgs::Image&& message) {
+  constexpr std::uint32_t kMaxSide = 8192;
+  const std::size_t bytes = std::size_t{3} * message.width * message.height;
+  if (message.encoding != "rgb8" || message.width > kMaxSide || message.height > kMaxSide ||
+      message.data.size() != bytes) {
+    return invalid_argument("an image whose pixels are not as the server sends them");
+  }
+  return AnnotatedImage{to_ns(message.header.stamp), message.header.frame_id,
+                        static_cast<int>(message.width), static_cast<int>(message.height),
+                        std::move(message.data)};
 }
 
 Status check(const FrameView& frame) {

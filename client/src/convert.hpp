@@ -16,7 +16,8 @@ Status to_status(const wire::bpa_msgs::Status& message);
 DetectionSet to_detections(const wire::bpa_msgs::SceneInterpretations& message);
 KnownModel to_model(const wire::bpa_msgs::ModelInfo& message);
 ServerStatus to_server_status(const wire::bpa_msgs::GetStatus_Response& message);
-AnnotatedImage to_image(wire::sensor_msgs::Image&& message);
+/// Fails unless it is an rgb8 image whose pixels are all there, rows without padding.
+Result<AnnotatedImage> to_image(wire::sensor_msgs::Image&& message);
 
 /// Checks what would otherwise be read beyond its end; the rest is the server's to judge.
 Status check(const FrameView& frame);

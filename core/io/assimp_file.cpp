@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <memory>
+#include <sstream>
 
+#include <assimp/BaseImporter.h>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -208,12 +212,25 @@ class SceneReader {
   MeshFile file_;
 };
 
+/// Leaves the importers that name the extension. Any other would take a file by its first bytes,
+/// whatever its name: a .glb that begins with "ply" kept Assimp 5.2.5 busy for ever.
+void keep_importers(const std::string& extension, Assimp::Importer& importer) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    std::istringstream extensions(importer.GetImporterInfo(i)->mFileExtensions);
+    const std::istream_iterator<std::string> first(extensions), last;
+    if (std::find(first, last, extension) != last) continue;
+    std::unique_ptr<Assimp::BaseImporter> other(importer.GetImporter(i));
+    if (importer.UnregisterLoader(other.get()) != aiReturn_SUCCESS) (void)other.release();
+  }
+}
+
 }  // namespace
 
 Result<MeshFile> read_with_assimp(const std::string& path, double scale, bool colored) {
   if (!is_file(path)) return not_found(path, " cannot be opened");
   try {
     Assimp::Importer importer;
+    keep_importers(lower_extension(path), importer);
     // COLLADA's up axis says how to stand the object up, not which axes it has.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     const aiScene* scene =

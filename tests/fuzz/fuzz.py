@@ -41,10 +41,10 @@ class Target:
         """libFuzzer on all inputs that there are; returns its exit code and report."""
         committed = ROOT / "tests/fuzz/corpus" / self.name
         inputs = [self.corpus, self.seeds] + ([committed] if committed.is_dir() else [])
-        environment = {**os.environ, "BPA_FUZZ_TARGET": self.name, "LLVM_PROFILE_FILE": profile}
+        environment = {**os.environ, "BPA_FUZZ_TARGET": self.name, "LLVM_PROFILE_FILE": profile,
+                       "ASAN_OPTIONS": f"detect_leaks={int(self.name not in LEAKING)}"}
         command = ["nice", self.program, f"-max_len={self.max_bytes}", f"-timeout={TIMEOUT_S}",
                    f"-malloc_limit_mb={self.malloc_mb}", f"-rss_limit_mb={RSS_LIMIT_MB}",
-                   f"-detect_leaks={int(self.name not in LEAKING)}",
                    f"-artifact_prefix={self.folder}/findings/{self.name}-", *options, *inputs]
         done = subprocess.run(command, env=environment, capture_output=True, text=True,
                               errors="replace")
