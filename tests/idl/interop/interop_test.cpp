@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // With other processes on this machine: Eclipse Cyclone DDS and ourselves.
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -121,7 +122,7 @@ TEST(Interop, CycloneClientsFirstCallIsAnswered) {
   if (!has("cyclone_caller")) GTEST_SKIP() << "built without Eclipse Cyclone DDS";
   auto participant = test_participant("interop");
   ASSERT_TRUE(participant.ok());
-  std::int32_t calls = 0;
+  std::atomic<int> calls = 0;
   auto server = ServiceServer<Unload>::create(
       *participant, "/interop/unload_model",
       [&calls](Unload::Request&& request, const ReplyToken<Unload>& token) {
