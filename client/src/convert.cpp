@@ -13,6 +13,9 @@ namespace {
 
 namespace msgs = wire::bpa_msgs;
 
+constexpr std::int64_t kMinSide = 16;  // of a frame, pixels
+constexpr std::int64_t kMaxSide = 8192;
+
 ObjectPose to_pose(const wire::geometry_msgs::Pose& message) {
   const auto& p = message.position;
   const auto& q = message.orientation;
@@ -175,9 +178,8 @@ ServerStatus to_server_status(const msgs::GetStatus_Response& message) {
 }
 
 Result<AnnotatedImage> to_image(wire::sensor_msgs::Image&& message) {
-  constexpr std::uint32_t kMaxSide = 8192;
   const std::size_t bytes = std::size_t{3} * message.width * message.height;
-  if (message.encoding != "rgb8" || message.width > kMaxSide || message.height > kMaxSide ||
+  if (message.encoding != "rgb8" || std::max(message.width, message.height) > kMaxSide ||
       message.data.size() != bytes) {
     return invalid_argument("an image whose pixels are not as the server sends them");
   }
@@ -187,9 +189,10 @@ Result<AnnotatedImage> to_image(wire::sensor_msgs::Image&& message) {
 }
 
 Status check(const FrameView& frame) {
-  if (frame.width < 16 || frame.width > 8192 || frame.height < 16 || frame.height > 8192) {
+  const auto fits = [](std::int64_t side) { return side >= kMinSide && side <= kMaxSide; };
+  if (!fits(frame.width) || !fits(frame.height)) {
     return invalid_argument("frame is ", frame.width, "x", frame.height,
-                            "; each side must be between 16 and 8192");
+                            "; each side must be between ", kMinSide, " and ", kMaxSide);
   }
   if ((frame.depth_mm == nullptr) == (frame.depth_m == nullptr)) {
     return invalid_argument("frame has " + std::string(frame.depth_m ? "two depths" : "no depth") +
