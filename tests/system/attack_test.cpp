@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <optional>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "idl/wire/endpoint.hpp"
+#include "idl/wire/messages.hpp"
+#include "tests/support/stub_server.hpp"
+#include "tests/support/wall_messages.hpp"
+
+// A stranger sends spoiled samples into every input of a server, while a client asks. The number of
+// samples is BPA_ATTACK_SAMPLES, 3000 otherwise; a thousand a second.
+
+namespace bpa {
+namespace {
+
+namespace msgs = wire::bpa_msgs;
+namespace rcl = wire::rcl_interfaces;
+namespace sensor = wire::sensor_msgs;
+using Bytes = std::vector<std::uint8_t>;
+using SteadyClock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kBetweenCalls{200};
+constexpr double kMayGrow_mb = 50;
+constexpr std::size_t kHeader = 4;  // of an encoding: DDS sends no less
+
+int samples() {
+  const char* text = std::getenv("BPA_ATTACK_SAMPLES");
+  return text != nullptr ? std::atoi(text) : 3000;
+}
+
+double resident_mb(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/statm");
+  double size = 0, resident = 0;
+  file >> size >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+/// Cut, lengthened, changed in some bytes, or with numbers that are too large for what follows.
+Bytes spoiled(Bytes bytes, std::mt19937& random) {
+  const auto below = [&](std::size_t end) {
+    return std::uniform_int_distribution<std::size_t>(0, end - 1)(random);
+  };
+  switch (below(4)) {
+    case 0:
+      bytes.resize(std::max(kHeader, below(bytes.size())));
+      break;
+    case 1:
+      bytes.insert(bytes.end(), below(64), 0xff);
+      break;
+    case 2:
+      for (int i = 0; i < 4; ++i) bytes[below(bytes.size())] = static_cast<std::uint8_t>(random());
+      break;
+    default:
+      if (const std::size_t at = below(bytes.size()) & ~std::size_t{3}; at + 4 <= bytes.size()) {
+        std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), 4, std::uint8_t{0xff});
+      }
+  }
+  return bytes;
+}
+
+/// One input of the server, and a legal sample for it.
+struct Input {
+  std::string topic;  ///< DDS's name.
+  std::unique_ptr<wire::detail::RawWriter> writer;
+  Bytes legal;
+  bool request = false;
+};
+
+class Stranger {
+ public:
+  Stranger() : participant_(support::test_participant("stranger").value()) {
+    const std::string space = support::test_namespace();
+    topic(space + "/frames", support::wall_frame());
+    topic(space + "/camera/color", support::wall_color_image(1));
+    topic(space + "/camera/depth", support::wall_depth_image(1));
+    topic(space + "/camera/info", support::wall_camera_info(1));
+    msgs::Detect_Request detect;
+    detect.frame = support::wall_frame();
+    service(space + "/detect", detect);
+    service(space + "/list_models", msgs::ListModels_Request{});
+    service(space + "/get_status", msgs::GetStatus_Request{});
+    msgs::LoadModel_Request load;
+    load.source = "nowhere";
+    service(space + "/load_model", load);
+    msgs::UnloadModel_Request unload;
+    unload.name = "nothing";
+    service(space + "/unload_model", unload);
+    const std::string node = space + "/server";
+    rcl::SetParameters_Request set;
+    set.parameters.resize(2);
+    set.parameters[0].name = "no.such";
+    service(node + "/set_parameters", set);
+    rcl::GetParameters_Request get;
+    get.names = {"detection.continuous", "no.such"};
+    service(node + "/get_parameters", get);
+    service(node + "/list_parameters", rcl::ListParameters_Request{});
+  }
+
+  /// The first input that the server does not listen on; empty if it listens on all.
+  std::string unmatched() const {
+    for (const Input& input : inputs_) {
+      if (!input.writer->matches().wait_for(1, milliseconds(5000))) return input.topic;
+    }
+    return "";
+  }
+
+  /// Sends to all inputs in turn. Returns how many samples DDS took.
+  int attack(int count) {
+    std::mt19937 random(1);
+    const auto start = SteadyClock::now();
+    int sent = 0;
+    for (int i = 0; i < count; ++i) {
+      const Input& input = inputs_[static_cast<std::size_t>(i) % inputs_.size()];
+      const Bytes bytes = spoiled(input.legal, random);
+      const wire::SampleId id{{1, 2, 3}, i};
+      sent += input.writer
+                  ->write(wire::detail::bytes_ref(bytes), input.request ? &id : nullptr, nullptr)
+                  .ok();
+      std::this_thread::sleep_until(start + milliseconds(i));
+    }
+    return sent;
+  }
+
+ private:
+  template <class T>
+  void add(const std::string& dds_topic, const T& legal, bool request) {
+    auto writer = wire::detail::make_writer(
+        participant_, wire::detail::endpoint_spec<T>(dds_topic, wire::qos::services(), 0));
+    ASSERT_TRUE(writer.ok()) << writer.status().message;
+    inputs_.push_back({dds_topic, std::move(writer).value(), wire::encode(legal), request});
+  }
+  template <class T>
+  void topic(const std::string& name, const T& legal) {
+    add("rt" + name, legal, false);
+  }
+  template <class T>
+  void service(const std::string& name, const T& legal) {
+    add("rq" + name + "Request", legal, true);
+  }
+
+  wire::Participant participant_;
+  std::vector<Input> inputs_;
+};
+
+/// What a client sees that asks at 5 Hz.
+struct Calls {
+  int failed = 0;
+  std::string failure;
+  std::vector<double> milliseconds;
+
+  double slowest() const { return std::ranges::max(milliseconds); }
+};
+
+Calls ask_until(Client& client, const std::function<bool()>& done) {
+  Calls calls;
+  const std::vector<std::uint16_t> depth = support::wall_depth_mm();
+  FrameView view;
+  view.width = static_cast<int>(support::kWidth);
+  view.height = static_cast<int>(support::kHeight);
+  view.depth_mm = depth.data();
+  view.fx = view.fy = 60;
+  view.cx = 31.5;
+  view.cy = 23.5;
+  do {
+    const auto start = SteadyClock::now();
+    const auto found = client.detect_in(view);
+    calls.milliseconds.push_back(
+        std::chrono::duration<double, std::milli>(SteadyClock::now() - start).count());
+    if (!found.ok()) {
+      ++calls.failed;
+      calls.failure = found.status().message;
+    }
+    std::this_thread::sleep_until(start + kBetweenCalls);
+  } while (!done());
+  return calls;
+}
+
+TEST(Attack, SpoiledSamplesKeepNobodyFromTheServer) {
+  support::StubServer server(
+      {"input.color=camera/color", "input.depth=camera/depth", "input.camera_info=camera/info"});
+  auto client = Client::connect(support::client_options());
+  ASSERT_TRUE(client.ok()) << client.status().message << server.log();
+  Stranger stranger;
+  ASSERT_EQ(stranger.unmatched(), "");
+  const auto quiet_end = SteadyClock::now() + std::chrono::seconds(2);
+  const Calls quiet = ask_until(*client, [&] { return SteadyClock::now() > quiet_end; });
+  const double before_mb = resident_mb(server.process().pid());
+  std::atomic<int> sent{-1};
+  std::thread attack([&] { sent = stranger.attack(samples()); });
+  const Calls calls = ask_until(*client, [&] { return sent >= 0; });
+  attack.join();
+  const double grown_mb = resident_mb(server.process().pid()) - before_mb;
+  const auto status = client->status();
+  ASSERT_TRUE(status.ok()) << status.status().message;
+  const std::map<std::string, std::string> details(status->details.begin(), status->details.end());
+  RecordProperty("quiet_slowest_ms", std::to_string(quiet.slowest()));
+  RecordProperty("slowest_ms", std::to_string(calls.slowest()));
+  std::cout << sent << " samples sent, " << calls.milliseconds.size() << " calls, slowest "
+            << calls.slowest() << " ms (" << quiet.slowest() << " ms before), memory grew by "
+            << grown_mb << " MB\n";
+  EXPECT_EQ(quiet.failed, 0) << quiet.failure;
+  EXPECT_EQ(calls.failed, 0) << calls.failure;
+  EXPECT_LT(grown_mb, kMayGrow_mb);
+  EXPECT_EQ(sent, samples());
+  for (const char* input :
+       {"requests malformed", "messages malformed of frames", "messages malformed of the camera"}) {
+    EXPECT_GT(std::atoi(details.at(input).c_str()), 0) << input;
+  }
+}
+
+}  // namespace
+}  // namespace bpa
