@@ -21,6 +21,7 @@
 #include "idl/wire/messages.hpp"
 #include "tests/support/stub_server.hpp"
 #include "tests/support/wall_messages.hpp"
+#include "tests/support/wall_view.hpp"
 
 // A stranger sends spoiled samples into every input of a server, while a client asks. The number of
 // samples is BPA_ATTACK_SAMPLES, 3000 otherwise; a thousand a second.
@@ -169,17 +170,10 @@ struct Calls {
 
 Calls ask_until(Client& client, const std::function<bool()>& done) {
   Calls calls;
-  const std::vector<std::uint16_t> depth = support::wall_depth_mm();
-  FrameView view;
-  view.width = static_cast<int>(support::kWidth);
-  view.height = static_cast<int>(support::kHeight);
-  view.depth_mm = depth.data();
-  view.fx = view.fy = 60;
-  view.cx = 31.5;
-  view.cy = 23.5;
+  const support::WallView wall;
   do {
     const auto start = SteadyClock::now();
-    const auto found = client.detect_in(view);
+    const auto found = client.detect_in(wall.view());
     calls.milliseconds.push_back(
         std::chrono::duration<double, std::milli>(SteadyClock::now() - start).count());
     if (!found.ok()) {

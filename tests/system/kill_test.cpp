@@ -16,7 +16,7 @@
 #include "tests/support/meshes.hpp"
 #include "tests/support/notify_socket.hpp"
 #include "tests/support/stub_server.hpp"
-#include "tests/support/wall_messages.hpp"
+#include "tests/support/wall_view.hpp"
 
 // A server that is killed while a client streams, and started anew, again and again.
 
@@ -30,23 +30,6 @@ constexpr int kKills = 6;
 /// A request that goes out before the new server is known fails when the old one's lease of 5 s
 /// ends.
 constexpr milliseconds kOldClient{8000};
-
-struct Wall {
-  std::vector<std::uint16_t> depth = support::wall_depth_mm();
-  std::vector<std::uint8_t> rgb = support::wall_rgb();
-
-  FrameView view() const {
-    FrameView view;
-    view.width = static_cast<int>(support::kWidth);
-    view.height = static_cast<int>(support::kHeight);
-    view.rgb = rgb.data();
-    view.depth_mm = depth.data();
-    view.fx = view.fy = 60;
-    view.cx = 31.5;
-    view.cy = 23.5;
-    return view;
-  }
-};
 
 class KilledServer : public testing::Test {
  protected:
@@ -98,7 +81,7 @@ Status within(milliseconds time, const std::function<Status(milliseconds left)>&
 
 TEST_F(KilledServer, AnswersNewAndOldClientsOnceItIsStartedAnew) {
   start();
-  const Wall wall;
+  const support::WallView wall;
   auto client = Client::connect(support::client_options());
   ASSERT_TRUE(client.ok()) << client.status().message << log();
   std::atomic<int> results{0};

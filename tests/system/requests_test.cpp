@@ -18,6 +18,7 @@
 #include "idl/wire/subscriber.hpp"
 #include "tests/support/stub_server.hpp"
 #include "tests/support/wall_messages.hpp"
+#include "tests/support/wall_view.hpp"
 
 // Requests from another process, good and bad: each gets its answer and the server goes on.
 
@@ -28,35 +29,18 @@ namespace msgs = wire::bpa_msgs;
 namespace rcl = wire::rcl_interfaces;
 using std::chrono::milliseconds;
 
-struct WallView {
-  std::vector<std::uint16_t> depth = support::wall_depth_mm();
-  std::vector<std::uint8_t> rgb = support::wall_rgb();
-
-  FrameView view() const {
-    FrameView view;
-    view.width = static_cast<int>(support::kWidth);
-    view.height = static_cast<int>(support::kHeight);
-    view.rgb = rgb.data();
-    view.depth_mm = depth.data();
-    view.fx = view.fy = 60;
-    view.cx = 31.5;
-    view.cy = 23.5;
-    view.stamp_ns = 123'456'789'012'345;
-    view.frame_id = "wall";
-    return view;
-  }
-  double middle() const {
-    return static_cast<double>(static_cast<float>(
-        depth[support::kHeight / 2 * support::kWidth + support::kWidth / 2] * 0.001));
-  }
-};
+/// Metres: how far the middle of the wall is.
+double middle(const support::WallView& wall) {
+  return static_cast<double>(static_cast<float>(
+      wall.depth[support::kHeight / 2 * support::kWidth + support::kWidth / 2] * 0.001));
+}
 
 TEST(Requests, AnswersCarryTheFramesStampAndPose) {
   support::StubServer server;
   auto client = Client::connect(support::client_options());
   ASSERT_TRUE(client.ok()) << client.status().message << server.log();
-  const WallView wall;
-  const auto found = client->detect_in(wall.view());
+  const support::WallView wall;
+  const auto found = client->detect_in(wall.view(123'456'789'012'345));
   ASSERT_TRUE(found.ok()) << found.status().message;
   EXPECT_EQ(found->stamp_ns, 123'456'789'012'345);
   EXPECT_EQ(found->frame_id, "wall");
@@ -65,7 +49,7 @@ TEST(Requests, AnswersCarryTheFramesStampAndPose) {
   EXPECT_EQ(found->interpretations[0].rank, 1);
   ASSERT_EQ(found->best().size(), 1U);
   EXPECT_EQ(found->best()[0].model, "stub");
-  EXPECT_EQ(found->best()[0].camera_from_object.position[2], wall.middle());
+  EXPECT_EQ(found->best()[0].camera_from_object.position[2], middle(wall));
   EXPECT_EQ(found->best()[0].probability, 0.875);
 
   const auto models = client->models();
@@ -169,7 +153,7 @@ TEST(Requests, AFullQueueIsBusyAndNobodyWaitsForEver) {
   support::StubServer server({"queue.requests=2"}, 400);
   auto client = Client::connect(support::client_options());
   ASSERT_TRUE(client.ok()) << client.status().message;
-  const WallView wall;
+  const support::WallView wall;
   std::vector<std::future<Result<DetectionSet>>> answers;
   for (int i = 0; i < 6; ++i) {
     answers.push_back(

@@ -12,7 +12,7 @@
 #include "idl/wire/publisher.hpp"
 #include "idl/wire/subscriber.hpp"
 #include "tests/support/stub_server.hpp"
-#include "tests/support/wall_messages.hpp"
+#include "tests/support/wall_view.hpp"
 
 // Frames published by the SDK, results in another process.
 
@@ -45,25 +45,7 @@ class Arrivals {
   std::vector<T> items_;
 };
 
-class StreamOfFrames : public testing::Test {
- protected:
-  FrameView view(std::int64_t stamp_ns) const {
-    FrameView view;
-    view.width = static_cast<int>(support::kWidth);
-    view.height = static_cast<int>(support::kHeight);
-    view.rgb = rgb.data();
-    view.depth_mm = depth.data();
-    view.fx = view.fy = 60;
-    view.cx = 31.5;
-    view.cy = 23.5;
-    view.stamp_ns = stamp_ns;
-    view.frame_id = "wall";
-    return view;
-  }
-
-  const std::vector<std::uint16_t> depth = support::wall_depth_mm();
-  const std::vector<std::uint8_t> rgb = support::wall_rgb();
-};
+class StreamOfFrames : public testing::Test, protected support::WallView {};
 
 TEST_F(StreamOfFrames, EveryFrameComesBackWithItsStamp) {
   support::StubServer server({"queue.frames=30"});
