@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/options.hpp"
 
+#include "core/base/concat.hpp"
 #include "core/io/options_yaml.hpp"
 
 namespace bpa::server {

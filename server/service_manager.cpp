@@ -12,6 +12,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "core/base/concat.hpp"
+
 namespace bpa::server {
 namespace {
 
