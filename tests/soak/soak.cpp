@@ -175,7 +175,7 @@ void soak(const std::string& folder, double seconds) {
   const auto start = Clock::now();
   double now = 0;
   while (now < seconds && server.wait(milliseconds(0)) == -1) {
-    readings.push_back(read_process(server.pid(), now));
+    readings.push_back(support::read_process(server.pid(), now));
     std::this_thread::sleep_for(milliseconds(500));
     now = std::chrono::duration<double>(Clock::now() - start).count();
   }

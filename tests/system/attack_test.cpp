@@ -4,7 +4,6 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -15,10 +14,11 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "idl/wire/endpoint.hpp"
 #include "idl/wire/messages.hpp"
+#include "idl/wire/service.hpp"
+#include "tests/support/process_reading.hpp"
 #include "tests/support/stub_server.hpp"
 #include "tests/support/wall_messages.hpp"
 #include "tests/support/wall_view.hpp"
@@ -43,13 +43,6 @@ constexpr std::size_t kHeader = 4;  // of an encoding: DDS sends no less
 int samples() {
   const char* text = std::getenv("BPA_ATTACK_SAMPLES");
   return text != nullptr ? std::atoi(text) : 3000;
-}
-
-double resident_mb(pid_t process) {
-  std::ifstream file("/proc/" + std::to_string(process) + "/statm");
-  double size = 0, resident = 0;
-  file >> size >> resident;
-  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
 /// Cut, lengthened, changed in some bytes, or with numbers that are too large for what follows.
@@ -86,31 +79,29 @@ struct Input {
 class Stranger {
  public:
   Stranger() : participant_(support::test_participant("stranger").value()) {
-    const std::string space = support::test_namespace();
-    topic(space + "/frames", support::wall_frame());
-    topic(space + "/camera/color", support::wall_color_image(1));
-    topic(space + "/camera/depth", support::wall_depth_image(1));
-    topic(space + "/camera/info", support::wall_camera_info(1));
+    topic("frames", support::wall_frame());
+    topic("camera/color", support::wall_color_image(1));
+    topic("camera/depth", support::wall_depth_image(1));
+    topic("camera/info", support::wall_camera_info(1));
     msgs::Detect_Request detect;
     detect.frame = support::wall_frame();
-    service(space + "/detect", detect);
-    service(space + "/list_models", msgs::ListModels_Request{});
-    service(space + "/get_status", msgs::GetStatus_Request{});
+    service<msgs::Detect>("detect", detect);
+    service<msgs::ListModels>("list_models", {});
+    service<msgs::GetStatus>("get_status", {});
     msgs::LoadModel_Request load;
     load.source = "nowhere";
-    service(space + "/load_model", load);
+    service<msgs::LoadModel>("load_model", load);
     msgs::UnloadModel_Request unload;
     unload.name = "nothing";
-    service(space + "/unload_model", unload);
-    const std::string node = space + "/server";
+    service<msgs::UnloadModel>("unload_model", unload);
     rcl::SetParameters_Request set;
     set.parameters.resize(2);
     set.parameters[0].name = "no.such";
-    service(node + "/set_parameters", set);
+    service<rcl::SetParameters>("server/set_parameters", set);
     rcl::GetParameters_Request get;
     get.names = {"detection.continuous", "no.such"};
-    service(node + "/get_parameters", get);
-    service(node + "/list_parameters", rcl::ListParameters_Request{});
+    service<rcl::GetParameters>("server/get_parameters", get);
+    service<rcl::ListParameters>("server/list_parameters", {});
   }
 
   /// The first input that the server does not listen on; empty if it listens on all.
@@ -139,20 +130,24 @@ class Stranger {
   }
 
  private:
-  template <class T>
-  void add(const std::string& dds_topic, const T& legal, bool request) {
-    auto writer = wire::detail::make_writer(
-        participant_, wire::detail::endpoint_spec<T>(dds_topic, wire::qos::services(), 0));
+  void add(const wire::detail::EndpointSpec& spec, Bytes legal, bool request) {
+    auto writer = wire::detail::make_writer(participant_, spec);
     ASSERT_TRUE(writer.ok()) << writer.status().message;
-    inputs_.push_back({dds_topic, std::move(writer).value(), wire::encode(legal), request});
+    inputs_.push_back({spec.dds_topic, std::move(writer).value(), std::move(legal), request});
   }
   template <class T>
   void topic(const std::string& name, const T& legal) {
-    add("rt" + name, legal, false);
+    const auto resolved = participant_.resolve(name);
+    ASSERT_TRUE(resolved.ok()) << resolved.status().message;
+    add(wire::detail::endpoint_spec<T>(wire::dds_topic_name(*resolved), wire::qos::services(), 0),
+        wire::encode(legal), false);
   }
-  template <class T>
-  void service(const std::string& name, const T& legal) {
-    add("rq" + name + "Request", legal, true);
+  template <class Service>
+  void service(const std::string& name, const typename Service::Request& legal) {
+    const auto spec =
+        wire::detail::service_spec<Service>(participant_, name, wire::qos::services());
+    ASSERT_TRUE(spec.ok()) << spec.status().message;
+    add(spec->request, wire::encode(legal), true);
   }
 
   wire::Participant participant_;
@@ -194,12 +189,12 @@ TEST(Attack, SpoiledSamplesKeepNobodyFromTheServer) {
   ASSERT_EQ(stranger.unmatched(), "");
   const auto quiet_end = SteadyClock::now() + std::chrono::seconds(2);
   const Calls quiet = ask_until(*client, [&] { return SteadyClock::now() > quiet_end; });
-  const double before_mb = resident_mb(server.process().pid());
+  const double before_mb = support::read_process(server.process().pid()).memory_mb;
   std::atomic<int> sent{-1};
   std::thread attack([&] { sent = stranger.attack(samples()); });
   const Calls calls = ask_until(*client, [&] { return sent >= 0; });
   attack.join();
-  const double grown_mb = resident_mb(server.process().pid()) - before_mb;
+  const double grown_mb = support::read_process(server.process().pid()).memory_mb - before_mb;
   const auto status = client->status();
   ASSERT_TRUE(status.ok()) << status.status().message;
   const std::map<std::string, std::string> details(status->details.begin(), status->details.end());
