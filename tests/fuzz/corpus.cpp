@@ -1,12 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// Calls fuzz targets on files.
+// Calls fuzz targets on files. Usage:
 //
-//   fuzz_corpus                         lists the targets: name, largest input in bytes, largest
-//                                       allocation in MB, files that decode
-//   fuzz_corpus FOLDER                  calls each target on its seeds and the files of
-//   FOLDER/TARGET fuzz_corpus --seeds FOLDER TARGET   writes the seeds of a target fuzz_corpus --on
-//   FILE TARGET        calls a target on a file
+// fuzz_corpus: lists the targets: name, largest input in bytes, largest allocation in MB, files
+// that decode.
+//
+// fuzz_corpus FOLDER: calls each target on its seeds and on the files of FOLDER/TARGET.
+//
+// fuzz_corpus --seeds FOLDER TARGET: writes the seeds of a target.
+//
+// fuzz_corpus --on FILE TARGET: calls a target on a file.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>

@@ -1,15 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// CDR: every type that this project receives, requests in both framings, and what is made of them.
+// CDR: every type of this project, requests in both framings, and what is made of them.
 #include "idl/wire/messages.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <tuple>
+#include <type_traits>
 
 #include "client/src/convert.hpp"
 #include "idl/wire/cdr.hpp"
 #include "idl/wire/private/service_framing.hpp"
 #include "server/parameters.hpp"
 #include "tests/fuzz/target.hpp"
+#include "tests/idl/wire/all_types.hpp"
 #include "tests/support/wall_messages.hpp"
 
 namespace bpa::fuzz {
@@ -29,23 +33,8 @@ std::string encoded(const T& message) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// By number; the message types of topics and services, those inside of them included.
-using Received = std::tuple<
-    msgs::RgbdFrame, msgs::SceneInterpretations, msgs::Detect_Request, msgs::Detect_Response,
-    msgs::GetStatus_Request, msgs::GetStatus_Response, msgs::ListModels_Request,
-    msgs::ListModels_Response, msgs::LoadModel_Request, msgs::LoadModel_Response,
-    msgs::Record_Request, msgs::Record_Response, msgs::UnloadModel_Request,
-    msgs::UnloadModel_Response, sensor::Image, sensor::CompressedImage, sensor::CameraInfo,
-    sensor::PointCloud2, rcl::DescribeParameters_Request, rcl::DescribeParameters_Response,
-    rcl::GetParameterTypes_Request, rcl::GetParameterTypes_Response, rcl::GetParameters_Request,
-    rcl::GetParameters_Response, rcl::ListParameters_Request, rcl::ListParameters_Response,
-    rcl::SetParameters_Request, rcl::SetParameters_Response, rcl::SetParametersAtomically_Request,
-    rcl::SetParametersAtomically_Response, rcl::ParameterEvent, rcl::Log,
-    wire::rmw_dds_common::ParticipantEntitiesInfo, wire::diagnostic_msgs::DiagnosticArray,
-    wire::std_srvs::Trigger_Request, wire::std_srvs::Trigger_Response, wire::tf2_msgs::TFMessage,
-    wire::vision_msgs::Detection3DArray, wire::vision_msgs::VisionInfo,
-    wire::visualization_msgs::MarkerArray>;
-constexpr std::size_t kTypes = std::tuple_size_v<Received>;
+using wire::AllTypes;
+constexpr std::size_t kTypes = std::tuple_size_v<AllTypes>;
 
 /// What was decoded, encoded again, is its own decoding.
 template <class T>
@@ -60,7 +49,7 @@ void run_one(std::string_view bytes) {
 
 template <std::size_t... k>
 void run_type(std::size_t type, std::string_view bytes, std::index_sequence<k...>) {
-  ((type == k ? run_one<std::tuple_element_t<k, Received>>(bytes) : void()), ...);
+  ((type == k ? run_one<std::tuple_element_t<k, AllTypes>>(bytes) : void()), ...);
 }
 
 /// The first byte is the type's number.
@@ -70,19 +59,28 @@ void run_cdr(std::string_view bytes) {
            std::make_index_sequence<kTypes>());
 }
 
+/// A message behind its type's number.
+template <class T>
+std::string numbered(const T& message) {
+  const auto number = []<class... Types>(std::tuple<Types...>*) {
+    const bool is_it[] = {std::is_same_v<T, Types>...};
+    return std::find(std::begin(is_it), std::end(is_it), true) - std::begin(is_it);
+  }(static_cast<AllTypes*>(nullptr));
+  return static_cast<char>(number) + encoded(message);
+}
+
 template <std::size_t... k>
 std::vector<std::string> empty_messages(std::index_sequence<k...>) {
-  return {(static_cast<char>(k) + encoded(std::tuple_element_t<k, Received>()))...};
+  return {numbered(std::tuple_element_t<k, AllTypes>())...};
 }
 
 std::vector<std::string> cdr_seeds() {
   std::vector<std::string> seeds = empty_messages(std::make_index_sequence<kTypes>());
-  std::string info = std::string(1, 16) + encoded(support::wall_camera_info(7));
-  seeds.push_back(info);
+  seeds.push_back(numbered(support::wall_camera_info(7)));
   rcl::SetParameters_Request request;
   request.parameters = server::all_parameters(server::ServerOptions());
   request.parameters.resize(9);
-  seeds.push_back(std::string(1, 26) + encoded(request));
+  seeds.push_back(numbered(request));
   return seeds;
 }
 

@@ -11,6 +11,16 @@ namespace {
 
 using server::ServerOptions;
 
+std::vector<std::string> lines_of(std::string_view bytes) {
+  std::vector<std::string> lines;
+  while (!bytes.empty()) {
+    const std::size_t end = std::min(bytes.find('\n'), bytes.size());
+    lines.emplace_back(bytes.substr(0, end));
+    bytes.remove_prefix(std::min(end + 1, bytes.size()));
+  }
+  return lines;
+}
+
 void run_settings(std::string_view bytes) {
   ServerOptions options;
   if (!server::load_options(file_of(bytes, "server.yaml"), options).ok()) return;
@@ -39,12 +49,7 @@ std::vector<std::string> parameter_file_seeds() {
 
 /// One word of a command line in each line.
 void run_command_line(std::string_view bytes) {
-  std::vector<std::string> words;
-  while (!bytes.empty()) {
-    const std::size_t end = std::min(bytes.find('\n'), bytes.size());
-    words.emplace_back(bytes.substr(0, end));
-    bytes.remove_prefix(std::min(end + 1, bytes.size()));
-  }
+  std::vector<std::string> words = lines_of(bytes);
   auto arguments = server::take_ros_arguments(words);
   if (!arguments.ok()) return;
   arguments->files.clear();  // the target parameter_file reads them
@@ -62,12 +67,7 @@ std::vector<std::string> command_line_seeds() {
 
 /// A name, the node's namespace and its name, and remaps, each in a line.
 void run_names(std::string_view bytes) {
-  std::vector<std::string> lines;
-  while (!bytes.empty()) {
-    const std::size_t end = std::min(bytes.find('\n'), bytes.size());
-    lines.emplace_back(bytes.substr(0, end));
-    bytes.remove_prefix(std::min(end + 1, bytes.size()));
-  }
+  const std::vector<std::string> lines = lines_of(bytes);
   if (lines.size() < 3) return;
   std::vector<wire::Remap> remaps;
   for (std::size_t i = 3; i < lines.size(); ++i) {
