@@ -25,15 +25,18 @@ Status cannot_be_written(const std::string& path) {
   return unavailable(path, " cannot be written: ", std::strerror(errno));
 }
 
-/// Waits until the names in a folder are on the disk.
-Status sync_names(const std::string& folder) {
+/// `sync` is fsync, for the names in a folder, or syncfs, for all of its file system.
+Status sync_by(int (*sync)(int), const std::string& folder) {
   const int descriptor =
       ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
+  const bool synced = descriptor >= 0 && sync(descriptor) == 0;
   const Status status = synced ? Status() : cannot_be_written(folder);
   if (descriptor >= 0) ::close(descriptor);
   return status;
 }
+
+/// Waits until the names in a folder are on the disk.
+Status sync_names(const std::string& folder) { return sync_by(::fsync, folder); }
 
 }  // namespace
 
@@ -94,13 +97,7 @@ void NewFile::discard() {
   ::unlink(beside_.c_str());
 }
 
-Status sync_folder(const std::string& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool synced = descriptor >= 0 && ::syncfs(descriptor) == 0;
-  const Status status = synced ? Status() : cannot_be_written(path);
-  if (descriptor >= 0) ::close(descriptor);
-  return status;
-}
+Status sync_folder(const std::string& path) { return sync_by(::syncfs, path); }
 
 Status replace_folder(const std::string& fresh, const std::string& path) {
   std::error_code error;
