@@ -288,8 +288,9 @@ class Running : public Server {
     if (const std::optional<double> silence = statistics_.seconds_since_frame()) {
       details.push_back({"s since the last frame came", fixed(*silence, 1)});
     }
-    for (const auto& [cause, count] : drop_counts(statistics_))
+    for (const auto& [cause, count] : drop_counts(statistics_)) {
       details.push_back({cause, std::to_string(count)});
+    }
     for (KeyValue& loss : loss_values(counts().losses)) details.push_back(std::move(loss));
     for (const SourceReport& report : source_reports()) {
       details.insert(details.end(), report.values.begin(), report.values.end());
@@ -324,7 +325,7 @@ class Running : public Server {
     }
     report_losses();
     const bool stands_still = clock_->stands_still();
-    if (stands_still && !std::exchange(clock_reported_, stands_still)) {
+    if (stands_still && !clock_reported_) {
       log(log_, LogLevel::warning, clock_->report().message);
     }
     clock_reported_ = stands_still;

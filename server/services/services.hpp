@@ -46,8 +46,8 @@ class Reply {
   /// Never blocks; a reply that cannot be delivered is logged.
   void send(const Response& response) const {
     const Status sent = token_.reply(response);
-    if (!sent.ok())
-      bpa::log(log_, LogLevel::info, service_ + ": reply not delivered: " + sent.message);
+    if (sent.ok()) return;
+    bpa::log(log_, LogLevel::info, service_ + ": reply not delivered: " + sent.message);
   }
   /// The response that says why there is no other. A result in it has the request's header.
   Response refusal(const Status& status) const {
