@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/options.hpp"
+#include "core/base/status.hpp"
+#include "core/cloud/frame.hpp"
+#include "core/model/library.hpp"
+#include "core/result/interpretation.hpp"
+#include "core/result/track.hpp"
+#include "core/score/score_layer.hpp"
+
+namespace bpa::track {
+
+struct TrackerOptions {
+  double min_probability = 0.5;
+  double min_confirming = 0.8;
+  double lost_s = 5;
+  int num_threads = 0;
+
+  void visit_fields(auto&& visit) {
+    visit("min_probability", min_probability,
+          {0, 1, "Placements of at least this probability begin a track."});
+    visit("min_confirming", min_confirming,
+          {0, 1,
+           "A track is confirmed by one placement of this probability, or by two that agree."});
+    visit("lost_s", lost_s,
+          {0.1, 3600, "Seconds after which a track that is not seen ends, unless it is held."});
+    visit("num_threads", num_threads, {0, 256, "0: one per core. Does not change the answer."});
+  }
+};
+
+/// Where the camera is, in a frame that stands still.
+struct CameraPose {
+  std::string frame_id;  ///< Of the fixed frame.
+  Pose fixed_from_camera;
+};
+
+/// Since the tracker was made.
+struct TrackerCounts {
+  std::uint64_t frames = 0;     ///< Followed.
+  std::uint64_t births = 0;     ///< Tracks begun.
+  std::uint64_t confirmed = 0;  ///< Tracks that were confirmed.
+  std::uint64_t losses = 0;     ///< Times that a track was lost.
+  std::uint64_t found_again = 0;
+  std::uint64_t ends = 0;      ///< Tracks ended.
+  std::uint64_t searches = 0;  ///< Results of searches taken.
+  std::uint64_t stale_searches = 0;  ///< Results refused: their frame is no longer remembered.
+};
+
+/// Follows objects through the frames of one camera. Not thread-safe. The same frames, stamps and
+/// results in the same order give the same tracks.
+class Tracker {
+ public:
+  Tracker(std::shared_ptr<const ModelLibrary> library, TrackerOptions options,
+          ScoreLayers layers = default_score_layers());
+  ~Tracker();
+
+  /// Moves every track to this frame. Stamps must rise: fails with invalid_argument on a frame that
+  /// is not newer than the last, or not valid. A camera that has a pose in one frame and none in the
+  /// next begins anew: all tracks end.
+  Result<TrackedFrame> track(std::shared_ptr<const Frame> frame,
+                             const std::optional<CameraPose>& camera = std::nullopt);
+
+  /// Takes the result of a search in a frame that track() was given before. The next track() carries
+  /// it forward. Fails with not_found on a frame that is no longer remembered.
+  Status add(const SceneInterpretations& found);
+
+  /// Where the confirmed tracks are in the newest frame, for DetectRequest::expected.
+  std::vector<ExpectedPlacement> expected() const;
+
+  /// Fail with not_found, which lists the tracks there are; rename() with invalid_argument on a name
+  /// that is empty or another track's.
+  Status rename(std::uint64_t id, const std::string& name);
+  Status hold(std::uint64_t id, bool held);
+  Status forget(std::uint64_t id);
+
+  const TrackerOptions& options() const;
+  void set_options(const TrackerOptions& options);
+  /// Tracks of models that the new library lacks end with the next frame.
+  void set_library(std::shared_ptr<const ModelLibrary> library, ScoreLayers layers);
+  const TrackerCounts& counts() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace bpa::track
