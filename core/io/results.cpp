@@ -11,7 +11,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "core/io/private/json_file.hpp"
+#include "core/io/private/result_json.hpp"
 
 /// The components as an object: name -> value.
 template <>
@@ -41,16 +41,6 @@ struct nlohmann::adl_serializer<bpa::StatusCode> {
 namespace bpa {
 
 using io::kOptional;
-
-static void fields(auto& visit, io::Is<PoseAlternative> auto& alternative) {
-  visit("pose", alternative.camera_from_object);
-  visit("weight", alternative.weight);
-}
-
-static void fields(auto& visit, io::Is<OrientationUncertainty> auto& orientation) {
-  visit("axes", orientation.axes);
-  visit("concentrations", orientation.concentrations);
-}
 
 static void fields(auto& visit, io::Is<Placement> auto& placement) {
   visit("obj_id", placement.model_number);
@@ -83,8 +73,7 @@ static void fields(auto& visit, io::Is<SearchEffort> auto& effort) {
 
 namespace io {
 
-constexpr const char* kJsonFormat = "bpa results";
-constexpr int kJsonVersion = 1;
+constexpr FramesFormat kResultFormat{"bpa results", "a result file", 1};
 
 static void fields(auto& visit, Is<FrameResult> auto& frame) {
   visit("scene_id", frame.scene_id);
@@ -109,25 +98,14 @@ static void fields(auto& visit, Is<FrameResult> auto& frame) {
   visit("queue_position", frame.server->queue_position, kOptional);
 }
 
-std::string result_json_line(const FrameResult& result) {
-  return Json(result).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string result_json_line(const FrameResult& result) { return json_line(result); }
 
 Status write_results_json(const std::string& path, const std::vector<FrameResult>& results) {
-  return with_json(path, [&]() {
-    const Json json = {{"format", kJsonFormat}, {"version", kJsonVersion}, {"frames", results}};
-    return write_file(path, json.dump(1) + "\n");
-  });
+  return write_frames_json(path, kResultFormat, results);
 }
 
 Result<std::vector<FrameResult>> read_results_json(const std::string& path) {
-  return read_json(path, [&](const Json& json) -> Result<std::vector<FrameResult>> {
-    if (json.value("format", "") != kJsonFormat ||
-        whole_number<int>(json.at("version")) != kJsonVersion) {
-      return corrupt(path, " is not a result file of version ", kJsonVersion);
-    }
-    return json.at("frames").get<std::vector<FrameResult>>();
-  });
+  return read_frames_json<FrameResult>(path, kResultFormat);
 }
 
 namespace {
