@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <mutex>
 #include <set>
 
 #include "core/io/image_file.hpp"
@@ -41,14 +42,23 @@ std::string find_image(const fs::path& folder, int im_id) {
   return {};
 }
 
+Pose pose_of(const Json& json, const char* rotation, const char* translation) {
+  return Pose::from_matrix(json.at(rotation).get<Eigen::Matrix3d>(),
+                           kMetres * json.at(translation).get<Eigen::Vector3d>());
+}
+
+void set_pose(Json& json, const char* rotation, const char* translation, const Pose& pose) {
+  json[rotation] = pose.matrix();
+  json[translation] = Eigen::Vector3d(kMillimetres * pose.translation);
+}
+
 Status read_truth(const Json& gt, const Json& info, const std::string& key, BopFrame& frame) {
   if (!gt.contains(key)) return {};
   for (const Json& json : gt.at(key)) {
     BopInstance& instance = frame.truth.emplace_back();
     instance.obj_id = whole_number<int>(json.at("obj_id"));
-    instance.camera_from_object =
-        Pose::from_matrix(json.at("cam_R_m2c").get<Eigen::Matrix3d>(),
-                          kMetres * json.at("cam_t_m2c").get<Eigen::Vector3d>());
+    instance.camera_from_object = pose_of(json, "cam_R_m2c", "cam_t_m2c");
+    instance.instance = whole_number(json, "instance_id", 0);
     const std::size_t i = frame.truth.size() - 1;
     if (info.contains(key) && i < info.at(key).size()) {
       instance.visible_fraction = info.at(key).at(i).value("visib_fract", 1.0);
@@ -64,6 +74,10 @@ Result<BopFrame> read_frame_entry(const fs::path& folder, int scene_id, const st
   frame.im_id = std::stoi(key);
   frame.camera = camera_of(camera.at("cam_K").get<std::array<double, 9>>());
   frame.depth_scale_mm = camera.value("depth_scale", 1.0);
+  frame.stamp_ns = whole_number<std::int64_t>(camera, "stamp_ns", 0);
+  if (camera.contains("cam_R_w2c")) {
+    frame.camera_from_world = pose_of(camera, "cam_R_w2c", "cam_t_w2c");
+  }
   frame.depth_path = (folder / "depth" / (bop_number(frame.im_id) + ".png")).string();
   frame.color_path = find_image(folder / "rgb", frame.im_id);
   const Result<ImageSize> size = read_png_size(frame.depth_path);
@@ -152,13 +166,14 @@ Json info_json(const BopInstanceRecord& instance, const Frame& frame) {
   return info;
 }
 
-Status write_mask(const std::string& path, const Frame& frame, const char* field,
+Status check_mask(const char* field, const std::vector<std::uint8_t>& mask, const Frame& frame) {
+  if (mask.empty() || mask.size() == frame.depth.size()) return {};
+  return invalid_argument(field, " has ", mask.size(),
+                          " values; it must have one for each pixel of the frame");
+}
+
+Status write_mask(const std::string& path, const Frame& frame,
                   const std::vector<std::uint8_t>& mask) {
-  if (mask.empty()) return {};
-  if (mask.size() != frame.depth.size()) {
-    return invalid_argument(field, " has ", mask.size(),
-                            " values; it must have one for each pixel of the frame");
-  }
   std::vector<std::uint8_t> bytes = mask;
   for (std::uint8_t& value : bytes) value = value != 0 ? 255 : 0;
   return write_mask_png(path, frame.camera.width, frame.camera.height, bytes);
@@ -234,6 +249,7 @@ Result<Frame> load_bop_frame(const BopFrame& frame) {
   Result<Frame> loaded =
       read_frame(frame.depth_path, frame.color_path, frame.camera, frame.depth_scale_mm);
   if (loaded.ok()) {
+    loaded->stamp_ns = frame.stamp_ns;
     loaded->frame_id = std::to_string(frame.scene_id) + "/" + std::to_string(frame.im_id);
   }
   return loaded;
@@ -251,21 +267,24 @@ Status write_bop_models(const std::string& dataset, const std::vector<BopMesh>& 
 }
 
 struct BopSceneWriter::Records {
+  std::mutex mutex;
   Json camera = Json::object();
   Json gt = Json::object();
   Json info = Json::object();
 };
 
 BopSceneWriter::BopSceneWriter(const std::string& dataset, const std::string& split, int scene_id,
-                               double depth_scale_mm)
+                               double depth_scale_mm, BopMasks masks)
     : folder_((fs::path(dataset) / split / bop_number(scene_id)).string()),
       depth_scale_mm_(depth_scale_mm),
+      masks_(masks),
       records_(std::make_unique<Records>()) {}
 
 BopSceneWriter::~BopSceneWriter() = default;
 
 Status BopSceneWriter::add(int im_id, const Frame& frame,
-                           const std::vector<BopInstanceRecord>& instances) {
+                           const std::vector<BopInstanceRecord>& instances,
+                           const std::optional<Pose>& camera_from_world) {
   const fs::path folder(folder_);
   if (Status s = write_images(folder, im_id, frame, depth_scale_mm_); !s.ok()) return s;
   Json gt = Json::array();
@@ -273,22 +292,27 @@ Status BopSceneWriter::add(int im_id, const Frame& frame,
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const BopInstanceRecord& instance = instances[i];
     const std::string name = bop_number(im_id) + "_" + bop_number(static_cast<int>(i)) + ".png";
-    Status s = write_mask((folder / "mask_visib" / name).string(), frame, "mask_visible",
-                          instance.mask_visible);
-    if (s.ok()) s = write_mask((folder / "mask" / name).string(), frame, "mask", instance.mask);
-    if (!s.ok()) return s;
-    gt.push_back(
-        {{"obj_id", instance.obj_id},
-         {"cam_R_m2c", instance.camera_from_object.matrix()},
-         {"cam_t_m2c", Eigen::Vector3d(kMillimetres * instance.camera_from_object.translation)}});
+    for (const auto& [kind, mask] :
+         {std::pair("mask_visib", &instance.mask_visible), std::pair("mask", &instance.mask)}) {
+      if (Status s = check_mask(kind, *mask, frame); !s.ok()) return s;
+      if (masks_ == BopMasks::counted || mask->empty()) continue;
+      if (Status s = write_mask((folder / kind / name).string(), frame, *mask); !s.ok()) return s;
+    }
+    Json& entry = gt.emplace_back(Json{{"obj_id", instance.obj_id}});
+    set_pose(entry, "cam_R_m2c", "cam_t_m2c", instance.camera_from_object);
+    if (instance.instance != 0) entry["instance_id"] = instance.instance;
     info.push_back(info_json(instance, frame));
   }
-  const std::string key = std::to_string(im_id);
   const Camera& c = frame.camera;
-  records_->camera[key] = {{"cam_K", {c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0}},
-                           {"depth_scale", depth_scale_mm_}};
-  records_->gt[key] = gt;
-  records_->info[key] = info;
+  Json camera = {{"cam_K", {c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0}},
+                 {"depth_scale", depth_scale_mm_}};
+  if (frame.stamp_ns != 0) camera["stamp_ns"] = frame.stamp_ns;
+  if (camera_from_world) set_pose(camera, "cam_R_w2c", "cam_t_w2c", *camera_from_world);
+  const std::string key = std::to_string(im_id);
+  const std::lock_guard lock(records_->mutex);
+  records_->camera[key] = std::move(camera);
+  records_->gt[key] = std::move(gt);
+  records_->info[key] = std::move(info);
   return {};
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,10 @@
 
 // Data sets in the layout of the BOP benchmark (Hodan et al. 2018, bop_toolkit docs/
 // bop_datasets_format.md). Files are in millimetres; everything here is in metres.
+//
+// A scene may be a sequence of one camera: its images by im_id, a dropped frame left out. Two keys
+// that BOP does not have say more: "stamp_ns" in scene_camera.json and "instance_id" in
+// scene_gt.json.
 
 namespace bpa::io {
 
@@ -31,13 +36,16 @@ struct BopInstance {
   int obj_id = 0;
   Pose camera_from_object;
   double visible_fraction = 1;  ///< visib_fract of scene_gt_info.json; 1 without that file.
+  int instance = 0;  ///< The same object in all frames of a scene has the same; 0: not known.
 };
 
 /// One frame of a split, not loaded yet.
 struct BopFrame {
   int scene_id = 0;
   int im_id = 0;
+  std::int64_t stamp_ns = 0;  ///< Exposure time, UTC; 0: not known.
   Camera camera;
+  std::optional<Pose> camera_from_world;  ///< cam_R_w2c and cam_t_w2c.
   double depth_scale_mm = 1;
   std::string depth_path;
   std::string color_path;  ///< Empty without colour.
@@ -56,7 +64,7 @@ Result<std::vector<BopModel>> read_bop_models_folder(const std::string& folder);
 Result<std::vector<BopFrame>> read_bop_frames(const std::string& dataset, const std::string& split,
                                               const std::vector<int>& scenes = {});
 
-/// Loads the images; frame_id is "SCENE/IM", the stamp 0.
+/// Loads the images; frame_id is "SCENE/IM", the stamp that of the entry.
 Result<Frame> load_bop_frame(const BopFrame& frame);
 
 /// "000001" for 1, as scenes and images are named.
@@ -87,7 +95,11 @@ struct BopInstanceRecord {
   /// fraction cannot be known and `visible_fraction` is written.
   std::vector<std::uint8_t> mask;
   double visible_fraction = 1;  ///< Used when `mask` is empty.
+  int instance = 0;             ///< As BopInstance::instance; 0 is not written.
 };
+
+/// Whether the masks of a scene become files, beside what is counted from them.
+enum class BopMasks { written, counted };
 
 /// Writes one scene, frame by frame: SPLIT/SCENE/{rgb,depth,mask,mask_visib}/, and on finish()
 /// scene_camera.json, scene_gt.json and scene_gt_info.json.
@@ -95,19 +107,22 @@ class BopSceneWriter {
  public:
   /// `depth_scale_mm` is the unit of the depth images; depths above 65535 of it are written as 0.
   BopSceneWriter(const std::string& dataset, const std::string& split, int scene_id,
-                 double depth_scale_mm = 1.0);
+                 double depth_scale_mm = 1.0, BopMasks masks = BopMasks::written);
   ~BopSceneWriter();
   BopSceneWriter(const BopSceneWriter&) = delete;
   BopSceneWriter& operator=(const BopSceneWriter&) = delete;
 
+  /// The frame's stamp is written unless it is 0. May be called from several threads, in any order.
   /// Fails with invalid_argument when a mask is not of the frame's size, else with unavailable.
-  Status add(int im_id, const Frame& frame, const std::vector<BopInstanceRecord>& instances);
+  Status add(int im_id, const Frame& frame, const std::vector<BopInstanceRecord>& instances,
+             const std::optional<Pose>& camera_from_world = std::nullopt);
   Status finish();
 
  private:
   struct Records;  // the JSON files so far
   std::string folder_;
   double depth_scale_mm_;
+  BopMasks masks_;
   std::unique_ptr<Records> records_;
 };
 

@@ -105,6 +105,41 @@ TEST(BopDataset, FramesSurviveWritingAndReading) {
   EXPECT_EQ(mask->pixels[3], 0);
 }
 
+TEST(BopDataset, SequencesKeepStampsCamerasAndIdentities) {
+  const test::TemporaryFolder folder;
+  Frame frame = some_frame();
+  BopInstanceRecord record;
+  record.obj_id = 7;
+  record.camera_from_object = some_pose();
+  record.mask_visible.assign(32 * 24, 1);
+  record.instance = 3;
+  BopSceneWriter writer(folder.path(), "test", 1, 1.0, BopMasks::counted);
+  constexpr std::int64_t kStamp = 1'700'000'000'033'333'333;
+  frame.stamp_ns = kStamp;
+  ASSERT_TRUE(writer.add(4, frame, {record}, some_pose()).ok());
+  frame.stamp_ns = 0;
+  record.instance = 0;
+  ASSERT_TRUE(writer.add(2, frame, {record}).ok());
+  record.mask_visible.pop_back();
+  EXPECT_EQ(writer.add(9, frame, {record}).code, StatusCode::invalid_argument);
+  ASSERT_TRUE(writer.finish().ok());
+  EXPECT_FALSE(std::filesystem::exists(folder / "test/000001/mask_visib"));
+  const auto frames = read_bop_frames(folder.path(), "test");
+  ASSERT_TRUE(frames.ok()) << frames.status().message;
+  ASSERT_EQ(frames->size(), 2u);
+  EXPECT_FALSE(frames->at(0).camera_from_world);
+  EXPECT_EQ(frames->at(0).stamp_ns, 0);
+  EXPECT_EQ(frames->at(0).truth.at(0).instance, 0);
+  EXPECT_EQ(frames->at(1).im_id, 4);
+  EXPECT_EQ(frames->at(1).stamp_ns, kStamp);
+  EXPECT_EQ(load_bop_frame(frames->at(1))->stamp_ns, kStamp);
+  EXPECT_EQ(frames->at(1).truth.at(0).instance, 3);
+  ASSERT_TRUE(frames->at(1).camera_from_world);
+  const PoseError error = pose_error(*frames->at(1).camera_from_world, some_pose());
+  EXPECT_LT(error.position, 1e-12);
+  EXPECT_LT(error.angle, 1e-7);
+}
+
 TEST(BopDataset, SaysWhatIsMissing) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(read_bop_models(folder.path()).status().code, StatusCode::not_found);
