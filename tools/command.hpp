@@ -69,6 +69,21 @@ void add_options(CLI::App& command, auto& options, std::initializer_list<OptionF
   }
 }
 
+/// Adds an option of two values MIN,MAX.
+template <class Value>
+void add_range_option(CLI::App& command, const char* name, Value& low, Value& high,
+                      const char* text) {
+  const auto set = [name, &low, &high](const std::vector<Value>& range) {
+    if (range[0] > range[1]) throw CLI::ValidationError(name, "MIN must not be larger than MAX");
+    low = range[0];
+    high = range[1];
+  };
+  command.add_option_function<std::vector<Value>>(name, set, text)
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("MIN,MAX");
+}
+
 /// Adds --threads and --seed.
 void add_common_options(CLI::App& command, CommonOptions& options);
 /// Adds --split.

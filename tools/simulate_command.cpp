@@ -11,124 +11,26 @@
 #include "core/sim/scenes.hpp"
 #include "core/sim/turntable.hpp"
 #include "tools/mesh_input.hpp"
+#include "tools/simulated_objects.hpp"
 
 namespace bpa::cli {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kDepthUnitMm = 1;  // what such a camera delivers
-
 struct SimulateArguments {
   CommonOptions common;
-  std::string out, meshes, mesh, object;
+  std::string out, mesh, object;
   std::string split = "test";
-  std::vector<std::string> models;
+  ObjectChoice objects;
   int scenes = 30;
-  double scale = 0;  // metres of a unit of the meshes; 0 = guess
   double model_error = 0;
   int look_alikes = 0, other_prints = 0;
   sim::SceneOptions scene;
   sim::TurntableOptions turntable;
 };
 
-sim::SimulatedObject object_from_file(const std::string& path, io::MeshFile file) {
-  constexpr double kSmallest = 0.005, kLargest = 3;  // metres
-  if (file.mesh.triangles.empty()) throw Failure(invalid_argument(path + " has no triangles"));
-  const double diameter = sim::diameter(file.mesh);
-  if (!(diameter >= kSmallest && diameter <= kLargest)) {
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  " is %.3g m across; it must be between 0.005 and 3 m. For files in millimetres "
-                  "give --scale 0.001",
-                  diameter);
-    throw Failure(invalid_argument(path + text));
-  }
-  const std::string name = fs::path(path).stem().string();
-  print_warnings(name, file.warnings);
-  return sim::object_from_mesh(name, std::move(file.mesh));
-}
-
-std::vector<sim::SimulatedObject> read_objects(const std::vector<std::string>& paths,
-                                               double scale) {
-  std::vector<io::MeshFile> files = read_meshes(paths, scale);
-  std::vector<sim::SimulatedObject> objects;
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    objects.push_back(object_from_file(paths[i], std::move(files[i])));
-  }
-  return objects;
-}
-
-/// The objects of a BOP data set's folder of models, in millimetres, with their symmetries.
-std::vector<sim::SimulatedObject> read_bop_objects(const std::string& folder) {
-  constexpr double kMetresPerMillimetre = 0.001;
-  std::vector<sim::SimulatedObject> objects;
-  for (const io::BopModel& model : or_throw(io::read_bop_models_folder(folder))) {
-    objects.push_back(read_objects({model.path}, kMetresPerMillimetre).front());
-    objects.back().name = model.name;
-    objects.back().symmetry = model.symmetry;
-  }
-  return objects;
-}
-
-std::vector<std::string> meshes_in(const std::string& folder) {
-  std::vector<std::string> paths;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string path = entry.path().string();
-    if (std::ranges::count(io::mesh_extensions(), io::lower_extension(path)) > 0) {
-      paths.push_back(path);
-    }
-  }
-  if (paths.empty()) {
-    throw Failure(
-        {StatusCode::not_found, folder + " holds no PLY, OBJ, STL, GLB, glTF or DAE mesh"});
-  }
-  std::sort(paths.begin(), paths.end());
-  return paths;
-}
-
-std::vector<sim::SimulatedObject> household_objects(const std::vector<std::string>& names,
-                                                    int num_threads) {
-  std::vector<sim::SimulatedObject> objects = sim::household_objects(names, num_threads);
-  for (const std::string& name : names) {
-    if (std::ranges::count(objects, name, &sim::SimulatedObject::name) > 0) continue;
-    throw Failure({StatusCode::not_found, "there is no object of ours " + name +
-                                              "; bpa simulate scenes --help lists their names"});
-  }
-  return objects;
-}
-
-std::vector<sim::SimulatedObject> chosen_objects(const SimulateArguments& a) {
-  std::error_code error;  // read_objects() says what is wrong with the folder
-  if (!a.meshes.empty() && fs::exists(fs::path(a.meshes) / "models_info.json", error)) {
-    return read_bop_objects(a.meshes);
-  }
-  if (!a.meshes.empty()) return read_objects(meshes_in(a.meshes), a.scale);
-  if (a.models.empty()) return sim::household_objects(a.common.threads);
-  return household_objects(a.models, a.common.threads);
-}
-
-void write_models(const std::string& out, const std::vector<sim::SimulatedObject>& objects) {
-  std::vector<io::BopMesh> meshes;
-  for (const sim::SimulatedObject& object : objects) {
-    meshes.push_back({static_cast<int>(meshes.size()) + 1, object.name, sim::diameter(object.mesh),
-                      object.symmetry, object.mesh});
-  }
-  or_throw(io::write_bop_models(out, meshes));
-}
-
 void add_frame(io::BopSceneWriter& writer, int im_id, const sim::SimulatedFrame& frame) {
-  std::vector<io::BopInstanceRecord> records;
-  for (const sim::SimulatedInstance& instance : frame.instances) {
-    const std::vector<std::uint8_t> visible =
-        sim::visible_mask(frame, static_cast<int>(records.size()));
-    records.push_back({instance.object + 1,
-                       instance.camera_from_object,
-                       visible,
-                       {},
-                       instance.visibility.fraction()});
-  }
-  or_throw(writer.add(im_id, frame.frame, records));
+  or_throw(writer.add(im_id, frame.frame, records_of(frame)));
 }
 
 /// Returns the visible fractions of the instances.
@@ -177,7 +79,8 @@ void simulate_scenes(const SimulateArguments& a) {
   if (options.min_objects > options.max_objects) {
     throw Failure(invalid_argument("--objects MIN,MAX: MIN must not be greater than MAX"));
   }
-  std::vector<sim::SimulatedObject> objects = chosen_objects(a), look_alikes;
+  std::vector<sim::SimulatedObject> objects = chosen_objects(a.objects, a.common.threads),
+                                    look_alikes;
   if (options.ambiguous_share > 0 &&
       std::ranges::all_of(objects, [](const auto& object) { return object.telltales.empty(); })) {
     throw Failure(invalid_argument("--ambiguous needs the household object mug"));
@@ -211,8 +114,8 @@ void simulate_turntable(const SimulateArguments& a) {
   }
   or_throw(validate(a.turntable));
   const sim::SimulatedObject object = a.mesh.empty()
-                                          ? household_objects({a.object}, a.common.threads).front()
-                                          : read_objects({a.mesh}, a.scale).front();
+                                          ? named_objects({a.object}, a.common.threads).front()
+                                          : read_object(a.mesh, a.objects.scale);
   write_models(a.out, {object});
   Progress progress("simulate", 2);
   progress.show(0, "views");
@@ -244,65 +147,23 @@ std::pair<CLI::App&, SimulateArguments&> add(CLI::App& simulate, const char* nam
   const auto& [command, a] = added;
   add_option(command, "--out", a.out, "Folder of the data set to write", "DIR")->required();
   add_split_option(command, a.split);
-  add_unit_options(command, a.scale);
+  add_unit_options(command, a.objects.scale);
   return added;
-}
-
-template <class Value>
-void add_range(CLI::App& command, const char* name, Value& low, Value& high, const char* text) {
-  const auto set = [name, &low, &high](const std::vector<Value>& range) {
-    if (range[0] > range[1]) throw CLI::ValidationError(name, "MIN must not be larger than MAX");
-    low = range[0];
-    high = range[1];
-  };
-  command.add_option_function<std::vector<Value>>(name, set, text)
-      ->delimiter(',')
-      ->expected(2)
-      ->type_name("MIN,MAX");
-}
-
-void add_sensor(CLI::App& command, sim::SceneOptions& options) {
-  constexpr std::string_view kMixed = "mixed";
-  const auto set = [kMixed, &options](const std::string& name) {
-    options.mixed_sensors = name == kMixed;
-    options.sensor.kind = sensor_kind(name).value_or(SensorKind::structured_light);
-  };
-  std::vector<std::string> names{std::string(kMixed)};
-  for (const SensorKind kind : kSensorKinds) names.emplace_back(name_of(kind));
-  command
-      .add_option_function<std::string>(
-          "--sensor", set,
-          "Kind of the depth camera, structured_light if not given; mixed = one of the three for "
-          "each scene")
-      ->check(CLI::IsMember(names));
 }
 
 void add_scenes(CLI::App& simulate) {
   const auto [command, a] = add(simulate, "scenes", "Piles of objects on a table", simulate_scenes);
   add_option(command, "--scenes", a.scenes, "Number of scenes")->check(CLI::Range(1, 999999));
-  add_range(command, "--objects", a.scene.min_objects, a.scene.max_objects,
-            "Fewest and most objects of a scene; 10,14 if not given");
-  add_range(command, "--clutter", a.scene.min_clutter, a.scene.max_clutter,
-            "Range of clutter, 0.6,1 if not given; 0 = apart on the table, 1 = heap");
-  add_range(command, "--focal", a.scene.min_focal, a.scene.max_focal,
-            "Range of the focal length, pixels; 525 if not given");
-  add_range(command, "--distance", a.scene.min_distance, a.scene.max_distance,
-            "Range from the camera to the middle of the pile, metres; 0.6,1.4 if not given");
-  add_sensor(command, a.scene);
-  auto* meshes =
-      add_option(command, "--meshes", a.meshes,
-                 "Folder of meshes instead of ours: PLY, OBJ, STL, GLB, glTF, DAE. Names and "
-                 "symmetries are those of its models_info.json (BOP, millimetres) if it is there",
-                 "DIR");
-  add_option(
-      command, "--models", a.models,
-      "Only these of our objects. Household, all of them if not given: mug, bowl, bottle, can, "
-      "cup, tube, funnel, plate, milk_carton, cereal_box, snack_box, spray_bottle, jug, cube, "
-      "l_brick, stud_block, gear, banana. Workshop and desk: pen, screwdriver, wrench, scissors, "
-      "clamp, spatula, tin, battery, phone, remote, book, soap, sponge, matchbox",
-      "LIST")
-      ->excludes(meshes)
-      ->delimiter(',');
+  add_range_option(command, "--objects", a.scene.min_objects, a.scene.max_objects,
+                   "Fewest and most objects of a scene; 10,14 if not given");
+  add_range_option(command, "--clutter", a.scene.min_clutter, a.scene.max_clutter,
+                   "Range of clutter, 0.6,1 if not given; 0 = apart on the table, 1 = heap");
+  add_range_option(command, "--focal", a.scene.min_focal, a.scene.max_focal,
+                   "Range of the focal length, pixels; 525 if not given");
+  add_range_option(command, "--distance", a.scene.min_distance, a.scene.max_distance,
+                   "Range from the camera to the middle of the pile, metres; 0.6,1.4 if not given");
+  add_sensor_option(command, a.scene.sensor, a.scene.mixed_sensors, "scene");
+  add_object_options(command, a.objects);
   add_option(command, "--model-error", a.model_error,
              "Largest change of an object's length along each axis against its model, as a "
              "fraction")
@@ -348,6 +209,7 @@ void add_simulate_command(CLI::App& program) {
   CLI::App& simulate = *program.add_subcommand("simulate", "RGB-D frames with truth, as BOP sets");
   simulate.require_subcommand(1);
   add_scenes(simulate);
+  add_sequence_command(simulate);
   add_turntable(simulate);
 }
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "core/base/random.hpp"
 #include "core/sim/physics.hpp"
+#include "core/sim/private/draws.hpp"
 #include "core/sim/private/telltales.hpp"
 #include "core/sim/scenery.hpp"
 
@@ -16,35 +16,7 @@ namespace bpa::sim {
 namespace {
 
 using std::numbers::pi;
-// Places in Stage::scenery().
 constexpr int kAmbiguousDraws = 1000;  // of the camera; about one of 15 will do
-constexpr int kRoom = 0, kBin = 1, kFirstTable = 2, kNumTables = 4, kFirstDistractor = 6;
-
-// Uniform over all orientations (Shoemake 1992).
-Eigen::Quaterniond random_rotation(RandomStream& random) {
-  const double u = random.uniform(), v = 2 * pi * random.uniform(), w = 2 * pi * random.uniform();
-  const double a = std::sqrt(1 - u), b = std::sqrt(u);
-  return {a * std::sin(v), a * std::cos(v), b * std::sin(w), b * std::cos(w)};
-}
-
-Eigen::Quaterniond turned(RandomStream& random) {
-  return rotation_from_vector(random.uniform(-pi, pi) * Eigen::Vector3d::UnitZ());
-}
-
-// Some household objects are put down, the others tumble.
-Eigen::Quaterniond start_rotation(RandomStream& random) {
-  constexpr double kUpright = 0.3;
-  return random.uniform() < kUpright ? turned(random) : random_rotation(random);
-}
-
-std::vector<int> chosen_without_repetition(int count, int from, RandomStream& random) {
-  count = std::min(count, from);
-  std::vector<int> all(from);
-  std::iota(all.begin(), all.end(), 0);
-  for (int i = 0; i < count; ++i) std::swap(all[i], all[i + random.index(from - i)]);
-  all.resize(count);
-  return all;
-}
 
 // A point in a disc, the farther from those already taken the tidier the scene.
 Eigen::Vector2d start_point(double radius, double clutter,
@@ -145,19 +117,6 @@ bool object_stands(const Stage& stage, const std::vector<PosedMesh>& pile) {
   constexpr double kUpright = 0.99;
   return !pile.empty() && pile.front().mesh < static_cast<int>(stage.objects().size()) &&
          pile.front().world_from_mesh.rotation.toRotationMatrix()(2, 2) > kUpright;
-}
-
-Shading draw_shading(RandomStream& random) {
-  Shading shading;
-  shading.lights.clear();
-  for (int i = 0; i < 2; ++i) {
-    const double angle = 2 * pi * random.uniform(), reach = random.uniform(0.3, 1.6);
-    const double height = random.uniform(1.4, 2.2);
-    shading.lights.push_back(
-        {{reach * std::cos(angle), reach * std::sin(angle), height}, random.uniform(0.25, 0.5)});
-  }
-  shading.ambient = random.uniform(0.35, 0.55);
-  return shading;
 }
 
 // Turns the camera so that one object's centre falls on the left or right border.
