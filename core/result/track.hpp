@@ -29,20 +29,20 @@ struct TrackAlternative {
   double weight = 0;  ///< In (0, 1]; the weights of a track and its alternatives sum to 1.
 };
 
-/// One object, followed from frame to frame. Poses, velocities and covariances are about the axes of
-/// TrackedFrame::frame_id.
+/// One object, followed from frame to frame. Poses, velocities and covariances are about the axes
+/// of TrackedFrame::frame_id.
 struct Track {
-  std::uint64_t id = 0;   ///< From 1; never used for another object in a run.
-  std::string name;       ///< Unique among the tracks of a run; "MODEL_N" unless it was renamed.
-  std::string model;      ///< The model's name.
-  int model_number = 0;   ///< The model's number in its library.
+  std::uint64_t id = 0;  ///< From 1; never used for another object in a run.
+  std::string name;      ///< Unique among the tracks of a run; "MODEL_N" unless it was renamed.
+  std::string model;     ///< The model's name.
+  int model_number = 0;  ///< The model's number in its library.
   TrackState state = TrackState::tentative;
   double probability = 0;  ///< That the object is there, in [0, 1].
   Pose frame_from_object;  ///< Metres.
   /// Covariance of (x, y, z, rotation about x, y, z), metres and radians, as Placement's.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  OrientationUncertainty orientation;  ///< Of the pose; the alternatives are apart.
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< Of the origin, m/s.
+  OrientationUncertainty orientation;                  ///< Of the pose; the alternatives are apart.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< Of the origin, m/s.
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< rad/s.
   double visible_fraction = 0;  ///< Of the surface that faces the camera, in the newest frame.
   double age_s = 0;             ///< Since its first frame.
@@ -61,12 +61,12 @@ struct EndedTrack {
 
 /// All tracks after one frame.
 struct TrackedFrame {
-  std::int64_t stamp_ns = 0;    ///< Exposure time of the frame, UTC.
-  std::string frame_id;         ///< Of the poses: the fixed frame, or the camera's optical frame.
-  std::string camera_frame_id;  ///< The optical frame of the camera.
-  bool in_fixed_frame = false;  ///< Whether the camera's motion is known.
-  Pose frame_from_camera;       ///< The identity without a fixed frame.
-  std::vector<Track> tracks;    ///< By id. What is tentative or lost is among them.
+  std::int64_t stamp_ns = 0;      ///< Exposure time of the frame, UTC.
+  std::string frame_id;           ///< Of the poses: the fixed frame, or the camera's optical frame.
+  std::string camera_frame_id;    ///< The optical frame of the camera.
+  bool in_fixed_frame = false;    ///< Whether the camera's motion is known.
+  Pose frame_from_camera;         ///< The identity without a fixed frame.
+  std::vector<Track> tracks;      ///< By id. What is tentative or lost is among them.
   std::vector<EndedTrack> ended;  ///< In this frame.
   double milliseconds = 0;        ///< That following took.
 };
