@@ -17,13 +17,6 @@ namespace {
 constexpr double kMetresPerMillimetre = 0.001;
 constexpr int kRanks[] = {1, 2, 3, 5, 10, 20};
 constexpr int kBins = 10;
-// Quantiles of chi-squared with 3 to 6 degrees of freedom.
-constexpr struct {
-  double level;
-  double quantile[4];
-} kChiSquared[] = {{0.50, {2.3660, 3.3567, 4.3515, 5.3481}},
-                   {0.90, {6.2514, 7.7794, 9.2364, 10.6446}},
-                   {0.95, {7.8147, 9.4877, 11.0705, 12.5916}}};
 
 std::string frame_name(int scene_id, int im_id) {
   return "scene " + std::to_string(scene_id) + " image " + std::to_string(im_id);
@@ -124,7 +117,7 @@ Draft empty_draft() {
   draft.report.by_visible_fraction = groups_of(kFractionRows);
   draft.report.by_distance = groups_of(kDistanceRows);
   draft.report.reliability = draft.report.open_poses.weights = empty_bins();
-  for (const auto& row : kChiSquared) draft.report.coverage.push_back({row.level, {}});
+  for (const double level : kCredibleLevels) draft.report.coverage.push_back({level, {}});
   return draft;
 }
 
@@ -149,12 +142,13 @@ void add_estimate(const EstimateOutcome& estimate, Draft& draft) {
   count(group_of(report.by_distance, kDistanceRows, estimate.distance).precision, right);
   report.brier += (p - right) * (p - right);
   add_to_bins(report.reliability, p, right);
-  if (!right || !estimate.has_covariance) return;
+  if (!right || !estimate.covariance_error) return;
+  const auto [squared, degrees_of_freedom] = *estimate.covariance_error;
   ++draft.with_covariance;
-  report.normalised_square += estimate.mahalanobis_squared / estimate.degrees_of_freedom;
-  for (std::size_t i = 0; i < std::size(kChiSquared); ++i) {
-    const double quantile = kChiSquared[i].quantile[estimate.degrees_of_freedom - 3];
-    count(report.coverage[i].covered, estimate.mahalanobis_squared <= quantile);
+  report.normalised_square += squared / degrees_of_freedom;
+  for (std::size_t i = 0; i < std::size(kCredibleLevels); ++i) {
+    const double quantile = chi_squared_quantile(static_cast<int>(i), degrees_of_freedom);
+    count(report.coverage[i].covered, squared <= quantile);
   }
 }
 

@@ -5,11 +5,13 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/options.hpp"
 #include "core/base/status.hpp"
+#include "core/eval/covariance_error.hpp"
 #include "core/eval/pose_errors.hpp"
 #include "core/io/results.hpp"
 
@@ -71,9 +73,7 @@ struct EstimateOutcome {
   double distance = 0;   ///< Of the estimate from the camera, metres.
   int truth = -1;        ///< Index of the instance it is right about (of its frame's truth), or -1.
   bool ignored = false;  ///< Right about an instance that does not count.
-  bool has_covariance = false;
-  double mahalanobis_squared = 0;  ///< Of the error of a right one, under its covariance.
-  int degrees_of_freedom = 6;      ///< Of that; a turn that changes nothing does not count.
+  std::optional<CovarianceError> covariance_error;  ///< Of a right one.
   /// Its own pose and its alternatives, against the nearest instance of the same object, at most 5
   /// cm away; empty without alternatives or without such an instance.
   std::vector<PoseOutcome> poses;

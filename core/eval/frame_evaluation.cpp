@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <functional>
 
@@ -38,54 +37,6 @@ double paper_cost(const EvalObjects& objects, const EvaluationOptions& options,
                   const Pose& estimate, const io::BopInstance& truth) {
   return right_cost(estimate, truth.camera_from_object, objects.at(truth.obj_id).symmetry,
                     options.position_m, options.angle_rad);
-}
-
-using Twist = Eigen::Matrix<double, 6, 1>;  // position, then turn; camera frame
-
-/// The small motions of an object at a pose that change nothing: a turn about each continuous axis.
-std::vector<Twist> free_motions(const Pose& pose, const SymmetryGroup& symmetry) {
-  std::vector<Eigen::Vector3d> axes;
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  for (const ContinuousSymmetry& continuous : symmetry.continuous) {
-    const Eigen::Vector3d axis = (pose.rotation * continuous.axis).normalized();
-    point = pose.rotation * continuous.point;
-    const auto alike = [&](const auto& other) { return std::abs(other.dot(axis)) > 1 - 1e-9; };
-    if (std::ranges::none_of(axes, alike)) axes.push_back(axis);
-  }
-  // Two axes make a ball, which may turn in any way.
-  if (axes.size() > 1) axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  std::vector<Twist> motions;
-  for (const Eigen::Vector3d& axis : axes) {
-    Twist motion;
-    motion << point.cross(axis), axis;
-    motions.push_back(motion);
-  }
-  return motions;
-}
-
-/// Squared length of the error in units of the reported covariance, without its part along the
-/// motions that the symmetry leaves free. `truth` is the symmetric one nearest to the estimate.
-void add_covariance_error(const Placement& estimate, const Pose& truth,
-                          const SymmetryGroup& symmetry, EstimateOutcome& result) {
-  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(estimate.covariance);
-  result.has_covariance = factor.info() == Eigen::Success;
-  if (!result.has_covariance) return;
-  const Pose& pose = estimate.camera_from_object;
-  Twist error;
-  error << truth.translation - pose.translation,
-      vector_from_rotation((truth.rotation * pose.rotation.conjugate()).normalized());
-  factor.matrixL().solveInPlace(error);
-  std::vector<Twist> free = free_motions(pose, symmetry);
-  for (auto motion = free.begin(); motion != free.end(); ++motion) {
-    factor.matrixL().solveInPlace(*motion);
-    for (auto earlier = free.begin(); earlier != motion; ++earlier) {
-      *motion -= earlier->dot(*motion) * *earlier;
-    }
-    motion->normalize();
-    error -= motion->dot(error) * *motion;
-  }
-  result.mahalanobis_squared = error.squaredNorm();
-  result.degrees_of_freedom = 6 - static_cast<int>(free.size());
 }
 
 /// Only what counts takes part in BOP's errors, and for each object at most as many estimates, the
@@ -263,7 +214,8 @@ void add_estimates(const io::BopFrame& frame, const EvalObjects& objects,
     found.add = average_distance(object.mesh.vertices, pose, nearest);
     found.adds = average_nearest_distance(object.mesh.vertices, pose, truth);
     result.ignored = !found.counts;
-    add_covariance_error(estimate, nearest, object.symmetry, result);
+    result.covariance_error = covariance_error(estimate.camera_from_object, estimate.covariance,
+                                               nearest, object.symmetry);
   }
 }
 

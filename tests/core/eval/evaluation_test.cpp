@@ -280,8 +280,8 @@ TEST(Evaluation, CoverageOfWhatSpinsHasFiveDegreesOfFreedom) {
     EXPECT_EQ(report->coverage[0].covered.total, 1);
     EXPECT_EQ(report->coverage[0].covered.hits, 0);
     EXPECT_EQ(report->coverage[1].covered.hits, 1);
-    EXPECT_EQ(report->outcomes[0].estimates[0].degrees_of_freedom, 5);
-    EXPECT_NEAR(report->outcomes[0].estimates[0].mahalanobis_squared, 4.84, 1e-6);
+    EXPECT_EQ(report->outcomes[0].estimates[0].covariance_error->degrees_of_freedom, 5);
+    EXPECT_NEAR(report->outcomes[0].estimates[0].covariance_error->squared, 4.84, 1e-6);
   }
 }
 
@@ -300,7 +300,8 @@ TEST(Evaluation, CoverageAboutAnAxisBesideTheOrigin) {
   covariance += 100 * free * free.transpose();
   const auto report = evaluate(c.frames, spinning, c.results, without_bop());
   ASSERT_TRUE(report.ok());
-  EXPECT_NEAR(report->outcomes[0].estimates[0].mahalanobis_squared, 1, 1e-4);  // 10 mm along x
+  EXPECT_NEAR(report->outcomes[0].estimates[0].covariance_error->squared, 1,
+              1e-4);  // 10 mm along x
 }
 
 /// A ball: three degrees of freedom are left, those of its centre.
@@ -313,8 +314,8 @@ TEST(Evaluation, CoverageOfABallHasThreeDegreesOfFreedom) {
   c.results = {result(0, 0.1, {{placement(1, posed_at(0.015, 0.7), 0.9)}})};
   const auto report = evaluate(c.frames, ball, c.results, without_bop());
   ASSERT_TRUE(report.ok());
-  EXPECT_EQ(report->outcomes[0].estimates[0].degrees_of_freedom, 3);
-  EXPECT_NEAR(report->outcomes[0].estimates[0].mahalanobis_squared, 2.25, 1e-9);
+  EXPECT_EQ(report->outcomes[0].estimates[0].covariance_error->degrees_of_freedom, 3);
+  EXPECT_NEAR(report->outcomes[0].estimates[0].covariance_error->squared, 2.25, 1e-9);
   EXPECT_EQ(report->coverage[0].covered.hits, 1);  // 2.366
 }
 
