@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // bpa simulate sequence: frames of a moving camera, objects and arm, written as BOP scenes.
+#include <algorithm>
 #include <cstdio>
 
+#include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/sim/sequence.hpp"
 #include "tools/mesh_input.hpp"
@@ -19,6 +21,7 @@ struct SequenceArguments {
   std::string out, split = "test";
   ObjectChoice objects;
   int sequences = 1;
+  std::string handle;
   bool masks = false;
   sim::SequenceOptions options;
 };
@@ -54,8 +57,19 @@ void write_sequence(const SequenceArguments& a, const sim::Stage& stage,
   or_throw(writer.finish());
 }
 
+/// Makes what stands out of one object its telltale.
+void find_handle(const std::string& name, std::vector<sim::SimulatedObject>& objects) {
+  const auto object = std::ranges::find(objects, name, &sim::SimulatedObject::name);
+  if (object == objects.end()) throw Failure(not_found("--handle: there is no object " + name));
+  object->telltales = sim::protruding_vertices(object->mesh);
+  if (object->telltales.empty()) {
+    throw Failure(invalid_argument("--handle: nothing stands out of the wall of " + name));
+  }
+}
+
 void simulate_sequences(const SequenceArguments& a) {
   std::vector<sim::SimulatedObject> objects = chosen_objects(a.objects, a.common.threads);
+  if (!a.handle.empty()) find_handle(a.handle, objects);
   write_models(a.out, objects);
   const sim::Stage stage = sim::sequence_stage(std::move(objects), a.common.threads);
   for (int i = 0; i < a.sequences; ++i) {
@@ -98,6 +112,9 @@ void add_sequence_command(CLI::App& simulate) {
   add_option(command, "--sequences", a.sequences, "Number of sequences, a BOP scene each")
       ->check(CLI::Range(1, 9999));
   add_kind_option(command, a.options.kind);
+  add_option(command, "--handle", a.handle,
+             "The mesh of --meshes whose handle --kind handle hides at first, such as 025_mug",
+             "NAME");
   add_range_option(command, "--objects", a.options.min_objects, a.options.max_objects,
                    "Fewest and most objects of a sequence; 8,8 if not given");
   add_range_option(command, "--distance", a.options.min_distance, a.options.max_distance,

@@ -52,6 +52,11 @@ std::vector<SimulatedObject> household_objects(const std::vector<std::string>& n
 SimulatedObject object_from_mesh(std::string name, TriangleMesh mesh,
                                  const SymmetryGroup& symmetry = {});
 
+/// The vertices that stand out of an upright vessel's wall, as those of a handle: the wall is the
+/// circle about a vertical axis that most vertices are on, seen from above. Empty where no circle
+/// has many, or what stands out is not on one side.
+std::vector<int> protruding_vertices(const TriangleMesh& mesh);
+
 /// The object as it is made, not as its model says: longer or shorter along each of its axes by a
 /// normally distributed share of standard deviation `error`.
 SimulatedObject made_inexactly(SimulatedObject object, double error, std::uint64_t seed);

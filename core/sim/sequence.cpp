@@ -258,7 +258,8 @@ Status check_options(const Stage& stage, SequenceOptions options) {
   if (!status.ok()) return status;
   const auto shows_all = [](const SimulatedObject& object) { return object.telltales.empty(); };
   if (options.kind == SequenceKind::handle && std::ranges::all_of(stage.objects(), shows_all)) {
-    return invalid_argument("kind = handle: no object has telltales; the household mug has");
+    return invalid_argument(
+        "kind = handle: no object has a part that tells its sides apart, as a mug's handle");
   }
   return {};
 }

@@ -3,7 +3,10 @@
 #include "core/sim/private/telltales.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+
+#include "core/base/random.hpp"
 
 namespace bpa::sim {
 namespace {
@@ -30,7 +33,72 @@ double share_in_sight(const SimulatedObject& object, const std::vector<int>& ver
   return checked > 0 ? static_cast<double>(seen) / checked : 0;
 }
 
+/// A circle as seen from above, metres.
+struct WallCircle {
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();
+  double radius = 0;
+
+  /// From the wall: negative inside.
+  double beyond(const Eigen::Vector3f& vertex) const {
+    return (vertex.head<2>().cast<double>() - center).norm() - radius;
+  }
+};
+
+/// Through three points; radius 0 where they are on one line.
+WallCircle circle_through(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                          const Eigen::Vector2d& c) {
+  Eigen::Matrix2d sides;
+  sides << (b - a).transpose(), (c - a).transpose();
+  if (std::abs(sides.determinant()) < 1e-9) return {};
+  const Eigen::Vector2d halves(0.5 * (b - a).squaredNorm(), 0.5 * (c - a).squaredNorm());
+  const Eigen::Vector2d to_center = sides.inverse() * halves;
+  return {a + to_center, to_center.norm()};
+}
+
 }  // namespace
+
+std::vector<int> protruding_vertices(const TriangleMesh& mesh) {
+  constexpr int kTriples = 500;
+  constexpr std::size_t kSample = 1000;
+  constexpr double kOnWall = 0.005, kStandsOut = 0.01;                    // metres
+  constexpr double kLeastOnWall = 0.25, kLeastOut = 0.02, kMostOut = 0.4;  // shares
+  constexpr double kOneSide = 0.7;  // mean resultant length of the directions that stand out
+  if (mesh.vertices.empty()) return {};
+  RandomStream random(1);
+  std::vector<Eigen::Vector3f> sample;
+  for (std::size_t i = 0; i < kSample; ++i) {
+    sample.push_back(mesh.vertices[random.index(static_cast<int>(mesh.vertices.size()))]);
+  }
+  const auto draw = [&] {
+    return Eigen::Vector2d(sample[random.index(kSample)].head<2>().cast<double>());
+  };
+  WallCircle wall;
+  double most = kLeastOnWall;
+  for (int i = 0; i < kTriples; ++i) {
+    const Eigen::Vector2d a = draw(), b = draw(), c = draw();
+    const WallCircle circle = circle_through(a, b, c);
+    const auto on_wall = std::ranges::count_if(sample, [&](const Eigen::Vector3f& vertex) {
+      return std::abs(circle.beyond(vertex)) < kOnWall;
+    });
+    const double share = static_cast<double>(on_wall) / kSample;
+    if (circle.radius == 0 || share <= most) continue;
+    most = share;
+    wall = circle;
+  }
+  std::vector<int> out;
+  Eigen::Vector2d directions = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (wall.beyond(mesh.vertices[i]) < kStandsOut) continue;
+    out.push_back(static_cast<int>(i));
+    directions += (mesh.vertices[i].head<2>().cast<double>() - wall.center).normalized();
+  }
+  const auto count = static_cast<double>(out.size());
+  const double share = count / static_cast<double>(mesh.vertices.size());
+  if (wall.radius == 0 || share < kLeastOut || share > kMostOut) return {};
+  // The corners of a box stand out to all sides.
+  if (directions.norm() < kOneSide * count) return {};
+  return out;
+}
 
 bool telltales_hidden(const SimulatedObject& object, const RayScene& scene, const Camera& camera,
                       const Pose& world_from_camera) {

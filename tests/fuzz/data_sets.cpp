@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// BOP data sets, cameras, results and pose priors.
+// BOP data sets, cameras, results, tracks and pose priors.
 #include <cmath>
 
 #include "core/io/bop_dataset.hpp"
@@ -8,6 +8,7 @@
 #include "core/io/image_file.hpp"
 #include "core/io/pose_prior_file.hpp"
 #include "core/io/results.hpp"
+#include "core/io/tracks.hpp"
 #include "tests/fuzz/target.hpp"
 
 namespace bpa::fuzz {
@@ -64,6 +65,23 @@ std::vector<std::string> results_csv_seeds() {
       "2,5,4,1e-3,1 0 0 0 1 0 0 0 1,-10 20 900,-1\r\n"};
 }
 
+void run_tracks_json(std::string_view bytes) {
+  const auto tracks = io::read_tracks_json(file_of(bytes, "tracks.json"));
+  if (!tracks.ok()) return;
+  for (const io::TrackResult& frame : *tracks) (void)io::track_json_line(frame);
+}
+
+std::vector<std::string> tracks_json_seeds() {
+  return {R"({"format": "bpa tracks", "version": 1, "frames": [{"scene_id": 2, "im_id": 5,
+  "stamp_ns": 7, "frame_id": "map", "in_fixed_frame": true, "milliseconds": 12.5,
+  "frame_from_camera": {"rotation_wxyz": [1, 0, 0, 0], "translation_m": [0, 0, 1]},
+  "tracks": [{"id": 3, "name": "cup_1", "obj_id": 3, "model": "cup", "state": "occluded",
+  "probability": 0.9, "pose": {"rotation_wxyz": [1, 0, 0, 0], "translation_m": [0.1, 0.2, 0.9]},
+  "velocity": [0.1, 0, 0], "age_s": 2, "held": true, "weight": 0.75, "alternatives": [{"pose":
+  {"rotation_wxyz": [0, 1, 0, 0], "translation_m": [0.1, 0.2, 0.9]}, "weight": 0.25}]}],
+  "ended": [{"id": 2, "name": "cup_0", "reason": "not seen for 5 s"}]}]})"};
+}
+
 void run_pose_priors(std::string_view bytes) {
   (void)io::read_pose_priors(file_of(bytes, "priors.json"));
 }
@@ -109,9 +127,11 @@ void run_bop_scene(std::string_view bytes) {
 }
 
 std::vector<std::string> bop_scene_seeds() {
-  return {R"({"5": {"cam_K": [525, 0, 1, 0, 526, 1, 0, 0, 1], "depth_scale": 0.1}}
+  return {R"({"5": {"cam_K": [525, 0, 1, 0, 526, 1, 0, 0, 1], "depth_scale": 0.1,
+  "stamp_ns": 1700000000033333333, "cam_R_w2c": [1, 0, 0, 0, 1, 0, 0, 0, 1],
+  "cam_t_w2c": [0, 0, 800]}}
 ---
-{"5": [{"obj_id": 7, "cam_R_m2c": [1, 0, 0, 0, 1, 0, 0, 0, 1], "cam_t_m2c": [0, 0, 800]}]}
+{"5": [{"obj_id": 7, "instance_id": 2, "cam_R_m2c": [1, 0, 0, 0, 1, 0, 0, 0, 1], "cam_t_m2c": [0, 0, 800]}]}
 ---
 {"5": [{"visib_fract": 0.5}]})"};
 }
@@ -124,6 +144,7 @@ std::vector<Target> data_set_targets() {
   return {{"camera_file", "core/io/camera_file.cpp", run_camera, camera_seeds, 2048},
           {"results_json", results, run_results_json, results_json_seeds},
           {"results_csv", results, run_results_csv, results_csv_seeds, 2048},
+          {"tracks_json", "core/io/tracks.cpp", run_tracks_json, tracks_json_seeds},
           {"pose_priors", "core/io/pose_prior_file.cpp", run_pose_priors, pose_priors_seeds, 4096},
           {"bop_models", bop, run_bop_models, bop_models_seeds, 4096},
           {"bop_scene", bop, run_bop_scene, bop_scene_seeds, 4096}};

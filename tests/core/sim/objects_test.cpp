@@ -257,5 +257,21 @@ TEST(Objects, PrintedOtherwiseHaveTheSameShapeAndOtherColours) {
   EXPECT_GT(changed(one, printed_otherwise(can, 2)), 0.9);
 }
 
+// The mug says itself which vertices are its handle's.
+TEST(Objects, WhatStandsOutOfAMugIsItsHandle) {
+  const auto vessels = household_objects({"mug", "can", "milk_carton"});
+  std::vector<int> telltales = vessels[0].telltales;
+  std::ranges::sort(telltales);
+  const std::vector<int> found = protruding_vertices(vessels[0].mesh);
+  ASSERT_FALSE(found.empty());
+  const auto known = std::ranges::count_if(
+      found, [&](int vertex) { return std::ranges::binary_search(telltales, vertex); });
+  EXPECT_GE(known, 0.95 * double(found.size()));
+  EXPECT_GE(known, 0.6 * double(telltales.size()));
+  EXPECT_TRUE(protruding_vertices(vessels[1].mesh).empty());
+  EXPECT_TRUE(protruding_vertices(vessels[2].mesh).empty());
+  EXPECT_TRUE(protruding_vertices({}).empty());
+}
+
 }  // namespace
 }  // namespace bpa::sim
