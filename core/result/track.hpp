@@ -16,7 +16,7 @@ namespace bpa {
 enum class TrackState : std::uint8_t {
   tentative,  ///< Found once; the next frames and searches decide.
   confirmed,  ///< Followed in the newest frame.
-  occluded,   ///< Hidden by nearer surface; its pose is predicted.
+  occluded,   ///< Hidden by nearer surface or outside of the image; its pose is predicted.
   lost,       ///< Not where it was expected, nor hidden; waits for a search to find it again.
 };
 

@@ -22,16 +22,20 @@ struct TrackerOptions {
   double min_probability = 0.5;
   double min_confirming = 0.8;
   double lost_s = 5;
+  double hidden_s = 30;
   int num_threads = 0;
 
   void visit_fields(auto&& visit) {
     visit("min_probability", min_probability,
           {0, 1, "Placements of at least this probability begin a track."});
-    visit("min_confirming", min_confirming,
-          {0, 1,
-           "A track is confirmed by one placement of this probability, or by two that agree."});
+    visit(
+        "min_confirming", min_confirming,
+        {0, 1, "A track is confirmed by one placement of this probability, or by two that agree."});
     visit("lost_s", lost_s,
           {0.1, 3600, "Seconds after which a track that is not seen ends, unless it is held."});
+    visit("hidden_s", hidden_s,
+          {0.1, 86400,
+           "The same of a track that nearer surface hides, or that is outside of the image."});
     visit("num_threads", num_threads, {0, 256, "0: one per core. Does not change the answer."});
   }
 };
@@ -49,8 +53,8 @@ struct TrackerCounts {
   std::uint64_t confirmed = 0;  ///< Tracks that were confirmed.
   std::uint64_t losses = 0;     ///< Times that a track was lost.
   std::uint64_t found_again = 0;
-  std::uint64_t ends = 0;      ///< Tracks ended.
-  std::uint64_t searches = 0;  ///< Results of searches taken.
+  std::uint64_t ends = 0;            ///< Tracks ended.
+  std::uint64_t searches = 0;        ///< Results of searches taken.
   std::uint64_t stale_searches = 0;  ///< Results refused: their frame is no longer remembered.
 };
 
@@ -63,20 +67,20 @@ class Tracker {
   ~Tracker();
 
   /// Moves every track to this frame. Stamps must rise: fails with invalid_argument on a frame that
-  /// is not newer than the last, or not valid. A camera that has a pose in one frame and none in the
-  /// next begins anew: all tracks end.
+  /// is not newer than the last, or not valid. A camera that has a pose in one frame and none in
+  /// the next begins anew: all tracks end.
   Result<TrackedFrame> track(std::shared_ptr<const Frame> frame,
                              const std::optional<CameraPose>& camera = std::nullopt);
 
-  /// Takes the result of a search in a frame that track() was given before. The next track() carries
-  /// it forward. Fails with not_found on a frame that is no longer remembered.
+  /// Takes the result of a search in a frame that track() was given before. The next track()
+  /// carries it forward. Fails with not_found on a frame that is no longer remembered.
   Status add(const SceneInterpretations& found);
 
   /// Where the confirmed tracks are in the newest frame, for DetectRequest::expected.
   std::vector<ExpectedPlacement> expected() const;
 
-  /// Fail with not_found, which lists the tracks there are; rename() with invalid_argument on a name
-  /// that is empty or another track's.
+  /// Fail with not_found, which lists the tracks there are; rename() with invalid_argument on a
+  /// name that is empty or another track's.
   Status rename(std::uint64_t id, const std::string& name);
   Status hold(std::uint64_t id, bool held);
   Status forget(std::uint64_t id);

@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/track/follow.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/detect/candidate.hpp"
+#include "core/detect/refinement.hpp"
+#include "core/result/placement.hpp"
+#include "core/score/rival_poses.hpp"
+#include "core/score/surface_agreement.hpp"
+#include "core/track/observe_around.hpp"
+
+namespace bpa::track {
+namespace {
+
+// What the surface at a pose must show. Chosen by hand on simulated sequences.
+constexpr double kMinVisible = 0.08;     // of the facing surface: less decides nothing
+constexpr double kDecides = 0.2;         // of it: so much in sight, and elsewhere, is absent
+constexpr double kMinAgreeing = 0.5;     // of the visible surface
+constexpr double kMaxFreeSpace = 0.3;    // of it
+constexpr int kMinCorrespondences = 12;  // of the alignment
+
+// A pose that is known well is aligned in fewer steps than a hypothesis of the search.
+constexpr RefinementOptions kAlignment{4, 200, 60, 0.030, 0.010};
+constexpr RefinementOptions kWideAlignment{8, 200, 60, 0.060, 0.010};
+constexpr double kMargin_m = 0.03;           // around the object
+constexpr double kWideMargin_m = 0.08;       // the same, where it was not where it was expected
+constexpr double kMaxDistanceSquared = 100;  // of a measurement from the prediction, Mahalanobis
+constexpr double kMaxJump_m = 0.12, kMaxJump_rad = 0.8;  // in one frame
+
+// A resting object is aligned again where its surroundings change, or in every tenth frame.
+constexpr int kStep_px = 4;            // between depths that are compared
+constexpr float kChanged_m = 0.004f;   // plus deviations of depth
+constexpr float kDeviations = 3;       // of it
+constexpr double kMaxChanged = 0.005;  // of the depths; noise
+constexpr int kMaxUnchanged = 9;       // frames in a row
+
+// Modes: views that differ by less say the same again. A tenth of a nat for each nat of evidence,
+// as errors of models and calibration are the same in all views.
+constexpr double kNewView_rad = 0.05;
+constexpr double kTempered = 0.1;
+constexpr double kMostEvidence = 60;  // nats of one comparison
+constexpr int kComparedAtLeast = 3;   // times, whatever the views
+constexpr double kUnlikely = -5;      // log weight of a mode that is dropped
+constexpr std::size_t kMostModes = 6;
+
+std::vector<float> sampled_depths(const Frame& frame, const RegionOfInterest& region) {
+  std::vector<float> out;
+  for (int v = region.y; v < region.y + region.height; v += kStep_px) {
+    for (int u = region.x; u < region.x + region.width; u += kStep_px) {
+      out.push_back(frame.depth[static_cast<std::size_t>(v) * frame.camera.width + u]);
+    }
+  }
+  return out;
+}
+
+bool same_depths(const std::vector<float>& now, const std::vector<float>& then,
+                 const SensorNoise& noise) {
+  int changed = 0, known = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (!(now[i] > 0) || !(then[i] > 0)) continue;  // depth comes and goes at rims
+    ++known;
+    changed += std::abs(now[i] - then[i]) > kChanged_m + kDeviations * noise(now[i]);
+  }
+  return known > 0 && changed <= kMaxChanged * known;
+}
+
+Sight sight_of(const SurfaceAgreement& surface, int correspondences) {
+  const bool agrees = surface.agreeing >= kMinAgreeing && surface.free_space <= kMaxFreeSpace;
+  if (surface.visibility >= kMinVisible && agrees && correspondences >= kMinCorrespondences) {
+    return Sight::seen;
+  }
+  return surface.visibility >= kDecides && !agrees ? Sight::absent : Sight::hidden;
+}
+
+Fit judged(const View& view, const ObjectModel& model, const FeaturePlaces& places,
+           const SceneFeatures& scene, const Pose& in_scene, const RefinementOptions& alignment) {
+  Candidate candidate{.model = &model,
+                      .refinement = refine_pose(scene, model, in_scene, alignment)};
+  Evidence evidence(scene, places, candidate.pose());
+  candidate.values = measure(evidence, Round::two);
+  const Placement placement = transformed(view.frame_from_camera, to_placement(candidate));
+  return {sight_of(evidence.surface(), candidate.refinement.num_correspondences),
+          {placement.camera_from_object, placement.covariance},
+          view.layers.round_two.log_odds(candidate.values),
+          evidence.surface().visibility};
+}
+
+}  // namespace
+
+Fit fit(const View& view, const ObjectModel& model, const std::vector<Pose>& starts,
+        double margin_m) {
+  const auto around = surroundings(view.frame, model, view.in_camera(starts.front()), margin_m);
+  Fit best;
+  best.measured.pose = starts.front();
+  if (!around) return best;
+  const SceneFeatures scene = observe(view.frame, *around, view.sensor, false);
+  const FeaturePlaces places(model);
+  const auto& alignment = margin_m > kMargin_m ? kWideAlignment : kAlignment;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    Fit now = judged(view, model, places, scene, view.in_camera(starts[i]), alignment);
+    const bool better = std::pair(now.sight == Sight::seen, now.log_odds) >
+                        std::pair(best.sight == Sight::seen, best.log_odds);
+    if (i == 0 || better) best = now;
+  }
+  return best;
+}
+
+void follow(const View& view, double seconds, Body& body) {
+  MotionFilter& motion = body.motion;
+  const ObjectModel& model = *body.model;
+  motion.predict(seconds, body.unseen == 0);
+  const Pose predicted = motion.pose();
+  const auto around = surroundings(view.frame, model, view.in_camera(predicted), kMargin_m);
+  std::vector<float> depths;
+  if (around && !motion.moves()) {
+    depths = sampled_depths(view.frame, around->region);
+    const RegionOfInterest &a = around->region, &b = body.around_region;
+    const bool same_region = a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
+    if (body.sight == Sight::seen && same_region && body.unchanged < kMaxUnchanged &&
+        same_depths(depths, body.around, noise_of(view.sensor))) {
+      ++body.unchanged;
+      return;
+    }
+  }
+  body.unchanged = 0;
+  Fit found = fit(view, model, {predicted}, kMargin_m);
+  if (found.sight != Sight::seen || body.unseen > 0) {
+    const Fit wide = fit(view, model, {predicted, body.last_seen}, kWideMargin_m);
+    if (wide.sight == Sight::seen && (found.sight != Sight::seen || wide.log_odds > found.log_odds))
+      found = wide;
+  }
+  if (found.sight == Sight::seen) {
+    const Vector6d jump = difference(found.measured.pose, predicted);
+    const bool near = jump.head<3>().norm() < kMaxJump_m && jump.tail<3>().norm() < kMaxJump_rad;
+    if (!near) found.sight = Sight::absent;
+  }
+  body.sight = found.sight;
+  body.visible_fraction = found.visible_fraction;
+  if (found.sight != Sight::seen) {
+    ++body.unseen;
+    return;
+  }
+  motion.update(found.measured);
+  body.unseen = 0;
+  body.last_seen = motion.pose();
+  body.around = std::move(depths);
+  body.around_region = around ? around->region : RegionOfInterest();
+}
+
+void add_mode(Body& body, const Pose& frame_from_object, double log_weight) {
+  const Pose relative = body.motion.pose().inverse() * frame_from_object;
+  const auto same = [&](const Pose& other) {
+    const PoseError error = pose_error(relative, other, body.model->symmetry);
+    return error.position < kPoseTolerance_m && error.angle < kPoseTolerance_rad;
+  };
+  if (same(Pose()) || body.modes.size() >= kMostModes) return;
+  for (Mode& mode : body.modes) {
+    if (!same(mode.object_from_mode)) continue;
+    mode.log_weight = std::max(mode.log_weight, log_weight);
+    return;
+  }
+  body.modes.push_back({relative, log_weight});
+  body.compared = 0;
+}
+
+void compare_modes(const View& view, Body& body) {
+  if (body.modes.empty() || body.sight != Sight::seen) return;
+  const ObjectModel& model = *body.model;
+  const Pose camera_from_object = view.in_camera(body.motion.pose());
+  const Pose from = camera_from_object.inverse();
+  const Eigen::Vector3d now = from.translation - model.centre;
+  const Eigen::Vector3d before = body.compared_from.translation - model.centre;
+  const double turned = std::atan2(now.cross(before).norm(), now.dot(before));
+  if (body.compared >= kComparedAtLeast && turned < kNewView_rad) return;
+  const auto around = surroundings(view.frame, model, camera_from_object, kMargin_m);
+  if (!around) return;
+  body.compared_from = from;
+  ++body.compared;
+  const SceneFeatures scene = observe(view.frame, *around, view.sensor, true);
+  std::vector<Pose> poses = {camera_from_object};
+  for (Mode& mode : body.modes) {
+    const Pose start = camera_from_object * mode.object_from_mode;
+    const Pose aligned = refine_pose(scene, model, start, kAlignment).camera_from_object;
+    mode.object_from_mode = from * aligned;
+    poses.push_back(aligned);
+  }
+  const auto behind = behind_best(scene, model, poses, poses.size());
+  const auto evidence = [&](std::size_t k) {
+    return std::max(-kMostEvidence, behind[k].depth + behind[k].color);
+  };
+  std::size_t best = 0;
+  for (std::size_t k = 0; k < body.modes.size(); ++k) {
+    body.modes[k].log_weight += kTempered * (evidence(k + 1) - evidence(0));
+    const double highest = best == 0 ? 0 : body.modes[best - 1].log_weight;
+    if (body.modes[k].log_weight > highest) best = k + 1;
+  }
+  if (best > 0) {
+    const Mode winner = body.modes[best - 1];
+    const Pose back = winner.object_from_mode.inverse();
+    for (Mode& mode : body.modes) {
+      mode = {back * mode.object_from_mode, mode.log_weight - winner.log_weight};
+    }
+    body.modes[best - 1] = {back, -winner.log_weight};
+    body.motion.jump_to(body.motion.pose() * winner.object_from_mode);
+    body.last_seen = body.motion.pose();
+    body.compared_from = winner.object_from_mode.inverse() * from;
+  }
+  std::erase_if(body.modes, [](const Mode& mode) { return mode.log_weight < kUnlikely; });
+}
+
+}  // namespace bpa::track

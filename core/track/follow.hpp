@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/cloud/frame.hpp"
+#include "core/cloud/sensor_kind.hpp"
+#include "core/model/object_model.hpp"
+#include "core/result/track.hpp"
+#include "core/score/score_layer.hpp"
+#include "core/track/motion_filter.hpp"
+
+namespace bpa::track {
+
+/// One frame as tracks see it. Keeps references.
+struct View {
+  const Frame& frame;
+  SensorKind sensor;
+  Pose frame_from_camera;  ///< Of the tracks' frame of reference.
+  const ScoreLayers& layers;
+
+  Pose in_camera(const Pose& frame_from_object) const {
+    return frame_from_camera.inverse() * frame_from_object;
+  }
+};
+
+/// What a frame shows at a pose.
+enum class Sight : std::uint8_t {
+  seen,    ///< The object is there.
+  hidden,  ///< It may be: nearer surface hides it, or the image ends there.
+  absent,  ///< Another surface is seen there.
+};
+
+/// An aligned pose, and what speaks for it.
+struct Fit {
+  Sight sight = Sight::hidden;
+  UncertainPose measured;  ///< About the axes of the tracks' frame of reference.
+  double log_odds = 0;     ///< Of the round-two score.
+  double visible_fraction = 0;
+};
+
+/// Another pose that the views so far explain as well.
+struct Mode {
+  Pose object_from_mode;  ///< From the object's axes at the pose to those at the other one.
+  double log_weight = 0;  ///< Against 0, the pose's own.
+};
+
+/// One object and its motion.
+struct Body {
+  std::shared_ptr<const ObjectModel> model;
+  MotionFilter motion;
+  std::vector<Mode> modes = {};
+  Sight sight = Sight::seen;       ///< In the last frame.
+  double visible_fraction = 1;     ///< In the last frame.
+  Pose last_seen = {};             ///< Where it was seen last.
+  int unseen = 0;                  ///< Frames in a row.
+  Pose compared_from = {};         ///< object_from_camera when the modes were last compared.
+  int compared = 0;                ///< Times that the modes were compared.
+  std::vector<float> around = {};  ///< Depths of the surroundings when it was last aligned.
+  RegionOfInterest around_region = {};
+  int unchanged = 0;  ///< Frames in a row that showed the same.
+};
+
+/// Aligns the object with the frame, from one of several starts: the best by round-two score.
+/// Starts are in the tracks' frame of reference, and within `margin_m` of the first one.
+Fit fit(const View& view, const ObjectModel& model, const std::vector<Pose>& starts,
+        double margin_m);
+
+/// Moves the body to a frame `seconds` after its last one: predicts, aligns, judges, corrects.
+/// Where a resting object's surroundings have not changed, it is left where it is.
+void follow(const View& view, double seconds, Body& body);
+
+/// Where the modes of a mixture differ in what a frame shows, their weights follow. Drops modes
+/// that have become unlikely. The likeliest becomes the pose.
+void compare_modes(const View& view, Body& body);
+
+/// Adds another pose, in the tracks' frame of reference, unless the body has it.
+void add_mode(Body& body, const Pose& frame_from_object, double log_weight);
+
+}  // namespace bpa::track

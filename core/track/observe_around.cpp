@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/track/observe_around.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "core/cloud/blur.hpp"
+#include "core/cloud/cielab.hpp"
+
+namespace bpa::track {
+namespace {
+
+constexpr int kSmallest = 16;  // pixels of the reduced image: a Camera's least size
+
+Frame cut_out(const Frame& frame, const RegionOfInterest& region) {
+  Frame out;
+  out.camera = frame.camera;
+  out.camera.width = region.width;
+  out.camera.height = region.height;
+  out.camera.cx -= region.x;
+  out.camera.cy -= region.y;
+  out.stamp_ns = frame.stamp_ns;
+  const auto size = static_cast<std::size_t>(region.width) * region.height;
+  out.depth.reserve(size);
+  if (!frame.color.empty()) out.color.reserve(3 * size);
+  for (int v = region.y; v < region.y + region.height; ++v) {
+    const std::size_t first = static_cast<std::size_t>(v) * frame.camera.width + region.x;
+    const std::size_t last = first + region.width;
+    out.depth.insert(out.depth.end(), &frame.depth[first], &frame.depth[first] + region.width);
+    if (frame.color.empty()) continue;
+    out.color.insert(out.color.end(), &frame.color[3 * first],
+                     &frame.color[3 * first] + 3 * (last - first));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<Surroundings> surroundings(const Frame& frame, const ObjectModel& model,
+                                         const Pose& camera_from_object, double margin_m) {
+  const Camera& camera = frame.camera;
+  const Eigen::Vector3d centre = camera_from_object * model.centre;
+  const double radius = 0.5 * model.diameter + margin_m;
+  const double nearest = std::max<double>(kNearest_m, centre.z() - radius);
+  if (!(centre.z() > kNearest_m)) return std::nullopt;
+  Surroundings out;
+  const int max_width = SurfaceMapOptions().max_width;
+  while (camera.width / out.reduction > max_width) ++out.reduction;
+  const int r = out.reduction;
+  // Where `middle` and what is `radius` beside it fall, as whole pixels of the reduced image.
+  const auto range = [&](double middle, double focal, double principal, int size) {
+    const double at = focal * middle / centre.z() + principal, beside = focal * radius / nearest;
+    const double last = size / r;
+    const int from = static_cast<int>(std::clamp(std::floor((at - beside) / r), 0.0, last));
+    const int to = static_cast<int>(std::clamp(std::ceil((at + beside) / r), 0.0, last));
+    return std::pair(from * r, (to - from) * r);
+  };
+  std::tie(out.region.x, out.region.width) = range(centre.x(), camera.fx, camera.cx, camera.width);
+  std::tie(out.region.y, out.region.height) =
+      range(centre.y(), camera.fy, camera.cy, camera.height);
+  if (std::min(out.region.width, out.region.height) < kSmallest * r) return std::nullopt;
+  return out;
+}
+
+SceneFeatures observe(const Frame& frame, const Surroundings& around, SensorKind sensor,
+                      bool colors) {
+  const Frame part = cut_out(frame, around.region);
+  SurfaceMapOptions options;
+  options.max_width = around.region.width / around.reduction;
+  options.sensor = std::string(name_of(sensor));
+  options.num_threads = 1;
+  SceneFeatures scene;
+  scene.map = surface_map(part, options);
+  scene.image = make_check_image(scene.map);
+  if (!colors || part.color.empty()) return scene;
+  const SceneFeatureOptions usual;
+  const Image<Eigen::Vector3f> rgb = reduced_color(part, scene.map, 1);
+  scene.cielab = cielab(blur(rgb, usual.color_blur_px, 1), 1);
+  scene.log_light = scene.cielab;
+  scene.sharp_light = cielab(rgb, 1);
+  for (auto* image : {&scene.log_light, &scene.sharp_light}) {
+    for (Eigen::Vector3f& pixel : image->pixels) pixel = log_light(pixel);
+  }
+  return scene;
+}
+
+}  // namespace bpa::track

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "core/cloud/frame.hpp"
+#include "core/cloud/sensor_kind.hpp"
+#include "core/model/object_model.hpp"
+#include "core/observation/scene_features.hpp"
+
+namespace bpa::track {
+
+/// The part of a frame around an object, in whole pixels of the reduced image.
+struct Surroundings {
+  RegionOfInterest region;
+  int reduction = 1;  ///< Frame pixels per map pixel, as of the whole frame's SurfaceMap.
+};
+
+/// Where the frame may show the object: its bounding sphere and `margin_m` around it. Nothing where
+/// that is outside of the image, nearer than the camera sees or less than 16 pixels wide.
+std::optional<Surroundings> surroundings(const Frame& frame, const ObjectModel& model,
+                                         const Pose& camera_from_object, double margin_m);
+
+/// Map and image of the surroundings alone: what alignment and checks read. With `colors` also what
+/// behind_best() reads. No surface is background. One thread.
+SceneFeatures observe(const Frame& frame, const Surroundings& around, SensorKind sensor,
+                      bool colors);
+
+}  // namespace bpa::track

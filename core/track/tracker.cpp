@@ -1,0 +1,454 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/track/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <utility>
+
+#include "core/base/concat.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/stopwatch.hpp"
+#include "core/cloud/sensor_noise.hpp"
+#include "core/detect/candidate.hpp"
+#include "core/track/association.hpp"
+#include "core/track/follow.hpp"
+
+namespace bpa::track {
+namespace {
+
+// Chosen by hand.
+constexpr double kRemembered_s = 10;  // frames, for results of searches
+constexpr double kKept_s = 4;         // their images, to follow a new object through
+constexpr double kKeptEvery_s = 0.06;
+constexpr int kAbsentFrames = 5;      // in a row: the track is lost
+constexpr double kMinSearched = 0.3;  // visible fraction of what a search should find
+// Log odds that an object is there.
+constexpr double kMostFound = 3;     // of one search that finds it
+constexpr double kNotFound = -1;     // of one that should and does not
+constexpr double kOtherFound = -3;   // of one that finds another object in its place
+constexpr double kMostEvidence = 6;  // of all
+constexpr double kEnds = -1;
+
+constexpr double kSecond_ns = 1e9;
+
+double log_odds(double probability) {
+  const double p = std::clamp(probability, 0.01, 0.99);
+  return std::log(p / (1 - p));
+}
+
+struct FrameRecord {
+  std::int64_t stamp_ns = 0;
+  Pose frame_from_camera;
+  std::vector<TrackRecord> tracks;
+};
+
+struct KeptFrame {
+  std::shared_ptr<const Frame> frame;
+  Pose frame_from_camera;
+};
+
+struct Life {
+  std::uint64_t id = 0;
+  std::string name;
+  Body body;
+  double evidence = 0;
+  TrackState state = TrackState::tentative;
+  int found = 0;   ///< Searches that found it.
+  int absent = 0;  ///< Frames in a row.
+  std::int64_t born_ns = 0, seen_ns = 0;
+  bool held = false;
+  std::string ends;  ///< Why; empty: it lives.
+};
+
+}  // namespace
+
+struct Tracker::State {
+  std::shared_ptr<const ModelLibrary> library;
+  TrackerOptions options;
+  ScoreLayers layers;
+  TrackerCounts counts;
+  std::optional<SensorKind> sensor;
+  std::string frame_id;  // of the tracks; the camera's where its pose is not known
+  bool in_fixed_frame = false;
+  std::int64_t stamp_ns = 0;
+  Pose frame_from_camera;
+  std::deque<FrameRecord> records;
+  std::deque<KeptFrame> kept;
+  std::vector<Life> tracks;  // by id
+  std::vector<SceneInterpretations> results;
+  std::uint64_t last_id = 0;
+  std::map<std::string, int> born_of_model;
+
+  View view(const Frame& frame, const Pose& from_camera) const {
+    return {frame, *sensor, from_camera, layers};
+  }
+
+  void end_all(const std::string& reason) {
+    for (Life& life : tracks) life.ends = reason;
+  }
+
+  // Begins anew in another frame of reference.
+  void begin(const std::string& id, bool fixed) {
+    if (stamp_ns != 0) end_all("the poses' frame of reference is now " + id);
+    frame_id = id;
+    in_fixed_frame = fixed;
+    records.clear();
+    kept.clear();
+    results.clear();
+  }
+
+  const FrameRecord* record_of(std::int64_t stamp) const {
+    const auto found = std::ranges::find(records, stamp, &FrameRecord::stamp_ns);
+    return found == records.end() ? nullptr : &*found;
+  }
+
+  void follow_all(const Frame& frame, double seconds) {
+    const View now = view(frame, frame_from_camera);
+    parallel_for_pieces(static_cast<int>(tracks.size()), 1, options.num_threads,
+                        [&](int first, int last, int) {
+                          for (int i = first; i < last; ++i) {
+                            follow(now, seconds, tracks[i].body);
+                            compare_modes(now, tracks[i].body);
+                          }
+                        });
+  }
+
+  // Two tracks of one model in one place are one object: the younger one ends, unless it is known
+  // that there are two; then the one that went further is not seen there.
+  void part_twins() {
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+      for (std::size_t k = i + 1; k < tracks.size(); ++k) {
+        Life &a = tracks[i], &b = tracks[k];
+        if (a.body.model != b.body.model || a.body.sight != Sight::seen ||
+            b.body.sight != Sight::seen) {
+          continue;
+        }
+        const Eigen::Vector3d& centre = a.body.model->centre;
+        const double apart = (a.body.motion.pose() * centre - b.body.motion.pose() * centre).norm();
+        if (apart > kSamePlace * a.body.model->diameter) continue;
+        Life& other = b.found > 1 && b.evidence > a.evidence ? a : b;
+        other.ends = concat("is ", &other == &a ? b.name : a.name);
+      }
+    }
+  }
+
+  void update_states() {
+    for (Life& life : tracks) {
+      const Body& body = life.body;
+      life.absent = body.sight == Sight::absent ? life.absent + 1 : 0;
+      const bool was_lost = life.state == TrackState::lost;
+      if (body.sight == Sight::seen) {
+        life.seen_ns = stamp_ns;
+        if (was_lost) ++counts.found_again;
+        if (life.state != TrackState::tentative) life.state = TrackState::confirmed;
+      } else if (life.absent >= kAbsentFrames && !was_lost) {
+        life.state = TrackState::lost;
+        ++counts.losses;
+      } else if (body.sight == Sight::hidden && life.state == TrackState::confirmed) {
+        life.state = TrackState::occluded;
+      }
+      confirm(life);
+      if (life.held) continue;
+      const double unseen = static_cast<double>(stamp_ns - life.seen_ns) / kSecond_ns;
+      const double limit = life.state == TrackState::occluded ? options.hidden_s : options.lost_s;
+      if (unseen > limit) life.ends = concat("not seen for ", limit, " s");
+      if (life.evidence < kEnds) life.ends = "searches do not find it";
+    }
+  }
+
+  void confirm(Life& life) {
+    if (life.state != TrackState::tentative) return;
+    const bool sure = life.found > 1 || life.evidence >= log_odds(options.min_confirming);
+    if (!sure || life.body.sight != Sight::seen) return;
+    life.state = TrackState::confirmed;
+    ++counts.confirmed;
+  }
+
+  // A placement of an earlier frame, followed to the newest one; nothing if it is not there.
+  std::optional<Body> carried_forward(const Placement& found, const FrameRecord& record,
+                                      const Frame& newest) const {
+    const auto model = library->find(found.model);
+    if (!model) return std::nullopt;
+    const Placement in_frame = transformed(record.frame_from_camera, found);
+    const UncertainPose start{in_frame.camera_from_object, in_frame.covariance};
+    Body body{.model = model, .motion = MotionFilter(start), .last_seen = start.pose};
+    body.visible_fraction = found.visible_fraction;
+    Body at_rest = body;
+    if (record.stamp_ns == stamp_ns) return body;
+    const auto seconds_since = [](std::int64_t to, std::int64_t from) {
+      return static_cast<double>(to - from) / kSecond_ns;
+    };
+    follow(view(newest, frame_from_camera), seconds_since(stamp_ns, record.stamp_ns), at_rest);
+    if (at_rest.sight == Sight::seen) return at_rest;
+    std::int64_t at = record.stamp_ns;
+    for (const KeptFrame& frame : kept) {
+      if (frame.frame->stamp_ns <= at) continue;
+      follow(view(*frame.frame, frame.frame_from_camera), seconds_since(frame.frame->stamp_ns, at),
+             body);
+      at = frame.frame->stamp_ns;
+    }
+    if (at < stamp_ns) {
+      follow(view(newest, frame_from_camera), seconds_since(stamp_ns, at), body);
+    }
+    return body.sight == Sight::absent ? std::nullopt : std::optional(body);
+  }
+
+  Life* life_of(std::uint64_t id) {
+    const auto found = std::ranges::find(tracks, id, &Life::id);
+    return found == tracks.end() ? nullptr : &*found;
+  }
+
+  // What a search says of a track that it found again.
+  void confirm_by(const Placement& found, const TrackRecord& record, const FrameRecord& at,
+                  const Frame& newest, Life& life) {
+    ++life.found;
+    life.evidence = std::min(
+        kMostEvidence, life.evidence + std::clamp(log_odds(found.probability), 0.2, kMostFound));
+    if (life.body.sight != Sight::seen) {
+      if (std::optional<Body> body = carried_forward(found, at, newest);
+          body && body->sight == Sight::seen) {
+        body->modes = life.body.modes;
+        life.body = std::move(*body);
+      }
+      return;
+    }
+    // Poses at the time of the search, moved as the object has been since.
+    const Pose since = life.body.motion.pose() * record.camera_from_object.inverse();
+    add_mode(life.body, since * found.camera_from_object, log_odds(found.probability));
+    add_alternatives(found, since, life.body);
+  }
+
+  static void add_alternatives(const Placement& found, const Pose& now_from_then, Body& body) {
+    double own = 1;
+    for (const PoseAlternative& other : found.alternatives) own -= other.weight;
+    for (const PoseAlternative& other : found.alternatives) {
+      add_mode(body, now_from_then * other.camera_from_object,
+               std::log(other.weight / std::max(0.01, own)));
+    }
+  }
+
+  void bear(const Placement& found, const FrameRecord& at, const Frame& newest) {
+    std::optional<Body> body = carried_forward(found, at, newest);
+    if (!body) return;
+    add_alternatives(found, body->motion.pose() * found.camera_from_object.inverse(), *body);
+    Life life{.id = ++last_id, .body = std::move(*body)};
+    life.name = concat(found.model, "_", ++born_of_model[found.model]);
+    while (std::ranges::count(tracks, life.name, &Life::name) > 0) {
+      life.name = concat(found.model, "_", ++born_of_model[found.model]);
+    }
+    life.evidence = std::clamp(log_odds(found.probability), -kMostFound, kMostFound);
+    life.found = 1;
+    life.born_ns = stamp_ns;
+    life.seen_ns = stamp_ns;
+    ++counts.births;
+    confirm(life);
+    tracks.push_back(std::move(life));
+  }
+
+  void take(const SceneInterpretations& result, const Frame& newest) {
+    const FrameRecord* record = record_of(result.stamp_ns);
+    if (!record || result.interpretations.empty()) return;
+    std::vector<Placement> placements = result.interpretations.front().placements;
+    std::erase_if(placements,
+                  [&](const Placement& p) { return p.probability < options.min_probability; });
+    const std::vector<int> matched = match_tracks(placements, record->tracks);
+    for (std::size_t t = 0; t < record->tracks.size(); ++t) {
+      const TrackRecord& track = record->tracks[t];
+      Life* life = life_of(track.id);
+      if (!life) continue;
+      const auto by = std::ranges::find(matched, static_cast<int>(t));
+      if (by != matched.end()) {
+        confirm_by(placements[by - matched.begin()], track, *record, newest, *life);
+        continue;
+      }
+      const bool taken = std::ranges::any_of(
+          placements, [&](const Placement& p) { return claims_place(p, track); });
+      if (result.budget_exhausted && !taken) continue;
+      if (track.sight != Sight::seen || track.visible_fraction < kMinSearched) continue;
+      life->evidence += taken ? kOtherFound : kNotFound;
+    }
+    for (std::size_t p = 0; p < placements.size(); ++p) {
+      if (matched[p] < 0) bear(placements[p], *record, newest);
+    }
+  }
+
+  void remember(std::shared_ptr<const Frame> frame) {
+    FrameRecord record{stamp_ns, frame_from_camera, {}};
+    for (const Life& life : tracks) {
+      record.tracks.push_back({life.id, life.body.model,
+                               frame_from_camera.inverse() * life.body.motion.pose(),
+                               life.body.sight, life.body.visible_fraction,
+                               static_cast<double>(stamp_ns - life.seen_ns) / kSecond_ns});
+    }
+    records.push_back(std::move(record));
+    const auto older = [&](std::int64_t stamp, double seconds) {
+      return static_cast<double>(stamp_ns - stamp) > seconds * kSecond_ns;
+    };
+    while (older(records.front().stamp_ns, kRemembered_s)) records.pop_front();
+    if (kept.empty() || older(kept.back().frame->stamp_ns, kKeptEvery_s)) {
+      kept.push_back({std::move(frame), frame_from_camera});
+    }
+    while (older(kept.front().frame->stamp_ns, kKept_s)) kept.pop_front();
+  }
+
+  Track report(const Life& life) const {
+    const Body& body = life.body;
+    Track out{.id = life.id,
+              .name = life.name,
+              .model = body.model->name,
+              .model_number = body.model->number,
+              .state = life.state,
+              .probability = 1 / (1 + std::exp(-life.evidence)),
+              .frame_from_object = body.motion.pose(),
+              .covariance = body.motion.covariance(),
+              .velocity = body.motion.velocity(),
+              .angular_velocity = body.motion.angular_velocity(),
+              .visible_fraction = body.visible_fraction,
+              .age_s = static_cast<double>(stamp_ns - life.born_ns) / kSecond_ns,
+              .unseen_s = static_cast<double>(stamp_ns - life.seen_ns) / kSecond_ns,
+              .held = life.held};
+    out.orientation = orientation_uncertainty(out.frame_from_object.rotation,
+                                              out.covariance.bottomRightCorner<3, 3>());
+    double sum = 1;
+    for (const Mode& mode : body.modes) sum += std::exp(mode.log_weight);
+    out.weight = 1 / sum;
+    for (const Mode& mode : body.modes) {
+      out.alternatives.push_back(
+          {out.frame_from_object * mode.object_from_mode, std::exp(mode.log_weight) / sum});
+    }
+    std::ranges::stable_sort(out.alternatives, std::greater(), &TrackAlternative::weight);
+    return out;
+  }
+
+  Result<Life*> named(std::uint64_t id) {
+    if (Life* life = life_of(id)) return life;
+    std::string there;
+    for (const Life& life : tracks)
+      there += concat(there.empty() ? "" : ", ", life.id, " (", life.name, ")");
+    return not_found("no track has the id ", id, "; there are: ", there.empty() ? "none" : there);
+  }
+};
+
+Tracker::Tracker(std::shared_ptr<const ModelLibrary> library, TrackerOptions options,
+                 ScoreLayers layers)
+    : state_(std::make_unique<State>()) {
+  state_->library = std::move(library);
+  state_->options = options;
+  state_->layers = std::move(layers);
+}
+
+Tracker::~Tracker() = default;
+
+Result<TrackedFrame> Tracker::track(std::shared_ptr<const Frame> frame,
+                                    const std::optional<CameraPose>& camera) {
+  State& s = *state_;
+  if (Status status = validate(*frame); !status.ok()) return status;
+  if (s.stamp_ns != 0 && frame->stamp_ns <= s.stamp_ns) {
+    return invalid_argument("the frame's stamp, ", frame->stamp_ns,
+                            " ns, is not later than that of the frame before, ", s.stamp_ns, " ns");
+  }
+  const Stopwatch watch;
+  const std::string& id = camera ? camera->frame_id : frame->frame_id;
+  if (s.stamp_ns == 0 || id != s.frame_id || camera.has_value() != s.in_fixed_frame) {
+    s.begin(id, camera.has_value());
+  }
+  if (!s.sensor) s.sensor = sensor_kind_of(sensor_traits(*frame));
+  const double seconds =
+      s.stamp_ns == 0 ? 0 : static_cast<double>(frame->stamp_ns - s.stamp_ns) / kSecond_ns;
+  s.stamp_ns = frame->stamp_ns;
+  s.frame_from_camera = camera ? camera->fixed_from_camera : Pose();
+  ++s.counts.frames;
+  s.follow_all(*frame, seconds);
+  s.part_twins();
+  s.update_states();
+  for (const SceneInterpretations& result : std::exchange(s.results, {})) s.take(result, *frame);
+
+  TrackedFrame out{.stamp_ns = s.stamp_ns,
+                   .frame_id = s.frame_id,
+                   .camera_frame_id = frame->frame_id,
+                   .in_fixed_frame = s.in_fixed_frame,
+                   .frame_from_camera = s.frame_from_camera};
+  for (const Life& life : s.tracks) {
+    if (life.ends.empty()) {
+      out.tracks.push_back(s.report(life));
+    } else {
+      out.ended.push_back({life.id, life.name, life.ends});
+      ++s.counts.ends;
+    }
+  }
+  std::erase_if(s.tracks, [](const Life& life) { return !life.ends.empty(); });
+  s.remember(std::move(frame));
+  out.milliseconds = watch.milliseconds();
+  return out;
+}
+
+Status Tracker::add(const SceneInterpretations& found) {
+  State& s = *state_;
+  if (!s.record_of(found.stamp_ns)) {
+    ++s.counts.stale_searches;
+    return not_found("no frame with the stamp ", found.stamp_ns, " ns was followed in the last ",
+                     kRemembered_s, " s");
+  }
+  ++s.counts.searches;
+  if (const auto kind = sensor_kind(found.sensor)) s.sensor = kind;
+  s.results.push_back(found);
+  return {};
+}
+
+std::vector<ExpectedPlacement> Tracker::expected() const {
+  std::vector<ExpectedPlacement> out;
+  for (const Life& life : state_->tracks) {
+    if (life.state != TrackState::confirmed || life.body.sight != Sight::seen) continue;
+    out.push_back(
+        {life.body.model->name, state_->frame_from_camera.inverse() * life.body.motion.pose()});
+  }
+  return out;
+}
+
+Status Tracker::rename(std::uint64_t id, const std::string& name) {
+  Result<Life*> life = state_->named(id);
+  if (!life.ok()) return life.status();
+  if (name.empty()) return invalid_argument("the name of a track is empty");
+  for (const Life& other : state_->tracks) {
+    if (other.id != id && other.name == name) {
+      return invalid_argument("track ", other.id, " has the name \"", name, "\" already");
+    }
+  }
+  (*life)->name = name;
+  return {};
+}
+
+Status Tracker::hold(std::uint64_t id, bool held) {
+  Result<Life*> life = state_->named(id);
+  if (!life.ok()) return life.status();
+  (*life)->held = held;
+  return {};
+}
+
+Status Tracker::forget(std::uint64_t id) {
+  Result<Life*> life = state_->named(id);
+  if (!life.ok()) return life.status();
+  (*life)->ends = "forgotten by request";
+  return {};
+}
+
+const TrackerOptions& Tracker::options() const { return state_->options; }
+void Tracker::set_options(const TrackerOptions& options) { state_->options = options; }
+
+void Tracker::set_library(std::shared_ptr<const ModelLibrary> library, ScoreLayers layers) {
+  State& s = *state_;
+  s.library = std::move(library);
+  s.layers = std::move(layers);
+  for (Life& life : s.tracks) {
+    if (s.library->find(life.body.model->name) != life.body.model) {
+      life.ends = "its model is no longer in the library";
+    }
+  }
+}
+
+const TrackerCounts& Tracker::counts() const { return state_->counts; }
+
+}  // namespace bpa::track
