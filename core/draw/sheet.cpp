@@ -13,6 +13,7 @@ namespace bpa::draw {
 namespace {
 
 constexpr int kLine = 24;  // pixels
+constexpr int kGap = 4;    // pixels beside and below a cell
 
 // Where each entry of the legend goes: line and x.
 std::vector<cv::Point> places(const std::vector<LegendEntry>& legend, int width) {
@@ -58,16 +59,23 @@ io::ColorImage beside(const io::ColorImage& left, const io::ColorImage& right) {
 io::ColorImage contact_sheet(const std::vector<io::ColorImage>& pictures, int columns,
                              int cell_width) {
   const int count = static_cast<int>(pictures.size());
-  const auto size_of = [cell_width](const io::ColorImage& picture) {
+  const auto size_of = [&cell_width](const io::ColorImage& picture) {
     const double scale = static_cast<double>(cell_width) / picture.width;
     return cv::Size(cell_width, cvRound(scale * picture.height));
   };
-  int height = 1;
-  for (const io::ColorImage& picture : pictures) height = std::max(height, size_of(picture).height);
-  const int rows = std::max(1, (count + columns - 1) / columns);
-  cv::Mat sheet(rows * (height + 4), columns * (cell_width + 4), CV_8UC3, cv::Scalar::all(255));
+  int height = 0, rows = 0;
+  for (bool fits = false; !fits; fits = rows * height <= io::kMaxImageSide) {
+    if (height > 0) ++columns;
+    cell_width = std::min(cell_width, io::kMaxImageSide / columns - kGap);
+    height = 1;
+    for (const auto& picture : pictures) height = std::max(height, size_of(picture).height);
+    height += kGap;
+    rows = std::max(1, (count + columns - 1) / columns);
+  }
+  const int width = cell_width + kGap;
+  cv::Mat sheet(rows * height, columns * width, CV_8UC3, cv::Scalar::all(255));
   for (int i = 0; i < count; ++i) {
-    const cv::Point corner((i % columns) * (cell_width + 4), (i / columns) * (height + 4));
+    const cv::Point corner((i % columns) * width, (i / columns) * height);
     const cv::Size size = size_of(pictures[i]);
     cv::resize(to_mat(pictures[i]), sheet(cv::Rect(corner, size)), size, 0, 0, cv::INTER_AREA);
   }

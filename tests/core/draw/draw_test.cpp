@@ -7,6 +7,7 @@
 #include "core/draw/annotate.hpp"
 #include "core/draw/poses.hpp"
 #include "core/draw/scene_features.hpp"
+#include "core/draw/sheet.hpp"
 
 namespace bpa::draw {
 namespace {
@@ -230,6 +231,31 @@ TEST(Crop, SeesTheSameInItsPart) {
   EXPECT_EQ(part.depth[20 * 80 + 10], 0.5f);
   EXPECT_EQ(part.color[3 * (20 * 80 + 10) + 1], 7);
   EXPECT_EQ(part.camera.unproject(10, 20, 0.5), frame.camera.unproject(170, 120, 0.5));
+}
+
+// Sixty pictures of 964 x 482 in two columns would be 14 580 pixels high.
+TEST(ContactSheet, HoldsEveryPictureAndIsNeverTooLargeToWrite) {
+  constexpr int kCount = 60;
+  std::vector<io::ColorImage> pictures(kCount);
+  for (int i = 0; i < kCount; ++i) {
+    pictures[i] = {40, 20, std::vector<std::uint8_t>(3 * 40 * 20, static_cast<std::uint8_t>(i))};
+  }
+  const io::ColorImage sheet = contact_sheet(pictures, 2, 960);
+  EXPECT_LE(sheet.width, io::kMaxImageSide);
+  EXPECT_LE(sheet.height, io::kMaxImageSide);
+  std::array<int, kCount> area{};
+  for (std::size_t i = 0; i < sheet.pixels.size(); i += 3) {
+    if (sheet.pixels[i] < kCount) ++area[sheet.pixels[i]];
+  }
+  for (const int pixels : area) EXPECT_EQ(pixels, area[0]);
+  EXPECT_GT(area[0], 300 * 150);
+}
+
+TEST(ContactSheet, ThatFitsHasTheColumnsAndSizesAskedFor) {
+  const std::vector<io::ColorImage> pictures(3, {40, 20, std::vector<std::uint8_t>(2400, 7)});
+  const io::ColorImage sheet = contact_sheet(pictures, 2, 100);
+  EXPECT_EQ(sheet.width, 2 * 104);
+  EXPECT_EQ(sheet.height, 2 * 54);
 }
 
 }  // namespace
