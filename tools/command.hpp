@@ -145,6 +145,7 @@ int run_bpa(int argc, char** argv, CountAllocations allocations = nullptr);
 
 void add_model_command(CLI::App& program);
 void add_detect_command(CLI::App& program);
+void add_track_command(CLI::App& program);
 void add_evaluate_command(CLI::App& program);
 void add_train_command(CLI::App& program);
 void add_doctor_command(CLI::App& program);

@@ -41,7 +41,7 @@ struct Track {
   Pose frame_from_object;  ///< Metres.
   /// Covariance of (x, y, z, rotation about x, y, z), metres and radians, as Placement's.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  OrientationUncertainty orientation;                  ///< Of the pose; the alternatives are apart.
+  OrientationUncertainty orientation = {};             ///< Of the pose; the alternatives are apart.
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< Of the origin, m/s.
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< rad/s.
   double visible_fraction = 0;  ///< Of the surface that faces the camera, in the newest frame.
@@ -49,7 +49,7 @@ struct Track {
   double unseen_s = 0;          ///< Since it was last seen.
   bool held = false;            ///< Kept however long it is not seen, because a user asked for it.
   double weight = 1;            ///< Of the pose against its alternatives.
-  std::vector<TrackAlternative> alternatives;  ///< By falling weight; empty: none is left.
+  std::vector<TrackAlternative> alternatives = {};  ///< By falling weight; empty: none is left.
 };
 
 /// A track that is no more.
@@ -61,14 +61,14 @@ struct EndedTrack {
 
 /// All tracks after one frame.
 struct TrackedFrame {
-  std::int64_t stamp_ns = 0;      ///< Exposure time of the frame, UTC.
-  std::string frame_id;           ///< Of the poses: the fixed frame, or the camera's optical frame.
-  std::string camera_frame_id;    ///< The optical frame of the camera.
-  bool in_fixed_frame = false;    ///< Whether the camera's motion is known.
-  Pose frame_from_camera;         ///< The identity without a fixed frame.
-  std::vector<Track> tracks;      ///< By id. What is tentative or lost is among them.
-  std::vector<EndedTrack> ended;  ///< In this frame.
-  double milliseconds = 0;        ///< That following took.
+  std::int64_t stamp_ns = 0;    ///< Exposure time of the frame, UTC.
+  std::string frame_id;         ///< Of the poses: the fixed frame, or the camera's optical frame.
+  std::string camera_frame_id;  ///< The optical frame of the camera.
+  bool in_fixed_frame = false;  ///< Whether the camera's motion is known.
+  Pose frame_from_camera;       ///< The identity without a fixed frame.
+  std::vector<Track> tracks = {};      ///< By id. What is tentative or lost is among them.
+  std::vector<EndedTrack> ended = {};  ///< In this frame.
+  double milliseconds = 0;             ///< That following took.
 };
 
 }  // namespace bpa

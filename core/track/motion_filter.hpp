@@ -44,7 +44,9 @@ class MotionFilter {
   /// in every frame (model, calibration), which no average removes.
   void update(const UncertainPose& measured);
 
-  XX const Pose& pose() const { return pose_; }
+  /// Takes another of several likely poses. Velocity and covariance stay.
+  void jump_to(const Pose& pose) { pose_ = pose; }
+  const Pose& pose() const { return pose_; }
   Eigen::Vector3d velocity() const { return velocity_.head<3>(); }          ///< Of the origin, m/s.
   Eigen::Vector3d angular_velocity() const { return velocity_.tail<3>(); }  ///< rad/s.
   bool moves() const { return moves_; }

@@ -13,8 +13,7 @@
 #include "core/base/stopwatch.hpp"
 #include "core/cloud/sensor_noise.hpp"
 #include "core/detect/candidate.hpp"
-#include "core/track/association.hpp"
-#include "core/track/follow.hpp"
+#include "core/track/life.hpp"
 
 namespace bpa::track {
 namespace {
@@ -26,10 +25,10 @@ constexpr double kKeptEvery_s = 0.06;
 constexpr int kAbsentFrames = 5;      // in a row: the track is lost
 constexpr double kMinSearched = 0.3;  // visible fraction of what a search should find
 // Log odds that an object is there.
-constexpr double kMostFound = 3;     // of one search that finds it
-constexpr double kNotFound = -1;     // of one that should and does not
-constexpr double kOtherFound = -3;   // of one that finds another object in its place
-constexpr double kMostEvidence = 6;  // of all
+constexpr double kMostFound = 3;    // of one search that finds it
+constexpr double kNotFound = -1;    // of one that should and does not
+constexpr double kOtherFound = -3;  // of one that finds another object in its place
+constexpr double kMostLogOdds = 6;  // of all
 constexpr double kEnds = -1;
 
 constexpr double kSecond_ns = 1e9;
@@ -38,30 +37,6 @@ double log_odds(double probability) {
   const double p = std::clamp(probability, 0.01, 0.99);
   return std::log(p / (1 - p));
 }
-
-struct FrameRecord {
-  std::int64_t stamp_ns = 0;
-  Pose frame_from_camera;
-  std::vector<TrackRecord> tracks;
-};
-
-struct KeptFrame {
-  std::shared_ptr<const Frame> frame;
-  Pose frame_from_camera;
-};
-
-struct Life {
-  std::uint64_t id = 0;
-  std::string name;
-  Body body;
-  double evidence = 0;
-  TrackState state = TrackState::tentative;
-  int found = 0;   ///< Searches that found it.
-  int absent = 0;  ///< Frames in a row.
-  std::int64_t born_ns = 0, seen_ns = 0;
-  bool held = false;
-  std::string ends;  ///< Why; empty: it lives.
-};
 
 }  // namespace
 
@@ -196,6 +171,22 @@ struct Tracker::State {
     return body.sight == Sight::absent ? std::nullopt : std::optional(body);
   }
 
+  // The same with the placement's alternatives, which become the body's. Where its own pose is not
+  // there, one of them is.
+  std::optional<Body> any_carried_forward(const Placement& found, const FrameRecord& record,
+                                          const Frame& newest) const {
+    Placement likeliest = found;
+    std::optional<Body> body = carried_forward(likeliest, record, newest);
+    for (std::size_t i = 0; i < found.alternatives.size() && !body; ++i) {
+      likeliest.camera_from_object = found.alternatives[i].camera_from_object;
+      body = carried_forward(likeliest, record, newest);
+    }
+    if (!body) return body;
+    const Pose since = body->motion.pose() * likeliest.camera_from_object.inverse();
+    add_alternatives(found, since, *body);
+    return body;
+  }
+
   Life* life_of(std::uint64_t id) {
     const auto found = std::ranges::find(tracks, id, &Life::id);
     return found == tracks.end() ? nullptr : &*found;
@@ -206,11 +197,10 @@ struct Tracker::State {
                   const Frame& newest, Life& life) {
     ++life.found;
     life.evidence = std::min(
-        kMostEvidence, life.evidence + std::clamp(log_odds(found.probability), 0.2, kMostFound));
+        kMostLogOdds, life.evidence + std::clamp(log_odds(found.probability), 0.2, kMostFound));
     if (life.body.sight != Sight::seen) {
-      if (std::optional<Body> body = carried_forward(found, at, newest);
+      if (std::optional<Body> body = any_carried_forward(found, at, newest);
           body && body->sight == Sight::seen) {
-        body->modes = life.body.modes;
         life.body = std::move(*body);
       }
       return;
@@ -231,14 +221,13 @@ struct Tracker::State {
   }
 
   void bear(const Placement& found, const FrameRecord& at, const Frame& newest) {
-    std::optional<Body> body = carried_forward(found, at, newest);
+    std::optional<Body> body = any_carried_forward(found, at, newest);
     if (!body) return;
-    add_alternatives(found, body->motion.pose() * found.camera_from_object.inverse(), *body);
-    Life life{.id = ++last_id, .body = std::move(*body)};
-    life.name = concat(found.model, "_", ++born_of_model[found.model]);
-    while (std::ranges::count(tracks, life.name, &Life::name) > 0) {
-      life.name = concat(found.model, "_", ++born_of_model[found.model]);
+    std::string name = concat(found.model, "_", ++born_of_model[found.model]);
+    while (std::ranges::count(tracks, name, &Life::name) > 0) {
+      name = concat(found.model, "_", ++born_of_model[found.model]);
     }
+    Life life{.id = ++last_id, .name = std::move(name), .body = std::move(*body)};
     life.evidence = std::clamp(log_odds(found.probability), -kMostFound, kMostFound);
     life.found = 1;
     life.born_ns = stamp_ns;
