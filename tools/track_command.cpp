@@ -76,7 +76,7 @@ void follow_frames(const TrackArguments& a) {
   const auto library = std::make_shared<ModelLibrary>(detector.library());
   track::TrackerOptions options = a.tracker;
   options.num_threads = a.common.threads;
-  or_throw(validate(options, "tracker"));
+  or_throw(validate(options));
   std::optional<track::Tracker> tracker;
   Searches searches(a, detector);
   std::vector<io::TrackResult> results;

@@ -2,14 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/track/observe_around.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <utility>
 
 #include "core/cloud/blur.hpp"
 #include "core/cloud/cielab.hpp"
+#include "core/model/model_index.hpp"
 
 namespace bpa::track {
 namespace {
@@ -43,26 +46,30 @@ Frame cut_out(const Frame& frame, const RegionOfInterest& region) {
 std::optional<Surroundings> surroundings(const Frame& frame, const ObjectModel& model,
                                          const Pose& camera_from_object, double margin_m) {
   const Camera& camera = frame.camera;
-  const Eigen::Vector3d centre = camera_from_object * model.centre;
-  const double radius = 0.5 * model.diameter + margin_m;
-  const double nearest = std::max<double>(kNearest_m, centre.z() - radius);
-  if (!(centre.z() > kNearest_m)) return std::nullopt;
+  const FastPose pose = to_fast(camera_from_object);
+  Eigen::AlignedBox2d box;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3f& point : model.index->check.points) {
+    const Eigen::Vector3d at = (pose * point).cast<double>();
+    if (!(at.z() > kNearest_m)) return std::nullopt;
+    box.extend(camera.project(at));
+    nearest = std::min(nearest, at.z());
+  }
   Surroundings out;
   const int max_width = SurfaceMapOptions().max_width;
   while (camera.width / out.reduction > max_width) ++out.reduction;
+  // The range of an axis with its margin, in whole pixels of the reduced image.
   const int r = out.reduction;
-  // Where `middle` and what is `radius` beside it fall, as whole pixels of the reduced image.
-  const auto range = [&](double middle, double focal, double principal, int size) {
-    const double at = focal * middle / centre.z() + principal, beside = focal * radius / nearest;
-    const double last = size / r;
-    const int from = static_cast<int>(std::clamp(std::floor((at - beside) / r), 0.0, last));
-    const int to = static_cast<int>(std::clamp(std::ceil((at + beside) / r), 0.0, last));
-    return std::pair(from * r, (to - from) * r);
+  const auto range = [&](double from, double to, double focal, int size) {
+    const double margin = focal * margin_m / nearest, last = size / r;
+    const int low = static_cast<int>(std::clamp(std::floor((from - margin) / r), 0.0, last));
+    const int high = static_cast<int>(std::clamp(std::ceil((to + margin) / r), 0.0, last));
+    return std::pair(low * r, (high - low) * r);
   };
-  std::tie(out.region.x, out.region.width) = range(centre.x(), camera.fx, camera.cx, camera.width);
-  std::tie(out.region.y, out.region.height) =
-      range(centre.y(), camera.fy, camera.cy, camera.height);
-  if (std::min(out.region.width, out.region.height) < kSmallest * r) return std::nullopt;
+  RegionOfInterest& region = out.region;
+  std::tie(region.x, region.width) = range(box.min().x(), box.max().x(), camera.fx, camera.width);
+  std::tie(region.y, region.height) = range(box.min().y(), box.max().y(), camera.fy, camera.height);
+  if (std::min(region.width, region.height) < kSmallest * r) return std::nullopt;
   return out;
 }
 

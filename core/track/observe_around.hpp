@@ -17,8 +17,8 @@ struct Surroundings {
   int reduction = 1;  ///< Frame pixels per map pixel, as of the whole frame's SurfaceMap.
 };
 
-/// Where the frame may show the object: its bounding sphere and `margin_m` around it. Nothing where
-/// that is outside of the image, nearer than the camera sees or less than 16 pixels wide.
+/// Where the frame shows the object and `margin_m` around it. Nothing where that is outside of the
+/// image, nearer than the camera sees or less than 16 pixels of the reduced image wide.
 std::optional<Surroundings> surroundings(const Frame& frame, const ObjectModel& model,
                                          const Pose& camera_from_object, double margin_m);
 

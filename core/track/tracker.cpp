@@ -25,11 +25,13 @@ constexpr double kKeptEvery_s = 0.06;
 constexpr int kAbsentFrames = 5;      // in a row: the track is lost
 constexpr double kMinSearched = 0.3;  // visible fraction of what a search should find
 // Log odds that an object is there.
-constexpr double kMostFound = 3;    // of one search that finds it
-constexpr double kNotFound = -1;    // of one that should and does not
+constexpr double kLeastFound = 0.2, kMostFound = 3;  // of one search that finds it
+constexpr double kNotFound = -1;                     // of one that should and does not
 constexpr double kOtherFound = -3;  // of one that finds another object in its place
 constexpr double kMostLogOdds = 6;  // of all
 constexpr double kEnds = -1;
+
+constexpr int kPhases = 8;  // tracks that are not aligned in the same frame, where all rest
 
 constexpr double kSecond_ns = 1e9;
 
@@ -192,12 +194,16 @@ struct Tracker::State {
     return found == tracks.end() ? nullptr : &*found;
   }
 
+  static void believe(const Placement& found, Life& life) {
+    ++life.found;
+    const double more = std::clamp(log_odds(found.probability), kLeastFound, kMostFound);
+    life.evidence = std::min(kMostLogOdds, life.evidence + more);
+  }
+
   // What a search says of a track that it found again.
   void confirm_by(const Placement& found, const TrackRecord& record, const FrameRecord& at,
                   const Frame& newest, Life& life) {
-    ++life.found;
-    life.evidence = std::min(
-        kMostLogOdds, life.evidence + std::clamp(log_odds(found.probability), 0.2, kMostFound));
+    believe(found, life);
     if (life.body.sight != Sight::seen) {
       if (std::optional<Body> body = any_carried_forward(found, at, newest);
           body && body->sight == Sight::seen) {
@@ -220,16 +226,51 @@ struct Tracker::State {
     }
   }
 
-  void bear(const Placement& found, const FrameRecord& at, const Frame& newest) {
-    std::optional<Body> body = any_carried_forward(found, at, newest);
-    if (!body) return;
-    std::string name = concat(found.model, "_", ++born_of_model[found.model]);
-    while (std::ranges::count(tracks, name, &Life::name) > 0) {
-      name = concat(found.model, "_", ++born_of_model[found.model]);
+  // The index of a track of the model at the pose; -1: none.
+  int track_at(const std::string& model, const Pose& pose) const {
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+      const ObjectModel& its = *tracks[i].body.model;
+      if (its.name != model) continue;
+      const Pose there = tracks[i].body.motion.pose();
+      const double apart = (there * its.centre - pose * its.centre).norm();
+      if (apart < kSamePlace * its.diameter) return static_cast<int>(i);
     }
-    Life life{.id = ++last_id, .name = std::move(name), .body = std::move(*body)};
+    return -1;
+  }
+
+  // Begins tracks of placements that no track of their frame shows.
+  void bear(const std::vector<Placement>& found, const FrameRecord& at, const Frame& newest) {
+    std::vector<std::optional<Body>> bodies(found.size());
+    parallel_for_pieces(static_cast<int>(found.size()), 1, options.num_threads,
+                        [&](int first, int last, int) {
+                          for (int i = first; i < last; ++i) {
+                            // Its track may have been born after the search's frame.
+                            const Pose then = at.frame_from_camera * found[i].camera_from_object;
+                            if (track_at(found[i].model, then) < 0) {
+                              bodies[i] = any_carried_forward(found[i], at, newest);
+                            }
+                          }
+                        });
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const Pose pose =
+          bodies[i] ? bodies[i]->motion.pose() : at.frame_from_camera * found[i].camera_from_object;
+      if (const int there = track_at(found[i].model, pose); there >= 0) {
+        believe(found[i], tracks[there]);
+      } else if (bodies[i]) {
+        add_track(found[i], std::move(*bodies[i]));
+      }
+    }
+  }
+
+  void add_track(const Placement& found, Body body) {
+    std::string name;
+    do {
+      name = concat(found.model, "_", ++born_of_model[found.model]);
+    } while (std::ranges::count(tracks, name, &Life::name) > 0);
+    Life life{.id = ++last_id, .name = std::move(name), .body = std::move(body)};
     life.evidence = std::clamp(log_odds(found.probability), -kMostFound, kMostFound);
     life.found = 1;
+    life.body.unchanged = static_cast<int>(life.id % kPhases);
     life.born_ns = stamp_ns;
     life.seen_ns = stamp_ns;
     ++counts.births;
@@ -259,9 +300,11 @@ struct Tracker::State {
       if (track.sight != Sight::seen || track.visible_fraction < kMinSearched) continue;
       life->evidence += taken ? kOtherFound : kNotFound;
     }
+    std::vector<Placement> fresh;
     for (std::size_t p = 0; p < placements.size(); ++p) {
-      if (matched[p] < 0) bear(placements[p], *record, newest);
+      if (matched[p] < 0) fresh.push_back(placements[p]);
     }
+    bear(fresh, *record, newest);
   }
 
   void remember(std::shared_ptr<const Frame> frame) {
