@@ -33,8 +33,6 @@ constexpr double kMaxJump_m = 0.12, kMaxJump_rad = 0.8;  // in one frame
 
 // A resting object is aligned again where its surroundings change, or in every tenth frame.
 constexpr int kStep_px = 4;            // between depths that are compared
-constexpr float kChanged_m = 0.004f;   // plus deviations of depth
-constexpr float kDeviations = 3;       // of it
 constexpr double kMaxChanged = 0.005;  // of the depths; noise
 constexpr int kMaxUnchanged = 9;       // frames in a row
 
@@ -46,27 +44,6 @@ constexpr double kMostEvidence = 60;  // nats of one comparison
 constexpr int kComparedAtLeast = 3;   // times, whatever the views
 constexpr double kUnlikely = -5;      // log weight of a mode that is dropped
 constexpr std::size_t kMostModes = 6;
-
-std::vector<float> sampled_depths(const Frame& frame, const RegionOfInterest& region) {
-  std::vector<float> out;
-  for (int v = region.y; v < region.y + region.height; v += kStep_px) {
-    for (int u = region.x; u < region.x + region.width; u += kStep_px) {
-      out.push_back(frame.depth[static_cast<std::size_t>(v) * frame.camera.width + u]);
-    }
-  }
-  return out;
-}
-
-bool same_depths(const std::vector<float>& now, const std::vector<float>& then,
-                 const SensorNoise& noise) {
-  int changed = 0, known = 0;
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    if (!(now[i] > 0) || !(then[i] > 0)) continue;  // depth comes and goes at rims
-    ++known;
-    changed += std::abs(now[i] - then[i]) > kChanged_m + kDeviations * noise(now[i]);
-  }
-  return known > 0 && changed <= kMaxChanged * known;
-}
 
 Sight sight_of(const SurfaceAgreement& surface, int correspondences) {
   const bool agrees = surface.agreeing >= kMinAgreeing && surface.free_space <= kMaxFreeSpace;
@@ -117,11 +94,11 @@ void follow(const View& view, double seconds, Body& body) {
   const auto around = surroundings(view.frame, model, view.in_camera(predicted), kMargin_m);
   std::vector<float> depths;
   if (around && !motion.moves()) {
-    depths = sampled_depths(view.frame, around->region);
+    depths = sampled_depths(view.frame, around->region, kStep_px);
     const RegionOfInterest &a = around->region, &b = body.around_region;
     const bool same_region = a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
     if (body.sight == Sight::seen && same_region && body.unchanged < kMaxUnchanged &&
-        same_depths(depths, body.around, noise_of(view.sensor))) {
+        changed_share(depths, body.around, noise_of(view.sensor)) <= kMaxChanged) {
       ++body.unchanged;
       return;
     }

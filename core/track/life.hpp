@@ -19,6 +19,7 @@ struct FrameRecord {
   std::int64_t stamp_ns = 0;
   Pose frame_from_camera;
   std::vector<TrackRecord> tracks;
+  std::vector<float> depths;  ///< sampled_depths() of the whole frame.
 };
 
 /// A frame that new objects are followed through.

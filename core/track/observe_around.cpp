@@ -73,6 +73,30 @@ std::optional<Surroundings> surroundings(const Frame& frame, const ObjectModel& 
   return out;
 }
 
+std::vector<float> sampled_depths(const Frame& frame, RegionOfInterest region, int step) {
+  if (region.empty()) region = {0, 0, frame.camera.width, frame.camera.height};
+  std::vector<float> out;
+  for (int v = region.y; v < region.y + region.height; v += step) {
+    for (int u = region.x; u < region.x + region.width; u += step) {
+      out.push_back(frame.depth[static_cast<std::size_t>(v) * frame.camera.width + u]);
+    }
+  }
+  return out;
+}
+
+double changed_share(const std::vector<float>& now, const std::vector<float>& then,
+                     const SensorNoise& noise) {
+  constexpr float kChanged_m = 0.004f, kDeviations = 3;  // metres; times the noise. By hand.
+  if (now.size() != then.size()) return 1;
+  int changed = 0, known = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (!(now[i] > 0) || !(then[i] > 0)) continue;  // depth comes and goes at rims
+    ++known;
+    changed += std::abs(now[i] - then[i]) > kChanged_m + kDeviations * noise(now[i]);
+  }
+  return known > 0 ? static_cast<double>(changed) / known : 1;
+}
+
 SceneFeatures observe(const Frame& frame, const Surroundings& around, SensorKind sensor,
                       bool colors) {
   const Frame part = cut_out(frame, around.region);

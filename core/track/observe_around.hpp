@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/cloud/frame.hpp"
 #include "core/cloud/sensor_kind.hpp"
@@ -21,6 +22,14 @@ struct Surroundings {
 /// image, nearer than the camera sees or less than 16 pixels of the reduced image wide.
 std::optional<Surroundings> surroundings(const Frame& frame, const ObjectModel& model,
                                          const Pose& camera_from_object, double margin_m);
+
+/// Every `step`-th depth of a region in every `step`-th row; an empty region is the whole frame.
+std::vector<float> sampled_depths(const Frame& frame, RegionOfInterest region, int step);
+
+/// The share of depths, known in both, that differ by more than noise. 1 where the numbers differ
+/// or nothing is known.
+double changed_share(const std::vector<float>& now, const std::vector<float>& then,
+                     const SensorNoise& noise);
 
 /// Map and image of the surroundings alone: what alignment and checks read. With `colors` also what
 /// behind_best() reads. No surface is background. One thread.

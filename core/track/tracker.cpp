@@ -14,6 +14,7 @@
 #include "core/cloud/sensor_noise.hpp"
 #include "core/detect/candidate.hpp"
 #include "core/track/life.hpp"
+#include "core/track/observe_around.hpp"
 
 namespace bpa::track {
 namespace {
@@ -31,7 +32,8 @@ constexpr double kOtherFound = -3;  // of one that finds another object in its p
 constexpr double kMostLogOdds = 6;  // of all
 constexpr double kEnds = -1;
 
-constexpr int kPhases = 8;  // tracks that are not aligned in the same frame, where all rest
+constexpr int kCoarseStep_px = 8;  // between depths that are compared with another frame's
+constexpr int kPhases = 8;         // tracks that are not aligned in the same frame, where all rest
 
 constexpr double kSecond_ns = 1e9;
 
@@ -308,7 +310,7 @@ struct Tracker::State {
   }
 
   void remember(std::shared_ptr<const Frame> frame) {
-    FrameRecord record{stamp_ns, frame_from_camera, {}};
+    FrameRecord record{stamp_ns, frame_from_camera, {}, sampled_depths(*frame, {}, kCoarseStep_px)};
     for (const Life& life : tracks) {
       record.tracks.push_back({life.id, life.body.model,
                                frame_from_camera.inverse() * life.body.motion.pose(),
@@ -428,6 +430,12 @@ Status Tracker::add(const SceneInterpretations& found) {
   if (const auto kind = sensor_kind(found.sensor)) s.sensor = kind;
   s.results.push_back(found);
   return {};
+}
+
+double Tracker::changed_since(std::int64_t stamp_ns) const {
+  const FrameRecord* then = state_->record_of(stamp_ns);
+  if (!then) return 1;
+  return changed_share(state_->records.back().depths, then->depths, noise_of(*state_->sensor));
 }
 
 std::vector<ExpectedPlacement> Tracker::expected() const {

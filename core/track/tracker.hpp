@@ -76,6 +76,11 @@ class Tracker {
   /// carries it forward. Fails with not_found on a frame that is no longer remembered.
   Status add(const SceneInterpretations& found);
 
+  /// The share of depths that the newest frame has otherwise than an earlier one; 1 where that is
+  /// not remembered. A scene that stands still before a camera that stands still need not be
+  /// searched again.
+  double changed_since(std::int64_t stamp_ns) const;
+
   /// Where the confirmed tracks are in the newest frame, for DetectRequest::expected.
   std::vector<ExpectedPlacement> expected() const;
 

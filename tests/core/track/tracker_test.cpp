@@ -326,6 +326,17 @@ TEST_F(TrackerTest, RefusesWhatItCannotUse) {
   EXPECT_EQ(last.ended[0].name, "lid");
 }
 
+TEST_F(TrackerTest, KnowsWhatHasChangedSinceAFrame) {
+  Tracker tracker = this->tracker();
+  follow(tracker, frame(scene({brick_at(0, 0)})));
+  const std::int64_t first = stamp();
+  follow(tracker, frame(scene({brick_at(0, 0)})));
+  EXPECT_LT(tracker.changed_since(first), 0.005);
+  follow(tracker, frame(scene({brick_at(0.1, 0)})));
+  EXPECT_GT(tracker.changed_since(first), 0.01);
+  EXPECT_EQ(tracker.changed_since(first + 1), 1);
+}
+
 TEST_F(TrackerTest, WhatSearchesNoLongerFindEnds) {
   Tracker tracker = this->tracker();
   const Pose brick = brick_at(0, 0);
