@@ -8,6 +8,7 @@
 
 #include "core/detect/candidate.hpp"
 #include "core/detect/refinement.hpp"
+#include "core/model/model_index.hpp"
 #include "core/result/placement.hpp"
 #include "core/score/rival_poses.hpp"
 #include "core/score/surface_agreement.hpp"
@@ -26,9 +27,8 @@ constexpr int kMinCorrespondences = 12;  // of the alignment
 // A pose that is known well is aligned in fewer steps than a hypothesis of the search.
 constexpr RefinementOptions kAlignment{4, 200, 60, 0.030, 0.010};
 constexpr RefinementOptions kWideAlignment{8, 200, 60, 0.060, 0.010};
-constexpr double kMargin_m = 0.03;           // around the object
-constexpr double kWideMargin_m = 0.08;       // the same, where it was not where it was expected
-constexpr double kMaxDistanceSquared = 100;  // of a measurement from the prediction, Mahalanobis
+constexpr double kMargin_m = 0.03;      // around the object
+constexpr double kWideMargin_m = 0.08;  // the same, where it was not where it was expected
 constexpr double kMaxJump_m = 0.12, kMaxJump_rad = 0.8;  // in one frame
 
 // A resting object is aligned again where its surroundings change, or in every tenth frame.
@@ -39,11 +39,18 @@ constexpr int kMaxUnchanged = 9;       // frames in a row
 // Modes: views that differ by less say the same again. A tenth of a nat for each nat of evidence,
 // as errors of models and calibration are the same in all views.
 constexpr double kNewView_rad = 0.05;
-constexpr double kTempered = 0.1;
-constexpr double kMostEvidence = 60;  // nats of one comparison
-constexpr int kComparedAtLeast = 3;   // times, whatever the views
-constexpr double kUnlikely = -5;      // log weight of a mode that is dropped
-constexpr std::size_t kMostModes = 6;
+constexpr double kTempered = 0.05;
+constexpr double kLittleEvidence = 4;  // nats
+constexpr double kMostEvidence = 60;   // nats of one comparison
+constexpr double kMinCompared =
+    0.35;                        // visible fraction: of less, a mode slides behind what hides it
+constexpr double kSwitches = 2;  // log weight at which another mode becomes the pose
+constexpr int kComparedAtLeast = 3;    // times, whatever the views
+constexpr double kUnlikely = -5;       // log weight of a mode that is dropped
+constexpr double kTurnedWeight = -3;   // log weight of a near-symmetric turn that nobody suggests
+constexpr double kMaxSlide_rad = 0.1;  // of a mode, while it is aligned
+constexpr int kMinFramesBetween = 5;   // comparisons
+constexpr std::size_t kMostModes = 40;
 
 Sight sight_of(const SurfaceAgreement& surface, int correspondences) {
   const bool agrees = surface.agreeing >= kMinAgreeing && surface.free_space <= kMaxFreeSpace;
@@ -64,6 +71,68 @@ Fit judged(const View& view, const ObjectModel& model, const FeaturePlaces& plac
           {placement.camera_from_object, placement.covariance},
           view.layers.round_two.log_odds(candidate.values),
           evidence.surface().visibility};
+}
+
+// Adds another pose unless the body has it. Returns whether it did.
+bool propose(Body& body, const Pose& object_from_mode, double log_weight) {
+  const auto same = [&](const Pose& other) {
+    const PoseError error = pose_error(object_from_mode, other, body.model->symmetry);
+    return error.position < kPoseTolerance_m && error.angle < kPoseTolerance_rad;
+  };
+  if (same(Pose()) || body.modes.size() >= kMostModes) return false;
+  const auto known = std::ranges::find_if(
+      body.modes, [&](const Mode& mode) { return same(mode.object_from_mode); });
+  if (known == body.modes.end()) {
+    body.modes.push_back({object_from_mode, log_weight});
+    return true;
+  }
+  known->log_weight = std::max(known->log_weight, log_weight);
+  return false;
+}
+
+// Whether the camera looks at the object from elsewhere than when its modes were last compared.
+bool is_new_view(const Body& body, const Pose& object_from_camera) {
+  if (body.frames_since_compared < kMinFramesBetween) return false;
+  const Eigen::Vector3d now = object_from_camera.translation - body.model->centre;
+  const Eigen::Vector3d before = body.compared_from.translation - body.model->centre;
+  return std::atan2(now.cross(before).norm(), now.dot(before)) >= kNewView_rad;
+}
+
+// The likeliest mode becomes the pose, and the pose a mode.
+void make_pose(std::size_t k, Body& body) {
+  const Mode winner = body.modes[k];
+  const Pose back = winner.object_from_mode.inverse();
+  for (Mode& mode : body.modes) {
+    mode = {back * mode.object_from_mode, mode.log_weight - winner.log_weight};
+  }
+  body.modes[k] = {back, -winner.log_weight};
+  body.motion.jump_to(body.motion.pose() * winner.object_from_mode);
+  body.last_seen = body.motion.pose();
+  body.compared_from = back * body.compared_from;
+}
+
+// `own` is the pose, aligned.
+void weigh_modes(const SceneFeatures& scene, const Pose& own, const Pose& camera_from_object,
+                 Body& body) {
+  std::vector<Pose> poses = {own};
+  for (const Mode& mode : body.modes) poses.push_back(camera_from_object * mode.object_from_mode);
+  const auto behind = behind_best(scene, *body.model, poses, poses.size());
+  // Of a mode against the pose. A little says nothing, as the errors of a model favour one of them.
+  const auto evidence = [&](std::size_t k) {
+    const double nats = behind[k].depth + behind[k].color - behind[0].depth - behind[0].color;
+    const double beyond = std::max(0.0, std::abs(nats) - kLittleEvidence);
+    return std::copysign(std::min(kMostEvidence, beyond), nats);
+  };
+  int best = -1;
+  double highest = kSwitches;
+  for (std::size_t k = 0; k < body.modes.size(); ++k) {
+    double& weight = body.modes[k].log_weight;
+    weight += kTempered * evidence(k + 1);
+    if (weight <= highest) continue;
+    best = static_cast<int>(k);
+    highest = weight;
+  }
+  if (best >= 0) make_pose(best, body);
 }
 
 }  // namespace
@@ -130,62 +199,37 @@ void follow(const View& view, double seconds, Body& body) {
 
 void add_mode(Body& body, const Pose& frame_from_object, double log_weight) {
   const Pose relative = body.motion.pose().inverse() * frame_from_object;
-  const auto same = [&](const Pose& other) {
-    const PoseError error = pose_error(relative, other, body.model->symmetry);
-    return error.position < kPoseTolerance_m && error.angle < kPoseTolerance_rad;
-  };
-  if (same(Pose()) || body.modes.size() >= kMostModes) return;
-  for (Mode& mode : body.modes) {
-    if (!same(mode.object_from_mode)) continue;
-    mode.log_weight = std::max(mode.log_weight, log_weight);
-    return;
-  }
-  body.modes.push_back({relative, log_weight});
-  body.compared = 0;
+  if (propose(body, relative, log_weight)) body.compared = 0;
 }
 
 void compare_modes(const View& view, Body& body) {
-  if (body.modes.empty() || body.sight != Sight::seen) return;
+  ++body.frames_since_compared;
+  if (body.sight != Sight::seen || body.visible_fraction < kMinCompared) return;
   const ObjectModel& model = *body.model;
+  if (body.modes.empty() && model.index->near_symmetries.empty()) return;
   const Pose camera_from_object = view.in_camera(body.motion.pose());
   const Pose from = camera_from_object.inverse();
-  const Eigen::Vector3d now = from.translation - model.centre;
-  const Eigen::Vector3d before = body.compared_from.translation - model.centre;
-  const double turned = std::atan2(now.cross(before).norm(), now.dot(before));
-  if (body.compared >= kComparedAtLeast && turned < kNewView_rad) return;
+  if (body.compared >= kComparedAtLeast && !is_new_view(body, from)) return;
   const auto around = surroundings(view.frame, model, camera_from_object, kMargin_m);
   if (!around) return;
   body.compared_from = from;
+  body.frames_since_compared = 0;
   ++body.compared;
   const SceneFeatures scene = observe(view.frame, *around, view.sensor, true);
-  std::vector<Pose> poses = {camera_from_object};
-  for (Mode& mode : body.modes) {
-    const Pose start = camera_from_object * mode.object_from_mode;
-    const Pose aligned = refine_pose(scene, model, start, kAlignment).camera_from_object;
-    mode.object_from_mode = from * aligned;
-    poses.push_back(aligned);
-  }
-  const auto behind = behind_best(scene, model, poses, poses.size());
-  const auto evidence = [&](std::size_t k) {
-    return std::max(-kMostEvidence, behind[k].depth + behind[k].color);
+  // All are aligned alike, or those that are would seem likelier. A turn that the view leaves open
+  // slides to where another mode is; then it stays as it was.
+  const auto aligned = [&](const Pose& start) {
+    const Pose pose = refine_pose(scene, model, start, kAlignment).camera_from_object;
+    return pose_error(pose, start).angle < kMaxSlide_rad ? pose : start;
   };
-  std::size_t best = 0;
-  for (std::size_t k = 0; k < body.modes.size(); ++k) {
-    body.modes[k].log_weight += kTempered * (evidence(k + 1) - evidence(0));
-    const double highest = best == 0 ? 0 : body.modes[best - 1].log_weight;
-    if (body.modes[k].log_weight > highest) best = k + 1;
+  const Pose own = aligned(camera_from_object), object_from_own = from * own;
+  for (Mode& mode : body.modes) {
+    mode.object_from_mode = from * aligned(camera_from_object * mode.object_from_mode);
   }
-  if (best > 0) {
-    const Mode winner = body.modes[best - 1];
-    const Pose back = winner.object_from_mode.inverse();
-    for (Mode& mode : body.modes) {
-      mode = {back * mode.object_from_mode, mode.log_weight - winner.log_weight};
-    }
-    body.modes[best - 1] = {back, -winner.log_weight};
-    body.motion.jump_to(body.motion.pose() * winner.object_from_mode);
-    body.last_seen = body.motion.pose();
-    body.compared_from = winner.object_from_mode.inverse() * from;
+  for (const Pose& motion : model.index->near_symmetries) {
+    propose(body, object_from_own * motion, kTurnedWeight);
   }
+  weigh_modes(scene, own, camera_from_object, body);
   std::erase_if(body.modes, [](const Mode& mode) { return mode.log_weight < kUnlikely; });
 }
 

@@ -54,12 +54,13 @@ struct Body {
   std::shared_ptr<const ObjectModel> model;
   MotionFilter motion;
   std::vector<Mode> modes = {};
-  Sight sight = Sight::seen;       ///< In the last frame.
-  double visible_fraction = 1;     ///< In the last frame.
-  Pose last_seen = {};             ///< Where it was seen last.
-  int unseen = 0;                  ///< Frames in a row.
-  Pose compared_from = {};         ///< object_from_camera when the modes were last compared.
-  int compared = 0;                ///< Times that the modes were compared.
+  Sight sight = Sight::seen;    ///< In the last frame.
+  double visible_fraction = 1;  ///< In the last frame.
+  Pose last_seen = {};          ///< Where it was seen last.
+  int unseen = 0;               ///< Frames in a row.
+  Pose compared_from = {};      ///< object_from_camera when the modes were last compared.
+  int compared = 0;             ///< Times that the modes were compared.
+  int frames_since_compared = 0;
   std::vector<float> around = {};  ///< Depths of the surroundings when it was last aligned.
   RegionOfInterest around_region = {};
   int unchanged = 0;  ///< Frames in a row that showed the same.
@@ -74,8 +75,9 @@ Fit fit(const View& view, const ObjectModel& model, const std::vector<Pose>& sta
 /// Where a resting object's surroundings have not changed, it is left where it is.
 void follow(const View& view, double seconds, Body& body);
 
-/// Where the modes of a mixture differ in what a frame shows, their weights follow. Drops modes
-/// that have become unlikely. The likeliest becomes the pose.
+/// Where the modes of a mixture differ in what a frame shows, their weights follow. Near-symmetric
+/// turns of the model are modes too. Drops modes that have become unlikely. One that has become
+/// clearly likelier than the pose becomes the pose.
 void compare_modes(const View& view, Body& body);
 
 /// Adds another pose, in the tracks' frame of reference, unless the body has it.

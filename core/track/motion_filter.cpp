@@ -11,10 +11,10 @@ namespace bpa::track {
 namespace {
 
 // Chosen by hand: what hands and robot arms do to objects.
-constexpr double kAcceleration = 4;          // m/s², standard deviation
-constexpr double kAngularAcceleration = 15;  // rad/s², the same
-constexpr double kStartSpeed = 0.4;          // m/s: of what begins to move
-constexpr double kStartTurn = 1.2;           // rad/s: the same
+constexpr double kAcceleration = 3;         // m/s², standard deviation
+constexpr double kAngularAcceleration = 6;  // rad/s², the same
+constexpr double kStartSpeed = 0.4;         // m/s: of what begins to move
+constexpr double kStartTurn = 1.2;          // rad/s: the same
 // A resting object drifts, as the alignment does when the view of it changes.
 constexpr double kDrift = 0.0005;        // m in a second
 constexpr double kAngularDrift = 0.004;  // rad in a second
@@ -22,9 +22,8 @@ constexpr double kFade_s = 0.3;          // in which an unseen object loses its 
 
 // Of the squared Mahalanobis distance with 6 degrees of freedom (chi-square).
 constexpr double kNinetyFive = 12.59, kThousandth = 22.46;
-constexpr int kFarInARow = 2;                        // such measurements: it moves
-constexpr int kSlowInARow = 10;                      // velocities: it rests
-constexpr double kRest_m = 0.004, kRest_rad = 0.05;  // that it moves in these at most
+constexpr int kFarInARow = 2;    // such measurements: it moves
+constexpr int kSlowInARow = 10;  // velocities: it rests
 
 constexpr double kWhite = 0.5;  // of a measurement's covariance
 
@@ -100,7 +99,7 @@ void MotionFilter::predict(double seconds, bool seen) {
 
 double MotionFilter::distance_squared(const UncertainPose& measured) const {
   const Vector6d apart = difference(measured.pose, pose_);
-  const Matrix6d sum = covariance_.topLeftCorner<6, 6>() + measured.covariance;
+  const Matrix6d sum = covariance_.topLeftCorner<6, 6>() + kWhite * measured.covariance;
   return apart.dot(Vector6d(solve_symmetric(sum, apart)));
 }
 
@@ -131,7 +130,8 @@ void MotionFilter::update(const UncertainPose& measured) {
   }
   if (slow_++ == 0) anchor_ = pose_;
   const Vector6d since = difference(pose_, anchor_);
-  if (since.head<3>().norm() > kRest_m || since.tail<3>().norm() > kRest_rad) slow_ = 0;
+  const Matrix6d sum = covariance_.topLeftCorner<6, 6>() + white;
+  if (since.dot(Vector6d(solve_symmetric(sum, since))) > kNinetyFive) slow_ = 0;
   if (slow_ >= kSlowInARow) come_to_rest();
 }
 

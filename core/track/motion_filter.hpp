@@ -37,7 +37,8 @@ class MotionFilter {
   /// Moves to `seconds` later. `seen`: in the frame before; a velocity fades while it is not.
   void predict(double seconds, bool seen);
 
-  /// Squared Mahalanobis distance of a measurement from the prediction, 6 degrees of freedom.
+  /// Squared Mahalanobis distance of a measurement from the prediction, by what differs from frame
+  /// to frame; 6 degrees of freedom.
   double distance_squared(const UncertainPose& measured) const;
 
   /// Takes a measurement. Half of its covariance counts as white. The rest is what a view has wrong

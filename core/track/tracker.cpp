@@ -31,6 +31,7 @@ constexpr double kNotFound = -1;                     // of one that should and d
 constexpr double kOtherFound = -3;  // of one that finds another object in its place
 constexpr double kMostLogOdds = 6;  // of all
 constexpr double kEnds = -1;
+constexpr double kDoubt = -3;  // log weight of another pose that a search suggests for a track
 
 constexpr int kCoarseStep_px = 8;  // between depths that are compared with another frame's
 constexpr int kPhases = 8;         // tracks that are not aligned in the same frame, where all rest
@@ -215,8 +216,10 @@ struct Tracker::State {
     }
     // Poses at the time of the search, moved as the object has been since.
     const Pose since = life.body.motion.pose() * record.camera_from_object.inverse();
-    add_mode(life.body, since * found.camera_from_object, log_odds(found.probability));
-    add_alternatives(found, since, life.body);
+    add_mode(life.body, since * found.camera_from_object, kDoubt);
+    for (const PoseAlternative& other : found.alternatives) {
+      add_mode(life.body, since * other.camera_from_object, kDoubt);
+    }
   }
 
   static void add_alternatives(const Placement& found, const Pose& now_from_then, Body& body) {
