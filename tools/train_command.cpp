@@ -234,15 +234,11 @@ Folders together(Folders folders, const Folders& more) {
   return folders;
 }
 
-void train(const TrainArguments& a) {
-  DetectorArguments built_in = a.detector;
-  built_in.built_in_layers = true;
-  const Detector detector = open_detector(built_in, a.common.threads);
+ScoreLayers learn_all(const TrainArguments& a, const Detector& detector, const ScoreLayers& start) {
   Samples round_two, round_three;
   collect(a, detector, a.bop, a.models_per_frame, &round_two, &round_three);
   collect(a, detector, a.round_two_bop, a.models_per_frame, &round_two, nullptr);
   ScoreLayers layers;
-  const ScoreLayers& start = default_score_layers();
   layers.round_two =
       learn(a, "round two", together(a.bop, a.round_two_bop), start.round_two, round_two);
   layers.without_color =
@@ -250,6 +246,27 @@ void train(const TrainArguments& a) {
   collect(a, detector, a.color_bop, a.models_per_frame, nullptr, &round_three);
   layers.round_three =
       learn(a, "round three", together(a.bop, a.color_bop), start.round_three, round_three);
+  return layers;
+}
+
+void check_usage(const TrainArguments& a) {
+  if (!a.bop.empty()) return;
+  const bool learns = a.adapt || !a.round_two_bop.empty() || !a.color_bop.empty();
+  if (learns || a.calibration_bop.empty()) {
+    throw CLI::ValidationError(
+        "--bop",
+        "give frames to learn from, or --calibration-bop alone to calibrate the built-in "
+        "layers");
+  }
+}
+
+void train(const TrainArguments& a) {
+  check_usage(a);
+  DetectorArguments built_in = a.detector;
+  built_in.built_in_layers = true;
+  const Detector detector = open_detector(built_in, a.common.threads);
+  ScoreLayers layers = default_score_layers();
+  if (!a.bop.empty()) layers = learn_all(a, detector, layers);
   if (!a.calibration_bop.empty()) {
     Samples in_use;
     collect(a, detector, a.calibration_bop, 0, nullptr, &in_use);
@@ -268,8 +285,8 @@ void add_train_command(CLI::App& program) {
   const auto [command, a] = add_command(
       program, "train", "Learn the probability of a placement from frames with truth", train);
   add_detector_options(command, a.detector);
-  add_option(command, "--bop", a.bop, "Folder of a BOP data set with truth; may be repeated", "DIR")
-      ->required();
+  add_option(command, "--bop", a.bop, "Folder of a BOP data set with truth; may be repeated",
+             "DIR");
   add_option(command, "--round-two-bop", a.round_two_bop,
              "Data sets that only the layer of round two learns from, which orders placements",
              "DIR");
@@ -277,10 +294,12 @@ void add_train_command(CLI::App& program) {
              "Data sets that only the layer for colours learns from, such as objects that only "
              "their print tells apart",
              "DIR");
-  add_option(command, "--calibration-bop", a.calibration_bop,
-             "Data sets like the frames of use, searched for all models: the layers are scaled and "
-             "shifted until probabilities agree with frequencies there",
-             "DIR");
+  add_option(
+      command, "--calibration-bop", a.calibration_bop,
+      "Data sets like the frames of use, searched for all models: the layers are scaled and "
+      "shifted until probabilities agree with frequencies there. Without --bop, the built-in "
+      "layers are",
+      "DIR");
   add_split_options(command, a.dataset);
   add_option(command, "--held-out", a.held_out,
              "Keep every N-th frame out of training, to judge the layers by; 0 = none")
