@@ -17,7 +17,7 @@ struct TrackArguments {
   DetectorArguments detector;
   DatasetOptions dataset;
   track::TrackerOptions tracker;
-  double search_ms = 1000;
+  double search_ms = 1000, first_budget_ms = 0;
   bool no_poses = false;
   std::string json;
 };
@@ -28,14 +28,16 @@ class Searches {
   Searches(const TrackArguments& arguments, const Detector& detector)
       : a_(arguments), detector_(detector) {}
 
-  void forget() { running_.reset(); }
+  void begin_scene() { running_.reset(); }
 
   /// Hands over a result that is due, and begins the next search, on this frame.
   void after(const Frame& frame, track::Tracker& tracker) {
-    const auto due_ns = static_cast<std::int64_t>(a_.search_ms * 1e6);
-    if (running_ && frame.stamp_ns < running_->stamp_ns + due_ns) return;
+    if (running_ && frame.stamp_ns < due_ns_) return;
     if (running_) or_throw(tracker.add(*running_));
     DetectRequest request;
+    if (!running_) request.budget_ms = a_.first_budget_ms;
+    const double takes_ms = request.budget_ms > 0 ? request.budget_ms : a_.search_ms;
+    due_ns_ = frame.stamp_ns + static_cast<std::int64_t>(takes_ms * 1e6);
     request.models = a_.detector.models;
     request.seed = a_.common.seed;
     request.num_threads = a_.common.threads;
@@ -47,6 +49,7 @@ class Searches {
   const TrackArguments& a_;
   const Detector& detector_;
   std::optional<SceneInterpretations> running_;
+  std::int64_t due_ns_ = 0;  ///< Stamp of the first frame after its result.
 };
 
 void print_frame(const io::TrackResult& frame) {
@@ -87,7 +90,7 @@ void follow_frames(const TrackArguments& a) {
     progress.show(static_cast<int>(i));
     if (i == 0 || frames[i - 1].scene_id != entry.scene_id) {
       tracker.emplace(library, options, detector.score_layers());
-      searches.forget();
+      searches.begin_scene();
       first = results.size();
     }
     const auto frame = std::make_shared<Frame>(or_throw(io::load_bop_frame(entry)));
@@ -121,6 +124,11 @@ void add_track_command(CLI::App& program) {
              "then the next begins",
              "T")
       ->check(CLI::PositiveNumber);
+  add_option(command, "--first-budget-ms", a.first_budget_ms,
+             "Time for the first search of a scene, so that tracks begin early; then the answer "
+             "depends on the machine's speed. 0: as the others",
+             "T")
+      ->check(CLI::NonNegativeNumber);
   command.add_flag("--no-camera-poses", a.no_poses,
                    "Ignore where the data set says that the camera was");
   add_options(command, a.tracker,
