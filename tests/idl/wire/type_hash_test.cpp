@@ -49,6 +49,8 @@ TEST(TypeHash, StandardTypes) {
       "beb83fbe698636351461f6f35d1abb20010c43d55374d81bd041f1ba2581fddc");
   expect_hash<geometry_msgs::TransformStamped>(
       "0a241f87d04668d94099cbb5ba11691d5ad32c2f29682e4eb5653424bd275206");
+  expect_hash<geometry_msgs::Twist>(
+      "9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a");
   expect_hash<tf2_msgs::TFMessage>(
       "e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087");
   expect_hash<vision_msgs::Detection3DArray>(
