@@ -30,6 +30,8 @@ using Guid = std::array<std::uint8_t, 16>;
 
 /// The participant of an endpoint: the same GUID with entity 0.
 Guid participant_of(Guid guid);
+/// Of a participant of this process; entity 0.
+Guid guid_of(const Participant& participant);
 /// A participant's id as Fast DDS prints it: "01.0f.22.cd....". The entity is left out.
 std::string to_text(const Guid& guid);
 

@@ -41,6 +41,8 @@ inline Qos clock() { return {Reliability::best_effort, Durability::volatile_, 1,
 inline Qos parameters() { return {Reliability::reliable, Durability::volatile_, 1000, 0}; }
 /// /tf.
 inline Qos transforms() { return {Reliability::reliable, Durability::volatile_, 100, 0}; }
+/// Subscriptions to /tf_static, as tf2_ros has them.
+inline Qos static_transforms() { return {Reliability::reliable, Durability::transient_local, 100}; }
 /// /rosout.
 inline Qos rosout() { return {Reliability::reliable, Durability::transient_local, 1000, 10'000}; }
 

@@ -427,6 +427,8 @@ Result<std::string> Participant::resolve(std::string_view name) const {
 
 GraphLayout Participant::graph_layout() const { return impl_->graph_layout(); }
 
+Guid guid_of(const Participant& participant) { return participant.impl()->guid(); }
+
 const LogHook& detail::participant_log(const Participant& participant) {
   return participant.impl()->options().log;
 }

@@ -53,6 +53,7 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
   dds::Publisher* publisher() { return publisher_; }
   dds::Subscriber* subscriber() { return subscriber_; }
   Worker& worker() { return worker_; }
+  Guid guid() const { return participant_of(to_guid(participant_->guid())); }
 
   /// Makes an endpoint on its topic and lists it in the graph. `make` makes the DDS entity and
   /// gives back its GUID, zero when Fast DDS refuses it. `internal` says what was refused and why.
