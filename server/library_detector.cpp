@@ -11,6 +11,7 @@
 #include "core/io/file_bytes.hpp"
 #include "core/io/model_file.hpp"
 #include "core/pipeline/detector.hpp"
+#include "server/library_tracker.hpp"
 #include "server/recognition.hpp"
 
 namespace bpa::server {
@@ -59,6 +60,10 @@ class LibraryDetector : public Recognition {
   Result<SceneInterpretations> detect(const Frame& frame,
                                       const DetectRequest& request) const override {
     return current()->detect(frame, request);
+  }
+
+  std::unique_ptr<ObjectTracker> make_tracker(const track::TrackerOptions& options) const override {
+    return make_library_tracker([this] { return current(); }, layers_, options);
   }
 
   std::vector<std::uint8_t> annotate(const Frame& frame,

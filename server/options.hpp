@@ -11,6 +11,7 @@
 #include "core/base/status.hpp"
 #include "core/pipeline/detector_options.hpp"
 #include "core/result/interpretation.hpp"
+#include "core/track/tracker.hpp"
 
 // Every setting of the server, in groups. Each field describes itself once; reading server.yaml,
 // --set, --print-config, the ROS 2 parameters and the checks all use that. config/server.yaml shows
@@ -82,6 +83,8 @@ struct InputOptions {
   std::string depth_transport = "raw";
   std::string camera_info = "/camera/color/camera_info";
   std::string cloud;
+  std::string tf = "/tf";
+  std::string tf_static = "/tf_static";
   bool reliable = false;
   bool rectified = false;
   double sync_tolerance_ms = 10;
@@ -103,6 +106,9 @@ struct InputOptions {
     visit("camera_info", camera_info, {0, 0, "Topic of their sensor_msgs/CameraInfo."});
     visit("cloud", cloud,
           {0, 0, "Topic of organised sensor_msgs/PointCloud2 in an optical frame; empty: none."});
+    visit("tf", tf,
+          {0, 0, "Topic of transforms, subscribed to with tracking.fixed_frame; empty: none."});
+    visit("tf_static", tf_static, {0, 0, "The same of static transforms."});
     visit("reliable", reliable,
           {0, 0, "Ask for reliable camera topics; best-effort cameras then do not match."});
     visit("rectified", rectified,
@@ -177,6 +183,9 @@ struct OutputOptions {
   std::string markers = "markers";
   std::string vision_info = "vision_info";
   std::string tf = "/tf";
+  std::string tracks = "tracks";
+  std::string track_states = "track_states";
+  std::string track_markers = "track_markers";
   std::string diagnostics = "/diagnostics";
   std::string rosout = "/rosout";
   double marker_lifetime_s = 0;
@@ -191,6 +200,11 @@ struct OutputOptions {
     visit("markers", markers, {0, 0, "visualization_msgs/MarkerArray for RViz."});
     visit("vision_info", vision_info, {0, 0, "vision_msgs/VisionInfo, latched."});
     visit("tf", tf, {0, 0, "tf2_msgs/TFMessage: a transform per object; empty: none."});
+    visit("tracks", tracks,
+          {0, 0, "vision_msgs/Detection3DArray: confirmed and occluded tracks, id the track's."});
+    visit("track_states", track_states, {0, 0, "bpa_msgs/Tracks: all tracks, everything."});
+    visit("track_markers", track_markers,
+          {0, 0, "visualization_msgs/MarkerArray of the tracks for RViz."});
     visit("diagnostics", diagnostics,
           {0, 0, "diagnostic_msgs/DiagnosticArray, once a second; empty: none."});
     visit("rosout", rosout,
@@ -256,6 +270,54 @@ struct DetectionOptions {
   }
 };
 
+/// Of the tracker, and of what the server does around it.
+struct TrackingOptions : track::TrackerOptions {
+  bool enabled = true;
+  std::string fixed_frame;
+  double tf_wait_ms = 100;
+  double tf_buffer_s = 10;
+  bool publish_tf = false;
+  int queue_frames = 1;
+  double linger_s = 10;
+  int search_nice = 10;
+
+  void visit_fields(auto&& visit) {
+    visit("enabled", enabled,
+          at_run_time({0, 0,
+                       "Follow objects from frame to frame while a topic of tracks has a "
+                       "subscriber; without one it costs nothing. false: never."}));
+    visit("fixed_frame", fixed_frame,
+          {0, 0,
+           "Frame of /tf that stands still, such as map or base_link, for a moving camera: tracks "
+           "are in it. Empty: in the camera's frame, for a camera that stands still."});
+    visit("tf_wait_ms", tf_wait_ms,
+          at_run_time({0, 1000,
+                       "Longest wait in ms for the camera's transform at a frame's stamp. A frame "
+                       "without one is not followed."}));
+    visit("tf_buffer_s", tf_buffer_s,
+          at_run_time({0.1, 60, "Seconds of transforms that are remembered, by their stamps."}));
+    visit("publish_tf", publish_tf,
+          at_run_time({0, 0,
+                       "Send a transform for each confirmed or occluded track to output.tf; the "
+                       "child frame is the track's name."}));
+    visit("queue_frames", queue_frames,
+          at_run_time({1, 30,
+                       "Frames that may wait to be followed; a newer one displaces the oldest. "
+                       "More where transforms come late."}));
+    visit("linger_s", linger_s,
+          at_run_time({0, 3600,
+                       "Seconds that objects are followed on after the last subscriber left, so "
+                       "that one that restarts finds the same tracks."}));
+    visit("search_nice", search_nice,
+          at_run_time({0, 19,
+                       "Nice value of the search's threads while objects are followed: higher "
+                       "ones leave more time to tracking. Only root may lower it again."}));
+    TrackerOptions::visit_fields([&](const char* name, auto& value, const FieldRule& rule) {
+      visit(name, value, at_run_time(rule));
+    });
+  }
+};
+
 struct LogOptions {
   std::string level = "info";
 
@@ -272,6 +334,7 @@ struct ServerOptions {
   QueueOptions queue;
   OutputOptions output;
   DetectionOptions detection;
+  TrackingOptions tracking;
   LogOptions log;
   /// How objects are found; config/detector.yaml shows them all.
   DetectorOptions detector;
@@ -284,6 +347,7 @@ struct ServerOptions {
     visit("queue", queue, "What may wait while a frame is searched.");
     visit("output", output, "Topics of the results; an empty name switches one off.");
     visit("detection", detection, "The search.");
+    visit("tracking", tracking, "Following objects from frame to frame.");
     visit("log", log, "What is said on the terminal.");
     visit("detector", detector, "How objects are found. All of it also at run time.");
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -22,8 +23,8 @@ class Output {
     publisher_.emplace(or_throw(wire::Publisher<T>::create(participant, topic, {.qos = qos})));
   }
   bool is_open() const { return publisher_.has_value(); }
-  /// Whether a subscriber is matched: otherwise the message need not be made.
-  bool wanted() const { return publisher_ && publisher_->matched_count() > 0; }
+  /// Whether more than `own` subscribers are matched: otherwise the message need not be made.
+  bool wanted(std::size_t own = 0) const { return publisher_ && publisher_->matched_count() > own; }
   /// Does nothing when it is switched off.
   Status publish(const T& message) { return publisher_ ? publisher_->publish(message) : Status(); }
   /// The same; a failure is logged with this severity.

@@ -14,6 +14,7 @@
 #include "core/pipeline/detector.hpp"
 #include "core/result/interpretation.hpp"
 #include "server/convert/results.hpp"
+#include "server/object_tracker.hpp"
 #include "server/options.hpp"
 
 namespace bpa::server {
@@ -30,6 +31,10 @@ class Recognition {
   /// The frame's image with the placements drawn on it: row-major rgb, 3 bytes a pixel.
   virtual std::vector<std::uint8_t> annotate(const Frame& frame,
                                              const Interpretation& interpretation) const = 0;
+
+  /// Follows objects of these models; the recognition outlives it.
+  virtual std::unique_ptr<ObjectTracker> make_tracker(
+      const track::TrackerOptions& options) const = 0;
 
   /// Where the library lies, for people.
   virtual std::string library() const = 0;

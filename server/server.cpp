@@ -33,7 +33,10 @@
 #include "server/services/services.hpp"
 #include "server/settings.hpp"
 #include "server/sources/frame_source.hpp"
+#include "server/sources/transform_source.hpp"
 #include "server/statistics.hpp"
+#include "server/track_publisher.hpp"
+#include "server/tracking.hpp"
 #include "server/worker.hpp"
 
 #ifndef BPA_VERSION
@@ -55,7 +58,7 @@ int frame_capacity(const ServerOptions& options) {
   return std::max(options.queue.frames, options.detection.fuse_frames);
 }
 
-WorkerOptions worker_options(const ServerOptions& options) {
+WorkerOptions search_options(const ServerOptions& options) {
   const DetectionOptions& detection = options.detection;
   return {.frame_capacity = static_cast<std::size_t>(frame_capacity(options)),
           .request_capacity = static_cast<std::size_t>(options.queue.requests),
@@ -99,6 +102,7 @@ class Running : public Server {
     publisher_->publish_vision_info();
     diagnostics_.open(*participant_, options.output.diagnostics, wire::qos::results());
 
+    start_tracking(options);
     worker_ = std::make_unique<Worker>(
         recognition_, worker_options(options), statistics_,
         [this](const IncomingFrame& incoming, const Frame* frame,
@@ -145,8 +149,8 @@ class Running : public Server {
  private:
   /// What each thread that must not hang does now.
   std::vector<const Busy*> threads() const {
-    std::vector<const Busy*> threads = {&worker_->busy(), &services_->busy(), &parameters_->busy(),
-                                        &reporting_};
+    std::vector<const Busy*> threads = {&worker_->busy(), &tracking_->busy(), &services_->busy(),
+                                        &parameters_->busy(), &reporting_};
     for (const auto& source : sources_) {
       for (const Busy* busy : source->threads()) threads.push_back(busy);
     }
@@ -159,8 +163,43 @@ class Running : public Server {
     if (!rosout.empty()) relay_.connect(*participant_, rosout);
   }
 
+  void start_tracking(const ServerOptions& options) {
+    track_publisher_ =
+        std::make_unique<TrackPublisher>(*participant_, settings_, recognition_, log_);
+    tracking_ = std::make_unique<Tracking>(
+        recognition_->make_tracker(options.tracking), options.tracking,
+        TrackingLinks{[this] { return track_publisher_->wanted(); },
+                      [this](const TrackedFrame& frame) { track_publisher_->publish(frame); },
+                      [this] { return clock_->stamp_ns(); }, log_});
+    if (options.tracking.fixed_frame.empty()) return;
+    transforms_.emplace(*participant_, options.input.tf, options.input.tf_static,
+                        tracking_->transforms());
+  }
+
+  WorkerOptions worker_options(const ServerOptions& options) const {
+    WorkerOptions worker = search_options(options);
+    worker.expected = [this](const std::string& frame_id) { return tracking_->expected(frame_id); };
+    worker.niceness = [this, niceness = options.tracking.search_nice] {
+      return tracking_->active() ? niceness : 0;
+    };
+    return worker;
+  }
+
+  /// Hands a frame to the search and to the tracker. The search first: what it displaces there may
+  /// be displaced here, too.
+  void take(IncomingFrame&& incoming) {
+    TrackingFrame tracked{nullptr, incoming.stamp_ns, incoming.frame_id, Clock::now()};
+    if (tracking_->active()) {
+      tracked.frame = std::make_shared<SharedFrame>(std::move(incoming.decode));
+      incoming.decode = [shared = tracked.frame] { return shared->get(); };
+      incoming.taken = [shared = tracked.frame] { shared->set_searched(); };
+    }
+    worker_->push(std::move(incoming));
+    tracking_->push(std::move(tracked));
+  }
+
   void start_sources(const ServerOptions& options) {
-    const auto on_frame = [this](IncomingFrame&& frame) { worker_->push(std::move(frame)); };
+    const auto on_frame = [this](IncomingFrame&& frame) { take(std::move(frame)); };
     ServerOptions topics = options;
     if (!options.capture.source.empty()) topics.input.depth.clear();  // they may be our own
     auto source = open_topic_source(*participant_, topics, on_frame, clock_, log_);
@@ -180,6 +219,7 @@ class Running : public Server {
     }
     Status status = clock_->simulate(*participant_, after.node.use_sim_time);
     if (!status.ok()) return status;
+    tracking_->set_options(after.tracking);
     worker_->set_options(worker_options(after));
     topics_->set_options(after.input);
     relay_.set_level(log_level(after.log.level));
@@ -199,6 +239,7 @@ class Running : public Server {
     services_.emplace(*participant_, log_, wire::qos::services());
     add_detect(context, *services_);
     add_library_services(context, *services_);
+    add_track_services(*tracking_, *services_);
     services_->add_quick<msgs::GetStatus>(
         "get_status", [this](const msgs::GetStatus_Request&) { return status(); });
   }
@@ -210,6 +251,7 @@ class Running : public Server {
         frame, result,
         {incoming.stamp_ns, incoming.frame_id, models, settings_.get()->detection.seed});
     if (!result.ok()) return log_failure(result.status());
+    tracking_->add(*result);
     const auto& found = result->interpretations;
     log(log_, LogLevel::debug,
         concat("frame ", incoming.stamp_ns, ": ", found.empty() ? 0 : found[0].placements.size(),
@@ -273,6 +315,7 @@ class Running : public Server {
     for (const auto& source : sources_) {
       for (SourceReport& report : source->reports()) reports.push_back(std::move(report));
     }
+    reports.push_back(tracking_->report());
     if (!clock_->is_real()) reports.push_back(clock_->report());
     return reports;
   }
@@ -358,6 +401,9 @@ class Running : public Server {
   std::optional<wire::Participant> participant_;
   std::unique_ptr<ResultPublisher> publisher_;
   Output<wire::diagnostic_msgs::DiagnosticArray> diagnostics_;
+  std::unique_ptr<TrackPublisher> track_publisher_;
+  std::unique_ptr<Tracking> tracking_;
+  std::optional<TransformSource> transforms_;
   std::unique_ptr<Worker> worker_;
   std::vector<std::unique_ptr<FrameSource>> sources_;
   TopicSource* topics_ = nullptr;   ///< One of them.

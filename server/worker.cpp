@@ -9,6 +9,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/base/guarded.hpp"
+#include "server/niceness.hpp"
 
 namespace bpa::server {
 namespace {
@@ -235,6 +236,10 @@ void Worker::run() {
 /// Takes one task, frame or request out and works on it with no lock held.
 void Worker::run_one(std::unique_lock<std::mutex>& lock) {
   const WorkerOptions options = options_;
+  if (options.niceness && options.niceness() != niceness_) {
+    niceness_ = options.niceness();
+    (void)set_niceness(niceness_);
+  }
   const bool frame_wanted = options.continuous || !awaiting_frame_.empty();
   const bool take_frame =
       !frames_.empty() && frame_wanted && (requests_.empty() || !frame_was_last_);
@@ -306,6 +311,7 @@ std::vector<IncomingFrame> Worker::take_frames(const WorkerOptions& options) {
   do {
     taken.push_back(std::move(frames_.front()));
     frames_.pop_front();
+    if (taken.back().taken) taken.back().taken();
   } while (options.fuse_frames > 1 && !frames_.empty());
   return taken;
 }
@@ -350,7 +356,7 @@ void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFr
   std::optional<Result<SceneInterpretations>> result;
   if (options.continuous) {
     DetectRequest request = with_priors(options.request, newest->priors);
-    if (options.follow) request.expected = expected_[frame->frame_id];
+    if (options.follow) request.expected = expected_in(options, *frame);
     result.emplace(detect(*frame, request));
     remember(*frame, *result);
     statistics_.add(result->ok() ? &Counts::frames_processed : &Counts::frames_failed);
@@ -361,6 +367,14 @@ void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFr
                     answer_next_frame(options, *newest, *frame, job, result ? &*result : nullptr);
                   }));
   }
+}
+
+std::vector<ExpectedPlacement> Worker::expected_in(const WorkerOptions& options,
+                                                   const Frame& frame) {
+  if (options.expected) {
+    if (auto tracked = options.expected(frame.frame_id)) return *std::move(tracked);
+  }
+  return expected_[frame.frame_id];
 }
 
 void Worker::remember(const Frame& frame, const Result<SceneInterpretations>& result) {

@@ -38,6 +38,7 @@ struct IncomingFrame {
   std::int64_t stamp_ns = 0;
   std::string frame_id;
   std::vector<PosePrior> priors = {};  ///< Of the sender, about its objects.
+  std::function<void()> taken = {};    ///< Called when its search begins; may be empty.
 };
 
 /// One detect request that waits for its answer.
@@ -66,6 +67,12 @@ struct WorkerOptions {
   int fuse_frames = DetectionOptions().fuse_frames;
   bool follow = DetectionOptions().follow;
   DetectRequest request;  ///< For every frame of the stream.
+  /// Where objects are in the newest frame of this camera, from tracking. Nothing, or an empty
+  /// function: what the camera's frame before showed.
+  std::function<std::optional<std::vector<ExpectedPlacement>>(const std::string& frame_id)>
+      expected = {};
+  /// Nice value that searches begin with; an empty function leaves it.
+  std::function<int()> niceness = {};
 };
 
 class Worker {
@@ -129,6 +136,7 @@ class Worker {
   void work_on_frames(const WorkerOptions& options, std::vector<IncomingFrame> taken,
                       std::vector<DetectJob>& waiting);
   void note_restart(const std::string& reason);
+  std::vector<ExpectedPlacement> expected_in(const WorkerOptions& options, const Frame& frame);
   void remember(const Frame& frame, const Result<SceneInterpretations>& result);
   void work_on_request(DetectJob& job);
   void answer_next_frame(const WorkerOptions& options, const IncomingFrame& incoming,
@@ -145,6 +153,7 @@ class Worker {
   Busy busy_;
   // Of the worker's thread alone.
   FrameFusion fusion_;
+  int niceness_ = 0;
   int last_fused_ = 1;  ///< How many frames the last one was made of.
   std::map<std::string, std::vector<ExpectedPlacement>> expected_;  ///< By frame_id.
 

@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/convert/results.hpp"
 
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <map>
 
-#include "idl/wire/time.hpp"
+#include "server/convert/parts.hpp"
 
 namespace bpa::server {
 namespace {
@@ -18,41 +15,11 @@ namespace geometry = wire::geometry_msgs;
 namespace vision = wire::vision_msgs;
 namespace markers = wire::visualization_msgs;
 
-wire::std_msgs::Header header(std::int64_t stamp_ns, const std::string& frame_id) {
-  return {wire::builtin_interfaces::from_ns(stamp_ns), frame_id};
-}
-
-/// A message of three numbers, such as a Point or a Vector3.
-template <class Message>
-Message xyz(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-geometry::Pose pose_message(const Pose& pose) {
-  const auto& q = pose.rotation;
-  return {xyz<geometry::Point>(pose.translation), {q.x(), q.y(), q.z(), q.w()}};
-}
-
-geometry::PoseWithCovariance pose_with_covariance(const Placement& placement) {
-  geometry::PoseWithCovariance message;
-  message.pose = pose_message(placement.camera_from_object);
-  Eigen::Matrix<double, 6, 6, Eigen::RowMajor>::Map(message.covariance.data()) =
-      placement.covariance;
-  return message;
-}
-
-msgs::Bingham bingham_message(const OrientationUncertainty& orientation) {
-  msgs::Bingham message;
-  Eigen::Matrix<double, 4, 3>::Map(message.axes.data()) = orientation.axes;
-  Eigen::Vector3d::Map(message.concentrations.data()) = orientation.concentrations;
-  return message;
-}
-
 msgs::Placement placement_message(const Placement& placement, std::uint32_t instance) {
   msgs::Placement message{.model = placement.model,
                           .model_number = static_cast<std::uint32_t>(placement.model_number),
                           .instance = instance,
-                          .pose = pose_with_covariance(placement),
+                          .pose = pose_message(placement.camera_from_object, placement.covariance),
                           .orientation = bingham_message(placement.orientation),
                           .score = placement.score,
                           .probability = placement.probability,
@@ -78,38 +45,14 @@ void for_each_best(const SceneInterpretations& result, auto visit) {
   }
 }
 
-/// The box along the axes; a point for a model without surface.
+}  // namespace
+
 Eigen::AlignedBox3d box_of(const ObjectModel& model) {
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& point : model.surface.points) box.extend(point);
   if (box.isEmpty()) box.extend(Eigen::Vector3f::Zero().eval());
   return box.cast<double>();
 }
-
-vision::BoundingBox3D box_message(const Placement& placement, const Models& models) {
-  vision::BoundingBox3D message;
-  Pose center = placement.camera_from_object;
-  for (const auto& model : models) {
-    if (model->number != placement.model_number) continue;
-    const Eigen::AlignedBox3d box = box_of(*model);
-    center.translation = center * box.center();
-    message.size = xyz<geometry::Vector3>(box.sizes());
-  }
-  message.center = pose_message(center);
-  return message;
-}
-
-/// Well separated hues: steps of the golden ratio round the colour circle.
-wire::std_msgs::ColorRGBA color_of(int number, float alpha) {
-  const double hue = 6.0 * std::fmod(number * 0.6180339887498949, 1.0);
-  const auto channel = [hue](double shift) {
-    const double distance = std::abs(std::fmod(hue + shift, 6.0) - 3.0) - 1.0;
-    return static_cast<float>(std::clamp(distance, 0.15, 1.0));
-  };
-  return {channel(0), channel(4), channel(2), alpha};
-}
-
-}  // namespace
 
 msgs::Status to_message(const Status& status) {
   return {static_cast<std::uint8_t>(status.code), status.message};
@@ -124,7 +67,7 @@ std::vector<msgs::StageTiming> to_message(const std::vector<StageTiming>& timing
 msgs::SceneInterpretations interpretations_message(const Result<SceneInterpretations>& result,
                                                    const ResultContext& context) {
   msgs::SceneInterpretations message;
-  message.header = header(context.stamp_ns, context.frame_id);
+  message.header = header_message(context.stamp_ns, context.frame_id);
   message.status = to_message(result.status());
   message.models_searched = static_cast<std::uint32_t>(context.models_searched);
   message.seed = context.seed;
@@ -150,12 +93,13 @@ msgs::SceneInterpretations interpretations_message(const Result<SceneInterpretat
 vision::Detection3DArray detections_message(const SceneInterpretations& result,
                                             const Models& models) {
   vision::Detection3DArray message;
-  message.header = header(result.stamp_ns, result.frame_id);
+  message.header = header_message(result.stamp_ns, result.frame_id);
   for_each_best(result, [&](const Placement& placement, const std::string& name) {
     message.detections.push_back(
         {message.header,
-         {{{placement.model, placement.probability}, pose_with_covariance(placement)}},
-         box_message(placement, models),
+         {{{placement.model, placement.probability},
+           pose_message(placement.camera_from_object, placement.covariance)}},
+         box_message(placement.camera_from_object, placement.model_number, models),
          name});
   });
   return message;
@@ -164,33 +108,16 @@ vision::Detection3DArray detections_message(const SceneInterpretations& result,
 markers::MarkerArray markers_message(const SceneInterpretations& result, const Models& models,
                                      double lifetime_s) {
   markers::MarkerArray message;
-  markers::Marker clear;
-  clear.header = header(result.stamp_ns, result.frame_id);
-  clear.action = markers::Marker::kDeleteall;
-  message.markers.push_back(clear);
+  const wire::std_msgs::Header header = header_message(result.stamp_ns, result.frame_id);
+  message.markers.push_back(clearing_marker(header));
   for_each_best(result, [&](const Placement& placement, const std::string& name) {
-    const vision::BoundingBox3D box = box_message(placement, models);
-    markers::Marker marker;
-    marker.header = clear.header;
-    marker.ns = "boxes";
-    marker.id = static_cast<std::int32_t>(message.markers.size() / 2);
-    marker.type = markers::Marker::kCube;
-    marker.action = markers::Marker::kAdd;
-    const auto lifetime =
-        wire::builtin_interfaces::from_ns(static_cast<std::int64_t>(lifetime_s * 1e9));
-    marker.lifetime = {lifetime.sec, lifetime.nanosec};
-    marker.pose = box.center;
-    marker.scale = box.size;
-    marker.color = color_of(placement.model_number, 0.5f);
-    message.markers.push_back(marker);
-    marker.ns = "names";
-    marker.type = markers::Marker::kTextViewFacing;
-    marker.scale = {0, 0, 0.03};
-    marker.color = {1, 1, 1, 1};
     char percent[16];
     std::snprintf(percent, sizeof percent, " %.0f %%", 100 * placement.probability);
-    marker.text = name + percent;
-    message.markers.push_back(std::move(marker));
+    const auto id = static_cast<std::int32_t>(message.markers.size() / 2);
+    add_markers(header,
+                {id, box_message(placement.camera_from_object, placement.model_number, models),
+                 placement.model_number, name + percent},
+                lifetime_s, message);
   });
   return message;
 }
@@ -199,18 +126,16 @@ wire::tf2_msgs::TFMessage transforms_message(const SceneInterpretations& result,
                                              const std::string& prefix) {
   wire::tf2_msgs::TFMessage message;
   for_each_best(result, [&](const Placement& placement, const std::string& name) {
-    const Pose& pose = placement.camera_from_object;
-    message.transforms.push_back(
-        {header(result.stamp_ns, result.frame_id),
-         prefix + "/" + name,
-         {xyz<geometry::Vector3>(pose.translation), pose_message(pose).orientation}});
+    message.transforms.push_back({header_message(result.stamp_ns, result.frame_id),
+                                  prefix + "/" + name,
+                                  transform_message(placement.camera_from_object)});
   });
   return message;
 }
 
 wire::sensor_msgs::Image image_message(const SceneInterpretations& result, int width, int height,
                                        std::vector<std::uint8_t> rgb) {
-  return {.header = header(result.stamp_ns, result.frame_id),
+  return {.header = header_message(result.stamp_ns, result.frame_id),
           .height = static_cast<std::uint32_t>(height),
           .width = static_cast<std::uint32_t>(width),
           .encoding = "rgb8",

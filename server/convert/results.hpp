@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -55,6 +56,9 @@ wire::tf2_msgs::TFMessage transforms_message(const SceneInterpretations& result,
 /// An rgb8 image of `width` x `height`.
 wire::sensor_msgs::Image image_message(const SceneInterpretations& result, int width, int height,
                                        std::vector<std::uint8_t> rgb);
+
+/// The box of a model's surface along its axes; a point for a model without surface.
+Eigen::AlignedBox3d box_of(const ObjectModel& model);
 
 wire::bpa_msgs::ModelInfo model_message(const ObjectModel& model);
 

@@ -155,6 +155,8 @@ class ServiceSet {
   std::vector<std::shared_ptr<void>> servers_;  ///< Last: they give the thread work.
 };
 
+class Tracking;
+
 /// What the services need of the server; all of it outlives them.
 struct ServiceContext {
   const Settings& settings;
@@ -166,10 +168,12 @@ struct ServiceContext {
   LogHook log;
 };
 
-/// Offers `detect`. This and the next two throw a Failure.
+/// Offers `detect`. This and the next three throw a Failure.
 void add_detect(const ServiceContext& context, ServiceSet& services);
 /// Offers `list_models`, `load_model` and `unload_model`.
 void add_library_services(const ServiceContext& context, ServiceSet& services);
+/// Offers `rename_track`, `hold_track` and `forget_track`; `tracking` outlives them.
+void add_track_services(Tracking& tracking, ServiceSet& services);
 
 /// Offers the services of every ROS 2 node for `ros2 param`: NODE/list_parameters, get_parameters,
 /// get_parameter_types, describe_parameters, set_parameters and set_parameters_atomically. Also

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "server/recognition.hpp"
+#include "tests/support/stub_tracker.hpp"
 
 namespace bpa::support {
 
@@ -14,6 +16,9 @@ class StubRecognition : public server::Recognition {
  public:
   std::vector<std::uint8_t> annotate(const Frame& frame, const Interpretation&) const override {
     return std::vector<std::uint8_t>(3 * frame.depth.size(), 200);
+  }
+  std::unique_ptr<server::ObjectTracker> make_tracker(const track::TrackerOptions&) const override {
+    return std::make_unique<StubTracker>();
   }
   std::string library() const override { return "stub"; }
   int version() const override { return 1; }

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <utility>
+
+#include "core/base/log.hpp"
+#include "core/result/track.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/participant.hpp"
+#include "server/convert/tracks.hpp"
+#include "server/output.hpp"
+#include "server/recognition.hpp"
+#include "server/settings.hpp"
+
+namespace bpa::server {
+
+/// Publishes tracks, each message only while it has a subscriber.
+class TrackPublisher {
+ public:
+  /// Opens the topics; `settings` outlives it. Throws a Failure.
+  TrackPublisher(const wire::Participant& participant, const Settings& settings,
+                 std::shared_ptr<const Recognition> recognition, LogHook log)
+      : settings_(settings), recognition_(std::move(recognition)), log_(std::move(log)) {
+    const OutputOptions options = settings.get()->output;
+    const wire::Qos results = wire::qos::results();
+    tracks_.open(participant, options.tracks, results);
+    states_.open(participant, options.track_states, results);
+    markers_.open(participant, options.track_markers, results);
+    tf_.open(participant, options.tf, wire::qos::transforms());
+    const Settings::Snapshot all = settings.get();
+    if (all->tracking.fixed_frame.empty() || options.tf.empty() || all->input.tf.empty()) return;
+    if (or_throw(participant.resolve(options.tf)) == or_throw(participant.resolve(all->input.tf))) {
+      own_tf_readers_ = 1;
+    }
+  }
+
+  /// Whether any topic has a subscriber; /tf counts only if tracks are sent there.
+  bool wanted() const {
+    return tracks_.wanted() || states_.wanted() || markers_.wanted() || transforms_wanted();
+  }
+
+  void publish(const TrackedFrame& frame) {
+    if (states_.wanted()) states_.send(track_states_message(frame), log_);
+    if (transforms_wanted()) tf_.send(track_transforms_message(frame), log_);
+    const Models models = tracks_.wanted() || markers_.wanted() ? recognition_->models() : Models();
+    if (tracks_.wanted()) tracks_.send(tracks_message(frame, models), log_);
+    if (!markers_.wanted()) return;
+    const double lifetime_s = settings_.get()->output.marker_lifetime_s;
+    markers_.send(track_markers_message(frame, models, lifetime_s), log_);
+  }
+
+ private:
+  bool transforms_wanted() const {
+    return settings_.get()->tracking.publish_tf && tf_.wanted(own_tf_readers_);
+  }
+
+  const Settings& settings_;
+  const std::shared_ptr<const Recognition> recognition_;
+  const LogHook log_;
+  std::size_t own_tf_readers_ = 0;  ///< This server's own, which takes the camera's transforms.
+  Output<wire::vision_msgs::Detection3DArray> tracks_;
+  Output<wire::bpa_msgs::Tracks> states_;
+  Output<wire::visualization_msgs::MarkerArray> markers_;
+  Output<wire::tf2_msgs::TFMessage> tf_;
+};
+
+}  // namespace bpa::server
