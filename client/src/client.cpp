@@ -92,6 +92,9 @@ struct Client::Impl {
   std::optional<Caller<msgs::UnloadModel>> unload_model = {};
   std::optional<Caller<msgs::GetStatus>> get_status = {};
   std::optional<Caller<msgs::Record>> record = {};
+  std::optional<Caller<msgs::RenameTrack>> rename_track = {};
+  std::optional<Caller<msgs::HoldTrack>> hold_track = {};
+  std::optional<Caller<msgs::ForgetTrack>> forget_track = {};
 
   // Those below are made on first use.
   std::mutex mutex = {};
@@ -103,6 +106,7 @@ struct Client::Impl {
   std::optional<wire::Subscriber<msgs::SceneInterpretations>> results = {};
   std::optional<wire::Subscriber<wire::sensor_msgs::Image>> images = {};
   std::optional<wire::Subscriber<msgs::RgbdFrame>> others_frames = {};
+  std::optional<wire::Subscriber<msgs::Tracks>> tracks = {};
 
   static Result<std::unique_ptr<Impl>> create(const ClientOptions& options);
   Result<Recording> call_record(const msgs::Record_Request& request) const;
@@ -137,6 +141,9 @@ Result<std::unique_ptr<Client::Impl>> Client::Impl::create(const ClientOptions& 
   make(impl->unload_model, "unload_model");
   make(impl->get_status, "get_status");
   make(impl->record, "record");
+  make(impl->rename_track, "rename_track");
+  make(impl->hold_track, "hold_track");
+  make(impl->forget_track, "forget_track");
   if (!status.ok()) return status;
   return impl;
 }
@@ -306,6 +313,30 @@ Status Client::subscribe_annotated(std::function<void(const AnnotatedImage&)> on
     return impl_->subscribe(impl_->images, "annotated", wire::qos::results(), true, sdk::to_image,
                             call);
   });
+}
+
+Status Client::tracks(std::function<void(const TrackSet&)> on_tracks) {
+  return guarded([&] {
+    return impl_->subscribe(impl_->tracks, "track_states", wire::qos::results(), true,
+                            sdk::to_tracks, std::move(on_tracks));
+  });
+}
+
+Status Client::rename_track(const std::string& track, const std::string& name) {
+  return guarded([&] {
+    return outcome(impl_->rename_track->call({track, name}, impl_->options.timeout));
+  });
+}
+
+Status Client::hold_track(const std::string& track, bool hold) {
+  return guarded([&] {
+    return outcome(impl_->hold_track->call({track, hold}, impl_->options.timeout));
+  });
+}
+
+Status Client::forget_track(const std::string& track) {
+  return guarded(
+      [&] { return outcome(impl_->forget_track->call({track}, impl_->options.timeout)); });
 }
 
 Result<ServerStatus> Client::status() {

@@ -22,6 +22,39 @@ ObjectPose to_pose(const wire::geometry_msgs::Pose& message) {
   return {{{p.x, p.y, p.z}}, {{q.x, q.y, q.z, q.w}}};
 }
 
+OrientationSpread to_spread(const msgs::Bingham& message) {
+  OrientationSpread spread;
+  for (std::size_t i = 0; i < 12; ++i) spread.axes[i / 4][i % 4] = message.axes[i];
+  spread.concentrations = message.concentrations;
+  return spread;
+}
+
+std::array<double, 3> to_array(const wire::geometry_msgs::Vector3& v) { return {{v.x, v.y, v.z}}; }
+
+TrackedObject to_tracked_object(const msgs::Track& message) {
+  TrackedObject object;
+  object.id = message.id;
+  object.name = message.name;
+  object.model = message.model;
+  object.model_number = static_cast<int>(message.model_number);
+  if (message.state <= msgs::Track::kLost) object.state = static_cast<TrackedState>(message.state);
+  object.probability = message.probability;
+  object.frame_from_object = to_pose(message.pose.pose);
+  object.covariance = message.pose.covariance;
+  object.orientation_spread = to_spread(message.orientation);
+  object.velocity = to_array(message.velocity.linear);
+  object.angular_velocity = to_array(message.velocity.angular);
+  object.visible_fraction = message.visible_fraction;
+  object.age_s = message.age_s;
+  object.unseen_s = message.unseen_s;
+  object.held = message.held;
+  object.weight = message.weight;
+  for (const auto& other : message.alternatives) {
+    object.alternatives.push_back({to_pose(other.pose), other.weight});
+  }
+  return object;
+}
+
 Detection to_detection(const msgs::Placement& message) {
   Detection detection;
   detection.model = message.model;
@@ -29,10 +62,7 @@ Detection to_detection(const msgs::Placement& message) {
   detection.instance = static_cast<int>(message.instance);
   detection.camera_from_object = to_pose(message.pose.pose);
   detection.covariance = message.pose.covariance;
-  for (std::size_t i = 0; i < 12; ++i) {
-    detection.orientation_spread.axes[i / 4][i % 4] = message.orientation.axes[i];
-  }
-  detection.orientation_spread.concentrations = message.orientation.concentrations;
+  detection.orientation_spread = to_spread(message.orientation);
   detection.score = message.score;
   detection.probability = message.probability;
   detection.visible_fraction = message.visible_fraction;
@@ -138,6 +168,19 @@ DetectionSet to_detections(const msgs::SceneInterpretations& message) {
   set.fused_frames = static_cast<int>(message.fused_frames);
   set.models_searched = static_cast<int>(message.models_searched);
   set.seed = message.seed;
+  return set;
+}
+
+TrackSet to_tracks(const msgs::Tracks& message) {
+  TrackSet set;
+  set.stamp_ns = to_ns(message.header.stamp);
+  set.frame_id = message.header.frame_id;
+  set.camera_frame_id = message.camera_frame_id;
+  set.in_fixed_frame = message.in_fixed_frame;
+  set.frame_from_camera = to_pose(message.camera);
+  for (const msgs::Track& track : message.tracks) set.tracks.push_back(to_tracked_object(track));
+  for (const auto& [id, name, reason] : message.ended) set.ended.push_back({id, name, reason});
+  set.total_ms = message.total_ms;
   return set;
 }
 
@@ -256,6 +299,11 @@ Result<std::vector<msgs::PosePrior>> to_messages(const std::vector<ExpectedPose>
 }  // namespace bpa::sdk
 
 namespace bpa {
+
+const char* to_string(TrackedState state) {
+  constexpr const char* kNames[] = {"tentative", "confirmed", "occluded", "lost"};
+  return kNames[static_cast<std::size_t>(state)];
+}
 
 // A small turn by d about the camera's axes has the quaternion (d / 2, 1): the Gaussian exp(-d^2 /
 // 2 sigma^2) is the Bingham with the concentration -2 / sigma^2 about (axis, 0) * orientation.

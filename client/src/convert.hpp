@@ -14,6 +14,8 @@ namespace bpa::sdk {
 /// The message's status; `internal` for a code that this version does not know.
 Status to_status(const wire::bpa_msgs::Status& message);
 DetectionSet to_detections(const wire::bpa_msgs::SceneInterpretations& message);
+/// A state that this version does not know is `tentative`.
+TrackSet to_tracks(const wire::bpa_msgs::Tracks& message);
 KnownModel to_model(const wire::bpa_msgs::ModelInfo& message);
 ServerStatus to_server_status(const wire::bpa_msgs::GetStatus_Response& message);
 /// Fails unless it is an rgb8 image whose pixels are all there, rows without padding.

@@ -55,7 +55,7 @@ class Examples : public testing::Test {
 TEST_F(Examples, PrintWhatTheySay) {
   const support::Process server({BPA_BINARY_DIR "/tests/bpa-stub-server"},
                                 support::scratch_folder() + "/server.log");
-  for (const char* name : {"04_models", "02_own_frame", "03_stream"}) {
+  for (const char* name : {"04_models", "02_own_frame", "03_stream", "06_tracks"}) {
     EXPECT_EQ(run(name), expected_output(name));
   }
 }

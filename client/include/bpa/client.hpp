@@ -84,6 +84,19 @@ class Client {
   /// The same for the annotated images, which the server draws only for subscribers.
   Status subscribe_annotated(std::function<void(const AnnotatedImage&)> on_image);
 
+  /// The same for the tracks: objects that the server follows from frame to frame at the camera's
+  /// rate. It follows them while there is a subscriber.
+  Status tracks(std::function<void(const TrackSet&)> on_tracks);
+  /// Edit a track, named by its name or its id in decimal digits. Fail with `not_found` without
+  /// one, which lists the tracks there are.
+  /// A name has 1 to 100 letters, digits, '_', '-' and '.', not digits alone; `invalid_argument` on
+  /// others, and on one that another track or frame of /tf has.
+  Status rename_track(const std::string& track, const std::string& name);
+  /// Keeps a track however long its object is not seen; false: no longer.
+  Status hold_track(const std::string& track, bool hold = true);
+  /// Ends a track.
+  Status forget_track(const std::string& track);
+
   Result<ServerStatus> status();
 
   /// Adds a model of the server's library directory by name, or one below the server's

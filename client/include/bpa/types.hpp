@@ -145,6 +145,65 @@ struct DetectQuery {
   std::vector<ExpectedPose> priors = {};  ///< What is known beforehand of the frame.
 };
 
+/// What is known of a tracked object now.
+enum class TrackedState {
+  tentative,  ///< Found once; the next frames and searches decide.
+  confirmed,  ///< Followed in this frame.
+  occluded,   ///< Hidden by nearer surface or outside of the image; its pose is predicted.
+  lost,       ///< Not where it was expected, nor hidden; waits for a search to find it again.
+};
+
+/// "tentative", "confirmed", "occluded" or "lost".
+const char* to_string(TrackedState state);
+
+/// Another pose of a tracked object that the views so far explain as well.
+struct TrackedAlternative {
+  ObjectPose frame_from_object;
+  double weight = 0;  ///< In (0, 1].
+};
+
+/// One object, followed from frame to frame. Poses, velocities and covariances are about the axes
+/// of TrackSet::frame_id.
+struct TrackedObject {
+  std::uint64_t id = 0;  ///< From 1; never used for another object in a run of the server.
+  std::string name;      ///< Unique among the tracks; "MODEL_N" unless it was renamed.
+  std::string model;     ///< A name that Client::models returns.
+  int model_number = 0;  ///< The model's number in the server's library.
+  TrackedState state = TrackedState::tentative;
+  double probability = 0;  ///< That the object is there, in [0, 1].
+  ObjectPose frame_from_object;
+  /// Row-major 6x6 covariance of (x, y, z, rotation about x, y, z), m^2 and rad^2.
+  std::array<double, 36> covariance{};
+  OrientationSpread orientation_spread;
+  std::array<double, 3> velocity{};          ///< Of the model's origin, m/s.
+  std::array<double, 3> angular_velocity{};  ///< rad/s.
+  double visible_fraction = 0;  ///< Of the surface that faces the camera, in this frame, in [0, 1].
+  double age_s = 0;             ///< Since its first frame.
+  double unseen_s = 0;          ///< Since it was last seen.
+  bool held = false;            ///< Does not end for being unseen: see Client::hold_track.
+  double weight = 1;            ///< Of the pose against its alternatives, in (0, 1].
+  std::vector<TrackedAlternative> alternatives;  ///< By falling weight; empty: there is none.
+};
+
+/// A track that has ended.
+struct EndedObject {
+  std::uint64_t id = 0;
+  std::string name;
+  std::string reason;  ///< For people.
+};
+
+/// All tracks after one frame.
+struct TrackSet {
+  std::int64_t stamp_ns = 0;  ///< Exposure time of the frame, UTC.
+  std::string frame_id;  ///< Of the poses: the server's tracking.fixed_frame, or the camera frame.
+  std::string camera_frame_id;
+  bool in_fixed_frame = false;        ///< Whether the camera's motion is known, from /tf.
+  ObjectPose frame_from_camera;       ///< The identity without a fixed frame.
+  std::vector<TrackedObject> tracks;  ///< By id; tentative, occluded and lost ones too.
+  std::vector<EndedObject> ended;     ///< In this frame.
+  double total_ms = 0;                ///< That following took.
+};
+
 /// One model of the server's library.
 struct KnownModel {
   std::string name;
