@@ -33,6 +33,8 @@ void add_common(CLI::App& program, Common& common);
 void add_questions(CLI::App& program, const Common& common);
 void add_send(CLI::App& program, const Common& common);
 void add_watch(CLI::App& program, const Common& common);
+/// tracks, rename, hold, forget
+void add_tracks(CLI::App& program, const Common& common);
 void add_detect(CLI::App& program, const Common& common);
 void add_play(CLI::App& program, const Common& common);
 void add_record(CLI::App& program, const Common& common);

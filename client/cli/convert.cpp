@@ -17,15 +17,41 @@ Pose to_pose(const ObjectPose& pose) {
   return {Eigen::Quaterniond(w, x, y, z), Eigen::Vector3d::Map(pose.position.data())};
 }
 
+OrientationUncertainty to_uncertainty(const OrientationSpread& spread) {
+  return {Axes::Map(spread.axes[0].data()), Eigen::Vector3d::Map(spread.concentrations.data())};
+}
+
+Track to_track(const TrackedObject& object) {
+  Track track;
+  track.id = object.id;
+  track.name = object.name;
+  track.model = object.model;
+  track.model_number = object.model_number;
+  track.state = static_cast<TrackState>(object.state);  // of the same order
+  track.probability = object.probability;
+  track.frame_from_object = to_pose(object.frame_from_object);
+  track.covariance = RowMajor6::Map(object.covariance.data());
+  track.orientation = to_uncertainty(object.orientation_spread);
+  track.velocity = Eigen::Vector3d::Map(object.velocity.data());
+  track.angular_velocity = Eigen::Vector3d::Map(object.angular_velocity.data());
+  track.visible_fraction = object.visible_fraction;
+  track.age_s = object.age_s;
+  track.unseen_s = object.unseen_s;
+  track.held = object.held;
+  track.weight = object.weight;
+  for (const TrackedAlternative& other : object.alternatives) {
+    track.alternatives.push_back({to_pose(other.frame_from_object), other.weight});
+  }
+  return track;
+}
+
 Placement to_placement(const Detection& detection) {
   Placement placement;
   placement.model_number = detection.model_number;
   placement.model = detection.model;
   placement.camera_from_object = to_pose(detection.camera_from_object);
   placement.covariance = RowMajor6::Map(detection.covariance.data());
-  const OrientationSpread& spread = detection.orientation_spread;
-  placement.orientation = {Axes::Map(spread.axes[0].data()),
-                           Eigen::Vector3d::Map(spread.concentrations.data())};
+  placement.orientation = to_uncertainty(detection.orientation_spread);
   placement.score = detection.score;
   placement.probability = detection.probability;
   placement.visible_fraction = detection.visible_fraction;
@@ -66,6 +92,20 @@ io::FrameResult to_frame_result(const DetectionSet& set) {
       result.interpretations.back().placements.push_back(to_placement(detection));
     }
   }
+  return result;
+}
+
+io::TrackResult to_track_result(const TrackSet& set) {
+  io::TrackResult result;
+  std::tie(result.scene_id, result.im_id) = scene_and_image(set.camera_frame_id);
+  result.stamp_ns = set.stamp_ns;
+  result.frame_id = set.frame_id;
+  result.camera_frame_id = set.camera_frame_id;
+  result.in_fixed_frame = set.in_fixed_frame;
+  result.frame_from_camera = to_pose(set.frame_from_camera);
+  for (const TrackedObject& object : set.tracks) result.tracks.push_back(to_track(object));
+  for (const auto& [id, name, reason] : set.ended) result.ended.push_back({id, name, reason});
+  result.milliseconds = set.total_ms;
   return result;
 }
 

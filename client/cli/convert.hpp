@@ -9,6 +9,7 @@
 
 #include "core/cloud/frame.hpp"
 #include "core/io/results.hpp"
+#include "core/io/tracks.hpp"
 #include "core/result/pose_prior.hpp"
 
 // The SDK's structs <-> frames and results of the core.
@@ -20,6 +21,9 @@ std::pair<int, int> scene_and_image(const std::string& frame_id);
 
 /// A server's answer as result files hold it.
 io::FrameResult to_frame_result(const DetectionSet& set);
+
+/// Tracks as files hold them.
+io::TrackResult to_track_result(const TrackSet& set);
 
 /// The prior with its most probable pose.
 ExpectedPose to_expected_pose(const PosePrior& prior);

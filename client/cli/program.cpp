@@ -17,6 +17,7 @@ int run_bpa_client(int argc, char** argv) {
   add_common(program, common);
   add_send(program, common);
   add_watch(program, common);
+  add_tracks(program, common);
   add_detect(program, common);
   add_questions(program, common);
   add_record(program, common);
