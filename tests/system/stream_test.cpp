@@ -280,8 +280,8 @@ TEST_F(StreamOfFrames, StandardTopicsCarryTheSameResult) {
     EXPECT_EQ(status.level, wire::diagnostic_msgs::DiagnosticStatus::kOk) << status.message;
     names.insert(status.name.substr(status.name.find(": ") + 2));
   }
-  EXPECT_EQ(names,
-            (std::set<std::string>{"detection", "drops", "queue", "models", "frames", "camera"}));
+  EXPECT_EQ(names, (std::set<std::string>{"detection", "drops", "queue", "models", "frames",
+                                          "camera", "tracking"}));
 }
 
 }  // namespace
