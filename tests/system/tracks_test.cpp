@@ -199,7 +199,7 @@ TEST_F(TracksOfFrames, AreNamedHeldAndForgotten) {
 
 /// Lines of a log that hold a track with this id.
 std::size_t lines_of_track(const std::string& log, const std::string& id) {
-  const std::string text = support::read_text(log), word = "\"id\": " + id + ",";
+  const std::string text = support::read_text(log), word = "\"id\":" + id + ",";
   std::size_t count = 0;
   for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
     ++count;
@@ -232,7 +232,7 @@ TEST_F(TracksOfFrames, GoOnForASubscriberThatIsKilledAndRestarted) {
     const std::string log = folder + "/tracks" + std::to_string(run);
     support::Process subscriber(command, log);
     ASSERT_TRUE(eventually([&] { return lines_of_track(log, "1") > 5; }))
-        << run << support::read_text(log) << server.log();
+        << run << support::read_text(log).size() << server.log();
     EXPECT_EQ(lines_of_track(log, "2"), 0U);
     subscriber.signal(SIGKILL);
     subscriber.wait(milliseconds(5000));
