@@ -310,8 +310,9 @@ struct TrackingOptions : track::TrackerOptions {
                        "that one that restarts finds the same tracks."}));
     visit("search_nice", search_nice,
           at_run_time({0, 19,
-                       "Nice value of the search's threads while objects are followed: higher "
-                       "ones leave more time to tracking. Only root may lower it again."}));
+                       "Added to the nice value of the search's threads while objects are "
+                       "followed: it leaves the processor to tracking. Only root may lower it "
+                       "again."}));
     TrackerOptions::visit_fields([&](const char* name, auto& value, const FieldRule& rule) {
       visit(name, value, at_run_time(rule));
     });

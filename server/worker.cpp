@@ -236,9 +236,8 @@ void Worker::run() {
 /// Takes one task, frame or request out and works on it with no lock held.
 void Worker::run_one(std::unique_lock<std::mutex>& lock) {
   const WorkerOptions options = options_;
-  if (options.niceness && options.niceness() != niceness_) {
-    niceness_ = options.niceness();
-    (void)set_niceness(niceness_);
+  if (const int added = options.niceness ? options.niceness() : 0; added != niceness_) {
+    if (set_niceness(niceness() - niceness_ + added)) niceness_ = added;
   }
   const bool frame_wanted = options.continuous || !awaiting_frame_.empty();
   const bool take_frame =

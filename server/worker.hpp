@@ -71,7 +71,7 @@ struct WorkerOptions {
   /// function: what the camera's frame before showed.
   std::function<std::optional<std::vector<ExpectedPlacement>>(const std::string& frame_id)>
       expected = {};
-  /// Nice value that searches begin with; an empty function leaves it.
+  /// Added to the nice value of this process while it searches; an empty function adds nothing.
   std::function<int()> niceness = {};
 };
 
@@ -153,7 +153,7 @@ class Worker {
   Busy busy_;
   // Of the worker's thread alone.
   FrameFusion fusion_;
-  int niceness_ = 0;
+  int niceness_ = 0;    ///< What is added now.
   int last_fused_ = 1;  ///< How many frames the last one was made of.
   std::map<std::string, std::vector<ExpectedPlacement>> expected_;  ///< By frame_id.
 

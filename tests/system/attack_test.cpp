@@ -83,6 +83,15 @@ class Stranger {
     topic("camera/color", support::wall_color_image(1));
     topic("camera/depth", support::wall_depth_image(1));
     topic("camera/info", support::wall_camera_info(1));
+    wire::tf2_msgs::TFMessage transforms;
+    transforms.transforms.resize(1);
+    transforms.transforms[0].header.frame_id = "map";
+    transforms.transforms[0].child_frame_id = "wall";
+    transforms.transforms[0].transform.rotation.w = 1;
+    topic("tf", transforms);
+    service<msgs::RenameTrack>("rename_track", {"stub_1", "mine"});
+    service<msgs::HoldTrack>("hold_track", {"stub_1", true});
+    service<msgs::ForgetTrack>("forget_track", {"stub_1"});
     msgs::Detect_Request detect;
     detect.frame = support::wall_frame();
     service<msgs::Detect>("detect", detect);
@@ -181,10 +190,11 @@ Calls ask_until(Client& client, const std::function<bool()>& done) {
 }
 
 TEST(Attack, SpoiledSamplesKeepNobodyFromTheServer) {
-  support::StubServer server(
-      {"input.color=camera/color", "input.depth=camera/depth", "input.camera_info=camera/info"});
+  support::StubServer server({"input.color=camera/color", "input.depth=camera/depth",
+                              "input.camera_info=camera/info", "tracking.fixed_frame=map"});
   auto client = Client::connect(support::client_options());
   ASSERT_TRUE(client.ok()) << client.status().message << server.log();
+  ASSERT_TRUE(client->tracks([](const TrackSet&) {}).ok());
   Stranger stranger;
   ASSERT_EQ(stranger.unmatched(), "");
   const auto quiet_end = SteadyClock::now() + std::chrono::seconds(2);
