@@ -369,6 +369,28 @@ TEST_F(WorkerTest, AFrameIsSearchedForWhatItsCameraShowedBefore) {
             (std::vector<std::string>{"", "", "found at 1", "", "found at 4", ""}));
 }
 
+TEST_F(WorkerTest, ASearchBeginsWithWhereTheTracksAre) {
+  WorkerOptions options;
+  bool tracked = false;
+  options.expected = [&](const std::string&) -> std::optional<std::vector<ExpectedPlacement>> {
+    if (!tracked) return std::nullopt;
+    return std::vector<ExpectedPlacement>{{"a track", {}}};
+  };
+  auto worker = make(options);
+  gate.open();
+  std::vector<std::int64_t> taken;
+  for (const int stamp : {1, 2, 3}) {
+    IncomingFrame incoming = frame(stamp);
+    incoming.taken = [&taken, stamp] { taken.push_back(stamp); };
+    worker->push(std::move(incoming));
+    ASSERT_TRUE(streamed.wait_for(static_cast<std::size_t>(stamp)));
+    tracked = stamp == 1;
+  }
+  worker.reset();
+  EXPECT_EQ(gate.expected(), (std::vector<std::string>{"", "a track", "found at 2"}));
+  EXPECT_EQ(taken, (std::vector<std::int64_t>{1, 2, 3}));
+}
+
 TEST_F(WorkerTest, FramesThatWaitAreCombinedAndTheNewestIsSearched) {
   WorkerOptions options;
   options.fuse_frames = options.frame_capacity = 3;
