@@ -27,14 +27,6 @@ Candidates near_symmetric(const Search& search, const Candidates& candidates) {
   return out;
 }
 
-// The turned pose, aligned. A turn that the view leaves open slides while it is aligned, to where
-// others are already: then it stays as it was turned.
-Refinement aligned_as_turned(const Search& search, const Pose& turned) {
-  const Refinement aligned = search.refine(turned, search.options.refine.refinement);
-  const double slid = pose_error(aligned.camera_from_object, turned).angle;
-  return slid > search.options.select.duplicate_rad ? search.measured(turned) : aligned;
-}
-
 }  // namespace
 
 Candidates try_turned(const Search& search, Candidates climbed) {
@@ -50,7 +42,8 @@ Candidates try_turned(const Search& search, Candidates climbed) {
   keep_first(search, search.options.turn.max_kept_turned, turned);
   for (const Candidate& start : turned) {
     if (search.late()) break;
-    climbed.push_back(search.scored(aligned_as_turned(search, start.pose()), start.found_by));
+    climbed.push_back(search.scored(search.refine(start.pose(), search.options.refine.refinement),
+                                    start.found_by));
   }
   return climbed;
 }
