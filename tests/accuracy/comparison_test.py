@@ -50,8 +50,8 @@ class Comparison(unittest.TestCase):
         self.assertEqual(rows, [
             "| 0.1 | 4/6 | 4/9 | 3 in 5 frames |",
             "| 0.3 | 3/4 | 3/9 | 2 in 5 frames |",
-            "| 0.4 (default) | 3/4 | 3/9 | 1 in 5 frames |",
-            "| 0.5 | 3/3 | 3/9 | 1 in 5 frames |",
+            "| 0.4 | 3/4 | 3/9 | 1 in 5 frames |",
+            "| 0.5 (default) | 3/3 | 3/9 | 1 in 5 frames |",
             "| 0.7 | 2/2 | 2/9 | 0 in 5 frames |",
             "| 0.9 | 1/1 | 1/9 | 0 in 5 frames |"])
 

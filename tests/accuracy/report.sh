@@ -12,7 +12,7 @@
 set -euo pipefail
 readonly programs=$1 output=$2 data=${BPA_DATA:-../shared/data}
 readonly scenes=${BPA_SCENES:-30} free_scenes=${BPA_FREE_SCENES:-10}
-readonly unseen_scenes=${BPA_UNSEEN_SCENES:-20} ambiguous_scenes=${BPA_AMBIGUOUS_SCENES:-40}
+readonly unseen_scenes=${BPA_UNSEEN_SCENES:-60} ambiguous_scenes=${BPA_AMBIGUOUS_SCENES:-40}
 readonly detector=${BPA_DETECTOR:-$programs/bpa}
 tools=$(dirname "${BASH_SOURCE[0]}")
 readonly tools
