@@ -26,8 +26,8 @@ io::ColorImage with_words(const io::ColorImage& picture, const std::string& titl
 /// Two pictures of one height beside each other.
 io::ColorImage beside(const io::ColorImage& left, const io::ColorImage& right);
 
-/// Pictures, all made `cell_width` pixels wide, in a grid. Where that is larger than an image may be
-/// (io::kMaxImageSide), there are more columns, and cells are smaller.
+/// Pictures, all made `cell_width` pixels wide, in a grid. Where that is larger than an image may
+/// be (io::kMaxImageSide), there are more columns, and cells are smaller.
 io::ColorImage contact_sheet(const std::vector<io::ColorImage>& pictures, int columns,
                              int cell_width);
 

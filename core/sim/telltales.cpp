@@ -60,7 +60,7 @@ WallCircle circle_through(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
 std::vector<int> protruding_vertices(const TriangleMesh& mesh) {
   constexpr int kTriples = 500;
   constexpr std::size_t kSample = 1000;
-  constexpr double kOnWall = 0.005, kStandsOut = 0.01;                    // metres
+  constexpr double kOnWall = 0.005, kStandsOut = 0.01;                     // metres
   constexpr double kLeastOnWall = 0.25, kLeastOut = 0.02, kMostOut = 0.4;  // shares
   constexpr double kOneSide = 0.7;  // mean resultant length of the directions that stand out
   if (mesh.vertices.empty()) return {};

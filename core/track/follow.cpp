@@ -73,12 +73,14 @@ Fit judged(const View& view, const ObjectModel& model, const FeaturePlaces& plac
           evidence.surface().visibility};
 }
 
+bool same_pose(const Body& body, const Pose& a, const Pose& b) {
+  const PoseError error = pose_error(a, b, body.model->symmetry);
+  return error.position < kPoseTolerance_m && error.angle < kPoseTolerance_rad;
+}
+
 // Adds another pose unless the body has it. Returns whether it did.
 bool propose(Body& body, const Pose& object_from_mode, double log_weight) {
-  const auto same = [&](const Pose& other) {
-    const PoseError error = pose_error(object_from_mode, other, body.model->symmetry);
-    return error.position < kPoseTolerance_m && error.angle < kPoseTolerance_rad;
-  };
+  const auto same = [&](const Pose& other) { return same_pose(body, object_from_mode, other); };
   if (same(Pose()) || body.modes.size() >= kMostModes) return false;
   const auto known = std::ranges::find_if(
       body.modes, [&](const Mode& mode) { return same(mode.object_from_mode); });
@@ -111,6 +113,15 @@ void make_pose(std::size_t k, Body& body) {
   body.compared_from = back * body.compared_from;
 }
 
+// The likeliest mode becomes the pose if it is clearly likelier; unlikely ones are dropped.
+void settle(Body& body) {
+  const auto best = std::ranges::max_element(body.modes, {}, &Mode::log_weight);
+  if (best != body.modes.end() && best->log_weight > kSwitches) {
+    make_pose(best - body.modes.begin(), body);
+  }
+  std::erase_if(body.modes, [](const Mode& mode) { return mode.log_weight < kUnlikely; });
+}
+
 // `own` is the pose, aligned.
 void weigh_modes(const SceneFeatures& scene, const Pose& own, const Pose& camera_from_object,
                  Body& body) {
@@ -123,16 +134,10 @@ void weigh_modes(const SceneFeatures& scene, const Pose& own, const Pose& camera
     const double beyond = std::max(0.0, std::abs(nats) - kLittleEvidence);
     return std::copysign(std::min(kMostEvidence, beyond), nats);
   };
-  int best = -1;
-  double highest = kSwitches;
   for (std::size_t k = 0; k < body.modes.size(); ++k) {
-    double& weight = body.modes[k].log_weight;
-    weight += kTempered * evidence(k + 1);
-    if (weight <= highest) continue;
-    best = static_cast<int>(k);
-    highest = weight;
+    body.modes[k].log_weight += kTempered * evidence(k + 1);
   }
-  if (best >= 0) make_pose(best, body);
+  settle(body);
 }
 
 }  // namespace
@@ -230,7 +235,17 @@ void compare_modes(const View& view, Body& body) {
     propose(body, object_from_own * motion, kTurnedWeight);
   }
   weigh_modes(scene, own, camera_from_object, body);
-  std::erase_if(body.modes, [](const Mode& mode) { return mode.log_weight < kUnlikely; });
+}
+
+void favour_mode(Body& body, const Pose& frame_from_object, double log_weight, double says) {
+  const Pose relative = body.motion.pose().inverse() * frame_from_object;
+  const bool own = same_pose(body, relative, Pose());
+  if (!own) add_mode(body, frame_from_object, log_weight);
+  for (Mode& mode : body.modes) {
+    if (own) mode.log_weight -= says;
+    if (!own && same_pose(body, relative, mode.object_from_mode)) mode.log_weight += says;
+  }
+  settle(body);
 }
 
 }  // namespace bpa::track

@@ -80,6 +80,11 @@ void follow(const View& view, double seconds, Body& body);
 /// clearly likelier than the pose becomes the pose.
 void compare_modes(const View& view, Body& body);
 
+/// A search takes this pose, in the tracks' frame of reference, for right: its weight rises by
+/// `says`, or those of all modes fall where it is the body's own. It is added with `log_weight` if
+/// it is new. A mode that has become clearly likelier than the pose becomes the pose.
+void favour_mode(Body& body, const Pose& frame_from_object, double log_weight, double says);
+
 /// Adds another pose, in the tracks' frame of reference, unless the body has it.
 void add_mode(Body& body, const Pose& frame_from_object, double log_weight);
 

@@ -14,6 +14,7 @@
 #include "core/cloud/sensor_noise.hpp"
 #include "core/detect/candidate.hpp"
 #include "core/track/life.hpp"
+#include "core/track/newcomer.hpp"
 #include "core/track/observe_around.hpp"
 
 namespace bpa::track {
@@ -31,7 +32,11 @@ constexpr double kNotFound = -1;                     // of one that should and d
 constexpr double kOtherFound = -3;  // of one that finds another object in its place
 constexpr double kMostLogOdds = 6;  // of all
 constexpr double kEnds = -1;
-constexpr double kDoubt = -3;  // log weight of another pose that a search suggests for a track
+// Log weights: of another pose that a search suggests for a track; of one search that takes one of
+// the poses for right.
+constexpr double kDoubt = -2, kMostSaid = 2.5;
+constexpr int kReceivedAtOnce = 4,
+              kStepsAFrame = 3;  // newcomers, and frames that each goes through
 
 constexpr int kCoarseStep_px = 8;  // between depths that are compared with another frame's
 constexpr int kPhases = 8;         // tracks that are not aligned in the same frame, where all rest
@@ -59,6 +64,7 @@ struct Tracker::State {
   std::deque<KeptFrame> kept;
   std::vector<Life> tracks;  // by id
   std::vector<SceneInterpretations> results;
+  std::vector<Newcomer> newcomers;  // in the order of their results
   std::uint64_t last_id = 0;
   std::map<std::string, int> born_of_model;
 
@@ -78,6 +84,7 @@ struct Tracker::State {
     records.clear();
     kept.clear();
     results.clear();
+    newcomers.clear();
   }
 
   const FrameRecord* record_of(std::int64_t stamp) const {
@@ -147,51 +154,6 @@ struct Tracker::State {
     ++counts.confirmed;
   }
 
-  // A placement of an earlier frame, followed to the newest one; nothing if it is not there.
-  std::optional<Body> carried_forward(const Placement& found, const FrameRecord& record,
-                                      const Frame& newest) const {
-    const auto model = library->find(found.model);
-    if (!model) return std::nullopt;
-    const Placement in_frame = transformed(record.frame_from_camera, found);
-    const UncertainPose start{in_frame.camera_from_object, in_frame.covariance};
-    Body body{.model = model, .motion = MotionFilter(start), .last_seen = start.pose};
-    body.visible_fraction = found.visible_fraction;
-    Body at_rest = body;
-    if (record.stamp_ns == stamp_ns) return body;
-    const auto seconds_since = [](std::int64_t to, std::int64_t from) {
-      return static_cast<double>(to - from) / kSecond_ns;
-    };
-    follow(view(newest, frame_from_camera), seconds_since(stamp_ns, record.stamp_ns), at_rest);
-    if (at_rest.sight == Sight::seen) return at_rest;
-    std::int64_t at = record.stamp_ns;
-    for (const KeptFrame& frame : kept) {
-      if (frame.frame->stamp_ns <= at) continue;
-      follow(view(*frame.frame, frame.frame_from_camera), seconds_since(frame.frame->stamp_ns, at),
-             body);
-      at = frame.frame->stamp_ns;
-    }
-    if (at < stamp_ns) {
-      follow(view(newest, frame_from_camera), seconds_since(stamp_ns, at), body);
-    }
-    return body.sight == Sight::absent ? std::nullopt : std::optional(body);
-  }
-
-  // The same with the placement's alternatives, which become the body's. Where its own pose is not
-  // there, one of them is.
-  std::optional<Body> any_carried_forward(const Placement& found, const FrameRecord& record,
-                                          const Frame& newest) const {
-    Placement likeliest = found;
-    std::optional<Body> body = carried_forward(likeliest, record, newest);
-    for (std::size_t i = 0; i < found.alternatives.size() && !body; ++i) {
-      likeliest.camera_from_object = found.alternatives[i].camera_from_object;
-      body = carried_forward(likeliest, record, newest);
-    }
-    if (!body) return body;
-    const Pose since = body->motion.pose() * likeliest.camera_from_object.inverse();
-    add_alternatives(found, since, *body);
-    return body;
-  }
-
   Life* life_of(std::uint64_t id) {
     const auto found = std::ranges::find(tracks, id, &Life::id);
     return found == tracks.end() ? nullptr : &*found;
@@ -205,30 +167,16 @@ struct Tracker::State {
 
   // What a search says of a track that it found again.
   void confirm_by(const Placement& found, const TrackRecord& record, const FrameRecord& at,
-                  const Frame& newest, Life& life) {
+                  Life& life) {
     believe(found, life);
-    if (life.body.sight != Sight::seen) {
-      if (std::optional<Body> body = any_carried_forward(found, at, newest);
-          body && body->sight == Sight::seen) {
-        life.body = std::move(*body);
-      }
-      return;
-    }
+    if (life.body.sight != Sight::seen) return expect(found, life.id, at);
     // Poses at the time of the search, moved as the object has been since.
     const Pose since = life.body.motion.pose() * record.camera_from_object.inverse();
-    add_mode(life.body, since * found.camera_from_object, kDoubt);
     for (const PoseAlternative& other : found.alternatives) {
       add_mode(life.body, since * other.camera_from_object, kDoubt);
     }
-  }
-
-  static void add_alternatives(const Placement& found, const Pose& now_from_then, Body& body) {
-    double own = 1;
-    for (const PoseAlternative& other : found.alternatives) own -= other.weight;
-    for (const PoseAlternative& other : found.alternatives) {
-      add_mode(body, now_from_then * other.camera_from_object,
-               std::log(other.weight / std::max(0.01, own)));
-    }
+    const double says = std::clamp(log_odds(found.probability), 0.0, kMostSaid);
+    favour_mode(life.body, since * found.camera_from_object, kDoubt, says);
   }
 
   // The index of a track of the model at the pose; -1: none.
@@ -243,28 +191,51 @@ struct Tracker::State {
     return -1;
   }
 
-  // Begins tracks of placements that no track of their frame shows.
-  void bear(const std::vector<Placement>& found, const FrameRecord& at, const Frame& newest) {
-    std::vector<std::optional<Body>> bodies(found.size());
-    parallel_for_pieces(static_cast<int>(found.size()), 1, options.num_threads,
+  // The placement is followed to the newest frame, in this and the next ones.
+  void expect(const Placement& found, std::uint64_t track, const FrameRecord& at) {
+    if (auto model = library->find(found.model)) {
+      newcomers.emplace_back(found, std::move(model), track, at);
+    }
+  }
+
+  // Begins tracks of newcomers that have arrived.
+  void receive(const Frame& newest) {
+    // A track may have been born after the search's frame.
+    std::erase_if(newcomers, [&](const Newcomer& newcomer) {
+      const int there = track_at(newcomer.found().model, newcomer.start());
+      const bool known = newcomer.track() == 0 && there >= 0;
+      if (known) believe(newcomer.found(), tracks[there]);
+      return known;
+    });
+    const auto count = std::min<std::size_t>(newcomers.size(), kReceivedAtOnce);
+    std::vector<Newcomer::Progress> progress(count);
+    const View now = view(newest, frame_from_camera);
+    parallel_for_pieces(static_cast<int>(count), 1, options.num_threads,
                         [&](int first, int last, int) {
                           for (int i = first; i < last; ++i) {
-                            // Its track may have been born after the search's frame.
-                            const Pose then = at.frame_from_camera * found[i].camera_from_object;
-                            if (track_at(found[i].model, then) < 0) {
-                              bodies[i] = any_carried_forward(found[i], at, newest);
-                            }
+                            progress[i] = newcomers[i].step(kept, now, kStepsAFrame);
                           }
                         });
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      const Pose pose =
-          bodies[i] ? bodies[i]->motion.pose() : at.frame_from_camera * found[i].camera_from_object;
-      if (const int there = track_at(found[i].model, pose); there >= 0) {
-        believe(found[i], tracks[there]);
-      } else if (bodies[i]) {
-        add_track(found[i], std::move(*bodies[i]));
-      }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (progress[i] == Newcomer::Progress::arrived) add_arrived(newcomers[i]);
     }
+    std::size_t i = 0;
+    std::erase_if(newcomers, [&](const Newcomer&) {
+      return i < count && progress[i++] != Newcomer::Progress::on_the_way;
+    });
+  }
+
+  void add_arrived(Newcomer& newcomer) {
+    Body body = newcomer.take_body();
+    if (newcomer.track() > 0) {
+      Life* life = life_of(newcomer.track());
+      const bool found = life && life->body.sight != Sight::seen && body.sight == Sight::seen;
+      if (found) life->body = std::move(body);
+      return;
+    }
+    const int there = track_at(newcomer.found().model, body.motion.pose());
+    if (there >= 0) return believe(newcomer.found(), tracks[there]);
+    add_track(newcomer.found(), std::move(body));
   }
 
   void add_track(const Placement& found, Body body) {
@@ -283,7 +254,7 @@ struct Tracker::State {
     tracks.push_back(std::move(life));
   }
 
-  void take(const SceneInterpretations& result, const Frame& newest) {
+  void take(const SceneInterpretations& result) {
     const FrameRecord* record = record_of(result.stamp_ns);
     if (!record || result.interpretations.empty()) return;
     std::vector<Placement> placements = result.interpretations.front().placements;
@@ -296,7 +267,7 @@ struct Tracker::State {
       if (!life) continue;
       const auto by = std::ranges::find(matched, static_cast<int>(t));
       if (by != matched.end()) {
-        confirm_by(placements[by - matched.begin()], track, *record, newest, *life);
+        confirm_by(placements[by - matched.begin()], track, *record, *life);
         continue;
       }
       const bool taken = std::ranges::any_of(
@@ -305,11 +276,9 @@ struct Tracker::State {
       if (track.sight != Sight::seen || track.visible_fraction < kMinSearched) continue;
       life->evidence += taken ? kOtherFound : kNotFound;
     }
-    std::vector<Placement> fresh;
     for (std::size_t p = 0; p < placements.size(); ++p) {
-      if (matched[p] < 0) fresh.push_back(placements[p]);
+      if (matched[p] < 0) expect(placements[p], 0, *record);
     }
-    bear(fresh, *record, newest);
   }
 
   void remember(std::shared_ptr<const Frame> frame) {
@@ -401,7 +370,8 @@ Result<TrackedFrame> Tracker::track(std::shared_ptr<const Frame> frame,
   s.follow_all(*frame, seconds);
   s.part_twins();
   s.update_states();
-  for (const SceneInterpretations& result : std::exchange(s.results, {})) s.take(result, *frame);
+  for (const SceneInterpretations& result : std::exchange(s.results, {})) s.take(result);
+  s.receive(*frame);
 
   TrackedFrame out{.stamp_ns = s.stamp_ns,
                    .frame_id = s.frame_id,
