@@ -20,7 +20,7 @@ constexpr std::string_view kSequenceKindNames[] = {"mixed",  "standing", "moving
                                                    "picked", "occluded", "twins",         "handle"};
 
 // Streams of one sequence.
-constexpr std::uint64_t kOrbitStream = 1, kDropStream = 2, kSensorStream = 3, kImageStream = 4;
+constexpr std::uint64_t kDropStream = 1, kSensorStream = 2, kImageStream = 3, kOrbitStream = 100;
 
 constexpr double kClearance = 0.012;  // between bodies when they are placed, metres
 // Radii of the disc that bodies are placed in, metres; the table has 0.45.
@@ -29,7 +29,7 @@ constexpr int kPlacings = 20;         // of all bodies, until they have room
 constexpr double kSmallTwin = 0.06;   // radius of objects that can pass each other, metres
 constexpr double kHandleStart = 2.5;  // seconds that a handle stays hidden
 
-Orbit draw_orbit(const SequenceOptions& options, std::uint64_t seed) {
+Orbit draw_orbit(const SequenceOptions& options, std::uint64_t seed, int draw = 0) {
   constexpr double kRadians = std::numbers::pi / 180;
   const bool stands = options.kind == SequenceKind::standing;
   const SpeedLimits limits{stands ? 0 : options.camera_speed,
@@ -37,7 +37,7 @@ Orbit draw_orbit(const SequenceOptions& options, std::uint64_t seed) {
   return {{options.min_distance, options.max_distance, kRadians * options.min_elevation_deg,
            kRadians * options.max_elevation_deg},
           limits,
-          RandomStream(seed, kOrbitStream)()};
+          RandomStream(seed, kOrbitStream + static_cast<std::uint64_t>(draw))()};
 }
 
 /// The first of two bodies that are small enough to pass each other; -1 where there is none.
@@ -145,27 +145,42 @@ bool place_bodies(SequenceDraft& draft) {
   return true;
 }
 
-/// Turns body 0 so that the camera sees no telltale of it for as long as possible.
-void hide_telltales(const Stage& stage, SequenceDraft& draft) {
-  constexpr int kYaws = 48, kTimes = 6;
+/// The largest share of body 0's telltales that is in sight while they must be hidden.
+double most_in_sight(const Stage& stage, const SequenceDraft& draft, const Place& place) {
+  constexpr int kTimes = 6;
   const TableBody& body = draft.bodies[0];
-  const double first_yaw = draft.places[0].yaw;
-  Place best = draft.places[0];
-  int longest = -1;
-  for (int i = 0; i < kYaws; ++i) {
-    Place place = best;
-    place.yaw = first_yaw + 2 * std::numbers::pi * i / kYaws;
-    const RayScene scene(stage.meshes(),
-                         {{body.mesh, world_from_rest(place) * body.rest_from_object}});
-    int hidden = 0;
-    for (int k = 0; k < kTimes; ++k) {
-      hidden += telltales_hidden(stage.body(body.mesh), scene, draft.options.camera,
-                                 draft.orbit.world_from_camera(kHandleStart * k / (kTimes - 1)));
-    }
-    if (hidden <= longest) continue;
-    longest = hidden;
-    best = place;
+  const RayScene scene(stage.meshes(),
+                       {{body.mesh, world_from_rest(place) * body.rest_from_object}});
+  double most = 0;
+  for (int k = 0; k < kTimes; ++k) {
+    const Pose camera = draft.orbit.world_from_camera(kHandleStart * k / (kTimes - 1));
+    most = std::max(most,
+                    telltales_in_sight(stage.body(body.mesh), scene, draft.options.camera, camera));
   }
+  return most;
+}
+
+/// Draws the camera's orbit anew, and turns body 0, until next to nothing of its telltales is in
+/// sight while they must be hidden. Keeps the best where none hides them so well.
+void hide_telltales(const Stage& stage, SequenceDraft& draft, std::uint64_t seed) {
+  constexpr int kYaws = 24, kOrbits = 60;
+  constexpr double kHidden = 0.01;  // share of vertices; the top of a mug's handle, over its rim
+  Orbit best_orbit = draft.orbit;
+  Place best = draft.places[0];
+  double least = 2;
+  for (int i = 0; i < kOrbits && least > kHidden; ++i) {
+    draft.orbit = draw_orbit(draft.options, seed, i);
+    for (int k = 0; k < kYaws && least > kHidden; ++k) {
+      Place place = draft.places[0];
+      place.yaw += 2 * std::numbers::pi * k / kYaws;
+      const double seen = most_in_sight(stage, draft, place);
+      if (seen >= least) continue;
+      least = seen;
+      best = place;
+      best_orbit = draft.orbit;
+    }
+  }
+  draft.orbit = best_orbit;
   draft.places[0] = best;
 }
 
@@ -312,7 +327,7 @@ Result<Sequence> plan_sequence(const Stage& stage, const SequenceOptions& option
     return invalid_argument(
         concat("max_objects = ", options.max_objects, ": the table has no room for so many"));
   }
-  if (options.kind == SequenceKind::handle) hide_telltales(stage, draft);
+  if (options.kind == SequenceKind::handle) hide_telltales(stage, draft, seed);
   draft.first_places = draft.places;
   draft.moves.resize(draft.bodies.size());
   add_events(draft);

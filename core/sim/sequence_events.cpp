@@ -255,19 +255,40 @@ std::optional<double> add_passing(SequenceDraft& draft, double start) {
 }
 
 std::optional<double> add_turn(SequenceDraft& draft, double start) {
-  constexpr int kBody = 0;
+  constexpr int kBody = 0, kTurns = 12;        // turns to choose from, to each side
+  constexpr double kLeast = 1.2, kMost = 3.1;  // radians
   const TableBody& body = draft.bodies[kBody];
   const std::optional<Grip> grip = grip_of(body);
   const Place from = draft.places[kBody];
-  const double sign = draft.random.uniform() < 0.5 ? -1 : 1;
-  const Place to{from.at, from.yaw + sign * draft.random.uniform(2.4, 3.1)};
-  const PosePath path = [=](double u) {
+  const SpeedLimits limits = draft.object_limits();
+  const auto path_to = [from](double turn) -> PosePath {
     constexpr double kLift = 0.015;  // metres
-    return world_from_rest(between(from, to, smooth_start_and_stop(u)), kLift * smooth_bump(u));
+    const Place to{from.at, from.yaw + turn};
+    return [=](double u) {
+      return world_from_rest(between(from, to, smooth_start_and_stop(u)), kLift * smooth_bump(u));
+    };
   };
-  const double seconds =
-      seconds_of([&](double u) { return path(u) * body.rest_from_object; }, draft.object_limits());
-  add_move(draft, kBody, start, seconds, path, to);
+  const auto seconds_to = [&](double turn) {
+    const PosePath path = path_to(turn);
+    return seconds_of([&](double u) { return path(u) * body.rest_from_object; }, limits);
+  };
+  // The one after which the telltales are seen best, once the hand is gone: from the front and
+  // side.
+  constexpr double kBestFacing = 0.5;  // cosine to the camera
+  double best_turn = kMost, nearest = 2;
+  for (int i = 0; i < 2 * kTurns; ++i) {
+    const double size = kLeast + (kMost - kLeast) * (i / 2) / (kTurns - 1);
+    const double turn = i % 2 == 0 ? size : -size;
+    const double seen = start + seconds_to(turn) + kApproach;
+    const Eigen::Vector3d camera = draft.orbit.world_from_camera(seen).translation;
+    const Eigen::Vector2d side = Eigen::Rotation2Dd(from.yaw + turn) * body.telltale_side;
+    const double facing = side.dot((camera.head<2>() - from.at).normalized());
+    if (std::abs(facing - kBestFacing) >= nearest) continue;
+    nearest = std::abs(facing - kBestFacing);
+    best_turn = turn;
+  }
+  const double seconds = seconds_to(best_turn);
+  add_move(draft, kBody, start, seconds, path_to(best_turn), {from.at, from.yaw + best_turn});
   if (grip) add_hand(draft, kBody, *grip, start, seconds);
   draft.events.push_back({SequenceKind::handle, kBody, start, start + seconds});
   return start + seconds;

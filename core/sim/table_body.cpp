@@ -69,6 +69,18 @@ TableBody body_at_rest(const Stage& stage, int mesh, bool upright, RandomStream&
     body.radius = std::max(body.radius, point.head<2>().norm());
     body.sphere = std::max(body.sphere, (point - body.middle()).norm());
   }
+  for (const int vertex : object.telltales) {
+    const Eigen::Vector3d telltale = object.mesh.vertices[vertex].cast<double>();
+    body.telltale_side += (body.rest_from_object * telltale).head<2>();
+  }
+  if (!object.telltales.empty()) {
+    // From the middle of the whole body, which the circle's centre is not.
+    Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector3d& point : body.points) middle += point.head<2>();
+    body.telltale_side /= static_cast<double>(object.telltales.size());
+    body.telltale_side -= middle / static_cast<double>(body.points.size());
+    body.telltale_side.normalize();
+  }
   return body;
 }
 

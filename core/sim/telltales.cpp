@@ -62,7 +62,8 @@ std::vector<int> protruding_vertices(const TriangleMesh& mesh) {
   constexpr std::size_t kSample = 1000;
   constexpr double kOnWall = 0.005, kStandsOut = 0.01;                     // metres
   constexpr double kLeastOnWall = 0.25, kLeastOut = 0.02, kMostOut = 0.4;  // shares
-  constexpr double kOneSide = 0.7;  // mean resultant length of the directions that stand out
+  constexpr double kOneSide = 0.7;   // mean resultant length of the directions that stand out
+  constexpr double kSameSide = 0.5;  // cosine of an angle to the middle of them
   if (mesh.vertices.empty()) return {};
   RandomStream random(1);
   std::vector<Eigen::Vector3f> sample;
@@ -97,7 +98,18 @@ std::vector<int> protruding_vertices(const TriangleMesh& mesh) {
   if (wall.radius == 0 || share < kLeastOut || share > kMostOut) return {};
   // The corners of a box stand out to all sides.
   if (directions.norm() < kOneSide * count) return {};
+  // A dent or lip on another side does not tell the sides apart.
+  std::erase_if(out, [&](int vertex) {
+    const Eigen::Vector2d out_of_wall =
+        mesh.vertices[vertex].head<2>().cast<double>() - wall.center;
+    return out_of_wall.normalized().dot(directions.normalized()) < kSameSide;
+  });
   return out;
+}
+
+double telltales_in_sight(const SimulatedObject& object, const RayScene& scene,
+                          const Camera& camera, const Pose& world_from_camera) {
+  return share_in_sight(object, object.telltales, scene, camera, world_from_camera);
 }
 
 bool telltales_hidden(const SimulatedObject& object, const RayScene& scene, const Camera& camera,
@@ -105,7 +117,7 @@ bool telltales_hidden(const SimulatedObject& object, const RayScene& scene, cons
   constexpr double kEnough = 0.1;  // half of the outside of a vessel is some 0.25
   std::vector<int> all(object.mesh.vertices.size());
   std::iota(all.begin(), all.end(), 0);
-  return share_in_sight(object, object.telltales, scene, camera, world_from_camera) == 0 &&
+  return telltales_in_sight(object, scene, camera, world_from_camera) == 0 &&
          share_in_sight(object, all, scene, camera, world_from_camera) > kEnough;
 }
 

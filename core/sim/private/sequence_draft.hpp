@@ -69,7 +69,7 @@ std::optional<double> add_push(SequenceDraft& draft, double start);
 std::optional<double> add_pick(SequenceDraft& draft, double start);
 std::optional<double> add_occlusion(SequenceDraft& draft, double start);
 std::optional<double> add_passing(SequenceDraft& draft, double start);
-/// Turns instance 0 by about half a turn.
+/// Turns instance 0 until its telltales are in sight.
 std::optional<double> add_turn(SequenceDraft& draft, double start);
 
 }  // namespace bpa::sim

@@ -27,8 +27,10 @@ struct TableBody {
   int mesh = 0;  ///< In the stage's meshes.
   Pose rest_from_object;
   double radius = 0;
-  double top = 0;                       ///< Height, metres.
-  double sphere = 0;                    ///< Radius about middle() that holds all of it.
+  double top = 0;     ///< Height, metres.
+  double sphere = 0;  ///< Radius about middle() that holds all of it.
+  /// Horizontal, toward the middle of its telltales; zero where it has none.
+  Eigen::Vector2d telltale_side = Eigen::Vector2d::Zero();
   std::vector<Eigen::Vector3d> points;  ///< Some 2000 of its vertices, at rest.
 
   Eigen::Vector3d middle() const { return {0, 0, 0.5 * top}; }

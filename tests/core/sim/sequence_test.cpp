@@ -237,31 +237,32 @@ TEST(Sequences, AHandleComesIntoView) {
   SequenceOptions options = few_objects(SequenceKind::handle);
   options.min_objects = options.max_objects = 1;
   options.max_distractors = 0;
-  options.camera_speed = options.camera_turn_deg = 0;
-  const Sequence sequence = planned(options, 1);
-  const SimulatedObject& mug = moving_stage().objects()[sequence.objects[0]];
-  EXPECT_EQ(mug.name, "mug");
-  // Counted by another way than the planner's: pixels beyond the wall, as in scenes_test.cpp.
-  constexpr double kAxisX = -0.0164, kWallRadius = 0.0435;  // metres, in the mug's frame
-  const auto handle_pixels = [&](int frame) {
-    const SequenceFrame& at = sequence.frames[frame];
-    const RayScene scene(moving_stage().meshes(), at.bodies);
-    const RenderedImage image = render(scene, options.camera, at.world_from_camera, std::nullopt);
-    const Pose mug_from_camera = at.bodies[0].world_from_mesh.inverse() * at.world_from_camera;
-    int pixels = 0;
-    for (int p = 0; p < options.camera.width * options.camera.height; ++p) {
-      if (image.instance[p] != 0) continue;
-      const Eigen::Vector3d point =
-          mug_from_camera * options.camera.unproject(p % options.camera.width,
-                                                     p / options.camera.width, image.depth[p]);
-      pixels += std::hypot(point.x() - kAxisX, point.y()) > kWallRadius;
-    }
-    return pixels;
-  };
-  EXPECT_LE(handle_pixels(0), 2);
-  EXPECT_LE(handle_pixels(30), 2);
-  ASSERT_EQ(sequence.events.front().kind, SequenceKind::handle);
-  EXPECT_GT(handle_pixels(static_cast<int>(30 * sequence.events.front().end) + 1), 10);
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Sequence sequence = planned(options, seed);
+    const SimulatedObject& mug = moving_stage().objects()[sequence.objects[0]];
+    EXPECT_EQ(mug.name, "mug");
+    // Counted by another way than the planner's: pixels beyond the wall, as in scenes_test.cpp.
+    constexpr double kAxisX = -0.0164, kWallRadius = 0.0435;  // metres, in the mug's frame
+    const auto handle_pixels = [&](int frame) {
+      const SequenceFrame& at = sequence.frames[frame];
+      const RayScene scene(moving_stage().meshes(), at.bodies);
+      const RenderedImage image = render(scene, options.camera, at.world_from_camera, std::nullopt);
+      const Pose mug_from_camera = at.bodies[0].world_from_mesh.inverse() * at.world_from_camera;
+      int pixels = 0;
+      for (int p = 0; p < options.camera.width * options.camera.height; ++p) {
+        if (image.instance[p] != 0) continue;
+        const Eigen::Vector3d point =
+            mug_from_camera * options.camera.unproject(p % options.camera.width,
+                                                       p / options.camera.width, image.depth[p]);
+        pixels += std::hypot(point.x() - kAxisX, point.y()) > kWallRadius;
+      }
+      return pixels;
+    };
+    EXPECT_LE(handle_pixels(0), 3);
+    EXPECT_LE(handle_pixels(60), 3);
+    ASSERT_EQ(sequence.events.front().kind, SequenceKind::handle);
+    EXPECT_GT(handle_pixels(static_cast<int>(30 * (sequence.events.front().end + 0.95))), 5);
+  }
 }
 
 TEST(Sequences, DropsSomeFramesButNotTheFirst) {
