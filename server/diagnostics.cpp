@@ -65,13 +65,13 @@ DiagnosticStatus detection_line(const Health& health) {
 
 DiagnosticStatus drops_line(const Health& health) {
   std::vector<KeyValue> values = {
-      {"frames dropped for newer ones", text(health.status.frames_dropped)}};
+      {"frames dropped", text(health.status.frames_dropped)}};
   for (const auto& [cause, count] : health.drops) values.push_back({cause, text(count)});
   const Rates& rates = health.rates;
   const bool bad = rates.frames_bad > 0;
   return line(health, "drops", bad ? DiagnosticStatus::kWarn : DiagnosticStatus::kOk,
               bad ? text(rates.frames_bad) + " frames per s are refused or fail"
-                  : text(rates.frames_dropped) + " frames per s give way to newer ones",
+                  : text(rates.frames_dropped) + " frames per s are not searched",
               std::move(values));
 }
 
@@ -128,7 +128,8 @@ Rates RateMeter::rates() const {
 
 std::vector<std::pair<std::string, std::uint64_t>> drop_counts(const Statistics& statistics) {
   std::vector<std::pair<std::string, std::uint64_t>> drops = {
-      {"frames failed in the search", statistics.counts().frames_failed}};
+      {"frames failed in the search", statistics.counts().frames_failed},
+      {"frames dropped as the scene stands still", statistics.counts().frames_at_rest}};
   for (const auto& [cause, count] : statistics.rejections()) {
     drops.emplace_back("rejected: " + cause, count);
   }

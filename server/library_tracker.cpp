@@ -67,6 +67,9 @@ class LibraryTracker : public ObjectTracker {
   }
 
   Status add(const SceneInterpretations& found) override { return tracker_->add(found); }
+  double changed_since(std::int64_t stamp_ns) const override {
+    return tracker_->changed_since(stamp_ns);
+  }
   std::vector<ExpectedPlacement> expected() const override { return tracker_->expected(); }
   Status rename(std::uint64_t id, const std::string& name) override {
     return tracker_->rename(id - earlier_ids_, name);

@@ -27,6 +27,7 @@ class ObjectTracker {
   /// Stamps begin anew: all tracks end; ids go on.
   virtual void begin_anew() = 0;
   virtual Status add(const SceneInterpretations& found) = 0;
+  virtual double changed_since(std::int64_t stamp_ns) const = 0;
   virtual std::vector<ExpectedPlacement> expected() const = 0;
   virtual Status rename(std::uint64_t id, const std::string& name) = 0;
   virtual Status hold(std::uint64_t id, bool held) = 0;

@@ -280,6 +280,7 @@ struct TrackingOptions : track::TrackerOptions {
   int queue_frames = 1;
   double linger_s = 10;
   int search_nice = 10;
+  double rest_s = 10;
 
   void visit_fields(auto&& visit) {
     visit("enabled", enabled,
@@ -313,6 +314,10 @@ struct TrackingOptions : track::TrackerOptions {
                        "Added to the nice value of the search's threads while objects are "
                        "followed: it leaves the processor to tracking. Only root may lower it "
                        "again."}));
+    visit("rest_s", rest_s,
+          at_run_time({0, 3600,
+                       "Seconds between searches of a scene that stands still, while nobody "
+                       "subscribes to results of searches; 0: every frame is searched."}));
     TrackerOptions::visit_fields([&](const char* name, auto& value, const FieldRule& rule) {
       visit(name, value, at_run_time(rule));
     });

@@ -42,6 +42,12 @@ class ResultPublisher {
     tf_.open(participant, options.tf, wire::qos::transforms());
   }
 
+  /// Whether a result of a search has a reader. /vision_info is none.
+  bool wanted() const {
+    return interpretations_.wanted() || detections_.wanted() || annotated_.wanted() ||
+           markers_.wanted() || tf_.wanted();
+  }
+
   /// `frame` is null when the frame broke a rule; then only the failed interpretations go out.
   void publish(const Frame* frame, const Result<SceneInterpretations>& result,
                const ResultContext& context) {

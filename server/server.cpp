@@ -194,7 +194,13 @@ class Running : public Server {
       incoming.decode = [shared = tracked.frame] { return shared->get(); };
       incoming.taken = [shared = tracked.frame] { shared->set_searched(); };
     }
-    worker_->push(std::move(incoming));
+    if (!publisher_->wanted() && tracking_->rests()) {
+      statistics_.add_frame(clock_->stamp_ns() - incoming.stamp_ns);
+      statistics_.add(&Counts::frames_dropped);
+      statistics_.add(&Counts::frames_at_rest);
+    } else {
+      worker_->push(std::move(incoming));
+    }
     tracking_->push(std::move(tracked));
   }
 

@@ -41,7 +41,8 @@ struct RequestLosses {
 struct Counts {
   std::uint64_t frames_received = 0;
   std::uint64_t frames_processed = 0;
-  std::uint64_t frames_dropped = 0;   ///< A newer one took the place.
+  std::uint64_t frames_dropped = 0;   ///< A newer one took the place, or the scene stands still.
+  std::uint64_t frames_at_rest = 0;   ///< Of the dropped: of a scene that stands still.
   std::uint64_t frames_fused = 0;     ///< Searched only as a part of a newer one.
   std::uint64_t fusion_restarts = 0;  ///< Combining restarted: the camera or scene changed.
   std::uint64_t frames_rejected = 0;  ///< Broke a rule.

@@ -63,6 +63,9 @@ class Tracking {
   void push(TrackingFrame frame);
   /// Takes the result of a search in a frame of the stream; the next frame carries it forward.
   void add(const SceneInterpretations& found);
+  /// Whether the scene stands still since it was searched, at most rest_s ago: no need to search it
+  /// again.
+  bool rests() const;
   /// Where the confirmed tracks are in the newest frame of this camera; nothing where none is
   /// followed now.
   std::optional<std::vector<ExpectedPlacement>> expected(const std::string& frame_id) const;
@@ -125,6 +128,9 @@ class Tracking {
   std::vector<std::pair<std::uint64_t, std::string>> tracks_;  ///< Id and name.
   std::string tracked_camera_;                                 ///< Of `expected_`.
   std::vector<ExpectedPlacement> expected_;
+  std::int64_t searched_ns_ = 0;  ///< Stamp of the frame that was searched last, and
+  std::optional<WaitableClock::TimePoint> searched_at_;  ///< when its result came.
+  double changed_ = 1;  ///< Share of the depths that have changed since.
   std::deque<WaitableClock::TimePoint> followed_at_;  ///< In the last 10 s.
   Latencies from_arrival_, from_stamp_, working_ms_;
   std::optional<Refusal> trouble_;  ///< Why the last frame was not followed.

@@ -44,7 +44,9 @@ class TrackingThread : public testing::Test {
   TrackingThread() { options_.queue_frames = 3; }
 
   void start() {
-    tracking_.emplace(std::make_unique<support::StubTracker>(), options_,
+    auto tracker = std::make_unique<support::StubTracker>();
+    tracker->changed = changed_;
+    tracking_.emplace(std::move(tracker), options_,
                       TrackingLinks{[this] { return wanted_.load(); },
                                     [this](const TrackedFrame& frame) { take(frame); },
                                     [] { return std::int64_t{0}; },
@@ -93,12 +95,33 @@ class TrackingThread : public testing::Test {
   }
 
   TrackingOptions options_;
+  double changed_ = 1;  ///< What the tracker says of the scene.
   std::atomic<bool> wanted_{true};
   std::mutex mutex_;
   std::vector<TrackedFrame> frames_;
   std::string log_;
   std::optional<Tracking> tracking_;
 };
+
+TEST_F(TrackingThread, SceneThatStandsStillRestsOnceItIsSearched) {
+  for (const auto& [changed, rest_s, rests] :
+       {std::tuple(0.0, 60.0, true), {0.1, 60.0, false}, {0.0, 0.0, false}}) {
+    changed_ = changed;
+    options_.rest_s = rest_s;
+    start();
+    push(1);
+    settled();
+    EXPECT_FALSE(tracking_->rests()) << "it was not searched yet";
+    tracking_->add(found_at(1, {0, 0, 0.7}));
+    EXPECT_FALSE(tracking_->rests()) << "no frame was followed since";
+    push(2);
+    settled();
+    EXPECT_EQ(tracking_->rests(), rests);
+    push(3);
+    settled();
+    EXPECT_EQ(tracking_->rests(), rests);
+  }
+}
 
 TEST_F(TrackingThread, FollowsFramesAndTakesResultsOfSearches) {
   start();

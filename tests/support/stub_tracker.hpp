@@ -17,6 +17,8 @@ namespace bpa::support {
 /// each placement of a model, confirmed at once.
 class StubTracker : public server::ObjectTracker {
  public:
+  double changed = 1;  ///< What changed_since() says of a frame that was followed.
+
   Result<TrackedFrame> track(std::shared_ptr<const Frame> frame,
                              const std::optional<track::CameraPose>& camera) override {
     if (frame->stamp_ns <= last_.stamp_ns) return invalid_argument("stamps must rise");
@@ -49,6 +51,9 @@ class StubTracker : public server::ObjectTracker {
     ++counts_.searches;
     found_.push_back(found);
     return {};
+  }
+  double changed_since(std::int64_t stamp_ns) const override {
+    return cameras_.count(stamp_ns) > 0 ? changed : 1;
   }
   std::vector<ExpectedPlacement> expected() const override {
     std::vector<ExpectedPlacement> expected;
