@@ -9,40 +9,13 @@
 
 #include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
-#include "core/eval/assignment.hpp"
+#include "core/eval/private/track_counter.hpp"
 
 namespace bpa::eval {
 namespace {
 
-constexpr double kAddsLimit = 0.1;         // of the area under the curve, metres; YCB-Video
-constexpr double kAddsClose = 0.02;        // metres; Wang et al. 2019, DenseFusion
 constexpr std::size_t kAddsPoints = 2600;  // YCB-Video's points.xyz have about as many
 constexpr int kLevel95 = 2;                // of kCredibleLevels
-
-enum class Visibility { visible, hidden, ignored };
-
-/// An instance in one frame.
-struct TrackedTruth {
-  int object = 0;  // obj_id
-  int identity = 0;
-  Pose camera_from_object;
-  Visibility visibility = Visibility::visible;
-};
-
-/// A pair within match_m.
-struct NearPair {
-  double distance = kNoMatch;
-  double adds = kNoMatch;  // metres
-  bool right = false;
-  std::optional<CovarianceError> covariance_error;  // of a confirmed track
-};
-
-/// One frame: what is there, what is said, and which of it is near.
-struct TrackFrame {
-  std::vector<TrackedTruth> truth;
-  std::vector<std::uint64_t> estimates;      // ids
-  std::vector<std::vector<NearPair>> pairs;  // [estimate][truth]
-};
 
 bool is_reported(const Track& track) {
   return track.state == TrackState::confirmed || track.state == TrackState::occluded;
@@ -116,128 +89,6 @@ void add_estimates(const io::TrackResult& result, const EvalObjects& objects,
     }
   }
 }
-
-/// The costs of those estimates and instances that are free.
-std::vector<std::vector<double>> free_costs(const TrackFrame& frame,
-                                            const std::vector<int>& truth_of_estimate,
-                                            const std::vector<bool>& offered) {
-  std::vector<std::vector<double>> costs(frame.estimates.size(),
-                                         std::vector<double>(frame.truth.size(), kNoMatch));
-  std::vector<bool> taken(frame.truth.size(), false);
-  for (const int truth : truth_of_estimate) {
-    if (truth >= 0) taken[truth] = true;
-  }
-  for (std::size_t e = 0; e < frame.estimates.size(); ++e) {
-    if (truth_of_estimate[e] >= 0) continue;
-    for (std::size_t t = 0; t < frame.truth.size(); ++t) {
-      if (offered[t] && !taken[t]) costs[e][t] = frame.pairs[e][t].distance;
-    }
-  }
-  return costs;
-}
-
-/// The instance of each estimate, -1 for none. `track_of` has the last match of each identity.
-std::vector<int> match_frame(const TrackFrame& frame, const std::vector<bool>& counts,
-                             const std::map<int, std::uint64_t>& track_of) {
-  std::vector<int> truth_of_estimate(frame.estimates.size(), -1);
-  for (std::size_t t = 0; t < frame.truth.size(); ++t) {
-    const auto last = track_of.find(frame.truth[t].identity);
-    if (!counts[t] || last == track_of.end()) continue;
-    const auto at = std::ranges::find(frame.estimates, last->second);
-    if (at == frame.estimates.end()) continue;
-    const auto e = static_cast<std::size_t>(at - frame.estimates.begin());
-    if (frame.pairs[e][t].distance < kNoMatch) truth_of_estimate[e] = static_cast<int>(t);
-  }
-  // First what counts, then the rest, which makes the others neither right nor false.
-  for (const bool counting : {true, false}) {
-    std::vector<bool> offered = counts;
-    if (!counting) offered.flip();
-    const std::vector<int> more = assigned(free_costs(frame, truth_of_estimate, offered));
-    for (std::size_t e = 0; e < more.size(); ++e) {
-      if (more[e] >= 0) truth_of_estimate[e] = more[e];
-    }
-  }
-  return truth_of_estimate;
-}
-
-/// The frames of one sequence in one of the two ways of counting.
-class TrackCounter {
- public:
-  explicit TrackCounter(bool with_hidden) : with_hidden_(with_hidden) {}
-
-  /// Returns the instance that counts of each estimate, -1 for none.
-  std::vector<int> add(const TrackFrame& frame) {
-    std::vector<bool> counting;
-    for (const TrackedTruth& truth : frame.truth) {
-      counting.push_back(truth.visibility == Visibility::visible ||
-                         (with_hidden_ && truth.visibility == Visibility::hidden));
-      if (!counting.back()) continue;
-      ++counts_.instances;
-      identities_.insert(truth.identity);
-    }
-    std::vector<int> matches = match_frame(frame, counting, track_of_);
-    for (std::size_t e = 0; e < matches.size(); ++e) {
-      if (matches[e] < 0) ++counts_.false_reports;
-      if (matches[e] >= 0 && !counting[matches[e]]) {
-        matches[e] = -1;
-        continue;
-      }
-      if (matches[e] >= 0) add_match(frame, e, matches[e]);
-      for (std::size_t t = 0; t < frame.truth.size(); ++t) {
-        if (!counting[t] || frame.pairs[e][t].distance == kNoMatch) continue;
-        ++together_[{frame.truth[t].identity, frame.estimates[e]}];
-      }
-    }
-    return matches;
-  }
-
-  TrackCounts finished() {
-    counts_.objects = static_cast<int>(identities_.size());
-    counts_.identity_matched = most_in_common();
-    return counts_;
-  }
-
- private:
-  void add_match(const TrackFrame& frame, std::size_t estimate, int truth) {
-    const NearPair& pair = frame.pairs[estimate][truth];
-    ++counts_.matched;
-    counts_.distance_sum += pair.distance;
-    counts_.adds_area_sum += std::max(0.0, 1 - pair.adds / kAddsLimit);
-    counts_.within_2cm += pair.adds < kAddsClose;
-    counts_.right += pair.right;
-    const auto [last, first] =
-        track_of_.try_emplace(frame.truth[truth].identity, frame.estimates[estimate]);
-    counts_.switches += !first && last->second != frame.estimates[estimate];
-    last->second = frame.estimates[estimate];
-  }
-
-  /// Frames in which objects and tracks are together, when each object has one track at most and
-  /// each track one object.
-  int most_in_common() const {
-    std::map<std::uint64_t, std::size_t> columns;
-    for (const auto& [pair, frames] : together_) columns.try_emplace(pair.second, columns.size());
-    std::vector<std::vector<double>> costs;
-    for (const int identity : identities_) {
-      std::vector<double>& row = costs.emplace_back(columns.size(), 0.0);
-      for (const auto& [track, column] : columns) {
-        const auto found = together_.find({identity, track});
-        if (found != together_.end()) row[column] = -found->second;
-      }
-    }
-    const std::vector<int> column_of = assigned(costs);
-    double frames = 0;
-    for (std::size_t i = 0; i < costs.size(); ++i) {
-      if (column_of[i] >= 0) frames -= costs[i][column_of[i]];
-    }
-    return static_cast<int>(std::lround(frames));
-  }
-
-  bool with_hidden_;
-  TrackCounts counts_;
-  std::set<int> identities_;
-  std::map<int, std::uint64_t> track_of_;
-  std::map<std::pair<int, std::uint64_t>, int> together_;
-};
 
 void add_visible_frame(const TrackFrame& frame, const std::vector<int>& matches, bool last,
                        TrackMeasures& measures) {
@@ -414,51 +265,6 @@ Result<TrackReport> evaluate_tracks(const std::vector<io::BopFrame>& frames,
   }
   std::ranges::sort(report.total.milliseconds);
   return report;
-}
-
-std::vector<io::TrackResult> linked_detections(const std::vector<io::FrameResult>& results,
-                                               double reach_m) {
-  constexpr double kMillisecondsPerSecond = 1000;
-  std::map<FrameKey, const io::FrameResult*> ordered;
-  for (const io::FrameResult& result : results) ordered[{result.scene_id, result.im_id}] = &result;
-  std::vector<io::TrackResult> linked;
-  std::uint64_t last_id = 0;
-  for (const auto& [key, result] : ordered) {
-    const bool begins = linked.empty() || linked.back().scene_id != key.first;
-    const std::vector<Track> before = begins ? std::vector<Track>() : linked.back().tracks;
-    io::TrackResult& frame = linked.emplace_back();
-    frame.scene_id = key.first;
-    frame.im_id = key.second;
-    frame.stamp_ns = result->stamp_ns;
-    frame.milliseconds = kMillisecondsPerSecond * result->seconds;
-    if (result->interpretations.empty()) continue;
-    std::vector<std::vector<double>> costs;
-    for (const Placement& placement : result->interpretations.front().placements) {
-      Track& track = frame.tracks.emplace_back();
-      track.model = placement.model;
-      track.model_number = placement.model_number;
-      track.state = TrackState::confirmed;
-      track.probability = placement.probability;
-      track.frame_from_object = placement.camera_from_object;
-      track.covariance = placement.covariance;
-      track.orientation = placement.orientation;
-      track.visible_fraction = placement.visible_fraction;
-      std::vector<double>& row = costs.emplace_back(before.size(), kNoMatch);
-      for (std::size_t k = 0; k < before.size(); ++k) {
-        const double distance =
-            (before[k].frame_from_object.translation - placement.camera_from_object.translation)
-                .norm();
-        if (before[k].model_number == placement.model_number && distance <= reach_m) {
-          row[k] = distance;
-        }
-      }
-    }
-    const std::vector<int> link = assigned(costs);
-    for (std::size_t i = 0; i < frame.tracks.size(); ++i) {
-      frame.tracks[i].id = link[i] >= 0 ? before[link[i]].id : ++last_id;
-    }
-  }
-  return linked;
 }
 
 }  // namespace bpa::eval
