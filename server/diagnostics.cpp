@@ -64,8 +64,7 @@ DiagnosticStatus detection_line(const Health& health) {
 }
 
 DiagnosticStatus drops_line(const Health& health) {
-  std::vector<KeyValue> values = {
-      {"frames dropped", text(health.status.frames_dropped)}};
+  std::vector<KeyValue> values = {{"frames dropped", text(health.status.frames_dropped)}};
   for (const auto& [cause, count] : health.drops) values.push_back({cause, text(count)});
   const Rates& rates = health.rates;
   const bool bad = rates.frames_bad > 0;

@@ -21,7 +21,7 @@ constexpr auto kCameraGone = std::chrono::seconds(2);
 // Stamps that go back by more are of a clock that was set anew, as of a recording that repeats.
 constexpr std::int64_t kClockRestart_ns = 1'000'000'000;
 constexpr auto kRateWindow = std::chrono::seconds(10);
-constexpr double kMaxChanged = 0.005;       // of the depths of a scene that stands still; by hand
+constexpr double kChangedShare = 0.005;     // of the depths of a scene that stands still; by hand
 constexpr std::size_t kMaxResults = 16;     // of searches, that wait for the next frame
 constexpr std::size_t kMaxTrackName = 100;  // characters of a name that a client gives
 
@@ -111,14 +111,14 @@ void Tracking::add(const SceneInterpretations& found) {
   if (!is_active()) return;
   searched_ns_ = found.stamp_ns;
   searched_at_ = Clock::now();
-  changed_ = 1;  // until the next frame is followed
+  changed_share_ = 1;  // until the next frame is followed
   if (results_.size() >= kMaxResults) results_.erase(results_.begin());
   results_.push_back(found);
 }
 
 bool Tracking::rests() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!is_active() || !searched_at_ || changed_ > kMaxChanged) return false;
+  if (!is_active() || !searched_at_ || changed_share_ > kChangedShare) return false;
   return Clock::now() - *searched_at_ < duration<double>(options_.rest_s);
 }
 
@@ -214,7 +214,7 @@ std::optional<Tracking::Refusal> Tracking::try_follow(
   if (!result.ok()) return Refusal{Unfollowed::failed, result.status()};
   tracked = std::move(result).value();
   last_stamp_ns_ = item.stamp_ns;
-  changed_ = tracker_->changed_since(searched_ns_);
+  changed_share_ = tracker_->changed_since(searched_ns_);
   expected_ = tracker_->expected();
   tracked_camera_ = item.frame_id;
   tracks_.clear();

@@ -130,8 +130,8 @@ class Tracking {
   std::vector<ExpectedPlacement> expected_;
   std::int64_t searched_ns_ = 0;  ///< Stamp of the frame that was searched last, and
   std::optional<WaitableClock::TimePoint> searched_at_;  ///< when its result came.
-  double changed_ = 1;  ///< Share of the depths that have changed since.
-  std::deque<WaitableClock::TimePoint> followed_at_;  ///< In the last 10 s.
+  double changed_share_ = 1;                             ///< Of the depths, since then.
+  std::deque<WaitableClock::TimePoint> followed_at_;     ///< In the last 10 s.
   Latencies from_arrival_, from_stamp_, working_ms_;
   std::optional<Refusal> trouble_;  ///< Why the last frame was not followed.
 
