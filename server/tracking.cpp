@@ -107,11 +107,13 @@ void Tracking::push(TrackingFrame frame) {
 }
 
 void Tracking::add(const SceneInterpretations& found) {
+  const std::lock_guard<std::mutex> tracker_lock(tracker_mutex_);
+  const double changed = tracker_->changed_since(found.stamp_ns);
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!is_active()) return;
   searched_ns_ = found.stamp_ns;
   searched_at_ = Clock::now();
-  changed_share_ = 1;  // until the next frame is followed
+  changed_share_ = changed;
   if (results_.size() >= kMaxResults) results_.erase(results_.begin());
   results_.push_back(found);
 }

@@ -113,7 +113,7 @@ TEST_F(TrackingThread, SceneThatStandsStillRestsOnceItIsSearched) {
     settled();
     EXPECT_FALSE(tracking_->rests()) << "it was not searched yet";
     tracking_->add(found_at(1, {0, 0, 0.7}));
-    EXPECT_FALSE(tracking_->rests()) << "no frame was followed since";
+    EXPECT_EQ(tracking_->rests(), rests);
     push(2);
     settled();
     EXPECT_EQ(tracking_->rests(), rests);
