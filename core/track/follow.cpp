@@ -36,15 +36,15 @@ constexpr int kStep_px = 4;            // between depths that are compared
 constexpr double kMaxChanged = 0.005;  // of the depths; noise
 constexpr int kMaxUnchanged = 9;       // frames in a row
 
-// Modes: views that differ by less say the same again. A tenth of a nat for each nat of evidence,
-// as errors of models and calibration are the same in all views.
+// Modes: views that differ by less say the same again. A nat of evidence counts for a twentieth, as
+// errors of models and calibration are the same in all views. Where little of the object is
+// visible, modes slide behind what hides it.
 constexpr double kNewView_rad = 0.05;
 constexpr double kTempered = 0.05;
 constexpr double kLittleEvidence = 4;  // nats
 constexpr double kMostEvidence = 60;   // nats of one comparison
-constexpr double kMinCompared =
-    0.35;                        // visible fraction: of less, a mode slides behind what hides it
-constexpr double kSwitches = 2;  // log weight at which another mode becomes the pose
+constexpr double kMinCompared = 0.35;  // visible fraction
+constexpr double kSwitches = 2;        // log weight at which another mode becomes the pose
 constexpr int kComparedAtLeast = 3;    // times, whatever the views
 constexpr double kUnlikely = -5;       // log weight of a mode that is dropped
 constexpr double kTurnedWeight = -3;   // log weight of a near-symmetric turn that nobody suggests
