@@ -103,9 +103,8 @@ struct Tracker::State {
                         });
   }
 
-  // Two tracks of one model in one place are one object: the younger one ends, unless it is known
-  // that there are two; then the one that went further is not seen there.
-  void part_twins() {
+  // Two tracks of one model in one place are one object: the one that searches have found less ends.
+  void end_twins() {
     for (std::size_t i = 0; i < tracks.size(); ++i) {
       for (std::size_t k = i + 1; k < tracks.size(); ++k) {
         Life &a = tracks[i], &b = tracks[k];
@@ -368,7 +367,7 @@ Result<TrackedFrame> Tracker::track(std::shared_ptr<const Frame> frame,
   s.frame_from_camera = camera ? camera->fixed_from_camera : Pose();
   ++s.counts.frames;
   s.follow_all(*frame, seconds);
-  s.part_twins();
+  s.end_twins();
   s.update_states();
   for (const SceneInterpretations& result : std::exchange(s.results, {})) s.take(result);
   s.receive(*frame);

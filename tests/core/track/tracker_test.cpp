@@ -236,6 +236,33 @@ TEST_F(TrackerTest, TwinsThatPassKeepTheirNames) {
   }
 }
 
+// One is carried past the other, between it and the camera: it hides it for a while.
+TEST_F(TrackerTest, TwinThatHidesItsTwinTakesNoName) {
+  Tracker tracker = this->tracker();
+  const Pose standing = brick_at(0, 0, 0);
+  const auto carried = [&] {  // 0.3 m/s, 12 cm nearer to the camera's side and 10 cm higher
+    return test::standing_at(-0.3 + 0.3 * seconds(), -0.12, 0.1 + test::kBrickHalf.z(), 0);
+  };
+  int hidden = 0;
+  for (int i = 0; i < 60; ++i) {
+    ++number_;
+    const Pose passing = carried();
+    --number_;
+    const auto last = follow(tracker, frame(scene({standing, passing})));
+    if (i % 20 == 0) {
+      ASSERT_TRUE(
+          tracker.add(found(stamp(), {camera_from_world_ * standing, camera_from_world_ * passing}))
+              .ok());
+    }
+    if (i < 2) continue;
+    ASSERT_EQ(last.tracks.size(), 2u) << i;
+    EXPECT_LT(error(last.tracks[0], camera_from_world_ * standing).position, 0.012) << i;
+    EXPECT_LT(error(last.tracks[1], camera_from_world_ * passing).position, 0.012) << i;
+    hidden += last.tracks[0].state == TrackState::occluded;
+  }
+  EXPECT_GT(hidden, 0);
+}
+
 TEST_F(TrackerTest, TracksStandStillInTheFixedFrameWhileTheCameraMoves) {
   Tracker tracker = this->tracker();
   const Pose brick = brick_at(0, 0);
