@@ -235,8 +235,8 @@ struct ClimbOptions {
 };
 
 struct TurnOptions {
-  int max_turned = 6;
-  int max_kept_turned = 36;
+  int max_turned = 12;
+  int max_kept_turned = 72;
   double min_turned_score = -5;
 
   void visit_fields(auto&& visit) {
@@ -284,7 +284,7 @@ struct SelectOptions {
   double min_score = -12;
   int max_placements = 50;
   double duplicate_m = 0.008;
-  double duplicate_rad = 0.1;
+  double duplicate_rad = 0.05;
 
   void visit_fields(auto&& visit) {
     visit("min_score", min_score, {-1e9, 1e9, "Placements of lower log odds are rejected."});

@@ -103,7 +103,8 @@ struct Tracker::State {
                         });
   }
 
-  // Two tracks of one model in one place are one object: the one that searches have found less ends.
+  // Two tracks of one model in one place are one object: the one that searches have found less
+  // ends.
   void end_twins() {
     for (std::size_t i = 0; i < tracks.size(); ++i) {
       for (std::size_t k = i + 1; k < tracks.size(); ++k) {
