@@ -23,8 +23,7 @@ std::vector<Cluster> group(const Search& search, const Candidates& candidates) {
     const auto found = std::ranges::find_if(clusters, [&](const Cluster& c) {
       const Eigen::Vector3d& centre = search.model.centre;
       if ((c.pose * centre - pose * centre).norm() > kFar) return false;
-      const PoseError error = pose_error(pose, c.pose, search.model.symmetry);
-      return error.position < kPoseTolerance_m && error.angle < kPoseTolerance_rad;
+      return within_tolerance(pose, c.pose, search.model.symmetry);
     });
     if (found != clusters.end()) {
       found->members.push_back(&candidate);

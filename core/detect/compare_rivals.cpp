@@ -28,8 +28,7 @@ RivalEvidence best_of_same_pose(const Search& search, const std::vector<Pose>& p
                                 const std::vector<RivalEvidence>& behind, std::size_t k) {
   RivalEvidence best = behind[k];
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const PoseError error = pose_error(poses[i], poses[k], search.model.symmetry);
-    if (error.position > kPoseTolerance_m || error.angle > kPoseTolerance_rad) continue;
+    if (!within_tolerance(poses[i], poses[k], search.model.symmetry)) continue;
     best.depth = std::max(best.depth, behind[i].depth);
     best.color = std::max(best.color, behind[i].color);
   }

@@ -73,4 +73,9 @@ PoseError pose_error(const Pose& estimate, const Pose& truth, const SymmetryGrou
   });
 }
 
+bool within_tolerance(const Pose& a, const Pose& b, const SymmetryGroup& group) {
+  const PoseError error = pose_error(a, b, group);
+  return error.position < kPoseTolerance_m && error.angle < kPoseTolerance_rad;
+}
+
 }  // namespace bpa

@@ -56,4 +56,7 @@ PoseError pose_error(const Pose& estimate, const Pose& truth, const SymmetryGrou
                      double position_scale = kPoseTolerance_m,
                      double angle_scale = kPoseTolerance_rad);
 
+/// Whether two poses are within the tolerance of a right one, modulo the symmetry.
+bool within_tolerance(const Pose& a, const Pose& b, const SymmetryGroup& group);
+
 }  // namespace bpa
