@@ -9,14 +9,10 @@
 
 #include "core/base/random.hpp"
 #include "core/scene/overlaps.hpp"
+#include "core/score/score_layer.hpp"
 
 namespace bpa {
 namespace {
-
-double log_odds(double probability) {
-  const double p = std::clamp(probability, 1e-6, 1 - 1e-6);
-  return std::log(p / (1 - p));
-}
 
 // What a placement adds to the score by itself: its log odds beyond those asked for, less the
 // penalty (paper section VI, components 1 and 3).
@@ -24,8 +20,8 @@ double single_worth(const Candidate& c, const InterpretationOptions& options) {
   if (c.explained.empty()) return -options.object_penalty;
   // Of poses so near to one another that each is right when the others are, the best fit counts.
   constexpr double kFit = 0.1;
-  return log_odds(c.probability) - log_odds(options.min_probability) - options.object_penalty +
-         kFit * std::clamp(c.score, -10.0, 10.0);
+  return log_odds_of(c.probability) - log_odds_of(options.min_probability) -
+         options.object_penalty + kFit * std::clamp(c.score, -10.0, 10.0);
 }
 
 // The score of a subset, kept up to date as placements come and go: a move costs as much as the

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -59,6 +60,12 @@ Result<ScoreLayers> score_layers_from_json(const std::string& text, const std::s
 
 /// The probability of log odds.
 inline double probability_of(double log_odds) { return 1 / (1 + std::exp(-log_odds)); }
+
+/// The log odds of a probability; one nearer to 0 or 1 than a millionth counts as that far.
+inline double log_odds_of(double probability) {
+  const double p = std::clamp(probability, 1e-6, 1 - 1e-6);
+  return std::log(p / (1 - p));
+}
 
 /// The placements of one training frame.
 struct ScoreFrame {
