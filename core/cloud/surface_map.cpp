@@ -257,15 +257,18 @@ class NormalRow {
 
 }  // namespace
 
+int map_reduction(int frame_width, int max_width) {
+  int reduction = 1;
+  while (frame_width / reduction > max_width && reduction < kMaxReduction) ++reduction;
+  return reduction;
+}
+
 SurfaceMap surface_map(const Frame& frame, const SurfaceMapOptions& options) {
   SurfaceMap map;
   const std::optional<SensorKind> known = sensor_kind(options.sensor);
   map.sensor = known ? *known : sensor_kind_of(sensor_traits(frame));
   map.noise = noise_of(map.sensor);
-  map.reduction = 1;
-  while (frame.camera.width / map.reduction > options.max_width && map.reduction < kMaxReduction) {
-    ++map.reduction;
-  }
+  map.reduction = map_reduction(frame.camera.width, options.max_width);
   map.camera = reduced_camera(frame.camera, map.reduction);
   const int width = map.width();
   const int size = width * map.height();

@@ -57,6 +57,10 @@ struct SurfaceMapOptions {
   }
 };
 
+/// Frame pixels per map pixel in each direction: the fewest, up to 8, for which a map of a frame of
+/// this width is not wider than `max_width`.
+int map_reduction(int frame_width, int max_width);
+
 /// Standard deviation of a Kinect-class depth at distance z, metres (Nguyen, Izadi and Lovell,
 /// "Modeling Kinect Sensor Noise", 3DIMPVT 2012).
 inline float depth_noise(float z) { return SensorNoise{}(z); }

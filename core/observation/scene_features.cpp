@@ -82,12 +82,8 @@ void add_images(ColorImages colors, const SceneFeatureOptions& options, SceneFea
   Image<Eigen::Vector3f> sharp_lab;  // without blur
   if (!rgb.empty()) {
     sharp_lab = cielab(rgb, threads);
-    scene.cielab = cielab(blur(rgb, options.color_blur_px, threads), threads);
-    if (options.use_texture) scene.log_light = log_light_of(scene.cielab, threads);
-    if (options.use_outline) {
-      scene.sharp_light = log_light_of(sharp_lab, threads);
-      scene.gradients = std::move(colors.gradients);
-    }
+    add_colors(rgb, sharp_lab, options, scene);
+    if (options.use_outline) scene.gradients = std::move(colors.gradients);
   }
   scene.segmentation =
       super_pixels(scene.map, scene.cielab, scene.edges.likelihood, options.segments);
@@ -113,6 +109,14 @@ void add_points(const SceneFeatureOptions& options, SceneFeatures& scene) {
 }
 
 }  // namespace
+
+void add_colors(const Image<Eigen::Vector3f>& rgb, const Image<Eigen::Vector3f>& sharp_lab,
+                const SceneFeatureOptions& options, SceneFeatures& scene) {
+  const int threads = options.num_threads;
+  scene.cielab = cielab(blur(rgb, options.color_blur_px, threads), threads);
+  if (options.use_texture) scene.log_light = log_light_of(scene.cielab, threads);
+  if (options.use_outline) scene.sharp_light = log_light_of(sharp_lab, threads);
+}
 
 SceneSample next_sample(const SceneFeatures& scene, const SceneSample& before,
                         std::span<const std::uint8_t> explained,

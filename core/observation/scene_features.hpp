@@ -109,6 +109,11 @@ SceneSample next_sample(const SceneFeatures& scene, const SceneSample& before,
                         std::span<const std::uint8_t> explained,
                         const SceneFeatureOptions& options);
 
+/// Sets what scores read of colours: `cielab`, and with the options' patterns and outlines
+/// `log_light` and `sharp_light`. `rgb` has the map's size; `sharp_lab` is cielab(rgb).
+void add_colors(const Image<Eigen::Vector3f>& rgb, const Image<Eigen::Vector3f>& sharp_lab,
+                const SceneFeatureOptions& options, SceneFeatures& scene);
+
 /// `map` with its background labelled.
 SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
                              const SceneFeatureOptions& options, ColorImages colors = {});
