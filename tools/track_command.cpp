@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "core/base/median.hpp"
 #include "core/io/tracks.hpp"
 #include "core/track/tracker.hpp"
 #include "tools/search.hpp"
@@ -66,10 +67,10 @@ void print_scene(const std::vector<io::TrackResult>& results, std::size_t first)
     times.push_back(results[i].milliseconds);
     tracks = std::max(tracks, results[i].tracks.size());
   }
-  std::ranges::sort(times);
+  const double longest = *std::ranges::max_element(times);
   std::printf(
       "scene %d: %zu frames, at most %zu tracks, %.1f ms a frame in the median, %.1f at most\n",
-      results[first].scene_id, times.size(), tracks, times[times.size() / 2], times.back());
+      results[first].scene_id, times.size(), tracks, median(times), longest);
 }
 
 void follow_frames(const TrackArguments& a) {

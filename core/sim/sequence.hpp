@@ -86,10 +86,10 @@ struct SequenceOptions {
   void visit_groups(auto&& visit) { sensor.visit_groups(visit); }
 };
 
-/// One thing that happens.
+/// One event.
 struct SequenceEvent {
   SequenceKind kind = SequenceKind::pushed;  ///< pushed, picked, occluded, twins or handle.
-  int instance = 0;                          ///< Whom it happens to; of twins, the first.
+  int instance = 0;                          ///< The object it happens to; of twins, the first.
   double start = 0, end = 0;                 ///< Seconds; of its motion, or of the arm's passage.
 };
 

@@ -54,6 +54,10 @@ std::vector<int> match_tracks(const std::vector<Placement>& placements,
   return matched;
 }
 
+bool in_one_place(const ObjectModel& model, const Pose& a, const Pose& b) {
+  return (a * model.centre - b * model.centre).norm() < kSamePlace * model.diameter;
+}
+
 bool claims_place(const Placement& placement, const TrackRecord& track) {
   if (placement.model == track.model->name) return false;
   const double distance = (placement.camera_from_object.translation - place(track)).norm();

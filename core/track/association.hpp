@@ -27,6 +27,9 @@ struct TrackRecord {
 std::vector<int> match_tracks(const std::vector<Placement>& placements,
                               const std::vector<TrackRecord>& tracks);
 
+/// Whether two poses of a model claim one place.
+bool in_one_place(const ObjectModel& model, const Pose& a, const Pose& b);
+
 /// Whether a placement of another model claims the place of the track.
 bool claims_place(const Placement& placement, const TrackRecord& track);
 

@@ -60,8 +60,17 @@ Sight sight_of(const SurfaceAgreement& surface, int correspondences) {
   return surface.visibility >= kDecides && !agrees ? Sight::absent : Sight::hidden;
 }
 
-Fit judged(const View& view, const ObjectModel& model, const FeaturePlaces& places,
-           const SceneFeatures& scene, const Pose& in_scene, const RefinementOptions& alignment) {
+// An aligned pose, and what speaks for it.
+struct Fit {
+  Sight sight = Sight::hidden;
+  UncertainPose measured;  // about the axes of the tracks' frame of reference
+  double log_odds = 0;     // of the round-two score
+  double visible_fraction = 0;
+};
+
+Fit judged(const View& view, const FeaturePlaces& places, const SceneFeatures& scene,
+           const Pose& in_scene, const RefinementOptions& alignment) {
+  const ObjectModel& model = places.model();
   Candidate candidate{.model = &model,
                       .refinement = refine_pose(scene, model, in_scene, alignment)};
   Evidence evidence(scene, places, candidate.pose());
@@ -73,9 +82,25 @@ Fit judged(const View& view, const ObjectModel& model, const FeaturePlaces& plac
           evidence.surface().visibility};
 }
 
+// Aligns the object with a part of the frame, from one of several starts in the tracks' frame of
+// reference: the best by round-two score. Without a part it is hidden, at the first start.
+Fit fit(const View& view, const FeaturePlaces& places, const std::optional<Surroundings>& around,
+        const std::vector<Pose>& starts, const RefinementOptions& alignment) {
+  Fit best;
+  best.measured.pose = starts.front();
+  if (!around) return best;
+  const SceneFeatures scene = observe(view.frame, *around, view.sensor, false);
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    Fit now = judged(view, places, scene, view.in_camera(starts[i]), alignment);
+    const bool better = std::pair(now.sight == Sight::seen, now.log_odds) >
+                        std::pair(best.sight == Sight::seen, best.log_odds);
+    if (i == 0 || better) best = now;
+  }
+  return best;
+}
+
 bool same_pose(const Body& body, const Pose& a, const Pose& b) {
-  const PoseError error = pose_error(a, b, body.model->symmetry);
-  return error.position < kPoseTolerance_m && error.angle < kPoseTolerance_rad;
+  return within_tolerance(a, b, body.model->symmetry);
 }
 
 // Adds another pose unless the body has it. Returns whether it did.
@@ -142,24 +167,6 @@ void weigh_modes(const SceneFeatures& scene, const Pose& own, const Pose& camera
 
 }  // namespace
 
-Fit fit(const View& view, const ObjectModel& model, const std::vector<Pose>& starts,
-        double margin_m) {
-  const auto around = surroundings(view.frame, model, view.in_camera(starts.front()), margin_m);
-  Fit best;
-  best.measured.pose = starts.front();
-  if (!around) return best;
-  const SceneFeatures scene = observe(view.frame, *around, view.sensor, false);
-  const FeaturePlaces places(model);
-  const auto& alignment = margin_m > kMargin_m ? kWideAlignment : kAlignment;
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    Fit now = judged(view, model, places, scene, view.in_camera(starts[i]), alignment);
-    const bool better = std::pair(now.sight == Sight::seen, now.log_odds) >
-                        std::pair(best.sight == Sight::seen, best.log_odds);
-    if (i == 0 || better) best = now;
-  }
-  return best;
-}
-
 void follow(const View& view, double seconds, Body& body) {
   MotionFilter& motion = body.motion;
   const ObjectModel& model = *body.model;
@@ -178,9 +185,10 @@ void follow(const View& view, double seconds, Body& body) {
     }
   }
   body.unchanged = 0;
-  Fit found = fit(view, model, {predicted}, kMargin_m);
+  Fit found = fit(view, *body.places, around, {predicted}, kAlignment);
   if (found.sight != Sight::seen || body.unseen > 0) {
-    const Fit wide = fit(view, model, {predicted, body.last_seen}, kWideMargin_m);
+    const auto wider = surroundings(view.frame, model, view.in_camera(predicted), kWideMargin_m);
+    const Fit wide = fit(view, *body.places, wider, {predicted, body.last_seen}, kWideAlignment);
     if (wide.sight == Sight::seen && (found.sight != Sight::seen || wide.log_odds > found.log_odds))
       found = wide;
   }

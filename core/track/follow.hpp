@@ -11,6 +11,7 @@
 #include "core/cloud/sensor_kind.hpp"
 #include "core/model/object_model.hpp"
 #include "core/result/track.hpp"
+#include "core/score/feature_score.hpp"
 #include "core/score/score_layer.hpp"
 #include "core/track/motion_filter.hpp"
 
@@ -35,14 +36,6 @@ enum class Sight : std::uint8_t {
   absent,  ///< Another surface is seen there.
 };
 
-/// An aligned pose, and what speaks for it.
-struct Fit {
-  Sight sight = Sight::hidden;
-  UncertainPose measured;  ///< About the axes of the tracks' frame of reference.
-  double log_odds = 0;     ///< Of the round-two score.
-  double visible_fraction = 0;
-};
-
 /// Another pose that the views so far explain as well.
 struct Mode {
   Pose object_from_mode;  ///< From the object's axes at the pose to those at the other one.
@@ -52,6 +45,7 @@ struct Mode {
 /// One object and its motion.
 struct Body {
   std::shared_ptr<const ObjectModel> model;
+  std::shared_ptr<const FeaturePlaces> places;  ///< Of the model; scores ask for it.
   MotionFilter motion;
   std::vector<Mode> modes = {};
   Sight sight = Sight::seen;    ///< In the last frame.
@@ -65,11 +59,6 @@ struct Body {
   RegionOfInterest around_region = {};
   int unchanged = 0;  ///< Frames in a row that showed the same.
 };
-
-/// Aligns the object with the frame, from one of several starts: the best by round-two score.
-/// Starts are in the tracks' frame of reference, and within `margin_m` of the first one.
-Fit fit(const View& view, const ObjectModel& model, const std::vector<Pose>& starts,
-        double margin_m);
 
 /// Moves the body to a frame `seconds` after its last one: predicts, aligns, judges, corrects.
 /// Where a resting object's surroundings have not changed, it is left where it is.

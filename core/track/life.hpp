@@ -35,6 +35,7 @@ struct Life {
   Body body;
   double evidence = 0;  ///< Log odds that the object is there, by the searches.
   TrackState state = TrackState::tentative;
+  double most_probable = 0;               ///< Of the placements that found it.
   int found = 0;                          ///< Searches that found it.
   int absent = 0;                         ///< Frames in a row.
   std::int64_t born_ns = 0, seen_ns = 0;  ///< Stamps.

@@ -47,6 +47,11 @@ void add_acceleration(Matrix12d& matrix, double t) {
   }
 }
 
+// Squared Mahalanobis distance, 6 degrees of freedom.
+double squared(const Vector6d& apart, const Matrix6d& covariance) {
+  return apart.dot(Vector6d(solve_symmetric(covariance, apart)));
+}
+
 }  // namespace
 
 Vector6d difference(const Pose& to, const Pose& from) {
@@ -72,14 +77,6 @@ void MotionFilter::begin_to_move() {
   add_diagonal(covariance_, 6, kStartSpeed * kStartSpeed, kStartTurn * kStartTurn);
 }
 
-void MotionFilter::come_to_rest() {
-  moves_ = false;
-  far_ = slow_ = 0;
-  velocity_.setZero();
-  covariance_.bottomRows<6>().setZero();
-  covariance_.rightCols<6>().setZero();
-}
-
 void MotionFilter::predict(double seconds, bool seen) {
   if (!moves_) {
     add_diagonal(covariance_, 0, kDrift * kDrift * seconds,
@@ -97,20 +94,15 @@ void MotionFilter::predict(double seconds, bool seen) {
   add_acceleration(covariance_, seconds);
 }
 
-double MotionFilter::distance_squared(const UncertainPose& measured) const {
-  const Vector6d apart = difference(measured.pose, pose_);
-  const Matrix6d sum = covariance_.topLeftCorner<6, 6>() + kWhite * measured.covariance;
-  return apart.dot(Vector6d(solve_symmetric(sum, apart)));
-}
-
 void MotionFilter::update(const UncertainPose& measured) {
-  if (!moves_) {
-    far_ = distance_squared(measured) > kThousandth ? far_ + 1 : 0;
-    if (far_ >= kFarInARow) begin_to_move();
-  }
   const Matrix6d white = kWhite * measured.covariance;
   common_ = (1 - kWhite) * measured.covariance;
   const Vector6d apart = difference(measured.pose, pose_);
+  if (!moves_) {
+    const bool far = squared(apart, covariance_.topLeftCorner<6, 6>() + white) > kThousandth;
+    far_ = far ? far_ + 1 : 0;
+    if (far_ >= kFarInARow) begin_to_move();
+  }
   const Matrix6d innovation = inverse_symmetric(covariance_.topLeftCorner<6, 6>() + white);
   const Eigen::Matrix<double, 12, 6> gain = covariance_.leftCols<6>() * innovation;
   const Eigen::Matrix<double, 12, 1> step = gain * apart;
@@ -121,18 +113,23 @@ void MotionFilter::update(const UncertainPose& measured) {
   rest.leftCols<6>() -= gain;
   covariance_ = rest * covariance_ * rest.transpose() + gain * white * gain.transpose();
   covariance_ = 0.5 * (covariance_ + covariance_.transpose()).eval();
-  if (!moves_) return;
-  const Matrix6d of_velocity = covariance_.bottomRightCorner<6, 6>();
-  const bool slow = velocity_.dot(Vector6d(solve_symmetric(of_velocity, velocity_))) < kNinetyFive;
-  if (!slow) {
+  if (moves_) rest_if_slow(white);
+}
+
+void MotionFilter::rest_if_slow(const Matrix6d& white) {
+  if (squared(velocity_, covariance_.bottomRightCorner<6, 6>()) >= kNinetyFive) {
     slow_ = 0;
     return;
   }
   if (slow_++ == 0) anchor_ = pose_;
-  const Vector6d since = difference(pose_, anchor_);
   const Matrix6d sum = covariance_.topLeftCorner<6, 6>() + white;
-  if (since.dot(Vector6d(solve_symmetric(sum, since))) > kNinetyFive) slow_ = 0;
-  if (slow_ >= kSlowInARow) come_to_rest();
+  if (squared(difference(pose_, anchor_), sum) > kNinetyFive) slow_ = 0;
+  if (slow_ < kSlowInARow) return;
+  moves_ = false;
+  far_ = slow_ = 0;
+  velocity_.setZero();
+  covariance_.bottomRows<6>().setZero();
+  covariance_.rightCols<6>().setZero();
 }
 
 }  // namespace bpa::track

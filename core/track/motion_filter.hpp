@@ -37,10 +37,6 @@ class MotionFilter {
   /// Moves to `seconds` later. `seen`: in the frame before; a velocity fades while it is not.
   void predict(double seconds, bool seen);
 
-  /// Squared Mahalanobis distance of a measurement from the prediction, by what differs from frame
-  /// to frame; 6 degrees of freedom.
-  double distance_squared(const UncertainPose& measured) const;
-
   /// Takes a measurement. Half of its covariance counts as white. The rest is what a view has wrong
   /// in every frame (model, calibration), which no average removes.
   void update(const UncertainPose& measured);
@@ -56,7 +52,7 @@ class MotionFilter {
 
  private:
   void begin_to_move();
-  void come_to_rest();
+  void rest_if_slow(const Matrix6d& white);
 
   Pose pose_;
   Vector6d velocity_ = Vector6d::Zero();

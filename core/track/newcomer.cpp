@@ -22,7 +22,10 @@ void Newcomer::begin() {
   tried_pose_ = likeliest.camera_from_object;
   const Placement in_frame = transformed(frame_from_camera_, likeliest);
   const UncertainPose start{in_frame.camera_from_object, in_frame.covariance};
-  body_ = Body{.model = model_, .motion = MotionFilter(start), .last_seen = start.pose};
+  body_ = Body{.model = model_,
+               .places = std::make_shared<FeaturePlaces>(*model_),
+               .motion = MotionFilter(start),
+               .last_seen = start.pose};
   body_->visible_fraction = found_.visible_fraction;
   at_ns_ = stamp_ns_;
 }

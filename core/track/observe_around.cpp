@@ -10,7 +10,6 @@
 #include <tuple>
 #include <utility>
 
-#include "core/cloud/blur.hpp"
 #include "core/cloud/cielab.hpp"
 #include "core/model/model_index.hpp"
 
@@ -56,8 +55,7 @@ std::optional<Surroundings> surroundings(const Frame& frame, const ObjectModel& 
     nearest = std::min(nearest, at.z());
   }
   Surroundings out;
-  const int max_width = SurfaceMapOptions().max_width;
-  while (camera.width / out.reduction > max_width) ++out.reduction;
+  out.reduction = map_reduction(camera.width, SurfaceMapOptions().max_width);
   // The range of an axis with its margin, in whole pixels of the reduced image.
   const int r = out.reduction;
   const auto range = [&](double from, double to, double focal, int size) {
@@ -108,14 +106,10 @@ SceneFeatures observe(const Frame& frame, const Surroundings& around, SensorKind
   scene.map = surface_map(part, options);
   scene.image = make_check_image(scene.map);
   if (!colors || part.color.empty()) return scene;
-  const SceneFeatureOptions usual;
+  SceneFeatureOptions features;
+  features.num_threads = 1;
   const Image<Eigen::Vector3f> rgb = reduced_color(part, scene.map, 1);
-  scene.cielab = cielab(blur(rgb, usual.color_blur_px, 1), 1);
-  scene.log_light = scene.cielab;
-  scene.sharp_light = cielab(rgb, 1);
-  for (auto* image : {&scene.log_light, &scene.sharp_light}) {
-    for (Eigen::Vector3f& pixel : image->pixels) pixel = log_light(pixel);
-  }
+  add_colors(rgb, cielab(rgb, 1), features, scene);
   return scene;
 }
 

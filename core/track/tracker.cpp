@@ -41,12 +41,9 @@ constexpr int kReceivedAtOnce = 4,
 constexpr int kCoarseStep_px = 8;  // between depths that are compared with another frame's
 constexpr int kPhases = 8;         // tracks that are not aligned in the same frame, where all rest
 
-constexpr double kSecond_ns = 1e9;
+double seconds(std::int64_t nanoseconds) { return 1e-9 * static_cast<double>(nanoseconds); }
 
-double log_odds(double probability) {
-  const double p = std::clamp(probability, 0.01, 0.99);
-  return std::log(p / (1 - p));
-}
+double log_odds_of(const Placement& placement) { return bpa::log_odds_of(placement.probability); }
 
 }  // namespace
 
@@ -62,7 +59,8 @@ struct Tracker::State {
   Pose frame_from_camera;
   std::deque<FrameRecord> records;
   std::deque<KeptFrame> kept;
-  std::vector<Life> tracks;  // by id
+  std::vector<Life> tracks;       // by id
+  std::vector<EndedTrack> ended;  // since the last frame
   std::vector<SceneInterpretations> results;
   std::vector<Newcomer> newcomers;  // in the order of their results
   std::uint64_t last_id = 0;
@@ -72,19 +70,20 @@ struct Tracker::State {
     return {frame, *sensor, from_camera, layers};
   }
 
-  void end_all(const std::string& reason) {
-    for (Life& life : tracks) life.ends = reason;
-  }
-
-  // Begins anew in another frame of reference.
-  void begin(const std::string& id, bool fixed) {
-    if (stamp_ns != 0) end_all("the poses' frame of reference is now " + id);
-    frame_id = id;
-    in_fixed_frame = fixed;
+  // Ends all tracks, and forgets frames and results.
+  void begin_anew(const std::string& reason) {
+    for (const Life& life : tracks) end(life, reason);
+    tracks.clear();
     records.clear();
     kept.clear();
     results.clear();
     newcomers.clear();
+  }
+
+  // The next frame's result says it.
+  void end(const Life& life, const std::string& reason) {
+    ended.push_back({life.id, life.name, reason});
+    ++counts.ends;
   }
 
   const FrameRecord* record_of(std::int64_t stamp) const {
@@ -92,15 +91,12 @@ struct Tracker::State {
     return found == records.end() ? nullptr : &*found;
   }
 
-  void follow_all(const Frame& frame, double seconds) {
+  void follow_all(const Frame& frame, double passed_s) {
     const View now = view(frame, frame_from_camera);
-    parallel_for_pieces(static_cast<int>(tracks.size()), 1, options.num_threads,
-                        [&](int first, int last, int) {
-                          for (int i = first; i < last; ++i) {
-                            follow(now, seconds, tracks[i].body);
-                            compare_modes(now, tracks[i].body);
-                          }
-                        });
+    parallel_for(tracks.size(), options.num_threads, [&](std::size_t i) {
+      follow(now, passed_s, tracks[i].body);
+      compare_modes(now, tracks[i].body);
+    });
   }
 
   // Two tracks of one model in one place are one object: the one that searches have found less
@@ -113,9 +109,7 @@ struct Tracker::State {
             b.body.sight != Sight::seen) {
           continue;
         }
-        const Eigen::Vector3d& centre = a.body.model->centre;
-        const double apart = (a.body.motion.pose() * centre - b.body.motion.pose() * centre).norm();
-        if (apart > kSamePlace * a.body.model->diameter) continue;
+        if (!in_one_place(*a.body.model, a.body.motion.pose(), b.body.motion.pose())) continue;
         Life& other = b.found > 1 && b.evidence > a.evidence ? a : b;
         other.ends = concat("is ", &other == &a ? b.name : a.name);
       }
@@ -139,7 +133,7 @@ struct Tracker::State {
       }
       confirm(life);
       if (life.held) continue;
-      const double unseen = static_cast<double>(stamp_ns - life.seen_ns) / kSecond_ns;
+      const double unseen = seconds(stamp_ns - life.seen_ns);
       const double limit = life.state == TrackState::occluded ? options.hidden_s : options.lost_s;
       if (unseen > limit) life.ends = concat("not seen for ", limit, " s");
       if (life.evidence < kEnds) life.ends = "searches do not find it";
@@ -148,7 +142,7 @@ struct Tracker::State {
 
   void confirm(Life& life) {
     if (life.state != TrackState::tentative) return;
-    const bool sure = life.found > 1 || life.evidence >= log_odds(options.min_confirming);
+    const bool sure = life.found > 1 || life.most_probable >= options.min_confirming;
     if (!sure || life.body.sight != Sight::seen) return;
     life.state = TrackState::confirmed;
     ++counts.confirmed;
@@ -161,7 +155,8 @@ struct Tracker::State {
 
   static void believe(const Placement& found, Life& life) {
     ++life.found;
-    const double more = std::clamp(log_odds(found.probability), kLeastFound, kMostFound);
+    life.most_probable = std::max(life.most_probable, found.probability);
+    const double more = std::clamp(log_odds_of(found), kLeastFound, kMostFound);
     life.evidence = std::min(kMostLogOdds, life.evidence + more);
   }
 
@@ -175,18 +170,16 @@ struct Tracker::State {
     for (const PoseAlternative& other : found.alternatives) {
       add_mode(life.body, since * other.camera_from_object, kDoubt);
     }
-    const double says = std::clamp(log_odds(found.probability), 0.0, kMostSaid);
+    const double says = std::clamp(log_odds_of(found), 0.0, kMostSaid);
     favour_mode(life.body, since * found.camera_from_object, kDoubt, says);
   }
 
   // The index of a track of the model at the pose; -1: none.
   int track_at(const std::string& model, const Pose& pose) const {
     for (std::size_t i = 0; i < tracks.size(); ++i) {
-      const ObjectModel& its = *tracks[i].body.model;
-      if (its.name != model) continue;
-      const Pose there = tracks[i].body.motion.pose();
-      const double apart = (there * its.centre - pose * its.centre).norm();
-      if (apart < kSamePlace * its.diameter) return static_cast<int>(i);
+      const Body& body = tracks[i].body;
+      if (body.model->name != model) continue;
+      if (in_one_place(*body.model, body.motion.pose(), pose)) return static_cast<int>(i);
     }
     return -1;
   }
@@ -210,12 +203,8 @@ struct Tracker::State {
     const auto count = std::min<std::size_t>(newcomers.size(), kReceivedAtOnce);
     std::vector<Newcomer::Progress> progress(count);
     const View now = view(newest, frame_from_camera);
-    parallel_for_pieces(static_cast<int>(count), 1, options.num_threads,
-                        [&](int first, int last, int) {
-                          for (int i = first; i < last; ++i) {
-                            progress[i] = newcomers[i].step(kept, now, kStepsAFrame);
-                          }
-                        });
+    parallel_for(count, options.num_threads,
+                 [&](std::size_t i) { progress[i] = newcomers[i].step(kept, now, kStepsAFrame); });
     for (std::size_t i = 0; i < count; ++i) {
       if (progress[i] == Newcomer::Progress::arrived) add_arrived(newcomers[i]);
     }
@@ -244,8 +233,9 @@ struct Tracker::State {
       name = concat(found.model, "_", ++born_of_model[found.model]);
     } while (std::ranges::count(tracks, name, &Life::name) > 0);
     Life life{.id = ++last_id, .name = std::move(name), .body = std::move(body)};
-    life.evidence = std::clamp(log_odds(found.probability), -kMostFound, kMostFound);
+    life.evidence = std::clamp(log_odds_of(found), -kMostFound, kMostFound);
     life.found = 1;
+    life.most_probable = found.probability;
     life.body.unchanged = static_cast<int>(life.id % kPhases);
     life.born_ns = stamp_ns;
     life.seen_ns = stamp_ns;
@@ -284,14 +274,13 @@ struct Tracker::State {
   void remember(std::shared_ptr<const Frame> frame) {
     FrameRecord record{stamp_ns, frame_from_camera, {}, sampled_depths(*frame, {}, kCoarseStep_px)};
     for (const Life& life : tracks) {
-      record.tracks.push_back({life.id, life.body.model,
-                               frame_from_camera.inverse() * life.body.motion.pose(),
-                               life.body.sight, life.body.visible_fraction,
-                               static_cast<double>(stamp_ns - life.seen_ns) / kSecond_ns});
+      record.tracks.push_back(
+          {life.id, life.body.model, frame_from_camera.inverse() * life.body.motion.pose(),
+           life.body.sight, life.body.visible_fraction, seconds(stamp_ns - life.seen_ns)});
     }
     records.push_back(std::move(record));
-    const auto older = [&](std::int64_t stamp, double seconds) {
-      return static_cast<double>(stamp_ns - stamp) > seconds * kSecond_ns;
+    const auto older = [&](std::int64_t stamp, double than_s) {
+      return seconds(stamp_ns - stamp) > than_s;
     };
     while (older(records.front().stamp_ns, kRemembered_s)) records.pop_front();
     if (kept.empty() || older(kept.back().frame->stamp_ns, kKeptEvery_s)) {
@@ -307,14 +296,14 @@ struct Tracker::State {
               .model = body.model->name,
               .model_number = body.model->number,
               .state = life.state,
-              .probability = 1 / (1 + std::exp(-life.evidence)),
+              .probability = probability_of(life.evidence),
               .frame_from_object = body.motion.pose(),
               .covariance = body.motion.covariance(),
               .velocity = body.motion.velocity(),
               .angular_velocity = body.motion.angular_velocity(),
               .visible_fraction = body.visible_fraction,
-              .age_s = static_cast<double>(stamp_ns - life.born_ns) / kSecond_ns,
-              .unseen_s = static_cast<double>(stamp_ns - life.seen_ns) / kSecond_ns,
+              .age_s = seconds(stamp_ns - life.born_ns),
+              .unseen_s = seconds(stamp_ns - life.seen_ns),
               .held = life.held};
     out.orientation = orientation_uncertainty(out.frame_from_object.rotation,
                                               out.covariance.bottomRightCorner<3, 3>());
@@ -358,16 +347,17 @@ Result<TrackedFrame> Tracker::track(std::shared_ptr<const Frame> frame,
   }
   const Stopwatch watch;
   const std::string& id = camera ? camera->frame_id : frame->frame_id;
-  if (s.stamp_ns == 0 || id != s.frame_id || camera.has_value() != s.in_fixed_frame) {
-    s.begin(id, camera.has_value());
+  if (id != s.frame_id || camera.has_value() != s.in_fixed_frame) {
+    s.begin_anew("the poses' frame of reference is now " + id);
+    s.frame_id = id;
+    s.in_fixed_frame = camera.has_value();
   }
   if (!s.sensor) s.sensor = sensor_kind_of(sensor_traits(*frame));
-  const double seconds =
-      s.stamp_ns == 0 ? 0 : static_cast<double>(frame->stamp_ns - s.stamp_ns) / kSecond_ns;
+  const double passed_s = seconds(frame->stamp_ns - s.stamp_ns);  // of use where there are tracks
   s.stamp_ns = frame->stamp_ns;
   s.frame_from_camera = camera ? camera->fixed_from_camera : Pose();
   ++s.counts.frames;
-  s.follow_all(*frame, seconds);
+  s.follow_all(*frame, passed_s);
   s.end_twins();
   s.update_states();
   for (const SceneInterpretations& result : std::exchange(s.results, {})) s.take(result);
@@ -382,14 +372,22 @@ Result<TrackedFrame> Tracker::track(std::shared_ptr<const Frame> frame,
     if (life.ends.empty()) {
       out.tracks.push_back(s.report(life));
     } else {
-      out.ended.push_back({life.id, life.name, life.ends});
-      ++s.counts.ends;
+      s.end(life, life.ends);
     }
   }
   std::erase_if(s.tracks, [](const Life& life) { return !life.ends.empty(); });
+  out.ended = std::exchange(s.ended, {});
   s.remember(std::move(frame));
   out.milliseconds = watch.milliseconds();
   return out;
+}
+
+void Tracker::begin_anew(const std::string& reason) {
+  State& s = *state_;
+  s.begin_anew(reason);
+  s.stamp_ns = 0;
+  s.sensor.reset();
+  s.born_of_model.clear();
 }
 
 Status Tracker::add(const SceneInterpretations& found) {

@@ -72,6 +72,10 @@ class Tracker {
   Result<TrackedFrame> track(std::shared_ptr<const Frame> frame,
                              const std::optional<CameraPose>& camera = std::nullopt);
 
+  /// Stamps may go back, as of a recording that repeats: all tracks end, for this reason. Ids go
+  /// on; names are counted from 1 again.
+  void begin_anew(const std::string& reason);
+
   /// Takes the result of a search in a frame that track() was given before. The next track()
   /// carries it forward. Fails with not_found on a frame that is no longer remembered.
   Status add(const SceneInterpretations& found);
