@@ -17,14 +17,17 @@ namespace bpa::server {
 template <class T>
 class Output {
  public:
-  /// An empty topic leaves it switched off. Throws a Failure.
-  void open(const wire::Participant& participant, const std::string& topic, const wire::Qos& qos) {
+  /// An empty topic leaves it switched off. `own_readers`: subscribers of the server itself. Throws
+  /// a Failure.
+  void open(const wire::Participant& participant, const std::string& topic, const wire::Qos& qos,
+            std::size_t own_readers = 0) {
+    own_readers_ = own_readers;
     if (topic.empty()) return;
     publisher_.emplace(or_throw(wire::Publisher<T>::create(participant, topic, {.qos = qos})));
   }
   bool is_open() const { return publisher_.has_value(); }
-  /// Whether more than `own` subscribers are matched: otherwise the message need not be made.
-  bool wanted(std::size_t own = 0) const { return publisher_ && publisher_->matched_count() > own; }
+  /// Whether another's subscriber is matched: otherwise the message need not be made.
+  bool wanted() const { return publisher_ && publisher_->matched_count() > own_readers_; }
   /// Does nothing when it is switched off.
   Status publish(const T& message) { return publisher_ ? publisher_->publish(message) : Status(); }
   /// The same; a failure is logged with this severity.
@@ -35,6 +38,7 @@ class Output {
 
  private:
   std::optional<wire::Publisher<T>> publisher_;
+  std::size_t own_readers_ = 0;
 };
 
 }  // namespace bpa::server

@@ -16,6 +16,7 @@
 #include "server/output.hpp"
 #include "server/recognition.hpp"
 #include "server/settings.hpp"
+#include "server/sources/transform_source.hpp"
 
 namespace bpa::server {
 
@@ -32,14 +33,16 @@ class ResultPublisher {
         log_(std::move(log)) {
     tf_prefix_ = participant.node().node_namespace.substr(1);
     if (tf_prefix_.empty()) tf_prefix_ = participant.node().name;
-    const OutputOptions options = settings.get()->output;
+    const Settings::Snapshot all = settings.get();
+    const OutputOptions& options = all->output;
     const wire::Qos results = wire::qos::results();
     interpretations_.open(participant, options.interpretations, results);
     detections_.open(participant, options.detections, results);
     annotated_.open(participant, options.annotated, results);
     markers_.open(participant, options.markers, results);
     vision_info_.open(participant, options.vision_info, wire::qos::latched());
-    tf_.open(participant, options.tf, wire::qos::transforms());
+    tf_.open(participant, options.tf, wire::qos::transforms(),
+             own_transform_readers(participant, *all));
   }
 
   /// Whether a result of a search has a reader. /vision_info is none.

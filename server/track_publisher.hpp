@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <memory>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include "server/output.hpp"
 #include "server/recognition.hpp"
 #include "server/settings.hpp"
+#include "server/sources/transform_source.hpp"
 
 namespace bpa::server {
 
@@ -24,17 +24,14 @@ class TrackPublisher {
   TrackPublisher(const wire::Participant& participant, const Settings& settings,
                  std::shared_ptr<const Recognition> recognition, LogHook log)
       : settings_(settings), recognition_(std::move(recognition)), log_(std::move(log)) {
-    const OutputOptions options = settings.get()->output;
+    const Settings::Snapshot all = settings.get();
+    const OutputOptions& options = all->output;
     const wire::Qos results = wire::qos::results();
     tracks_.open(participant, options.tracks, results);
     states_.open(participant, options.track_states, results);
     markers_.open(participant, options.track_markers, results);
-    tf_.open(participant, options.tf, wire::qos::transforms());
-    const Settings::Snapshot all = settings.get();
-    if (all->tracking.fixed_frame.empty() || options.tf.empty() || all->input.tf.empty()) return;
-    if (or_throw(participant.resolve(options.tf)) == or_throw(participant.resolve(all->input.tf))) {
-      own_tf_readers_ = 1;
-    }
+    tf_.open(participant, options.tf, wire::qos::transforms(),
+             own_transform_readers(participant, *all));
   }
 
   /// Whether any topic has a subscriber; /tf counts only if tracks are sent there.
@@ -53,14 +50,11 @@ class TrackPublisher {
   }
 
  private:
-  bool transforms_wanted() const {
-    return settings_.get()->tracking.publish_tf && tf_.wanted(own_tf_readers_);
-  }
+  bool transforms_wanted() const { return settings_.get()->tracking.publish_tf && tf_.wanted(); }
 
   const Settings& settings_;
   const std::shared_ptr<const Recognition> recognition_;
   const LogHook log_;
-  std::size_t own_tf_readers_ = 0;  ///< This server's own, which takes the camera's transforms.
   Output<wire::vision_msgs::Detection3DArray> tracks_;
   Output<wire::bpa_msgs::Tracks> states_;
   Output<wire::visualization_msgs::MarkerArray> markers_;

@@ -25,4 +25,11 @@ void TransformSource::subscribe(const wire::Participant& participant, const std:
       })));
 }
 
+std::size_t own_transform_readers(const wire::Participant& participant,
+                                  const ServerOptions& options) {
+  const std::string &out = options.output.tf, &in = options.input.tf;
+  if (options.tracking.fixed_frame.empty() || out.empty() || in.empty()) return 0;
+  return or_throw(participant.resolve(out)) == or_throw(participant.resolve(in)) ? 1 : 0;
+}
+
 }  // namespace bpa::server

@@ -9,6 +9,7 @@
 #include "idl/wire/messages.hpp"
 #include "idl/wire/participant.hpp"
 #include "idl/wire/subscriber.hpp"
+#include "server/options.hpp"
 #include "server/tf_buffer.hpp"
 
 namespace bpa::server {
@@ -27,5 +28,10 @@ class TransformSource {
 
   std::vector<wire::Subscriber<wire::tf2_msgs::TFMessage>> subscribers_;
 };
+
+/// How many subscribers a TransformSource of this server has on output.tf: 1 where it takes the
+/// camera's transforms from the same topic. Throws a Failure.
+std::size_t own_transform_readers(const wire::Participant& participant,
+                                  const ServerOptions& options);
 
 }  // namespace bpa::server
