@@ -7,30 +7,16 @@
 #include "client/cli/convert.hpp"
 #include "client/src/convert.hpp"
 #include "idl/wire/cdr.hpp"
+#include "tests/support/some_track.hpp"
 
 namespace bpa::cli {
 namespace {
 
 TEST(ClientTracks, AreInFilesAsTheTrackerMadeThem) {
-  Track track;
-  track.id = 7;
+  Track track = test::some_track();
   track.name = "mine";
-  track.model = "mug";
-  track.model_number = 3;
-  track.state = TrackState::occluded;
   track.probability = 1.0 / 3;
-  track.frame_from_object = {Eigen::Quaterniond(0.5, -0.1, 0.7, 0.3).normalized(), {0.1, -0.2, 1}};
-  for (int i = 0; i < 36; ++i) track.covariance(i / 6, i % 6) = 100 + i;
-  for (int i = 0; i < 12; ++i) track.orientation.axes(i / 3, i % 3) = 200 + i;
-  track.orientation.concentrations = {-31, -21, -11};
-  track.velocity = {0.01, 0.02, 0.03};
-  track.angular_velocity = {0.4, 0.5, 0.6};
-  track.visible_fraction = 0.7;
   track.age_s = 8.5;
-  track.unseen_s = 0.25;
-  track.held = true;
-  track.weight = 0.6;
-  track.alternatives = {{{Eigen::Quaterniond(0.1, 0.2, 0.3, 0.4).normalized(), {1, 2, 3}}, 0.4}};
   io::TrackResult made;
   made.scene_id = 48;
   made.im_id = 7;
