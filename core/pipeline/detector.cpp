@@ -168,7 +168,15 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
 
   Stopwatch stage;
   const Deadline search_end = deadline.part(kTimeOfSearch);
-  const LibrarySearch search{scene, options, layers_, request, search_end, preparation_ms};
+  LibrarySearch search{scene, options, layers_, request, search_end, preparation_ms};
+  if (request.on_round) {
+    search.on_round = [&, so_far = out](Candidates found) mutable {
+      so_far.partial = true;
+      so_far.interpretations = interpret_scene(scene, layers_, found, request, options);
+      so_far.total_milliseconds = total.milliseconds();
+      request.on_round(so_far);
+    };
+  }
   Candidates candidates =
       search.run(*models, trace ? &trace->objects : nullptr, out.budget_exhausted, out.effort);
   out.timings.push_back({"objects", stage.lap_milliseconds()});

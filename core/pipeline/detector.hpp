@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -43,6 +44,10 @@ struct DetectRequest {
   double budget_ms = 0;
   std::uint64_t seed = 0;  ///< Same frame, library, options and seed: same answer.
   int num_threads = 0;     ///< 0 = one per core. Does not change the answer.
+  /// Called after each round of the search with what is found so far, on the calling thread, for
+  /// those who cannot wait. It lacks the final stages: poses that a view leaves open are not
+  /// compared. Does not change the answer.
+  std::function<void(const SceneInterpretations&)> on_round = {};
 };
 
 /// Finds the objects of a library in RGB-D frames. Immutable after construction; detect() may be

@@ -24,6 +24,17 @@ Candidates joined(const std::vector<Candidates>& found) {
   return all;
 }
 
+// What is found so far, for those who cannot wait for the final stages.
+Candidates so_far(const std::vector<Search>& searches, std::vector<Candidates> found) {
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    Search search = searches[i];
+    search.before = nullptr;
+    search.tracing = nullptr;
+    suppress_duplicates(search, found[i]);
+  }
+  return joined(found);
+}
+
 // What the placements found so far explain.
 struct Explained {
   std::vector<std::uint8_t> certain,
@@ -140,6 +151,7 @@ Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectMode
     looked_at += share;
     looked_since += share;
     gained += explain();
+    if (on_round) on_round(so_far(searches, found));
     if (looked_since < 1 && !first_after_another) continue;
     ended = (follows || looked_at > 1) && gained < options.rounds.min_gain_px;
     gained = looked_since = 0;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct LibrarySearch {
   const DetectRequest& request;
   Deadline deadline;
   double preparation_ms = 0;  ///< Of the whole preparation; the search may be that much slower.
+  std::function<void(Candidates)> on_round = {};  ///< Receives the candidates after each round.
 
   /// The candidates of all models. Searches in rounds: each takes another sample of the scene, and
   /// surface that certain placements explain is searched no more. Models compete in each round.

@@ -36,6 +36,7 @@ struct SceneInterpretations {
   std::vector<StageTiming> timings;             ///< In the order the stages ran.
   double total_milliseconds = 0;                ///< Of the whole search.
   bool budget_exhausted = false;  ///< True: without the time budget, more is searched.
+  bool partial = false;           ///< The search goes on (DetectRequest::on_round).
   SearchEffort effort;            ///< The work that the search did.
   std::string sensor;    ///< Kind of depth camera that the frame was taken for (SensorKind).
   int fused_frames = 1;  ///< Number of frames combined into the searched depth.

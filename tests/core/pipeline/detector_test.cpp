@@ -130,6 +130,30 @@ TEST_F(DetectorOf, LaterRoundsFindWhatTheFirstMisses) {
   EXPECT_EQ(found_in(40), (std::vector<std::string>{"brick", "l"}));
 }
 
+TEST_F(DetectorOf, TellsAfterEachRoundWhatIsFoundSoFarAndAnswersTheSame) {
+  std::vector<SceneInterpretations> so_far;
+  DetectRequest request;
+  request.on_round = [&](const SceneInterpretations& found) { so_far.push_back(found); };
+  const SceneInterpretations whole = found(request);
+  expect_same(found({}), whole);
+  EXPECT_FALSE(whole.partial);
+  ASSERT_EQ(static_cast<long>(so_far.size()), whole.effort.rounds);
+  for (const SceneInterpretations& part : so_far) {
+    EXPECT_TRUE(part.partial);
+    EXPECT_EQ(part.stamp_ns, frame_.stamp_ns);
+    EXPECT_EQ(part.sensor, whole.sensor);
+  }
+  const Interpretation& last = so_far.back().interpretations.at(0);
+  ASSERT_EQ(names(last), (std::vector<std::string>{"brick", "l"}));
+  for (const Placement& placement : last.placements) {
+    if (placement.model != "brick") continue;
+    const PoseError error =
+        pose_error(placement.camera_from_object, brick_truth_, brick_->symmetry);
+    EXPECT_LT(error.position, 0.005);
+    EXPECT_LT(error.angle, 0.06);
+  }
+}
+
 TEST_F(DetectorOf, FollowsAStandingSceneWithLessWork) {
   const SceneInterpretations first = found({});
   Frame second = test::render(everything(), test::kinect_camera(), 2, 8).frame;
