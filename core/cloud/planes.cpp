@@ -139,15 +139,25 @@ std::vector<Plane> label_background_planes(SurfaceMap& map, const PlaneOptions& 
     const PlaneFit found = best_plane(map, candidates, options, static_cast<std::uint64_t>(k));
     if (found.count < min_count || found.extent < options.min_extent_m) break;
     planes.push_back(found.plane);
-    for (std::size_t i = 0; i < map.size(); ++i) {
-      // Pixels on the plane whose normal says otherwise belong to something standing on it.
-      const bool agrees = map.normals[i].squaredNorm() == 0 ||
-                          map.normals[i].dot(found.plane.normal) > kMinBackgroundCosine;
-      if (map.searched[i] && agrees && on_plane(map, i, found.plane)) map.searched[i] = 0;
-    }
+    label_background(map, found.plane);
     std::erase_if(candidates, [&](std::size_t i) { return !map.searched[i]; });
   }
   return planes;
+}
+
+void label_background(SurfaceMap& map, const Plane& plane) {
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    // Pixels on the plane whose normal says otherwise belong to something standing on it.
+    const bool agrees = map.normals[i].squaredNorm() == 0 ||
+                        map.normals[i].dot(plane.normal) > kMinBackgroundCosine;
+    if (map.searched[i] && agrees && on_plane(map, i, plane)) map.searched[i] = 0;
+  }
+}
+
+Plane transformed(const Pose& a_from_b, const Plane& plane) {
+  const FastPose pose = to_fast(a_from_b);
+  const Eigen::Vector3f normal = pose.rotation * plane.normal;
+  return {normal, plane.offset + normal.dot(pose.translation)};
 }
 
 }  // namespace bpa

@@ -8,6 +8,7 @@
 
 #include "core/base/options.hpp"
 #include "core/cloud/surface_map.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace bpa {
 
@@ -44,5 +45,11 @@ struct PlaneOptions {
 /// its extent is measured over all its pixels. The extent is the side of a square of the same
 /// spread: sqrt(12 s1 s2) of the two largest standard deviations. None where `label_planes` is off.
 std::vector<Plane> label_background_planes(SurfaceMap& map, const PlaneOptions& options);
+
+/// Labels the map's pixels on a plane as background, as label_background_planes() does.
+void label_background(SurfaceMap& map, const Plane& plane);
+
+/// The plane in frame a, from one in frame b.
+Plane transformed(const Pose& a_from_b, const Plane& plane);
 
 }  // namespace bpa

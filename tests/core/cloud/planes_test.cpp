@@ -59,6 +59,16 @@ TEST_P(Planes, LabelTheTableAndLeaveTheBoxes) {
 
 INSTANTIATE_TEST_SUITE_P(Noise, Planes, ::testing::Values(0.0f, 1.0f));
 
+TEST(Transformed, HeightsAboveAPlaneStay) {
+  const Plane plane{Eigen::Vector3f(0.6f, 0, 0.8f), 0.3f};
+  const Pose a_from_b{rotation_from_vector({0.4, -0.9, 0.3}), {0.2, -0.5, 1.1}};
+  for (const Eigen::Vector3d& point : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.7, -0.2, 1.5)}) {
+    const Eigen::Vector3d moved = a_from_b * point;
+    EXPECT_NEAR(transformed(a_from_b, plane).height(moved.cast<float>()),
+                plane.height(point.cast<float>()), 1e-5);
+  }
+}
+
 TEST(PlanesOf, TableAndWallComeLargestFirst) {
   const Solid wall{
       Solid::Kind::box, {0.7, 0.02, 0.3}, kCameraFromWorld * test::standing_at(0, 0.5, 0.3, 0)};
