@@ -2,9 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // bpa track: a sequence of frames in, tracks out, as the server follows them.
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <deque>
 #include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
+#include "core/base/concat.hpp"
 #include "core/base/median.hpp"
 #include "core/io/tracks.hpp"
 #include "core/track/tracker.hpp"
@@ -18,39 +24,51 @@ struct TrackArguments {
   DetectorArguments detector;
   DatasetOptions dataset;
   track::TrackerOptions tracker;
-  double search_ms = 1000, first_budget_ms = 0;
+  double search_ms = 1000;
   bool no_poses = false;
   std::string json;
 };
 
-/// The search that runs beside the tracker. Its result is there `search_ms` after its frame.
+/// The search that runs beside the tracker. Its result is there `search_ms` after its frame, what
+/// each of its rounds has found after an equal share of that.
 class Searches {
  public:
   Searches(const TrackArguments& arguments, const Detector& detector)
       : a_(arguments), detector_(detector) {}
 
-  void begin_scene() { running_.reset(); }
-
-  /// Hands over a result that is due, and begins the next search, on this frame.
+  /// Hands over results that are due. Once all are, begins the next search, on this frame.
   void after(const Frame& frame, track::Tracker& tracker) {
-    if (running_ && frame.stamp_ns < due_ns_) return;
-    if (running_) or_throw(tracker.add(*running_));
+    const double passed_ms = 1e-6 * static_cast<double>(frame.stamp_ns - began_ns_);
+    while (!found_.empty() && passed_ms >= share_ms_ * static_cast<double>(handed_over_ + 1)) {
+      or_throw(tracker.add(found_.front()));
+      found_.pop_front();
+      ++handed_over_;
+    }
+    if (found_.empty()) search(frame, tracker);
+  }
+
+ private:
+  void search(const Frame& frame, const track::Tracker& tracker) {
     DetectRequest request;
-    if (!running_) request.budget_ms = a_.first_budget_ms;
-    const double takes_ms = request.budget_ms > 0 ? request.budget_ms : a_.search_ms;
-    due_ns_ = frame.stamp_ns + static_cast<std::int64_t>(takes_ms * 1e6);
     request.models = a_.detector.models;
     request.seed = a_.common.seed;
     request.num_threads = a_.common.threads;
     request.expected = tracker.expected();
-    running_ = or_throw(detector_.detect(frame, request));
+    request.on_round = [&](const SceneInterpretations& part) { found_.push_back(part); };
+    SceneInterpretations whole = or_throw(detector_.detect(frame, request));
+    if (!found_.empty()) found_.pop_back();  // the last round's: the whole comes with it
+    found_.push_back(std::move(whole));
+    began_ns_ = frame.stamp_ns;
+    share_ms_ = a_.search_ms / static_cast<double>(found_.size());
+    handed_over_ = 0;
   }
 
- private:
   const TrackArguments& a_;
   const Detector& detector_;
-  std::optional<SceneInterpretations> running_;
-  std::int64_t due_ns_ = 0;  ///< Stamp of the first frame after its result.
+  std::deque<SceneInterpretations> found_;  ///< Of the search that runs, in their order.
+  std::int64_t began_ns_ = 0;               ///< Stamp of its frame.
+  double share_ms_ = 0;                     ///< Between its results.
+  int handed_over_ = 0;
 };
 
 void print_frame(const io::TrackResult& frame) {
@@ -60,17 +78,46 @@ void print_frame(const io::TrackResult& frame) {
   }
 }
 
-void print_scene(const std::vector<io::TrackResult>& results, std::size_t first) {
+void print_scene(std::span<const io::TrackResult> results) {
+  if (results.empty()) return;
   std::vector<double> times;
   std::size_t tracks = 0;
-  for (std::size_t i = first; i < results.size(); ++i) {
-    times.push_back(results[i].milliseconds);
-    tracks = std::max(tracks, results[i].tracks.size());
+  for (const io::TrackResult& result : results) {
+    times.push_back(result.milliseconds);
+    tracks = std::max(tracks, result.tracks.size());
   }
   const double longest = *std::ranges::max_element(times);
   std::printf(
       "scene %d: %zu frames, at most %zu tracks, %.1f ms a frame in the median, %.1f at most\n",
-      results[first].scene_id, times.size(), tracks, median(times), longest);
+      results.front().scene_id, times.size(), tracks, median(times), longest);
+}
+
+// The frames of one scene.
+void follow_scene(const TrackArguments& a, const Detector& detector, track::Tracker& tracker,
+                  std::span<const io::BopFrame> frames, std::vector<io::TrackResult>& results) {
+  Searches searches(a, detector);
+  Progress progress(concat("scene ", frames.front().scene_id), static_cast<int>(frames.size()));
+  const std::size_t first = results.size();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const io::BopFrame& entry = frames[i];
+    progress.show(static_cast<int>(i));
+    const auto frame = std::make_shared<Frame>(or_throw(io::load_bop_frame(entry)));
+    frame->frame_id = "camera";
+    std::optional<track::CameraPose> camera;
+    if (entry.camera_from_world && !a.no_poses)
+      camera = {"world", entry.camera_from_world->inverse()};
+    Result<TrackedFrame> tracked = tracker.track(frame, camera);
+    progress.clear();
+    if (!tracked.ok()) {
+      std::fprintf(stderr, "warning: %d/%d is not followed: %s\n", entry.scene_id, entry.im_id,
+                   tracked.status().message.c_str());
+      continue;
+    }
+    results.push_back({*std::move(tracked), entry.scene_id, entry.im_id});
+    print_frame(results.back());
+    searches.after(*frame, tracker);
+  }
+  print_scene(std::span(results).subspan(first));
 }
 
 void follow_frames(const TrackArguments& a) {
@@ -81,31 +128,14 @@ void follow_frames(const TrackArguments& a) {
   track::TrackerOptions options = a.tracker;
   options.num_threads = a.common.threads;
   or_throw(validate(options));
-  std::optional<track::Tracker> tracker;
-  Searches searches(a, detector);
   std::vector<io::TrackResult> results;
-  std::size_t first = 0;
-  Progress progress("frames", static_cast<int>(frames.size()));
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const io::BopFrame& entry = frames[i];
-    progress.show(static_cast<int>(i));
-    if (i == 0 || frames[i - 1].scene_id != entry.scene_id) {
-      tracker.emplace(library, options, detector.score_layers());
-      searches.begin_scene();
-      first = results.size();
-    }
-    const auto frame = std::make_shared<Frame>(or_throw(io::load_bop_frame(entry)));
-    frame->frame_id = "camera";
-    std::optional<track::CameraPose> camera;
-    if (entry.camera_from_world && !a.no_poses)
-      camera = {"world", entry.camera_from_world->inverse()};
-    io::TrackResult result{or_throw(tracker->track(frame, camera)), entry.scene_id, entry.im_id};
-    searches.after(*frame, *tracker);
-    progress.clear();
-    print_frame(result);
-    results.push_back(std::move(result));
-    const bool last = i + 1 == frames.size() || frames[i + 1].scene_id != entry.scene_id;
-    if (last) print_scene(results, first);
+  for (auto first = frames.begin(); first != frames.end();) {
+    const auto last = std::find_if(first, frames.end(), [&](const io::BopFrame& frame) {
+      return frame.scene_id != first->scene_id;
+    });
+    track::Tracker tracker(library, options, detector.score_layers());
+    follow_scene(a, detector, tracker, {first, last}, results);
+    first = last;
   }
   if (!a.json.empty()) or_throw(io::write_tracks_json(a.json, results));
 }
@@ -122,14 +152,9 @@ void add_track_command(CLI::App& program) {
       ->delimiter(',');
   add_option(command, "--search-ms", a.search_ms,
              "A search beside the tracks gives its result this long after its frame, by stamps; "
-             "then the next begins",
+             "what its rounds have found comes before, evenly spread. Then the next begins",
              "T")
       ->check(CLI::PositiveNumber);
-  add_option(command, "--first-budget-ms", a.first_budget_ms,
-             "Time for the first search of a scene, so that tracks begin early; then the answer "
-             "depends on the machine's speed. 0: as the others",
-             "T")
-      ->check(CLI::NonNegativeNumber);
   command.add_flag("--no-camera-poses", a.no_poses,
                    "Ignore where the data set says that the camera was");
   add_options(command, a.tracker,

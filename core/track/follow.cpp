@@ -3,8 +3,10 @@
 #include "core/track/follow.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "core/detect/candidate.hpp"
 #include "core/detect/refinement.hpp"
@@ -22,13 +24,28 @@ constexpr double kMinVisible = 0.08;     // of the facing surface: less decides 
 constexpr double kDecides = 0.2;         // of it: so much in sight, and elsewhere, is absent
 constexpr double kMinAgreeing = 0.5;     // of the visible surface
 constexpr double kMaxFreeSpace = 0.3;    // of it
+constexpr double kMaxBackground = 0.8;   // of the agreeing surface
 constexpr int kMinCorrespondences = 12;  // of the alignment
+
+// The round-two log odds of a pose are in doubt where they are that much below the object's usual
+// ones, and below what 99 of 100 right poses of simulated sequences have with so much in sight.
+constexpr double kMostVisible = 0.6;  // most of the object is in sight
+constexpr double kBelowUsual = 4;
+constexpr std::array<std::pair<double, double>, 4> kLeastLogOdds = {
+    {{kMostVisible, -4.6}, {0.35, -7.3}, {0.2, -7.1}, {0, -9.5}}};  // from this visible fraction on
+constexpr double kBelowUsualFound = 1.5;  // of an absent object, which a bare table may resemble
+constexpr int kMaxDoubts = 5;  // frames in a row: another surface, such as a hand, is followed
+constexpr double kUsualRate = 0.03;  // in which the usual log odds follow those of a frame
 
 // A pose that is known well is aligned in fewer steps than a hypothesis of the search.
 constexpr RefinementOptions kAlignment{4, 200, 60, 0.030, 0.010};
 constexpr RefinementOptions kWideAlignment{8, 200, 60, 0.060, 0.010};
 constexpr double kMargin_m = 0.03;      // around the object
 constexpr double kWideMargin_m = 0.08;  // the same, where it was not where it was expected
+// Starts about the predicted pose, for an object that a hand has seized: its motion is sudden, and
+// the alignment slides on to the hand.
+constexpr double kOffset_m = 0.02, kOffset_rad = 0.3;
+constexpr int kMaxTried = 15, kTriedEvery = 3;           // frames in a row
 constexpr double kMaxJump_m = 0.12, kMaxJump_rad = 0.8;  // in one frame
 
 // A resting object is aligned again where its surroundings change, or in every tenth frame.
@@ -53,11 +70,21 @@ constexpr int kMinFramesBetween = 5;   // comparisons
 constexpr std::size_t kMostModes = 40;
 
 Sight sight_of(const SurfaceAgreement& surface, int correspondences) {
-  const bool agrees = surface.agreeing >= kMinAgreeing && surface.free_space <= kMaxFreeSpace;
+  const bool agrees = surface.agreeing >= kMinAgreeing && surface.free_space <= kMaxFreeSpace &&
+                      surface.background <= kMaxBackground;
   if (surface.visibility >= kMinVisible && agrees && correspondences >= kMinCorrespondences) {
     return Sight::seen;
   }
   return surface.visibility >= kDecides && !agrees ? Sight::absent : Sight::hidden;
+}
+
+SceneFeatures look(const View& view, const Surroundings& around, bool colors) {
+  std::vector<Plane> background;
+  const Pose camera_from_frame = view.frame_from_camera.inverse();
+  for (const Plane& plane : view.background) {
+    background.push_back(transformed(camera_from_frame, plane));
+  }
+  return observe(view.frame, around, view.sensor, background, colors);
 }
 
 // An aligned pose, and what speaks for it.
@@ -89,7 +116,7 @@ Fit fit(const View& view, const FeaturePlaces& places, const std::optional<Surro
   Fit best;
   best.measured.pose = starts.front();
   if (!around) return best;
-  const SceneFeatures scene = observe(view.frame, *around, view.sensor, false);
+  const SceneFeatures scene = look(view, *around, false);
   for (std::size_t i = 0; i < starts.size(); ++i) {
     Fit now = judged(view, places, scene, view.in_camera(starts[i]), alignment);
     const bool better = std::pair(now.sight == Sight::seen, now.log_odds) >
@@ -97,6 +124,43 @@ Fit fit(const View& view, const FeaturePlaces& places, const std::optional<Surro
     if (i == 0 || better) best = now;
   }
   return best;
+}
+
+bool in_doubt(const Body& body, const Fit& fit) {
+  const auto least = std::ranges::find_if(
+      kLeastLogOdds, [&](const auto& entry) { return fit.visible_fraction >= entry.first; });
+  return fit.log_odds < std::min(body.usual_log_odds.value_or(0) - kBelowUsual, least->second);
+}
+
+// A pose that is in doubt for too long is of another surface. So is one of an absent object, unless
+// it looks as usual.
+void doubt(Body& body, Fit& fit) {
+  if (fit.sight != Sight::seen) return;
+  if (body.sight == Sight::absent &&
+      fit.log_odds < body.usual_log_odds.value_or(0) - kBelowUsualFound) {
+    fit.sight = Sight::absent;
+    return;
+  }
+  if (in_doubt(body, fit)) {
+    if (++body.doubts >= kMaxDoubts) fit.sight = Sight::absent;
+    return;
+  }
+  body.doubts = 0;
+  if (fit.visible_fraction < kMostVisible) return;
+  const double usual = body.usual_log_odds.value_or(fit.log_odds);
+  body.usual_log_odds = usual + kUsualRate * (fit.log_odds - usual);
+}
+
+std::vector<Pose> starts_about(const Pose& pose) {
+  std::vector<Pose> out;
+  for (int axis = 0; axis < 6; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      Vector6d by = Vector6d::Zero();
+      by[axis] = sign * (axis < 3 ? kOffset_m : kOffset_rad);
+      out.push_back(moved(pose, by));
+    }
+  }
+  return out;
 }
 
 bool same_pose(const Body& body, const Pose& a, const Pose& b) {
@@ -186,28 +250,48 @@ void follow(const View& view, double seconds, Body& body) {
   }
   body.unchanged = 0;
   Fit found = fit(view, *body.places, around, {predicted}, kAlignment);
-  if (found.sight != Sight::seen || body.unseen > 0) {
+  const int misled_for = std::max(body.doubts, body.unseen);
+  const bool doubtful = found.sight == Sight::seen && in_doubt(body, found);
+  const bool try_about = misled_for < kMaxTried && misled_for % kTriedEvery == 1;
+  if (found.sight != Sight::seen || body.unseen > 0 || (doubtful && try_about)) {
     const auto wider = surroundings(view.frame, model, view.in_camera(predicted), kWideMargin_m);
     const Fit wide = fit(view, *body.places, wider, {predicted, body.last_seen}, kWideAlignment);
     if (wide.sight == Sight::seen && (found.sight != Sight::seen || wide.log_odds > found.log_odds))
       found = wide;
+    const bool misled =
+        found.sight == Sight::absent || (found.sight == Sight::seen && in_doubt(body, found));
+    if (misled && try_about) {
+      const Fit other = fit(view, *body.places, wider, starts_about(predicted), kWideAlignment);
+      if (other.sight == Sight::seen && !in_doubt(body, other)) found = other;
+    }
   }
   if (found.sight == Sight::seen) {
     const Vector6d jump = difference(found.measured.pose, predicted);
     const bool near = jump.head<3>().norm() < kMaxJump_m && jump.tail<3>().norm() < kMaxJump_rad;
     if (!near) found.sight = Sight::absent;
   }
+  doubt(body, found);
   body.sight = found.sight;
   body.visible_fraction = found.visible_fraction;
   if (found.sight != Sight::seen) {
     ++body.unseen;
+    body.seen = 0;
     return;
   }
+  body.before = motion;
   motion.update(found.measured);
   body.unseen = 0;
+  ++body.seen;
   body.last_seen = motion.pose();
   body.around = std::move(depths);
   body.around_region = around ? around->region : RegionOfInterest();
+}
+
+void take_back(Body& body) {
+  if (body.before) body.motion = *body.before;
+  body.sight = Sight::hidden;
+  ++body.unseen;
+  body.seen = 0;
 }
 
 void add_mode(Body& body, const Pose& frame_from_object, double log_weight) {
@@ -228,7 +312,7 @@ void compare_modes(const View& view, Body& body) {
   body.compared_from = from;
   body.frames_since_compared = 0;
   ++body.compared;
-  const SceneFeatures scene = observe(view.frame, *around, view.sensor, true);
+  const SceneFeatures scene = look(view, *around, true);
   // All are aligned alike, or those that are would seem likelier. A turn that the view leaves open
   // slides to where another mode is; then it stays as it was.
   const auto aligned = [&](const Pose& start) {

@@ -5,9 +5,12 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/cloud/frame.hpp"
+#include "core/cloud/planes.hpp"
 #include "core/cloud/sensor_kind.hpp"
 #include "core/model/object_model.hpp"
 #include "core/result/track.hpp"
@@ -23,6 +26,7 @@ struct View {
   SensorKind sensor;
   Pose frame_from_camera;  ///< Of the tracks' frame of reference.
   const ScoreLayers& layers;
+  std::span<const Plane> background;  ///< In the tracks' frame of reference.
 
   Pose in_camera(const Pose& frame_from_object) const {
     return frame_from_camera.inverse() * frame_from_object;
@@ -48,12 +52,16 @@ struct Body {
   std::shared_ptr<const FeaturePlaces> places;  ///< Of the model; scores ask for it.
   MotionFilter motion;
   std::vector<Mode> modes = {};
-  Sight sight = Sight::seen;    ///< In the last frame.
-  double visible_fraction = 1;  ///< In the last frame.
-  Pose last_seen = {};          ///< Where it was seen last.
-  int unseen = 0;               ///< Frames in a row.
-  Pose compared_from = {};      ///< object_from_camera when the modes were last compared.
-  int compared = 0;             ///< Times that the modes were compared.
+  Sight sight = Sight::seen;                  ///< In the last frame.
+  double visible_fraction = 1;                ///< In the last frame.
+  Pose last_seen = {};                        ///< Where it was seen last.
+  int unseen = 0;                             ///< Frames in a row.
+  int seen = 0;                               ///< Alignments in a row that found it.
+  std::optional<MotionFilter> before = {};    ///< Of the last of them, before it was corrected.
+  std::optional<double> usual_log_odds = {};  ///< Of the poses where most of it was in sight.
+  int doubts = 0;                             ///< Frames in a row with log odds far below these.
+  Pose compared_from = {};  ///< object_from_camera when the modes were last compared.
+  int compared = 0;         ///< Times that the modes were compared.
   int frames_since_compared = 0;
   std::vector<float> around = {};  ///< Depths of the surroundings when it was last aligned.
   RegionOfInterest around_region = {};
@@ -63,6 +71,9 @@ struct Body {
 /// Moves the body to a frame `seconds` after its last one: predicts, aligns, judges, corrects.
 /// Where a resting object's surroundings have not changed, it is left where it is.
 void follow(const View& view, double seconds, Body& body);
+
+/// The surface that the last alignment found is of another object: this one is behind it.
+void take_back(Body& body);
 
 /// Where the modes of a mixture differ in what a frame shows, their weights follow. Near-symmetric
 /// turns of the model are modes too. Drops modes that have become unlikely. One that has become

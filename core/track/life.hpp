@@ -37,6 +37,8 @@ struct Life {
   TrackState state = TrackState::tentative;
   double most_probable = 0;               ///< Of the placements that found it.
   int found = 0;                          ///< Searches that found it.
+  std::int64_t found_ns = 0;              ///< Stamp of the frame of the last of them.
+  int missed = 0;                         ///< Searches in a row that should find it and did not.
   int absent = 0;                         ///< Frames in a row.
   std::int64_t born_ns = 0, seen_ns = 0;  ///< Stamps.
   bool held = false;

@@ -51,7 +51,9 @@ Newcomer::Progress Newcomer::step(const std::deque<KeptFrame>& since, const View
     const std::int64_t stamp = kept.frame->stamp_ns;
     if (stamp <= at_ns_) continue;
     if (most-- == 0) return Progress::on_the_way;
-    follow_to({*kept.frame, newest.sensor, kept.frame_from_camera, newest.layers}, *body_, at_ns_);
+    follow_to(
+        {*kept.frame, newest.sensor, kept.frame_from_camera, newest.layers, newest.background},
+        *body_, at_ns_);
     at_ns_ = stamp;
   }
   if (at_ns_ < now) follow_to(newest, *body_, at_ns_);
@@ -61,8 +63,9 @@ Newcomer::Progress Newcomer::step(const std::deque<KeptFrame>& since, const View
 }
 
 Body Newcomer::take_body() {
+  const Pose since = now_from_then();
   Body body = std::move(*body_);
-  add_alternatives(found_, body.motion.pose() * tried_pose_.inverse(), body);
+  add_alternatives(found_, since, body);
   return body;
 }
 

@@ -30,8 +30,14 @@ class Newcomer {
 
   std::uint64_t track() const { return track_; }
   const Placement& found() const { return found_; }
+  const ObjectModel& model() const { return *model_; }
+  std::int64_t stamp_ns() const { return stamp_ns_; }  ///< Of its frame.
+  /// Of its frame's camera, in the tracks' frame of reference.
+  const Pose& frame_from_camera() const { return frame_from_camera_; }
   /// Where it was in its frame, in the tracks' frame of reference.
   Pose start() const { return frame_from_camera_ * found_.camera_from_object; }
+  /// What takes poses of its camera then to where the object is now, once it has arrived.
+  Pose now_from_then() const { return body_->motion.pose() * tried_pose_.inverse(); }
   /// Where it has arrived, with its alternatives as modes.
   Body take_body();
 

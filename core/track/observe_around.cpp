@@ -96,7 +96,7 @@ double changed_share(const std::vector<float>& now, const std::vector<float>& th
 }
 
 SceneFeatures observe(const Frame& frame, const Surroundings& around, SensorKind sensor,
-                      bool colors) {
+                      std::span<const Plane> background, bool colors) {
   const Frame part = cut_out(frame, around.region);
   SurfaceMapOptions options;
   options.max_width = around.region.width / around.reduction;
@@ -104,6 +104,7 @@ SceneFeatures observe(const Frame& frame, const Surroundings& around, SensorKind
   options.num_threads = 1;
   SceneFeatures scene;
   scene.map = surface_map(part, options);
+  for (const Plane& plane : background) label_background(scene.map, plane);
   scene.image = make_check_image(scene.map);
   if (!colors || part.color.empty()) return scene;
   SceneFeatureOptions features;

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/cloud/frame.hpp"
+#include "core/cloud/planes.hpp"
 #include "core/cloud/sensor_kind.hpp"
 #include "core/model/object_model.hpp"
 #include "core/observation/scene_features.hpp"
@@ -32,8 +34,8 @@ double changed_share(const std::vector<float>& now, const std::vector<float>& th
                      const SensorNoise& noise);
 
 /// Map and image of the surroundings alone: what alignment and checks read. With `colors` also what
-/// behind_best() reads. No surface is background. One thread.
+/// behind_best() reads. `background` is in the camera's frame. One thread.
 SceneFeatures observe(const Frame& frame, const Surroundings& around, SensorKind sensor,
-                      bool colors);
+                      std::span<const Plane> background, bool colors);
 
 }  // namespace bpa::track

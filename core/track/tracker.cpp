@@ -13,6 +13,7 @@
 #include "core/base/stopwatch.hpp"
 #include "core/cloud/sensor_noise.hpp"
 #include "core/detect/candidate.hpp"
+#include "core/track/background.hpp"
 #include "core/track/life.hpp"
 #include "core/track/newcomer.hpp"
 #include "core/track/observe_around.hpp"
@@ -26,6 +27,7 @@ constexpr double kKept_s = 4;         // their images, to follow a new object th
 constexpr double kKeptEvery_s = 0.06;
 constexpr int kAbsentFrames = 5;      // in a row: the track is lost
 constexpr double kMinSearched = 0.3;  // visible fraction of what a search should find
+constexpr int kDisplaced = 2;  // searches in a row that find an object elsewhere alone: it is there
 // Log odds that an object is there.
 constexpr double kLeastFound = 0.2, kMostFound = 3;  // of one search that finds it
 constexpr double kNotFound = -1;                     // of one that should and does not
@@ -35,6 +37,7 @@ constexpr double kEnds = -1;
 // Log weights: of another pose that a search suggests for a track; of one search that takes one of
 // the poses for right.
 constexpr double kDoubt = -2, kMostSaid = 2.5;
+constexpr int kNewlySeen = 15;  // alignments since it came into sight
 constexpr int kReceivedAtOnce = 4,
               kStepsAFrame = 3;  // newcomers, and frames that each goes through
 
@@ -57,6 +60,7 @@ struct Tracker::State {
   bool in_fixed_frame = false;
   std::int64_t stamp_ns = 0;
   Pose frame_from_camera;
+  Background background;
   std::deque<FrameRecord> records;
   std::deque<KeptFrame> kept;
   std::vector<Life> tracks;       // by id
@@ -67,7 +71,7 @@ struct Tracker::State {
   std::map<std::string, int> born_of_model;
 
   View view(const Frame& frame, const Pose& from_camera) const {
-    return {frame, *sensor, from_camera, layers};
+    return {frame, *sensor, from_camera, layers, background.planes()};
   }
 
   // Ends all tracks, and forgets frames and results.
@@ -76,6 +80,7 @@ struct Tracker::State {
     tracks.clear();
     records.clear();
     kept.clear();
+    background.clear();
     results.clear();
     newcomers.clear();
   }
@@ -99,9 +104,9 @@ struct Tracker::State {
     });
   }
 
-  // Two tracks of one model in one place are one object: the one that searches have found less
-  // ends.
-  void end_twins() {
+  // Two tracks of one model in one place. One that has just come into sight there is behind the
+  // other. Else they are one object: the one that searches have found less ends.
+  void part_twins() {
     for (std::size_t i = 0; i < tracks.size(); ++i) {
       for (std::size_t k = i + 1; k < tracks.size(); ++k) {
         Life &a = tracks[i], &b = tracks[k];
@@ -110,6 +115,13 @@ struct Tracker::State {
           continue;
         }
         if (!in_one_place(*a.body.model, a.body.motion.pose(), b.body.motion.pose())) continue;
+        Life& latest = a.body.seen < b.body.seen ? a : b;
+        const Life& first = &latest == &a ? b : a;
+        if (latest.body.seen < kNewlySeen && first.body.seen >= kNewlySeen &&
+            latest.state == TrackState::occluded) {
+          take_back(latest.body);
+          continue;
+        }
         Life& other = b.found > 1 && b.evidence > a.evidence ? a : b;
         other.ends = concat("is ", &other == &a ? b.name : a.name);
       }
@@ -153,25 +165,33 @@ struct Tracker::State {
     return found == tracks.end() ? nullptr : &*found;
   }
 
-  static void believe(const Placement& found, Life& life) {
-    ++life.found;
+  // A search may tell of the same object after each of its rounds.
+  static void believe(const Placement& found, std::int64_t stamp, Life& life) {
     life.most_probable = std::max(life.most_probable, found.probability);
+    if (stamp == life.found_ns) return;
+    life.found_ns = stamp;
+    ++life.found;
+    life.missed = 0;
     const double more = std::clamp(log_odds_of(found), kLeastFound, kMostFound);
     life.evidence = std::min(kMostLogOdds, life.evidence + more);
   }
 
-  // What a search says of a track that it found again.
-  void confirm_by(const Placement& found, const TrackRecord& record, const FrameRecord& at,
-                  Life& life) {
-    believe(found, life);
-    if (life.body.sight != Sight::seen) return expect(found, life.id, at);
-    // Poses at the time of the search, moved as the object has been since.
-    const Pose since = life.body.motion.pose() * record.camera_from_object.inverse();
+  // What a search says of the pose of a track that is seen. `since` takes poses of the search's
+  // camera to where the object is now.
+  static void suggest(const Placement& found, const Pose& since, Life& life) {
     for (const PoseAlternative& other : found.alternatives) {
       add_mode(life.body, since * other.camera_from_object, kDoubt);
     }
     const double says = std::clamp(log_odds_of(found), 0.0, kMostSaid);
     favour_mode(life.body, since * found.camera_from_object, kDoubt, says);
+  }
+
+  // A search has found a track, which may have gone out of sight.
+  void find_again(const Placement& found, const TrackRecord& record, const FrameRecord& at,
+                  bool partial, Life& life) {
+    if (life.body.sight != Sight::seen) return expect(found, life.id, at);
+    if (partial) return;  // poses are compared in its final stages
+    suggest(found, life.body.motion.pose() * record.camera_from_object.inverse(), life);
   }
 
   // The index of a track of the model at the pose; -1: none.
@@ -184,8 +204,15 @@ struct Tracker::State {
     return -1;
   }
 
-  // The placement is followed to the newest frame, in this and the next ones.
+  // The placement is followed to the newest frame, in this and the next ones, unless it is on its
+  // way already.
   void expect(const Placement& found, std::uint64_t track, const FrameRecord& at) {
+    const bool known = std::ranges::any_of(newcomers, [&](const Newcomer& other) {
+      return other.stamp_ns() == at.stamp_ns && other.found().model == found.model &&
+             in_one_place(other.model(), other.start(),
+                          at.frame_from_camera * found.camera_from_object);
+    });
+    if (known) return;
     if (auto model = library->find(found.model)) {
       newcomers.emplace_back(found, std::move(model), track, at);
     }
@@ -197,7 +224,10 @@ struct Tracker::State {
     std::erase_if(newcomers, [&](const Newcomer& newcomer) {
       const int there = track_at(newcomer.found().model, newcomer.start());
       const bool known = newcomer.track() == 0 && there >= 0;
-      if (known) believe(newcomer.found(), tracks[there]);
+      if (known) {
+        believe(newcomer.found(), newcomer.stamp_ns(), tracks[there]);
+        suggest(newcomer.found(), newcomer.frame_from_camera(), tracks[there]);
+      }
       return known;
     });
     const auto count = std::min<std::size_t>(newcomers.size(), kReceivedAtOnce);
@@ -215,19 +245,24 @@ struct Tracker::State {
   }
 
   void add_arrived(Newcomer& newcomer) {
+    const Pose since = newcomer.now_from_then();
     Body body = newcomer.take_body();
+    const int there = track_at(newcomer.found().model, body.motion.pose());
     if (newcomer.track() > 0) {
+      const bool taken = there >= 0 && tracks[there].id != newcomer.track() &&
+                         tracks[there].body.sight == Sight::seen;
+      if (taken) return;  // it was led to another object on its way
       Life* life = life_of(newcomer.track());
-      const bool found = life && life->body.sight != Sight::seen && body.sight == Sight::seen;
-      if (found) life->body = std::move(body);
+      const bool gone = life && (life->body.sight != Sight::seen || life->missed >= kDisplaced);
+      if (gone && body.sight == Sight::seen) life->body = std::move(body);
       return;
     }
-    const int there = track_at(newcomer.found().model, body.motion.pose());
-    if (there >= 0) return believe(newcomer.found(), tracks[there]);
-    add_track(newcomer.found(), std::move(body));
+    if (there < 0) return add_track(newcomer.found(), newcomer.stamp_ns(), std::move(body));
+    believe(newcomer.found(), newcomer.stamp_ns(), tracks[there]);
+    suggest(newcomer.found(), since, tracks[there]);
   }
 
-  void add_track(const Placement& found, Body body) {
+  void add_track(const Placement& found, std::int64_t stamp, Body body) {
     std::string name;
     do {
       name = concat(found.model, "_", ++born_of_model[found.model]);
@@ -235,6 +270,7 @@ struct Tracker::State {
     Life life{.id = ++last_id, .name = std::move(name), .body = std::move(body)};
     life.evidence = std::clamp(log_odds_of(found), -kMostFound, kMostFound);
     life.found = 1;
+    life.found_ns = stamp;
     life.most_probable = found.probability;
     life.body.unchanged = static_cast<int>(life.id % kPhases);
     life.born_ns = stamp_ns;
@@ -244,12 +280,21 @@ struct Tracker::State {
     tracks.push_back(std::move(life));
   }
 
+  // In the first kept frame since a search's.
+  void find_background(std::int64_t stamp) {
+    const auto frame = std::ranges::find_if(
+        kept, [&](const KeptFrame& one) { return one.frame->stamp_ns >= stamp; });
+    if (frame != kept.end()) background.find(*frame->frame, *sensor, frame->frame_from_camera);
+  }
+
   void take(const SceneInterpretations& result) {
     const FrameRecord* record = record_of(result.stamp_ns);
     if (!record || result.interpretations.empty()) return;
+    if (!result.partial || background.planes().empty()) find_background(result.stamp_ns);
     std::vector<Placement> placements = result.interpretations.front().placements;
-    std::erase_if(placements,
-                  [&](const Placement& p) { return p.probability < options.min_probability; });
+    // What later stages may still reject must be sure.
+    const double least = result.partial ? options.min_confirming : options.min_probability;
+    std::erase_if(placements, [&](const Placement& p) { return p.probability < least; });
     const std::vector<int> matched = match_tracks(placements, record->tracks);
     for (std::size_t t = 0; t < record->tracks.size(); ++t) {
       const TrackRecord& track = record->tracks[t];
@@ -257,18 +302,41 @@ struct Tracker::State {
       if (!life) continue;
       const auto by = std::ranges::find(matched, static_cast<int>(t));
       if (by != matched.end()) {
-        confirm_by(placements[by - matched.begin()], track, *record, *life);
+        const Placement& found = placements[by - matched.begin()];
+        if (!result.partial) believe(found, record->stamp_ns, *life);
+        find_again(found, track, *record, result.partial, *life);
         continue;
       }
+      if (result.partial) continue;
       const bool taken = std::ranges::any_of(
           placements, [&](const Placement& p) { return claims_place(p, track); });
       if (result.budget_exhausted && !taken) continue;
-      if (track.sight != Sight::seen || track.visible_fraction < kMinSearched) continue;
+      if (!should_be_found(track)) continue;
       life->evidence += taken ? kOtherFound : kNotFound;
+      ++life->missed;
     }
     for (std::size_t p = 0; p < placements.size(); ++p) {
-      if (matched[p] < 0) expect(placements[p], 0, *record);
+      if (matched[p] < 0) meet(placements[p], *record, matched);
     }
+  }
+
+  // A placement without a track. It may be of a track of the model that should have been found and
+  // was not, so that it follows another surface: another search decides.
+  void meet(const Placement& found, const FrameRecord& record, const std::vector<int>& matched) {
+    for (std::size_t t = 0; t < record.tracks.size(); ++t) {
+      const TrackRecord& track = record.tracks[t];
+      if (track.model->name != found.model || !should_be_found(track)) continue;
+      if (std::ranges::count(matched, static_cast<int>(t)) > 0) continue;
+      const Life* life = life_of(track.id);
+      if (!life) continue;
+      if (life->missed >= kDisplaced) expect(found, life->id, record);
+      return;
+    }
+    expect(found, 0, record);
+  }
+
+  static bool should_be_found(const TrackRecord& track) {
+    return track.sight == Sight::seen && track.visible_fraction >= kMinSearched;
   }
 
   void remember(std::shared_ptr<const Frame> frame) {
@@ -357,8 +425,9 @@ Result<TrackedFrame> Tracker::track(std::shared_ptr<const Frame> frame,
   s.stamp_ns = frame->stamp_ns;
   s.frame_from_camera = camera ? camera->fixed_from_camera : Pose();
   ++s.counts.frames;
+  if (!camera) s.background.check(*frame, s.frame_from_camera);
   s.follow_all(*frame, passed_s);
-  s.end_twins();
+  s.part_twins();
   s.update_states();
   for (const SceneInterpretations& result : std::exchange(s.results, {})) s.take(result);
   s.receive(*frame);
@@ -393,11 +462,11 @@ void Tracker::begin_anew(const std::string& reason) {
 Status Tracker::add(const SceneInterpretations& found) {
   State& s = *state_;
   if (!s.record_of(found.stamp_ns)) {
-    ++s.counts.stale_searches;
+    s.counts.stale_searches += found.partial ? 0 : 1;
     return not_found("no frame with the stamp ", found.stamp_ns, " ns was followed in the last ",
                      kRemembered_s, " s");
   }
-  ++s.counts.searches;
+  s.counts.searches += found.partial ? 0 : 1;
   if (const auto kind = sensor_kind(found.sensor)) s.sensor = kind;
   s.results.push_back(found);
   return {};

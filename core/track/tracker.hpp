@@ -21,7 +21,7 @@ namespace bpa::track {
 struct TrackerOptions {
   double min_probability = 0.5;
   double min_confirming = 0.8;
-  double lost_s = 5;
+  double lost_s = 10;
   double hidden_s = 30;
   int num_threads = 0;
 
@@ -77,7 +77,9 @@ class Tracker {
   void begin_anew(const std::string& reason);
 
   /// Takes the result of a search in a frame that track() was given before. The next track()
-  /// carries it forward. Fails with not_found on a frame that is no longer remembered.
+  /// carries it forward. A partial one begins tracks where it is sure (min_confirming), and finds
+  /// what is not seen again; what it lacks counts for nothing. Fails with not_found on a frame that
+  /// is no longer remembered.
   Status add(const SceneInterpretations& found);
 
   /// The share of depths that the newest frame has otherwise than an earlier one; 1 where that is

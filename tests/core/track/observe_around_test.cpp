@@ -20,7 +20,7 @@ TEST_F(Around, IsTheSamePartOfTheWholeMap) {
   const auto around = surroundings(frame, *l_, l_truth_, 0.03);
   ASSERT_TRUE(around);
   EXPECT_EQ(around->reduction, whole.reduction);
-  const SceneFeatures part = observe(frame, *around, SensorKind::structured_light, false);
+  const SceneFeatures part = observe(frame, *around, SensorKind::structured_light, {}, false);
   const int u0 = around->region.x / whole.reduction, v0 = around->region.y / whole.reduction;
   ASSERT_EQ(part.map.width() * whole.reduction, around->region.width);
   int compared = 0;

@@ -284,6 +284,73 @@ TEST_F(TrackerTest, TracksStandStillInTheFixedFrameWhileTheCameraMoves) {
   EXPECT_LT(last.tracks[0].velocity.norm(), 0.02);
 }
 
+TEST_F(TrackerTest, PartOfAResultBeginsTracksWhereItIsSureAndCountsForNothingElse) {
+  Tracker tracker = this->tracker();
+  const std::vector<Pose> bricks = {brick_at(-0.15, 0), brick_at(0.12, 0.05)};
+  const Pose sure = camera_from_world_ * bricks[0], unsure = camera_from_world_ * bricks[1];
+  follow(tracker, frame(scene(bricks)));
+  const auto tell = [&](const Pose& pose, double probability, bool partial) {
+    SceneInterpretations result = found(stamp(), {pose}, "brick", probability);
+    result.partial = partial;
+    ASSERT_TRUE(tracker.add(result).ok());
+  };
+  tell(unsure, 0.6, true);
+  EXPECT_TRUE(follow(tracker, frame(scene(bricks))).tracks.empty());
+  tell(sure, 0.9, true);
+  EXPECT_EQ(follow(tracker, frame(scene(bricks))).tracks.size(), 1u);
+  EXPECT_EQ(tracker.counts().searches, 0u);
+  const auto before = follow(tracker, frame(scene(bricks)));
+  SceneInterpretations empty = found(stamp(), {});
+  empty.partial = true;
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(tracker.add(empty).ok());
+  }
+  EXPECT_EQ(follow(tracker, frame(scene(bricks))).tracks[0].probability,
+            before.tracks[0].probability);
+}
+
+TEST_F(TrackerTest, PartsAndWholeOfOneSearchCountOnce) {
+  Tracker tracker = this->tracker();
+  const Pose brick = brick_at(0, 0);
+  follow(tracker, frame(scene({brick})));
+  SceneInterpretations result = found(stamp(), {camera_from_world_ * brick});
+  for (const bool partial : {true, true, false}) {
+    result.partial = partial;
+    ASSERT_TRUE(tracker.add(result).ok());
+    const auto last = follow(tracker, frame(scene({brick})));
+    ASSERT_EQ(last.tracks.size(), 1u);
+    EXPECT_NEAR(last.tracks[0].probability, 0.9, 1e-9);
+  }
+}
+
+TEST_F(TrackerTest, WhatSeemsToBeOfTheTableIsNoObject) {
+  for (const bool there : {true, false}) {
+    Tracker tracker = this->tracker();
+    const Pose standing = brick_at(0, 0),
+               sunk = test::standing_at(0, 0, -test::kBrickHalf.z(), 0.2);
+    const std::vector<Pose> bricks = there ? std::vector{standing} : std::vector<Pose>();
+    follow(tracker, frame(scene(bricks)));
+    ASSERT_TRUE(tracker.add(found(stamp(), {camera_from_world_ * (there ? standing : sunk)})).ok());
+    EXPECT_EQ(follow(tracker, frame(scene(bricks))).tracks.size(), there ? 1u : 0u);
+  }
+}
+
+TEST_F(TrackerTest, TrackIsWhereTwoSearchesFindItAlone) {
+  Tracker tracker = this->tracker();
+  const Pose wrong = brick_at(-0.15, 0), right = brick_at(0.12, 0.05);
+  const std::vector<Pose> bricks = {wrong, right};
+  follow(tracker, frame(scene(bricks)));
+  ASSERT_TRUE(tracker.add(found(stamp(), {camera_from_world_ * wrong})).ok());
+  follow(tracker, frame(scene(bricks)));
+  for (const Pose& expected : {wrong, right}) {
+    ASSERT_TRUE(tracker.add(found(stamp(), {camera_from_world_ * right})).ok());
+    const auto last = follow(tracker, frame(scene(bricks)));
+    ASSERT_EQ(last.tracks.size(), 1u);
+    EXPECT_EQ(last.tracks[0].id, 1u);
+    expect_at(last.tracks[0], camera_from_world_ * expected);
+  }
+}
+
 // A search that takes the L for its turned self: the view decides.
 TEST_F(TrackerTest, WrongPoseGivesWayToTheAlternativeThatTheViewShows) {
   const Pose l = camera_from_world_ * test::standing_at(0, 0, 0.02, 0.7);
