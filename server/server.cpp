@@ -179,9 +179,9 @@ class Running : public Server {
   WorkerOptions worker_options(const ServerOptions& options) const {
     WorkerOptions worker = search_options(options);
     worker.expected = [this](const std::string& frame_id) { return tracking_->expected(frame_id); };
-    worker.niceness = [this, niceness = options.tracking.search_nice] {
-      return tracking_->active() ? niceness : 0;
-    };
+    worker.tracked = [this] { return tracking_->active(); };
+    worker.on_round = [this](const SceneInterpretations& found) { tracking_->add(found); };
+    worker.added_nice = options.tracking.search_nice;
     return worker;
   }
 

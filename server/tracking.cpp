@@ -111,9 +111,11 @@ void Tracking::add(const SceneInterpretations& found) {
   const double changed = tracker_->changed_since(found.stamp_ns);
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!is_active()) return;
-  searched_ns_ = found.stamp_ns;
-  searched_at_ = Clock::now();
-  changed_share_ = changed;
+  if (!found.partial) {
+    searched_ns_ = found.stamp_ns;
+    searched_at_ = Clock::now();
+    changed_share_ = changed;
+  }
   if (results_.size() >= kMaxResults) results_.erase(results_.begin());
   results_.push_back(found);
 }
@@ -206,7 +208,7 @@ std::optional<Tracking::Refusal> Tracking::try_follow(
   std::uint64_t untracked = 0;
   const std::lock_guard<std::mutex> lock(tracker_mutex_);
   for (const SceneInterpretations& found : results) {
-    if (!tracker_->add(found).ok()) ++untracked;
+    if (!tracker_->add(found).ok() && !found.partial) ++untracked;
   }
   Result<TrackedFrame> result =
       tracker_->track(std::shared_ptr<const Frame>(item.frame, &*frame), camera);

@@ -61,7 +61,8 @@ class Tracking {
   /// Takes a frame or counts why not; never waits. When too many wait, the oldest goes that the
   /// search has not begun with.
   void push(TrackingFrame frame);
-  /// Takes the result of a search in a frame of the stream; the next frame carries it forward.
+  /// Takes the result of a search in a frame of the stream, or a part of it; the next frame carries
+  /// it forward.
   void add(const SceneInterpretations& found);
   /// Whether the scene stands still since it was searched, at most rest_s ago: no need to search it
   /// again.

@@ -236,7 +236,8 @@ void Worker::run() {
 /// Takes one task, frame or request out and works on it with no lock held.
 void Worker::run_one(std::unique_lock<std::mutex>& lock) {
   const WorkerOptions options = options_;
-  if (const int added = options.niceness ? options.niceness() : 0; added != niceness_) {
+  const bool tracked = options.tracked && options.tracked();
+  if (const int added = tracked ? options.added_nice : 0; added != niceness_) {
     if (set_niceness(niceness() - niceness_ + added)) niceness_ = added;
   }
   const bool frame_wanted = options.continuous || !awaiting_frame_.empty();
@@ -356,6 +357,7 @@ void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFr
   if (options.continuous) {
     DetectRequest request = with_priors(options.request, newest->priors);
     if (options.follow) request.expected = expected_in(options, *frame);
+    if (options.tracked && options.tracked()) request.on_round = options.on_round;
     result.emplace(detect(*frame, request));
     remember(*frame, *result);
     statistics_.add(result->ok() ? &Counts::frames_processed : &Counts::frames_failed);

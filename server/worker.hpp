@@ -71,8 +71,11 @@ struct WorkerOptions {
   /// function: what the camera's frame before showed.
   std::function<std::optional<std::vector<ExpectedPlacement>>(const std::string& frame_id)>
       expected = {};
-  /// Added to the nice value of this process while it searches; an empty function adds nothing.
-  std::function<int()> niceness = {};
+  /// Whether objects are followed beside the search; an empty function: never.
+  std::function<bool()> tracked = {};
+  /// Then: receives what the search of a stream's frame has found after each round,
+  std::function<void(const SceneInterpretations&)> on_round = {};
+  int added_nice = 0;  ///< and this is added to the nice value of the searching threads.
 };
 
 class Worker {
