@@ -114,7 +114,8 @@ class Running : public Server {
       return apply(before, after);
     });
     parameters_.emplace(*participant_, log_, wire::qos::parameters());
-    add_parameter_services(*participant_, settings_, clock_, *parameters_);
+    setter_ = std::make_shared<ParameterSetter>(*participant_, settings_, clock_);
+    add_parameter_services(settings_, setter_, *parameters_);
     add_type_description_service(*parameters_);
     ready_ = true;
     reporter_ = std::jthread([this](const std::stop_token& stop) { report(stop); });
@@ -414,6 +415,7 @@ class Running : public Server {
   std::vector<std::unique_ptr<FrameSource>> sources_;
   TopicSource* topics_ = nullptr;   ///< One of them.
   std::atomic<bool> ready_{false};  ///< All services are there.
+  std::shared_ptr<ParameterSetter> setter_;
   std::optional<ServiceSet> services_;
   std::optional<ServiceSet> parameters_;
   std::jthread reporter_;

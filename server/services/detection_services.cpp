@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "core/base/concat.hpp"
+#include "core/base/guarded.hpp"
 #include "server/convert/frames.hpp"
 #include "server/convert/results.hpp"
+#include "server/services/requests.hpp"
 #include "server/services/services.hpp"
 
 namespace bpa::server {
@@ -80,8 +82,62 @@ msgs::Detect_Response answer_of(const Recognition& recognition, const DetectJob&
   return response;
 }
 
-msgs::ListModels_Response list(const Recognition& recognition,
-                               const std::vector<std::string>& names) {
+/// A change of the library: `change(request, response)`, when its turn comes on the worker.
+template <class Service, class Change>
+void change_library(const ServiceContext& context, const Asker& asker, const char* name,
+                    Change change, typename Service::Request request,
+                    const Answer<Service>& answer) {
+  const auto finish = [context, hook = asker.log, name, answer](
+                          const Status& status, typename Service::Response& response) {
+    response.success = status.ok();
+    response.status = to_message(status);
+    response.database_version = context.recognition->version();
+    log(hook, LogLevel::info,
+        std::string(name) + (status.ok() ? ": done" : " failed: " + status.message));
+    if (status.ok()) context.library_changed();
+    answer(response);
+  };
+  const auto work = [finish, change, request = std::move(request)] {
+    typename Service::Response response;
+    const Status status =
+        guarded("the library cannot be changed", [&] { return change(request, response); });
+    finish(status, response);
+  };
+  const auto refuse = [finish](const Status& status) {
+    typename Service::Response response;
+    finish(status, response);
+  };
+  context.worker.run_later(asker.client, {work, refuse});
+}
+
+/// A service that changes the library.
+template <class Service, class Change>
+void add_change(const ServiceContext& context, const char* name, Change change,
+                ServiceSet& services) {
+  services.add<Service>(
+      name, [context, change](typename Service::Request&& request, const Reply<Service>& reply) {
+        change(context, reply.asker(), std::move(request),
+               [reply](const typename Service::Response& response) { reply.send(response); });
+      });
+}
+
+}  // namespace
+
+Result<DetectJob> detect_job(msgs::Detect_Request&& request, const DetectionOptions& options) {
+  const auto shared = std::make_shared<msgs::Detect_Request>(std::move(request));
+  const Result<DetectRequest> search = search_of(*shared, options);
+  if (!search.ok()) return search.status();
+  return job_of(shared, *search, options);
+}
+
+Status submit(const ServiceContext& context, Result<DetectJob> job) {
+  Status status = job.ok() ? context.worker.push(std::move(job).value()) : job.status();
+  if (!status.ok()) context.statistics.add(&Counts::requests_refused);
+  return status;
+}
+
+msgs::ListModels_Response list_models(const Recognition& recognition,
+                                      const std::vector<std::string>& names) {
   msgs::ListModels_Response response;
   response.library = recognition.library();
   response.database_version = recognition.version();
@@ -106,89 +162,57 @@ msgs::ListModels_Response list(const Recognition& recognition,
   return response;
 }
 
-/// Fills in what both responses have, logs, tells the others and replies.
-template <class Service>
-void finish(const ServiceContext& context, const char* what, const Status& status,
-            typename Service::Response& response, const Reply<Service>& reply) {
-  response.success = status.ok();
-  response.status = to_message(status);
-  response.database_version = context.recognition->version();
-  log(reply.log(), LogLevel::info,
-      std::string(what) + (status.ok() ? ": done" : " failed: " + status.message));
-  if (status.ok()) context.library_changed();
-  reply.send(response);
+void load_model(const ServiceContext& context, const Asker& asker, msgs::LoadModel_Request request,
+                const Answer<msgs::LoadModel>& answer) {
+  const auto load = [recognition = context.recognition](const msgs::LoadModel_Request& wanted,
+                                                        msgs::LoadModel_Response& response) {
+    const auto model = recognition->load(wanted.source, wanted.name);
+    if (model.ok()) response.model = model_message(**model);
+    return model.status();
+  };
+  change_library<msgs::LoadModel>(context, asker, "load_model", load, std::move(request), answer);
 }
 
-/// A service that changes the library: `change(request, response)`. Loading takes seconds, so it
-/// waits for its turn on the worker.
-template <class Service, class Change>
-void add_change(const ServiceContext& context, const char* name, Change change,
-                ServiceSet& services) {
-  services.add<Service>(name, [context, name, change](typename Service::Request&& request,
-                                                      const Reply<Service>& reply) {
-    const auto work = [context, name, change, reply, request = std::move(request)] {
-      typename Service::Response response;
-      const Status status =
-          guarded("the library cannot be changed", [&] { return change(request, response); });
-      finish(context, name, status, response, reply);
-    };
-    const auto refuse = [context, name, reply](const Status& status) {
-      typename Service::Response response;
-      finish(context, name, status, response, reply);
-    };
-    context.worker.run_later(reply.client(), {work, refuse});
-  });
+void unload_model(const ServiceContext& context, const Asker& asker,
+                  msgs::UnloadModel_Request request, const Answer<msgs::UnloadModel>& answer) {
+  const auto unload = [recognition = context.recognition](const msgs::UnloadModel_Request& wanted,
+                                                          msgs::UnloadModel_Response&) {
+    return recognition->unload(wanted.name);
+  };
+  change_library<msgs::UnloadModel>(context, asker, "unload_model", unload, std::move(request),
+                                    answer);
 }
-
-}  // namespace
 
 void add_detect(const ServiceContext& context, ServiceSet& services) {
   services.add<msgs::Detect>(
       "detect",
-      [context](msgs::Detect_Request&& message, const Reply<msgs::Detect>& reply) {
-        const auto refuse = [&](const Status& status) {
-          context.statistics.add(&Counts::requests_refused);
-          reply.refuse(status);
-        };
-        const Settings::Snapshot options = context.settings.get();
-        auto request = std::make_shared<msgs::Detect_Request>(std::move(message));
-        const Result<DetectRequest> search = search_of(*request, options->detection);
-        if (!search.ok()) return refuse(search.status());
-        DetectJob job = job_of(std::move(request), *search, options->detection);
-        job.client = reply.client();
-        job.done = [recognition = context.recognition, reply](
-                       const DetectJob& done, const Frame* frame,
-                       const Result<SceneInterpretations>& result) {
-          const Status& status = result.status();
-          if (!status.ok()) log(reply.log(), LogLevel::info, "detect failed: " + status.message);
-          reply.guard([&] {
-            reply.send(answer_of(*recognition, done, frame, result, reply.refusal(status)));
-          });
-        };
-        const Status accepted = context.worker.push(std::move(job));
-        if (!accepted.ok()) refuse(accepted);
+      [context](msgs::Detect_Request&& request, const Reply<msgs::Detect>& reply) {
+        Result<DetectJob> job = detect_job(std::move(request), context.settings.get()->detection);
+        if (job.ok()) {
+          job->client = reply.client();
+          job->done = [recognition = context.recognition, reply](
+                          const DetectJob& done, const Frame* frame,
+                          const Result<SceneInterpretations>& result) {
+            const Status& status = result.status();
+            if (!status.ok()) log(reply.log(), LogLevel::info, "detect failed: " + status.message);
+            reply.guard([&] {
+              reply.send(answer_of(*recognition, done, frame, result, reply.refusal(status)));
+            });
+          };
+        }
+        const Status accepted = submit(context, std::move(job));
+        if (!accepted.ok()) reply.refuse(accepted);
       },
       kMaxFrameRequest);
 }
 
 void add_library_services(const ServiceContext& context, ServiceSet& services) {
-  const std::shared_ptr<Recognition> recognition = context.recognition;
-  const auto list_models = [recognition](const msgs::ListModels_Request& request) {
-    return list(*recognition, request.names);
-  };
-  const auto load = [recognition](const msgs::LoadModel_Request& request,
-                                  msgs::LoadModel_Response& response) {
-    const auto model = recognition->load(request.source, request.name);
-    if (model.ok()) response.model = model_message(**model);
-    return model.status();
-  };
-  const auto unload = [recognition](const msgs::UnloadModel_Request& request,
-                                    msgs::UnloadModel_Response&) {
-    return recognition->unload(request.name);
-  };
-  services.add_quick<msgs::ListModels>("list_models", list_models);
-  add_change<msgs::LoadModel>(context, "load_model", load, services);
-  add_change<msgs::UnloadModel>(context, "unload_model", unload, services);
+  services.add_quick<msgs::ListModels>(
+      "list_models", [recognition = context.recognition](const msgs::ListModels_Request& request) {
+        return list_models(*recognition, request.names);
+      });
+  add_change<msgs::LoadModel>(context, "load_model", load_model, services);
+  add_change<msgs::UnloadModel>(context, "unload_model", unload_model, services);
 }
 
 }  // namespace bpa::server

@@ -18,11 +18,10 @@
 #include "idl/wire/qos.hpp"
 #include "idl/wire/service.hpp"
 #include "server/convert/results.hpp"
-#include "server/recognition.hpp"
+#include "server/services/parameter_setter.hpp"
 #include "server/services/request_thread.hpp"
+#include "server/services/requests.hpp"
 #include "server/settings.hpp"
-#include "server/statistics.hpp"
-#include "server/worker.hpp"
 
 // A request that fails is answered with success = false, a code and a sentence; the server goes on.
 
@@ -74,6 +73,7 @@ class Reply {
   wire::Guid client() const { return token_.client(); }
   /// For what this client causes.
   const LogHook& log() const { return log_; }
+  Asker asker() const { return {client(), log_}; }
 
  private:
   wire::ReplyToken<Service> token_;
@@ -157,17 +157,6 @@ class ServiceSet {
 
 class Tracking;
 
-/// What the services need of the server; all of it outlives them.
-struct ServiceContext {
-  const Settings& settings;
-  std::shared_ptr<Recognition> recognition;
-  Worker& worker;
-  Statistics& statistics;
-  /// To be called after a model came or went.
-  std::function<void()> library_changed;
-  LogHook log;
-};
-
 /// Offers `detect`. This and the next three throw a Failure.
 void add_detect(const ServiceContext& context, ServiceSet& services);
 /// Offers `list_models`, `load_model` and `unload_model`.
@@ -176,11 +165,10 @@ void add_library_services(const ServiceContext& context, ServiceSet& services);
 void add_track_services(Tracking& tracking, ServiceSet& services);
 
 /// Offers the services of every ROS 2 node for `ros2 param`: NODE/list_parameters, get_parameters,
-/// get_parameter_types, describe_parameters, set_parameters and set_parameters_atomically. Also
-/// /parameter_events: all parameters at the start, then each change. `participant` and `settings`
-/// outlive the services. `clock` stamps the events.
-void add_parameter_services(const wire::Participant& participant, Settings& settings,
-                            std::shared_ptr<const WaitableClock> clock, ServiceSet& services);
+/// get_parameter_types, describe_parameters, set_parameters and set_parameters_atomically.
+/// `settings` outlives the services.
+void add_parameter_services(const Settings& settings, std::shared_ptr<ParameterSetter> setter,
+                            ServiceSet& services);
 
 /// Offers NODE/get_type_description: what the types of this node's topics and services are made of.
 /// Without a type_hash the name alone decides.

@@ -123,10 +123,8 @@ Result<std::uint64_t> bytes_left(const CaptureOptions& options) {
 }
 
 void handle(const CaptureOptions& options, camera::Capture& capture, const Record::Request& request,
-            const Reply<Record>& reply) {
-  const auto answer = [reply](const Result<RecordingSummary>& result) {
-    reply.send(response_of(result));
-  };
+            const Answer<Record>& send) {
+  const auto answer = [send](const Result<RecordingSummary>& result) { send(response_of(result)); };
   if (request.stop) return capture.stop_recording(answer);
   const Result<std::string> path = file_of(request, options.record_folder);
   if (!path.ok()) return answer(path.status());
@@ -146,7 +144,8 @@ class CameraSource : public FrameSource {
   /// As open_camera_source().
   CameraSource(const wire::Participant& participant, const CaptureOptions& options,
                OnFrame on_frame, std::function<bool()> idle, LogHook log)
-      : publisher_(participant, options, log),
+      : options_(options),
+        publisher_(participant, options, log),
         capture_(
             or_throw(camera::camera_of(options, log)),
             {milliseconds(static_cast<int>(options.timeout_ms)),
@@ -160,9 +159,13 @@ class CameraSource : public FrameSource {
             camera::is_paced(options) ? std::move(idle) : nullptr, log),
         services_(participant, std::move(log)) {
     services_.add<Record>(
-        "record", [this, options](const Record::Request& request, const Reply<Record>& reply) {
-          handle(options, capture_, request, reply);
+        "record", [this](const Record::Request& request, const Reply<Record>& reply) {
+          record(request, [reply](const Record::Response& response) { reply.send(response); });
         });
+  }
+
+  void record(const Record::Request& request, const Answer<Record>& answer) override {
+    handle(options_, capture_, request, answer);
   }
 
   RequestLosses losses() const override { return services_.losses(); }
@@ -182,6 +185,7 @@ class CameraSource : public FrameSource {
   }
 
  private:
+  const CaptureOptions options_;
   // Destroyed from the last to the first: nothing calls into what is gone.
   CameraPublisher publisher_;
   camera::Capture capture_;
@@ -189,6 +193,11 @@ class CameraSource : public FrameSource {
 };
 
 }  // namespace
+
+void FrameSource::record(const Record::Request&, const Answer<Record>& answer) {
+  answer(response_of(Status(StatusCode::unsupported,
+                            "the server has no camera of its own to record (capture.source)")));
+}
 
 std::unique_ptr<FrameSource> open_camera_source(const wire::Participant& participant,
                                                 const CaptureOptions& options, OnFrame on_frame,

@@ -11,10 +11,12 @@
 #include "core/base/clock.hpp"
 #include "core/base/log.hpp"
 #include "core/cloud/frame.hpp"
-#include "idl/wire/msg/diagnostic_msgs.hpp"
+#include "idl/wire/messages.hpp"
 #include "idl/wire/participant.hpp"
 #include "server/busy.hpp"
 #include "server/convert/frames.hpp"
+#include "server/convert/results.hpp"
+#include "server/services/requests.hpp"
 #include "server/sources/synchronizer.hpp"
 #include "server/statistics.hpp"
 
@@ -41,6 +43,9 @@ class FrameSource {
   virtual std::vector<SourceReport> reports() const = 0;
   /// Of the services of this source.
   virtual RequestLosses losses() const { return {}; }
+  /// Begins or ends a recording; `unsupported` where the source has no camera of its own.
+  virtual void record(const wire::bpa_msgs::Record_Request& request,
+                      const Answer<wire::bpa_msgs::Record>& answer);
   /// What threads of its own do now that must not hang.
   virtual std::vector<const Busy*> threads() const { return {}; }
 };
