@@ -140,7 +140,20 @@ Paint curvature(const ObjectModel& model) {
   return [value](std::size_t i) { return heat(2.5f * value[i]); };
 }
 
+Look corner_look(const ObjectModel& model) {
+  return {model, Eigen::Vector3f(1, -1.2f, 0.9f).normalized()};
+}
+
 }  // namespace
+
+io::ColorImage model_thumbnail(const ObjectModel& model, int side) {
+  const Look corner = corner_look(model);
+  cv::Mat tile = corner.draw(own_colors(model));
+  corner.draw_axes(tile);
+  cv::Mat small;
+  cv::resize(tile, small, {side, side}, 0, 0, cv::INTER_AREA);
+  return to_image(small);
+}
 
 io::ColorImage model_sheet(const ObjectModel& model) {
   cv::Mat sheet(kRows * kTile + kPlotRows, kColumns * kTile, CV_8UC3, cv::Scalar::all(255));
@@ -159,7 +172,7 @@ io::ColorImage model_sheet(const ObjectModel& model) {
     look.draw_axes(tile);
     put(tile, k, names[k]);
   }
-  const Look corner(model, Eigen::Vector3f(1, -1.2f, 0.9f).normalized());
+  const Look corner = corner_look(model);
   cv::Mat tile = corner.draw(colors);
   corner.draw_axes(tile);
   put(tile, 6, "symmetry axes");

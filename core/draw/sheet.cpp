@@ -82,12 +82,10 @@ io::ColorImage contact_sheet(const std::vector<io::ColorImage>& pictures, int co
   return to_image(sheet);
 }
 
-io::ColorImage color_beside_depth(const Frame& frame, const std::string& caption) {
+io::ColorImage depth_picture(const Frame& frame) {
   constexpr float kNearest = 0.5f, kFarthest = 2.5f, kBand = 0.06f;
   const int width = frame.camera.width, height = frame.camera.height;
   cv::Mat hsv(height, width, CV_8UC3, cv::Scalar::all(0));
-  io::ColorImage color{width, height, frame.color};
-  color.pixels.resize(3 * frame.depth.size(), 0);
   for (std::size_t i = 0; i < frame.depth.size(); ++i) {
     const float z = frame.depth[i];
     if (!(z > 0)) continue;
@@ -98,7 +96,13 @@ io::ColorImage color_beside_depth(const Frame& frame, const std::string& caption
   }
   cv::Mat depth;
   cv::cvtColor(hsv, depth, cv::COLOR_HSV2RGB);
-  return with_words(beside(color, to_image(depth)), caption);
+  return to_image(depth);
+}
+
+io::ColorImage color_beside_depth(const Frame& frame, const std::string& caption) {
+  io::ColorImage color{frame.camera.width, frame.camera.height, frame.color};
+  color.pixels.resize(3 * frame.depth.size(), 0);
+  return with_words(beside(color, depth_picture(frame)), caption);
 }
 
 }  // namespace bpa::draw

@@ -31,9 +31,15 @@ io::ColorImage beside(const io::ColorImage& left, const io::ColorImage& right);
 io::ColorImage contact_sheet(const std::vector<io::ColorImage>& pictures, int columns,
                              int cell_width);
 
-/// Colour (left) beside depth (right). Depth is red at 0.5 m and violet at 2.5 m; a band of
-/// brightness is 6 cm; pixels without depth are black.
+/// Depth is red at 0.5 m and violet at 2.5 m; a band of brightness is 6 cm; pixels without depth
+/// are black.
+io::ColorImage depth_picture(const Frame& frame);
+
+/// Colour (left) beside depth (right).
 io::ColorImage color_beside_depth(const Frame& frame, const std::string& caption);
+
+/// The model in its colours from one corner, `side` x `side` pixels, with symmetry axes (blue).
+io::ColorImage model_thumbnail(const ObjectModel& model, int side);
 
 /// A sheet that shows a model from six sides in its colours, with range edges (cyan) and symmetry
 /// axes (blue). Also its curvature, the variance of its normals and its noise curves.

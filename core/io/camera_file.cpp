@@ -84,11 +84,15 @@ Result<CameraFile> read_camera(const std::string& path) {
   return file;
 }
 
-Status write_camera(const std::string& path, const Camera& camera, double depth_scale_mm) {
+std::string camera_json(const Camera& camera, double depth_scale_mm) {
   const Json json = {{"cx", camera.cx},      {"cy", camera.cy}, {"depth_scale", depth_scale_mm},
                      {"fx", camera.fx},      {"fy", camera.fy}, {"height", camera.height},
                      {"width", camera.width}};
-  return write_file(path, json.dump(2) + "\n");
+  return json.dump(2) + "\n";
+}
+
+Status write_camera(const std::string& path, const Camera& camera, double depth_scale_mm) {
+  return write_file(path, camera_json(camera, depth_scale_mm));
 }
 
 }  // namespace bpa::io

@@ -24,7 +24,9 @@ struct CameraFile {
 /// not_found, corrupt, or invalid_argument naming the field and the rule.
 Result<CameraFile> read_camera(const std::string& path);
 
-/// Writes the BOP form.
+/// The BOP form.
+std::string camera_json(const Camera& camera, double depth_scale_mm);
+/// Writes it.
 Status write_camera(const std::string& path, const Camera& camera, double depth_scale_mm);
 
 }  // namespace bpa::io

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <optional>
 
 #include <opencv2/imgcodecs.hpp>
 
@@ -160,10 +161,12 @@ Result<cv::Mat> read_image(const std::string& path, int flags, bool jpeg_too, co
   return decode(path, *bytes, flags, jpeg_too, check);
 }
 
-/// Writes width x height pixels of an OpenCV type, of which `pixels` holds `channels` values each.
+/// The file of width x height pixels of an OpenCV type, of which `pixels` holds `channels` values
+/// each; `extension` is the kind of file.
 template <class T>
-Status encode(const std::string& path, int width, int height, int type, int channels,
-              const std::vector<T>& pixels) {
+Result<std::string> encoded(const std::string& path, int width, int height, int type, int channels,
+                            const std::vector<T>& pixels, const char* extension = ".png",
+                            const std::vector<int>& parameters = {}) {
   if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide ||
       pixels.size() != static_cast<std::size_t>(width * height * channels)) {
     return invalid_argument(path, ": the image has ", pixels.size(), " values; it must have ",
@@ -171,14 +174,19 @@ Status encode(const std::string& path, int width, int height, int type, int chan
   }
   const cv::Mat image(height, width, type, const_cast<T*>(pixels.data()));
   std::vector<std::uint8_t> bytes;
-  bool encoded = false;
+  bool done = false;
   try {
-    encoded = cv::imencode(".png", image, bytes);
+    done = cv::imencode(extension, image, bytes, parameters);
   } catch (const std::exception&) {
   }
-  if (!encoded) return Status(StatusCode::internal, path + " cannot be encoded");
+  if (!done) return Status(StatusCode::internal, path + " cannot be encoded");
+  return std::string(bytes.begin(), bytes.end());
+}
+
+Status write_image(const std::string& path, const Result<std::string>& bytes) {
+  if (!bytes.ok()) return bytes.status();
   // Of many images each would have to wait for the disk.
-  return write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, Sync::later);
+  return write_file(path, *bytes, Sync::later);
 }
 
 constexpr int kColorFlags = cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION;
@@ -198,6 +206,13 @@ GrayImage to_gray_image(const cv::Mat& gray) {
   cv::Mat pixels(gray.size(), CV_16U, image.pixels.data());
   gray.convertTo(pixels, CV_16U);
   return image;
+}
+
+Result<std::string> encoded_color(const std::string& path, const ColorImage& image,
+                                  const char* extension, const std::vector<int>& parameters) {
+  std::vector<std::uint8_t> bgr = image.pixels;
+  swap_red_and_blue(bgr);
+  return encoded(path, image.width, image.height, CV_8UC3, 3, bgr, extension, parameters);
 }
 
 }  // namespace
@@ -256,51 +271,70 @@ Result<GrayImage> decode_depth_png(std::string_view bytes, const std::string& na
   return to_gray_image(*image);
 }
 
+Result<std::string> encode_color_png(const ColorImage& image) {
+  return encoded_color("the colour image", image, ".png", {});
+}
+
+Result<std::string> encode_gray_png(const GrayImage& image) {
+  return encoded("the depth image", image.width, image.height, CV_16U, 1, image.pixels);
+}
+
+Result<std::string> encode_jpeg(const ColorImage& image, int quality) {
+  return encoded_color("the picture", image, ".jpg", {cv::IMWRITE_JPEG_QUALITY, quality});
+}
+
 Status write_color_png(const std::string& path, const ColorImage& image) {
-  std::vector<std::uint8_t> bgr = image.pixels;
-  swap_red_and_blue(bgr);
-  return encode(path, image.width, image.height, CV_8UC3, 3, bgr);
+  return write_image(path, encoded_color(path, image, ".png", {}));
 }
 
 Status write_gray_png(const std::string& path, const GrayImage& image) {
-  return encode(path, image.width, image.height, CV_16U, 1, image.pixels);
+  return write_image(path, encoded(path, image.width, image.height, CV_16U, 1, image.pixels));
 }
 
 Status write_mask_png(const std::string& path, int width, int height,
                       const std::vector<std::uint8_t>& mask) {
-  return encode(path, width, height, CV_8U, 1, mask);
+  return write_image(path, encoded(path, width, height, CV_8U, 1, mask));
+}
+
+Result<Frame> frame_of_images(const GrayImage& depth, const ColorImage* color, const Camera& camera,
+                              double depth_scale_mm, const std::string& depth_name) {
+  Frame frame;
+  frame.camera = camera;
+  if (camera.width == 0 && camera.height == 0) {
+    frame.camera.width = depth.width;
+    frame.camera.height = depth.height;
+  }
+  if (Status status = validate(frame.camera); !status.ok()) return status;
+  if (depth.width != frame.camera.width || depth.height != frame.camera.height) {
+    return invalid_argument("depth image ", depth_name, " is ", depth.width, "x", depth.height,
+                            "; it must be ", frame.camera.width, "x", frame.camera.height,
+                            " as the camera");
+  }
+  if (color != nullptr) {
+    if (color->width != depth.width || color->height != depth.height) {
+      return invalid_argument("depth image ", depth_name, " is ", depth.width, "x", depth.height,
+                              "; it must have the size of the colour image, ", color->width, "x",
+                              color->height);
+    }
+    frame.color = color->pixels;
+  }
+  for (const std::uint16_t units : depth.pixels) {
+    frame.depth.push_back(static_cast<float>(units * depth_scale_mm * 0.001));
+  }
+  return frame;
 }
 
 Result<Frame> read_frame(const std::string& depth_path, const std::string& color_path,
                          const Camera& camera, double depth_scale_mm) {
   const Result<GrayImage> depth = read_gray_png(depth_path);
   if (!depth.ok()) return depth.status();
-  Frame frame;
-  frame.camera = camera;
-  if (camera.width == 0 && camera.height == 0) {
-    frame.camera.width = depth->width;
-    frame.camera.height = depth->height;
-  }
-  if (Status status = validate(frame.camera); !status.ok()) return status;
-  if (depth->width != frame.camera.width || depth->height != frame.camera.height) {
-    return invalid_argument("depth image ", depth_path, " is ", depth->width, "x", depth->height,
-                            "; it must be ", frame.camera.width, "x", frame.camera.height,
-                            " as the camera");
-  }
+  std::optional<ColorImage> color;
   if (!color_path.empty()) {
-    Result<ColorImage> color = read_color_image(color_path);
-    if (!color.ok()) return color.status();
-    if (color->width != depth->width || color->height != depth->height) {
-      return invalid_argument("depth image ", depth_path, " is ", depth->width, "x", depth->height,
-                              "; it must have the size of the colour image, ", color->width, "x",
-                              color->height);
-    }
-    frame.color = std::move(color->pixels);
+    Result<ColorImage> read = read_color_image(color_path);
+    if (!read.ok()) return read.status();
+    color = std::move(read).value();
   }
-  for (const std::uint16_t units : depth->pixels) {
-    frame.depth.push_back(static_cast<float>(units * depth_scale_mm * 0.001));
-  }
-  return frame;
+  return frame_of_images(*depth, color ? &*color : nullptr, camera, depth_scale_mm, depth_path);
 }
 
 }  // namespace bpa::io

@@ -60,6 +60,17 @@ Status write_gray_png(const std::string& path, const GrayImage& image);
 Status write_mask_png(const std::string& path, int width, int height,
                       const std::vector<std::uint8_t>& mask);
 
+/// The bytes that such a file has, or a JPEG of a quality of 1 to 100. Fail with invalid_argument
+/// as the writers do.
+Result<std::string> encode_color_png(const ColorImage& image);
+Result<std::string> encode_gray_png(const GrayImage& image);
+Result<std::string> encode_jpeg(const ColorImage& image, int quality);
+
+/// The frame of a depth image and a colour image registered to it; null: none. `depth_name` stands
+/// for the depth image in messages. The rest is as for read_frame().
+Result<Frame> frame_of_images(const GrayImage& depth, const ColorImage* color, const Camera& camera,
+                              double depth_scale_mm, const std::string& depth_name);
+
 /// Reads one RGB-D frame: a 16-bit depth PNG registered to an 8-bit colour image of the same size.
 /// An empty `color_path` gives no colour. A camera without a size takes the depth image's. Checks
 /// sizes and camera (messages name file, field and rule); validate(Frame) checks the depths.

@@ -98,6 +98,10 @@ static void fields(auto& visit, Is<FrameResult> auto& frame) {
   visit("queue_position", frame.server->queue_position, kOptional);
 }
 
+std::string results_json(const std::vector<FrameResult>& results) {
+  return frames_json(kResultFormat, results);
+}
+
 std::string result_json_line(const FrameResult& result) { return json_line(result); }
 
 Status write_results_json(const std::string& path, const std::vector<FrameResult>& results) {

@@ -41,6 +41,9 @@ Status write_results_json(const std::string& path, const std::vector<FrameResult
 /// Reads what write_results_json wrote. Fails with not_found, or with corrupt naming the file.
 Result<std::vector<FrameResult>> read_results_json(const std::string& path);
 
+/// The text of such a file.
+std::string results_json(const std::vector<FrameResult>& results);
+
 /// One frame of a result file as one line of JSON, without a line break.
 std::string result_json_line(const FrameResult& result);
 

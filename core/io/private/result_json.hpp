@@ -39,12 +39,15 @@ std::string json_line(const FrameType& frame) {
 }
 
 template <class FrameType>
+std::string frames_json(const FramesFormat& format, const std::vector<FrameType>& frames) {
+  const Json json = {{"format", format.name}, {"version", format.version}, {"frames", frames}};
+  return json.dump(1) + "\n";
+}
+
+template <class FrameType>
 Status write_frames_json(const std::string& path, const FramesFormat& format,
                          const std::vector<FrameType>& frames) {
-  return with_json(path, [&]() {
-    const Json json = {{"format", format.name}, {"version", format.version}, {"frames", frames}};
-    return write_file(path, json.dump(1) + "\n");
-  });
+  return with_json(path, [&]() { return write_file(path, frames_json(format, frames)); });
 }
 
 template <class FrameType>
