@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <mutex>
 #include <utility>
@@ -69,6 +70,25 @@ class LibraryDetector : public Recognition {
   std::vector<std::uint8_t> annotate(const Frame& frame,
                                      const Interpretation& interpretation) const override {
     return draw::annotate(frame, interpretation, current()->library()).pixels;
+  }
+
+  std::vector<ScorePart> score_parts(const Placement& placement) const override {
+    ScoreValues values;
+    values.fill(kNotKnown);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto found =
+          std::ranges::find(placement.components, kScoreComponents[i].name, &ScoreComponent::name);
+      if (found != placement.components.end()) values[i] = found->value;
+    }
+    const ScoreLayer& layer = layers_.last_for(values);
+    std::vector<ScorePart> parts = {{"bias", "log odds", "Of the score layer.", 0, layer.bias}};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const ComponentType& type = kScoreComponents[i];
+      if (std::isnan(values[i])) continue;
+      parts.push_back({std::string(type.name), std::string(type.unit), std::string(type.meaning),
+                       values[i], type.learned ? layer.components[i].at(values[i]) : 0});
+    }
+    return parts;
   }
 
   Status set_options(const DetectorOptions& options) override {

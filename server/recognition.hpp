@@ -19,6 +19,13 @@
 
 namespace bpa::server {
 
+/// What one component adds to a placement's score.
+struct ScorePart {
+  std::string name, unit, meaning;
+  double value = 0;     ///< Of the component.
+  double log_odds = 0;  ///< That it adds; the score is their sum.
+};
+
 /// What the server serves: the detector with its library (open_library()), or the tests'
 /// stub. Every function may be called from any thread.
 class Recognition {
@@ -31,6 +38,10 @@ class Recognition {
   /// The frame's image with the placements drawn on it: row-major rgb, 3 bytes a pixel.
   virtual std::vector<std::uint8_t> annotate(const Frame& frame,
                                              const Interpretation& interpretation) const = 0;
+
+  /// What the score of a placement is made of, the bias of the score layer first. Empty where that
+  /// is not known.
+  virtual std::vector<ScorePart> score_parts(const Placement&) const { return {}; }
 
   /// Follows objects of these models; the recognition outlives it.
   virtual std::unique_ptr<ObjectTracker> make_tracker(
