@@ -53,6 +53,8 @@ void add_options(CLI::App& program, CommandLine& line) {
       {"--seed", "detection.seed", "same frame, library and seed: same answer"},
       {"--namespace", "node.namespace", "ROS namespace, default /bpa"},
       {"--domain", "network.domain", "DDS domain; default ROS_DOMAIN_ID, else 0"},
+      {"--web", "web.listen",
+       "[ADDRESS:]PORT of a page for browsers; a port alone: this machine only"},
       {"--log-level", "log.level", "debug, info, warning or error"},
   };
   for (const auto& s : shortcuts) {

@@ -4,6 +4,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/io/options_yaml.hpp"
+#include "server/web/access.hpp"
 
 namespace bpa::server {
 namespace {
@@ -47,6 +48,9 @@ Status validate(const ServerOptions& options) {
     status = invalid_argument(
         "node.use_sim_time is true and capture.source is \"", options.capture.source,
         "\"; a camera of the server's own has this machine's time: set one of them alone");
+  }
+  if (status.ok() && !options.web.listen.empty()) {
+    status = web::parse_listen(options.web.listen).status();
   }
   for (const Choice& choice : choices) {
     if (status.ok()) status = check(choice);

@@ -324,6 +324,31 @@ struct TrackingOptions : track::TrackerOptions {
   }
 };
 
+/// A page for browsers.
+struct WebOptions {
+  std::string listen;
+  std::string token_file;
+  std::vector<std::string> hosts;
+  int history = 20;
+  double rate_hz = 10;
+
+  void visit_fields(auto&& visit) {
+    visit("listen", listen,
+          {0, 0,
+           "[ADDRESS:]PORT on which browsers find the page; a port alone: this machine only. "
+           "Empty: no page."});
+    visit("token_file", token_file,
+          {0, 0,
+           "File of mode 0600 whose first line is the token that browsers need. Empty: on an "
+           "address that other machines reach, one is made and printed at the start."});
+    visit("hosts", hosts,
+          {0, 0, "More names of this machine that browsers may use, such as robot.local."});
+    visit("history", history, {1, 200, "Results that viewers of the page may go back to."});
+    visit("rate_hz", rate_hz,
+          at_run_time({0.1, 60, "Most frames a second that a viewer of the page is told of."}));
+  }
+};
+
 struct LogOptions {
   std::string level = "info";
 
@@ -341,6 +366,7 @@ struct ServerOptions {
   OutputOptions output;
   DetectionOptions detection;
   TrackingOptions tracking;
+  WebOptions web;
   LogOptions log;
   /// How objects are found; config/detector.yaml shows them all.
   DetectorOptions detector;
@@ -354,6 +380,7 @@ struct ServerOptions {
     visit("output", output, "Topics of the results; an empty name switches one off.");
     visit("detection", detection, "The search.");
     visit("tracking", tracking, "Following objects from frame to frame.");
+    visit("web", web, "A page for browsers.");
     visit("log", log, "What is said on the terminal.");
     visit("detector", detector, "How objects are found. All of it also at run time.");
   }

@@ -37,6 +37,9 @@
 #include "server/statistics.hpp"
 #include "server/track_publisher.hpp"
 #include "server/tracking.hpp"
+#include "server/web/feed.hpp"
+#include "server/web/page.hpp"
+#include "server/web/recent_log.hpp"
 #include "server/worker.hpp"
 
 #ifndef BPA_VERSION
@@ -84,9 +87,13 @@ class Running : public Server {
   Running(const ServerOptions& options, std::shared_ptr<Recognition> recognition, LogHook log)
       : settings_(options),
         recognition_(std::move(recognition)),
-        relay_(std::move(log), log_level(options.log.level)),
+        terminal_(std::move(log)),
+        relay_(options.web.listen.empty() ? terminal_ : recent_log_.before(terminal_),
+               log_level(options.log.level)),
         log_(relay_.hook()),
-        statistics_(clock_) {}
+        statistics_(clock_),
+        feed_(static_cast<std::size_t>(options.web.history),
+              [clock = clock_] { return clock->stamp_ns(); }) {}
 
   ~Running() override {
     if (worker_) worker_->stop();  // answers what waits, while the services can still send it
@@ -118,6 +125,7 @@ class Running : public Server {
     add_parameter_services(settings_, setter_, *parameters_);
     add_type_description_service(*parameters_);
     ready_ = true;
+    if (!options.web.listen.empty()) open_page(options.web);
     reporter_ = std::jthread([this](const std::stop_token& stop) { report(stop); });
   }
 
@@ -142,8 +150,7 @@ class Running : public Server {
     parameters_.reset();
     reporter_.request_stop();
     reporter_.join();
-    RateMeter no_rates;
-    report_once(no_rates);
+    report_once();
     sources_.clear();
   }
 
@@ -152,6 +159,7 @@ class Running : public Server {
   std::vector<const Busy*> threads() const {
     std::vector<const Busy*> threads = {&worker_->busy(), &tracking_->busy(), &services_->busy(),
                                         &parameters_->busy(), &reporting_};
+    if (page_) threads.push_back(&page_->busy());
     for (const auto& source : sources_) {
       for (const Busy* busy : source->threads()) threads.push_back(busy);
     }
@@ -169,8 +177,11 @@ class Running : public Server {
         std::make_unique<TrackPublisher>(*participant_, settings_, recognition_, log_);
     tracking_ = std::make_unique<Tracking>(
         recognition_->make_tracker(options.tracking), options.tracking,
-        TrackingLinks{[this] { return track_publisher_->wanted(); },
-                      [this](const TrackedFrame& frame) { track_publisher_->publish(frame); },
+        TrackingLinks{[this] { return track_publisher_->wanted() || feed_.tracks_wanted(); },
+                      [this](const TrackedFrame& frame) {
+                        track_publisher_->publish(frame);
+                        feed_.add_tracks(frame);
+                      },
                       [this] { return clock_->stamp_ns(); }, log_});
     if (options.tracking.fixed_frame.empty()) return;
     transforms_.emplace(*participant_, options.input.tf, options.input.tf_static,
@@ -190,12 +201,13 @@ class Running : public Server {
   /// be displaced here, too.
   void take(IncomingFrame&& incoming) {
     TrackingFrame tracked{nullptr, incoming.stamp_ns, incoming.frame_id, Clock::now()};
-    if (tracking_->active()) {
+    if (tracking_->active() || feed_.wanted()) {
       tracked.frame = std::make_shared<SharedFrame>(std::move(incoming.decode));
       incoming.decode = [shared = tracked.frame] { return shared->get(); };
       incoming.taken = [shared = tracked.frame] { shared->set_searched(); };
+      feed_.add_frame(tracked.frame, incoming.stamp_ns, incoming.frame_id);
     }
-    if (!publisher_->wanted() && tracking_->rests()) {
+    if (!publisher_->wanted() && !feed_.wanted() && tracking_->rests()) {
       statistics_.add_frame(clock_->stamp_ns() - incoming.stamp_ns);
       statistics_.add(&Counts::frames_dropped);
       statistics_.add(&Counts::frames_at_rest);
@@ -233,16 +245,33 @@ class Running : public Server {
     return {};
   }
 
+  ServiceContext context() {
+    return {settings_,
+            recognition_,
+            *worker_,
+            statistics_,
+            [this] {
+              statistics_.forget_timings();
+              publisher_->publish_vision_info();
+            },
+            log_};
+  }
+
+  void open_page(const WebOptions& options) {
+    page_ = web::open_page(
+        options,
+        {context(), setter_, [this] { return brief_status(); }, [this] { return diagnostics(); },
+         [this](const auto& request, const auto& answer) {
+           sources_.back()->record(request, answer);  // the camera, if any
+         },
+         [this] { return clock_->stamp_ns(); }},
+        feed_, recent_log_);
+    // Not to /rosout: whoever reads the token may use the page.
+    log(terminal_, LogLevel::info, "page: " + page_->address());
+  }
+
   void offer_services() {
-    const ServiceContext context{settings_,
-                                 recognition_,
-                                 *worker_,
-                                 statistics_,
-                                 [this] {
-                                   statistics_.forget_timings();
-                                   publisher_->publish_vision_info();
-                                 },
-                                 log_};
+    const ServiceContext context = this->context();
     services_.emplace(*participant_, log_, wire::qos::services());
     add_detect(context, *services_);
     add_library_services(context, *services_);
@@ -259,6 +288,7 @@ class Running : public Server {
         {incoming.stamp_ns, incoming.frame_id, models, settings_.get()->detection.seed});
     if (!result.ok()) return log_failure(result.status());
     tracking_->add(*result);
+    feed_.add_result(*frame, *result);
     const auto& found = result->interpretations;
     log(log_, LogLevel::debug,
         concat("frame ", incoming.stamp_ns, ": ", found.empty() ? 0 : found[0].placements.size(),
@@ -287,6 +317,14 @@ class Running : public Server {
   }
 
   msgs::GetStatus_Response status() const {
+    msgs::GetStatus_Response status = brief_status();
+    status.stage_timings = to_message(statistics_.median_timings());
+    status.details = details();
+    return status;
+  }
+
+  /// Without what takes time to put together: stage timings and details.
+  msgs::GetStatus_Response brief_status() const {
     const Counts counts = this->counts();
     const Settings::Snapshot options = settings_.get();
     const std::optional<double> silence = statistics_.seconds_since_frame();
@@ -312,8 +350,8 @@ class Running : public Server {
             .library = recognition_->library(),
             .database_version = recognition_->version(),
             .memory_bytes = resident_bytes(),
-            .stage_timings = to_message(statistics_.median_timings()),
-            .details = details(),
+            .stage_timings = {},
+            .details = {},
             .frame_publishers = static_cast<std::uint32_t>(topics_->frame_publishers())};
   }
 
@@ -324,6 +362,7 @@ class Running : public Server {
     }
     reports.push_back(tracking_->report());
     if (!clock_->is_real()) reports.push_back(clock_->report());
+    if (page_) reports.push_back(page_->report());
     return reports;
   }
 
@@ -349,30 +388,36 @@ class Running : public Server {
   }
 
   void report(const std::stop_token& stop) {
-    RateMeter rates;
     std::mutex mutex;
     std::condition_variable_any wake;
     std::unique_lock<std::mutex> lock(mutex);
     while (!wake.wait_for(lock, stop, kReportPeriod, [&] { return stop.stop_requested(); })) {
       reporting_.begin("a report to /diagnostics");
-      const Status status = guarded("no diagnostics", [&] { report_once(rates); });
+      const Status status = guarded("no diagnostics", [&] { report_once(); });
       reporting_.end();
       if (!status.ok()) log(log_, LogLevel::error, status.message);
     }
   }
 
-  void report_once(RateMeter& rates) {
-    relay_.report_left_out();
-    const Counts counts = this->counts();
-    rates.add(Clock::now(), counts);
-    if (diagnostics_.wanted()) {
-      diagnostics_.send(
-          diagnostics_message({participant_->node().full(), status(), rates.rates(),
-                               drop_counts(statistics_), source_reports(), fusion(),
-                               statistics_.median_effort(), counts.losses, health().message},
-                              clock_->stamp_ns()),
-          log_);
+  wire::diagnostic_msgs::DiagnosticArray diagnostics() const {
+    Rates rates;
+    {
+      const std::lock_guard<std::mutex> lock(rates_mutex_);
+      rates = rates_.rates();
     }
+    return diagnostics_message(
+        {participant_->node().full(), status(), rates, drop_counts(statistics_), source_reports(),
+         fusion(), statistics_.median_effort(), counts().losses, health().message},
+        clock_->stamp_ns());
+  }
+
+  void report_once() {
+    relay_.report_left_out();
+    {
+      const std::lock_guard<std::mutex> lock(rates_mutex_);
+      rates_.add(Clock::now(), counts());
+    }
+    if (diagnostics_.wanted()) diagnostics_.send(diagnostics(), log_);
     report_losses();
     const bool stands_still = clock_->stands_still();
     if (stands_still && !clock_reported_) {
@@ -392,11 +437,16 @@ class Running : public Server {
 
   Settings settings_;
   const std::shared_ptr<Recognition> recognition_;
+  const LogHook terminal_;
+  const web::RecentLog recent_log_;
   LogRelay relay_;
   const LogHook log_;
   const Clock::time_point started_ = Clock::now();
   const std::shared_ptr<RosClock> clock_ = std::make_shared<RosClock>();
   Statistics statistics_;
+  web::Feed feed_;
+  mutable std::mutex rates_mutex_;
+  RateMeter rates_;
   std::mutex failure_mutex_;
   std::string last_failure_;       ///< Text of the last failed frame, and
   Clock::time_point last_logged_;  ///< when one was logged: the same is said once in 10 s.
@@ -418,6 +468,7 @@ class Running : public Server {
   std::shared_ptr<ParameterSetter> setter_;
   std::optional<ServiceSet> services_;
   std::optional<ServiceSet> parameters_;
+  std::unique_ptr<web::Page> page_;
   std::jthread reporter_;
 };
 

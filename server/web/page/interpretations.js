@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+// The ranked interpretations of a result, and the placements of the one that is chosen.
+
+import {get, on} from './api.js';
+import {$, choosable, css, guarded, make, percent} from './dom.js';
+import {uncertainty} from './geometry.js';
+import {choosePlacement, chooseRank, interpretation, shown, view} from './view.js';
+
+const kLeast = 0.005;     // log odds that are shown
+const kSamePlace = 0.01;  // metres
+const kSameTurn = 0.995;  // |dot| of quaternions, 11 degrees
+
+function samePose(a, b) {
+  const apart = Math.hypot(...a.pose.translation_m.map((value, i) => value - b.pose.translation_m[i]));
+  const dot = a.pose.rotation_wxyz.reduce((sum, value, i) => sum + value * b.pose.rotation_wxyz[i], 0);
+  return apart < kSamePlace && Math.abs(dot) > kSameTurn;
+}
+
+/** The objects of the first interpretation; of another, how it differs from that. */
+function describe(one, first) {
+  const names = (placements) => placements.map((placement) => placement.model).join(', ');
+  const visible = one.placements.filter(shown);
+  if (one === first) return visible.length ? names(visible) : 'nothing known';
+  const in_ = (placement, list) => list.some((other) => other.model === placement.model && samePose(placement, other));
+  const more = visible.filter((placement) => !in_(placement, first.placements));
+  const fewer = first.placements.filter((placement) => shown(placement) && !in_(placement, one.placements));
+  const moved = more.filter((placement) => fewer.some((other) => other.model === placement.model));
+  const only = (list) => list.filter((placement) => !moved.some((other) => other.model === placement.model));
+  const words = [[only(fewer), 'without'], [only(more), 'with'], [moved, 'another pose of']]
+    .filter(([list]) => list.length).map(([list, word]) => `${word} ${names(list)}`);
+  return words.length ? `as 1, ${words.join(', ')}` : 'as 1, poses nearly the same';
+}
+
+function showRanks() {
+  const all = view.result ? view.result.result.interpretations : [];
+  $('of-result').textContent = view.result
+    ? `of result ${view.result.id}, ${view.result.origin}${view.pinned ? ', held' : ''}` : '';
+  $('interpretations').replaceChildren(...all.map((one) => make('div', {role: 'option', 'data-rank': one.rank,
+    'aria-selected': String(one.rank === view.rank), click: () => chooseRank(one.rank)},
+  `${one.rank}. ${percent(one.probability)}: ${describe(one, all[0])}`)));
+}
+
+function bar(value, most) {
+  const share = Math.min(1, Math.abs(value) / most) * 50;
+  const filled = make('i', {class: value < 0 ? 'minus' : ''});
+  filled.style.left = `${value < 0 ? 50 - share : 50}%`;
+  filled.style.width = `${share}%`;
+  return make('span', {class: 'bar', role: 'img', 'aria-label': value.toFixed(2)}, filled, make('b'));
+}
+
+async function showScore(number, into) {
+  const parts = await guarded(() =>
+    get(`/api/results/${view.result.id}/score?rank=${view.rank}&placement=${number}`));
+  if (!parts) return;
+  if (!parts.length) {
+    into.replaceChildren('The server does not say what the score is made of.');
+    return;
+  }
+  const sorted = parts.filter((part) => Math.abs(part.adds) >= kLeast)
+    .sort((a, b) => Math.abs(b.adds) - Math.abs(a.adds));
+  const rest = parts.filter((part) => !sorted.includes(part)).map((part) => part.name);
+  const most = Math.max(1, ...sorted.map((part) => Math.abs(part.adds)));
+  into.replaceChildren(make('p', {class: 'soft'}, `The score is ${parts.reduce((sum, part) => sum + part.adds, 0).toFixed(2)}, the sum of:`),
+  make('table', {class: 'score'}, make('thead', {}, make('tr', {},
+    make('th', {}, 'component'), make('th', {}, 'value'), make('th', {colspan: 2}, 'adds to the log odds'))),
+  make('tbody', {}, ...sorted.map((part) => make('tr', {title: `${part.meaning} (${part.unit})`},
+    make('td', {}, part.name), make('td', {class: 'number'}, part.value.toPrecision(3)),
+    make('td', {}, bar(part.adds, most)), make('td', {class: 'number'}, part.adds.toFixed(2)))))),
+  make('p', {class: 'soft'}, rest.length ? `Nothing is added by ${rest.join(', ')}.` : ''));
+}
+
+function alternatives(placement, number) {
+  if (!placement.alternatives || !placement.alternatives.length) return make('p', {class: 'soft'}, 'No other pose fits the view.');
+  const own = 1 - placement.alternatives.reduce((sum, one) => sum + one.weight, 0);
+  const option = (text, k) => make('button', {'aria-pressed': String(view.alternative === k),
+    click: () => choosePlacement(number, k)}, text);
+  return make('p', {}, 'Poses that fit as well: ', option(`this, ${percent(own)}`, -1), ' ',
+    ...placement.alternatives.slice(0, 6).flatMap((one, k) => [option(`${k + 1}: ${percent(one.weight)}`, k), ' ']));
+}
+
+function card(placement, number) {
+  const model = view.models.get(placement.model);
+  const badge = make('span', {class: 'badge'}, String(number + 1));
+  if (model) badge.style.background = css(model.color);
+  const chosen = view.chosen === number;
+  const [x, y, z] = placement.pose.translation_m;
+  const head = make('h3', {}, badge, make('button', {'aria-expanded': String(chosen), 'data-placement': number,
+    click: () => choosePlacement(chosen ? -1 : number)}, placement.model), percent(placement.probability));
+  const box = make('div', {class: chosen ? 'placement chosen' : 'placement'}, head,
+    make('p', {}, uncertainty(placement, model)));
+  if (!chosen) return box;
+  const score = make('div', {}, 'score …');
+  box.append(make('p', {class: 'soft'}, `At ${x.toFixed(3)}, ${y.toFixed(3)}, ${z.toFixed(3)} m (right, down, forward); `
+    + `${percent(placement.visible_fraction)} of its near side is visible; log odds ${placement.score.toFixed(2)}.`),
+  alternatives(placement, number), score);
+  showScore(number, score);
+  return box;
+}
+
+let drawn = '';
+function showPlacements() {
+  const placements = interpretation()?.placements || [];
+  // The score table is fetched: made again only for another choice.
+  const key = [view.result?.id, view.rank, view.chosen, view.alternative, view.models.size,
+    JSON.stringify(view.thresholds)].join('|');
+  if (key === drawn) return;
+  drawn = key;
+  const cards = placements.flatMap((placement, i) => (shown(placement) ? [card(placement, i)] : []));
+  const hidden = placements.length - cards.length;
+  $('placements').replaceChildren(...cards,
+    make('p', {class: 'soft'}, hidden ? `${hidden} below their threshold (Models).` : placements.length ? '' : 'Nothing known is there.'));
+}
+
+choosable($('interpretations'));
+on('view', () => {
+  showRanks();
+  showPlacements();
+});
