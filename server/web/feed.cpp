@@ -124,8 +124,8 @@ void Feed::keep(std::shared_ptr<KeptResult> kept) {
   results_.erase(results_.begin(), results_.end() - static_cast<std::ptrdiff_t>(count));
 }
 
-std::uint64_t Feed::add_asked(const Frame& frame, const SceneInterpretations& result,
-                              std::string origin) {
+std::uint64_t Feed::add(const Frame& frame, const SceneInterpretations& result,
+                        std::string origin) {
   auto kept = std::make_shared<KeptResult>();
   kept->origin = std::move(origin);
   kept->camera = frame.camera;
@@ -140,7 +140,13 @@ std::uint64_t Feed::add_asked(const Frame& frame, const SceneInterpretations& re
 }
 
 void Feed::add_result(const Frame& frame, const SceneInterpretations& result) {
-  if (wanted()) add_asked(frame, result, "camera");
+  if (wanted()) add(frame, result, "camera");
+}
+
+std::uint64_t Feed::add_asked(const Frame& frame, const SceneInterpretations& result,
+                              std::string origin) {
+  last_seen_ = Clock::now().time_since_epoch().count();
+  return add(frame, result, std::move(origin));
 }
 
 void Feed::add_tracks(const TrackedFrame& tracks) {
@@ -175,7 +181,7 @@ void Feed::tidy() {
   viewers_gone_ += std::erase_if(viewers_, [now = Clock::now()](const auto& viewer) {
     return now - viewer.second.seen >= kViewerPatience;
   });
-  if (!viewers_.empty()) return;
+  if (!viewers_.empty() || wanted()) return;
   results.swap(results_);
   frames.swap(frames_);
   tracks_.reset();

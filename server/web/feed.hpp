@@ -74,7 +74,7 @@ class Feed {
   void add_result(const Frame& frame, const SceneInterpretations& result);
   void add_tracks(const TrackedFrame& tracks);
 
-  /// Keeps the result of what a viewer asked for, and returns its id.
+  /// Keeps the result of what a viewer asked for, for 5 s at least, and returns its id.
   std::uint64_t add_asked(const Frame& frame, const SceneInterpretations& result,
                           std::string origin);
 
@@ -102,6 +102,7 @@ class Feed {
     Clock::time_point seen{};
   };
 
+  std::uint64_t add(const Frame& frame, const SceneInterpretations& result, std::string origin);
   void keep(std::shared_ptr<KeptResult> kept);
   void changed();
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <list>
 #include <thread>
 #include <utility>
@@ -128,7 +129,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void read() {
     parser_.emplace();
     parser_->header_limit(kMaxHeadBytes);
-    parser_->body_limit(boost::none);  // until the head is known
+    parser_->body_limit(std::numeric_limits<std::uint64_t>::max());  // until the head is known
     waiting_ = true;
     since_ = Clock::now();
     stream_.expires_after(kMaxHeadTime);
