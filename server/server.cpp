@@ -159,7 +159,7 @@ class Running : public Server {
   std::vector<const Busy*> threads() const {
     std::vector<const Busy*> threads = {&worker_->busy(), &tracking_->busy(), &services_->busy(),
                                         &parameters_->busy(), &reporting_};
-    if (page_) threads.push_back(&page_->busy());
+    if (web::Page* page = open_page_) threads.push_back(&page->busy());
     for (const auto& source : sources_) {
       for (const Busy* busy : source->threads()) threads.push_back(busy);
     }
@@ -266,6 +266,7 @@ class Running : public Server {
          },
          [this] { return clock_->stamp_ns(); }},
         feed_, recent_log_);
+    open_page_ = page_.get();
     // Not to /rosout: whoever reads the token may use the page.
     log(terminal_, LogLevel::info, "page: " + page_->address());
   }
@@ -362,7 +363,7 @@ class Running : public Server {
     }
     reports.push_back(tracking_->report());
     if (!clock_->is_real()) reports.push_back(clock_->report());
-    if (page_) reports.push_back(page_->report());
+    if (web::Page* page = open_page_) reports.push_back(page->report());
     return reports;
   }
 
@@ -469,6 +470,7 @@ class Running : public Server {
   std::optional<ServiceSet> services_;
   std::optional<ServiceSet> parameters_;
   std::unique_ptr<web::Page> page_;
+  std::atomic<web::Page*> open_page_{nullptr};  ///< It, once it is open; for other threads.
   std::jthread reporter_;
 };
 

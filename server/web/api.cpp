@@ -54,6 +54,12 @@ void respond_with(const Responder& respond, const Result<Bytes>& bytes, const ch
   respond(bytes.ok() ? bytes_response(*bytes, type) : refusal(bytes.status()));
 }
 
+/// The picture that the path's last part names.
+void respond_with_picture(const Request& request, const Responder& respond, ShownFrame& shown) {
+  const bool color = request.path.ends_with("/color");
+  respond_with(respond, color ? shown.color() : shown.depth(), "image/jpeg");
+}
+
 /// The response of a service in HTTP.
 web::Response response_to(bool success, const wire::bpa_msgs::Status& status, Json more) {
   if (!success) {
@@ -63,11 +69,19 @@ web::Response response_to(bool success, const wire::bpa_msgs::Status& status, Js
   return json_response(more.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
+/// For both changes of the library.
+auto answer_of_change(const Responder& respond) {
+  return [respond](const auto& response) {
+    respond(
+        response_to(response.success, response.status, {{"version", response.database_version}}));
+  };
+}
+
 }  // namespace
 
 const Api::Route Api::kRoutes[] = {
-    {"GET", "/api/frames/*/color", 0, &Api::color},
-    {"GET", "/api/frames/*/depth", 0, &Api::depth},
+    {"GET", "/api/frames/*/color", 0, &Api::frame_picture},
+    {"GET", "/api/frames/*/depth", 0, &Api::frame_picture},
     {"GET", "/api/results/*", 0, &Api::result},
     {"GET", "/api/results/*/color", 0, &Api::result_picture},
     {"GET", "/api/results/*/depth", 0, &Api::result_picture},
@@ -167,16 +181,10 @@ std::string Api::news(const Poll& poll) const {
   return text + "}";
 }
 
-void Api::color(const Call& call) {
+void Api::frame_picture(const Call& call) {
   const auto frame = feed_.camera_frame(number_of(call.parts[0]));
   if (!frame) return call.respond(refusal(not_found("this frame is no longer kept")));
-  respond_with(call.respond, frame->shown->color(), "image/jpeg");
-}
-
-void Api::depth(const Call& call) {
-  const auto frame = feed_.camera_frame(number_of(call.parts[0]));
-  if (!frame) return call.respond(refusal(not_found("this frame is no longer kept")));
-  respond_with(call.respond, frame->shown->depth(), "image/jpeg");
+  respond_with_picture(call.request, call.respond, *frame->shown);
 }
 
 /// The result that a path names; otherwise the call is answered, and this is null.
@@ -194,10 +202,9 @@ void Api::result(const Call& call) {
 }
 
 void Api::result_picture(const Call& call) {
-  const auto result = kept(call);
-  if (!result) return;
-  const bool color = call.request.path.ends_with("/color");
-  respond_with(call.respond, color ? result->shown->color() : result->shown->depth(), "image/jpeg");
+  if (const auto result = kept(call)) {
+    respond_with_picture(call.request, call.respond, *result->shown);
+  }
 }
 
 void Api::cloud(const Call& call) {
@@ -282,21 +289,13 @@ Asker Api::asker(const Request& request) const {
 void Api::load(const Call& call) {
   msgs::LoadModel_Request request;
   request.source = call.parts[0];
-  load_model(links_.context, asker(call.request), request,
-             [respond = call.respond](const msgs::LoadModel_Response& response) {
-               respond(response_to(response.success, response.status,
-                                   {{"version", response.database_version}}));
-             });
+  load_model(links_.context, asker(call.request), request, answer_of_change(call.respond));
 }
 
 void Api::unload(const Call& call) {
   msgs::UnloadModel_Request request;
   request.name = call.parts[0];
-  unload_model(links_.context, asker(call.request), request,
-               [respond = call.respond](const msgs::UnloadModel_Response& response) {
-                 respond(response_to(response.success, response.status,
-                                     {{"version", response.database_version}}));
-               });
+  unload_model(links_.context, asker(call.request), request, answer_of_change(call.respond));
 }
 
 void Api::look_alikes(const Call& call) {

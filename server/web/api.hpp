@@ -60,8 +60,7 @@ class Api {
   static const Route* find(const RequestHead& head, std::vector<std::string>& parts);
 
   std::string news(const Poll& poll) const;
-  void color(const Call& call);
-  void depth(const Call& call);
+  void frame_picture(const Call& call);
   void result(const Call& call);
   void result_picture(const Call& call);
   void cloud(const Call& call);

@@ -82,16 +82,12 @@ bool Feed::tracks_wanted() const { return within_patience(last_saw_tracks_); }
 
 void Feed::changed() {
   ++sequence_;
-  std::function<void()> tell;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    tell = on_change_;
-  }
-  if (tell) tell();
+  const std::lock_guard<std::mutex> lock(change_mutex_);
+  if (on_change_) on_change_();
 }
 
 void Feed::on_change(std::function<void()> changed) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(change_mutex_);
   on_change_ = std::move(changed);
 }
 

@@ -110,8 +110,9 @@ class Feed {
   const std::function<std::int64_t()> now_ns_;
   std::atomic<std::uint64_t> sequence_{1};
   std::atomic<Clock::rep> last_seen_{0}, last_saw_tracks_{0};  ///< Of any viewer; 0: never.
-  mutable std::mutex mutex_;
+  std::mutex change_mutex_;  ///< Held while on_change_ runs, so that it can be taken away.
   std::function<void()> on_change_;
+  mutable std::mutex mutex_;
   std::map<std::string, Viewer> viewers_;
   std::uint64_t viewers_gone_ = 0, frames_unseen_ = 0;
   std::deque<CameraFrame> frames_;  ///< The newest last.

@@ -32,6 +32,7 @@ std::vector<Target> settings_targets();
 std::vector<Target> message_targets();
 std::vector<Target> frame_targets();
 std::vector<Target> recording_targets();
+std::vector<Target> web_targets();
 
 /// All of them.
 std::vector<Target> targets();

@@ -29,7 +29,7 @@ std::vector<Target> targets() {
   std::vector<Target> all;
   for (const auto& of_file :
        {image_targets, cloud_targets, mesh_targets, model_targets, data_set_targets,
-        settings_targets, message_targets, frame_targets, recording_targets}) {
+        settings_targets, message_targets, frame_targets, recording_targets, web_targets}) {
     for (const Target& target : of_file()) all.push_back(target);
   }
   return all;
