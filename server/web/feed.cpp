@@ -36,12 +36,11 @@ std::string dumped(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-}  // namespace
-
-std::string KeptResult::json() const {
-  const Json about = {{"id", id},
-                      {"origin", origin},
-                      {"came_ns", came_ns},
+std::string json_of(const KeptResult& kept) {
+  const Camera& camera = kept.camera;
+  const Json about = {{"id", kept.id},
+                      {"origin", kept.origin},
+                      {"came_ns", kept.came_ns},
                       {"camera",
                        {{"width", camera.width},
                         {"height", camera.height},
@@ -51,8 +50,15 @@ std::string KeptResult::json() const {
                         {"cy", camera.cy}}}};
   std::string text = dumped(about);
   text.pop_back();
-  return text + ",\"total_ms\":" + fixed(result.total_milliseconds, 3) +
-         ",\"result\":" + io::result_json_line(result) + "}";
+  return text + ",\"total_ms\":" + fixed(kept.result.total_milliseconds, 3) +
+         ",\"result\":" + io::result_json_line(kept.result) + "}";
+}
+
+}  // namespace
+
+const std::string& KeptResult::json() const {
+  std::call_once(json_made_, [this] { json_ = json_of(*this); });
+  return json_;
 }
 
 std::string KeptResult::summary() const {

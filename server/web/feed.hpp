@@ -41,8 +41,13 @@ struct KeptResult {
   std::shared_ptr<ShownFrame> shown;
   io::FrameResult result;
 
-  std::string json() const;     ///< Everything.
+  /// Everything; made once for all viewers. Thread-safe.
+  const std::string& json() const;
   std::string summary() const;  ///< JSON for the time line: objects, times of the stages.
+
+ private:
+  mutable std::once_flag json_made_;
+  mutable std::string json_;
 };
 
 struct FeedCounts {
