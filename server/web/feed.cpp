@@ -199,7 +199,8 @@ std::optional<CameraFrame> Feed::camera_frame() const {
 
 std::optional<CameraFrame> Feed::camera_frame(std::uint64_t id) const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const auto found = std::ranges::find(frames_, id, &CameraFrame::id);
+  const auto found =
+      std::ranges::find_if(frames_, [id](const CameraFrame& frame) { return frame.id >= id; });
   if (found == frames_.end()) return std::nullopt;
   return *found;
 }

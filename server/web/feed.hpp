@@ -91,6 +91,7 @@ class Feed {
   /// Grows with every change.
   std::uint64_t sequence() const { return sequence_; }
   std::optional<CameraFrame> camera_frame() const;
+  /// The frame of this id, or the next that is still kept.
   std::optional<CameraFrame> camera_frame(std::uint64_t id) const;
   /// By rising id; those after `id`.
   std::vector<std::shared_ptr<const KeptResult>> results_after(std::uint64_t id) const;

@@ -130,7 +130,8 @@ Result<DetectJob> search_job(const std::string& text, const std::shared_ptr<cons
   try {
     return job_from(json, frame, options);
   } catch (const Json::exception& error) {
-    return invalid_argument("the search cannot be read: ", error.what());
+    const std::string what = error.what();  // "[json.exception.type_error.302] type must be ..."
+    return invalid_argument("the search cannot be read: ", what.substr(what.find("] ") + 2));
   }
 }
 

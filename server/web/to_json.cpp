@@ -211,8 +211,8 @@ Result<Parameter> parameter_from_json(const std::string& text) {
   try {
     parameter.value = value_from(json["value"], type);
   } catch (const Json::exception&) {
-    return invalid_argument(parameter.name, " is ", json["value"].dump(), "; it must be of type ",
-                            type_text(type));
+    return invalid_argument(parameter.name, " is of type ", json["value"].type_name(),
+                            "; it must be of type ", type_text(type));
   }
   return parameter;
 }

@@ -99,7 +99,7 @@ TEST_F(Page, ShowsWhatTheServerFound) {
                          {name}))
         << name;
   }
-  EXPECT_TRUE(browser->errors().empty()) << browser->errors().front();
+  EXPECT_EQ(browser->errors(), std::vector<std::string>());
 }
 
 TEST_F(Page, ShowsTheSecondInterpretationAndAPlacementOfIt) {
@@ -123,7 +123,15 @@ TEST_F(Page, ShowsTheSecondInterpretationAndAPlacementOfIt) {
                           ".match(/The score is (-?[0-9.]+)/)[1];")
                     .get<std::string>());
   EXPECT_NEAR(sum, second["placements"][0]["score"].get<double>(), 0.02);
-  EXPECT_TRUE(browser->errors().empty());
+  EXPECT_EQ(browser->errors(), std::vector<std::string>());
+}
+
+TEST_F(Page, ShowsTracksWhileTheyAreWanted) {
+  browser->click("#show-tracks");
+  EXPECT_TRUE(browser->becomes("return document.querySelectorAll('[data-track]').length > 0;"));
+  browser->click("#show-tracks");
+  EXPECT_TRUE(browser->becomes("return document.querySelectorAll('[data-track]').length === 0;"));
+  EXPECT_EQ(browser->errors(), std::vector<std::string>());
 }
 
 TEST_F(Page, SearchesTheRegionThatIsDrawn) {

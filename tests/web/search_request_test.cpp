@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/io/image_file.hpp"
+#include "server/web/to_json.hpp"
 
 namespace bpa::server::web {
 namespace {
@@ -67,6 +68,16 @@ TEST(SearchJob, RefusesWhatBreaksARule) {
     EXPECT_EQ(made.status().code, StatusCode::invalid_argument) << wrong;
     EXPECT_FALSE(made.status().message.empty());
   }
+}
+
+TEST(SearchJob, RefusesDeepJson) {
+  const std::string deep(30000, '[');
+  EXPECT_FALSE(searched(deep + std::string(30000, ']')).ok());
+  EXPECT_FALSE(searched("{\"models\": " + deep + std::string(30000, ']') + "}").ok());
+  const auto parameter = parameter_from_json("{\"name\": \"detection.top_k\", \"value\": " + deep +
+                                             std::string(30000, ']') + "}");
+  ASSERT_FALSE(parameter.ok());
+  EXPECT_NE(parameter.status().message.find("must be of type integer"), std::string::npos);
 }
 
 Request upload_of(const Frame& like, const std::string& depth, const std::string& color) {

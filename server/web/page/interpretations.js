@@ -112,7 +112,16 @@ function showPlacements() {
     make('p', {class: 'soft'}, hidden ? `${hidden} below their threshold (Models).` : placements.length ? '' : 'Nothing known is there.'));
 }
 
+function showTracks() {
+  const tracks = $('show-tracks').checked && view.tracks ? view.tracks.tracks : [];
+  const speed = (track) => Math.round(1000 * Math.hypot(...track.velocity));
+  $('tracks').replaceChildren(...(tracks.length ? [make('h2', {}, 'Tracks'), make('table', {}, make('tbody', {},
+    ...tracks.map((track) => make('tr', {'data-track': track.name}, make('td', {}, track.name), make('td', {}, track.state),
+      make('td', {class: 'number'}, percent(track.probability)), make('td', {class: 'number'}, `${speed(track)} mm/s`)))))] : []));
+}
+
 choosable($('interpretations'));
+on('figures', showTracks);
 on('view', () => {
   showRanks();
   showPlacements();

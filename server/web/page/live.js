@@ -197,15 +197,16 @@ function showTimeline() {
     'aria-selected': String(view.result?.id === one.id), click: () => show(one.id, true)},
   `${one.objects.length} objects`,
   make('small', {}, `${new Date(one.came_ns / 1e6).toLocaleTimeString()} · ${one.origin}`)));
-  const newest = make('button', {'aria-pressed': String(!view.pinned), click: () => {
-    view.pinned = false;
-    if (view.summaries.length) show(view.summaries.at(-1).id, false);
-  }}, 'Newest');
-  line.replaceChildren(newest, ...items);
+  $('newest').setAttribute('aria-pressed', String(!view.pinned));
+  line.replaceChildren(...items);
   const chosen = line.querySelector('[aria-selected=true]');
   line.scrollLeft = atEnd || !chosen ? line.scrollWidth : chosen.offsetLeft - line.clientWidth / 2;
 }
 
+$('newest').addEventListener('click', () => {
+  view.pinned = false;
+  if (view.summaries.length) show(view.summaries.at(-1).id, false);
+});
 choosable($('timeline'));
 for (const kind of ['color', 'depth']) {
   $(kind).addEventListener('click', (event) => {

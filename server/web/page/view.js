@@ -39,12 +39,13 @@ export function setThreshold(model, value) {
 /** Shows a result: what the news had, or the one of this number. */
 export async function show(result, pinned) {
   const ticket = ++loading;
+  view.pinned = pinned;  // at once, or news would overtake what was chosen
   if (typeof result === 'number') {
     result = await guarded(() => get(`/api/results/${result}`));
     if (!result) return;
   }
   if (ticket !== loading) return;
-  Object.assign(view, {result, pinned, rank: 1, chosen: -1, alternative: -1, outlines: null});
+  Object.assign(view, {result, rank: 1, chosen: -1, alternative: -1, outlines: null});
   await fetchOutlines();
 }
 

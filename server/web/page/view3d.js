@@ -185,13 +185,19 @@ function addPlacement(placement, i) {
   fetchSurface(model.name);
 }
 
-/** A box for each track, in the camera's frame. */
+/** A box for each track; grey while it is not seen. */
 function addTracks() {
-  for (const track of view.tracks?.tracks || []) {
+  if (!view.tracks || !$('show-tracks').checked) return;
+  const fromFixed = placed(view.tracks.frame_from_camera);  // tracks may be in a frame of their own
+  fromFixed.updateMatrix();
+  const group = new THREE.Group();
+  group.applyMatrix(new THREE.Matrix4().getInverse(fromFixed.matrix));
+  for (const track of view.tracks.tracks) {
     const model = view.models.get(track.model);
-    if (!model || view.tracks.in_fixed_frame) continue;
-    objects.add(box(track.pose, model, new THREE.Color(track.state === 'confirmed' ? 0xffe94d : 0x999999)));
+    if (!model) continue;
+    group.add(box(track.pose, model, new THREE.Color(track.state === 'confirmed' ? 0xffe94d : 0x999999)));
   }
+  objects.add(group);
 }
 
 function showObjects() {
