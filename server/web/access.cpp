@@ -3,6 +3,8 @@
 #include "server/web/access.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <string_view>
@@ -41,12 +43,16 @@ bool same_text(std::string_view a, std::string_view b) {
   return differs == 0;
 }
 
-/// "host" of "host:port" and of "[host]:port".
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// "host" of "host:port" and of "[host]:port", in lower case.
 std::string host_name(const std::string& host) {
   std::string name = host.substr(0, host.starts_with('[') ? host.find(']') : host.rfind(':'));
   if (name.starts_with('[')) name.erase(0, 1);
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-  return name;
+  return lower(name);
 }
 
 std::string own_name() {
@@ -118,7 +124,9 @@ Result<std::string> read_token(const std::string& path) {
 }
 
 Access::Access(const ListenAddress& listen, std::string token, std::vector<std::string> hosts)
-    : loopback_(listen.is_loopback()), token_(std::move(token)), hosts_(std::move(hosts)) {}
+    : loopback_(listen.is_loopback()), token_(std::move(token)), hosts_(std::move(hosts)) {
+  for (std::string& host : hosts_) host = lower(std::move(host));
+}
 
 /// A site that makes its own name resolve to this machine is told by the name in Host. Numbers
 /// cannot be made to resolve to anything.
@@ -126,7 +134,7 @@ bool Access::host_allowed(const std::string& host) const {
   const std::string name = host_name(host);
   if (std::ranges::find(hosts_, name) != hosts_.end()) return true;
   if (name == "localhost" || name == "127.0.0.1" || name == "::1") return true;
-  return !loopback_ && (is_numeric(name) || (!name.empty() && name == host_name(own_name() + ":")));
+  return !loopback_ && (is_numeric(name) || (!name.empty() && name == lower(own_name())));
 }
 
 bool Access::spend(const Address& address, Clock::time_point now) {

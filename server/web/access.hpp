@@ -71,7 +71,7 @@ class Access {
 
   const bool loopback_;
   const std::string token_;
-  const std::vector<std::string> hosts_;
+  std::vector<std::string> hosts_;
   std::map<Address, Allowance> allowances_;
 };
 

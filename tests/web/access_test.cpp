@@ -91,7 +91,7 @@ std::optional<Refusal> cause(Access& access, const RequestHead& head) {
 }
 
 TEST(Access, OfLoopbackTakesNamesOfThisMachineAlone) {
-  Access access({"127.0.0.1", 8080}, "", {"robot.local"});
+  Access access({"127.0.0.1", 8080}, "", {"Robot.local"});
   for (const char* host : {"localhost:8080", "127.0.0.1:8080", "[::1]:8080", "LOCALHOST",
                            "localhost:9000", "robot.local:8080"}) {
     EXPECT_EQ(cause(access, head_of(host)), std::nullopt) << host;
