@@ -56,9 +56,16 @@ class BeastServer : public HttpServer {
   ~BeastServer() override {
     context_->stop();
     thread_.join();
-    for (const auto& weak : shared_->sessions) {
-      if (const auto session = weak.lock()) session->abandon();
+    // A connection that waits keeps itself and the context: its handlers have to run once more.
+    error_code ignored;
+    acceptor_.close(ignored);
+    for (const auto* sessions : {&shared_->sessions, &shared_->refused}) {
+      for (const auto& weak : *sessions) {
+        if (const auto session = weak.lock()) end(*session);
+      }
     }
+    context_->restart();
+    context_->poll();
   }
 
   std::uint16_t port() const override { return port_; }
@@ -73,8 +80,14 @@ class BeastServer : public HttpServer {
     }
   }
 
+  static void end(HttpSession& session) {
+    session.close();
+    session.abandon();
+  }
+
   void accept() {
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
+      if (error == asio::error::operation_aborted) return;  // the server goes
       if (error) {
         timer_.expires_after(kAcceptPause);
         return timer_.async_wait([this](error_code) { accept(); });
@@ -92,7 +105,9 @@ class BeastServer : public HttpServer {
     socket.set_option(tcp::no_delay(true), error);
     ++shared_->counts.connections;
     auto& sessions = shared_->sessions;
-    sessions.remove_if([](const auto& weak) { return weak.expired(); });
+    const auto gone = [](const auto& weak) { return weak.expired(); };
+    sessions.remove_if(gone);
+    shared_->refused.remove_if(gone);
     const Address address = address_of(peer);
     const bool full = make_room(address);
     if (shared_->open >= kMaxConnections + kMaxRefusedConnections) {
@@ -100,8 +115,8 @@ class BeastServer : public HttpServer {
       return;
     }
     const auto session = make_http_session(context_, shared_, std::move(socket), address);
+    (full ? shared_->refused : sessions).push_back(session);
     if (full) return session->refuse_full();
-    sessions.push_back(session);
     session->read();
   }
 

@@ -28,6 +28,7 @@ struct HttpShared {
   const LogHook log;
   HttpCounts counts;
   std::list<std::weak_ptr<HttpSession>> sessions;  ///< The oldest first.
+  std::list<std::weak_ptr<HttpSession>> refused;   ///< Those that are told that there are too many.
   std::atomic<std::size_t> open{0};
   std::size_t large_bodies = 0;  ///< That are being read or handled.
 };
