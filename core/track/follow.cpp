@@ -45,7 +45,7 @@ constexpr double kWideMargin_m = 0.08;  // the same, where it was not where it w
 // Starts about the predicted pose, for an object that a hand has seized: its motion is sudden, and
 // the alignment slides on to the hand.
 constexpr double kOffset_m = 0.02, kOffset_rad = 0.3;
-constexpr int kMaxTried = 15, kTriedEvery = 3;           // frames in a row
+constexpr int kMaxTried = 15;                            // frames in a row
 constexpr double kMaxJump_m = 0.12, kMaxJump_rad = 0.8;  // in one frame
 
 // A resting object is aligned again where its surroundings change, or in every tenth frame.
@@ -250,17 +250,14 @@ void follow(const View& view, double seconds, Body& body) {
   }
   body.unchanged = 0;
   Fit found = fit(view, *body.places, around, {predicted}, kAlignment);
-  const int misled_for = std::max(body.doubts, body.unseen);
-  const bool doubtful = found.sight == Sight::seen && in_doubt(body, found);
-  const bool try_about = misled_for < kMaxTried && misled_for % kTriedEvery == 1;
-  if (found.sight != Sight::seen || body.unseen > 0 || (doubtful && try_about)) {
+  if (found.sight != Sight::seen || body.unseen > 0 || in_doubt(body, found)) {
     const auto wider = surroundings(view.frame, model, view.in_camera(predicted), kWideMargin_m);
     const Fit wide = fit(view, *body.places, wider, {predicted, body.last_seen}, kWideAlignment);
     if (wide.sight == Sight::seen && (found.sight != Sight::seen || wide.log_odds > found.log_odds))
       found = wide;
     const bool misled =
         found.sight == Sight::absent || (found.sight == Sight::seen && in_doubt(body, found));
-    if (misled && try_about) {
+    if (misled && std::max(body.doubts, body.unseen) < kMaxTried) {
       const Fit other = fit(view, *body.places, wider, starts_about(predicted), kWideAlignment);
       if (other.sight == Sight::seen && !in_doubt(body, other)) found = other;
     }
