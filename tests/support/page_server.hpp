@@ -46,20 +46,9 @@ class PageServer {
   explicit PageServer(const std::string& listen = "0", std::vector<std::string> more = {})
       : log_path_(scratch_folder() + "/page_server.log") {
     const SimulatedFrames& simulated = SimulatedFrames::get();
-    command_ = {BPA_BINARY_DIR "/bin/bpa-server",
-                "--localhost",
-                "--domain",
-                std::to_string(test_domain()),
-                "--namespace",
-                test_namespace(),
-                "--library",
-                simulated.library,
-                "--capture",
-                "bop:" + simulated.frames,
-                "--set",
-                "capture.loop=true",
-                "--set",
-                "capture.speed=0.2"};
+    command_ = own_command("bpa-server",
+                           {"--library", simulated.library, "--capture", "bop:" + simulated.frames,
+                            "--set", "capture.loop=true", "--set", "capture.speed=0.2"});
     command_.insert(command_.end(), more.begin(), more.end());
     start(listen);
   }

@@ -71,6 +71,15 @@ int test_domain() { return 20 + getpid() % 80; }
 
 std::string test_namespace() { return "/test" + std::to_string(getpid()); }
 
+std::vector<std::string> own_command(const std::string& program,
+                                     const std::vector<std::string>& arguments) {
+  std::vector<std::string> command = {
+      BPA_BINARY_DIR "/bin/" + program, "--localhost", "--domain",
+      std::to_string(test_domain()),    "--namespace", test_namespace()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return command;
+}
+
 std::string scratch_folder() {
   const auto folder =
       std::filesystem::temp_directory_path() / ("bpa_test_" + std::to_string(getpid()));

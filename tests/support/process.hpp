@@ -36,6 +36,9 @@ int run(const std::vector<std::string>& command, const std::string& log_path,
 int test_domain();
 /// A ROS namespace likewise.
 std::string test_namespace();
+/// The command line of bin/`program` on this machine, in this test's domain and namespace.
+std::vector<std::string> own_command(const std::string& program,
+                                     const std::vector<std::string>& arguments = {});
 /// A folder of this process for files, made on first use, gone when this process ends.
 std::string scratch_folder();
 /// The whole text of a file; empty when there is none.

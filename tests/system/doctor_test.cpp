@@ -207,16 +207,8 @@ class Camera20Hz {
 class DoctorOfAServer : public Doctor {
  protected:
   void start(const std::vector<std::string>& settings = {}) {
-    std::vector<std::string> words = {BPA_BINARY_DIR "/bin/bpa-server",
-                                      "--localhost",
-                                      "--library",
-                                      scratch("library"),
-                                      "--namespace",
-                                      support::test_namespace(),
-                                      "--domain",
-                                      std::to_string(support::test_domain()),
-                                      "--threads",
-                                      "1"};
+    std::vector<std::string> words =
+        support::own_command("bpa-server", {"--library", scratch("library"), "--threads", "1"});
     for (const std::string setting : {"input.color=camera/color", "input.depth=camera/depth",
                                       "input.camera_info=camera/info"}) {
       words.insert(words.end(), {"--set", setting});

@@ -33,14 +33,7 @@ class Hostile : public testing::Test {
   static std::string elsewhere() { return support::scratch_folder() + "/elsewhere"; }
 
   void start(const std::vector<std::string>& settings) {
-    std::vector<std::string> command{BPA_BINARY_DIR "/bin/bpa-server",
-                                     "--localhost",
-                                     "--namespace",
-                                     support::test_namespace(),
-                                     "--domain",
-                                     std::to_string(support::test_domain()),
-                                     "--library",
-                                     library()};
+    std::vector<std::string> command = support::own_command("bpa-server", {"--library", library()});
     for (const std::string& setting : settings) {
       command.push_back("--set");
       command.push_back(setting);

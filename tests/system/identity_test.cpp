@@ -146,10 +146,7 @@ void expect_identity(const std::string& folder, const Frame& frame) {
   for (const char* threads : {"1", "2"}) {
     const std::string log = support::scratch_folder() + "/identity.log";
     const support::Process server(
-        {BPA_BINARY_DIR "/bin/bpa-server", "--localhost", "--library", folder, "--threads", threads,
-         "--namespace", support::test_namespace(), "--domain",
-         std::to_string(support::test_domain())},
-        log);
+        support::own_command("bpa-server", {"--library", folder, "--threads", threads}), log);
     auto participant = support::test_participant("tester");
     ASSERT_TRUE(participant.ok()) << participant.status().message;
     auto detect = wire::ServiceClient<msgs::Detect>::create(*participant, "detect");
@@ -224,10 +221,7 @@ TEST(Library, OneBrokenModelCostsNoOther) {
   const std::string surface = support::read_text(folder + "/bad/surface.ply");
   std::filesystem::resize_file(folder + "/bad/surface.ply", surface.size() / 2);
   const std::string log = support::scratch_folder() + "/broken.log";
-  const support::Process server(
-      {BPA_BINARY_DIR "/bin/bpa-server", "--localhost", "--library", folder, "--namespace",
-       support::test_namespace(), "--domain", std::to_string(support::test_domain())},
-      log);
+  const support::Process server(support::own_command("bpa-server", {"--library", folder}), log);
   auto participant = support::test_participant("tester");
   ASSERT_TRUE(participant.ok()) << participant.status().message;
   auto list = wire::ServiceClient<msgs::ListModels>::create(*participant, "list_models");

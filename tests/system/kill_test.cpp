@@ -44,9 +44,7 @@ class KilledServer : public testing::Test {
   /// Returns once the server says that it is ready.
   void start() {
     server_ = std::make_unique<support::Process>(
-        std::vector<std::string>{BPA_BINARY_DIR "/bin/bpa-server", "--localhost", "--library",
-                                 folder_ + "/library", "--namespace", support::test_namespace(),
-                                 "--domain", std::to_string(support::test_domain())},
+        support::own_command("bpa-server", {"--library", folder_ + "/library"}),
         folder_ + "/killed.log");
     std::string said = "?";  // or what the one that was killed said before
     while (!said.empty() && said.rfind("READY=1\nSTATUS=serving", 0) != 0) said = ready_.receive();

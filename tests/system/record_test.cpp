@@ -21,11 +21,8 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 std::vector<std::string> bpa_client(std::vector<std::string> arguments) {
-  arguments.insert(
-      arguments.begin(),
-      {BPA_BINARY_DIR "/bin/bpa-client", "--domain", std::to_string(support::test_domain()),
-       "--namespace", support::test_namespace(), "--localhost", "--timeout", "10"});
-  return arguments;
+  arguments.insert(arguments.begin(), {"--timeout", "10"});
+  return support::own_command("bpa-client", arguments);
 }
 
 nlohmann::json json_of(const std::string& path) {

@@ -218,14 +218,7 @@ bool eventually(const std::function<bool()>& happened) {
 TEST_F(TracksOfFrames, GoOnForASubscriberThatIsKilledAndRestarted) {
   support::StubServer server;
   connect(server);
-  const std::vector<std::string> command = {BPA_BINARY_DIR "/bin/bpa-client",
-                                            "--localhost",
-                                            "--domain",
-                                            std::to_string(support::test_domain()),
-                                            "--namespace",
-                                            support::test_namespace(),
-                                            "tracks",
-                                            "--json"};
+  const auto command = support::own_command("bpa-client", {"tracks", "--json"});
   const std::string folder = support::scratch_folder();
   send_frames();
   for (int run = 0; run < 3; ++run) {

@@ -158,9 +158,8 @@ TEST_F(Web, AsksForTheTokenOfItsFile) {
   server.stop();
   chmod(path.c_str(), 0644);
   support::Process open(
-      {BPA_BINARY_DIR "/bin/bpa-server", "--localhost", "--domain",
-       std::to_string(support::test_domain()), "--library", support::SimulatedFrames::get().library,
-       "--web", "0", "--set", "web.token_file=" + path},
+      support::own_command("bpa-server", {"--library", support::SimulatedFrames::get().library,
+                                          "--web", "0", "--set", "web.token_file=" + path}),
       path + ".log");
   EXPECT_EQ(open.wait(seconds(30)), 1);
   EXPECT_NE(support::read_text(path + ".log").find("0600"), std::string::npos);

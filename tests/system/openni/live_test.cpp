@@ -113,10 +113,9 @@ TEST_F(LiveSensor, StreamsAt30HzIsRecordedAndPlaysBackToTheSameDetections) {
                                                     wire::qos::results());
     ASSERT_TRUE(results.wait_for(1, 20000)) << server.log();  // it detects
     const std::size_t before = camera.depth.messages().size();
-    ASSERT_EQ(support::run({BPA_BINARY_DIR "/bin/bpa-client", "--localhost", "--domain",
-                            std::to_string(support::test_domain()), "--namespace",
-                            support::test_namespace(), "record", "--oni", file, "--seconds", "3"},
-                           folder / "record.log"),
+    ASSERT_EQ(support::run(
+                  support::own_command("bpa-client", {"record", "--oni", file, "--seconds", "3"}),
+                  folder / "record.log"),
               0)
         << test::slurp(folder / "record.log") << server.log();
     EXPECT_TRUE(results.wait_for(3, 20000)) << server.log();

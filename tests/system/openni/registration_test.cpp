@@ -140,10 +140,9 @@ TEST_F(Registration, OfARecordingThatWasMadeWithoutIt) {
   {
     support::SensorServer server(folder.path(), "openni2", {});
     ASSERT_TRUE(server.wait_for("images come from")) << server.log();
-    ASSERT_EQ(support::run({BPA_BINARY_DIR "/bin/bpa-client", "--localhost", "--domain",
-                            std::to_string(support::test_domain()), "--namespace",
-                            support::test_namespace(), "record", "--oni", file, "--seconds", "0.5"},
-                           folder / "record.log"),
+    ASSERT_EQ(support::run(
+                  support::own_command("bpa-client", {"record", "--oni", file, "--seconds", "0.5"}),
+                  folder / "record.log"),
               0)
         << test::slurp(folder / "record.log");
     EXPECT_EQ(server.stop(), 0);

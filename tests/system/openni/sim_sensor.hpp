@@ -116,16 +116,8 @@ class SensorServer {
     log_path_ = scratch_folder() + "/sensor_server" + std::to_string(++count) + ".log";
     const std::string none = scratch_folder() + "/no_models";
     std::filesystem::create_directories(none);
-    std::vector<std::string> command = {BPA_BINARY_DIR "/bin/bpa-server",
-                                        "--localhost",
-                                        "--domain",
-                                        std::to_string(test_domain()),
-                                        "--namespace",
-                                        test_namespace(),
-                                        "--library",
-                                        library.empty() ? none : library,
-                                        "--capture",
-                                        source};
+    std::vector<std::string> command = own_command(
+        "bpa-server", {"--library", library.empty() ? none : library, "--capture", source});
     std::vector<std::string> all = {"output.diagnostics=diagnostics",
                                     "output.tf=tf",
                                     "capture.color_topic=color",
