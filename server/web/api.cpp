@@ -6,14 +6,13 @@
 #include <charconv>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "core/base/concat.hpp"
 #include "core/base/guarded.hpp"
 #include "core/draw/sheet.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/model_file.hpp"
 #include "server/web/assets.hpp"
+#include "server/web/json_text.hpp"
 #include "server/web/outlines.hpp"
 #include "server/web/search_request.hpp"
 #include "server/web/to_json.hpp"
@@ -66,7 +65,7 @@ web::Response response_to(bool success, const wire::bpa_msgs::Status& status, Js
     return refusal(Status(static_cast<StatusCode>(status.code), status.message));
   }
   more["ok"] = true;
-  return json_response(more.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return json_response(json_text(more));
 }
 
 /// For both changes of the library.
@@ -162,11 +161,10 @@ std::string Api::news(const Poll& poll) const {
   std::string text = concat("{\"sequence\":", sequence, ",\"now_ns\":", links_.now_ns(),
                             ",\"status\":", status_json(links_.status()));
   if (const auto frame = feed_.camera_frame()) {
-    text += ",\"frame\":" + Json{{"id", frame->id},
-                                 {"stamp_ns", frame->stamp_ns},
-                                 {"came_ns", frame->came_ns},
-                                 {"frame_id", frame->frame_id}}
-                                .dump(-1, ' ', false, Json::error_handler_t::replace);
+    text += ",\"frame\":" + json_text({{"id", frame->id},
+                                       {"stamp_ns", frame->stamp_ns},
+                                       {"came_ns", frame->came_ns},
+                                       {"frame_id", frame->frame_id}});
   }
   const auto results = feed_.results_after(poll.result);
   text += ",\"results\":[";

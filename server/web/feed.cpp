@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "core/base/concat.hpp"
 #include "core/io/tracks.hpp"
+#include "server/web/json_text.hpp"
 
 namespace bpa::server::web {
 namespace {
@@ -32,10 +31,6 @@ bool within_patience(Feed::Clock::rep seen) {
          Feed::kViewerPatience;
 }
 
-std::string dumped(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 std::string json_of(const KeptResult& kept) {
   const Camera& camera = kept.camera;
   const Json about = {{"id", kept.id},
@@ -48,7 +43,7 @@ std::string json_of(const KeptResult& kept) {
                         {"fy", camera.fy},
                         {"cx", camera.cx},
                         {"cy", camera.cy}}}};
-  std::string text = dumped(about);
+  std::string text = json_text(about);
   text.pop_back();
   return text + ",\"total_ms\":" + fixed(kept.result.total_milliseconds, 3) +
          ",\"result\":" + io::result_json_line(kept.result) + "}";
@@ -73,14 +68,14 @@ std::string KeptResult::summary() const {
       objects.push_back({placement.model, placement.probability});
     }
   }
-  return dumped({{"id", id},
-                 {"origin", origin},
-                 {"stamp_ns", result.stamp_ns},
-                 {"came_ns", came_ns},
-                 {"total_ms", result.total_milliseconds},
-                 {"interpretations", found.size()},
-                 {"objects", objects},
-                 {"stages", stages}});
+  return json_text({{"id", id},
+                    {"origin", origin},
+                    {"stamp_ns", result.stamp_ns},
+                    {"came_ns", came_ns},
+                    {"total_ms", result.total_milliseconds},
+                    {"interpretations", found.size()},
+                    {"objects", objects},
+                    {"stages", stages}});
 }
 
 bool Feed::wanted() const { return within_patience(last_seen_); }

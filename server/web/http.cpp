@@ -4,7 +4,7 @@
 
 #include <charconv>
 
-#include <nlohmann/json.hpp>
+#include "server/web/json_text.hpp"
 
 namespace bpa::server::web {
 namespace {
@@ -39,7 +39,7 @@ int http_status(StatusCode code) {
 Response refusal(int status, const Status& why) {
   const nlohmann::json json = {
       {"ok", false}, {"code", to_string(why.code)}, {"message", why.message}};
-  return json_response(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), status);
+  return json_response(json_text(json), status);
 }
 
 Response refusal(const Status& why) { return refusal(http_status(why.code), why); }

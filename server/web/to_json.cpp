@@ -4,12 +4,11 @@
 
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
 #include "core/base/concat.hpp"
 #include "core/draw/annotate.hpp"
 #include "server/convert/results.hpp"
 #include "server/parameters.hpp"
+#include "server/web/json_text.hpp"
 
 namespace bpa::server::web {
 namespace {
@@ -22,11 +21,6 @@ using wire::rcl_interfaces::ParameterValue;
 
 /// Points of a model in the 3-D view: dense enough at the size of a hand on a laptop's screen.
 constexpr std::size_t kSurfacePoints = 4000;
-
-/// Texts of others may be no legal UTF-8.
-std::string dump(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 Json values_json(const std::vector<wire::diagnostic_msgs::KeyValue>& values) {
   Json json = Json::array();
@@ -139,21 +133,21 @@ std::string status_json(const wire::bpa_msgs::GetStatus_Response& status) {
   constexpr const char* kStates[] = {"running", "paused", "idle"};
   using S = wire::bpa_msgs::GetStatus_Response;
   const char* state = kStates[status.state == S::kPaused ? 1 : status.state == S::kIdle ? 2 : 0];
-  return dump({{"version", status.version},
-               {"state", state},
-               {"uptime_s", status.uptime_s},
-               {"frames_received", status.frames_received},
-               {"frames_processed", status.frames_processed},
-               {"frames_dropped", status.frames_dropped},
-               {"frames_rejected", status.frames_rejected},
-               {"requests_served", status.requests_served},
-               {"requests_refused", status.requests_refused},
-               {"queue_length", status.queue_length},
-               {"queue_capacity", status.queue_capacity},
-               {"model_count", status.model_count},
-               {"library", status.library},
-               {"database_version", status.database_version},
-               {"memory_bytes", status.memory_bytes}});
+  return json_text({{"version", status.version},
+                    {"state", state},
+                    {"uptime_s", status.uptime_s},
+                    {"frames_received", status.frames_received},
+                    {"frames_processed", status.frames_processed},
+                    {"frames_dropped", status.frames_dropped},
+                    {"frames_rejected", status.frames_rejected},
+                    {"requests_served", status.requests_served},
+                    {"requests_refused", status.requests_refused},
+                    {"queue_length", status.queue_length},
+                    {"queue_capacity", status.queue_capacity},
+                    {"model_count", status.model_count},
+                    {"library", status.library},
+                    {"database_version", status.database_version},
+                    {"memory_bytes", status.memory_bytes}});
 }
 
 std::string diagnostics_json(const wire::diagnostic_msgs::DiagnosticArray& diagnostics) {
@@ -165,7 +159,7 @@ std::string diagnostics_json(const wire::diagnostic_msgs::DiagnosticArray& diagn
                     {"hardware_id", status.hardware_id},
                     {"values", values_json(status.values)}});
   }
-  return dump(json);
+  return json_text(json);
 }
 
 std::string log_json(const std::vector<RecentLog::Line>& lines) {
@@ -177,7 +171,7 @@ std::string log_json(const std::vector<RecentLog::Line>& lines) {
                     {"level", kLevels[static_cast<std::size_t>(line.level)]},
                     {"text", line.text}});
   }
-  return dump(json);
+  return json_text(json);
 }
 
 std::string parameters_json(const ServerOptions& options) {
@@ -194,7 +188,7 @@ std::string parameters_json(const ServerOptions& options) {
                     {"description", about.description},
                     {"read_only", about.read_only}});
   }
-  return dump(json);
+  return json_text(json);
 }
 
 Result<Parameter> parameter_from_json(const std::string& text) {
@@ -228,11 +222,11 @@ std::string models_json(const Recognition& recognition, const std::vector<std::s
     const auto has_name = [&](const auto& model) { return model->name == name; };
     if (std::ranges::none_of(models, has_name)) others.push_back(name);
   }
-  return dump({{"library", recognition.library()},
-               {"version", recognition.version()},
-               {"models", loaded},
-               {"not_loaded", others},
-               {"broken", broken}});
+  return json_text({{"library", recognition.library()},
+                    {"version", recognition.version()},
+                    {"models", loaded},
+                    {"not_loaded", others},
+                    {"broken", broken}});
 }
 
 std::string findings_json(const Findings& findings, bool running) {
@@ -240,7 +234,7 @@ std::string findings_json(const Findings& findings, bool running) {
   for (const Finding& finding : findings) {
     list.push_back({{"what", finding.what}, {"why", finding.why}, {"remedy", finding.remedy}});
   }
-  return dump({{"running", running}, {"findings", list}});
+  return json_text({{"running", running}, {"findings", list}});
 }
 
 std::string score_parts_json(const std::vector<ScorePart>& parts) {
@@ -252,7 +246,7 @@ std::string score_parts_json(const std::vector<ScorePart>& parts) {
                     {"adds", part.log_odds},
                     {"meaning", part.meaning}});
   }
-  return dump(json);
+  return json_text(json);
 }
 
 std::string surface_bytes(const ObjectModel& model) {
