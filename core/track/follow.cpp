@@ -27,15 +27,15 @@ constexpr double kMaxFreeSpace = 0.3;    // of it
 constexpr double kMaxBackground = 0.8;   // of the agreeing surface
 constexpr int kMinCorrespondences = 12;  // of the alignment
 
-// The round-two log odds of a pose are in doubt where they are that much below the object's usual
-// ones, and below what 99 of 100 right poses of simulated sequences have with so much in sight.
-constexpr double kMostVisible = 0.6;  // most of the object is in sight
+// A pose is in doubt where its round-two log odds are that much below the object's usual ones, and
+// below those of 99 of 100 right poses with as much in sight (four simulated sequences).
+constexpr double kMostVisible = 0.6;  // visible fraction from which most of the object is in sight
 constexpr double kBelowUsual = 4;
 constexpr std::array<std::pair<double, double>, 4> kLeastLogOdds = {
     {{kMostVisible, -4.6}, {0.35, -7.3}, {0.2, -7.1}, {0, -9.5}}};  // from this visible fraction on
 constexpr double kBelowUsualFound = 1.5;  // of an absent object, which a bare table may resemble
-constexpr int kMaxDoubts = 5;  // frames in a row: another surface, such as a hand, is followed
-constexpr double kUsualRate = 0.03;  // in which the usual log odds follow those of a frame
+constexpr int kMaxDoubts = 5;        // frames in a row; then a hand or another surface is followed
+constexpr double kUsualRate = 0.03;  // share of a frame in the running mean of the log odds
 
 // A pose that is known well is aligned in fewer steps than a hypothesis of the search.
 constexpr RefinementOptions kAlignment{4, 200, 60, 0.030, 0.010};
