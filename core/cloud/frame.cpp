@@ -57,4 +57,21 @@ void clean_depth(Frame& frame) {
   for (float& z : frame.depth) z = int{z > 0} & int{z <= kMaxDepth} ? z : 0.0f;
 }
 
+Frame crop(const Frame& frame, const RegionOfInterest& part) {
+  Frame out;
+  out.camera = frame.camera;
+  out.camera.width = part.width;
+  out.camera.height = part.height;
+  out.camera.cx -= part.x;
+  out.camera.cy -= part.y;
+  for (int v = part.y; v < part.y + part.height; ++v) {
+    const std::ptrdiff_t from = std::ptrdiff_t{v} * frame.camera.width + part.x;
+    const std::ptrdiff_t to = from + part.width;
+    out.depth.insert(out.depth.end(), frame.depth.begin() + from, frame.depth.begin() + to);
+    if (frame.color.empty()) continue;
+    out.color.insert(out.color.end(), frame.color.begin() + 3 * from, frame.color.begin() + 3 * to);
+  }
+  return out;
+}
+
 }  // namespace bpa

@@ -19,6 +19,7 @@ struct RegionOfInterest {
   int height = 0;
 
   bool empty() const { return width <= 0 || height <= 0; }
+  bool operator==(const RegionOfInterest&) const = default;
 };
 
 /// One RGB-D image, depth registered to colour, in the optical frame of its camera.
@@ -42,5 +43,8 @@ Status validate(const Frame& frame);
 /// Replaces NaN, infinite, negative and too large (> 20 m) depths by 0. Call before validate when
 /// the frame comes from outside.
 void clean_depth(Frame& frame);
+
+/// Part of a frame, which must lie in it, with the camera that sees it: depth and colour alone.
+Frame crop(const Frame& frame, const RegionOfInterest& part);
 
 }  // namespace bpa

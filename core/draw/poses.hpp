@@ -39,7 +39,4 @@ io::ColorImage poses(const Frame& frame, const ObjectModel& model,
 io::ColorImage pose_from_near(const Frame& frame, const ObjectModel& model, const Pose& pose,
                               const std::vector<Pose>& truths);
 
-/// Part of a frame, which must lie in it, with the camera that sees it: depth and colour alone.
-Frame crop(const Frame& frame, const RegionOfInterest& part);
-
 }  // namespace bpa::draw

@@ -103,5 +103,19 @@ TEST(Frame, CleaningLeavesZeroForWhateverIsNoDepth) {
   EXPECT_EQ(frame.depth, (std::vector<float>{0, 0, 0, 0, 0, 0, 20, 0.3f}));
 }
 
+TEST(Crop, SeesTheSameInItsPart) {
+  Frame frame = good_frame();
+  frame.color.assign(3 * kPixels, 0);
+  frame.depth[12 * 40 + 17] = 0.5f;
+  frame.color[3 * (12 * 40 + 17) + 1] = 7;
+  const Frame part = crop(frame, {16, 10, 8, 6});
+  EXPECT_EQ(part.camera.width, 8);
+  EXPECT_EQ(part.camera.height, 6);
+  ASSERT_EQ(part.depth.size(), 8u * 6);
+  EXPECT_EQ(part.depth[2 * 8 + 1], 0.5f);
+  EXPECT_EQ(part.color[3 * (2 * 8 + 1) + 1], 7);
+  EXPECT_EQ(part.camera.unproject(1, 2, 0.5), frame.camera.unproject(17, 12, 0.5));
+}
+
 }  // namespace
 }  // namespace bpa

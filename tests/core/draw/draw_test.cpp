@@ -220,19 +220,6 @@ TEST(DrawPoses, LaterGroupsCoverEarlierOnesAndTheBestIsBrightest) {
   EXPECT_LT(second[0], 230);
 }
 
-TEST(Crop, SeesTheSameInItsPart) {
-  Frame frame = grey_frame();
-  frame.depth[120 * 320 + 170] = 0.5f;
-  frame.color[3 * (120 * 320 + 170) + 1] = 7;
-  const Frame part = crop(frame, {160, 100, 80, 60});
-  EXPECT_EQ(part.camera.width, 80);
-  EXPECT_EQ(part.camera.height, 60);
-  ASSERT_EQ(part.depth.size(), 80u * 60);
-  EXPECT_EQ(part.depth[20 * 80 + 10], 0.5f);
-  EXPECT_EQ(part.color[3 * (20 * 80 + 10) + 1], 7);
-  EXPECT_EQ(part.camera.unproject(10, 20, 0.5), frame.camera.unproject(170, 120, 0.5));
-}
-
 // Sixty pictures of 964 x 482 in two columns would be 14 580 pixels high.
 TEST(ContactSheet, HoldsEveryPictureAndIsNeverTooLargeToWrite) {
   constexpr int kCount = 60;
