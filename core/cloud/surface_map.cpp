@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/cloud/surface_map.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -46,6 +45,20 @@ void for_each_of_block(const Frame& frame, int column, int row, int reduction, c
   }
 }
 
+// Without branches for a full block of two by two pixels, as most are.
+void sort(float* values, int count) {
+  if (count != 4) {
+    std::sort(values, values + count);
+    return;
+  }
+  const auto order = [&](int a, int b) {
+    const float least = std::min(values[a], values[b]);
+    values[b] = std::max(values[a], values[b]);
+    values[a] = least;
+  };
+  order(0, 1), order(2, 3), order(0, 2), order(1, 3), order(1, 2);
+}
+
 // The mean of the block's depths near its median, 0 when less than half of the block has a depth.
 float block_depth(const Frame& frame, const SensorNoise& noise, int column, int row,
                   int reduction) {
@@ -55,7 +68,7 @@ float block_depth(const Frame& frame, const SensorNoise& noise, int column, int 
     if (z > 0 && std::isfinite(z)) values[count++] = z;
   });
   if (2 * count < reduction * reduction) return 0;
-  std::sort(values, values + count);
+  sort(values, count);
   const float median = values[(count - 1) / 2];
   float sum = 0;
   int used = 0;
@@ -92,35 +105,6 @@ bool block_searched(const Frame& frame, const SensorNoise& noise, int column, in
   return searched > 0 && 2 * searched >= on_surface;
 }
 
-// The sums over a window's points, relative to its centre, metres. Value is a float, or one for
-// each of several windows.
-template <class Value>
-struct Moments {
-  Value sx{}, sy{}, sz{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{}, count{};
-
-  void add(const Value& x, const Value& y, const Value& z) {
-    sx += x, sy += y, sz += z;
-    xx += x * x, xy += x * y, xz += x * z;
-    yy += y * y, yz += y * z, zz += z * z;
-  }
-};
-
-// The normal of the plane fitted to a window's points; zero with fewer than kMinNormalPoints.
-Eigen::Vector3f normal_of(const Moments<float>& m, const Eigen::Vector3f& centre) {
-  if (m.count < kMinNormalPoints) return Eigen::Vector3f::Zero();
-  const float n = 1.0f / m.count;
-  Eigen::Matrix3f scatter;
-  scatter << m.xx - m.sx * m.sx * n, m.xy - m.sx * m.sy * n, m.xz - m.sx * m.sz * n,  //
-      m.xy - m.sx * m.sy * n, m.yy - m.sy * m.sy * n, m.yz - m.sy * m.sz * n,         //
-      m.xz - m.sx * m.sz * n, m.yz - m.sy * m.sz * n, m.zz - m.sz * m.sz * n;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(scatter / scatter.trace());
-  Eigen::Vector3f normal = solver.eigenvectors().col(0);
-  if (!normal.allFinite()) return Eigen::Vector3f::Zero();
-  if (normal.dot(centre) > 0) normal = -normal;
-  return normal.normalized();
-}
-
 // A window of the depth image: pixels that far from its centre, every `step`-th of them.
 struct Window {
   int radius, step;
@@ -129,131 +113,172 @@ struct Window {
 };
 
 // How far depths of the window's pixels on one surface may be apart, metres.
-float window_gate(const SurfaceMap& map, std::size_t centre, const Window& window) {
-  return same_surface_gate(map.noise, map.depth[centre]) +
-         kGatePerPixel * static_cast<float>(window.radius);
-}
-
-// Of the neighbours that lie on the same surface. The window may leave the image.
-Moments<float> window_moments(const SurfaceMap& map, int u, int v, const Window& window) {
-  const int width = map.width(), radius = window.radius;
-  const int centre = v * width + u;
-  const float gate = window_gate(map, centre, window);
-  Moments<float> out;
-  for (int y = std::max(0, v - radius); y <= std::min(map.height() - 1, v + radius);
-       y += window.step) {
-    for (int x = std::max(0, u - radius); x <= std::min(width - 1, u + radius); x += window.step) {
-      const int index = y * width + x;
-      if (map.depth[index] <= 0 || std::abs(map.depth[index] - map.depth[centre]) > gate) continue;
-      const Eigen::Vector3f d = map.points[index] - map.points[centre];
-      out.add(d.x(), d.y(), d.z());
-      ++out.count;
-    }
-  }
-  return out;
+float window_gate(const SensorNoise& noise, float depth, const Window& window) {
+  return same_surface_gate(noise, depth) + kGatePerPixel * static_cast<float>(window.radius);
 }
 
 // Eight windows at a time, of neighbouring pixels.
 constexpr int kLanes = 8;
 using Lanes = float __attribute__((vector_size(sizeof(float) * kLanes)));
+using LaneMask = int __attribute__((vector_size(sizeof(int) * kLanes)));
 
-// The map's points as three images.
-struct Coordinates {
-  std::vector<float> x, y, z;
-
-  explicit Coordinates(const SurfaceMap& map) {
-    for (auto* image : {&x, &y, &z}) image->reserve(map.size());
-    for (const Eigen::Vector3f& point : map.points) {
-      x.push_back(point.x()), y.push_back(point.y()), z.push_back(point.z());
+// The map's points as three images. A border without depth is around them, so that windows may
+// leave the map.
+class PointImages {
+ public:
+  explicit PointImages(const SurfaceMap& map)
+      : width_(map.width() + 2 * kMaxWindow + kLanes),
+        x_(static_cast<std::size_t>(width_) * (map.height() + 2 * kMaxWindow)),
+        y_(x_.size()),
+        z_(x_.size()) {
+    for (int v = 0; v < map.height(); ++v) {
+      for (int u = 0; u < map.width(); ++u) {
+        const Eigen::Vector3f& point = map.points[static_cast<std::size_t>(v) * map.width() + u];
+        const std::size_t to = index(u, v);
+        x_[to] = point.x(), y_[to] = point.y(), z_[to] = point.z();
+      }
     }
   }
+
+  int width() const { return width_; }
+  std::size_t index(int u, int v) const {
+    return static_cast<std::size_t>(v + kMaxWindow) * width_ + u + kMaxWindow;
+  }
+  const float* x() const { return x_.data(); }
+  const float* y() const { return y_.data(); }
+  const float* z() const { return z_.data(); }
+
+ private:
+  int width_;
+  std::vector<float> x_, y_, z_;
 };
 
-// The windows of the pixels from `centre` on, each with its gate. Inside the image. The same sums
-// in the same order as window_moments().
-BPA_DISPATCH void add_windows(const Coordinates& points, const float* depth, int width, int centre,
-                              const Window& window, const Lanes& gate, Moments<Lanes>& out) {
+// Sums over the points of eight windows, relative to their centres, metres.
+struct Moments {
+  Lanes sx{}, sy{}, sz{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{}, count{};
+};
+
+// The windows of the pixels from `centre` on that `wanted` names, each with its gate.
+BPA_DISPATCH void add_windows(const PointImages& points, std::size_t centre, const Window& window,
+                              const Lanes& gate, const LaneMask& wanted, Moments& out) {
   const auto load = [](const float* values, Lanes& lanes) {
     std::memcpy(&lanes, values, sizeof lanes);
   };
-  const float *const px = points.x.data(), *const py = points.y.data(), *const pz = points.z.data();
-  Lanes x0, y0, z0, depth0;
+  const float *const px = points.x(), *const py = points.y(), *const pz = points.z();
+  Lanes x0, y0, z0;
   load(px + centre, x0), load(py + centre, y0), load(pz + centre, z0);
-  load(depth + centre, depth0);
   const Lanes limit = gate, none{}, one = none + 1;
-  Moments<Lanes> sums;
+  const LaneMask these = wanted;
+  Moments sums = out;
   for (int row = -window.radius; row <= window.radius; row += window.step) {
-    const int first = centre + row * width;
-    for (int i = first - window.radius; i <= first + window.radius; i += window.step) {
-      Lanes x, y, z, there;
+    const std::size_t first = centre + static_cast<std::ptrdiff_t>(row) * points.width();
+    for (std::size_t i = first - window.radius; i <= first + window.radius; i += window.step) {
+      Lanes x, y, z;
       load(px + i, x), load(py + i, y), load(pz + i, z);
-      load(depth + i, there);
-      const Lanes apart = there - depth0;
-      const auto near = (there > none) & (apart <= limit) & (apart >= -limit);
-      sums.add(near ? x - x0 : none, near ? y - y0 : none, near ? z - z0 : none);
+      const Lanes away = z - z0;
+      const LaneMask near = (z > none) & (away <= limit) & (away >= -limit) & these;
+      const Lanes dx = near ? x - x0 : none, dy = near ? y - y0 : none, dz = near ? away : none;
+      sums.sx += dx, sums.sy += dy, sums.sz += dz;
+      sums.xx += dx * dx, sums.xy += dx * dy, sums.xz += dx * dz;
+      sums.yy += dy * dy, sums.yz += dy * dz, sums.zz += dz * dz;
       sums.count += near ? one : none;
     }
   }
   out = sums;
 }
 
-// One row of normals.
-class NormalRow {
- public:
-  NormalRow(SurfaceMap& map, const Coordinates& points, double radius_m, int v)
-      : map_(map), points_(points), pixels_at_1m_(radius_m * map.camera.fx), v_(v) {}
-
-  void fit() {
-    for (int u = 0; u < map_.width();) {
-      const bool inside = u >= kMaxWindow && u + kLanes + kMaxWindow <= map_.width() &&
-                          v_ >= kMaxWindow && v_ + kMaxWindow < map_.height();
-      if (inside) {
-        fit_lanes(u);
-        u += kLanes;
-      } else {
-        if (known(u)) set(u, window_moments(map_, u, v_, Window(radius(u))));
-        ++u;
-      }
+// The normals of the planes fitted to eight windows' points, toward the camera; zero with fewer
+// than kMinNormalPoints. `centre`: of the windows. A normal is the eigenvector of the scatter's
+// least eigenvalue. Newton's method finds that from 0 on: left of its least root the characteristic
+// polynomial is concave, so that no step goes too far. Without branches, so that loops become
+// vectors.
+BPA_DISPATCH void fit_planes(const Moments& m, const float* __restrict x, const float* __restrict y,
+                             const float* __restrict z, float (&__restrict normal)[3][kLanes]) {
+  float moments[10][kLanes];
+  std::memcpy(moments, &m, sizeof m);
+  const auto& [sx, sy, sz, sxx, sxy, sxz, syy, syz, szz, count] = moments;
+  for (int k = 0; k < kLanes; ++k) {
+    const bool enough = count[k] >= kMinNormalPoints;
+    const float n = 1 / (enough ? count[k] : 1);
+    float xx = sxx[k] - sx[k] * sx[k] * n, yy = syy[k] - sy[k] * sy[k] * n;
+    float zz = szz[k] - sz[k] * sz[k] * n;
+    const float trace = xx + yy + zz;
+    const bool spread = enough & (trace > 0);
+    const float scale = 1 / (spread ? trace : 1);
+    xx *= scale, yy *= scale, zz *= scale;
+    const float xy = (sxy[k] - sx[k] * sy[k] * n) * scale,
+                xz = (sxz[k] - sx[k] * sz[k] * n) * scale;
+    const float yz = (syz[k] - sy[k] * sz[k] * n) * scale;
+    // The polynomial: t^3 - t^2 + minors t - det, as the trace is 1.
+    const float xx_minor = yy * zz - yz * yz, xy_minor = xy * zz - yz * xz;
+    const float xz_minor = xy * yz - yy * xz;
+    const float minors = xx_minor + (xx * zz - xz * xz) + (xx * yy - xy * xy);
+    const float det = xx * xx_minor - xy * xy_minor + xz * xz_minor;
+    float root = 0;
+#pragma GCC unroll 6
+    for (int step = 0; step < 6; ++step) {
+      const float value = ((root - 1) * root + minors) * root - det;
+      const float slope = (3 * root - 2) * root + minors;
+      root -= slope > 0 ? value / slope : 0;
     }
+    xx -= root, yy -= root, zz -= root;
+    // The rows (xx, xy, xz), (xy, yy, yz), (xz, yz, zz) span the plane: the largest of their cross
+    // products.
+    float nx = xy * yz - xz * yy, ny = xz * xy - xx * yz, nz = xx * yy - xy * xy;
+    float squared = nx * nx + ny * ny + nz * nz;
+    const auto prefer = [&](float ox, float oy, float oz) {
+      const float other = ox * ox + oy * oy + oz * oz;
+      const bool larger = other > squared;
+      nx = larger ? ox : nx, ny = larger ? oy : ny, nz = larger ? oz : nz;
+      squared = larger ? other : squared;
+    };
+    prefer(xy * zz - xz * yz, xz * xz - xx * zz, xx * yz - xy * xz);
+    prefer(yy * zz - yz * yz, yz * xz - xy * zz, xy * yz - yy * xz);
+    const bool known = spread & (squared > 0);
+    const float length = std::sqrt(known ? squared : 1);
+    const float toward = nx * x[k] + ny * y[k] + nz * z[k] > 0 ? -1.0f : 1.0f;
+    const float factor = (known ? toward : 0) / length;
+    normal[0][k] = nx * factor, normal[1][k] = ny * factor, normal[2][k] = nz * factor;
   }
+}
 
- private:
-  std::size_t index(int u) const { return static_cast<std::size_t>(v_ * map_.width() + u); }
-  bool known(int u) const { return map_.depth[index(u)] > 0; }
-  int radius(int u) const {
-    const double pixels = pixels_at_1m_ / static_cast<double>(map_.depth[index(u)]);
-    return std::clamp(static_cast<int>(std::lround(pixels)), kMinWindow, kMaxWindow);
-  }
-  void set(int u, const Moments<float>& moments) {
-    map_.normals[index(u)] = normal_of(moments, map_.points[index(u)]);
-  }
+// Radius of the window of a normal, pixels.
+int window_radius(double pixels_at_1m, float depth) {
+  const double pixels = pixels_at_1m / static_cast<double>(depth);
+  return std::clamp(static_cast<int>(std::lround(pixels)), kMinWindow, kMaxWindow);
+}
 
-  // Once for each radius that the pixels have.
-  void fit_lanes(int u) {
-    int radii[kLanes];
-    for (int k = 0; k < kLanes; ++k) radii[k] = known(u + k) ? radius(u + k) : 0;
-    const int largest = *std::max_element(radii, radii + kLanes);
-    for (int r = largest; r >= kMinWindow; --r) {
-      if (std::count(radii, radii + kLanes, r) == 0) continue;
-      const Window window(r);
-      Lanes gate;
-      for (int k = 0; k < kLanes; ++k) gate[k] = window_gate(map_, index(u + k), window);
-      Moments<Lanes> m;
-      add_windows(points_, map_.depth.data(), map_.width(), static_cast<int>(index(u)), window,
-                  gate, m);
-      for (int k = 0; k < kLanes; ++k) {
-        if (radii[k] != r) continue;
-        set(u + k, {m.sx[k], m.sy[k], m.sz[k], m.xx[k], m.xy[k], m.xz[k], m.yy[k], m.yz[k], m.zz[k],
-                    m.count[k]});
-      }
+// The normals of eight pixels of a row.
+void fit_normals(const PointImages& points, double pixels_at_1m, int u, int v, SurfaceMap& map) {
+  const std::size_t centre = points.index(u, v);
+  const int count = std::min(kLanes, map.width() - u);
+  LaneMask radii{};
+  int largest = 0;
+  for (int k = 0; k < count; ++k) {
+    const float depth = points.z()[centre + k];
+    if (depth > 0) radii[k] = window_radius(pixels_at_1m, depth);
+    largest = std::max(largest, radii[k]);
+  }
+  Moments moments;
+  for (int radius = largest; radius >= kMinWindow; --radius) {
+    LaneMask wanted{};
+    Lanes gate{};
+    bool any = false;
+    for (int k = 0; k < count; ++k) {
+      if (radii[k] != radius) continue;
+      any = true;
+      wanted[k] = -1;
+      gate[k] = window_gate(map.noise, points.z()[centre + k], Window(radius));
     }
+    if (any) add_windows(points, centre, Window(radius), gate, wanted, moments);
   }
-
-  SurfaceMap& map_;
-  const Coordinates& points_;
-  double pixels_at_1m_;
-  int v_;
-};
+  float normals[3][kLanes];
+  fit_planes(moments, points.x() + centre, points.y() + centre, points.z() + centre, normals);
+  for (int k = 0; k < count; ++k) {
+    map.normals[static_cast<std::size_t>(v) * map.width() + u + k] = {normals[0][k], normals[1][k],
+                                                                      normals[2][k]};
+  }
+}
 
 }  // namespace
 
@@ -286,9 +311,11 @@ SurfaceMap surface_map(const Frame& frame, const SurfaceMapOptions& options) {
                         block_searched(frame, map.noise, u, v, map.reduction, z);
     }
   });
-  const Coordinates points(map);
-  parallel_for(map.height(), options.num_threads,
-               [&](int v) { NormalRow(map, points, options.normal_radius_m, v).fit(); });
+  const PointImages points(map);
+  const double pixels_at_1m = options.normal_radius_m * map.camera.fx;
+  parallel_for(map.height(), options.num_threads, [&](int v) {
+    for (int u = 0; u < width; u += kLanes) fit_normals(points, pixels_at_1m, u, v, map);
+  });
   return map;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/cloud/surface_map.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -72,6 +73,46 @@ TEST(SurfaceMap, NoiseIsMostlyRemovedFromNormals) {
   ASSERT_GT(angles.size(), map.size() * 9 / 10);
   EXPECT_LT(percentile(angles, 0.5), 6);
   EXPECT_LT(percentile(angles, 0.95), 15);
+}
+
+// The plane of least squares through the points around a pixel, by Eigen in double precision.
+// Windows end at the border of the map; those of more than four pixels' radius take every second
+// pixel.
+Eigen::Vector3d fitted_normal(const SurfaceMap& map, int u, int v) {
+  const Eigen::Vector3f& centre = map.points[v * map.width() + u];
+  const double pixels = SurfaceMapOptions().normal_radius_m * map.camera.fx / centre.z();
+  const int radius = std::clamp(static_cast<int>(std::lround(pixels)), 2, 8);
+  std::vector<Eigen::Vector3d> points;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (int y = v - radius; y <= v + radius; y += radius > 4 ? 2 : 1) {
+    for (int x = u - radius; x <= u + radius; x += radius > 4 ? 2 : 1) {
+      if (x < 0 || y < 0 || x >= map.width() || y >= map.height()) continue;
+      points.push_back(map.points[y * map.width() + x].cast<double>());
+      mean += points.back();
+    }
+  }
+  mean /= static_cast<double>(points.size());
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    scatter += (point - mean) * (point - mean).transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
+  const Eigen::Vector3d normal = solver.eigenvectors().col(0);
+  return normal.z() > 0 ? Eigen::Vector3d(-normal) : normal;
+}
+
+TEST(SurfaceMap, NormalsAreThoseOfPlanesOfLeastSquares) {
+  for (const double depth : {0.6, 1.4}) {
+    const auto image = test::render({tilted_wall(depth, 0.4)}, test::kinect_camera(), 1, 5);
+    const SurfaceMap map = surface_map(image.frame, {});
+    ASSERT_EQ(std::ranges::count_if(map.depth, [](float z) { return z <= 0; }), 0);
+    for (int v = 0; v < map.height(); v += 3) {
+      for (int u = 0; u < map.width(); u += 5) {
+        ASSERT_LT(degrees_between(map.normals[v * map.width() + u], fitted_normal(map, u, v)), 0.1)
+            << u << " " << v;
+      }
+    }
+  }
 }
 
 TEST(SurfaceMap, ReducesUntilItIsNarrowEnough) {
