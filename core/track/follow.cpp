@@ -14,7 +14,7 @@
 #include "core/result/placement.hpp"
 #include "core/score/rival_poses.hpp"
 #include "core/score/surface_agreement.hpp"
-#include "core/track/observe_around.hpp"
+#include "core/track/observe.hpp"
 
 namespace bpa::track {
 namespace {
@@ -40,8 +40,7 @@ constexpr double kUsualRate = 0.03;  // share of a frame in the running mean of 
 // A pose that is known well is aligned in fewer steps than a hypothesis of the search.
 constexpr RefinementOptions kAlignment{4, 200, 60, 0.030, 0.010};
 constexpr RefinementOptions kWideAlignment{8, 200, 60, 0.060, 0.010};
-constexpr double kMargin_m = 0.03;      // around the object
-constexpr double kWideMargin_m = 0.08;  // the same, where it was not where it was expected
+constexpr double kMargin_m = 0.03;  // around the object
 // Starts about the predicted pose, for an object that a hand has seized: its motion is sudden, and
 // the alignment slides on to the hand.
 constexpr double kOffset_m = 0.02, kOffset_rad = 0.3;
@@ -51,7 +50,6 @@ constexpr double kMaxJump_m = 0.12, kMaxJump_rad = 0.8;  // in one frame
 // A resting object is aligned again where its surroundings change, or in every tenth frame.
 constexpr int kStep_px = 4;            // between depths that are compared
 constexpr double kMaxChanged = 0.005;  // of the depths; noise
-constexpr int kMaxUnchanged = 9;       // frames in a row
 
 // Modes: views that differ by less say the same again. A nat of evidence counts for a twentieth, as
 // errors of models and calibration are the same in all views. Where little of the object is
@@ -78,15 +76,6 @@ Sight sight_of(const SurfaceAgreement& surface, int correspondences) {
   return surface.visibility >= kDecides && !agrees ? Sight::absent : Sight::hidden;
 }
 
-SceneFeatures look(const View& view, const Surroundings& around, bool colors) {
-  std::vector<Plane> background;
-  const Pose camera_from_frame = view.frame_from_camera.inverse();
-  for (const Plane& plane : view.background) {
-    background.push_back(transformed(camera_from_frame, plane));
-  }
-  return observe(view.frame, around, view.sensor, background, colors);
-}
-
 // An aligned pose, and what speaks for it.
 struct Fit {
   Sight sight = Sight::hidden;
@@ -95,12 +84,13 @@ struct Fit {
   double visible_fraction = 0;
 };
 
-Fit judged(const View& view, const FeaturePlaces& places, const SceneFeatures& scene,
-           const Pose& in_scene, const RefinementOptions& alignment) {
+Fit judged(const View& view, const FeaturePlaces& places, const Pose& start,
+           const RefinementOptions& alignment) {
   const ObjectModel& model = places.model();
-  Candidate candidate{.model = &model,
-                      .refinement = refine_pose(scene, model, in_scene, alignment)};
-  Evidence evidence(scene, places, candidate.pose());
+  Candidate candidate{
+      .model = &model,
+      .refinement = refine_pose(view.scene, model, view.in_camera(start), alignment)};
+  Evidence evidence(view.scene, places, candidate.pose());
   candidate.values = measure(evidence, Round::two);
   const Placement placement = transformed(view.frame_from_camera, to_placement(candidate));
   return {sight_of(evidence.surface(), candidate.refinement.num_correspondences),
@@ -109,16 +99,13 @@ Fit judged(const View& view, const FeaturePlaces& places, const SceneFeatures& s
           evidence.surface().visibility};
 }
 
-// Aligns the object with a part of the frame, from one of several starts in the tracks' frame of
-// reference: the best by round-two score. Without a part it is hidden, at the first start.
-Fit fit(const View& view, const FeaturePlaces& places, const std::optional<Surroundings>& around,
-        const std::vector<Pose>& starts, const RefinementOptions& alignment) {
+// Aligns the object with the frame from one of several starts in the tracks' frame of reference:
+// the best by round-two score.
+Fit fit(const View& view, const FeaturePlaces& places, const std::vector<Pose>& starts,
+        const RefinementOptions& alignment) {
   Fit best;
-  best.measured.pose = starts.front();
-  if (!around) return best;
-  const SceneFeatures scene = look(view, *around, false);
   for (std::size_t i = 0; i < starts.size(); ++i) {
-    Fit now = judged(view, places, scene, view.in_camera(starts[i]), alignment);
+    Fit now = judged(view, places, starts[i], alignment);
     const bool better = std::pair(now.sight == Sight::seen, now.log_odds) >
                         std::pair(best.sight == Sight::seen, best.log_odds);
     if (i == 0 || better) best = now;
@@ -229,39 +216,45 @@ void weigh_modes(const SceneFeatures& scene, const Pose& own, const Pose& camera
   settle(body);
 }
 
+std::optional<RegionOfInterest> surroundings_of(const Frame& frame, const Pose& frame_from_camera,
+                                                const Body& body) {
+  return surroundings(frame, *body.model, frame_from_camera.inverse() * body.motion.pose(),
+                      kMargin_m);
+}
+
+// Looks where the object is predicted, and further away where it is not there.
+Fit found_at(const View& view, const Pose& predicted, const Body& body) {
+  Fit found = fit(view, *body.places, {predicted}, kAlignment);
+  if (found.sight == Sight::seen && body.unseen == 0 && !in_doubt(body, found)) return found;
+  const Fit wide = fit(view, *body.places, {predicted, body.last_seen}, kWideAlignment);
+  if (wide.sight == Sight::seen && (found.sight != Sight::seen || wide.log_odds > found.log_odds))
+    found = wide;
+  const bool misled =
+      found.sight == Sight::absent || (found.sight == Sight::seen && in_doubt(body, found));
+  if (misled && std::max(body.doubts, body.unseen) < kMaxTried) {
+    const Fit other = fit(view, *body.places, starts_about(predicted), kWideAlignment);
+    if (other.sight == Sight::seen && !in_doubt(body, other)) return other;
+  }
+  return found;
+}
+
 }  // namespace
 
-void follow(const View& view, double seconds, Body& body) {
+void predict(double seconds, Body& body) { body.motion.predict(seconds, body.unseen == 0); }
+
+bool looks_unchanged(const Frame& frame, const SensorNoise& noise, const Pose& frame_from_camera,
+                     const Body& body) {
+  if (body.motion.moves() || body.sight != Sight::seen) return false;
+  const auto around = surroundings_of(frame, frame_from_camera, body);
+  return around && *around == body.around_region &&
+         changed_share(sampled_depths(frame, *around, kStep_px), body.around, noise) <= kMaxChanged;
+}
+
+void correct(const View& view, Body& body) {
   MotionFilter& motion = body.motion;
-  const ObjectModel& model = *body.model;
-  motion.predict(seconds, body.unseen == 0);
   const Pose predicted = motion.pose();
-  const auto around = surroundings(view.frame, model, view.in_camera(predicted), kMargin_m);
-  std::vector<float> depths;
-  if (around && !motion.moves()) {
-    depths = sampled_depths(view.frame, around->region, kStep_px);
-    const RegionOfInterest &a = around->region, &b = body.around_region;
-    const bool same_region = a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
-    if (body.sight == Sight::seen && same_region && body.unchanged < kMaxUnchanged &&
-        changed_share(depths, body.around, noise_of(view.sensor)) <= kMaxChanged) {
-      ++body.unchanged;
-      return;
-    }
-  }
-  body.unchanged = 0;
-  Fit found = fit(view, *body.places, around, {predicted}, kAlignment);
-  if (found.sight != Sight::seen || body.unseen > 0 || in_doubt(body, found)) {
-    const auto wider = surroundings(view.frame, model, view.in_camera(predicted), kWideMargin_m);
-    const Fit wide = fit(view, *body.places, wider, {predicted, body.last_seen}, kWideAlignment);
-    if (wide.sight == Sight::seen && (found.sight != Sight::seen || wide.log_odds > found.log_odds))
-      found = wide;
-    const bool misled =
-        found.sight == Sight::absent || (found.sight == Sight::seen && in_doubt(body, found));
-    if (misled && std::max(body.doubts, body.unseen) < kMaxTried) {
-      const Fit other = fit(view, *body.places, wider, starts_about(predicted), kWideAlignment);
-      if (other.sight == Sight::seen && !in_doubt(body, other)) found = other;
-    }
-  }
+  const auto around = surroundings_of(view.frame, view.frame_from_camera, body);
+  Fit found = around ? found_at(view, predicted, body) : Fit();
   if (found.sight == Sight::seen) {
     const Vector6d jump = difference(found.measured.pose, predicted);
     const bool near = jump.head<3>().norm() < kMaxJump_m && jump.tail<3>().norm() < kMaxJump_rad;
@@ -280,8 +273,8 @@ void follow(const View& view, double seconds, Body& body) {
   body.unseen = 0;
   ++body.seen;
   body.last_seen = motion.pose();
-  body.around = std::move(depths);
-  body.around_region = around ? around->region : RegionOfInterest();
+  body.around_region = *around;
+  body.around = sampled_depths(view.frame, *around, kStep_px);
 }
 
 void take_back(Body& body) {
@@ -304,12 +297,13 @@ void compare_modes(const View& view, Body& body) {
   const Pose camera_from_object = view.in_camera(body.motion.pose());
   const Pose from = camera_from_object.inverse();
   if (body.compared >= kComparedAtLeast && !is_new_view(body, from)) return;
-  const auto around = surroundings(view.frame, model, camera_from_object, kMargin_m);
+  const auto around = surroundings_of(view.frame, view.frame_from_camera, body);
   if (!around) return;
   body.compared_from = from;
   body.frames_since_compared = 0;
   ++body.compared;
-  const SceneFeatures scene = look(view, *around, true);
+  const SceneFeatures scene =
+      observe_part(view.frame, *around, view.scene.map.sensor, view.scene.planes);
   // All are aligned alike, or those that are would seem likelier. A turn that the view leaves open
   // slides to where another mode is; then it stays as it was.
   const auto aligned = [&](const Pose& start) {

@@ -6,13 +6,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "core/cloud/frame.hpp"
-#include "core/cloud/planes.hpp"
-#include "core/cloud/sensor_kind.hpp"
+#include "core/cloud/sensor_noise.hpp"
 #include "core/model/object_model.hpp"
+#include "core/observation/scene_features.hpp"
 #include "core/result/track.hpp"
 #include "core/score/feature_score.hpp"
 #include "core/score/score_layer.hpp"
@@ -23,10 +22,9 @@ namespace bpa::track {
 /// One frame as tracks see it. Keeps references.
 struct View {
   const Frame& frame;
-  SensorKind sensor;
-  Pose frame_from_camera;  ///< Of the tracks' frame of reference.
+  const SceneFeatures& scene;  ///< observe() of the frame.
+  Pose frame_from_camera;      ///< Of the tracks' frame of reference.
   const ScoreLayers& layers;
-  std::span<const Plane> background;  ///< In the tracks' frame of reference.
 
   Pose in_camera(const Pose& frame_from_object) const {
     return frame_from_camera.inverse() * frame_from_object;
@@ -65,12 +63,17 @@ struct Body {
   int frames_since_compared = 0;
   std::vector<float> around = {};  ///< Depths of the surroundings when it was last aligned.
   RegionOfInterest around_region = {};
-  int unchanged = 0;  ///< Frames in a row that showed the same.
 };
 
-/// Moves the body to a frame `seconds` after its last one: predicts, aligns, judges, corrects.
-/// Where a resting object's surroundings have not changed, it is left where it is.
-void follow(const View& view, double seconds, Body& body);
+/// Moves the body on by `seconds`, to where the next frame should show it.
+void predict(double seconds, Body& body);
+
+/// Whether the frame shows what it showed around a resting body when that was last aligned.
+bool looks_unchanged(const Frame& frame, const SensorNoise& noise, const Pose& frame_from_camera,
+                     const Body& body);
+
+/// Aligns a predicted body with the frame, judges what is seen there, and corrects its motion.
+void correct(const View& view, Body& body);
 
 /// The surface that the last alignment found is of another object: this one is behind it.
 void take_back(Body& body);

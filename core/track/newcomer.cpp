@@ -7,6 +7,14 @@
 #include <utility>
 
 namespace bpa::track {
+namespace {
+
+void follow_to(const View& view, std::int64_t from_ns, Body& body) {
+  predict(1e-9 * static_cast<double>(view.frame.stamp_ns - from_ns), body);
+  correct(view, body);
+}
+
+}  // namespace
 
 Newcomer::Newcomer(Placement found, std::shared_ptr<const ObjectModel> model, std::uint64_t track,
                    const FrameRecord& then)
@@ -14,7 +22,8 @@ Newcomer::Newcomer(Placement found, std::shared_ptr<const ObjectModel> model, st
       model_(std::move(model)),
       track_(track),
       stamp_ns_(then.stamp_ns),
-      frame_from_camera_(then.frame_from_camera) {}
+      frame_from_camera_(then.frame_from_camera),
+      at_ns_(then.stamp_ns) {}
 
 void Newcomer::begin() {
   Placement likeliest = found_;
@@ -30,35 +39,28 @@ void Newcomer::begin() {
   at_ns_ = stamp_ns_;
 }
 
-void Newcomer::follow_to(const View& view, Body& body, std::int64_t from_ns) const {
-  follow(view, 1e-9 * static_cast<double>(view.frame.stamp_ns - from_ns), body);
-}
-
-Newcomer::Progress Newcomer::step(const std::deque<KeptFrame>& since, const View& newest,
-                                  int most) {
+Newcomer::Progress Newcomer::step(std::span<const View> kept, bool last, const View& newest) {
   const std::int64_t now = newest.frame.stamp_ns;
   if (!body_) {
     begin();
     if (now == stamp_ns_) return Progress::arrived;
     Body at_rest = *body_;
-    follow_to(newest, at_rest, stamp_ns_);
+    follow_to(newest, stamp_ns_, at_rest);
     if (at_rest.sight == Sight::seen) {
       body_ = std::move(at_rest);
       return Progress::arrived;
     }
   }
-  for (const KeptFrame& kept : since) {
-    const std::int64_t stamp = kept.frame->stamp_ns;
-    if (stamp <= at_ns_) continue;
-    if (most-- == 0) return Progress::on_the_way;
-    follow_to(
-        {*kept.frame, newest.sensor, kept.frame_from_camera, newest.layers, newest.background},
-        *body_, at_ns_);
-    at_ns_ = stamp;
+  for (const View& view : kept) {
+    if (view.frame.stamp_ns <= at_ns_) continue;
+    follow_to(view, at_ns_, *body_);
+    at_ns_ = view.frame.stamp_ns;
   }
-  if (at_ns_ < now) follow_to(newest, *body_, at_ns_);
+  if (!last) return Progress::on_the_way;
+  follow_to(newest, at_ns_, *body_);
   if (body_->sight != Sight::absent) return Progress::arrived;
   body_.reset();
+  at_ns_ = stamp_ns_;
   return ++tried_ > found_.alternatives.size() ? Progress::gone : Progress::on_the_way;
 }
 

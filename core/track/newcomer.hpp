@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "core/result/placement.hpp"
 #include "core/track/follow.hpp"
@@ -25,13 +25,15 @@ class Newcomer {
   Newcomer(Placement found, std::shared_ptr<const ObjectModel> model, std::uint64_t track,
            const FrameRecord& then);
 
-  /// Goes through at most `most` of the frames since, and on to the newest if these were the last.
-  Progress step(const std::deque<KeptFrame>& since, const View& newest, int most);
+  /// Goes through those of the views that are later than what it has come to, and on to the newest
+  /// if these were the last of `kept` ones.
+  Progress step(std::span<const View> kept, bool last, const View& newest);
 
   std::uint64_t track() const { return track_; }
   const Placement& found() const { return found_; }
   const ObjectModel& model() const { return *model_; }
   std::int64_t stamp_ns() const { return stamp_ns_; }  ///< Of its frame.
+  std::int64_t at_ns() const { return at_ns_; }        ///< Of the frame that it has come to.
   /// Of its frame's camera, in the tracks' frame of reference.
   const Pose& frame_from_camera() const { return frame_from_camera_; }
   /// Where it was in its frame, in the tracks' frame of reference.
@@ -43,7 +45,6 @@ class Newcomer {
 
  private:
   void begin();
-  void follow_to(const View& view, Body& body, std::int64_t from_ns) const;
 
   Placement found_;
   std::shared_ptr<const ObjectModel> model_;
@@ -53,7 +54,7 @@ class Newcomer {
   std::size_t tried_ = 0;  ///< Of its own pose and its alternatives.
   Pose tried_pose_;        ///< The one that is on its way, in the camera's frame then.
   std::optional<Body> body_;
-  std::int64_t at_ns_ = 0;  ///< Stamp of the frame that it has come to.
+  std::int64_t at_ns_;
 };
 
 /// Adds a placement's alternatives to a body. `now_from_then` moves poses of its frame to where the

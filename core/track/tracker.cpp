@@ -6,17 +6,20 @@
 #include <cmath>
 #include <deque>
 #include <map>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
+#include "core/cloud/planes.hpp"
 #include "core/cloud/sensor_noise.hpp"
 #include "core/detect/candidate.hpp"
 #include "core/track/background.hpp"
 #include "core/track/life.hpp"
 #include "core/track/newcomer.hpp"
-#include "core/track/observe_around.hpp"
+#include "core/track/observe.hpp"
 
 namespace bpa::track {
 namespace {
@@ -38,11 +41,11 @@ constexpr double kEnds = -1;
 // the poses for right.
 constexpr double kDoubt = -2, kMostSaid = 2.5;
 constexpr int kNewlySeen = 15;  // alignments since it came into sight
-constexpr int kReceivedAtOnce = 4,
-              kStepsAFrame = 3;  // newcomers, and frames that each goes through
+// Newcomers that a frame brings on, and frames that they go through then.
+constexpr std::size_t kReceivedAtOnce = 4, kStepsAFrame = 3;
 
 constexpr int kCoarseStep_px = 8;  // between depths that are compared with another frame's
-constexpr int kPhases = 8;         // tracks that are not aligned in the same frame, where all rest
+constexpr int kMostRested = 9;     // frames in a row in which resting objects are not aligned
 
 double seconds(std::int64_t nanoseconds) { return 1e-9 * static_cast<double>(nanoseconds); }
 
@@ -60,6 +63,8 @@ struct Tracker::State {
   bool in_fixed_frame = false;
   std::int64_t stamp_ns = 0;
   Pose frame_from_camera;
+  std::optional<SceneFeatures> scene;  // of the newest frame, once it is needed
+  int rested = 0;                      // frames in a row
   Background background;
   std::deque<FrameRecord> records;
   std::deque<KeptFrame> kept;
@@ -70,8 +75,18 @@ struct Tracker::State {
   std::uint64_t last_id = 0;
   std::map<std::string, int> born_of_model;
 
-  View view(const Frame& frame, const Pose& from_camera) const {
-    return {frame, *sensor, from_camera, layers, background.planes()};
+  SceneFeatures observe(const Frame& frame, const Pose& from_camera) const {
+    std::vector<Plane> planes;
+    for (const Plane& plane : background.planes()) {
+      planes.push_back(transformed(from_camera.inverse(), plane));
+    }
+    return track::observe(frame, *sensor, planes, options.num_threads);
+  }
+
+  // The newest frame. It is observed once, if at all.
+  View view(const Frame& frame) {
+    if (!scene) scene = observe(frame, frame_from_camera);
+    return {frame, *scene, frame_from_camera, layers};
   }
 
   // Ends all tracks, and forgets frames and results.
@@ -96,10 +111,23 @@ struct Tracker::State {
     return found == records.end() ? nullptr : &*found;
   }
 
+  // Resting objects whose surroundings have not changed are left where they are, but in every
+  // tenth frame.
   void follow_all(const Frame& frame, double passed_s) {
-    const View now = view(frame, frame_from_camera);
+    std::vector<std::uint8_t> rests(tracks.size());
     parallel_for(tracks.size(), options.num_threads, [&](std::size_t i) {
-      follow(now, passed_s, tracks[i].body);
+      Body& body = tracks[i].body;
+      predict(passed_s, body);
+      rests[i] = rested < kMostRested &&
+                 looks_unchanged(frame, noise_of(*sensor), frame_from_camera, body);
+    });
+    const bool all = std::ranges::count(rests, 0) == 0;
+    rested = rested < kMostRested ? rested + 1 : 0;
+    if (all) return;
+    const View now = view(frame);
+    parallel_for(tracks.size(), options.num_threads, [&](std::size_t i) {
+      if (rests[i]) return;
+      correct(now, tracks[i].body);
       compare_modes(now, tracks[i].body);
     });
   }
@@ -230,17 +258,33 @@ struct Tracker::State {
       }
       return known;
     });
-    const auto count = std::min<std::size_t>(newcomers.size(), kReceivedAtOnce);
-    std::vector<Newcomer::Progress> progress(count);
-    const View now = view(newest, frame_from_camera);
-    parallel_for(count, options.num_threads,
-                 [&](std::size_t i) { progress[i] = newcomers[i].step(kept, now, kStepsAFrame); });
-    for (std::size_t i = 0; i < count; ++i) {
-      if (progress[i] == Newcomer::Progress::arrived) add_arrived(newcomers[i]);
+    bring_on(view(newest));
+  }
+
+  // The newcomers go through the next kept frames together, so that each frame is observed once.
+  void bring_on(const View& newest) {
+    const auto some = std::span(newcomers).first(std::min(newcomers.size(), kReceivedAtOnce));
+    if (some.empty()) return;
+    const std::int64_t from = std::ranges::min(some, {}, &Newcomer::at_ns).at_ns();
+    std::vector<SceneFeatures> scenes;
+    std::vector<View> views;
+    scenes.reserve(kStepsAFrame);
+    auto next = std::ranges::find_if(
+        kept, [&](const KeptFrame& frame) { return frame.frame->stamp_ns > from; });
+    for (; next != kept.end() && scenes.size() < kStepsAFrame; ++next) {
+      scenes.push_back(observe(*next->frame, next->frame_from_camera));
+      views.push_back({*next->frame, scenes.back(), next->frame_from_camera, layers});
+    }
+    std::vector<Newcomer::Progress> progress(some.size());
+    parallel_for(some.size(), options.num_threads, [&](std::size_t i) {
+      progress[i] = some[i].step(views, next == kept.end(), newest);
+    });
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      if (progress[i] == Newcomer::Progress::arrived) add_arrived(some[i]);
     }
     std::size_t i = 0;
     std::erase_if(newcomers, [&](const Newcomer&) {
-      return i < count && progress[i++] != Newcomer::Progress::on_the_way;
+      return i < progress.size() && progress[i++] != Newcomer::Progress::on_the_way;
     });
   }
 
@@ -272,7 +316,6 @@ struct Tracker::State {
     life.found = 1;
     life.found_ns = stamp;
     life.most_probable = found.probability;
-    life.body.unchanged = static_cast<int>(life.id % kPhases);
     life.born_ns = stamp_ns;
     life.seen_ns = stamp_ns;
     ++counts.births;
@@ -431,6 +474,7 @@ Result<TrackedFrame> Tracker::track(std::shared_ptr<const Frame> frame,
   s.update_states();
   for (const SceneInterpretations& result : std::exchange(s.results, {})) s.take(result);
   s.receive(*frame);
+  s.scene.reset();
 
   TrackedFrame out{.stamp_ns = s.stamp_ns,
                    .frame_id = s.frame_id,

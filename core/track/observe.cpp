@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/track/observe_around.hpp"
+#include "core/track/observe.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -18,32 +18,43 @@ namespace {
 
 constexpr int kSmallest = 16;  // pixels of the reduced image: a Camera's least size
 
-Frame cut_out(const Frame& frame, const RegionOfInterest& region) {
-  Frame out;
-  out.camera = frame.camera;
-  out.camera.width = region.width;
-  out.camera.height = region.height;
-  out.camera.cx -= region.x;
-  out.camera.cy -= region.y;
-  out.stamp_ns = frame.stamp_ns;
-  const auto size = static_cast<std::size_t>(region.width) * region.height;
-  out.depth.reserve(size);
-  if (!frame.color.empty()) out.color.reserve(3 * size);
-  for (int v = region.y; v < region.y + region.height; ++v) {
-    const std::size_t first = static_cast<std::size_t>(v) * frame.camera.width + region.x;
-    const std::size_t last = first + region.width;
-    out.depth.insert(out.depth.end(), &frame.depth[first], &frame.depth[first] + region.width);
-    if (frame.color.empty()) continue;
-    out.color.insert(out.color.end(), &frame.color[3 * first],
-                     &frame.color[3 * first] + 3 * (last - first));
-  }
-  return out;
+SceneFeatures observed(const Frame& frame, SurfaceMapOptions options, SensorKind sensor,
+                       std::span<const Plane> background) {
+  options.sensor = std::string(name_of(sensor));
+  SceneFeatures scene;
+  scene.map = surface_map(frame, options);
+  for (const Plane& plane : background) label_background(scene.map, plane);
+  scene.planes.assign(background.begin(), background.end());
+  scene.image = make_check_image(scene.map);
+  return scene;
 }
 
 }  // namespace
 
-std::optional<Surroundings> surroundings(const Frame& frame, const ObjectModel& model,
-                                         const Pose& camera_from_object, double margin_m) {
+SceneFeatures observe(const Frame& frame, SensorKind sensor, std::span<const Plane> background,
+                      int num_threads) {
+  SurfaceMapOptions options;
+  options.num_threads = num_threads;
+  return observed(frame, options, sensor, background);
+}
+
+SceneFeatures observe_part(const Frame& frame, const RegionOfInterest& part, SensorKind sensor,
+                           std::span<const Plane> background) {
+  SurfaceMapOptions options;
+  options.max_width = part.width / map_reduction(frame.camera.width, options.max_width);
+  options.num_threads = 1;
+  const Frame cropped = crop(frame, part);
+  SceneFeatures scene = observed(cropped, options, sensor, background);
+  if (cropped.color.empty()) return scene;
+  SceneFeatureOptions features;
+  features.num_threads = 1;
+  const Image<Eigen::Vector3f> rgb = reduced_color(cropped, scene.map, 1);
+  add_colors(rgb, cielab(rgb, 1), features, scene);
+  return scene;
+}
+
+std::optional<RegionOfInterest> surroundings(const Frame& frame, const ObjectModel& model,
+                                             const Pose& camera_from_object, double margin_m) {
   const Camera& camera = frame.camera;
   const FastPose pose = to_fast(camera_from_object);
   Eigen::AlignedBox2d box;
@@ -54,20 +65,18 @@ std::optional<Surroundings> surroundings(const Frame& frame, const ObjectModel& 
     box.extend(camera.project(at));
     nearest = std::min(nearest, at.z());
   }
-  Surroundings out;
-  out.reduction = map_reduction(camera.width, SurfaceMapOptions().max_width);
+  const int r = map_reduction(camera.width, SurfaceMapOptions().max_width);
   // The range of an axis with its margin, in whole pixels of the reduced image.
-  const int r = out.reduction;
   const auto range = [&](double from, double to, double focal, int size) {
     const double margin = focal * margin_m / nearest, last = size / r;
     const int low = static_cast<int>(std::clamp(std::floor((from - margin) / r), 0.0, last));
     const int high = static_cast<int>(std::clamp(std::ceil((to + margin) / r), 0.0, last));
     return std::pair(low * r, (high - low) * r);
   };
-  RegionOfInterest& region = out.region;
-  std::tie(region.x, region.width) = range(box.min().x(), box.max().x(), camera.fx, camera.width);
-  std::tie(region.y, region.height) = range(box.min().y(), box.max().y(), camera.fy, camera.height);
-  if (std::min(region.width, region.height) < kSmallest * r) return std::nullopt;
+  RegionOfInterest out;
+  std::tie(out.x, out.width) = range(box.min().x(), box.max().x(), camera.fx, camera.width);
+  std::tie(out.y, out.height) = range(box.min().y(), box.max().y(), camera.fy, camera.height);
+  if (std::min(out.width, out.height) < kSmallest * r) return std::nullopt;
   return out;
 }
 
@@ -93,25 +102,6 @@ double changed_share(const std::vector<float>& now, const std::vector<float>& th
     changed += std::abs(now[i] - then[i]) > kChanged_m + kDeviations * noise(now[i]);
   }
   return known > 0 ? static_cast<double>(changed) / known : 1;
-}
-
-SceneFeatures observe(const Frame& frame, const Surroundings& around, SensorKind sensor,
-                      std::span<const Plane> background, bool colors) {
-  const Frame part = cut_out(frame, around.region);
-  SurfaceMapOptions options;
-  options.max_width = around.region.width / around.reduction;
-  options.sensor = std::string(name_of(sensor));
-  options.num_threads = 1;
-  SceneFeatures scene;
-  scene.map = surface_map(part, options);
-  for (const Plane& plane : background) label_background(scene.map, plane);
-  scene.image = make_check_image(scene.map);
-  if (!colors || part.color.empty()) return scene;
-  SceneFeatureOptions features;
-  features.num_threads = 1;
-  const Image<Eigen::Vector3f> rgb = reduced_color(part, scene.map, 1);
-  add_colors(rgb, cielab(rgb, 1), features, scene);
-  return scene;
 }
 
 }  // namespace bpa::track

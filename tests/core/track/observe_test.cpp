@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/track/observe_around.hpp"
+#include "core/track/observe.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,10 +19,9 @@ TEST_F(Around, IsTheSamePartOfTheWholeMap) {
   const SurfaceMap whole = surface_map(frame, {});
   const auto around = surroundings(frame, *l_, l_truth_, 0.03);
   ASSERT_TRUE(around);
-  EXPECT_EQ(around->reduction, whole.reduction);
-  const SceneFeatures part = observe(frame, *around, SensorKind::structured_light, {}, false);
-  const int u0 = around->region.x / whole.reduction, v0 = around->region.y / whole.reduction;
-  ASSERT_EQ(part.map.width() * whole.reduction, around->region.width);
+  const SceneFeatures part = observe_part(frame, *around, SensorKind::structured_light, {});
+  const int u0 = around->x / whole.reduction, v0 = around->y / whole.reduction;
+  ASSERT_EQ(part.map.width() * whole.reduction, around->width);
   int compared = 0;
   for (int v = kBorder; v + kBorder < part.map.height(); ++v) {
     for (int u = kBorder; u + kBorder < part.map.width(); ++u) {
@@ -42,7 +41,7 @@ TEST_F(Around, HoldsTheWholeObjectAndLittleElse) {
   const auto around = surroundings(image.frame, *brick_, brick_truth_, 0.02);
   ASSERT_TRUE(around);
   constexpr int kBrick = 3;  // of the solids: table, two of the L
-  const RegionOfInterest& r = around->region;
+  const RegionOfInterest& r = *around;
   for (std::size_t i = 0; i < image.solid.size(); ++i) {
     if (image.solid[i] != kBrick) continue;
     const auto u = static_cast<int>(i) % 640, v = static_cast<int>(i) / 640;
