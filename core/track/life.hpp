@@ -3,30 +3,13 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
-#include <vector>
 
-#include "core/cloud/frame.hpp"
+#include "core/result/placement.hpp"
 #include "core/result/track.hpp"
-#include "core/track/association.hpp"
 #include "core/track/follow.hpp"
 
 namespace bpa::track {
-
-/// What the tracker remembers of a frame, for results of searches that come later.
-struct FrameRecord {
-  std::int64_t stamp_ns = 0;
-  Pose frame_from_camera;
-  std::vector<TrackRecord> tracks;
-  std::vector<float> depths;  ///< sampled_depths() of the whole frame.
-};
-
-/// A frame that new objects are followed through.
-struct KeptFrame {
-  std::shared_ptr<const Frame> frame;
-  Pose frame_from_camera;
-};
 
 /// A track from birth to end.
 struct Life {
@@ -43,6 +26,20 @@ struct Life {
   std::int64_t born_ns = 0, seen_ns = 0;  ///< Stamps.
   bool held = false;
   std::string ends = {};  ///< Why; empty: it lives.
+
+  /// A search of the frame of this stamp has found the object. It may say so more than once.
+  void believe(const Placement& placement, std::int64_t stamp);
+
+  /// What a search says of the pose of an object that is seen: one of the modes is right, and there
+  /// are others. `now_from_then` takes poses of the search's camera to where the object is now.
+  void suggest(const Placement& placement, const Pose& now_from_then);
+
+  /// Confirms a tentative track that is seen, by one placement of `min_probability` or by two.
+  /// Returns whether it did.
+  bool confirm(double min_probability);
 };
+
+/// As the newest frame's result has it.
+Track report(const Life& life, std::int64_t stamp_ns);
 
 }  // namespace bpa::track

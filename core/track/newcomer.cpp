@@ -10,7 +10,7 @@ namespace bpa::track {
 namespace {
 
 void follow_to(const View& view, std::int64_t from_ns, Body& body) {
-  predict(1e-9 * static_cast<double>(view.frame.stamp_ns - from_ns), body);
+  predict(seconds(view.frame.stamp_ns - from_ns), body);
   correct(view, body);
 }
 

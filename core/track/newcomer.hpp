@@ -9,7 +9,7 @@
 
 #include "core/result/placement.hpp"
 #include "core/track/follow.hpp"
-#include "core/track/life.hpp"
+#include "core/track/history.hpp"
 
 namespace bpa::track {
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <map>
 #include <optional>
 #include <span>
@@ -17,6 +16,7 @@
 #include "core/cloud/sensor_noise.hpp"
 #include "core/detect/candidate.hpp"
 #include "core/track/background.hpp"
+#include "core/track/history.hpp"
 #include "core/track/life.hpp"
 #include "core/track/newcomer.hpp"
 #include "core/track/observe.hpp"
@@ -25,31 +25,17 @@ namespace bpa::track {
 namespace {
 
 // Chosen by hand.
-constexpr double kRemembered_s = 10;  // frames, for results of searches
-constexpr double kKept_s = 4;         // their images, to follow a new object through
-constexpr double kKeptEvery_s = 0.06;
 constexpr int kAbsentFrames = 5;      // in a row: the track is lost
 constexpr double kMinSearched = 0.3;  // visible fraction of what a search should find
 constexpr int kDisplaced = 2;  // searches in a row that find an object elsewhere alone: it is there
 // Log odds that an object is there.
-constexpr double kLeastFound = 0.2, kMostFound = 3;  // of one search that finds it
-constexpr double kNotFound = -1;                     // of one that should and does not
+constexpr double kNotFound = -1;    // of a search that should find it and does not
 constexpr double kOtherFound = -3;  // of one that finds another object in its place
-constexpr double kMostLogOdds = 6;  // of all
 constexpr double kEnds = -1;
-// Log weights: of another pose that a search suggests for a track; of one search that takes one of
-// the poses for right.
-constexpr double kDoubt = -2, kMostSaid = 2.5;
 constexpr int kNewlySeen = 15;  // alignments since it came into sight
 // Newcomers that a frame brings on, and frames that they go through then.
 constexpr std::size_t kReceivedAtOnce = 4, kStepsAFrame = 3;
-
-constexpr int kCoarseStep_px = 8;  // between depths that are compared with another frame's
-constexpr int kMostRested = 9;     // frames in a row in which resting objects are not aligned
-
-double seconds(std::int64_t nanoseconds) { return 1e-9 * static_cast<double>(nanoseconds); }
-
-double log_odds_of(const Placement& placement) { return bpa::log_odds_of(placement.probability); }
+constexpr int kMostRested = 9;  // frames in a row in which resting objects are not aligned
 
 }  // namespace
 
@@ -66,8 +52,7 @@ struct Tracker::State {
   std::optional<SceneFeatures> scene;  // of the newest frame, once it is needed
   int rested = 0;                      // frames in a row
   Background background;
-  std::deque<FrameRecord> records;
-  std::deque<KeptFrame> kept;
+  History history;
   std::vector<Life> tracks;       // by id
   std::vector<EndedTrack> ended;  // since the last frame
   std::vector<SceneInterpretations> results;
@@ -93,8 +78,7 @@ struct Tracker::State {
   void begin_anew(const std::string& reason) {
     for (const Life& life : tracks) end(life, reason);
     tracks.clear();
-    records.clear();
-    kept.clear();
+    history.clear();
     background.clear();
     results.clear();
     newcomers.clear();
@@ -104,11 +88,6 @@ struct Tracker::State {
   void end(const Life& life, const std::string& reason) {
     ended.push_back({life.id, life.name, reason});
     ++counts.ends;
-  }
-
-  const FrameRecord* record_of(std::int64_t stamp) const {
-    const auto found = std::ranges::find(records, stamp, &FrameRecord::stamp_ns);
-    return found == records.end() ? nullptr : &*found;
   }
 
   // Resting objects whose surroundings have not changed are left where they are, but in every
@@ -181,11 +160,7 @@ struct Tracker::State {
   }
 
   void confirm(Life& life) {
-    if (life.state != TrackState::tentative) return;
-    const bool sure = life.found > 1 || life.most_probable >= options.min_confirming;
-    if (!sure || life.body.sight != Sight::seen) return;
-    life.state = TrackState::confirmed;
-    ++counts.confirmed;
+    if (life.confirm(options.min_confirming)) ++counts.confirmed;
   }
 
   Life* life_of(std::uint64_t id) {
@@ -193,33 +168,12 @@ struct Tracker::State {
     return found == tracks.end() ? nullptr : &*found;
   }
 
-  // A search may tell of the same object after each of its rounds.
-  static void believe(const Placement& found, std::int64_t stamp, Life& life) {
-    life.most_probable = std::max(life.most_probable, found.probability);
-    if (stamp == life.found_ns) return;
-    life.found_ns = stamp;
-    ++life.found;
-    life.missed = 0;
-    const double more = std::clamp(log_odds_of(found), kLeastFound, kMostFound);
-    life.evidence = std::min(kMostLogOdds, life.evidence + more);
-  }
-
-  // What a search says of the pose of a track that is seen. `since` takes poses of the search's
-  // camera to where the object is now.
-  static void suggest(const Placement& found, const Pose& since, Life& life) {
-    for (const PoseAlternative& other : found.alternatives) {
-      add_mode(life.body, since * other.camera_from_object, kDoubt);
-    }
-    const double says = std::clamp(log_odds_of(found), 0.0, kMostSaid);
-    favour_mode(life.body, since * found.camera_from_object, kDoubt, says);
-  }
-
   // A search has found a track, which may have gone out of sight.
   void find_again(const Placement& found, const TrackRecord& record, const FrameRecord& at,
                   bool partial, Life& life) {
     if (life.body.sight != Sight::seen) return expect(found, life.id, at);
     if (partial) return;  // poses are compared in its final stages
-    suggest(found, life.body.motion.pose() * record.camera_from_object.inverse(), life);
+    life.suggest(found, life.body.motion.pose() * record.camera_from_object.inverse());
   }
 
   // The index of a track of the model at the pose; -1: none.
@@ -253,8 +207,8 @@ struct Tracker::State {
       const int there = track_at(newcomer.found().model, newcomer.start());
       const bool known = newcomer.track() == 0 && there >= 0;
       if (known) {
-        believe(newcomer.found(), newcomer.stamp_ns(), tracks[there]);
-        suggest(newcomer.found(), newcomer.frame_from_camera(), tracks[there]);
+        tracks[there].believe(newcomer.found(), newcomer.stamp_ns());
+        tracks[there].suggest(newcomer.found(), newcomer.frame_from_camera());
       }
       return known;
     });
@@ -269,15 +223,14 @@ struct Tracker::State {
     std::vector<SceneFeatures> scenes;
     std::vector<View> views;
     scenes.reserve(kStepsAFrame);
-    auto next = std::ranges::find_if(
-        kept, [&](const KeptFrame& frame) { return frame.frame->stamp_ns > from; });
-    for (; next != kept.end() && scenes.size() < kStepsAFrame; ++next) {
-      scenes.push_back(observe(*next->frame, next->frame_from_camera));
-      views.push_back({*next->frame, scenes.back(), next->frame_from_camera, layers});
+    const std::span<const KeptFrame> since = history.kept_after(from);
+    for (const KeptFrame& next : since.first(std::min(since.size(), kStepsAFrame))) {
+      scenes.push_back(observe(*next.frame, next.frame_from_camera));
+      views.push_back({*next.frame, scenes.back(), next.frame_from_camera, layers});
     }
     std::vector<Newcomer::Progress> progress(some.size());
     parallel_for(some.size(), options.num_threads, [&](std::size_t i) {
-      progress[i] = some[i].step(views, next == kept.end(), newest);
+      progress[i] = some[i].step(views, views.size() == since.size(), newest);
     });
     for (std::size_t i = 0; i < some.size(); ++i) {
       if (progress[i] == Newcomer::Progress::arrived) add_arrived(some[i]);
@@ -302,8 +255,8 @@ struct Tracker::State {
       return;
     }
     if (there < 0) return add_track(newcomer.found(), newcomer.stamp_ns(), std::move(body));
-    believe(newcomer.found(), newcomer.stamp_ns(), tracks[there]);
-    suggest(newcomer.found(), since, tracks[there]);
+    tracks[there].believe(newcomer.found(), newcomer.stamp_ns());
+    tracks[there].suggest(newcomer.found(), since);
   }
 
   void add_track(const Placement& found, std::int64_t stamp, Body body) {
@@ -312,10 +265,7 @@ struct Tracker::State {
       name = concat(found.model, "_", ++born_of_model[found.model]);
     } while (std::ranges::count(tracks, name, &Life::name) > 0);
     Life life{.id = ++last_id, .name = std::move(name), .body = std::move(body)};
-    life.evidence = std::clamp(log_odds_of(found), -kMostFound, kMostFound);
-    life.found = 1;
-    life.found_ns = stamp;
-    life.most_probable = found.probability;
+    life.believe(found, stamp);
     life.born_ns = stamp_ns;
     life.seen_ns = stamp_ns;
     ++counts.births;
@@ -325,13 +275,13 @@ struct Tracker::State {
 
   // In the first kept frame since a search's.
   void find_background(std::int64_t stamp) {
-    const auto frame = std::ranges::find_if(
-        kept, [&](const KeptFrame& one) { return one.frame->stamp_ns >= stamp; });
-    if (frame != kept.end()) background.find(*frame->frame, *sensor, frame->frame_from_camera);
+    const std::span<const KeptFrame> since = history.kept_after(stamp - 1);
+    if (since.empty()) return;
+    background.find(*since.front().frame, *sensor, since.front().frame_from_camera);
   }
 
   void take(const SceneInterpretations& result) {
-    const FrameRecord* record = record_of(result.stamp_ns);
+    const FrameRecord* record = history.record_of(result.stamp_ns);
     if (!record || result.interpretations.empty()) return;
     if (!result.partial || background.planes().empty()) find_background(result.stamp_ns);
     std::vector<Placement> placements = result.interpretations.front().placements;
@@ -346,7 +296,7 @@ struct Tracker::State {
       const auto by = std::ranges::find(matched, static_cast<int>(t));
       if (by != matched.end()) {
         const Placement& found = placements[by - matched.begin()];
-        if (!result.partial) believe(found, record->stamp_ns, *life);
+        if (!result.partial) life->believe(found, record->stamp_ns);
         find_again(found, track, *record, result.partial, *life);
         continue;
       }
@@ -383,50 +333,13 @@ struct Tracker::State {
   }
 
   void remember(std::shared_ptr<const Frame> frame) {
-    FrameRecord record{stamp_ns, frame_from_camera, {}, sampled_depths(*frame, {}, kCoarseStep_px)};
+    std::vector<TrackRecord> where;
     for (const Life& life : tracks) {
-      record.tracks.push_back(
-          {life.id, life.body.model, frame_from_camera.inverse() * life.body.motion.pose(),
-           life.body.sight, life.body.visible_fraction, seconds(stamp_ns - life.seen_ns)});
+      where.push_back({life.id, life.body.model,
+                       frame_from_camera.inverse() * life.body.motion.pose(), life.body.sight,
+                       life.body.visible_fraction, seconds(stamp_ns - life.seen_ns)});
     }
-    records.push_back(std::move(record));
-    const auto older = [&](std::int64_t stamp, double than_s) {
-      return seconds(stamp_ns - stamp) > than_s;
-    };
-    while (older(records.front().stamp_ns, kRemembered_s)) records.pop_front();
-    if (kept.empty() || older(kept.back().frame->stamp_ns, kKeptEvery_s)) {
-      kept.push_back({std::move(frame), frame_from_camera});
-    }
-    while (older(kept.front().frame->stamp_ns, kKept_s)) kept.pop_front();
-  }
-
-  Track report(const Life& life) const {
-    const Body& body = life.body;
-    Track out{.id = life.id,
-              .name = life.name,
-              .model = body.model->name,
-              .model_number = body.model->number,
-              .state = life.state,
-              .probability = probability_of(life.evidence),
-              .frame_from_object = body.motion.pose(),
-              .covariance = body.motion.covariance(),
-              .velocity = body.motion.velocity(),
-              .angular_velocity = body.motion.angular_velocity(),
-              .visible_fraction = body.visible_fraction,
-              .age_s = seconds(stamp_ns - life.born_ns),
-              .unseen_s = seconds(stamp_ns - life.seen_ns),
-              .held = life.held};
-    out.orientation = orientation_uncertainty(out.frame_from_object.rotation,
-                                              out.covariance.bottomRightCorner<3, 3>());
-    double sum = 1;
-    for (const Mode& mode : body.modes) sum += std::exp(mode.log_weight);
-    out.weight = 1 / sum;
-    for (const Mode& mode : body.modes) {
-      out.alternatives.push_back(
-          {out.frame_from_object * mode.object_from_mode, std::exp(mode.log_weight) / sum});
-    }
-    std::ranges::stable_sort(out.alternatives, std::greater(), &TrackAlternative::weight);
-    return out;
+    history.remember(std::move(frame), frame_from_camera, std::move(where));
   }
 
   Result<Life*> named(std::uint64_t id) {
@@ -483,7 +396,7 @@ Result<TrackedFrame> Tracker::track(std::shared_ptr<const Frame> frame,
                    .frame_from_camera = s.frame_from_camera};
   for (const Life& life : s.tracks) {
     if (life.ends.empty()) {
-      out.tracks.push_back(s.report(life));
+      out.tracks.push_back(report(life, s.stamp_ns));
     } else {
       s.end(life, life.ends);
     }
@@ -505,10 +418,10 @@ void Tracker::begin_anew(const std::string& reason) {
 
 Status Tracker::add(const SceneInterpretations& found) {
   State& s = *state_;
-  if (!s.record_of(found.stamp_ns)) {
+  if (!s.history.record_of(found.stamp_ns)) {
     s.counts.stale_searches += found.partial ? 0 : 1;
     return not_found("no frame with the stamp ", found.stamp_ns, " ns was followed in the last ",
-                     kRemembered_s, " s");
+                     History::kRemembered_s, " s");
   }
   s.counts.searches += found.partial ? 0 : 1;
   if (const auto kind = sensor_kind(found.sensor)) s.sensor = kind;
@@ -517,9 +430,9 @@ Status Tracker::add(const SceneInterpretations& found) {
 }
 
 double Tracker::changed_since(std::int64_t stamp_ns) const {
-  const FrameRecord* then = state_->record_of(stamp_ns);
+  const FrameRecord* then = state_->history.record_of(stamp_ns);
   if (!then) return 1;
-  return changed_share(state_->records.back().depths, then->depths, noise_of(*state_->sensor));
+  return changed_share(state_->history.newest().depths, then->depths, noise_of(*state_->sensor));
 }
 
 std::vector<ExpectedPlacement> Tracker::expected() const {

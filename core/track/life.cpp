@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/track/life.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/track/history.hpp"
+
+namespace bpa::track {
+namespace {
+
+// Chosen by hand. Log odds that an object is there: of one search that finds it, and of all.
+constexpr double kLeastFound = 0.2, kMostFound = 3, kMostLogOdds = 6;
+// Log weights: of another pose that a search suggests for a track; of one search that takes one of
+// the poses for right.
+constexpr double kDoubt = -2, kMostSaid = 2.5;
+
+double log_odds_of(const Placement& placement) { return bpa::log_odds_of(placement.probability); }
+
+}  // namespace
+
+void Life::believe(const Placement& placement, std::int64_t stamp) {
+  most_probable = std::max(most_probable, placement.probability);
+  if (stamp == found_ns) return;
+  found_ns = stamp;
+  ++found;
+  missed = 0;
+  const double more = std::clamp(log_odds_of(placement), kLeastFound, kMostFound);
+  evidence = std::min(kMostLogOdds, evidence + more);
+}
+
+void Life::suggest(const Placement& placement, const Pose& now_from_then) {
+  for (const PoseAlternative& other : placement.alternatives) {
+    add_mode(body, now_from_then * other.camera_from_object, kDoubt);
+  }
+  const double says = std::clamp(log_odds_of(placement), 0.0, kMostSaid);
+  favour_mode(body, now_from_then * placement.camera_from_object, kDoubt, says);
+}
+
+bool Life::confirm(double min_probability) {
+  const bool sure = found > 1 || most_probable >= min_probability;
+  if (state != TrackState::tentative || !sure || body.sight != Sight::seen) return false;
+  state = TrackState::confirmed;
+  return true;
+}
+
+Track report(const Life& life, std::int64_t stamp_ns) {
+  const Body& body = life.body;
+  Track out{.id = life.id,
+            .name = life.name,
+            .model = body.model->name,
+            .model_number = body.model->number,
+            .state = life.state,
+            .probability = probability_of(life.evidence),
+            .frame_from_object = body.motion.pose(),
+            .covariance = body.motion.covariance(),
+            .velocity = body.motion.velocity(),
+            .angular_velocity = body.motion.angular_velocity(),
+            .visible_fraction = body.visible_fraction,
+            .age_s = seconds(stamp_ns - life.born_ns),
+            .unseen_s = seconds(stamp_ns - life.seen_ns),
+            .held = life.held};
+  out.orientation = orientation_uncertainty(out.frame_from_object.rotation,
+                                            out.covariance.bottomRightCorner<3, 3>());
+  double sum = 1;
+  for (const Mode& mode : body.modes) sum += std::exp(mode.log_weight);
+  out.weight = 1 / sum;
+  for (const Mode& mode : body.modes) {
+    out.alternatives.push_back(
+        {out.frame_from_object * mode.object_from_mode, std::exp(mode.log_weight) / sum});
+  }
+  std::ranges::stable_sort(out.alternatives, std::greater(), &TrackAlternative::weight);
+  return out;
+}
+
+}  // namespace bpa::track
