@@ -220,30 +220,38 @@ void Api::archive(const Call& call) {
   call.respond(std::move(response));
 }
 
+/// The interpretation whose rank a query has, the best without; otherwise the call is answered, and
+/// this is null.
+const Interpretation* Api::interpretation(const Call& call, const KeptResult& result) {
+  const std::uint64_t rank = std::max<std::uint64_t>(1, number_of(call.request.value("rank")));
+  const auto& found = result.result.interpretations;
+  if (rank <= found.size()) return &found[rank - 1];
+  call.respond(
+      refusal(not_found("rank is ", rank, "; the result has ", found.size(), " interpretations")));
+  return nullptr;
+}
+
 void Api::outlines(const Call& call) {
   const auto result = kept(call);
   if (!result) return;
-  const std::uint64_t rank = std::max<std::uint64_t>(1, number_of(call.request.value("rank")));
-  const auto& found = result->result.interpretations;
-  if (rank > found.size()) {
-    return call.respond(refusal(
-        not_found("rank is ", rank, "; the result has ", found.size(), " interpretations")));
-  }
-  call.respond(json_response(
-      outlines_json(found[rank - 1], result->camera, links_.context.recognition->models())));
+  const Interpretation* one = interpretation(call, *result);
+  if (one == nullptr) return;
+  call.respond(
+      json_response(outlines_json(*one, result->camera, links_.context.recognition->models())));
 }
 
 void Api::score_parts(const Call& call) {
   const auto result = kept(call);
   if (!result) return;
-  const std::uint64_t rank = std::max<std::uint64_t>(1, number_of(call.request.value("rank")));
+  const Interpretation* one = interpretation(call, *result);
+  if (one == nullptr) return;
   const std::uint64_t number = number_of(call.request.value("placement"));
-  const auto& found = result->result.interpretations;
-  if (rank > found.size() || number >= found[rank - 1].placements.size()) {
-    return call.respond(refusal(not_found("there is no such placement")));
+  if (number >= one->placements.size()) {
+    return call.respond(refusal(not_found("placement is ", number, "; the interpretation has ",
+                                          one->placements.size(), " placements, from 0")));
   }
-  const Placement& placement = found[rank - 1].placements[number];
-  call.respond(json_response(score_parts_json(links_.context.recognition->score_parts(placement))));
+  call.respond(json_response(
+      score_parts_json(links_.context.recognition->score_parts(one->placements[number]))));
 }
 
 void Api::models(const Call& call) {
@@ -264,9 +272,6 @@ std::shared_ptr<const ObjectModel> Api::model(const Call& call) const {
 void Api::thumbnail(const Call& call) {
   const auto model = this->model(call);
   if (!model) return;
-  if (model->surface.normals.size() != model->surface.size()) {
-    return call.respond(refusal(not_found("the model has no normals to draw")));
-  }
   const auto png = io::encode_color_png(draw::model_thumbnail(*model, kThumbnailSide));
   if (!png.ok()) return call.respond(refusal(png.status()));
   call.respond(bytes_response(std::make_shared<const std::string>(*png), "image/png"));

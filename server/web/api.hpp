@@ -81,6 +81,7 @@ class Api {
   void record(const Call& call);
 
   std::shared_ptr<const KeptResult> kept(const Call& call) const;
+  static const Interpretation* interpretation(const Call& call, const KeptResult& result);
   std::shared_ptr<const ObjectModel> model(const Call& call) const;
   Asker asker(const Request& request) const;
   void submit_search(const Call& call, Result<DetectJob> job, const std::string& origin);

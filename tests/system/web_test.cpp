@@ -86,6 +86,15 @@ TEST_F(Web, WhatItSavesIsReadByBpaDetect) {
   const json& first = found.at("result").at("interpretations").at(0).at("placements").at(0);
   const json outlines = server.get("/api/results/" + uploaded.at("id").dump() + "/outlines");
   ASSERT_TRUE(outlines.is_array());
+  // A rank that is not there is refused in the same words everywhere.
+  const std::string of = "/api/results/" + uploaded.at("id").dump();
+  const auto no_outlines = support::http(server.port(), "GET", of + "/outlines?rank=99");
+  const auto no_score = support::http(server.port(), "GET", of + "/score?rank=99&placement=0");
+  EXPECT_EQ(no_outlines.status, 404);
+  EXPECT_NE(no_outlines.body.find("rank is 99"), std::string::npos) << no_outlines.body;
+  EXPECT_EQ(no_score.body, no_outlines.body);
+  const auto no_placement = support::http(server.port(), "GET", of + "/score?placement=50");
+  EXPECT_NE(no_placement.body.find("placement is 50"), std::string::npos) << no_placement.body;
   const auto one = std::ranges::find_if(
       outlines, [&](const json& outline) { return outline.at("model") == first.at("model"); });
   ASSERT_NE(one, outlines.end());
