@@ -20,6 +20,8 @@ constexpr int kTile = 300;  // pixels
 constexpr double kText = 0.38;
 constexpr int kColumns = 3, kRows = 3;
 constexpr int kPlot = 450, kPlotRows = 338;  // pixels
+constexpr float kDiscSpacings = 1.7f;  // radius of a disc, so that discs of the surface overlap
+constexpr float kSameSide = 0.5f;      // cosine of normals
 const cv::Scalar kBlue(40, 80, 230), kEdge(0, 190, 220);
 
 using Paint = std::function<Eigen::Vector3f(std::size_t)>;  // rgb of a surface point, in [0, 1]
@@ -32,10 +34,11 @@ Eigen::Vector3f heat(float t) {
           std::clamp(1.2f - 2.4f * t, 0.0f, 1.0f)};
 }
 
-/// An orthographic look at the model along -direction.
+/// An orthographic look at the model along -direction, `side` x `side` pixels.
 class Look {
  public:
-  Look(const ObjectModel& model, const Eigen::Vector3f& direction) : model_(model) {
+  Look(const ObjectModel& model, const Eigen::Vector3f& direction, int side = kTile)
+      : model_(model), side_(side) {
     const Eigen::Vector3f up = Eigen::Vector3f::Unit(std::abs(direction.z()) > 0.9f ? 1 : 2);
     axes_.row(2) = direction;
     axes_.row(0) = up.cross(direction).normalized();
@@ -43,31 +46,38 @@ class Look {
     Eigen::AlignedBox3f box;
     for (const Eigen::Vector3f& p : model.surface.points) box.extend(p);
     middle_ = box.center();
-    scale_ = 0.80f * kTile / static_cast<float>(model.diameter);
+    scale_ = 0.80f * static_cast<float>(side) / static_cast<float>(model.diameter);
+    radius_ = std::max(1.0f, kDiscSpacings * scale_ * mean_spacing(model.surface, kSameSide));
   }
 
   cv::Point place(const Eigen::Vector3f& p) const {
     const Eigen::Vector3f q = scale_ * (axes_ * (p - middle_));
-    return {static_cast<int>(std::lround(kTile / 2 + q.x())),
-            static_cast<int>(std::lround(kTile / 2 - q.y()))};
+    return {static_cast<int>(std::lround(side_ / 2 + q.x())),
+            static_cast<int>(std::lround(side_ / 2 - q.y()))};
   }
 
+  /// The surface of its points. Each is a disc in its tangent plane; where discs of the nearest
+  /// surface overlap, their colours are blended.
   cv::Mat draw(const Paint& paint) const {
-    cv::Mat tile(kTile, kTile, CV_8UC3, cv::Scalar(255, 255, 255));
-    cv::Mat depth(kTile, kTile, CV_32F, cv::Scalar(-1e9));
-    const int radius = std::max(1, static_cast<int>(std::ceil(0.0017f * scale_)));
-    for (std::size_t i = 0; i < model_.surface.size(); ++i) {
-      const Eigen::Vector3f n = axes_ * model_.surface.normals[i];
-      if (n.z() <= 0) continue;
-      const float z = (axes_ * model_.surface.points[i]).z();
-      const Eigen::Vector3f rgb = 255 * (0.35f + 0.65f * n.z()) * paint(i);
-      const cv::Point at = place(model_.surface.points[i]);
-      const cv::Rect cell(at.x - radius, at.y - radius, 2 * radius + 1, 2 * radius + 1);
-      const cv::Rect inside = cell & cv::Rect(0, 0, kTile, kTile);
-      if (inside.empty()) continue;
-      const cv::Mat nearer = depth(inside) < z;
-      depth(inside).setTo(z, nearer);
-      tile(inside).setTo(cv::Scalar(rgb[0], rgb[1], rgb[2]), nearer);
+    cv::Mat depth(side_, side_, CV_32F, cv::Scalar(-1e9));
+    for_each_pixel([&depth](std::size_t, int u, int v, float z, float) {
+      depth.at<float>(v, u) = std::max(depth.at<float>(v, u), z);
+    });
+    cv::Mat sum(side_, side_, CV_32FC3, cv::Scalar::all(0)),
+        weights(side_, side_, CV_32F, cv::Scalar(0));
+    for_each_pixel([&](std::size_t i, int u, int v, float z, float weight) {
+      if (z < depth.at<float>(v, u) - radius_) return;
+      const float light = 0.35f + 0.65f * axes_.row(2).dot(model_.surface.normals[i]);
+      const Eigen::Vector3f rgb = 255 * weight * light * paint(i);
+      sum.at<cv::Vec3f>(v, u) += cv::Vec3f(rgb[0], rgb[1], rgb[2]);
+      weights.at<float>(v, u) += weight;
+    });
+    cv::Mat tile(side_, side_, CV_8UC3, cv::Scalar::all(255));
+    for (int v = 0; v < side_; ++v) {
+      for (int u = 0; u < side_; ++u) {
+        const float weight = weights.at<float>(v, u);
+        if (weight > 0) tile.at<cv::Vec3b>(v, u) = sum.at<cv::Vec3f>(v, u) / weight;
+      }
     }
     return tile;
   }
@@ -94,10 +104,34 @@ class Look {
   }
 
  private:
+  /// Calls visit(point, u, v, depth, weight) for the pixels of the discs that face the viewer.
+  /// Depth is in pixels and grows towards the viewer; the weight falls from the middle of a disc.
+  void for_each_pixel(auto&& visit) const {
+    const int reach = static_cast<int>(std::ceil(radius_));
+    for (std::size_t i = 0; i < model_.surface.size(); ++i) {
+      const Eigen::Vector3f n = axes_ * model_.surface.normals[i];
+      if (n.z() <= 0) continue;
+      const cv::Point at = place(model_.surface.points[i]);
+      const float z = scale_ * axes_.row(2).dot(model_.surface.points[i]);
+      for (int dv = -reach; dv <= reach; ++dv) {
+        for (int du = -reach; du <= reach; ++du) {
+          const int u = at.x + du, v = at.y + dv;
+          if (u < 0 || v < 0 || u >= side_ || v >= side_) continue;
+          const auto x = static_cast<float>(du), y = static_cast<float>(-dv);
+          const float rise = -(n.x() * x + n.y() * y) / n.z();  // of the tangent plane
+          const float off = (x * x + y * y + rise * rise) / (radius_ * radius_);
+          if (off <= 1) visit(i, u, v, z + rise, 1.01f - off);
+        }
+      }
+    }
+  }
+
   const ObjectModel& model_;
+  const int side_;
   Eigen::Matrix3f axes_;
   Eigen::Vector3f middle_;
   float scale_ = 1;
+  float radius_ = 1;  ///< Of the discs, pixels.
 };
 
 /// The curve over edge distance (at an angle of 30 degrees) and over angle (3 cm from edges).
@@ -140,14 +174,14 @@ Paint curvature(const ObjectModel& model) {
   return [value](std::size_t i) { return heat(2.5f * value[i]); };
 }
 
-Look corner_look(const ObjectModel& model) {
-  return {model, Eigen::Vector3f(1, -1.2f, 0.9f).normalized()};
+Look corner_look(const ObjectModel& model, int side) {
+  return {model, Eigen::Vector3f(1, -1.2f, 0.9f).normalized(), side};
 }
 
 }  // namespace
 
 io::ColorImage model_thumbnail(const ObjectModel& model, int side) {
-  const Look corner = corner_look(model);
+  const Look corner = corner_look(model, 2 * side);
   cv::Mat tile = corner.draw(own_colors(model));
   corner.draw_axes(tile);
   cv::Mat small;
@@ -172,7 +206,7 @@ io::ColorImage model_sheet(const ObjectModel& model) {
     look.draw_axes(tile);
     put(tile, k, names[k]);
   }
-  const Look corner = corner_look(model);
+  const Look corner = corner_look(model, kTile);
   cv::Mat tile = corner.draw(colors);
   corner.draw_axes(tile);
   put(tile, 6, "symmetry axes");

@@ -33,6 +33,37 @@ void expect_frame_size(const io::ColorImage& image) {
   EXPECT_EQ(image.pixels.size(), 12u * kWidth * kHeight);
 }
 
+TEST(ModelThumbnail, ShadesASphereWithoutHoles) {
+  constexpr int kPoints = 3000, kSide = 200;
+  ObjectModel sphere;
+  sphere.diameter = 0.1;
+  for (int i = 0; i < kPoints; ++i) {  // a spiral from pole to pole
+    const double z = 1 - (2 * i + 1.0) / kPoints, turn = i * M_PI * (3 - std::sqrt(5.0));
+    const double r = std::sqrt(1 - z * z);
+    const Eigen::Vector3f n(static_cast<float>(r * std::cos(turn)),
+                            static_cast<float>(r * std::sin(turn)), static_cast<float>(z));
+    sphere.surface.points.push_back(0.05f * n);
+    sphere.surface.normals.push_back(n);
+  }
+  const io::ColorImage picture = model_thumbnail(sphere, kSide);
+  ASSERT_EQ(picture.width, kSide);
+  ASSERT_EQ(picture.height, kSide);
+  const double radius = 0.4 * kSide;  // it fills 80 % of the picture
+  for (int v = 0; v < kSide; ++v) {
+    for (int u = 0; u < kSide; ++u) {
+      const double off = std::hypot(u + 0.5 - kSide / 2.0, v + 0.5 - kSide / 2.0) / radius;
+      const auto color = color_at(picture, u, v);
+      if (off > 1.05) {
+        EXPECT_EQ(color[0], 255) << u << ' ' << v;
+      }
+      if (off > 0.93) continue;
+      const double facing = std::sqrt(1 - off * off);  // cosine between the normal and the view
+      EXPECT_NEAR(color[0], 255 * 0.75 * (0.35 + 0.65 * facing), 8) << u << ' ' << v;
+      EXPECT_EQ(color[0], color[2]) << "grey without colours";
+    }
+  }
+}
+
 TEST(DrawEdges, EachKindInItsColour) {
   SceneEdges edges{
       {kWidth, kHeight, RangeEdge::none}, {kWidth, kHeight, 0}, {kWidth, kHeight, 0}, {}};
