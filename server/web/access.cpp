@@ -71,6 +71,11 @@ bool is_token(const std::string& text) {
 
 bool ListenAddress::is_loopback() const { return address == "::1" || address.starts_with("127."); }
 
+std::string ListenAddress::host() const {
+  if ((address == "0.0.0.0" || address == "::") && !own_name().empty()) return own_name();
+  return address.find(':') == address.npos ? address : "[" + address + "]";
+}
+
 Result<ListenAddress> parse_listen(const std::string& text) {
   const auto wrong = [&text](const char* what) {
     return invalid_argument("web.listen is \"", text, "\": ", what,

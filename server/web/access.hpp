@@ -23,6 +23,8 @@ struct ListenAddress {
 
   /// Only this machine can connect.
   bool is_loopback() const;
+  /// As in the address of a page: the machine's name where it listens at all its addresses.
+  std::string host() const;
 };
 
 /// "[ADDRESS:]PORT", such as "8080", "0.0.0.0:8080", "[::1]:8080". A port alone is on loopback.

@@ -41,9 +41,8 @@ class OpenPage : public Page {
   }
 
   std::string address() const override {
-    const bool six = listen_.address.find(':') != std::string::npos;
-    return concat("http://", six ? "[" : "", listen_.address, six ? "]" : "", ":", server_->port(),
-                  "/", shown_token_.empty() ? "" : "#token=", shown_token_);
+    return concat("http://", listen_.host(), ":", server_->port(), "/",
+                  shown_token_.empty() ? "" : "#token=", shown_token_);
   }
 
   SourceReport report() override {

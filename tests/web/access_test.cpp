@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "tests/support/process.hpp"
 
@@ -39,6 +40,15 @@ TEST(ParseListen, AloneAPortIsForThisMachine) {
     ASSERT_FALSE(listen.ok()) << wrong;
     EXPECT_NE(listen.status().message.find("ADDRESS:PORT"), std::string::npos);
   }
+}
+
+TEST(ParseListen, TheHostOfThePageIsOneThatOthersCanOpen) {
+  char name[256] = {};
+  ASSERT_EQ(gethostname(name, sizeof name - 1), 0);
+  EXPECT_EQ(parse_listen("0.0.0.0:80")->host(), name);
+  EXPECT_EQ(parse_listen("[::]:80")->host(), name);
+  EXPECT_EQ(parse_listen("[::1]:80")->host(), "[::1]");
+  EXPECT_EQ(parse_listen("192.168.1.5:80")->host(), "192.168.1.5");
 }
 
 TEST(Token, IsRandomAndLong) {
