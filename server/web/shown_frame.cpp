@@ -53,6 +53,7 @@ std::string cloud_of(const Frame& frame) {
   }
   std::string bytes;
   append(bytes, count);
+  append(bytes, static_cast<float>(step / camera.fx));
   return bytes + points + colors;
 }
 

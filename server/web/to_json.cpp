@@ -3,6 +3,7 @@
 #include "server/web/to_json.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/concat.hpp"
 #include "core/draw/annotate.hpp"
@@ -19,8 +20,9 @@ using wire::rcl_interfaces::ParameterDescriptor;
 using wire::rcl_interfaces::ParameterType;
 using wire::rcl_interfaces::ParameterValue;
 
-/// Points of a model in the 3-D view: dense enough at the size of a hand on a laptop's screen.
-constexpr std::size_t kSurfacePoints = 4000;
+/// Points of a model in the 3-D view, 0.2 MB: dense enough to read print on a box.
+constexpr std::size_t kSurfacePoints = 12000;
+constexpr float kSameSide = 0.5f;  ///< Cosine of normals.
 
 Json values_json(const std::vector<wire::diagnostic_msgs::KeyValue>& values) {
   Json json = Json::array();
@@ -253,7 +255,7 @@ std::string surface_bytes(const ObjectModel& model) {
   const PointCloud& surface = model.surface;
   const std::size_t step = surface.size() / kSurfacePoints + 1;
   const draw::Rgb plain = draw::object_color(model.number);
-  std::string points, colors;
+  std::string points, colors, normals;
   std::uint32_t count = 0;
   const auto append = [](std::string& to, const auto& value) {
     to.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -262,10 +264,14 @@ std::string surface_bytes(const ObjectModel& model) {
     for (const float x : surface.points[i]) append(points, x);
     const auto& rgb = surface.colors.empty() ? plain : surface.colors[i];
     for (const std::uint8_t c : rgb) append(colors, c);
+    for (const float x : surface.normals[i]) {
+      append(normals, static_cast<std::int8_t>(std::lround(127 * x)));
+    }
   }
   std::string bytes;
   append(bytes, count);
-  return bytes + points + colors;
+  append(bytes, mean_spacing(surface, kSameSide) * std::sqrt(static_cast<float>(step)));
+  return bytes + points + colors + normals;
 }
 
 }  // namespace bpa::server::web

@@ -32,8 +32,9 @@ std::string models_json(const Recognition& recognition, const std::vector<std::s
 std::string findings_json(const Findings& findings, bool running);
 std::string score_parts_json(const std::vector<ScorePart>& parts);
 
-/// A model's surface in binary: u32 number of points; x y z of each as f32, metres; r g b of each
-/// as u8. Little-endian. At most 4000 points, spread over the surface.
+/// A model's surface in binary: u32 number of points; f32 distance of neighbouring ones, metres;
+/// x y z of each as f32, metres; r g b of each as u8; its normal as three i8, 127 for 1.
+/// Little-endian. At most 12000 points, spread over the surface. The model has normals.
 std::string surface_bytes(const ObjectModel& model);
 
 }  // namespace bpa::server::web

@@ -6,18 +6,21 @@
 import * as THREE from './three.module.js';
 import {bytes, on} from './api.js';
 import {$, css} from './dom.js';
-import {block, eigen} from './geometry.js';
+import {block, eigen, transform} from './geometry.js';
+import {pictureHeight, pointsMaterial, pointsOf} from './points.js';
 import {interpretation, shown, view} from './view.js';
 
-const kSurfacePointSize = 0.004;  // metres
 const kSigmas = 2;        // of the ellipsoids
 const kAxisLength = 0.06;  // metres
-const kPointSize = 0.0055;  // metres, of the cloud: about the distance of its points
+const kWordsHeight = 0.035;  // share of the picture's height, about
 const kSmallest = 0.0005;  // metres, so that an ellipsoid is seen
 
-let renderer = null, scene, camera, cloud, objects;
+let renderer = null, scene, camera, cloud;
+let objects;
+export let tracks;  // what is drawn of them, in the camera's frame
 const orbit = {yaw: 0, pitch: 0.25, distance: 1.2, target: new THREE.Vector3(0, 0, -0.9)};
 const surfaces = new Map();  // by "name@version": BufferGeometry, or null while it comes
+const textures = new Map();  // of words, by their text
 let cloudOf = 0, waiting = false, centred = false;
 
 function start() {
@@ -31,14 +34,11 @@ function start() {
   scene = new THREE.Scene();
   scene.background = new THREE.Color(0x2a3138);
   camera = new THREE.PerspectiveCamera(50, 16 / 9, 0.02, 50);
-  scene.add(new THREE.AmbientLight(0xffffff, 0.7));
-  const light = new THREE.DirectionalLight(0xffffff, 0.6);
-  light.position.set(1, 2, 3);
-  scene.add(light);
   cloud = new THREE.Group();
   objects = new THREE.Group();
+  tracks = new THREE.Group();
   // Camera frame (y down, z forward) to three.js (y up, z backward).
-  for (const group of [cloud, objects]) {
+  for (const group of [cloud, objects, tracks]) {
     group.rotation.x = Math.PI;
     scene.add(group);
   }
@@ -54,6 +54,7 @@ function render() {
   renderer.setSize(width, height, false);
   camera.aspect = width / height;
   camera.updateProjectionMatrix();
+  pictureHeight.value = canvas.height;
   const {yaw, pitch, distance, target} = orbit;
   camera.position.set(target.x + distance * Math.sin(yaw) * Math.cos(pitch),
     target.y + distance * Math.sin(pitch), target.z + distance * Math.cos(yaw) * Math.cos(pitch));
@@ -74,21 +75,10 @@ function empty(group) {
   for (const child of [...group.children]) {
     group.remove(child);
     child.traverse((part) => {
-      if (part.geometry && !part.geometry.userData?.shared && !part.geometry.shared) part.geometry.dispose();
+      if (part.geometry && !part.geometry.shared && !part.isSprite) part.geometry.dispose();
       if (part.material) part.material.dispose();
     });
   }
-}
-
-function pointsOf(buffer, Values, scale) {
-  const count = new DataView(buffer).getUint32(0, true);
-  const size = Values.BYTES_PER_ELEMENT;
-  const positions = Float32Array.from(new Values(buffer.slice(4, 4 + 3 * size * count)), (value) => scale * value);
-  const colors = Float32Array.from(new Uint8Array(buffer, 4 + 3 * size * count, 3 * count), (value) => value / 255);
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
-  geometry.setAttribute('color', new THREE.BufferAttribute(colors, 3));
-  return geometry;
 }
 
 async function fetchCloud() {
@@ -98,9 +88,8 @@ async function fetchCloud() {
   const buffer = await bytes(`/api/results/${result.id}/cloud`).catch(() => null);
   if (!buffer || cloudOf !== result.id) return;
   empty(cloud);
-  const geometry = pointsOf(buffer, Int16Array, 0.001);
-  cloud.add(new THREE.Points(geometry,
-    new THREE.PointsMaterial({size: kPointSize, vertexColors: THREE.VertexColors})));
+  const geometry = pointsOf(buffer, Int16Array, 0.001, false);
+  cloud.add(new THREE.Points(geometry, pointsMaterial(geometry)));
   if (!centred && geometry.attributes.position.count) {
     centre(geometry.attributes.position.array);
     centred = true;
@@ -124,7 +113,7 @@ async function fetchSurface(name) {
   surfaces.set(key, null);
   const buffer = await bytes(`/api/models/${name}/surface`).catch(() => null);
   if (buffer) {
-    const geometry = pointsOf(buffer, Float32Array, 1);
+    const geometry = pointsOf(buffer, Float32Array, 1, true);
     geometry.shared = true;
     surfaces.set(key, geometry);
     showObjects();
@@ -138,6 +127,41 @@ function placed(pose) {
   group.quaternion.set(x, y, z, w);
   group.position.set(...pose.translation_m);
   return group;
+}
+
+function texture(text) {
+  if (textures.has(text)) return textures.get(text);
+  const tile = document.createElement('canvas'), pen = tile.getContext('2d');
+  const font = '600 28px system-ui, sans-serif';
+  pen.font = font;
+  tile.width = Math.ceil(pen.measureText(text).width) + 12;
+  tile.height = 36;
+  pen.font = font;
+  pen.fillStyle = 'rgb(0 0 0 / 60%)';
+  pen.fillRect(0, 0, tile.width, tile.height);
+  pen.fillStyle = '#fff';
+  pen.fillText(text, 6, 27);
+  const map = new THREE.CanvasTexture(tile);
+  map.minFilter = THREE.LinearFilter;
+  textures.set(text, map);
+  return map;
+}
+
+/** Text that is seen through all before it, of one size on the screen. */
+function words(text, at) {
+  const map = texture(text), tile = map.image;
+  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({map, depthTest: false, sizeAttenuation: false}));
+  sprite.scale.set(kWordsHeight * tile.width / tile.height, kWordsHeight, 1);
+  sprite.position.copy(at);
+  sprite.renderOrder = 1;
+  return sprite;
+}
+
+/** Above the middle of a placed model's box, in the camera's frame. */
+function top(pose, {box_min: low, box_max: high}) {
+  const middle = transform(pose, low.map((value, i) => (value + high[i]) / 2));
+  const half = Math.hypot(...low.map((value, i) => high[i] - value)) / 2;
+  return new THREE.Vector3(middle[0], middle[1] - half, middle[2]);
 }
 
 /** The surface where twice the standard deviation of the position ends. */
@@ -171,22 +195,24 @@ function addPlacement(placement, i) {
   const pose = (alternative || placement).pose;
   const group = placed(pose);
   const geometry = surfaces.get(`${model.name}@${view.status?.database_version}`);
-  if (geometry) {
-    group.add(new THREE.Points(geometry, model.has_colors
-      ? new THREE.PointsMaterial({size: kSurfacePointSize, vertexColors: THREE.VertexColors})
-      : new THREE.PointsMaterial({size: kSurfacePointSize, color})));
-  }
+  if (geometry) group.add(new THREE.Points(geometry, pointsMaterial(geometry)));
   group.add(new THREE.AxesHelper(kAxisLength));
+  if (view.chosen === i) {
+    ['x', 'y', 'z'].forEach((name, k) => group.add(words(name, new THREE.Vector3().setComponent(k, 1.15 * kAxisLength))));
+  }
   const both = new THREE.Group();
-  both.add(group);
+  both.add(group, words(`${i + 1} ${model.name}`, top(pose, model)));
   if (view.chosen === i) both.add(box(pose, model, color));
   if ($('show-ellipsoids').checked && placement.covariance) both.add(ellipsoid(placement, color));
   objects.add(both);
   fetchSurface(model.name);
 }
 
-/** A box for each track; grey while it is not seen. */
-function addTracks() {
+/** A box for each track, with its name; grey, and the state in words, while it is not seen. */
+function showTracks() {
+  if (!renderer) return;
+  empty(tracks);
+  request();
   if (!view.tracks || !$('show-tracks').checked) return;
   const fromFixed = placed(view.tracks.frame_from_camera);  // tracks may be in a frame of their own
   fromFixed.updateMatrix();
@@ -195,9 +221,13 @@ function addTracks() {
   for (const track of view.tracks.tracks) {
     const model = view.models.get(track.model);
     if (!model) continue;
-    group.add(box(track.pose, model, new THREE.Color(track.state === 'confirmed' ? 0xffe94d : 0x999999)));
+    const seen = track.state === 'confirmed';
+    const one = box(track.pose, model, new THREE.Color(seen ? 0xffe94d : 0x999999));
+    one.name = track.name;
+    one.add(words(seen ? track.name : `${track.name} ${track.state}`, new THREE.Vector3(...model.box_min)));
+    group.add(one);
   }
-  objects.add(group);
+  tracks.add(group);
 }
 
 function showObjects() {
@@ -206,8 +236,7 @@ function showObjects() {
   (interpretation()?.placements || []).forEach((placement, i) => {
     if (shown(placement)) addPlacement(placement, i);
   });
-  addTracks();
-  request();
+  showTracks();
 }
 
 function turn(yaw, pitch) {
@@ -276,7 +305,7 @@ if (start()) {
     fetchCloud();
     showObjects();
   });
-  on('figures', () => { if (view.tracks) showObjects(); });
+  on('figures', () => { if (view.tracks || tracks.children.length) showTracks(); });
   on('redraw', request);
   window.addEventListener('resize', request);
   $('show-cloud').addEventListener('change', () => {
@@ -285,5 +314,5 @@ if (start()) {
     request();
   });
   $('show-ellipsoids').addEventListener('change', showObjects);
-  on('anew', () => { cloudOf = 0; surfaces.clear(); });
+  on('anew', () => { cloudOf = 0; surfaces.clear(); textures.clear(); });
 }
