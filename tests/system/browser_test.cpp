@@ -134,6 +134,50 @@ TEST_F(Page, ShowsTracksWhileTheyAreWanted) {
   EXPECT_EQ(browser->errors(), std::vector<std::string>());
 }
 
+TEST_F(Page, PutsInterpretationsThatHoldTheSameTogether) {
+  // A box that looks the same when it is turned by 180 degrees about the z axis of its middle, and
+  // a can that turns freely about z.
+  const json models = {{{"name", "box"},
+                        {"box_min", {0, 0, 0}},
+                        {"box_max", {0.1, 0.1, 0.2}},
+                        {"symmetry_turns_wxyz", {{0, 0, 0, 1}}},
+                        {"symmetry_axes", json::array()}},
+                       {{"name", "can"},
+                        {"box_min", {-0.03, -0.03, 0}},
+                        {"box_max", {0.03, 0.03, 0.1}},
+                        {"symmetry_turns_wxyz", json::array()},
+                        {"symmetry_axes", {{0, 0, 1}}}}};
+  const auto at = [](const char* model, const json& position, const json& rotation) {
+    return json{{"model", model},
+                {"pose", {{"translation_m", position}, {"rotation_wxyz", rotation}}}};
+  };
+  const json upright = {1, 0, 0, 0}, half_turn = {0, 0, 0, 1}, quarter_turn = {0.6, 0, 0, 0.8};
+  const json box = at("box", {0, 0, 1}, upright), can = at("can", {0.3, 0, 1}, upright);
+  const auto of = [](int rank, double probability, const json& placements) {
+    return json{{"rank", rank}, {"probability", probability}, {"placements", placements}};
+  };
+  const json interpretations = {
+      of(1, 0.49, {box, can}),
+      of(2, 0.001, {at("box", {0, 0, 1}, quarter_turn), can}),
+      of(3, 0.42,
+         {at("can", {0.304, 0, 1}, quarter_turn), at("box", {0.1, 0.1, 1.004}, half_turn)}),
+      of(4, 0.01, {box, at("can", {0.3, 0, 1.02}, upright)}),
+      of(5, 0.079, json::array({box})),
+  };
+  const json readings = browser->run(
+      "const models = new Map(arguments[1].map((model) => [model.name, model]));"
+      "return import('/readings.js').then(({readings}) => readings(arguments[0], models)"
+      "  .map((one) => [one.members.map((member) => member.rank), one.probability]));",
+      {interpretations, models});
+  ASSERT_EQ(readings.size(), 4U) << readings;
+  const json ranks = {{1, 3}, {5}, {4}, {2}};
+  const double probabilities[] = {0.91, 0.079, 0.01, 0.001};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(readings[i][0], ranks[i]);
+    EXPECT_NEAR(readings[i][1].get<double>(), probabilities[i], 1e-9);
+  }
+}
+
 TEST_F(Page, SearchesTheRegionThatIsDrawn) {
   browser->click("#draw-region");
   browser->drag("#color", 0.2, 0.2, 0.8, 0.8);

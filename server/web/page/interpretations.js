@@ -5,40 +5,53 @@
 import {get, on} from './api.js';
 import {$, choosable, css, guarded, make, percent} from './dom.js';
 import {uncertainty} from './geometry.js';
+import {kSameDegrees, kSamePlace, readings, samePlacement} from './readings.js';
 import {choosePlacement, chooseRank, interpretation, shown, view} from './view.js';
 
 const kLeast = 0.005;     // log odds that are shown
-const kSamePlace = 0.01;  // metres
-const kSameTurn = 0.995;  // |dot| of quaternions, 11 degrees
-
-function samePose(a, b) {
-  const apart = Math.hypot(...a.pose.translation_m.map((value, i) => value - b.pose.translation_m[i]));
-  const dot = a.pose.rotation_wxyz.reduce((sum, value, i) => sum + value * b.pose.rotation_wxyz[i], 0);
-  return apart < kSamePlace && Math.abs(dot) > kSameTurn;
-}
-
 /** The objects of the first interpretation; of another, how it differs from that. */
 function describe(one, first) {
   const names = (placements) => placements.map((placement) => placement.model).join(', ');
   const visible = one.placements.filter(shown);
   if (one === first) return visible.length ? names(visible) : 'nothing known';
-  const in_ = (placement, list) => list.some((other) => other.model === placement.model && samePose(placement, other));
+  const in_ = (placement, list) => list.some((other) => samePlacement(placement, other, view.models));
   const more = visible.filter((placement) => !in_(placement, first.placements));
   const fewer = first.placements.filter((placement) => shown(placement) && !in_(placement, one.placements));
   const moved = more.filter((placement) => fewer.some((other) => other.model === placement.model));
   const only = (list) => list.filter((placement) => !moved.some((other) => other.model === placement.model));
   const words = [[only(fewer), 'without'], [only(more), 'with'], [moved, 'another pose of']]
     .filter(([list]) => list.length).map(([list, word]) => `${word} ${names(list)}`);
-  return words.length ? `as 1, ${words.join(', ')}` : 'as 1, poses nearly the same';
+  return words.length ? `as rank 1, ${words.join(', ')}` : 'as rank 1, poses nearly the same';
+}
+
+const kMeaning = `A line is a set of objects in their poses. Interpretations whose poses differ by less than
+  ${100 * kSamePlace} cm and ${kSameDegrees}° share a line. Its percentage is their sum, among all that are listed. Rank 1
+  comes first, the other lines by falling percentage. Ranks are those of results and topics. Rank 1 has the best score. Each next rank holds a pose that no rank before it holds, however
+  improbable. The remaining ranks follow by falling score. The probability of one object stands beside its name
+  below.`;
+
+function option(one, kind, probability, text, ranks) {
+  return make('div', {role: 'option', class: kind, 'data-rank': one.rank,
+    'aria-selected': String(one.rank === view.rank), click: () => chooseRank(one.rank)},
+  make('span', {class: 'number'}, percent(probability)), ` ${text} `, make('small', {}, ranks));
+}
+
+/** The lines of one reading: its first interpretation and, while one of them is shown, the others. */
+function lines({probability, members}, first) {
+  const [one, ...others] = members;
+  const open = members.some((member) => member.rank === view.rank);
+  const ranks = members.map((member) => member.rank);
+  const few = ranks.length > 6 ? `${ranks.slice(0, 5).join(', ')} … ${ranks.at(-1)}` : ranks.join(', ');
+  return [option(one, 'line', probability, describe(one, first), `${others.length ? 'ranks' : 'rank'} ${few}`),
+    ...(open ? others.map((other) => option(other, 'like', other.probability, 'of it, nearly the same poses', `rank ${other.rank}`)) : [])];
 }
 
 function showRanks() {
   const all = view.result ? view.result.result.interpretations : [];
   $('of-result').textContent = view.result
     ? `of result ${view.result.id}, ${view.result.origin}${view.pinned ? ', held' : ''}` : '';
-  $('interpretations').replaceChildren(...all.map((one) => make('div', {role: 'option', 'data-rank': one.rank,
-    'aria-selected': String(one.rank === view.rank), click: () => chooseRank(one.rank)},
-  `${one.rank}. ${percent(one.probability)}: ${describe(one, all[0])}`)));
+  $('interpretations').replaceChildren(...readings(all, view.models, shown).flatMap((reading) => lines(reading, all[0])));
+  $('meaning').textContent = kMeaning;
 }
 
 function bar(value, most) {
