@@ -15,9 +15,10 @@ export function make(name, attributes = {}, ...children) {
 }
 
 let hide = 0;
-/** Says what went wrong, or that something is done, for a while. */
-export function notice(text) {
-  $('notice').textContent = text;
+/** Says what went wrong (bad), or that something is done, for a while. */
+export function notice(text, bad = false) {
+  $('notice').textContent = bad ? `✗ ${text}` : text;
+  $('notice').classList.toggle('bad', bad);
   $('notice').hidden = !text;
   clearTimeout(hide);
   hide = setTimeout(() => { $('notice').hidden = true; }, 12000);
@@ -28,7 +29,7 @@ export async function guarded(work) {
   try {
     return await work();
   } catch (error) {
-    notice(error.message);
+    notice(error.message, true);
     return undefined;
   }
 }

@@ -9,6 +9,7 @@ import {view} from './view.js';
 const kPeriod = 1000;  // ms
 const kLines = 500;
 const kBars = 80;
+const kAxis = 20;  // pixels below the bars
 const kLevels = ['debug', 'info', 'warning', 'error'];
 const kStates = [['✓ OK', 'good'], ['⚠ warning', 'warn'], ['✗ error', 'bad'], ['✗ stale', 'bad']];
 const kColors = ['#0072b2', '#e69f00', '#009e73', '#cc79a7', '#56b4e9', '#d55e00', '#f0e442', '#999999'];  // Okabe and Ito's
@@ -36,7 +37,7 @@ function showLog() {
 }
 
 /** Patterns as well as colours tell the stages apart. */
-function pattern(context, i) {
+function pattern(i) {
   const tile = document.createElement('canvas');
   tile.width = tile.height = 8;
   const pen = tile.getContext('2d');
@@ -47,7 +48,7 @@ function pattern(context, i) {
   if (i % 3 === 1) { pen.moveTo(0, 8); pen.lineTo(8, 0); }
   if (i % 3 === 2) { pen.moveTo(4, 0); pen.lineTo(4, 8); }
   pen.stroke();
-  return context.createPattern(tile, 'repeat');
+  return tile;
 }
 
 function showStages() {
@@ -58,12 +59,12 @@ function showStages() {
   const time = (one, wantedName) => (one.stages.find(([name]) => name === wantedName) || [])[1] || 0;
   const total = (one) => one.stages.reduce((sum, [, ms]) => sum + ms, 0);
   const most = Math.max(1, ...results.map(total));
-  const fills = names.map((_, i) => pattern(context, i));
+  const fills = names.map((_, i) => context.createPattern(pattern(i), 'repeat'));
   const step = (width - 60) / kBars;
   results.forEach((one, column) => {
-    let y = height - 4;
+    let y = height - kAxis;
     names.forEach((name, i) => {
-      const tall = time(one, name) / most * (height - 24);
+      const tall = time(one, name) / most * (height - kAxis - 20);
       context.fillStyle = fills[i];
       context.fillRect(56 + column * step, y - tall, Math.max(1, step - 1), tall);
       y -= tall;
@@ -72,11 +73,17 @@ function showStages() {
   context.fillStyle = getComputedStyle(document.body).color;
   context.font = '12px system-ui, sans-serif';
   context.fillText(`${Math.round(most)} ms`, 4, 18);
-  context.fillText('0', 4, height - 6);
+  context.fillText('0', 4, height - kAxis);
   const newest = results.at(-1);
+  for (const column of new Set([0, results.length - 1])) {  // the times of the first and of the last bar
+    if (column < 0) continue;
+    const text = new Date(results[column].came_ns / 1e6).toLocaleTimeString();
+    const x = 56 + column * step, wide = context.measureText(text).width;
+    if (column === 0 || x - wide > 56 + wide) context.fillText(text, column ? x + step - wide : x, height - 5);
+  }
   $('stage-legend').replaceChildren(...names.map((name, i) => {
-    const swatch = make('span', {class: 'swatch'});
-    swatch.style.background = kColors[i % kColors.length];
+    const swatch = pattern(i);
+    swatch.className = 'swatch';
     return make('span', {}, swatch, `${name} ${time(newest, name).toFixed(1)} ms`);
   }));
   canvas.dataset.bars = results.length;
