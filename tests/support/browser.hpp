@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -62,22 +63,21 @@ class Browser {
       throw std::runtime_error("there is nothing to click at " + selector);
     }
   }
-  /// Drags the mouse between two points of an element, in shares of its size.
-  void drag(const std::string& selector, double x0, double y0, double x1, double y1) {
+  /// Drags the mouse over points of an element, in shares of its size.
+  void drag(const std::string& selector, const std::vector<std::array<double, 2>>& points) {
     const Json box =
         run("const e = document.querySelector(arguments[0]); e.scrollIntoView({block: 'center'});"
             "const b = e.getBoundingClientRect(); return [b.left, b.top, b.width, b.height];",
             {selector});
-    const auto at = [&box](double x, double y, int duration) {
-      return Json{{"type", "pointerMove"},
-                  {"duration", duration},
-                  {"x", static_cast<int>(box[0].get<double>() + x * box[2].get<double>())},
-                  {"y", static_cast<int>(box[1].get<double>() + y * box[3].get<double>())}};
-    };
-    const Json steps = {at(x0, y0, 0),
-                        {{"type", "pointerDown"}, {"button", 0}},
-                        at(x1, y1, 200),
-                        {{"type", "pointerUp"}, {"button", 0}}};
+    Json steps = Json::array();
+    for (const auto& [x, y] : points) {
+      steps.push_back({{"type", "pointerMove"},
+                       {"duration", steps.empty() ? 0 : 200},
+                       {"x", static_cast<int>(box[0].get<double>() + x * box[2].get<double>())},
+                       {"y", static_cast<int>(box[1].get<double>() + y * box[3].get<double>())}});
+      if (steps.size() == 1) steps.push_back({{"type", "pointerDown"}, {"button", 0}});
+    }
+    steps.push_back({{"type", "pointerUp"}, {"button", 0}});
     in_session("POST", "/actions",
                {{"actions", {{{"type", "pointer"}, {"id", "mouse"}, {"actions", steps}}}}});
   }
@@ -87,6 +87,12 @@ class Browser {
         in_session("POST", "/element", {{"using", "css selector"}, {"value", selector}});
     in_session("POST", "/element/" + element.begin()->get<std::string>() + "/value",
                {{"text", text}});
+  }
+  /// Presses and lets go a key of the element that has the focus, as WebDriver writes keys.
+  void press(const std::string& key) {
+    const Json steps = {{{"type", "keyDown"}, {"value", key}}, {{"type", "keyUp"}, {"value", key}}};
+    in_session("POST", "/actions",
+               {{"actions", {{{"type", "key"}, {"id", "keys"}, {"actions", steps}}}}});
   }
   /// As a screen of this size, a phone's where it is narrow.
   void resize(int width, int height, bool dark = false) {

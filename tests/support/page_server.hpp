@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <regex>
 #include <string>
@@ -13,6 +14,7 @@
 
 #include "tests/support/http_client.hpp"
 #include "tests/support/process.hpp"
+#include "tests/system/openni/sim_sensor.hpp"
 
 namespace bpa::support {
 
@@ -39,17 +41,34 @@ struct SimulatedFrames {
   }
 };
 
-/// bpa-server with a page, whose camera is the simulated frames over and over, in this test's
-/// domain and namespace.
+/// The folder of a simulated OpenNI2 sensor that shows the first simulated frame at 30 Hz.
+inline std::string sensor_of_one_frame() {
+  namespace fs = std::filesystem;
+  const std::string folder = scratch_folder() + "/sensor";
+  fs::remove_all(folder);
+  fs::copy(SimulatedFrames::get().frames, folder, fs::copy_options::recursive);
+  fs::remove_all(folder + "/test/000002");
+  set_sensor(folder);
+  return folder;
+}
+
+/// bpa-server with a page, in this test's domain and namespace. Its camera is the simulated frames
+/// over and over, or the simulated sensor of a folder.
 class PageServer {
  public:
-  explicit PageServer(const std::string& listen = "0", std::vector<std::string> more = {})
+  explicit PageServer(const std::string& listen = "0", const std::vector<std::string>& more = {},
+                      const std::string& sensor = "")
       : log_path_(scratch_folder() + "/page_server.log") {
     const SimulatedFrames& simulated = SimulatedFrames::get();
-    command_ = own_command("bpa-server",
-                           {"--library", simulated.library, "--capture", "bop:" + simulated.frames,
-                            "--set", "capture.loop=true", "--set", "capture.speed=0.2"});
+    command_ = own_command("bpa-server", {"--library", simulated.library});
+    if (sensor.empty()) {
+      command_.insert(command_.end(), {"--capture", "bop:" + simulated.frames, "--set",
+                                       "capture.loop=true", "--set", "capture.speed=0.2"});
+    } else {
+      command_.insert(command_.end(), {"--capture", "openni2"});
+    }
     command_.insert(command_.end(), more.begin(), more.end());
+    if (!sensor.empty()) command_ = with_sensor(sensor, command_);
     start(listen);
   }
 

@@ -1,76 +1,31 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/support/browser.hpp"
-
-#include <filesystem>
 #include <fstream>
 #include <set>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/page_server.hpp"
+#include "idl/wire/messages.hpp"
+#include "idl/wire/publisher.hpp"
+#include "tests/support/page_test.hpp"
 
-// The page in a browser, before a real server that is fed by a data set. Pictures of it are left in
-// the build tree, tests/page/.
+// The page in a browser, before a real server that is fed by a data set or a simulated sensor.
 
 namespace bpa {
 namespace {
 
 using nlohmann::json;
 using std::chrono::seconds;
-using support::Browser;
-using support::PageServer;
+using AnyPage = support::PageTest;
 
-std::string decoded_base64(const std::string& text) {
-  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  unsigned value = 0;
-  int bits = 0;
-  for (const char c : text) {
-    const std::size_t digit = digits.find(c);
-    if (digit == std::string::npos) break;
-    value = value << 6U | static_cast<unsigned>(digit);
-    bits += 6;
-    if (bits < 8) continue;
-    bits -= 8;
-    bytes += static_cast<char>(value >> static_cast<unsigned>(bits) & 0xffU);
-  }
-  return bytes;
-}
-
-class Page : public testing::Test {
+/// The simulated frames are shown over and over.
+class Page : public AnyPage {
  protected:
   void SetUp() override {
-    if (!Browser::is_installed()) GTEST_SKIP() << "chromium-driver is not installed";
-    ASSERT_TRUE(support::SimulatedFrames::get().made);
-    server = std::make_unique<PageServer>();
-    ASSERT_GT(server->port(), 0) << server->log();
-    browser = std::make_unique<Browser>();
-    browser->open(server->address());
-    ASSERT_TRUE(browser->becomes(kHasObjects)) << server->log();
+    AnyPage::SetUp();
+    if (!IsSkipped()) open();
   }
-
-  /// What the placements' cards say, by name.
-  std::set<std::string> shown() {
-    return browser->run(
-        "return [...document.querySelectorAll('#placements h3 button')].map(b => b.textContent);");
-  }
-  void save(const std::string& name) {
-    const std::string folder = BPA_BINARY_DIR "/tests/page";
-    std::filesystem::create_directories(folder);
-    std::ofstream(folder + "/" + name + ".png", std::ios::binary)
-        << decoded_base64(browser->screenshot());
-  }
-  bool connection_is(const std::string& state) {
-    return browser->becomes(
-        "return document.getElementById('connection').dataset.state === arguments[0];", {state});
-  }
-
-  static constexpr const char* kHasObjects =
-      "return document.querySelectorAll('#placements .placement').length > 0;";
-  std::unique_ptr<PageServer> server;
-  std::unique_ptr<Browser> browser;
 };
 
 TEST_F(Page, ShowsWhatTheServerFound) {
@@ -178,9 +133,104 @@ TEST_F(Page, PutsInterpretationsThatHoldTheSameTogether) {
   }
 }
 
+TEST_F(AnyPage, DrawsTracksOfAFixedFrameWhereTheCameraSeesThem) {
+  auto robot = support::test_participant("robot");
+  ASSERT_TRUE(robot.ok());
+  auto transforms = wire::Publisher<wire::tf2_msgs::TFMessage>::create(
+      *robot, "tf_static", {wire::qos::static_transforms()});
+  ASSERT_TRUE(transforms.ok());
+  wire::tf2_msgs::TFMessage mount;  // far from where the camera is in its own frame, and turned
+  mount.transforms.resize(1);
+  mount.transforms[0].header.frame_id = "map";
+  mount.transforms[0].child_frame_id = "camera_color_optical_frame";
+  mount.transforms[0].transform.translation = {1.5, -2, 0.7};
+  mount.transforms[0].transform.rotation = {0.1, -0.5, 0.7, 0.5};
+  ASSERT_TRUE(transforms->publish(mount).ok());
+  open({"--set", "tracking.fixed_frame=map", "--set", "tracking.tf_wait_ms=1000", "--set",
+        "input.tf=tf", "--set", "input.tf_static=tf_static", "--set", "web.rate_hz=2"},
+       support::sensor_of_one_frame());
+  browser->click("#show-tracks");
+  ASSERT_TRUE(
+      browser->becomes("return [...document.querySelectorAll('[data-track]')]"
+                       ".filter(row => row.innerText.includes('confirmed')).length > 1;",
+                       json::array(), seconds(60)))
+      << browser->run("return document.getElementById('tracks').innerText;") << server->log();
+  browser->click("#timeline [role=option]:last-child");  // held
+  // Where the 3-D view has them; its y and z axes are against the camera's.
+  const json drawn = browser->run(
+      "return import('/view3d.js').then(({tracks}) => {"
+      "  const found = {};"
+      "  tracks.updateMatrixWorld(true);"
+      "  tracks.traverse((one) => {"
+      "    const m = one.matrixWorld.elements;"
+      "    if (one.name) found[one.name] = [m[12], -m[13], -m[14]];"
+      "  });"
+      "  return found;"
+      "});");
+  const std::string id =
+      browser->run("return document.querySelector('#timeline [aria-selected=true]').dataset.id;");
+  const json result = server->get("/api/results/" + id);
+  ASSERT_FALSE(result.is_null());
+  int compared = 0;
+  for (const json& placement : result["result"]["interpretations"][0]["placements"]) {
+    const auto track = drawn.find(placement["model"].get<std::string>() + "_1");
+    if (track == drawn.end()) continue;
+    const json& camera = placement["pose"]["translation_m"];
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_NEAR((*track)[i].get<double>(), camera[i].get<double>(), 0.02) << drawn << placement;
+    }
+    ++compared;
+  }
+  EXPECT_GT(compared, 1) << drawn;
+  browser->run("document.getElementById('space').scrollIntoView(); return true;");
+  save("laptop_tracks");
+  EXPECT_EQ(browser->errors(), std::vector<std::string>());
+}
+
+TEST_F(AnyPage, RecordsTheServersCamera) {
+  const std::string folder = support::sensor_of_one_frame();
+  open({"--set", "capture.record_folder=" + folder}, folder);
+  browser->click("#open-more");
+  browser->run("document.getElementById('record-path').value = 'page.oni'; return true;");
+  const auto says = [this](const std::string& words) {
+    return browser->becomes(
+        "return document.getElementById('notice').textContent.includes(arguments[0]);", {words});
+  };
+  browser->click("#record-start");
+  ASSERT_TRUE(says("Recording to " + folder + "/page.oni")) << server->log();
+  save("laptop_recording");
+  browser->click("#record-start");  // there is one already
+  EXPECT_TRUE(browser->becomes(
+      "return !document.getElementById('notice').textContent.includes('Recording to');"));
+  browser->click("#record-stop");
+  ASSERT_TRUE(says(" frames, ")) << server->log();
+  const int frames = std::stoi(
+      browser->run("return document.getElementById('notice').textContent;").get<std::string>());
+  EXPECT_GT(frames, 3);
+  server->stop();
+
+  // What OpenNI2 reads of it: as many frames, with the sensor's pixels.
+  const std::string log = support::scratch_folder() + "/look.log";
+  ASSERT_EQ(support::run(support::with_sensor(
+                             "", {BPA_BINARY_DIR "/tests/openni2_look", folder + "/page.oni", "3"}),
+                         log),
+            0)
+      << support::read_text(log);
+  const std::string count = std::to_string(frames);
+  EXPECT_NE(support::read_text(log).find("holds " + count + " depth and " + count + " color"),
+            std::string::npos)
+      << frames << support::read_text(log);
+  const auto depth = io::read_gray_png(folder + "/test/000001/depth/000000.png");
+  ASSERT_TRUE(depth.ok()) << depth.status().message;
+  const auto middle = static_cast<std::size_t>(depth->height / 2 * depth->width + depth->width / 2);
+  EXPECT_NE(support::read_text(log).find("middle " + std::to_string(depth->pixels[middle])),
+            std::string::npos)
+      << depth->pixels[middle] << support::read_text(log);
+}
+
 TEST_F(Page, SearchesTheRegionThatIsDrawn) {
   browser->click("#draw-region");
-  browser->drag("#color", 0.2, 0.2, 0.8, 0.8);
+  browser->drag("#color", {{0.2, 0.2}, {0.8, 0.8}});
   ASSERT_TRUE(browser->becomes(
       "return document.getElementById('of-result').textContent.includes('region');"))
       << server->log();
@@ -197,9 +247,61 @@ TEST_F(Page, SearchesTheRegionThatIsDrawn) {
     EXPECT_LT(x, 0.9);
   }
   browser->click("#draw-mask");
-  browser->drag("#depth", 0.1, 0.1, 0.9, 0.5);
-  // Two corners are no mask: the page says so.
+  browser->drag("#depth", {{0.1, 0.1}, {0.9, 0.1}, {0.9, 0.9}, {0.1, 0.9}});
+  ASSERT_TRUE(browser->becomes(
+      "return document.querySelector('#timeline [aria-selected=true]').dataset.id > arguments[0];",
+      {id}))
+      << server->log();
+  EXPECT_FALSE(shown().empty());
+  browser->click("#draw-mask");
+  browser->drag("#depth", {{0.1, 0.1}, {0.1, 0.1}});
+  // One corner is no mask: the page says so.
   EXPECT_TRUE(browser->becomes("return !document.getElementById('notice').hidden;"));
+}
+
+TEST_F(Page, PausesSearchesOneFrameAndGoesOn) {
+  const auto figure_is = [this](const char* words) {
+    return browser->becomes(
+        "return document.querySelector('[data-figure=State]').textContent === arguments[0];",
+        {words});
+  };
+  browser->click("#pause");
+  EXPECT_TRUE(figure_is("paused"));
+  browser->click("#one-frame");
+  EXPECT_TRUE(browser->becomes(
+      "return document.getElementById('of-result').textContent.includes('next frame');"));
+  browser->click("#pause");
+  EXPECT_TRUE(figure_is("running"));
+}
+
+TEST_F(Page, SearchesTheFilesThatAreUploaded) {
+  const std::string scene = support::SimulatedFrames::get().frames + "/test/000001";
+  browser->click("#pause");
+  browser->click("#open-more");
+  browser->type("#upload-depth", scene + "/depth/000000.png");
+  browser->type("#upload-color", scene + "/rgb/000000.png");
+  const json cameras = json::parse(support::read_text(scene + "/scene_camera.json"));
+  const std::string camera = support::scratch_folder() + "/camera.json";
+  std::ofstream(camera) << cameras.at("0");
+  browser->type("#upload-camera", camera);
+  browser->click("#upload");
+  EXPECT_TRUE(browser->becomes(
+      "return document.getElementById('of-result').textContent.includes('upload');"))
+      << server->log();
+  EXPECT_FALSE(shown().empty());
+}
+
+TEST_F(AnyPage, AsksForTheTokenThatOnlyTheTerminalHas) {
+  open({}, "", "0.0.0.0:0");  // at the address that the server printed
+  EXPECT_EQ(browser->run("return location.hash;"), "");
+  browser->open("http://127.0.0.1:" + std::to_string(server->port()));  // has no token
+  EXPECT_TRUE(connection_is("token"));
+  EXPECT_TRUE(shown().empty());
+  const std::string& address = server->address();
+  browser->type("#token", address.substr(address.find('=') + 1));
+  browser->click("#token-form button");
+  EXPECT_TRUE(connection_is("connected"));
+  EXPECT_TRUE(browser->becomes(kHasObjects)) << server->log();
 }
 
 TEST_F(Page, UnloadsAndLoadsAModel) {
@@ -284,11 +386,21 @@ TEST_F(Page, FitsAnyScreen) {
     browser->run("window.scrollTo(0, 0); return new Promise(r => setTimeout(r, 500));");
     save(screen.name);
   }
-  // The keyboard alone: from tab to tab.
-  browser->run(
-      "document.getElementById('tab-live').focus();"
-      "document.getElementById('tab-live').dispatchEvent("
-      "new KeyboardEvent('keydown', {key: 'ArrowRight', bubbles: true})); return true;");
+}
+
+TEST_F(Page, IsUsedByTheKeyboardAlone) {
+  constexpr const char* kRight = "\uE014";
+  constexpr const char* kDown = "\uE015";
+  const auto focus = [this](const char* id) {
+    browser->run("document.getElementById(arguments[0]).focus(); return true;", {id});
+  };
+  focus("interpretations");
+  browser->press(kDown);
+  EXPECT_TRUE(browser->becomes(
+      "const all = [...document.querySelectorAll('#interpretations [role=option]')];"
+      "return all[1].getAttribute('aria-selected') === 'true';"));
+  focus("tab-live");
+  browser->press(kRight);
   EXPECT_TRUE(browser->becomes("return document.activeElement.id === 'tab-models';"));
 }
 

@@ -3,8 +3,8 @@
 // A program like OpenNI2's own samples and viewers, on nothing but its API: what does OpenNI2
 // itself make of a device?
 //   openni2_look URI [FRAMES [FILE.oni]]
-// Prints name and modes, reads frames of depth and colour, and records them with OpenNI2's
-// recorder.
+// Prints name and modes, how many frames a recording holds, reads frames of depth and colour, and
+// records them with OpenNI2's recorder.
 #include <cstdio>
 #include <cstdlib>
 
@@ -67,6 +67,10 @@ int main(int argc, char** argv) {
   openni::VideoStream depth, color;
   if (!open(device, openni::SENSOR_DEPTH, "depth", depth)) return fail("depth");
   open(device, openni::SENSOR_COLOR, "color", color);
+  if (openni::PlaybackControl* recording = device.getPlaybackControl()) {
+    std::printf("holds %d depth and %d color frames\n", recording->getNumberOfFrames(depth),
+                color.isValid() ? recording->getNumberOfFrames(color) : 0);
+  }
   if (device.isImageRegistrationModeSupported(openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR)) {
     device.setImageRegistrationMode(openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR);
     std::printf("registration %d\n", device.getImageRegistrationMode());
