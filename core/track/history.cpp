@@ -10,8 +10,8 @@
 namespace bpa::track {
 namespace {
 
-constexpr double kKept_s = 4;  // images
-constexpr double kKeptEvery_s = 0.06;
+constexpr double kKept_s = 2.5;  // images
+constexpr double kKeptEvery_s = 0.03;
 constexpr int kCoarseStep_px = 8;  // between depths that are compared with another frame's
 
 }  // namespace

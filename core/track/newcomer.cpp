@@ -5,13 +5,34 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
+
+#include "core/track/observe.hpp"
 
 namespace bpa::track {
 namespace {
 
+constexpr double kPart_m = 0.15;  // around the object: what is looked at of a frame. By hand.
+
 void follow_to(const View& view, std::int64_t from_ns, Body& body) {
   predict(seconds(view.frame.stamp_ns - from_ns), body);
   correct(view, body);
+}
+
+// `newest` is a view of another frame: sensor, background and layers are the same.
+void follow_through(const KeptFrame& kept, const View& newest, std::int64_t from_ns, Body& body) {
+  const Frame& frame = *kept.frame;
+  predict(seconds(frame.stamp_ns - from_ns), body);
+  const Pose camera_from_newest = kept.frame_from_camera.inverse() * newest.frame_from_camera;
+  std::vector<Plane> background;
+  for (const Plane& plane : newest.scene.planes) {
+    background.push_back(transformed(camera_from_newest, plane));
+  }
+  const Pose camera_from_object = kept.frame_from_camera.inverse() * body.motion.pose();
+  const auto part = surroundings(frame, *body.model, camera_from_object, kPart_m);
+  const SceneFeatures scene =
+      part ? observe_part(frame, *part, newest.scene.map.sensor, background) : SceneFeatures();
+  correct({frame, scene, kept.frame_from_camera, newest.layers}, body);
 }
 
 }  // namespace
@@ -39,7 +60,8 @@ void Newcomer::begin() {
   at_ns_ = stamp_ns_;
 }
 
-Newcomer::Progress Newcomer::step(std::span<const View> kept, bool last, const View& newest) {
+Newcomer::Progress Newcomer::step(std::span<const KeptFrame> since, const View& newest,
+                                  std::size_t most) {
   const std::int64_t now = newest.frame.stamp_ns;
   if (!body_) {
     begin();
@@ -51,12 +73,12 @@ Newcomer::Progress Newcomer::step(std::span<const View> kept, bool last, const V
       return Progress::arrived;
     }
   }
-  for (const View& view : kept) {
-    if (view.frame.stamp_ns <= at_ns_) continue;
-    follow_to(view, at_ns_, *body_);
-    at_ns_ = view.frame.stamp_ns;
+  for (const KeptFrame& kept : since) {
+    if (kept.frame->stamp_ns <= at_ns_) continue;
+    if (most-- == 0) return Progress::on_the_way;
+    follow_through(kept, newest, at_ns_, *body_);
+    at_ns_ = kept.frame->stamp_ns;
   }
-  if (!last) return Progress::on_the_way;
   follow_to(newest, at_ns_, *body_);
   if (body_->sight != Sight::absent) return Progress::arrived;
   body_.reset();

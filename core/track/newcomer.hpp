@@ -25,9 +25,8 @@ class Newcomer {
   Newcomer(Placement found, std::shared_ptr<const ObjectModel> model, std::uint64_t track,
            const FrameRecord& then);
 
-  /// Goes through those of the views that are later than what it has come to, and on to the newest
-  /// if these were the last of `kept` ones.
-  Progress step(std::span<const View> kept, bool last, const View& newest);
+  /// Goes through at most `most` of the frames since, and on to the newest if these were the last.
+  Progress step(std::span<const KeptFrame> since, const View& newest, std::size_t most);
 
   std::uint64_t track() const { return track_; }
   const Placement& found() const { return found_; }

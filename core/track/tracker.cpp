@@ -33,8 +33,8 @@ constexpr double kNotFound = -1;    // of a search that should find it and does 
 constexpr double kOtherFound = -3;  // of one that finds another object in its place
 constexpr double kEnds = -1;
 constexpr int kNewlySeen = 15;  // alignments since it came into sight
-// Newcomers that a frame brings on, and frames that they go through then.
-constexpr std::size_t kReceivedAtOnce = 4, kStepsAFrame = 3;
+// Newcomers that a frame brings on, and frames that each goes through then.
+constexpr std::size_t kReceivedAtOnce = 4, kStepsAFrame = 6;
 constexpr int kMostRested = 9;  // frames in a row in which resting objects are not aligned
 
 }  // namespace
@@ -60,17 +60,15 @@ struct Tracker::State {
   std::uint64_t last_id = 0;
   std::map<std::string, int> born_of_model;
 
-  SceneFeatures observe(const Frame& frame, const Pose& from_camera) const {
-    std::vector<Plane> planes;
-    for (const Plane& plane : background.planes()) {
-      planes.push_back(transformed(from_camera.inverse(), plane));
-    }
-    return track::observe(frame, *sensor, planes, options.num_threads);
-  }
-
   // The newest frame. It is observed once, if at all.
   View view(const Frame& frame) {
-    if (!scene) scene = observe(frame, frame_from_camera);
+    if (!scene) {
+      std::vector<Plane> planes;
+      for (const Plane& plane : background.planes()) {
+        planes.push_back(transformed(frame_from_camera.inverse(), plane));
+      }
+      scene = observe(frame, *sensor, planes, options.num_threads);
+    }
     return {frame, *scene, frame_from_camera, layers};
   }
 
@@ -212,26 +210,15 @@ struct Tracker::State {
       }
       return known;
     });
-    bring_on(view(newest));
+    if (!newcomers.empty()) bring_on(view(newest));
   }
 
-  // The newcomers go through the next kept frames together, so that each frame is observed once.
   void bring_on(const View& newest) {
     const auto some = std::span(newcomers).first(std::min(newcomers.size(), kReceivedAtOnce));
-    if (some.empty()) return;
-    const std::int64_t from = std::ranges::min(some, {}, &Newcomer::at_ns).at_ns();
-    std::vector<SceneFeatures> scenes;
-    std::vector<View> views;
-    scenes.reserve(kStepsAFrame);
-    const std::span<const KeptFrame> since = history.kept_after(from);
-    for (const KeptFrame& next : since.first(std::min(since.size(), kStepsAFrame))) {
-      scenes.push_back(observe(*next.frame, next.frame_from_camera));
-      views.push_back({*next.frame, scenes.back(), next.frame_from_camera, layers});
-    }
+    const auto since = history.kept_after(std::ranges::min(some, {}, &Newcomer::at_ns).at_ns());
     std::vector<Newcomer::Progress> progress(some.size());
-    parallel_for(some.size(), options.num_threads, [&](std::size_t i) {
-      progress[i] = some[i].step(views, views.size() == since.size(), newest);
-    });
+    parallel_for(some.size(), options.num_threads,
+                 [&](std::size_t i) { progress[i] = some[i].step(since, newest, kStepsAFrame); });
     for (std::size_t i = 0; i < some.size(); ++i) {
       if (progress[i] == Newcomer::Progress::arrived) add_arrived(some[i]);
     }
