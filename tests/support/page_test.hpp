@@ -57,6 +57,10 @@ class PageTest : public testing::Test {
     return browser->run(
         "return [...document.querySelectorAll('#placements h3 button')].map(b => b.textContent);");
   }
+  /// The number of the result that the page shows; the time line may have moved on.
+  std::string shown_result() {
+    return browser->run("return document.getElementById('of-result').dataset.id;");
+  }
   void save(const std::string& name) {
     const std::string folder = BPA_BINARY_DIR "/tests/page";
     std::filesystem::create_directories(folder);

@@ -33,8 +33,7 @@ TEST_F(Page, ShowsWhatTheServerFound) {
   browser->click("#timeline [role=option]");
   ASSERT_TRUE(browser->becomes(
       "return document.getElementById('of-result').textContent.includes('held');"));
-  const std::string id =
-      browser->run("return document.querySelector('#timeline [aria-selected=true]').dataset.id;");
+  const std::string id = shown_result();
   const json result = server->get("/api/results/" + id);
   ASSERT_FALSE(result.is_null()) << id;
   std::set<std::string> found;
@@ -62,8 +61,7 @@ TEST_F(Page, ShowsTheSecondInterpretationAndAPlacementOfIt) {
   EXPECT_TRUE(
       browser->becomes("return document.querySelector('#interpretations [data-rank=\"2\"]')"
                        ".getAttribute('aria-selected') === 'true';"));
-  const std::string id =
-      browser->run("return document.querySelector('#timeline [aria-selected=true]').dataset.id;");
+  const std::string id = shown_result();
   const json second = server->get("/api/results/" + id)["result"]["interpretations"][1];
   std::set<std::string> found;
   for (const json& placement : second["placements"]) found.insert(placement["model"]);
@@ -170,8 +168,7 @@ TEST_F(AnyPage, DrawsTracksOfAFixedFrameWhereTheCameraSeesThem) {
       "  });"
       "  return found;"
       "});");
-  const std::string id =
-      browser->run("return document.querySelector('#timeline [aria-selected=true]').dataset.id;");
+  const std::string id = shown_result();
   const json result = server->get("/api/results/" + id);
   ASSERT_FALSE(result.is_null());
   int compared = 0;
@@ -239,8 +236,7 @@ TEST_F(Page, SearchesTheRegionThatIsDrawn) {
   ASSERT_TRUE(browser->becomes(
       "return document.getElementById('of-result').textContent.includes('region');"))
       << server->log();
-  const std::string id =
-      browser->run("return document.querySelector('#timeline [aria-selected=true]').dataset.id;");
+  const std::string id = shown_result();
   const json result = server->get("/api/results/" + id);
   const json& camera = result.at("camera");
   for (const json& placement : result["result"]["interpretations"][0]["placements"]) {
@@ -253,9 +249,10 @@ TEST_F(Page, SearchesTheRegionThatIsDrawn) {
   }
   browser->click("#draw-mask");
   browser->drag("#depth", {{0.1, 0.1}, {0.9, 0.1}, {0.9, 0.9}, {0.1, 0.9}});
-  ASSERT_TRUE(browser->becomes(
-      "return document.querySelector('#timeline [aria-selected=true]').dataset.id > arguments[0];",
-      {id}))
+  ASSERT_TRUE(
+      browser->becomes("const id = document.getElementById('of-result').dataset.id;"
+                       "return Number(id) > Number(arguments[0]);",
+                       {id}))
       << server->log();
   EXPECT_FALSE(shown().empty());
   browser->click("#draw-mask");

@@ -50,6 +50,7 @@ function showRanks() {
   const all = view.result ? view.result.result.interpretations : [];
   $('of-result').textContent = view.result
     ? `of result ${view.result.id}, ${view.result.origin}${view.pinned ? ', held' : ''}` : '';
+  $('of-result').dataset.id = view.result ? view.result.id : '';
   $('interpretations').replaceChildren(...readings(all, view.models, shown).flatMap((reading) => lines(reading, all[0])));
   $('meaning').textContent = kMeaning;
 }
