@@ -41,7 +41,6 @@ struct NetworkOptions {
   int domain = -1;
   std::string range = "environment";
   std::vector<std::string> peers;
-  int shared_frame_mb = 24;
   int datagram_bytes = 8900;
   std::string graph_layout = "automatic";
   std::string profiles;
@@ -54,10 +53,6 @@ struct NetworkOptions {
            "ROS_LOCALHOST_ONLY say), subnet, localhost, humble_localhost (as Humble's "
            "ROS_LOCALHOST_ONLY does it), off."});
     visit("peers", peers, {0, 0, "More hosts to discover: names or addresses."});
-    visit("shared_frame_mb", shared_frame_mb,
-          {0, 256,
-           "Largest frame in MB that comes through shared memory from clients on this machine; "
-           "larger ones are refused. 0: always over UDP."});
     visit("datagram_bytes", datagram_bytes,
           {1400, 65500,
            "Largest UDP datagram to send. Smaller ones lose less on a lossy network, where each "

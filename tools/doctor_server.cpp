@@ -179,7 +179,6 @@ MachineNeeds machine_needs(const ClientOptions& options, bool found) {
   // A server that answers was found without it, if need be.
   needs.multicast = !found && options.range_from_environment &&
                     given.range == wire::DiscoveryRange::subnet && given.static_peers.empty();
-  needs.shm_bytes = static_cast<std::uint64_t>(wire::qos::frames().depth + 1) * wire::kFrameBytes;
   needs.image_bytes = kImageBytes;
   return needs;
 }

@@ -194,8 +194,8 @@ Result<DetectionSet> Client::Impl::search(msgs::Detect_Request request, const De
 Status Client::Impl::make_frames() {
   const std::lock_guard<std::mutex> lock(mutex);
   if (frames) return {};
-  auto publisher = wire::Publisher<msgs::RgbdFrame>::create(
-      participant, "frames", {wire::qos::frames(), options.shared_frame_mb << 20U});
+  auto publisher =
+      wire::Publisher<msgs::RgbdFrame>::create(participant, "frames", {wire::qos::frames()});
   if (publisher.ok()) frames.emplace(std::move(publisher).value());
   return publisher.status();
 }

@@ -3,15 +3,10 @@
 #include "core/doctor/machine_check.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
-#include <set>
 
 #include <net/if.h>
-#include <sys/stat.h>
-#include <sys/statvfs.h>
-#include <unistd.h>
 
 #include "core/base/concat.hpp"
 
@@ -19,8 +14,6 @@ namespace bpa {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string megabytes(std::uint64_t bytes) { return std::to_string(bytes >> 20U) + " MB"; }
 
 /// The numbers that a file begins with; none where there is no such file.
 std::vector<std::uint64_t> numbers_of(const std::string& path) {
@@ -38,57 +31,6 @@ std::vector<fs::path> entries_of(const std::string& folder) {
     entries.push_back(entry->path());
   }
   return entries;
-}
-
-/// The files of /dev/shm that some process has in its memory.
-std::set<std::string> mapped_files(const std::string& root) {
-  const std::string folder = "/dev/shm/";
-  std::set<std::string> names;
-  for (const fs::path& process : entries_of(root + "/proc")) {
-    if (std::isdigit(static_cast<unsigned char>(process.filename().string().front())) == 0)
-      continue;
-    std::ifstream maps(process / "maps");
-    for (std::string line; std::getline(maps, line);) {
-      const std::size_t at = line.find(folder);
-      if (at != std::string::npos) names.insert(line.substr(at + folder.size()));
-    }
-  }
-  return names;
-}
-
-void check_room(const MachineNeeds& needs, Findings& findings) {
-  struct statvfs shm = {};
-  if (statvfs((needs.root + "/dev/shm").c_str(), &shm) != 0) return;
-  const std::uint64_t room = std::uint64_t{shm.f_bavail} * shm.f_frsize;
-  if (room >= needs.shm_bytes) return;
-  findings.push_back({Severity::warning, "/dev/shm is too small to share frames",
-                      concat("it has ", megabytes(room), " free; frames need ",
-                             megabytes(needs.shm_bytes), " and go over UDP otherwise"),
-                      "Enlarge it (mount -o remount,size=1G /dev/shm; docker run --shm-size 1g) or "
-                      "lower network.shared_frame_mb."});
-}
-
-/// Only files of this user, whose processes can all be seen.
-void check_leftovers(const MachineNeeds& needs, Findings& findings) {
-  const std::set<std::string> mapped = mapped_files(needs.root);
-  std::uint64_t bytes = 0;
-  int files = 0;
-  for (const fs::path& path : entries_of(needs.root + "/dev/shm")) {
-    const std::string name = path.filename().string();
-    const bool of_dds = name.starts_with("fast_datasharing_") || name.starts_with("fastrtps_") ||
-                        name.starts_with("fastdds_");
-    struct stat info = {};
-    if (!of_dds || name.ends_with("_el") || mapped.contains(name)) continue;
-    if (stat(path.c_str(), &info) != 0 || info.st_uid != geteuid()) continue;
-    constexpr std::uint64_t kBlock = 512;  // bytes, stat(2)
-    bytes += kBlock * static_cast<std::uint64_t>(info.st_blocks);
-    ++files;
-  }
-  if (files == 0 || bytes < needs.leftover_bytes) return;
-  findings.push_back({Severity::warning, "killed DDS programs have left files in /dev/shm",
-                      concat(files, " files hold ", megabytes(bytes)),
-                      "Run `fastdds shm clean`, or end all DDS programs and remove "
-                      "/dev/shm/fast_datasharing_* and /dev/shm/fastrtps_*."});
 }
 
 void check_sockets(const MachineNeeds& needs, Findings& findings) {
@@ -147,8 +89,6 @@ void check_interfaces(const MachineNeeds& needs, Findings& findings) {
 
 Findings check_machine(const MachineNeeds& needs) {
   Findings findings;
-  check_room(needs, findings);
-  check_leftovers(needs, findings);
   check_sockets(needs, findings);
   check_ports(needs, findings);
   check_interfaces(needs, findings);

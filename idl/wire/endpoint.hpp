@@ -59,21 +59,11 @@ struct ReaderStatistics {
 
 struct PublisherOptions {
   Qos qos = qos::results();
-  /// Largest sample in bytes that goes through memory shared with subscribers of this project on
-  /// this machine; larger samples are refused. Other subscribers get them over UDP. 0: UDP only,
-  /// also used, with a warning, when /dev/shm has no room for qos.depth + 1 such samples.
-  std::size_t shared_bytes = 0;
 };
 
 struct SubscriberOptions {
   Qos qos = qos::sensor_input();
-  /// Largest sample in bytes, over UDP as well, of a subscription that takes part in sharing
-  /// memory. 0: UDP only, without a limit.
-  std::size_t shared_bytes = 0;
 };
-
-/// Holds a bpa_msgs/RgbdFrame of 1920 x 1080 with colour, 32FC1 depth and mask, or less.
-inline constexpr std::size_t kFrameBytes = 24U << 20U;
 
 class Worker;
 
@@ -103,14 +93,13 @@ struct EndpointSpec {
   std::string dds_type;
   std::string user_data;  ///< Such as "typehash=RIHS01_...;".
   Qos qos;
-  std::size_t shared_bytes = 0;
   bool in_graph = true;  ///< Listed in ros_discovery_info.
 };
 
 template <class T>
-EndpointSpec endpoint_spec(std::string dds_topic, const Qos& qos, std::size_t shared_bytes) {
+EndpointSpec endpoint_spec(std::string dds_topic, const Qos& qos) {
   return {std::move(dds_topic), dds_type_name(T::kType), concat("typehash=", T::kTypeHash, ";"),
-          qos, shared_bytes};
+          qos};
 }
 
 /// The remote endpoints that one of ours is matched with.

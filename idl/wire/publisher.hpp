@@ -19,16 +19,14 @@ class Publisher : public detail::TopicEnd<detail::RawWriter> {
                                   const PublisherOptions& options = {}) {
     Result<std::string> name = participant.resolve(topic);
     if (!name.ok()) return name.status();
-    auto writer = detail::make_writer(
-        participant,
-        detail::endpoint_spec<T>(dds_topic_name(*name), options.qos, options.shared_bytes));
+    auto writer = detail::make_writer(participant,
+                                      detail::endpoint_spec<T>(dds_topic_name(*name), options.qos));
     if (!writer.ok()) return writer.status();
     return Publisher(*std::move(name), std::move(writer).value());
   }
 
   /// Encodes straight into the memory that is sent. `Message` is T or a view of it (the same
-  /// kType). `invalid_argument` when it is larger than shared_bytes. `timeout` when a reliable
-  /// subscriber holds up a full history for more than 100 ms.
+  /// kType). `timeout` when a reliable subscriber holds up a full history for more than 100 ms.
   template <class Message>
   Status publish(const Message& message) {
     static_assert(std::string_view(Message::kType) == T::kType, "another type than the topic's");

@@ -25,8 +25,7 @@ namespace qos {
 inline Qos sensor_input() { return {Reliability::best_effort, Durability::volatile_, 5, 0}; }
 /// Subscriptions to cameras over lossy links with reliable publishers.
 inline Qos reliable_input() { return {Reliability::reliable, Durability::volatile_, 5, 0}; }
-/// Frames: a third of a second at 30 Hz. A reader that waits that long for the processor misses
-/// none of the frames in shared memory.
+/// Frames: a third of a second at 30 Hz.
 inline Qos frames() { return {Reliability::reliable, Durability::volatile_, 10, 0}; }
 /// Published results, markers, diagnostics: matches every subscriber.
 inline Qos results() { return {Reliability::reliable, Durability::volatile_, 10, 0}; }

@@ -70,9 +70,9 @@ Result<ServiceSpec> service_spec(const Participant& participant, std::string_vie
                                  const Qos& qos) {
   Result<std::string> name = participant.resolve(service);
   if (!name.ok()) return name.status();
-  return ServiceSpec{
-      *name, endpoint_spec<typename Service::Request>(dds_request_topic_name(*name), qos, 0),
-      endpoint_spec<typename Service::Response>(dds_reply_topic_name(*name), qos, 0)};
+  return ServiceSpec{*name,
+                     endpoint_spec<typename Service::Request>(dds_request_topic_name(*name), qos),
+                     endpoint_spec<typename Service::Response>(dds_reply_topic_name(*name), qos)};
 }
 
 /// Withdraws the service when the last copy of the pointer goes, even while requests are open.

@@ -35,10 +35,9 @@ class Subscriber : public detail::TopicEnd<detail::RawReader> {
       return detail::Deliver(
           [&callback, message](const SampleMeta& meta) { callback(std::move(*message), meta); });
     };
-    auto reader = detail::make_reader(
-        participant,
-        detail::endpoint_spec<T>(dds_topic_name(*name), options.qos, options.shared_bytes),
-        std::move(decode));
+    auto reader = detail::make_reader(participant,
+                                      detail::endpoint_spec<T>(dds_topic_name(*name), options.qos),
+                                      std::move(decode));
     if (!reader.ok()) return reader.status();
     return Subscriber(*std::move(name), std::move(reader).value());
   }

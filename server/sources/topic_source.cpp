@@ -98,8 +98,7 @@ class Topics : public TopicSource {
         log_(std::move(hook)),
         options_(options.input),
         synchronizer_(synchronizer_options(options.input)) {
-    const auto shared_bytes = static_cast<std::size_t>(options.network.shared_frame_mb) << 20U;
-    wire::SubscriberOptions whole{wire::qos::frames(), shared_bytes};
+    wire::SubscriberOptions whole{wire::qos::frames()};
     if (!options_.frames_reliable) whole.qos.reliability = wire::Reliability::best_effort;
     if (!options_.frames.empty()) {
       subscribe<RgbdFrame>(

@@ -13,8 +13,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "tests/support/leftovers.hpp"
-
 extern char** environ;
 
 namespace bpa::support {
@@ -43,9 +41,7 @@ Process::~Process() {
 }
 
 void Process::signal(int number) const {
-  if (pid_ <= 0) return;
-  if (number == SIGKILL) Leftovers::all().add_shared_memory_of(pid_);
-  kill(pid_, number);
+  if (pid_ > 0) kill(pid_, number);
 }
 
 int Process::wait(std::chrono::milliseconds timeout) {
@@ -81,11 +77,17 @@ std::vector<std::string> own_command(const std::string& program,
 }
 
 std::string scratch_folder() {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("bpa_test_" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
-  Leftovers::all().add(folder.string());
-  return folder.string();
+  struct Folder {
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("bpa_test_" + std::to_string(getpid()));
+    ~Folder() {
+      std::error_code error;
+      std::filesystem::remove_all(path, error);
+    }
+  };
+  static const Folder folder;
+  std::filesystem::create_directories(folder.path);
+  return folder.path.string();
 }
 
 std::string read_text(const std::string& path) {

@@ -148,7 +148,7 @@ class Stranger {
   void topic(const std::string& name, const T& legal) {
     const auto resolved = participant_.resolve(name);
     ASSERT_TRUE(resolved.ok()) << resolved.status().message;
-    add(wire::detail::endpoint_spec<T>(wire::dds_topic_name(*resolved), wire::qos::services(), 0),
+    add(wire::detail::endpoint_spec<T>(wire::dds_topic_name(*resolved), wire::qos::services()),
         wire::encode(legal), false);
   }
   template <class Service>

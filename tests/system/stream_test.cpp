@@ -201,30 +201,6 @@ TEST_F(StreamOfFrames, AClientSurvivesAServerThatRestarts) {
   EXPECT_GE(results.items().size(), 2U);
 }
 
-/// In a mount namespace of its own, where that is allowed (not in every container).
-TEST_F(StreamOfFrames, AFullSharedMemoryAtTheStartMeansUdp) {
-  const std::string log = support::scratch_folder() + "/full.log";
-  const auto apart = [](const std::string& script) {
-    return std::vector<std::string>{"/usr/bin/unshare", "--mount", "sh", "-c", script};
-  };
-  const std::string full =
-      "mount -t tmpfs -o size=64k none /dev/shm && head -c 64k /dev/zero > /dev/shm/full";
-  if (support::run(apart(full), log) != 0) {
-    std::cout << "not tested here: no mount namespace may be made\n";
-    return;
-  }
-  const support::Process server(
-      apart(full + " && exec " BPA_BINARY_DIR "/tests/bpa-stub-server --set network.domain=" +
-            std::to_string(support::test_domain()) +
-            " --set node.namespace=" + support::test_namespace()),
-      log);
-  auto client = Client::connect(support::client_options());
-  ASSERT_TRUE(client.ok()) << client.status().message << support::read_text(log);
-  EXPECT_TRUE(client->status().ok());
-  EXPECT_NE(support::read_text(log).find("goes over UDP"), std::string::npos)
-      << support::read_text(log);
-}
-
 TEST_F(StreamOfFrames, StandardTopicsCarryTheSameResult) {
   support::StubServer server;
   auto client = Client::connect(support::client_options());

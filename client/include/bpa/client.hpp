@@ -35,9 +35,6 @@ struct ClientOptions {
   std::chrono::milliseconds timeout{5000};
   /// The longest that a detect or load_model call waits which names no time of its own.
   std::chrono::milliseconds detect_timeout{60000};
-  /// Largest frame, MB, that goes to a server on this machine through shared memory; larger ones
-  /// are refused. 0: always over UDP.
-  std::size_t shared_frame_mb = 24;
   /// Where connect() and the calls look for servers; the environment (ROS_LOCALHOST_ONLY,
   /// ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS) decides where this is not set.
   bool range_from_environment = true;

@@ -4,10 +4,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
-
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "core/base/concat.hpp"
 
@@ -95,20 +91,6 @@ void use_our_transport(const Discovery& discovery, const ParticipantOptions& opt
   config.leaseDuration_announcementperiod = Duration(1, 500'000'000);
 }
 
-/// Equal for two processes just when they can open each other's memory: the same machine since its
-/// start, the same /dev/shm, the same user, the same build of Fast DDS.
-std::uint64_t sharing_domain() {
-  std::string boot_id;
-  std::ifstream("/proc/sys/kernel/random/boot_id") >> boot_id;
-  struct stat shm = {};
-  const bool has_shm = stat("/dev/shm", &shm) == 0;
-  const std::string key = concat("bpa " BPA_FASTDDS_VERSION " ", boot_id, " ",
-                                 has_shm ? shm.st_dev : 0, " ", geteuid());
-  std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a
-  for (const char c : key) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  return hash;
-}
-
 Duration to_duration(std::int64_t ms) {
   return Duration(static_cast<std::int32_t>(ms / 1000),
                   static_cast<std::uint32_t>(ms % 1000) * 1'000'000U);
@@ -140,12 +122,9 @@ EndpointQos endpoint_qos(const EndpointSpec& spec, EndpointQos qos, const char* 
 
   qos.user_data().data_vec(std::vector<rtps::octet>(spec.user_data.begin(), spec.user_data.end()));
   qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
-  if (spec.shared_bytes > 0) {
-    qos.data_sharing().automatic();
-    qos.data_sharing().add_domain_id(sharing_domain());
-  } else {
-    qos.data_sharing().off();
-  }
+  // Not shared memory: a process that is killed while it holds one of its locks takes the peers
+  // with it. Fast DDS 2.9.1 throws in a thread of its own; later releases wait for ever.
+  qos.data_sharing().off();
 #if BPA_FASTDDS_MAJOR >= 3
   qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION};
 #endif

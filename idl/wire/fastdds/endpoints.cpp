@@ -2,18 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
-#include <cstring>
-#include <sstream>
 
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <sys/stat.h>
-#include <sys/statvfs.h>
-#include <unistd.h>
 
 #include "core/base/concat.hpp"
 #include "idl/wire/fastdds/dds_qos.hpp"
@@ -29,43 +23,6 @@ SampleMeta to_meta(const dds::SampleInfo& info) {
           info.source_timestamp.to_ns()};
 }
 
-constexpr const char* kSharedMemory = "/dev/shm";
-
-/// The kernel makes a file in memory whole only as it is filled, and kills the process that fills
-/// it when no room is left (a container's /dev/shm has 64 MB unless told otherwise). So an endpoint
-/// shares memory only if there is room for the most that it may come to fill.
-void share_if_there_is_room(const ParticipantImpl& participant, std::uint64_t needed,
-                            EndpointSpec& spec) {
-  if (spec.shared_bytes == 0) return;
-  struct statvfs shm = {};
-  const bool usable = access(kSharedMemory, W_OK) == 0 && statvfs(kSharedMemory, &shm) == 0;
-  const std::uint64_t room = usable ? std::uint64_t{shm.f_bavail} * shm.f_frsize : 0;
-  if (needed <= room) return;
-  participant.log(LogLevel::warning,
-                  concat("topic ", spec.dds_topic, " goes over UDP: to share memory needs ",
-                         needed >> 20U, " MB in /dev/shm, which has ", room >> 20U,
-                         " MB free; enlarge it or allow less a frame"));
-  spec.shared_bytes = 0;
-}
-
-std::uint64_t writer_memory(const EndpointSpec& spec) {
-  return (static_cast<std::uint64_t>(std::max(spec.qos.depth, 1)) + 1) * spec.shared_bytes;
-}
-
-/// Of a reader: its notes of what has come, some 20 kB.
-constexpr std::uint64_t kReaderMemory = 1U << 20U;
-
-/// Fast DDS lets the whole machine read what an endpoint shares; only our user can make use of it.
-void hide_shared_memory(const ParticipantImpl& participant, const EndpointSpec& spec,
-                        const rtps::GUID_t& guid) {
-  if (spec.shared_bytes == 0) return;
-  std::ostringstream name;
-  name << kSharedMemory << "/fast_datasharing_" << guid.guidPrefix << '_' << guid.entityId;
-  if (chmod(name.str().c_str(), S_IRUSR | S_IWUSR) == 0) return;
-  participant.log(LogLevel::warning,
-                  concat(name.str(), " stays readable by other users: ", std::strerror(errno)));
-}
-
 class Reader : public RawReader, private dds::DataReaderListener {
  public:
   Reader(const Participant& participant, EndpointSpec spec, RawDecode decode)
@@ -77,7 +34,6 @@ class Reader : public RawReader, private dds::DataReaderListener {
       reader_ = subscriber.create_datareader(topic, reader_qos(spec_, subscriber), this);
       if (reader_ == nullptr) return guid_;
       guid_ = to_guid(reader_->guid());
-      hide_shared_memory(*participant_, spec_, reader_->guid());
       return guid_;
     });
   }
@@ -100,7 +56,7 @@ class Reader : public RawReader, private dds::DataReaderListener {
   }
 
  private:
-  // Samples come over UDP on one thread and through shared memory on another; one at a time.
+  // Each UDP port has a thread, and samples of one topic may come through several.
   void on_data_available(dds::DataReader* reader) override {
     const std::lock_guard<std::mutex> lock(callback_mutex_);
     while (!closed_) {
@@ -167,7 +123,6 @@ class Writer : public RawWriter, private dds::DataWriterListener {
       dds::Publisher& publisher = *participant_->publisher();
       writer_ = publisher.create_datawriter(topic, writer_qos(spec_, publisher), this);
       if (writer_ == nullptr) return Guid{};
-      hide_shared_memory(*participant_, spec_, writer_->guid());
       return guid();
     });
   }
@@ -181,11 +136,6 @@ class Writer : public RawWriter, private dds::DataWriterListener {
   }
 
   Status write(const MessageRef& message, const SampleId* related, SampleId* written) override {
-    const std::size_t size = spec_.shared_bytes > 0 ? message.encoded_size(message.message) : 0;
-    if (size > spec_.shared_bytes) {
-      return invalid_argument("the message of ", size, " bytes on ", spec_.dds_topic,
-                              " is larger than shared_bytes, which is ", spec_.shared_bytes);
-    }
     rtps::WriteParams params;
     if (related != nullptr) params.related_sample_identity(to_identity(*related));
     MessageRef data = message;
@@ -221,7 +171,6 @@ class Writer : public RawWriter, private dds::DataWriterListener {
 
 Result<std::unique_ptr<RawReader>> make_reader(const Participant& participant, EndpointSpec spec,
                                                RawDecode decode) {
-  share_if_there_is_room(*participant.impl(), kReaderMemory, spec);
   auto reader = std::make_unique<Reader>(participant, std::move(spec), std::move(decode));
   if (Status status = reader->open(); !status.ok()) return status;
   return std::unique_ptr<RawReader>(std::move(reader));
@@ -229,7 +178,6 @@ Result<std::unique_ptr<RawReader>> make_reader(const Participant& participant, E
 
 Result<std::unique_ptr<RawWriter>> make_raw_writer(std::shared_ptr<ParticipantImpl> participant,
                                                    EndpointSpec spec) {
-  share_if_there_is_room(*participant, writer_memory(spec), spec);
   auto writer = std::make_unique<Writer>(std::move(participant), std::move(spec));
   if (Status status = writer->open(); !status.ok()) return status;
   return std::unique_ptr<RawWriter>(std::move(writer));

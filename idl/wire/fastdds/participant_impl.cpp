@@ -184,7 +184,7 @@ Status ParticipantImpl::start() {
   }
 
   EndpointSpec spec =
-      endpoint_spec<rmw_dds_common::ParticipantEntitiesInfo>(kGraphTopic, qos::latched(), 0);
+      endpoint_spec<rmw_dds_common::ParticipantEntitiesInfo>(kGraphTopic, qos::latched());
   spec.user_data += kOwnMark;
   spec.in_graph = false;
   // Ours: it must not hold us alive.
@@ -285,7 +285,6 @@ dds::Topic* ParticipantImpl::acquire_topic(const EndpointSpec& spec, std::string
     type = dds::TypeSupport(new RawType(spec.dds_type));
     type.register_type(participant_);
   }
-  static_cast<RawType*>(type.get())->set_bound(spec.shared_bytes);
 
   TopicEntry& entry = topics_[spec.dds_topic];
   if (entry.topic == nullptr) {

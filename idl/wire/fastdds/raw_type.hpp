@@ -32,27 +32,15 @@ class RawType : public dds::TopicDataType {
 #if BPA_FASTDDS_MAJOR >= 3
     set_name(dds_type);
     is_compute_key_provided = false;
+    max_serialized_type_size = kFirstGuess;
 #else
     setName(dds_type.c_str());
     m_isGetKeyDefined = false;
+    m_typeSize = kFirstGuess;
     auto_fill_type_object(false);  // announcing nothing never refuses a peer
     auto_fill_type_information(false);
 #endif
-    set_bound(0);
   }
-
-  /// Before each endpoint of the type is made: > 0 makes it a bounded type of that size.
-  void set_bound(std::size_t bytes) {
-    constexpr std::size_t kFirstGuess = 1024;
-    bounded_ = bytes != 0;
-    const auto size = static_cast<std::uint32_t>(bounded_ ? bytes : kFirstGuess);
-#if BPA_FASTDDS_MAJOR >= 3
-    max_serialized_type_size = size;
-#else
-    m_typeSize = size;
-#endif
-  }
-  bool is_bounded() const override { return bounded_; }
 
 #if BPA_FASTDDS_MAJOR >= 3
   bool serialize(const void* data, rtps::SerializedPayload_t& payload,
@@ -87,6 +75,8 @@ class RawType : public dds::TopicDataType {
 #endif
 
  private:
+  static constexpr std::uint32_t kFirstGuess = 1024;  ///< Bytes; samples grow from there.
+
   static bool write(const void* data, rtps::SerializedPayload_t& payload) {
     const auto& message = *static_cast<const MessageRef*>(data);
     const std::size_t size = message.encode(message.message, payload.data, payload.max_size);
@@ -107,8 +97,6 @@ class RawType : public dds::TopicDataType {
     const auto& message = *static_cast<const MessageRef*>(data);
     return static_cast<std::uint32_t>(message.encoded_size(message.message));
   }
-
-  bool bounded_ = false;
 };
 
 }  // namespace bpa::wire::detail

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Frame in to result out with detection replaced by a no-op: a 640x480 colour and depth frame from
-// the SDK through bpa-stub-server and back. usage: bpa-server-latency [frames] [shared MB, 0 = UDP]
+// the SDK through bpa-stub-server and back. usage: bpa-server-latency [frames]
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -15,11 +15,8 @@
 int main(int argc, char** argv) {
   using Clock = std::chrono::steady_clock;
   const int count = argc > 1 ? std::atoi(argv[1]) : 1000;
-  bpa::ClientOptions options = bpa::support::client_options();
-  options.shared_frame_mb = argc > 2 ? static_cast<std::size_t>(std::atoi(argv[2])) : 24;
-  bpa::support::StubServer server(
-      {"network.shared_frame_mb=" + std::to_string(options.shared_frame_mb)});
-  auto client = bpa::Client::connect(options);
+  bpa::support::StubServer server;
+  auto client = bpa::Client::connect(bpa::support::client_options());
   if (!client.ok()) return std::fprintf(stderr, "%s\n", client.status().message.c_str()), 1;
 
   std::mutex mutex;

@@ -22,11 +22,9 @@ int main(int argc, char** argv) {
   if (!participant.ok()) return 1;
   PublisherOptions publisher_options;
   publisher_options.qos = qos::frames();
-  publisher_options.shared_bytes = kFrameBytes;
   auto publisher = Publisher<Frame>::create(*participant, "/out/frame", publisher_options);
   SubscriberOptions subscriber_options;
   subscriber_options.qos = qos::reliable_input();
-  subscriber_options.shared_bytes = kFrameBytes;
   auto subscriber = Subscriber<Frame>::create(
       *participant, "/in/frame", subscriber_options,
       [&publisher](Frame&& frame, const SampleMeta&) { (void)publisher->publish(frame).ok(); });

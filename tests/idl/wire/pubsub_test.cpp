@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
-#include <filesystem>
 #include <mutex>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <sys/statvfs.h>
 
 #include "idl/wire/messages.hpp"
 #include "idl/wire/publisher.hpp"
@@ -65,20 +63,17 @@ bpa_msgs::RgbdFrame frame_of(std::uint32_t width, std::uint32_t height) {
   return frame;
 }
 
-void exchange_frames(std::size_t publisher_shares, std::size_t subscriber_shares,
-                     const LogHook& log = {}) {
-  auto one = test_participant("one", log);
+TEST(PubSub, FramesArriveAsTheyWereSent) {
+  auto one = test_participant("one");
   auto two = test_participant("two");
   ASSERT_TRUE(one.ok() && two.ok());
   PublisherOptions publisher_options;
   publisher_options.qos = qos::frames();
-  publisher_options.shared_bytes = publisher_shares;
   auto publisher = Publisher<bpa_msgs::RgbdFrame>::create(*one, "frames", publisher_options);
   ASSERT_TRUE(publisher.ok()) << publisher.status().message;
   Inbox<bpa_msgs::RgbdFrame> inbox;
   SubscriberOptions subscriber_options;
   subscriber_options.qos = qos::reliable_input();
-  subscriber_options.shared_bytes = subscriber_shares;
   auto subscriber = Subscriber<bpa_msgs::RgbdFrame>::create(
       *two, "/frames", subscriber_options,
       [&inbox](bpa_msgs::RgbdFrame&& frame, const SampleMeta& meta) {
@@ -119,38 +114,6 @@ void exchange_frames(std::size_t publisher_shares, std::size_t subscriber_shares
   EXPECT_EQ(subscriber->statistics().malformed, 0U);
 }
 
-TEST(PubSub, OverUdp) { exchange_frames(0, 0); }
-TEST(PubSub, ThroughSharedMemory) { exchange_frames(kFrameBytes, kFrameBytes); }
-TEST(PubSub, SharingPublisherToPlainSubscriber) { exchange_frames(kFrameBytes, 0); }
-TEST(PubSub, PlainPublisherToSharingSubscriber) { exchange_frames(0, kFrameBytes); }
-
-/// Files of shared memory that other users may read or write.
-std::vector<std::string> open_files(const std::string& folder) {
-  std::vector<std::string> open;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    using std::filesystem::perms;
-    const bool others =
-        (entry.status().permissions() & (perms::group_all | perms::others_all)) != perms::none;
-    if (name.starts_with("fast_datasharing_") && others) open.push_back(name);
-  }
-  return open;
-}
-
-TEST(PubSub, SharedMemoryIsForItsUserAlone) {
-  const std::vector<std::string> before = open_files("/dev/shm");  // of others
-  auto one = test_participant("one");
-  ASSERT_TRUE(one.ok());
-  const auto publisher =
-      Publisher<bpa_msgs::RgbdFrame>::create(*one, "frames", {qos::frames(), 1U << 20U});
-  const auto subscriber = Subscriber<bpa_msgs::RgbdFrame>::create(
-      *one, "frames", {qos::frames(), 1U << 20U}, [](auto&&, const SampleMeta&) {});
-  ASSERT_TRUE(publisher.ok() && subscriber.ok());
-  for (const std::string& name : open_files("/dev/shm")) {
-    EXPECT_NE(std::find(before.begin(), before.end(), name), before.end()) << name;
-  }
-}
-
 TEST(PubSub, LargeDatagramsOfOthersAreReceivedWhole) {
   ParticipantOptions large;
   large.node.name = "large";
@@ -161,9 +124,9 @@ TEST(PubSub, LargeDatagramsOfOthersAreReceivedWhole) {
   ASSERT_TRUE(one.ok() && two.ok());
   for (auto* const sender : {&*one, &*two}) {
     Inbox<std::size_t> inbox;
-    auto publisher = Publisher<bpa_msgs::RgbdFrame>::create(*sender, "frames", {qos::frames(), 0});
+    auto publisher = Publisher<bpa_msgs::RgbdFrame>::create(*sender, "frames", {qos::frames()});
     const auto subscriber = Subscriber<bpa_msgs::RgbdFrame>::create(
-        sender == &*one ? *two : *one, "frames", {qos::frames(), 0},
+        sender == &*one ? *two : *one, "frames", {qos::frames()},
         [&](bpa_msgs::RgbdFrame&& frame, const SampleMeta&) { inbox.put(frame.color.size()); });
     ASSERT_TRUE(publisher.ok() && subscriber.ok());
     ASSERT_TRUE(publisher->wait_for_matched(seconds(5)));
@@ -172,31 +135,6 @@ TEST(PubSub, LargeDatagramsOfOthersAreReceivedWhole) {
     ASSERT_TRUE(inbox.wait_for(1));
     EXPECT_EQ(inbox.values()[0], 3U * 320 * 240);
   }
-}
-
-TEST(PubSub, WithoutRoomForSharedMemoryFramesGoOverUdp) {
-  struct statvfs shm = {};
-  ASSERT_EQ(statvfs("/dev/shm", &shm), 0);
-  Inbox<std::string> log;
-  exchange_frames(shm.f_bavail * shm.f_frsize / 10, kFrameBytes,
-                  [&log](LogLevel, std::string_view text) { log.put(std::string(text)); });
-  const std::vector<std::string> said = log.values();
-  EXPECT_TRUE(std::any_of(said.begin(), said.end(), [](const std::string& line) {
-    return line.find("rt/frames goes over UDP") != std::string::npos;
-  }));
-}
-
-TEST(PubSub, TooLargeForSharingIsRefused) {
-  auto one = test_participant("one");
-  ASSERT_TRUE(one.ok());
-  PublisherOptions options;
-  options.shared_bytes = 100'000;
-  auto publisher = Publisher<bpa_msgs::RgbdFrame>::create(*one, "small", options);
-  ASSERT_TRUE(publisher.ok());
-  const Status status = publisher->publish(frame_of(640, 480));
-  EXPECT_EQ(status.code, StatusCode::invalid_argument);
-  EXPECT_NE(status.message.find("100000"), std::string::npos) << status.message;
-  EXPECT_TRUE(publisher->publish(frame_of(64, 48)).ok());
 }
 
 TEST(PubSub, LateSubscriberGetsWhatIsLatched) {
@@ -334,7 +272,7 @@ TEST(PubSub, MalformedSamplesAreCountedAndTheNextIsRead) {
     if (level == LogLevel::warning) log.put(std::string(text));
   });
   ASSERT_TRUE(one.ok() && two.ok());
-  auto spec = detail::endpoint_spec<sensor_msgs::Image>("rt/image", qos::results(), 0);
+  auto spec = detail::endpoint_spec<sensor_msgs::Image>("rt/image", qos::results());
   auto writer = detail::make_writer(*one, spec);
   ASSERT_TRUE(writer.ok());
   Inbox<std::uint32_t> heights;
@@ -365,7 +303,7 @@ TEST(PubSub, TheGraphShowsTheNodeAndItsEndpoints) {
   auto two = test_participant("two");
   ASSERT_TRUE(one.ok() && two.ok());
   Inbox<Info> graph;
-  auto spec = detail::endpoint_spec<Info>("ros_discovery_info", qos::latched(), 0);
+  auto spec = detail::endpoint_spec<Info>("ros_discovery_info", qos::latched());
   spec.in_graph = false;
   auto reader = detail::make_reader(
       *two, spec,
@@ -381,8 +319,8 @@ TEST(PubSub, TheGraphShowsTheNodeAndItsEndpoints) {
       });
   ASSERT_TRUE(reader.ok());
   ASSERT_TRUE(graph.wait_for(1));
-  auto writer = detail::make_writer(
-      *one, detail::endpoint_spec<std_msgs::String>("rt/text", qos::results(), 0));
+  auto writer =
+      detail::make_writer(*one, detail::endpoint_spec<std_msgs::String>("rt/text", qos::results()));
   ASSERT_TRUE(writer.ok());
   ASSERT_TRUE(graph.wait_for(2));
   const Guid guid = writer.value()->guid();

@@ -183,7 +183,7 @@ TEST(Service, MalformedRequestsAreCountedAndTheNextIsServed) {
   auto client = UnloadClient::create(*two, "strict");
   ASSERT_TRUE(server.ok() && client.ok());
   auto writer = detail::make_writer(
-      *two, detail::endpoint_spec<Unload::Request>("rq/strictRequest", qos::services(), 0));
+      *two, detail::endpoint_spec<Unload::Request>("rq/strictRequest", qos::services()));
   ASSERT_TRUE(writer.ok());
   ASSERT_TRUE(client->wait_for_service(seconds(5)));
   ASSERT_TRUE(writer.value()->matches().wait_for(1, seconds(5)));

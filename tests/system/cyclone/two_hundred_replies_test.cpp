@@ -29,7 +29,7 @@ class Vandal {
         writer_(wire::detail::make_writer(
                     participant_, wire::detail::endpoint_spec<wire::bpa_msgs::UnloadModel_Request>(
                                       "rq" + support::test_namespace() + "/unload_modelRequest",
-                                      wire::qos::services(), 0))
+                                      wire::qos::services()))
                     .value()),
         thread_([this] { run(); }) {}
   ~Vandal() {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frame in to result out with detection replaced by a no-op: a camera as a ROS 2 driver sends it
 // (colour and depth of 640x480 and the camera info, over UDP), bpa-stub-server in another process,
-// its interpretations back here. Then the same with Fast DDS as it comes, and from the SDK through
-// data sharing. Usage: camera_latency [FRAMES [RATE_HZ]]. By hand: 10000 frames take 3 x 333 s.
+// its interpretations back here. Then the same with Fast DDS as it comes, and from the SDK.
+// Usage: camera_latency [FRAMES [RATE_HZ]]. By hand: 10000 frames take 3 x 333 s.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -184,7 +184,7 @@ int main(int argc, char** argv) {
   const std::string only = argc > 3 ? argv[3] : "";
   std::printf("%d Hz, 640x480                       min  median    99 %%     max  (ms)\n", rate_hz);
   int code = 0;
-  if (only.empty() || only == "sdk") code |= sdk("SDK, data sharing", frames, rate_hz);
+  if (only.empty() || only == "sdk") code |= sdk("SDK", frames, rate_hz);
   if (only.empty() || only == "camera") code |= camera("camera topics, UDP", frames, rate_hz, "");
   // Last: the profiles stay with the process.
   if (only.empty() || only == "defaults") {

@@ -65,11 +65,10 @@ void pace(Clock::time_point& next, int rate_hz) {
 }
 
 /// Publishes RgbdFrames without copying the images first.
-void send_frames(const Participant& participant, const std::string& topic, std::size_t shared_bytes,
-                 int samples, int rate_hz) {
+void send_frames(const Participant& participant, const std::string& topic, int samples,
+                 int rate_hz) {
   PublisherOptions options;
   options.qos = qos::frames();
-  options.shared_bytes = shared_bytes;
   auto publisher = Publisher<bpa_msgs::RgbdFrame>::create(participant, topic, options);
   if (!publisher.ok() || !publisher->wait_for_matched(seconds(10))) return;
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
@@ -90,7 +89,7 @@ void send_frames(const Participant& participant, const std::string& topic, std::
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
 }
 
-/// Publishes what a ROS 2 camera does: a colour and a depth image, as UDP messages.
+/// Publishes what a ROS 2 camera does: a colour and a depth image, in two messages.
 void send_images(const Participant& participant, const std::string& topic, int samples,
                  int rate_hz) {
   PublisherOptions options;
@@ -122,8 +121,7 @@ void send_images(const Participant& participant, const std::string& topic, int s
 int send_all(int domain, int samples, int rate_hz) {
   auto participant = test_participant("latency_sender", {}, domain);
   if (!participant.ok()) return 1;
-  send_frames(*participant, "/shared", kFrameBytes, samples, rate_hz);
-  send_frames(*participant, "/udp", 0, samples, rate_hz);
+  send_frames(*participant, "/frames", samples, rate_hz);
   send_images(*participant, "/best_effort", samples, rate_hz);
   send_images(*participant, "/reliable", samples, rate_hz);
   return 0;
@@ -131,10 +129,9 @@ int send_all(int domain, int samples, int rate_hz) {
 
 template <class T>
 Result<Subscriber<T>> listen(const Participant& participant, const std::string& topic,
-                             const Qos& qos, std::size_t shared_bytes, Latencies& latencies) {
+                             const Qos& qos, Latencies& latencies) {
   SubscriberOptions options;
   options.qos = qos;
-  options.shared_bytes = shared_bytes;
   return Subscriber<T>::create(
       participant, topic, options,
       [&latencies](T&& message, const SampleMeta&) { latencies.add(message.header); });
@@ -151,28 +148,26 @@ int main(int argc, char** argv) {
   const int domain = 1 + getpid() % 100;
   auto participant = test_participant("latency_receiver", {}, domain);
   if (!participant.ok()) return 1;
-  Latencies shared, udp, color_best_effort, best_effort, color_reliable, reliable;
+  Latencies frames, color_best_effort, best_effort, color_reliable, reliable;
   using Frame = bpa_msgs::RgbdFrame;
   using Image = sensor_msgs::Image;
-  const auto a = listen<Frame>(*participant, "/shared", qos::sensor_input(), kFrameBytes, shared);
-  const auto b = listen<Frame>(*participant, "/udp", qos::reliable_input(), 0, udp);
+  const auto b = listen<Frame>(*participant, "/frames", qos::reliable_input(), frames);
   const auto c =
-      listen<Image>(*participant, "/best_effort/color", qos::sensor_input(), 0, color_best_effort);
+      listen<Image>(*participant, "/best_effort/color", qos::sensor_input(), color_best_effort);
   const auto d =
-      listen<Image>(*participant, "/best_effort/depth", qos::sensor_input(), 0, best_effort);
+      listen<Image>(*participant, "/best_effort/depth", qos::sensor_input(), best_effort);
   const auto e =
-      listen<Image>(*participant, "/reliable/color", qos::reliable_input(), 0, color_reliable);
-  const auto f = listen<Image>(*participant, "/reliable/depth", qos::reliable_input(), 0, reliable);
+      listen<Image>(*participant, "/reliable/color", qos::reliable_input(), color_reliable);
+  const auto f = listen<Image>(*participant, "/reliable/depth", qos::reliable_input(), reliable);
   bpa::ChildProcess sender({argv[0], "--send", std::to_string(domain), std::to_string(samples),
                             std::to_string(rate_hz)});
   const int code = sender.finish(seconds(60 + 8 * samples / rate_hz));
   const auto sent = static_cast<std::size_t>(samples);
   std::printf("%d Hz, 640x480                       median     99 %%      max\n", rate_hz);
-  shared.print("RgbdFrame 1.5 MB, shared memory", sent);
-  udp.print("RgbdFrame 1.5 MB, UDP reliable", sent);
-  color_best_effort.print("Image colour, UDP best effort", sent);
+  frames.print("RgbdFrame 1.5 MB, reliable", sent);
+  color_best_effort.print("Image colour, best effort", sent);
   best_effort.print("  and depth: the pair", sent);
-  color_reliable.print("Image colour, UDP reliable", sent);
+  color_reliable.print("Image colour, reliable", sent);
   reliable.print("  and depth: the pair", sent);
   return code;
 }
