@@ -59,6 +59,11 @@ struct ServerCounts {
     failed = value("frames failed in the search");
     messages = value("messages of the camera") + value("messages malformed of the camera");
     lost = value("messages lost by DDS of the camera");
+    to_follow = value("frames to follow received");
+    followed = value("frames followed");
+    for (const auto& [key, count] : details) {
+      if (key.rfind("frames not followed: ", 0) == 0) not_followed += std::stoull(count);
+    }
   }
   std::uint64_t frames_accounted() const {
     return status.frames_processed + status.frames_dropped + status.frames_rejected + failed;
@@ -66,6 +71,7 @@ struct ServerCounts {
 
   ServerStatus status;
   std::uint64_t failed = 0, messages = 0, lost = 0;
+  std::uint64_t to_follow = 0, followed = 0, not_followed = 0;
 };
 
 /// Waits until the server has worked off what came. A loss of DDS shows with the next message only,
@@ -75,7 +81,8 @@ ServerCounts settled_counts(Client& client, CameraLoad& camera) {
     std::this_thread::sleep_for(milliseconds(200));
     const ServerCounts counts(or_throw(client.status()));
     const bool all_heard = counts.messages + counts.lost == camera.messages();
-    const bool all_done = counts.frames_accounted() == counts.status.frames_received;
+    const bool all_done = counts.frames_accounted() == counts.status.frames_received &&
+                          counts.followed + counts.not_followed == counts.to_follow;
     if ((all_heard && all_done) || attempt == 50) return counts;
     if (!all_heard && attempt % 5 == 4) camera.publish();
   }
@@ -123,6 +130,15 @@ void report_requests(const ServerCounts& counts, const RequestLoad& asker,
                         text(", %.0f highest", percentile(times, 100)));
 }
 
+void report_tracks(const ServerCounts& counts, std::uint64_t sets) {
+  row("tracks", number(counts.to_follow) + " frames = " + number(counts.followed) + " followed + " +
+                    number(counts.not_followed) + " not followed; " + number(sets) +
+                    " sets of tracks read");
+  expect(counts.followed > 0 && sets > 0, "no frame was followed");
+  expect(counts.to_follow == counts.followed + counts.not_followed, "tracks do not add up");
+  expect(sets <= counts.followed, "more sets of tracks than frames followed");
+}
+
 /// `warm` to `end`: the seconds that count.
 void report_growth(const std::vector<Reading>& readings, double warm, double end) {
   const double minute = std::min(60.0, (end - warm) / 4), quarter = (end - warm) / 4;
@@ -158,7 +174,9 @@ void soak(const std::string& folder, double seconds) {
        "input.color=camera/color", "--set", "input.depth=camera/depth", "--set",
        "input.camera_info=camera/info"},
       folder + "/server.log");
+  std::atomic<std::uint64_t> sets_of_tracks{0};
   Client watcher = connected();
+  or_throw(watcher.tracks([&](const TrackSet&) { ++sets_of_tracks; }));
   RequestLoad asker(connected());
   ModelLoad loader(connected());
   KilledClients killed;
@@ -188,6 +206,7 @@ void soak(const std::string& folder, double seconds) {
   const ServerCounts counts = settled_counts(watcher, *camera);
   report_frames(counts, *camera);
   report_requests(counts, asker, killed);
+  report_tracks(counts, sets_of_tracks);
   report_growth(readings, std::min(60.0, now / 5), now);
   row("others", number(killed.killed) + " clients killed, " + number(loader.loads) +
                     " times a model loaded and unloaded, " + number(reader->read()) +
