@@ -33,7 +33,7 @@ TEST_F(ServiceManagerTest, WithoutASocketNothingIsTold) {
 TEST_F(ServiceManagerTest, LinesArriveAtThePathAndInTheAbstractNamespace) {
   const test::TemporaryFolder folder;
   for (const std::string& name : {folder.path() + "/notify", "@bpa_test" + folder.path()}) {
-    const support::NotifySocket socket(name);
+    support::NotifySocket socket(name);
     set("NOTIFY_SOCKET", name);
     EXPECT_TRUE(ServiceManager().tell("READY=1\nSTATUS=serving").ok()) << name;
     EXPECT_EQ(socket.receive(), "READY=1\nSTATUS=serving") << name;

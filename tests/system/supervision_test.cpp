@@ -37,7 +37,7 @@ class Systemd {
     unsetenv("WATCHDOG_USEC");
     unlink(path().c_str());
   }
-  std::string receive() const { return socket_.receive(); }
+  std::string receive() { return socket_.receive(); }
 
  private:
   static std::string path() { return support::scratch_folder() + "/notify"; }
@@ -52,7 +52,7 @@ msgs::Detect_Request request() {
 }
 
 TEST(Supervision, SystemdLearnsOfStartLifeAndEnd) {
-  const Systemd systemd("200000");
+  Systemd systemd("200000");
   support::StubServer server;
   EXPECT_EQ(systemd.receive(), "READY=1\nSTATUS=serving") << server.log();
   for (int i = 0; i < 3; ++i) EXPECT_EQ(systemd.receive(), "WATCHDOG=1");
@@ -65,7 +65,7 @@ TEST(Supervision, SystemdLearnsOfStartLifeAndEnd) {
 
 // A search takes a minute and counts as hung after a second.
 TEST(Supervision, AServerThatHangsSaysSoAnswersAndEnds) {
-  const Systemd systemd("400000");
+  Systemd systemd("400000");
   support::StubServer server({"detection.hang_s=1"}, 60000);
   auto participant = support::test_participant("tester");
   ASSERT_TRUE(participant.ok()) << participant.status().message;
