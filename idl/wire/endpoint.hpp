@@ -137,6 +137,8 @@ class RawWriter : public RawEndpoint {
  public:
   /// `related` may be null; `written`, if not null, gets the sample's id.
   virtual Status write(const MessageRef& message, const SampleId* related, SampleId* written) = 0;
+  /// Until all reliable readers have what was written, or the time is over.
+  virtual void wait_until_received(std::chrono::milliseconds timeout) = 0;
 };
 
 class RawReader : public RawEndpoint {

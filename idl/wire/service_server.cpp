@@ -22,6 +22,8 @@ using Bytes = std::vector<std::uint8_t>;
 /// A reply waits so long for its client's reader to be matched.
 constexpr milliseconds kClientPatience{2000};
 constexpr milliseconds kRetryPeriod{5};
+/// A server that leaves waits so long until clients have its replies.
+constexpr milliseconds kLastReplies{500};
 constexpr milliseconds kRepeatAfter[] = {milliseconds{200}, milliseconds{600}};
 constexpr int kMaxWaitingReplies = 256;  ///< Of which a client that does not listen has
 constexpr int kMaxWaitingOfClient = 32;  ///< no more than these.
@@ -64,6 +66,8 @@ class Server : public RawServer, public std::enable_shared_from_this<Server> {
   }
 
   void stop() {
+    // Clients give up once they know that the server has left; what was answered comes before.
+    writer()->wait_until_received(kLastReplies);
     requests_.reset();  // no handler runs after this
     std::shared_ptr<RawWriter> last;
     const std::lock_guard<std::mutex> lock(mutex_);

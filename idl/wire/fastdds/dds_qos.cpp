@@ -91,11 +91,6 @@ void use_our_transport(const Discovery& discovery, const ParticipantOptions& opt
   config.leaseDuration_announcementperiod = Duration(1, 500'000'000);
 }
 
-Duration to_duration(std::int64_t ms) {
-  return Duration(static_cast<std::int32_t>(ms / 1000),
-                  static_cast<std::uint32_t>(ms % 1000) * 1'000'000U);
-}
-
 /// The QoS of the user's XML profile of the topic or else of `profile`, or else `qos` as
 /// `set_defaults` changes it; then what the spec says.
 template <class EndpointQos, class Find, class SetDefaults>
@@ -132,6 +127,11 @@ EndpointQos endpoint_qos(const EndpointSpec& spec, EndpointQos qos, const char* 
 }
 
 }  // namespace
+
+Duration to_duration(std::int64_t ms) {
+  return Duration(static_cast<std::int32_t>(ms / 1000),
+                  static_cast<std::uint32_t>(ms % 1000) * 1'000'000U);
+}
 
 Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
                                                   const ParticipantOptions& options,

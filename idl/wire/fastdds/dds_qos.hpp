@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <fastdds/dds/core/policy/QosPolicies.hpp>
@@ -29,6 +30,8 @@ Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
 /// of the topic's DDS name, or "bpa_writer" and "bpa_reader".
 dds::DataWriterQos writer_qos(const EndpointSpec& spec, const dds::Publisher& publisher);
 dds::DataReaderQos reader_qos(const EndpointSpec& spec, const dds::Subscriber& subscriber);
+
+Duration to_duration(std::int64_t ms);
 
 /// What to tell the user about a peer that asks for more than is offered.
 std::string incompatible_qos_text(const std::string& dds_topic, bool we_write,

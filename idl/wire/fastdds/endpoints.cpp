@@ -148,6 +148,10 @@ class Writer : public RawWriter, private dds::DataWriterListener {
     return {};
   }
 
+  void wait_until_received(std::chrono::milliseconds timeout) override {
+    (void)writer_->wait_for_acknowledgments(to_duration(timeout.count()));
+  }
+
   Guid guid() const override { return to_guid(writer_->guid()); }
 
  private:
