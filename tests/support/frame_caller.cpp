@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// usage: bpa-frame-caller DOMAIN NAMESPACE CALLS TIMEOUT_MS. Asks a server about frames of 640 x
-// 480, one after the other. Prints how many were answered; exits 1 unless all were.
+// usage: bpa-frame-caller DOMAIN NAMESPACE CALLS TIMEOUT_MS [stream]. Asks a server about frames of
+// 640 x 480, one after the other; with `stream` publishes each beforehand, too. Prints how many
+// were answered; exits 1 unless all were.
 #include <cstdlib>
 #include <iostream>
 #include <vector>
@@ -9,7 +10,7 @@
 #include <bpa/client.hpp>
 
 int main(int argc, char** argv) {
-  if (argc != 5) return 2;
+  if (argc != 5 && argc != 6) return 2;
   bpa::ClientOptions options;
   options.domain = std::atoi(argv[1]);
   options.server_namespace = argv[2];
@@ -34,6 +35,7 @@ int main(int argc, char** argv) {
   const int calls = std::atoi(argv[3]);
   int answered = 0;
   for (int i = 0; i < calls; ++i) {
+    if (argc == 6) (void)client->publish_frame(frame);
     const auto found = client->detect_in(frame, {}, std::chrono::milliseconds(std::atoi(argv[4])));
     if (found.ok()) {
       ++answered;

@@ -143,6 +143,7 @@ class SensorServer {
     process_->signal(SIGTERM);
     return process_->wait(std::chrono::milliseconds(15000));
   }
+  Process& process() { return *process_; }
   std::string log() const { return read_text(log_path_); }
   /// How many log lines hold the text.
   int said(const std::string& text) const {
