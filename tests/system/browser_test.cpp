@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
 #include <fstream>
 #include <set>
 
@@ -15,6 +16,7 @@
 namespace bpa {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 using std::chrono::seconds;
 using AnyPage = support::PageTest;
@@ -325,6 +327,40 @@ TEST_F(Page, UnloadsAndLoadsAModel) {
       "r.value = 1; r.dispatchEvent(new Event('input')); return true;");
   EXPECT_TRUE(browser->becomes(
       "return document.querySelector('[data-kept=can]').textContent.startsWith('keeps 0 of');"));
+}
+
+/// The mug under another name, in the folder of the library while this exists.
+class SecondMug {
+ public:
+  SecondMug() {
+    const fs::path library = support::SimulatedFrames::get().library;
+    fs::copy(library / "mug", folder_);
+    const std::string model = folder_ / "model.json";
+    json description = json::parse(support::read_text(model));
+    description["name"] = "tankard";
+    description["number"] = 99;
+    std::ofstream(model) << description;
+  }
+  ~SecondMug() { fs::remove_all(folder_); }
+  SecondMug(const SecondMug&) = delete;
+  SecondMug& operator=(const SecondMug&) = delete;
+
+ private:
+  const fs::path folder_ = fs::path(support::SimulatedFrames::get().library) / "tankard";
+};
+
+TEST_F(AnyPage, FindsModelsThatLookAlike) {
+  const SecondMug second;
+  open();
+  browser->click("#tab-models");
+  ASSERT_TRUE(browser->becomes("return !!document.querySelector('[data-model=tankard]');"));
+  browser->click("#compare");
+  const std::string state = "return document.getElementById('compare-state').textContent";
+  EXPECT_TRUE(browser->becomes(state + " === '1 pair looks alike';")) << server->log();
+  const std::string warned =
+      "return [...document.querySelectorAll('#cards .warn')]"
+      ".map(list => list.closest('.card').dataset.model).sort().join();";
+  EXPECT_EQ(browser->run(warned), "mug,tankard");
 }
 
 TEST_F(Page, ShowsHealthAndChangesASetting) {

@@ -84,7 +84,8 @@ async function compare() {
     const answer = await guarded(() => get('/api/look_alikes'));
     if (!answer) return;
     $('compare-state').textContent = answer.running ? 'comparing all pairs …'
-      : `${answer.findings.length || 'No'} pairs look alike`;
+      : {0: 'No two look alike', 1: '1 pair looks alike'}[answer.findings.length]
+        || `${answer.findings.length} pairs look alike`;
     alike = answer.findings;
     if (!answer.running) break;
     await new Promise((done) => setTimeout(done, 1000));
