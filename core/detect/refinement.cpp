@@ -106,7 +106,8 @@ Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, con
   Refinement out;
   Pose pose = start;
   const Matrix6f prior = damping(model.diameter);
-  const ViewSample& view = sample_of(model, nearest_view(model.index->views, to_fast(start)));
+  const FastPose fast_start = to_fast(start);
+  const ViewSample& view = sample_of(model, nearest_view(model.index->views, fast_start));
   const Problem problem{scene, model, view, options};
   const auto start_gate = static_cast<float>(options.start_gate_m);
   const auto end_gate = static_cast<float>(options.end_gate_m);

@@ -83,7 +83,8 @@ class Look {
   }
 
   void draw_edges(cv::Mat& tile) const {
-    const ModelView& view = nearest_view(model_.index->views, Eigen::Vector3f(axes_.row(2)));
+    const Eigen::Vector3f towards = axes_.row(2);
+    const ModelView& view = nearest_view(model_.index->views, towards);
     for (std::size_t k = 0; k < view.visible.size(); ++k) {
       if (view.edge_distance[k] > 0.002f) continue;
       cv::circle(tile, place(model_.surface.points[view.visible[k]]), 1, kEdge, cv::FILLED);
