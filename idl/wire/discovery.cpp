@@ -3,20 +3,17 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cstdlib>
 #include <sstream>
 
 #include "idl/wire/participant.hpp"
+#include "idl/wire/private/environment.hpp"
 
 namespace bpa::wire {
 namespace {
 
 constexpr int kMaxDomainId = 232;  // the ports of a higher one are beyond 65535
 
-std::string variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? "" : value;
-}
+using detail::variable;
 
 }  // namespace
 

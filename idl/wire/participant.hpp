@@ -45,10 +45,18 @@ enum class GraphLayout {
   humble24,
 };
 
+/// DDS Security, with what a keystore of SROS 2 has for an enclave. Peers that have nothing of the
+/// same authorities see no topic, and peers of an enclave that may not use one cannot.
+struct SecurityOptions {
+  std::string keystore;       ///< A folder; empty: as ROS_SECURITY_ENABLE and its like say.
+  std::string enclave = "/";  ///< "/robot" is the folder enclaves/robot of the keystore.
+};
+
 struct ParticipantOptions {
   NodeName node;                       ///< How ROS 2 tools show this process.
   std::vector<Remap> remaps;           ///< Applied to every topic and service name.
   std::optional<Discovery> discovery;  ///< None: from the environment.
+  SecurityOptions security;
   GraphLayout graph_layout = GraphLayout::automatic;
   /// A file of Fast DDS XML profiles; empty: only those that Fast DDS loads by itself. The
   /// participant profile "bpa" replaces our transports and time-outs. Profiles "bpa_writer",
@@ -64,11 +72,14 @@ struct ParticipantOptions {
 /// only, no shared-memory transport. Publishers, subscribers and services keep it alive.
 class Participant {
  public:
-  /// `invalid_argument` for bad names or a bad environment, `unavailable` when DDS cannot start.
+  /// `invalid_argument` for bad names or a bad environment, `unavailable` when DDS cannot start. Of
+  /// security: `not_found` for a missing file, `unsupported` where Fast DDS has none.
   static Result<Participant> create(ParticipantOptions options);
 
   const NodeName& node() const;
   int domain_id() const;
+  /// Where the keys lie that protect it; empty: without security.
+  const std::string& enclave_folder() const;
   /// The fully qualified name of a topic or service, remapped.
   Result<std::string> resolve(std::string_view name) const;
   /// The layout in use now; never `automatic`.

@@ -3,7 +3,8 @@
 #include "idl/wire/fastdds/dds_qos.hpp"
 
 #include <algorithm>
-#include <cstring>
+
+#include <unistd.h>
 
 #include "core/base/concat.hpp"
 
@@ -19,8 +20,6 @@ using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
 namespace {
 
-constexpr const char* kRosUserData = "enclave=/;";
-constexpr const char* kRosParticipantName = "/";
 constexpr std::uint32_t kPeersOnOneHost = 32;  // ports tried at a peer's address, as rmw does
 
 Status add_peer(const std::string& peer, rtps::LocatorList_t& peers) {
@@ -91,6 +90,18 @@ void use_our_transport(const Discovery& discovery, const ParticipantOptions& opt
   config.leaseDuration_announcementperiod = Duration(1, 500'000'000);
 }
 
+void use_security(const Enclave& enclave, dds::DomainParticipantQos& qos) {
+  auto& properties = qos.properties().properties();
+  properties.emplace_back("dds.sec.auth.plugin", "builtin.PKI-DH");
+  properties.emplace_back("dds.sec.access.plugin", "builtin.Access-Permissions");
+  properties.emplace_back("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
+  const auto add = [&](const EnclaveFile& file) {
+    properties.emplace_back(file.property, concat("file://", enclave.folder, "/", file.name));
+  };
+  for (const EnclaveFile& file : kEnclaveFiles) add(file);
+  if (access(concat(enclave.folder, "/", kRevokedFile.name).c_str(), F_OK) == 0) add(kRevokedFile);
+}
+
 /// The QoS of the user's XML profile of the topic or else of `profile`, or else `qos` as
 /// `set_defaults` changes it; then what the spec says.
 template <class EndpointQos, class Find, class SetDefaults>
@@ -135,11 +146,13 @@ Duration to_duration(std::int64_t ms) {
 
 Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
                                                   const ParticipantOptions& options,
+                                                  const Enclave& enclave,
                                                   const dds::DomainParticipantQos* base) {
   dds::DomainParticipantQos qos = base != nullptr ? *base : dds::PARTICIPANT_QOS_DEFAULT;
-  qos.name(kRosParticipantName);
-  qos.user_data().data_vec(
-      std::vector<rtps::octet>(kRosUserData, kRosUserData + std::strlen(kRosUserData)));
+  qos.name(enclave.name);
+  const std::string user_data = "enclave=" + enclave.name + ";";
+  qos.user_data().data_vec(std::vector<rtps::octet>(user_data.begin(), user_data.end()));
+  if (enclave.secure()) use_security(enclave, qos);
 
 #if BPA_FASTDDS_MAJOR >= 3
   // Announcing nothing of a type never refuses a peer; 2.x is told so by the type itself.

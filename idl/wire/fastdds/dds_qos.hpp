@@ -14,16 +14,19 @@
 #include "idl/wire/endpoint.hpp"
 #include "idl/wire/fastdds/version.hpp"
 #include "idl/wire/participant.hpp"
+#include "idl/wire/private/enclave.hpp"
 
 // Private to idl/wire/fastdds, the only folder that includes Fast DDS.
 
 namespace bpa::wire::detail {
 
-/// UDP over IPv4 alone, with large buffers; discovery as rmw_fastrtps sets it up; the user data by
-/// which ROS 2 knows one of its own. `base` is the user's participant profile, which then says the
-/// transports and time-outs; null: none. `invalid_argument` when a static peer's name is unknown.
+/// UDP over IPv4 alone, with large buffers; discovery and security as rmw_fastrtps sets them up;
+/// the user data by which ROS 2 knows one of its own. `base` is the user's participant profile,
+/// which then says the transports and time-outs; null: none. `invalid_argument` when a static
+/// peer's name is unknown.
 Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
                                                   const ParticipantOptions& options,
+                                                  const Enclave& enclave,
                                                   const dds::DomainParticipantQos* base);
 
 /// The QoS of an endpoint. What spec.qos leaves open may come from the user's XML profiles: those

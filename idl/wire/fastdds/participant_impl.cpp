@@ -139,9 +139,10 @@ class Listener : public dds::DomainParticipantListener {
 
 }  // namespace
 
-ParticipantImpl::ParticipantImpl(ParticipantOptions options, Discovery discovery)
+ParticipantImpl::ParticipantImpl(ParticipantOptions options, Discovery discovery, Enclave enclave)
     : options_(std::move(options)),
       discovery_(std::move(discovery)),
+      enclave_(std::move(enclave)),
       listener_(std::make_unique<Listener>(*this)),
       worker_(options_.log) {}
 
@@ -155,7 +156,7 @@ Status ParticipantImpl::start() {
   const bool has_profile =
       succeeded(factory->get_participant_qos_from_profile(kParticipantProfile, profile));
   Result<dds::DomainParticipantQos> qos =
-      participant_qos(discovery_, options_, has_profile ? &profile : nullptr);
+      participant_qos(discovery_, options_, enclave_, has_profile ? &profile : nullptr);
   if (!qos.ok()) return qos.status();
   if (has_profile && qos->transport().use_builtin_transports) {
     log(LogLevel::warning,
@@ -175,7 +176,8 @@ Status ParticipantImpl::start() {
   if (participant_ == nullptr) participant_ = create();  // its number is another participant's
   if (participant_ == nullptr) {
     return unavailable("cannot join DDS domain ", discovery_.domain_id,
-                       ": no UDP port or no network interface is free");
+                       ": no UDP port or no network interface is free",
+                       enclave_.secure() ? ", or " + enclave_.folder + " is not in order" : "");
   }
   publisher_ = participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   subscriber_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
@@ -220,8 +222,13 @@ Status ParticipantImpl::open(const EndpointSpec& spec, bool is_reader,
   dds::Topic* topic = acquire_topic(spec, &error);
   const Guid guid = topic == nullptr ? Guid{} : make(topic);
   if (guid == Guid{}) {
+    const bool forbidden = topic != nullptr && enclave_.secure();
+    if (forbidden) {
+      error = concat("the permissions of enclave ", enclave_.name, " do not allow it in domain ",
+                     discovery_.domain_id);
+    }
     if (topic != nullptr) release_topic(spec.dds_topic);
-    return Status(StatusCode::internal,
+    return Status(forbidden ? StatusCode::unsupported : StatusCode::internal,
                   concat("cannot ", is_reader ? "subscribe to " : "publish on ", spec.dds_topic,
                          ": ", error));
   }
@@ -374,13 +381,24 @@ namespace {
 using eprosima::fastdds::dds::Log;
 using eprosima::fastdds::dds::LogConsumer;
 
+/// What open() says in fewer words.
+bool is_said_by_open(std::string_view message) {
+  for (const char* words : {" not found in allow rule", "Not found topic access rule",
+                            "Error checking creation of local ", "Problem creating associated "}) {
+    if (message.find(words) != std::string_view::npos) return true;
+  }
+  return false;
+}
+
 class Bridge : public LogConsumer {
  public:
   explicit Bridge(LogHook hook) : hook_(std::move(hook)) {}
 
   void Consume(const Log::Entry& entry) override {
-    const bool error = entry.kind == Log::Kind::Error;
-    const SourceLocation location{entry.context.filename, entry.context.function,
+    const bool error = entry.kind == Log::Kind::Error && !is_said_by_open(entry.message);
+    // What its security says has no function.
+    const auto known = [](const char* name) { return name == nullptr ? "" : name; };
+    const SourceLocation location{known(entry.context.filename), known(entry.context.function),
                                   entry.context.line};
     log(hook_, error ? LogLevel::warning : LogLevel::debug, "Fast DDS: " + entry.message, location);
   }
@@ -390,7 +408,8 @@ class Bridge : public LogConsumer {
 };
 
 /// Takes Fast DDS's own messages, which it would print, to a hook: its errors as warnings, its
-/// warnings as debug. Fast DDS has one log a process; the hook of the last participant gets it.
+/// warnings and what we say of them ourselves as debug. Fast DDS has one log a process; the hook of
+/// the last participant gets it.
 void bridge_log(const LogHook& hook) {
   Log::ClearConsumers();
   if (!hook) return;
@@ -411,7 +430,10 @@ Result<Participant> Participant::create(ParticipantOptions options) {
       options.discovery ? *options.discovery : discovery_from_environment();
   if (!discovery.ok()) return discovery.status();
   bridge_log(options.log);
-  auto impl = std::make_shared<detail::ParticipantImpl>(std::move(options), *discovery);
+  auto enclave = detail::find_enclave(options.security, options.log);
+  if (!enclave.ok()) return enclave.status();
+  auto impl = std::make_shared<detail::ParticipantImpl>(std::move(options), *discovery,
+                                                        std::move(enclave).value());
   if (Status s = impl->start(); !s.ok()) return s;
   return Participant(std::move(impl));
 }
@@ -419,6 +441,8 @@ Result<Participant> Participant::create(ParticipantOptions options) {
 const NodeName& Participant::node() const { return impl_->options().node; }
 
 int Participant::domain_id() const { return impl_->domain_id(); }
+
+const std::string& Participant::enclave_folder() const { return impl_->enclave().folder; }
 
 Result<std::string> Participant::resolve(std::string_view name) const {
   return resolve_name(name, node(), impl_->options().remaps);

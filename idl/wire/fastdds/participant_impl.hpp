@@ -18,6 +18,7 @@
 
 #include "idl/wire/fastdds/version.hpp"
 #include "idl/wire/participant.hpp"
+#include "idl/wire/private/enclave.hpp"
 #include "idl/wire/private/graph.hpp"
 #include "idl/wire/worker.hpp"
 
@@ -33,12 +34,13 @@ rtps::SampleIdentity to_identity(const SampleId& id);
 /// Owns the DDS participant, its topics and types, and its entry in the ROS 2 graph.
 class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
  public:
-  ParticipantImpl(ParticipantOptions options, Discovery discovery);
+  ParticipantImpl(ParticipantOptions options, Discovery discovery, Enclave enclave);
   ~ParticipantImpl();
   Status start();
 
   const ParticipantOptions& options() const { return options_; }
   int domain_id() const { return discovery_.domain_id; }
+  const Enclave& enclave() const { return enclave_; }
   GraphLayout graph_layout() const;
   void log(LogLevel level, const std::string& text,
            SourceLocation location = SourceLocation::current()) const {
@@ -56,7 +58,8 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
   Guid guid() const { return participant_of(to_guid(participant_->guid())); }
 
   /// Makes an endpoint on its topic and lists it in the graph. `make` makes the DDS entity and
-  /// gives back its GUID, zero when Fast DDS refuses it. `internal` says what was refused and why.
+  /// gives back its GUID, zero when Fast DDS refuses it. `internal` says what was refused and why;
+  /// `unsupported`: by the permissions of our enclave.
   Status open(const EndpointSpec& spec, bool is_reader,
               const std::function<Guid(dds::Topic*)>& make);
   /// The reverse; `end` deletes the DDS entity.
@@ -91,6 +94,7 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
 
   const ParticipantOptions options_;
   const Discovery discovery_;
+  const Enclave enclave_;
   const std::unique_ptr<dds::DomainParticipantListener> listener_;
   std::int32_t number_ = -1;  ///< In this process; -1: the user's profile gives one.
   dds::DomainParticipant* participant_ = nullptr;
