@@ -11,8 +11,10 @@
 #include "core/base/failure.hpp"
 #include "core/pipeline/detector_options.hpp"
 #include "server/options.hpp"
+#include "server/participant_options.hpp"
 #include "server/recognition.hpp"
 #include "server/ros_arguments.hpp"
+#include "server/security/keystore.hpp"
 #include "server/server.hpp"
 #include "server/supervision.hpp"
 
@@ -32,6 +34,7 @@ struct CommandLine {
   bool localhost = false;
   bool print_config = false;
   bool list_devices = false;
+  std::string make_keystore;
 };
 
 void add_options(CLI::App& program, CommandLine& line) {
@@ -40,6 +43,10 @@ void add_options(CLI::App& program, CommandLine& line) {
   program.add_flag("--print-config", line.print_config, "print all settings and stop");
   program.add_flag("--list-devices", line.list_devices,
                    "print the OpenNI2 sensors, their modes and what is wrong with each, and stop");
+  program.add_option(
+      "--make-keystore", line.make_keystore,
+      "write keys and permissions for DDS Security to a new folder, for the enclaves "
+      "/bpa_server, /robot and /viewer, and stop");
   program.add_option("--set", line.settings, "group.key=value, any setting (repeatable)");
   const struct {
     const char* option;
@@ -53,6 +60,8 @@ void add_options(CLI::App& program, CommandLine& line) {
       {"--seed", "detection.seed", "same frame, library and seed: same answer"},
       {"--namespace", "node.namespace", "ROS namespace, default /bpa"},
       {"--domain", "network.domain", "DDS domain; default ROS_DOMAIN_ID, else 0"},
+      {"--keystore", "security.keystore", "folder that --make-keystore or SROS 2 made"},
+      {"--enclave", "security.enclave", "whose keys of it to use, default /bpa_server"},
       {"--web", "web.listen",
        "[ADDRESS:]PORT of a page for browsers; a port alone: this machine only"},
       {"--log-level", "log.level", "debug, info, warning or error"},
@@ -64,6 +73,12 @@ void add_options(CLI::App& program, CommandLine& line) {
           line.settings.push_back(std::string(setting) + "=" + value);
         },
         s.description);
+  }
+  // An empty variable of a script must not start a server without security.
+  for (const char* option : {"--keystore", "--make-keystore"}) {
+    program.get_option(option)->check([](const std::string& folder) {
+      return folder.empty() ? std::string("names no folder") : std::string();
+    });
   }
 }
 
@@ -116,6 +131,18 @@ void serve(const ServerOptions& options, const bpa::LogHook& hook, const sigset_
   bpa::server::serve_until_signal(std::move(server), signals, hook);
 }
 
+/// For the topics, services and domain of the settings. Throws a Failure.
+void make_keystore(const std::string& folder, const ServerOptions& options) {
+  const auto enclaves = bpa::server::default_permissions(options);
+  const int domain = bpa::server::participant_options(options, {}).discovery->domain_id;
+  bpa::server::make_keystore(folder, enclaves, domain);
+  std::cout << "for domain " << domain << ":\n";
+  for (const auto& permissions : enclaves) {
+    std::cout << folder << "/enclaves" << permissions.enclave << '\n';
+  }
+  std::cout << "keep " << folder << "/private off robots and servers: who has it lets others in\n";
+}
+
 int fail(const Status& status, int exit_code) {
   std::cerr << "bpa-server: " << status.message << '\n';
   return exit_code;
@@ -136,7 +163,8 @@ int main(int argc, char** argv) {
   CLI::App program("Finds known objects in the RGB-D frames of a DDS domain.", "bpa-server");
   program.footer(
       "ROS 2's own arguments come after --ros-args: -r FROM:=TO, -r __node:=NAME, "
-      "-r __ns:=NAMESPACE,\n-p NAME:=VALUE, --params-file FILE, --log-level LEVEL.\n"
+      "-r __ns:=NAMESPACE,\n-p NAME:=VALUE, --params-file FILE, --log-level LEVEL, --enclave "
+      "NAME.\n"
       "Exits with 0 after SIGINT or SIGTERM, 1 when it cannot start, 2 on a wrong command line, 3 "
       "when a search hangs.");
   program.set_version_flag("--version", BPA_VERSION);
@@ -167,6 +195,10 @@ int main(int argc, char** argv) {
   }
   const bpa::LogHook hook = make_log();
   try {
+    if (!line.make_keystore.empty()) {
+      make_keystore(line.make_keystore, options);
+      return 0;
+    }
     serve(options, hook, signals);
     return 0;
   } catch (const std::exception& error) {

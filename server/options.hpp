@@ -69,6 +69,22 @@ struct NetworkOptions {
   }
 };
 
+/// DDS Security.
+struct SecurityOptions {
+  std::string keystore;
+  std::string enclave = "/bpa_server";
+
+  void visit_fields(auto&& visit) {
+    visit(
+        "keystore", keystore,
+        {0, 0,
+         "Folder that --make-keystore or SROS 2 made: only peers of the same authority take part, "
+         "encrypted. Empty: as ROS_SECURITY_ENABLE and its like say. Needs Fast DDS 3, as Debian "
+         "13 has it."});
+    visit("enclave", enclave, {0, 0, "Which identity and permissions of the keystore are ours."});
+  }
+};
+
 struct InputOptions {
   std::string frames = "frames";
   bool frames_reliable = true;
@@ -355,6 +371,7 @@ struct LogOptions {
 struct ServerOptions {
   NodeOptions node;
   NetworkOptions network;
+  SecurityOptions security;
   InputOptions input;
   CaptureOptions capture;
   QueueOptions queue;
@@ -369,6 +386,7 @@ struct ServerOptions {
   void visit_groups(auto&& visit) {
     visit("node", node, "Names.");
     visit("network", network, "Discovery and transport.");
+    visit("security", security, "Who may take part.");
     visit("input", input, "Where frames come from.");
     visit("capture", capture, "A camera of the server's own.");
     visit("queue", queue, "What may wait while a frame is searched.");

@@ -36,6 +36,7 @@ wire::ParticipantOptions participant_options(const ServerOptions& options, LogHo
   seat.graph_layout = graph_layout_of(options.network.graph_layout);
   seat.profiles = options.network.profiles;
   seat.datagram_bytes = options.network.datagram_bytes;
+  seat.security = {options.security.keystore, options.security.enclave};
   seat.log = std::move(log);
   for (const std::string& text : options.node.remaps) {
     seat.remaps.push_back(or_throw(wire::parse_remap(text)));

@@ -131,16 +131,18 @@ Result<RosArguments> take_ros_arguments(const std::vector<std::string>& command_
                                      : word == "-p" || word == "--param" ? &taken.parameters
                                      : word == "--params-file"           ? &taken.files
                                                                          : nullptr;
-    if (word == "-e" || word == "--enclave") {
-      return Status(StatusCode::unsupported, "--enclave: there is no security (SROS2) here");
-    }
     if (is_log_switch(word)) continue;  // legal; log.level and output.rosout decide here
-    if (list == nullptr && word != "--log-level" && !ignored) {
+    const bool is_enclave = word == "-e" || word == "--enclave";
+    if (list == nullptr && word != "--log-level" && !is_enclave && !ignored) {
       return invalid_argument("'" + word + "' after --ros-args is not known; end it with --");
     }
     if (i + 1 == command_line.size()) return invalid_argument(word + " needs a value");
     const std::string& value = command_line[++i];
     if (ignored) continue;
+    if (is_enclave) {
+      taken.enclave = value;
+      continue;
+    }
     if (list == nullptr) {
       const wire::Remap level = split(value);  // LOGGER:=LEVEL or LEVEL
       taken.log_level = level.to.empty() ? value : level.to;
@@ -164,6 +166,7 @@ Status apply(const RosArguments& arguments, ServerOptions& options) {
     const wire::Remap parameter = split(text);
     if (status.ok()) status = set_parameter_text(parameter.from, parameter.to, options);
   }
+  if (status.ok() && !arguments.enclave.empty()) options.security.enclave = arguments.enclave;
   if (!status.ok() || arguments.log_level.empty()) return status;
   std::string level = arguments.log_level;
   for (char& c : level) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;

@@ -10,7 +10,7 @@
 
 // The part of a command line that every ROS 2 node understands, as `ros2 run` and launch files use
 // it: --ros-args -r FROM:=TO -r __node:=NAME -r __ns:=NAMESPACE -p NAME:=VALUE --params-file FILE
-// --log-level LEVEL, until `--` or the end.
+// --log-level LEVEL --enclave NAME, until `--` or the end.
 
 namespace bpa::server {
 
@@ -20,10 +20,10 @@ struct RosArguments {
   std::vector<std::string> parameters;  ///< name:=value
   std::vector<std::string> files;       ///< Parameter files.
   std::string log_level;                ///< Empty: none given.
+  std::string enclave;                  ///< Likewise.
 };
 
-/// Takes a command line apart. `invalid_argument` for what ROS would not understand, `unsupported`
-/// for what this server does not have (an enclave).
+/// Takes a command line apart. `invalid_argument` for what ROS would not understand.
 Result<RosArguments> take_ros_arguments(const std::vector<std::string>& command_line);
 
 /// Sets what they say, files first, as ROS does. Parameters are the settings, "group.key"; in a

@@ -168,6 +168,9 @@ class Running : public Server {
 
   void join(const ServerOptions& options) {
     participant_.emplace(or_throw(wire::Participant::create(participant_options(options, log_))));
+    if (const std::string& folder = participant_->enclave_folder(); !folder.empty()) {
+      log(log_, LogLevel::info, "only peers of its keystore take part, by the keys in " + folder);
+    }
     const std::string& rosout = options.output.rosout;
     if (!rosout.empty()) relay_.connect(*participant_, rosout);
   }

@@ -50,9 +50,12 @@ TEST(RosArguments, NamesRemapsParametersAndLevel) {
                              "WARN",
                              "--disable-stdout-logs",
                              "--log-config-file",
-                             "log.config"});
+                             "log.config",
+                             "-e",
+                             "/eyes"});
   ASSERT_TRUE(options.ok()) << options.status().message;
   EXPECT_EQ(options->node.name, "eyes");
+  EXPECT_EQ(options->security.enclave, "/eyes");
   EXPECT_EQ(options->node.ros_namespace, "/left");
   EXPECT_EQ(options->node.remaps,
             (std::vector<std::string>{"detections:=/objects", "tf:=/tf_left"}));
@@ -74,7 +77,7 @@ TEST(RosArguments, RefusesWhatItCannotDo) {
                {{"--log-level", "loud"}, "log.level"},
                {{"--params-file", "nowhere.yaml"}, "no such file"},
                {{"-p", "use_sim_time:=maybe"}, "node.use_sim_time"},
-               {{"--enclave", "/x"}, "security"}};
+               {{"--enclave"}, "needs a value"}};
   for (const auto& c : cases) {
     std::vector<std::string> words = {"x", "--ros-args"};
     words.insert(words.end(), c.words.begin(), c.words.end());
