@@ -21,6 +21,14 @@ void add_common(CLI::App& program, Common& common) {
   program.add_flag("--localhost", common.localhost, "look for servers on this machine only");
   program.add_option("--peer", common.options.peers,
                      "another host to look for servers on (repeatable)");
+  program
+      .add_option("--keystore", common.options.keystore,
+                  "DDS Security: folder that bpa-server --make-keystore or SROS 2 made")
+      ->check([](const std::string& folder) {
+        return folder.empty() ? std::string("names no folder") : std::string();
+      });
+  program.add_option("--enclave", common.options.enclave, "whose keys of the keystore to use")
+      ->capture_default_str();
   program.add_option("--timeout", common.timeout_s, "seconds to wait for the server")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

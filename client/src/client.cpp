@@ -55,8 +55,11 @@ Result<wire::Participant> join(const ClientOptions& options) {
   wire::ParticipantOptions seat;
   seat.node = {options.server_namespace, "client"};
   seat.discovery = *discovery;
+  seat.security = {options.keystore, options.enclave};
   if (options.log) {
-    seat.log = [hook = options.log](LogLevel, std::string_view text) { hook(std::string(text)); };
+    seat.log = [hook = options.log](LogLevel level, std::string_view text) {
+      if (level != LogLevel::debug) hook(std::string(text));
+    };
   }
   return wire::Participant::create(std::move(seat));
 }
@@ -80,21 +83,38 @@ auto guarded(const Call& call) {
 }  // namespace
 
 struct Client::Impl {
+  /// A service, or why our enclave may not call it.
   template <class Service>
-  using Caller = wire::ServiceClient<Service>;
+  class Caller {
+   public:
+    /// Other failures than a lack of permission are given back.
+    Status open(const wire::Participant& participant, const char* service) {
+      client_ = wire::ServiceClient<Service>::create(participant, service);
+      return client_.status().code == StatusCode::unsupported ? Status() : client_.status();
+    }
+    void refuse(const Status& reason) { client_ = reason; }
+    Result<typename Service::Response> call(const typename Service::Request& request,
+                                            Milliseconds timeout) const {
+      if (!client_.ok()) return client_.status();
+      return client_.value().call(request, timeout);
+    }
+    const Result<wire::ServiceClient<Service>>& client() const { return client_; }
+
+   private:
+    Result<wire::ServiceClient<Service>> client_{Status(StatusCode::internal, "not made")};
+  };
 
   ClientOptions options;
   wire::Participant participant;
-  // There is a value in each once create() is done.
-  std::optional<Caller<msgs::Detect>> detect = {};
-  std::optional<Caller<msgs::ListModels>> list_models = {};
-  std::optional<Caller<msgs::LoadModel>> load_model = {};
-  std::optional<Caller<msgs::UnloadModel>> unload_model = {};
-  std::optional<Caller<msgs::GetStatus>> get_status = {};
-  std::optional<Caller<msgs::Record>> record = {};
-  std::optional<Caller<msgs::RenameTrack>> rename_track = {};
-  std::optional<Caller<msgs::HoldTrack>> hold_track = {};
-  std::optional<Caller<msgs::ForgetTrack>> forget_track = {};
+  Caller<msgs::Detect> detect = {};
+  Caller<msgs::ListModels> list_models = {};
+  Caller<msgs::LoadModel> load_model = {};
+  Caller<msgs::UnloadModel> unload_model = {};
+  Caller<msgs::GetStatus> get_status = {};
+  Caller<msgs::Record> record = {};
+  Caller<msgs::RenameTrack> rename_track = {};
+  Caller<msgs::HoldTrack> hold_track = {};
+  Caller<msgs::ForgetTrack> forget_track = {};
 
   // Those below are made on first use.
   std::mutex mutex = {};
@@ -128,18 +148,16 @@ Result<std::unique_ptr<Client::Impl>> Client::Impl::create(const ClientOptions& 
   auto participant = join(options);
   if (!participant.ok()) return participant.status();
   std::unique_ptr<Impl> impl(new Impl{options, std::move(participant).value()});
-  Status status;
+  Status status = impl->get_status.open(impl->participant, "get_status");
+  const Status forbidden = impl->get_status.client().status();
   const auto make = [&](auto& caller, const char* service) {
-    if (!status.ok()) return;
-    auto created = std::decay_t<decltype(*caller)>::create(impl->participant, service);
-    status = created.status();
-    if (created.ok()) caller.emplace(std::move(created).value());
+    if (!forbidden.ok()) return caller.refuse(forbidden);
+    if (status.ok()) status = caller.open(impl->participant, service);
   };
   make(impl->detect, "detect");
   make(impl->list_models, "list_models");
   make(impl->load_model, "load_model");
   make(impl->unload_model, "unload_model");
-  make(impl->get_status, "get_status");
   make(impl->record, "record");
   make(impl->rename_track, "rename_track");
   make(impl->hold_track, "hold_track");
@@ -184,7 +202,7 @@ Result<DetectionSet> Client::Impl::search(msgs::Detect_Request request, const De
   // The server gives up earlier than we do, so that it can say why.
   const auto total_ms = static_cast<double>(timeout.count());
   request.timeout_ms = std::max(1.0, total_ms - std::clamp(0.25 * total_ms, 50.0, 1000.0));
-  const auto response = detect->call(request, timeout);
+  const auto response = detect.call(request, timeout);
   if (Status status = outcome(response); !status.ok()) return status;
   DetectionSet found = sdk::to_detections(response->result);
   found.queue_position = static_cast<int>(response->queue_position);
@@ -216,7 +234,7 @@ Status Client::Impl::wait_for_listener() {
   if (!frames->wait_for_matched(options.timeout)) return silence;
   while (std::chrono::steady_clock::now() < end) {
     std::this_thread::sleep_for(Milliseconds(50));
-    const auto response = get_status->call({}, options.timeout);
+    const auto response = get_status.call({}, options.timeout);
     if (Status status = outcome(response); !status.ok()) return status;
     if (response->frame_publishers == 0) continue;
     std::this_thread::sleep_for(Milliseconds(100));
@@ -236,12 +254,14 @@ Result<Client> Client::connect(const ClientOptions& options) {
   return guarded([&]() -> Result<Client> {
     auto impl = Impl::create(options);
     if (!impl.ok()) return impl.status();
-    if (!(*impl)->get_status->wait_for_service(options.timeout)) {
-      return Status(StatusCode::unavailable,
-                    "no bpa-server answers as " + (*impl)->get_status->name() + " in domain " +
-                        std::to_string((*impl)->participant.domain_id()) + " within " +
-                        std::to_string(options.timeout.count()) +
-                        " ms; is it running, with this namespace, domain and discovery range?");
+    const auto& get_status = (*impl)->get_status.client();
+    if (get_status.ok() && !get_status.value().wait_for_service(options.timeout)) {
+      return Status(
+          StatusCode::unavailable,
+          "no bpa-server answers as " + get_status.value().name() + " in domain " +
+              std::to_string((*impl)->participant.domain_id()) + " within " +
+              std::to_string(options.timeout.count()) +
+              " ms; is it running, with this namespace, domain, discovery range and keystore?");
     }
     return Client(std::move(impl).value());
   });
@@ -249,7 +269,7 @@ Result<Client> Client::connect(const ClientOptions& options) {
 
 Result<std::vector<KnownModel>> Client::models() {
   return guarded([&]() -> Result<std::vector<KnownModel>> {
-    const auto response = impl_->list_models->call({}, impl_->options.timeout);
+    const auto response = impl_->list_models.call({}, impl_->options.timeout);
     if (Status status = outcome(response); !status.ok()) return status;
     std::vector<KnownModel> models;
     for (const auto& model : response->models) models.push_back(sdk::to_model(model));
@@ -324,24 +344,24 @@ Status Client::tracks(std::function<void(const TrackSet&)> on_tracks) {
 
 Status Client::rename_track(const std::string& track, const std::string& name) {
   return guarded([&] {
-    return outcome(impl_->rename_track->call({track, name}, impl_->options.timeout));
+    return outcome(impl_->rename_track.call({track, name}, impl_->options.timeout));
   });
 }
 
 Status Client::hold_track(const std::string& track, bool hold) {
   return guarded([&] {
-    return outcome(impl_->hold_track->call({track, hold}, impl_->options.timeout));
+    return outcome(impl_->hold_track.call({track, hold}, impl_->options.timeout));
   });
 }
 
 Status Client::forget_track(const std::string& track) {
   return guarded(
-      [&] { return outcome(impl_->forget_track->call({track}, impl_->options.timeout)); });
+      [&] { return outcome(impl_->forget_track.call({track}, impl_->options.timeout)); });
 }
 
 Result<ServerStatus> Client::status() {
   return guarded([&]() -> Result<ServerStatus> {
-    const auto response = impl_->get_status->call({}, impl_->options.timeout);
+    const auto response = impl_->get_status.call({}, impl_->options.timeout);
     if (Status status = outcome(response); !status.ok()) return status;
     return sdk::to_server_status(*response);
   });
@@ -349,17 +369,17 @@ Result<ServerStatus> Client::status() {
 
 Status Client::load_model(const std::string& source, const std::string& name) {
   return guarded([&] {
-    return outcome(impl_->load_model->call({source, name}, impl_->options.detect_timeout));
+    return outcome(impl_->load_model.call({source, name}, impl_->options.detect_timeout));
   });
 }
 
 Status Client::unload_model(const std::string& name) {
   return guarded(
-      [&] { return outcome(impl_->unload_model->call({name}, impl_->options.detect_timeout)); });
+      [&] { return outcome(impl_->unload_model.call({name}, impl_->options.detect_timeout)); });
 }
 
 Result<Recording> Client::Impl::call_record(const msgs::Record_Request& request) const {
-  const auto reply = record->call(request, options.timeout);
+  const auto reply = record.call(request, options.timeout);
   if (reply.status().code == StatusCode::unavailable) {
     return Status(StatusCode::unavailable,
                   "the server records nothing: it has no camera of its own (capture.source)");

@@ -40,6 +40,11 @@ struct ClientOptions {
   bool range_from_environment = true;
   DiscoveryRange range = DiscoveryRange::subnet;
   std::vector<std::string> peers;  ///< More host names or addresses to look at.
+  /// DDS Security, as the server has it: the folder that bpa-server --make-keystore or SROS 2 made,
+  /// and whose keys of it are ours. Empty: as ROS_SECURITY_ENABLE and its like say. Needs Fast
+  /// DDS 3.
+  std::string keystore;
+  std::string enclave = "/robot";
   /// Receives what the SDK has to say (such as a type or QoS that does not match), from any thread.
   std::function<void(const std::string&)> log;
 };
@@ -50,7 +55,9 @@ struct ClientOptions {
 class Client {
  public:
   /// Joins the domain and waits for a server. Fails with `unavailable` when none answers in time,
-  /// with `invalid_argument` on an option that breaks its rule.
+  /// with `invalid_argument` on an option that breaks its rule. An enclave that may not call
+  /// get_status, such as /viewer, waits for nothing: its calls fail with `unsupported`, its
+  /// subscriptions work.
   static Result<Client> connect(const ClientOptions& options = {});
 
   /// The models that the server looks for, by number.
