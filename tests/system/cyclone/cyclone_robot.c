@@ -4,7 +4,7 @@
 // driver does (best effort, 20 Hz), listens to detections and interpretations, and asks the detect
 // service twice a second as rmw_cyclonedds does. Usage: cyclone_robot DOMAIN NAMESPACE SECONDS.
 // Says what comes: "detections MS STAMP FRAME CLASS PROBABILITY", "interpretations MS STAMP COUNT Z",
-// "asked NUMBER", "answered NUMBER SUCCESS COUNT".
+// "asked NUMBER", "answered NUMBER SUCCESS COUNT"; at the end "sees COUNT topics", endpoints of others.
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -160,6 +160,24 @@ static void take_all(dds_entity_t reader, void (*hear)(const void*)) {
   }
 }
 
+/* Endpoints of other participants that are known now. */
+static int count_others(dds_entity_t builtin_topic) {
+  const dds_entity_t reader = check(dds_create_reader(participant, builtin_topic, NULL, NULL), "discovery");
+  dds_guid_t own;
+  dds_get_guid(participant, &own);
+  void* sample[1] = {NULL};
+  dds_sample_info_t info[1];
+  int others = 0;
+  while (dds_take(reader, sample, info, 1, 1) > 0) {
+    const dds_builtintopic_endpoint_t* endpoint = sample[0];
+    others += info[0].valid_data && memcmp(&endpoint->participant_key, &own, sizeof(own)) != 0;
+    dds_return_loan(reader, sample, 1);
+    sample[0] = NULL;
+  }
+  dds_delete(reader);
+  return others;
+}
+
 int main(int argc, char** argv) {
   if (argc != 4) return 2;
   participant = check(dds_create_participant((dds_domainid_t)atoi(argv[1]), NULL, NULL), "participant");
@@ -193,6 +211,8 @@ int main(int argc, char** argv) {
       take_all(replies, hear_reply);
     }
   }
+  say("sees %d topics\n", count_others(DDS_BUILTIN_TOPIC_DCPSPUBLICATION) +
+                              count_others(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION));
   dds_delete(participant);
   return 0;
 }
