@@ -197,6 +197,9 @@ void add_doctor_command(CLI::App& program) {
       ->check(CLI::Range(0, 232));
   add_option(command, "--namespace", a.client.server_namespace, "ROS namespace of the server");
   command.add_flag("--localhost", a.localhost, "Look for the server on this machine only");
+  add_option(command, "--keystore", a.client.keystore,
+             "DDS Security: folder that bpa-server --make-keystore or SROS 2 made", "DIR");
+  add_option(command, "--enclave", a.client.enclave, "Whose keys of the keystore to use", "NAME");
   add_option(command, "--timeout", a.timeout_s, "Longest wait for a server or a sensor, seconds")
       ->check(CLI::Range(0.1, 600.0));
   add_option(command, "--json", a.json, "Write what was found as JSON", "FILE");

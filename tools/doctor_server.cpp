@@ -163,7 +163,7 @@ Finding explain_absence(const Status& status) {
   }
   std::string remedy =
       "Start `bpa-server --library DIR`. Give both the same ROS_DOMAIN_ID (--domain), namespace "
-      "(--namespace), ROS_AUTOMATIC_DISCOVERY_RANGE and ROS_LOCALHOST_ONLY.";
+      "(--namespace), ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_LOCALHOST_ONLY and keystore (--keystore).";
   if (std::getenv("ROS_DISCOVERY_SERVER") != nullptr) {
     remedy +=
         " Check that the discovery server of ROS_DISCOVERY_SERVER runs, or unset it for both.";
