@@ -12,6 +12,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/base/median.hpp"
+#include "core/io/results.hpp"
 #include "core/io/tracks.hpp"
 #include "core/track/tracker.hpp"
 #include "tools/search.hpp"
@@ -26,7 +27,7 @@ struct TrackArguments {
   track::TrackerOptions tracker;
   double search_ms = 1000;
   bool no_poses = false;
-  std::string json;
+  std::string json, detections;
 };
 
 /// The search that runs beside the tracker. Its result is there `search_ms` after its frame, what
@@ -37,14 +38,36 @@ class Searches {
       : a_(arguments), detector_(detector) {}
 
   /// Hands over results that are due. Once all are, begins the next search, on this frame.
-  void after(const Frame& frame, track::Tracker& tracker) {
+  void after(const Frame& frame, const Pose& camera, track::Tracker& tracker) {
     const double passed_ms = 1e-6 * static_cast<double>(frame.stamp_ns - began_ns_);
     while (!found_.empty() && passed_ms >= share_ms_ * static_cast<double>(handed_over_ + 1)) {
       or_throw(tracker.add(found_.front()));
+      if (!found_.front().partial && !found_.front().interpretations.empty()) {
+        newest_ = std::move(found_.front());
+        newest_camera_ = camera_;
+      }
       found_.pop_front();
       ++handed_over_;
     }
-    if (found_.empty()) search(frame, tracker);
+    if (!found_.empty()) return;
+    camera_ = camera;
+    search(frame, tracker);
+  }
+
+  /// What a user of detections alone has in a frame: the placements of the newest result that is
+  /// there, moved as the camera since.
+  io::FrameResult held(const io::TrackResult& now) const {
+    io::FrameResult result;
+    result.scene_id = now.scene_id;
+    result.im_id = now.im_id;
+    result.stamp_ns = now.stamp_ns;
+    if (!newest_) return result;
+    result.interpretations = {newest_->interpretations.front()};
+    const Pose now_from_then = now.frame_from_camera.inverse() * newest_camera_;
+    for (Placement& placement : result.interpretations.front().placements) {
+      placement.camera_from_object = now_from_then * placement.camera_from_object;
+    }
+    return result;
   }
 
  private:
@@ -69,6 +92,9 @@ class Searches {
   std::int64_t began_ns_ = 0;               ///< Stamp of its frame.
   double share_ms_ = 0;                     ///< Between its results.
   int handed_over_ = 0;
+  Pose camera_;                                 ///< Where it was in that frame.
+  std::optional<SceneInterpretations> newest_;  ///< That is there.
+  Pose newest_camera_;
 };
 
 void print_frame(const io::TrackResult& frame) {
@@ -94,7 +120,8 @@ void print_scene(std::span<const io::TrackResult> results) {
 
 // The frames of one scene.
 void follow_scene(const TrackArguments& a, const Detector& detector, track::Tracker& tracker,
-                  std::span<const io::BopFrame> frames, std::vector<io::TrackResult>& results) {
+                  std::span<const io::BopFrame> frames, std::vector<io::TrackResult>& results,
+                  std::vector<io::FrameResult>& detections) {
   Searches searches(a, detector);
   Progress progress(concat("scene ", frames.front().scene_id), static_cast<int>(frames.size()));
   const std::size_t first = results.size();
@@ -115,7 +142,8 @@ void follow_scene(const TrackArguments& a, const Detector& detector, track::Trac
     }
     results.push_back({*std::move(tracked), entry.scene_id, entry.im_id});
     print_frame(results.back());
-    searches.after(*frame, tracker);
+    searches.after(*frame, results.back().frame_from_camera, tracker);
+    detections.push_back(searches.held(results.back()));
   }
   print_scene(std::span(results).subspan(first));
 }
@@ -129,15 +157,17 @@ void follow_frames(const TrackArguments& a) {
   options.num_threads = a.common.threads;
   or_throw(validate(options));
   std::vector<io::TrackResult> results;
+  std::vector<io::FrameResult> detections;
   for (auto first = frames.begin(); first != frames.end();) {
     const auto last = std::find_if(first, frames.end(), [&](const io::BopFrame& frame) {
       return frame.scene_id != first->scene_id;
     });
     track::Tracker tracker(library, options, detector.score_layers());
-    follow_scene(a, detector, tracker, {first, last}, results);
+    follow_scene(a, detector, tracker, {first, last}, results, detections);
     first = last;
   }
   if (!a.json.empty()) or_throw(io::write_tracks_json(a.json, results));
+  if (!a.detections.empty()) or_throw(io::write_results_json(a.detections, detections));
 }
 
 }  // namespace
@@ -160,6 +190,11 @@ void add_track_command(CLI::App& program) {
   add_options(command, a.tracker,
               {{"--min-probability", "min_probability"}, {"--lost-s", "lost_s"}});
   add_option(command, "--json", a.json, "Write the tracks of every frame as JSON", "FILE");
+  add_option(
+      command, "--detections", a.detections,
+      "Write what the same searches show without tracks, to compare with (evaluate --tracks): "
+      "in every frame the newest result that is there, moved as the camera since",
+      "FILE");
 }
 
 }  // namespace bpa::cli
