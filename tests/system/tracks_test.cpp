@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
 #include <functional>
 #include <map>
-#include <mutex>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -14,6 +12,7 @@
 #include "idl/wire/messages.hpp"
 #include "idl/wire/publisher.hpp"
 #include "idl/wire/subscriber.hpp"
+#include "tests/support/latest.hpp"
 #include "tests/support/stub_server.hpp"
 #include "tests/support/wall_view.hpp"
 
@@ -23,44 +22,7 @@ namespace bpa {
 namespace {
 
 using std::chrono::milliseconds;
-
-/// The last message, and a wait for one that is as expected.
-template <class T>
-class Latest {
- public:
-  void add(const T& item) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    items_.push_back(item);
-    changed_.notify_all();
-  }
-  /// Those that came so far.
-  std::vector<T> items() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return items_;
-  }
-  std::optional<T> wait_for(const std::function<bool(const T&)>& wanted,
-                            milliseconds time = milliseconds(15000)) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    std::optional<T> found;
-    std::size_t next = 0;
-    changed_.wait_for(lock, time, [&] {
-      for (; next < items_.size() && !found; ++next) {
-        if (wanted(items_[next])) found = items_[next];
-      }
-      return found.has_value();
-    });
-    return found;
-  }
-  void clear() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    items_.clear();
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<T> items_;
-};
+using support::Latest;
 
 bool has_one(const TrackSet& set) { return set.tracks.size() == 1; }
 
