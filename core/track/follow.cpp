@@ -47,7 +47,7 @@ constexpr double kOffset_m = 0.02, kOffset_rad = 0.3;
 constexpr int kMaxTried = 15;                            // frames in a row
 constexpr double kMaxJump_m = 0.12, kMaxJump_rad = 0.8;  // in one frame
 
-// A resting object is aligned again where its surroundings change, or in every tenth frame.
+// A resting object is aligned again where its surroundings change, or after 0.3 s.
 constexpr int kStep_px = 4;            // between depths that are compared
 constexpr double kMaxChanged = 0.005;  // of the depths; noise
 

@@ -11,8 +11,10 @@
 namespace bpa::track {
 namespace {
 
-// Chosen by hand. Log odds that an object is there: of one search that finds it, and of all.
-constexpr double kLeastFound = 0.2, kMostFound = 3, kMostLogOdds = 6;
+// Chosen by hand. Log odds that an object is there by one search that finds it. Searches of one
+// scene err alike, so the last ones are averaged, not added.
+constexpr double kLeastFound = 0.2, kMostFound = 4;
+constexpr int kSearches = 5;
 // Log weights: of another pose that a search suggests for a track; of one search that takes one of
 // the poses for right.
 constexpr double kDoubt = -2, kMostSaid = 2.5;
@@ -21,14 +23,22 @@ double log_odds_of(const Placement& placement) { return bpa::log_odds_of(placeme
 
 }  // namespace
 
+void Life::judge(double log_odds) {
+  ++searches;
+  evidence += (log_odds - evidence) / std::min(searches, kSearches);
+}
+
 void Life::believe(const Placement& placement, std::int64_t stamp) {
-  most_probable = std::max(most_probable, placement.probability);
   if (stamp == found_ns) return;
   found_ns = stamp;
   ++found;
   missed = 0;
-  const double more = std::clamp(log_odds_of(placement), kLeastFound, kMostFound);
-  evidence = std::min(kMostLogOdds, evidence + more);
+  judge(std::clamp(log_odds_of(placement), kLeastFound, kMostFound));
+}
+
+void Life::doubt(double log_odds) {
+  ++missed;
+  judge(log_odds);
 }
 
 void Life::suggest(const Placement& placement, const Pose& now_from_then) {
@@ -40,10 +50,12 @@ void Life::suggest(const Placement& placement, const Pose& now_from_then) {
 }
 
 bool Life::confirm(double min_probability) {
-  const bool sure = found > 1 || most_probable >= min_probability;
-  if (state != TrackState::tentative || !sure || body.sight != Sight::seen) return false;
-  state = TrackState::confirmed;
-  return true;
+  const bool was = sure;
+  const bool seen = body.sight == Sight::seen;
+  sure = was ? evidence >= 0 : seen && probability_of(evidence) >= min_probability;
+  if (seen) state = sure ? TrackState::confirmed : TrackState::tentative;
+  if (state == TrackState::occluded && !sure) state = TrackState::tentative;
+  return sure && !was;
 }
 
 Track report(const Life& life, std::int64_t stamp_ns) {

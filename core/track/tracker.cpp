@@ -29,13 +29,15 @@ constexpr int kAbsentFrames = 5;      // in a row: the track is lost
 constexpr double kMinSearched = 0.3;  // visible fraction of what a search should find
 constexpr int kDisplaced = 2;  // searches in a row that find an object elsewhere alone: it is there
 // Log odds that an object is there.
-constexpr double kNotFound = -1;    // of a search that should find it and does not
+// Of a search that should find it and does not: 19/732 searches of true tracks, 13/27 of false ones
+// in six simulated sequences, log ratio -2.9. Misses come in a row, so that less counts.
+constexpr double kNotFound = -2;
 constexpr double kOtherFound = -3;  // of one that finds another object in its place
-constexpr double kEnds = -1;
-constexpr int kNewlySeen = 15;  // alignments since it came into sight
+constexpr double kEnds = -0.5;      // below this a track ends
+constexpr int kNewlySeen = 15;      // alignments since it came into sight
 // Newcomers that a frame brings on, and frames that each goes through then.
 constexpr std::size_t kReceivedAtOnce = 4, kStepsAFrame = 6;
-constexpr int kMostRested = 9;  // frames in a row in which resting objects are not aligned
+constexpr double kMostRested_s = 0.3;  // that resting objects are not aligned
 
 }  // namespace
 
@@ -50,7 +52,7 @@ struct Tracker::State {
   std::int64_t stamp_ns = 0;
   Pose frame_from_camera;
   std::optional<SceneFeatures> scene;  // of the newest frame, once it is needed
-  int rested = 0;                      // frames in a row
+  double rested_s = 0;                 // since resting objects were aligned
   Background background;
   History history;
   std::vector<Life> tracks;       // by id
@@ -88,18 +90,18 @@ struct Tracker::State {
     ++counts.ends;
   }
 
-  // Resting objects whose surroundings have not changed are left where they are, but in every
-  // tenth frame.
+  // Resting objects whose surroundings have not changed are left where they are, for a while.
   void follow_all(const Frame& frame, double passed_s) {
     std::vector<std::uint8_t> rests(tracks.size());
+    rested_s += passed_s;
+    const bool may_rest = rested_s < kMostRested_s;
     parallel_for(tracks.size(), options.num_threads, [&](std::size_t i) {
       Body& body = tracks[i].body;
       predict(passed_s, body);
-      rests[i] = rested < kMostRested &&
-                 looks_unchanged(frame, noise_of(*sensor), frame_from_camera, body);
+      rests[i] = may_rest && looks_unchanged(frame, noise_of(*sensor), frame_from_camera, body);
     });
     const bool all = std::ranges::count(rests, 0) == 0;
-    rested = rested < kMostRested ? rested + 1 : 0;
+    if (!may_rest) rested_s = 0;
     if (all) return;
     const View now = view(frame);
     parallel_for(tracks.size(), options.num_threads, [&](std::size_t i) {
@@ -141,7 +143,6 @@ struct Tracker::State {
       if (body.sight == Sight::seen) {
         life.seen_ns = stamp_ns;
         if (was_lost) ++counts.found_again;
-        if (life.state != TrackState::tentative) life.state = TrackState::confirmed;
       } else if (life.absent >= kAbsentFrames && !was_lost) {
         life.state = TrackState::lost;
         ++counts.losses;
@@ -292,8 +293,7 @@ struct Tracker::State {
           placements, [&](const Placement& p) { return claims_place(p, track); });
       if (result.budget_exhausted && !taken) continue;
       if (!should_be_found(track)) continue;
-      life->evidence += taken ? kOtherFound : kNotFound;
-      ++life->missed;
+      life->doubt(taken ? kOtherFound : kNotFound);
     }
     for (std::size_t p = 0; p < placements.size(); ++p) {
       if (matched[p] < 0) meet(placements[p], *record, matched);
