@@ -188,10 +188,10 @@ BPA_DISPATCH void add_windows(const PointImages& points, std::size_t centre, con
 }
 
 // The normals of the planes fitted to eight windows' points, toward the camera; zero with fewer
-// than kMinNormalPoints. `centre`: of the windows. A normal is the eigenvector of the scatter's
-// least eigenvalue. Newton's method finds that from 0 on: left of its least root the characteristic
-// polynomial is concave, so that no step goes too far. Without branches, so that loops become
-// vectors.
+// than kMinNormalPoints. `x`, `y`, `z`: the windows' centres. A normal is the eigenvector of the
+// scatter's least eigenvalue. Newton's method finds that from 0 on: left of its least root the
+// characteristic polynomial is concave, so that no step goes too far. Without branches, so that
+// loops become vectors.
 BPA_DISPATCH void fit_planes(const Moments& m, const float* __restrict x, const float* __restrict y,
                              const float* __restrict z, float (&__restrict normal)[3][kLanes]) {
   float moments[10][kLanes];
@@ -215,8 +215,9 @@ BPA_DISPATCH void fit_planes(const Moments& m, const float* __restrict x, const 
     const float minors = xx_minor + (xx * zz - xz * xz) + (xx * yy - xy * xy);
     const float det = xx * xx_minor - xy * xy_minor + xz * xz_minor;
     float root = 0;
-#pragma GCC unroll 6
-    for (int step = 0; step < 6; ++step) {
+    constexpr int kSteps = 6;  // chosen by hand
+#pragma GCC unroll kSteps
+    for (int step = 0; step < kSteps; ++step) {
       const float value = ((root - 1) * root + minors) * root - det;
       const float slope = (3 * root - 2) * root + minors;
       root -= slope > 0 ? value / slope : 0;
