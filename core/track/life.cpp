@@ -52,7 +52,8 @@ void Life::suggest(const Placement& placement, const Pose& now_from_then) {
 bool Life::confirm(double min_probability) {
   const bool was = sure;
   const bool seen = body.sight == Sight::seen;
-  sure = was ? evidence >= 0 : seen && probability_of(evidence) >= min_probability;
+  sure = was ? evidence >= 0
+             : seen && evidence >= 0 && (found > 1 || probability_of(evidence) >= min_probability);
   if (seen) state = sure ? TrackState::confirmed : TrackState::tentative;
   if (state == TrackState::occluded && !sure) state = TrackState::tentative;
   return sure && !was;

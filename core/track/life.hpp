@@ -38,8 +38,8 @@ struct Life {
   /// are others. `now_from_then` takes poses of the search's camera to where the object is now.
   void suggest(const Placement& placement, const Pose& now_from_then);
 
-  /// Makes sure of an object that is seen and has this probability, until it is more likely not to
-  /// be there. Returns whether it did.
+  /// Makes sure of an object that is seen, by one placement of `min_probability` or by two, until
+  /// it is more likely not to be there. Returns whether it did.
   bool confirm(double min_probability);
 
  private:

@@ -28,8 +28,9 @@ struct TrackerOptions {
   void visit_fields(auto&& visit) {
     visit("min_probability", min_probability,
           {0, 1, "Placements of at least this probability begin a track."});
-    visit("min_confirming", min_confirming,
-          {0, 1, "A track is confirmed once searches give it this probability, on average."});
+    visit(
+        "min_confirming", min_confirming,
+        {0, 1, "A track is confirmed by one placement of this probability, or by two that agree."});
     visit("lost_s", lost_s,
           {0.1, 3600, "Seconds after which a track that is not seen ends, unless it is held."});
     visit("hidden_s", hidden_s,
