@@ -161,7 +161,11 @@ void report_growth(const std::vector<Reading>& readings, double warm, double end
          text("descriptors grew by %.0f", descriptors) + text("; at most %.0f", kDescriptorGrowth));
 }
 
-Client connected() { return or_throw(Client::connect(support::client_options())); }
+Client connected(std::chrono::seconds timeout = std::chrono::seconds(10)) {
+  ClientOptions options = support::client_options();
+  options.detect_timeout = timeout;
+  return or_throw(Client::connect(options));
+}
 
 void soak(const std::string& folder, double seconds) {
   const std::vector<Frame> frames = load_frames(folder + "/frames");
@@ -178,7 +182,7 @@ void soak(const std::string& folder, double seconds) {
   Client watcher = connected();
   or_throw(watcher.tracks([&](const TrackSet&) { ++sets_of_tracks; }));
   RequestLoad asker(connected());
-  ModelLoad loader(connected());
+  ModelLoad loader(connected(std::chrono::seconds(60)));  // waits for the search that runs
   KilledClients killed;
   const auto reader = or_throw(SlowReader::create());
   const auto camera = or_throw(CameraLoad::create(frames));
