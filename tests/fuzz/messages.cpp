@@ -10,6 +10,7 @@
 
 #include "client/src/convert.hpp"
 #include "idl/wire/cdr.hpp"
+#include "idl/wire/private/announcements.hpp"
 #include "idl/wire/private/service_framing.hpp"
 #include "server/parameters.hpp"
 #include "tests/fuzz/target.hpp"
@@ -179,10 +180,42 @@ std::vector<std::string> parameter_seeds() {
   return seeds;
 }
 
+/// An announcement whose lease was made endless is the same with an endless lease.
+void run_announcements(std::string_view bytes) {
+  namespace detail = wire::detail;
+  std::vector<std::uint8_t> packet(bytes.begin(), bytes.end());
+  const auto found = detail::announcements_in(packet.data(), packet.size());
+  for (const auto& announcement : found) {
+    if (announcement.lease_at == 0) continue;
+    require(announcement.lease_at + 8 <= packet.size(), "the lease is in the packet");
+    detail::make_lease_endless(packet.data(), announcement);
+  }
+  const auto again = detail::announcements_in(packet.data(), packet.size());
+  require(again.size() == found.size(), "an announcement stays one");
+}
+
+/// One that comes with a lease of 5 s, and one that leaves.
+std::vector<std::string> announcement_seeds() {
+  const wire::detail::GuidPrefix prefix{1, 15, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+  const auto leaves = wire::detail::departure(prefix, 2);
+  const std::vector<std::uint8_t> own(prefix.begin(), prefix.end());
+  std::vector<std::uint8_t> comes(leaves.begin(), leaves.begin() + 20);
+  const auto add = [&](const std::vector<std::uint8_t>& more) {
+    comes.insert(comes.end(), more.begin(), more.end());
+  };
+  add({0x15, 5, 0, 0, 0, 0, 16, 0, 0, 1, 0, 0xc7, 0, 1, 0, 0xc2, 0, 0, 0, 0, 1, 0, 0, 0});
+  add({0, 3, 0, 0, 0x50, 0, 16, 0});
+  add(own);
+  add({0, 0, 1, 0xc1, 2, 0, 8, 0, 5, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0});
+  return {{comes.begin(), comes.end()}, {leaves.begin(), leaves.end()}};
+}
+
 }  // namespace
 
 std::vector<Target> message_targets() {
-  return {{"cdr", "idl/wire/cdr.hpp", run_cdr, cdr_seeds, 2048, 4},
+  return {{"announcements", "idl/wire/announcements.cpp", run_announcements, announcement_seeds,
+           1024, 4},
+          {"cdr", "idl/wire/cdr.hpp", run_cdr, cdr_seeds, 2048, 4},
           {"request", "idl/wire/service_server.cpp", run_request, request_seeds, 1024, 4},
           {"answers", "client/src/convert.cpp", run_answers, answer_seeds, 2048, 4},
           {"parameters", "server/parameters.cpp", run_parameters, parameter_seeds, 1024, 4}};

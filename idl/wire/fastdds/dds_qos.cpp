@@ -61,20 +61,25 @@ Status set_peers(const Discovery& discovery, dds::DomainParticipantQos& qos) {
 /// own maxMessageSize is both: what exceeds it is cut off when it is received.
 class UdpTransport : public UDPv4TransportDescriptor {
  public:
-  explicit UdpTransport(int datagram_bytes)
-      : datagram_bytes_(static_cast<std::uint32_t>(datagram_bytes)) {}
+  UdpTransport(int datagram_bytes, std::shared_ptr<Leases> leases)
+      : datagram_bytes_(static_cast<std::uint32_t>(datagram_bytes)), leases_(std::move(leases)) {}
   std::uint32_t max_message_size() const override { return datagram_bytes_; }
+  eprosima::fastdds::rtps::TransportInterface* create_transport() const override {
+    return leases_ == nullptr ? UDPv4TransportDescriptor::create_transport()
+                              : transport_with_leases(*this, leases_);
+  }
 
  private:
   std::uint32_t datagram_bytes_;
+  std::shared_ptr<Leases> leases_;
 };
 
 /// UDP, and a short lease.
 void use_our_transport(const Discovery& discovery, const ParticipantOptions& options,
-                       dds::DomainParticipantQos& qos) {
+                       std::shared_ptr<Leases> leases, dds::DomainParticipantQos& qos) {
   // Not the built-in ones: the shared-memory transport of Fast DDS 2.9.1 does not agree with that
   // of any other release, and the process that comes second aborts.
-  auto udp = std::make_shared<UdpTransport>(options.datagram_bytes);
+  auto udp = std::make_shared<UdpTransport>(options.datagram_bytes, std::move(leases));
   udp->sendBufferSize = static_cast<std::uint32_t>(options.socket_buffer_bytes);
   udp->receiveBufferSize = static_cast<std::uint32_t>(options.socket_buffer_bytes);
   udp->maxInitialPeersRange = kPeersOnOneHost;
@@ -147,6 +152,7 @@ Duration to_duration(std::int64_t ms) {
 Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
                                                   const ParticipantOptions& options,
                                                   const Enclave& enclave,
+                                                  std::shared_ptr<Leases> leases,
                                                   const dds::DomainParticipantQos* base) {
   dds::DomainParticipantQos qos = base != nullptr ? *base : dds::PARTICIPANT_QOS_DEFAULT;
   qos.name(enclave.name);
@@ -159,7 +165,9 @@ Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
   qos.properties().properties().emplace_back("fastdds.type_propagation", "disabled");
 #endif
 
-  if (base == nullptr) use_our_transport(discovery, options, qos);
+  // With security Fast DDS 3 does not believe an open message that a peer left.
+  if (enclave.secure()) leases = nullptr;
+  if (base == nullptr) use_our_transport(discovery, options, std::move(leases), qos);
   if (discovery.range == DiscoveryRange::localhost || discovery.range == DiscoveryRange::off) {
     leave_multicast(qos);
   }

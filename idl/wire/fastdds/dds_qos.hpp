@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include <fastdds/dds/core/policy/QosPolicies.hpp>
@@ -12,6 +13,7 @@
 
 #include "core/base/status.hpp"
 #include "idl/wire/endpoint.hpp"
+#include "idl/wire/fastdds/leases.hpp"
 #include "idl/wire/fastdds/version.hpp"
 #include "idl/wire/participant.hpp"
 #include "idl/wire/private/enclave.hpp"
@@ -21,12 +23,14 @@
 namespace bpa::wire::detail {
 
 /// UDP over IPv4 alone, with large buffers; discovery and security as rmw_fastrtps sets them up;
-/// the user data by which ROS 2 knows one of its own. `base` is the user's participant profile,
+/// the user data by which ROS 2 knows one of its own. `leases` notes what comes in, where this sets
+/// the transport and there is no security. `base` is the user's participant profile,
 /// which then says the transports and time-outs; null: none. `invalid_argument` when a static
 /// peer's name is unknown.
 Result<dds::DomainParticipantQos> participant_qos(const Discovery& discovery,
                                                   const ParticipantOptions& options,
                                                   const Enclave& enclave,
+                                                  std::shared_ptr<Leases> leases,
                                                   const dds::DomainParticipantQos* base);
 
 /// The QoS of an endpoint. What spec.qos leaves open may come from the user's XML profiles: those

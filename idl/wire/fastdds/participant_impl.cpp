@@ -156,7 +156,7 @@ Status ParticipantImpl::start() {
   const bool has_profile =
       succeeded(factory->get_participant_qos_from_profile(kParticipantProfile, profile));
   Result<dds::DomainParticipantQos> qos =
-      participant_qos(discovery_, options_, enclave_, has_profile ? &profile : nullptr);
+      participant_qos(discovery_, options_, enclave_, leases_, has_profile ? &profile : nullptr);
   if (!qos.ok()) return qos.status();
   if (has_profile && qos->transport().use_builtin_transports) {
     log(LogLevel::warning,
@@ -207,6 +207,7 @@ ParticipantImpl::~ParticipantImpl() {
     graph_writer.swap(graph_writer_);
   }
   graph_writer.reset();
+  leases_->close();
   if (participant_ != nullptr) {
     participant_->set_listener(nullptr);
     participant_->delete_contained_entities();

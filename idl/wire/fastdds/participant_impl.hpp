@@ -16,6 +16,7 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
+#include "idl/wire/fastdds/leases.hpp"
 #include "idl/wire/fastdds/version.hpp"
 #include "idl/wire/participant.hpp"
 #include "idl/wire/private/enclave.hpp"
@@ -118,7 +119,8 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
   Guid ours_{};                                   // our participant, entity 0
   std::set<Guid> rivals_;                         // participants that offer one of them, too
 
-  Worker worker_;
+  const std::shared_ptr<Leases> leases_ = std::make_shared<Leases>(worker_);
+  Worker worker_;  // last: its tasks use the others
 };
 
 /// As make_writer, for a participant that is not public yet.
