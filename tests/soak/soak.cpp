@@ -220,10 +220,6 @@ void soak(const std::string& folder, double seconds) {
   }
   server.signal(SIGTERM);
   expect(server.wait(milliseconds(5000)) == 0, "the server did not end in good order");
-  // At once: seven participants that leave each other meet a fault of Fast DDS 2.9.1. Where a lease
-  // is looked at while its participant leaves, it aborts or waits for ever.
-  std::fflush(stdout);
-  std::_Exit(failed ? 1 : 0);
 }
 
 }  // namespace
