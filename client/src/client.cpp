@@ -88,8 +88,8 @@ struct Client::Impl {
   class Caller {
    public:
     /// Other failures than a lack of permission are given back.
-    Status open(const wire::Participant& participant, const char* service) {
-      client_ = wire::ServiceClient<Service>::create(participant, service);
+    Status open(const wire::Participant& ours, const char* service) {
+      client_ = wire::ServiceClient<Service>::create(ours, service);
       return client_.status().code == StatusCode::unsupported ? Status() : client_.status();
     }
     void refuse(const Status& reason) { client_ = reason; }
