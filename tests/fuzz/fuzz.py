@@ -23,6 +23,16 @@ RSS_LIMIT_MB = 1500  # an image of 8192 x 8192 pixels, three times
 TIMEOUT_S = 10  # of one input
 LEAKING = {"mesh"}  # Assimp 5.2.5 leaks what it has read of a file that it then refuses
 
+# Why less than 80 % of a file's lines are reached: the rest does not read foreign bytes. After the
+# semicolon: the tests that run it.
+LOW = {
+    "camera/oni_file.cpp": "its half writes recordings; camera/oni_file",
+    "client/src/convert.cpp": "a third makes requests of the program's own data; client/results",
+    "server/parameters.cpp": "a quarter lists the server's own settings; server/parameters",
+    "server/web/http.cpp": "the rest words refusals; web/http",
+    "server/web/to_json.cpp": "all but parameter_from_json writes the server's state; system/web",
+}
+
 
 class Target:
     def __init__(self, build, line):
@@ -87,7 +97,8 @@ def print_coverage(targets):
     print(f"\n{'source':36}{'lines':>7}{'reached':>9}")
     for source in sorted({source for target in targets for source in target.sources}):
         of_file = lines[ROOT / source]
-        print(f"{source:36}{of_file['count']:7}{of_file['percent']:7.0f} %")
+        why = f"  {LOW[source]}" if of_file["percent"] < 80 and source in LOW else ""
+        print(f"{source:36}{of_file['count']:7}{of_file['percent']:7.0f} %{why}")
 
 
 def main():

@@ -71,6 +71,35 @@ void run_mesh(std::string_view bytes) {
   }
 }
 
+/// A triangle with a texture, whose image is in the file.
+constexpr const char* kTexturedGltf =
+    R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],")"
+    R"(meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"indices":2,"mat)"
+    R"(erial":0}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC)"
+    R"(3","min":[0,0,0],"max":[1,1,0]},{"bufferView":1,"componentType":5126,"count":3,"type)"
+    R"(":"VEC2"},{"bufferView":2,"componentType":5123,"count":3,"type":"SCALAR"}],"bufferVi)"
+    R"(ews":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteL)"
+    R"(ength":24},{"buffer":0,"byteOffset":60,"byteLength":6}],"buffers":[{"byteLength":68,)"
+    R"("uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAA)"
+    R"(gD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAABAAIAAAA="}],"materials":[{"pbrMetallicRo)"
+    R"(ughness":{"baseColorTexture":{"index":0},"baseColorFactor":[1,0.5,1,1]}}],"textures")"
+    R"(:[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071,"wrapT":33648}],"images":[{"u)"
+    R"(ri":"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4n)"
+    R"(GP438AAAAQBAYDFKhhdAAAAAElFTkSuQmCC"}]})";
+
+/// A triangle with colours of its vertices.
+constexpr const char* kColoredGltf =
+    R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],")"
+    R"(meshes":[{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":1},"indices":2,"materi)"
+    R"(al":0}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",)"
+    R"("min":[0,0,0],"max":[1,1,0]},{"bufferView":1,"componentType":5126,"count":3,"type":")"
+    R"(VEC3"},{"bufferView":2,"componentType":5123,"count":3,"type":"SCALAR"}],"bufferViews)"
+    R"(":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLeng)"
+    R"(th":36},{"buffer":0,"byteOffset":72,"byteLength":6}],"buffers":[{"byteLength":80,"ur)"
+    R"(i":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8)"
+    R"(AAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAABAAIAAAA="}],"materials":[{})"
+    R"(]})";
+
 std::vector<std::string> mesh_seeds() {
   file_of("", "image.png");
   const std::string facet =
@@ -78,6 +107,9 @@ std::vector<std::string> mesh_seeds() {
       "endfacet\n";
   const std::string binary_facet(50, '\0');
   return {"obj\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n",
+          "obj\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n",
+          std::string("gltf\n") + kTexturedGltf,
+          std::string("gltf\n") + kColoredGltf,
           "stl\nsolid a\n" + facet + "endsolid a\n",
           "stl\n" + std::string(80, ' ') + std::string("\1\0\0\0", 4) + binary_facet,
           "ply\n" + ply_seeds().back()};

@@ -122,6 +122,9 @@ void run_answers(std::string_view bytes) {
                 annotated->rgb.size() == std::size_t{3} * annotated->width * annotated->height,
             "an annotated image has all its pixels");
   }
+  if (msgs::Tracks tracks; wire::decode(data_of(bytes), bytes.size(), tracks).ok()) {
+    require(sdk::to_tracks(tracks).tracks.size() == tracks.tracks.size(), "no track is lost");
+  }
   msgs::RgbdFrame frame;
   if (!wire::decode(data_of(bytes), bytes.size(), frame).ok()) return;
   if (const auto view = sdk::to_view(frame); view.ok()) {
@@ -134,6 +137,9 @@ std::vector<std::string> answer_seeds() {
   scene.header = support::header(5);
   scene.interpretations.resize(1);
   scene.interpretations[0].placements.resize(1);
+  msgs::Tracks tracks;
+  tracks.header = support::header(5);
+  tracks.tracks.resize(1);
   sensor::Image image = support::wall_color_image(1);
   image.width = 4;
   image.height = 2;
@@ -144,8 +150,12 @@ std::vector<std::string> answer_seeds() {
   frame.height = 2;
   frame.color.resize(24);
   frame.depth.resize(16);
-  return {encoded(scene), encoded(msgs::GetStatus_Response()), encoded(msgs::ModelInfo()),
-          encoded(image), encoded(frame)};
+  return {encoded(scene),
+          encoded(msgs::GetStatus_Response()),
+          encoded(msgs::ModelInfo()),
+          encoded(image),
+          encoded(frame),
+          encoded(tracks)};
 }
 
 /// SetParameters, and what a client may ask of parameters by name.

@@ -45,7 +45,12 @@ void run_web_parameter(std::string_view bytes) {
 std::vector<std::string> web_parameter_seeds() {
   return {R"({"name": "detection.top_k", "value": 5})",
           R"({"name": "node.remaps", "value": ["a"]})",
-          R"({"name": "use_sim_time", "value": true})"};
+          R"({"name": "use_sim_time", "value": true})",
+          R"({"name": "detection.hang_s", "value": 5.5})",
+          R"({"name": "tracking.fixed_frame", "value": "map"})",
+          R"({"name": "detection.hang_s", "value": "x"})",
+          R"({"name": "nothing", "value": 1})",
+          R"({"name": 1})"};
 }
 
 /// The query in the first line, the body after it.
