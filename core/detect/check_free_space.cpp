@@ -117,6 +117,7 @@ Candidates check_free_space(const Search& search, Candidates sampled) {
     rank(sampled[i]);
     suggested.push_back(std::move(sampled[i]));
   }
+  reject_below(search, options.min_ranked_score, kept);
   keep_best(search, options.max_suggested, suggested);
   keep_best(search, options.max_kept, kept);
   std::ranges::move(suggested, std::back_inserter(kept));

@@ -66,7 +66,7 @@ void step_uphill(const Search& search, Best& best) {
 Candidates climb(const Search& search, Candidates refined) {
   const auto most = std::min<std::size_t>(refined.size(), search.options.climb.max_climbed);
   for (std::size_t i = 0; i < most; ++i) {
-    if (search.late()) break;
+    if (search.late() || refined[i].score < search.options.climb.min_climbed_score) break;
     Best best{refined[i].pose(), search.quick_score(refined[i].pose())};
     align_from_beside(search, best);
     step_uphill(search, best);

@@ -98,6 +98,7 @@ Candidates cluster(const Search& search, Candidates checked) {
       out.push_back(best_of(search, group_of_poses));
     }
   }
+  reject_below(search, search.options.cluster.min_cluster_score, out);
   keep_clusters(search, out);
   return out;
 }

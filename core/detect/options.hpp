@@ -98,7 +98,8 @@ struct CheckOptions {
   int max_kept = 200;
   int max_ranked_per_cell = 2;
   int max_kept_per_cell = 1;
-  int max_in_library = 5000;
+  double min_ranked_score = -9;
+  int max_in_library = 2500;
   int max_suggested = 60;
   RefinementOptions correction{2, 64, 24, 0.020, 0.012};
 
@@ -134,6 +135,8 @@ struct CheckOptions {
            "Poses in one cell of 25 mm and 25 degrees, the best by check score, that the round-two "
            "score ranks."});
     visit("max_kept_per_cell", max_kept_per_cell, {1, 1000, "Of these, poses that go on."});
+    visit("min_ranked_score", min_ranked_score,
+          {-1000, 1000, "Poses of lower log odds by rank_points are rejected."});
     visit("max_in_library", max_in_library,
           {1, 1000000, "Poses of all models together that go on."});
     visit("max_suggested", max_suggested,
@@ -149,7 +152,8 @@ struct ClusterOptions {
   int max_correspondences = 10;
   int rank_points = 64;
   int max_clusters = 60;
-  int max_in_library = 800;
+  double min_cluster_score = -8;
+  int max_in_library = 400;
   double suggested_share = 0.25;
 
   void visit_fields(auto&& visit) {
@@ -163,6 +167,8 @@ struct ClusterOptions {
           {1, 100000, "Surface points of the round-two score that ranks clusters."});
     visit("max_clusters", max_clusters,
           {1, 10000, "Clusters of one model that go on to round two."});
+    visit("min_cluster_score", min_cluster_score,
+          {-1000, 1000, "Clusters of lower log odds are rejected."});
     visit("max_in_library", max_in_library,
           {1, 1000000, "Clusters of all models together that go on."});
     visit("suggested_share", suggested_share,
@@ -202,12 +208,17 @@ struct RoundTwoOptions {
 
 struct RefineOptions {
   int max_refined = 30;
-  int max_in_library = 250;
+  double min_aligned_score = -8;
+  int max_in_library = 126;
   RefinementOptions refinement{8, 500, 60, 0.015, 0.008};
 
   void visit_fields(auto&& visit) {
     visit("max_refined", max_refined,
           {1, 10000, "Placements of one model that are aligned to the end."});
+    visit("min_aligned_score", min_aligned_score,
+          {-1000, 1000,
+           "Placements of lower log odds, before or after, are neither aligned nor scored in "
+           "full."});
     visit("max_in_library", max_in_library,
           {1, 1000000, "Placements of all models together that are, and scored in full."});
   }
@@ -218,6 +229,7 @@ struct RefineOptions {
 
 struct ClimbOptions {
   int max_climbed = 3;
+  double min_climbed_score = -6;
   int rounds = 4;
   double step_m = 0.006;
   double beside_rad = 0.17;
@@ -225,6 +237,8 @@ struct ClimbOptions {
 
   void visit_fields(auto&& visit) {
     visit("max_climbed", max_climbed, {0, 10000, "Best placements that climb the score; 0: none."});
+    visit("min_climbed_score", min_climbed_score,
+          {-1000, 1000, "Placements of lower log odds do not climb."});
     visit("rounds", rounds, {0, 100, "Rounds of twelve steps each."});
     visit("step_m", step_m, {1e-5, 0.1, "First step at the object's rim, metres."});
     visit("beside_rad", beside_rad, {0, 3.2, "Turn of the six poses beside the start, radians."});

@@ -44,6 +44,14 @@ void suppress_duplicates(const Search& search, Candidates& candidates) {
   candidates = std::move(kept);
 }
 
+void reject_below(const Search& search, double min_score, Candidates& candidates) {
+  std::erase_if(candidates, [&](const Candidate& candidate) {
+    const bool low = candidate.score < min_score && candidate.found_by != Source::prior;
+    if (low) search.reject("hopeless score", candidate.pose());
+    return low;
+  });
+}
+
 void keep_best(const Search& search, int count, Candidates& candidates) {
   sort_by_score(candidates);
   keep_first(search, count, candidates);

@@ -22,6 +22,9 @@ bool rejected_before(const Search& search, const Pose& pose);
 /// an earlier round has scored low.
 void suppress_duplicates(const Search& search, Candidates& candidates);
 
+/// Rejects candidates of lower score, except those that priors suggested.
+void reject_below(const Search& search, double min_score, Candidates& candidates);
+
 /// Sorts by score and rejects all but the best `count`.
 void keep_best(const Search& search, int count, Candidates& candidates);
 

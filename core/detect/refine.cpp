@@ -17,6 +17,7 @@ Pose turned_to_pattern(const Search& search, const Pose& pose) {
 
 Candidates refine(const Search& search, Candidates aligned) {
   const RefineOptions& options = search.options.refine;
+  reject_below(search, options.min_aligned_score, aligned);
   keep_first(search, options.max_refined, aligned);
   std::size_t done = 0;
   for (Candidate& candidate : aligned) {
@@ -26,6 +27,7 @@ Candidates refine(const Search& search, Candidates aligned) {
     ++done;
   }
   aligned.resize(done);
+  reject_below(search, options.min_aligned_score, aligned);
   suppress_duplicates(search, aligned);
   return aligned;
 }

@@ -32,6 +32,7 @@ Candidates near_symmetric(const Search& search, const Candidates& candidates) {
 Candidates try_turned(const Search& search, Candidates climbed) {
   sort_by_score(climbed);
   Candidates turned = near_symmetric(search, climbed);
+  reject_below(search, search.options.refine.min_aligned_score, turned);
   suppress_duplicates(search, turned);
   std::erase_if(turned, [&](const Candidate& t) {
     const bool known = std::ranges::any_of(

@@ -55,8 +55,8 @@ struct SceneFeatures {
 
 struct SceneFeatureOptions {
   int max_keypoints = 600;
-  int round_keypoints = 30;
-  int max_references = 500;
+  int round_keypoints = 15;
+  int max_references = 250;
   double coarse_spacing_m = 0.010;
   double pair_reach_m = kMaxPairLength;
   bool use_color = true;

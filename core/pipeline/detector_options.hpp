@@ -15,11 +15,11 @@ namespace bpa {
 
 /// How often the search looks at the scene.
 struct RoundOptions {
-  int max_rounds = 6;
+  int max_rounds = 12;
   double min_certain = 0.85;
   double min_likely = 0.1;
   int min_gain_px = 10;
-  double expected_share = 0.3;
+  double expected_share = 0.6;
 
   void visit_fields(auto&& visit) {
     visit("max_rounds", max_rounds,
@@ -31,11 +31,11 @@ struct RoundOptions {
     visit(
         "min_likely", min_likely,
         {0, 1, "A round gains the surface that placements of at least this probability explain."});
-    visit(
-        "min_gain_px", min_gain_px,
-        {0, 1000000,
-         "The search ends after a round, beyond the first, that gains fewer pixels of the reduced "
-         "image. 0: after max_rounds."});
+    visit("min_gain_px", min_gain_px,
+          {0, 1000000,
+           "The search ends after two rounds that together gain fewer pixels of the reduced image. "
+           "0: "
+           "after max_rounds."});
     visit("expected_share", expected_share,
           {0.01, 1,
            "Of a round's sample, what the first round takes where an earlier frame says what to "

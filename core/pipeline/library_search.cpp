@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/detect/ranking.hpp"
@@ -118,15 +119,18 @@ Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectMode
   SceneSample sample;
   double looked_at = 0;                 // of the scene, in whole rounds
   double gained = 0, looked_since = 0;  // pixels, and whole rounds, since the gain was last judged
-  bool ended = false;                   // before time did
+  // The gain judged before. The first round never ends the search, unless it follows another.
+  double gained_before = follows ? 0 : std::numeric_limits<double>::infinity();
+  bool ended = false;  // before time did
   for (int round = 0; !ended && looked_at < options.rounds.max_rounds; ++round) {
     const bool first_after_another = follows && round == 0;
-    double share = first_after_another ? options.rounds.expected_share : 1;
-    if (limited) share = std::min(share, next_share(pace, round, rounds_end));
+    const double wanted = first_after_another ? options.rounds.expected_share : 1;
+    const double share = limited ? std::min(wanted, next_share(pace, round, rounds_end)) : wanted;
     if (share == 0) break;
     const Stopwatch watch;
     DetectorOptions sized = share < 1 ? sized_round(options, share) : options;
     sized.features.num_threads = request.num_threads;
+    if (share < wanted) raise_limits(sized.detect);
     const bool prepared = round == 0 && share == 1 && !limited && !follows;
     sample =
         prepared ? scene.sample : next_sample(scene, sample, explained.certain, sized.features);
@@ -153,8 +157,9 @@ Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectMode
     gained += explain();
     if (on_round) on_round(so_far(searches, found));
     if (looked_since < 1 && !first_after_another) continue;
-    ended = (follows || looked_at > 1) && gained < options.rounds.min_gain_px;
-    gained = looked_since = 0;
+    ended = gained + gained_before < options.rounds.min_gain_px;
+    gained_before = std::exchange(gained, 0);
+    looked_since = 0;
   }
   const double final_share = limited ? pace.share_of_final(deadline.milliseconds_left()) : 1;
   for (std::size_t i = 0; i < models.size(); ++i) {

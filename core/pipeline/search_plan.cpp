@@ -24,7 +24,7 @@ constexpr double kTimeOfPreparation = 0.7;  // of what is left after the surface
 
 // Measured with 21 models: of the whole preparation's time, for each model. Not the mean but some
 // 20 % more, as a late answer is worse than a little less of the search.
-constexpr double kRoundTime = 0.45, kFinalTime = 0.2;
+constexpr double kRoundTime = 0.15, kFinalTime = 0.115;
 
 int part_of(int count, double share) {
   return std::min(count, std::max(1, static_cast<int>(std::lround(share * count))));
@@ -61,6 +61,16 @@ DetectorOptions sized_round(const DetectorOptions& options, double share) {
     *size = part_of(*size, share);
   }
   return out;
+}
+
+void raise_limits(DetectOptions& options) {
+  // Chosen on 60 simulated piles with 0.5 s each: 383 of 598 objects are found, 376 without.
+  constexpr double kHigher = 2, kOfChecked = 0.6;  // log odds; share of those that are checked
+  for (double* limit : {&options.check.min_ranked_score, &options.cluster.min_cluster_score,
+                        &options.refine.min_aligned_score}) {
+    *limit += kHigher;
+  }
+  options.check.max_in_library = part_of(options.check.max_in_library, kOfChecked);
 }
 
 DetectOptions sized_final(const DetectOptions& options, double share) {

@@ -26,6 +26,10 @@ void leave_out_details(SceneFeatureOptions& options);
 /// points, keypoints, and the candidates of all models that go on. Each is at least one.
 DetectorOptions sized_round(const DetectorOptions& options, double share);
 
+/// Lets a round go on with fewer candidates: what is nearly hopeless takes time that a budget does
+/// not have.
+void raise_limits(DetectOptions& options);
+
 /// `options` for final stages that try `share` (0 to 1) of what they would, at least one of each.
 DetectOptions sized_final(const DetectOptions& options, double share);
 
@@ -49,6 +53,6 @@ class SearchPace {
 
 /// The smallest share of a whole round: with less, most objects have no reference point. Chosen by
 /// hand.
-constexpr double kSmallestRound = 0.03;
+constexpr double kSmallestRound = 0.06;
 
 }  // namespace bpa

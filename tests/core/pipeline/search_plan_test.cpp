@@ -9,6 +9,17 @@
 namespace bpa {
 namespace {
 
+TEST(SearchPlan, ABudgetRaisesTheLimitsOfLogOdds) {
+  const DetectOptions before;
+  DetectOptions after;
+  raise_limits(after);
+  EXPECT_GT(after.check.min_ranked_score, before.check.min_ranked_score);
+  EXPECT_GT(after.cluster.min_cluster_score, before.cluster.min_cluster_score);
+  EXPECT_GT(after.refine.min_aligned_score, before.refine.min_aligned_score);
+  EXPECT_LT(after.check.max_in_library, before.check.max_in_library);
+  EXPECT_EQ(after.cluster.max_in_library, before.cluster.max_in_library);
+}
+
 TEST(SearchPlan, NoBudgetShortensNothing) {
   DetectorOptions options;
   EXPECT_EQ(shorten_preparation(0, 2, options), 1);
