@@ -165,8 +165,10 @@ std::vector<Pose> ModelPriors::draw(const PointCloud& surface, int count,
     for (int k = 0; k < count; ++k) {
       Pose pose{prior.orientation.sample(random), Eigen::Vector3d::Zero()};
       if (prior.position) {
-        const Eigen::Vector3d normal(random.normal(), random.normal(), random.normal());
-        pose.translation = prior.position->mean + root * normal;
+        const double z = random.normal();
+        const double y = random.normal();
+        const double x = random.normal();
+        pose.translation = prior.position->mean + root * Eigen::Vector3d(x, y, z);
       } else {
         // The model point whose normal agrees best, of a few.
         constexpr int kTries = 16;

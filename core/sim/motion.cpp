@@ -63,7 +63,8 @@ Orbit::Orbit(const OrbitRanges& ranges, const SpeedLimits& limits, std::uint64_t
     const double amplitude = 0.5 * (high - low) * random.uniform(0.3, 0.9);
     return draw_wave(random.uniform(low + amplitude, high - amplitude), amplitude);
   };
-  azimuth_ = draw_wave(random.uniform(0, 2 * std::numbers::pi), random.uniform(0.5, 1.2));
+  const double azimuth_amplitude = random.uniform(0.5, 1.2);
+  azimuth_ = draw_wave(random.uniform(0, 2 * std::numbers::pi), azimuth_amplitude);
   elevation_ = draw_within(ranges.min_elevation, ranges.max_elevation);
   distance_ = draw_within(ranges.min_distance, ranges.max_distance);
   roll_ = draw_wave(0, random.uniform(0.05, 0.35));

@@ -152,8 +152,10 @@ Pose draw_pose(const std::vector<PosedMesh>& pile, std::size_t num_objects, cons
   for (const PosedMesh& body : pile) {
     middle += body.world_from_mesh.translation / static_cast<double>(pile.size());
   }
-  const Eigen::Vector3d target(middle.x() + 0.03 * random.normal(),
-                               middle.y() + 0.03 * random.normal(), middle.z());
+  // One draw a line, here and elsewhere: compilers draw arguments in different orders.
+  const double beside_y = 0.03 * random.normal();
+  const double beside_x = 0.03 * random.normal();
+  const Eigen::Vector3d target = middle + Eigen::Vector3d(beside_x, beside_y, 0);
   const double distance = random.uniform(options.min_distance, options.max_distance);
   const double elevation =
       random.uniform(options.min_elevation_deg, options.max_elevation_deg) * pi / 180;

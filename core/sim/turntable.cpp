@@ -79,7 +79,9 @@ TurntableScan simulate_turntable(const SimulatedObject& object, const TurntableO
 
   RandomStream random(seed, 1000);
   const auto off_center = [&random, &options]() -> Eigen::Vector3d {
-    return Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 0) * options.spread;
+    const double y = random.uniform(-1, 1);
+    const double x = random.uniform(-1, 1);
+    return Eigen::Vector3d(x, y, 0) * options.spread;
   };
   const Pose world_from_camera =
       camera_looking_at(Eigen::Vector3d(0, 0, 0.05), options.distance,
