@@ -47,7 +47,7 @@ void suppress_duplicates(const Search& search, Candidates& candidates) {
 void reject_below(const Search& search, double min_score, Candidates& candidates) {
   std::erase_if(candidates, [&](const Candidate& candidate) {
     const bool low = candidate.score < min_score && candidate.found_by != Source::prior;
-    if (low) search.reject("hopeless score", candidate.pose());
+    if (low) search.reject("score too low", candidate.pose());
     return low;
   });
 }

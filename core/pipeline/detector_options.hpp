@@ -31,11 +31,11 @@ struct RoundOptions {
     visit(
         "min_likely", min_likely,
         {0, 1, "A round gains the surface that placements of at least this probability explain."});
-    visit("min_gain_px", min_gain_px,
-          {0, 1000000,
-           "The search ends after two rounds that together gain fewer pixels of the reduced image. "
-           "0: "
-           "after max_rounds."});
+    visit(
+        "min_gain_px", min_gain_px,
+        {0, 1000000,
+         "Pixels of the reduced image: the search ends after two rounds that together gain fewer. "
+         "0: after max_rounds."});
     visit("expected_share", expected_share,
           {0.01, 1,
            "Of a round's sample, what the first round takes where an earlier frame says what to "

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -69,6 +70,25 @@ TEST_F(Stages, SomeAreRightAndClustersBringThemForward) {
     EXPECT_LE(clusters.size(), 50u);
     EXPECT_LT(first_right(clusters, l_truth_, l_->symmetry), 5u);
   }
+}
+
+TEST_F(Stages, ScoresBelowTheLimitAreRejectedUnlessAPriorSuggestsThem) {
+  const SceneFeatures scene = features_of(everything());
+  const auto checked = [&](double limit) {
+    DetectOptions options;
+    options.check.max_kept = 100000;
+    options.check.min_ranked_score = limit;
+    const Search search(scene, *l_, options);
+    Candidates sampled = sample(search, {});
+    for (std::size_t i = 0; i < sampled.size(); i += 10) sampled[i].found_by = Source::prior;
+    return check_free_space(search, std::move(sampled));
+  };
+  Candidates expected = checked(-1000);
+  const double limit = expected[expected.size() / 2].score;
+  std::erase_if(expected,
+                [&](const Candidate& c) { return c.score < limit && c.found_by != Source::prior; });
+  EXPECT_LT(expected.back().score, limit);  // of a prior
+  expect_same(checked(limit), expected);
 }
 
 TEST_F(Stages, SymmetryIsTakenIntoAccount) {
