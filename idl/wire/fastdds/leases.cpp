@@ -3,6 +3,7 @@
 #include "idl/wire/fastdds/leases.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace bpa::wire::detail {
 
@@ -10,8 +11,8 @@ namespace {
 
 using Byte = rtps::octet;
 
-/// A peer says how long its lease is, and looks take time.
-constexpr std::chrono::milliseconds kShortestLease{100};
+/// From one look at all leases to the next, and the shortest lease: a peer says how long it is.
+constexpr std::chrono::milliseconds kBetweenLooks{100};
 /// Beyond, Fast DDS looks at the lease.
 constexpr std::size_t kMaxWatched = 4096;
 
@@ -32,20 +33,14 @@ bool Leases::note(const Packet& packet, std::vector<Byte>& changed) {
       continue;
     }
     if (peers_.size() >= kMaxWatched && peers_.count(prefix) == 0) continue;
-    watch(prefix, packet, said);
+    peers_[prefix] = {Clock::now(),    std::max<Clock::duration>(said.lease, kBetweenLooks),
+                      packet.receiver, packet.local,
+                      packet.remote,   said.number};
+    look_later();
     if (changed.empty()) changed.assign(packet.data, packet.data + packet.size);
     make_lease_endless(changed.data(), said);
   }
   return !changed.empty();
-}
-
-void Leases::watch(const GuidPrefix& prefix, const Packet& packet, const Announcement& said) {
-  Peer& peer = peers_[prefix];
-  const Clock::duration lease = std::max<Clock::duration>(said.lease, kShortestLease);
-  const bool other_lease = peer.lease != lease;
-  peer = {Clock::now(),  lease,       packet.receiver, packet.local,
-          packet.remote, said.number, peer.look};
-  if (other_lease) look_at(peer.heard + lease, prefix, peer);
 }
 
 void Leases::close() {
@@ -55,24 +50,29 @@ void Leases::close() {
   peers_.clear();
 }
 
-void Leases::look_at(Clock::time_point time, const GuidPrefix& prefix, Peer& peer) {
-  peer.look = ++looks_;
-  worker_.run_at(time, [this, prefix, number = peer.look] { look(prefix, number); });
+void Leases::look_later() {
+  if (looks_ || peers_.empty()) return;
+  looks_ = true;
+  worker_.run_at(Clock::now() + kBetweenLooks, [this] { look(); });
 }
 
-void Leases::look(const GuidPrefix& prefix, std::uint64_t number) {
+void Leases::look() {
   const std::lock_guard<std::mutex> leaving(leaving_mutex_);
   std::unique_lock<std::mutex> lock(mutex_);
-  const auto found = peers_.find(prefix);
-  if (found == peers_.end() || found->second.look != number) return;
-  const auto end = found->second.heard + found->second.lease;
-  if (Clock::now() <= end) return look_at(end, prefix, found->second);
-  const Peer peer = found->second;
-  peers_.erase(found);
+  std::map<GuidPrefix, Peer> silent;
+  for (auto peer = peers_.begin(); peer != peers_.end();) {
+    const auto next = std::next(peer);
+    if (Clock::now() > peer->second.heard + peer->second.lease) silent.insert(peers_.extract(peer));
+    peer = next;
+  }
+  looks_ = false;
+  look_later();
   lock.unlock();  // what follows waits for threads that receive
-  const std::vector<Byte> bytes = departure(prefix, peer.announcement + 1);
-  peer.receiver->OnDataReceived(bytes.data(), static_cast<std::uint32_t>(bytes.size()), peer.local,
-                                peer.remote);
+  for (const auto& [prefix, peer] : silent) {
+    const std::vector<Byte> bytes = departure(prefix, peer.announcement + 1);
+    peer.receiver->OnDataReceived(bytes.data(), static_cast<std::uint32_t>(bytes.size()),
+                                  peer.local, peer.remote);
+  }
 }
 
 namespace {

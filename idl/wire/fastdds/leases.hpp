@@ -62,19 +62,17 @@ class Leases {
     Receiver* receiver = nullptr;  ///< Of its announcements.
     rtps::Locator_t local, remote;
     std::uint32_t announcement = 0;  ///< The number of the last.
-    std::uint64_t look = 0;          ///< The number of the one that is due.
   };
 
-  /// The callers of both hold mutex_.
-  void watch(const GuidPrefix& prefix, const Packet& packet, const Announcement& said);
-  void look_at(Clock::time_point time, const GuidPrefix& prefix, Peer& peer);
-  void look(const GuidPrefix& prefix, std::uint64_t number);
+  /// All leases, soon, by one task whatever peers say. The caller holds mutex_.
+  void look_later();
+  void look();
 
   Worker& worker_;
   std::mutex leaving_mutex_;  // held while a peer is said to leave; before the other
   std::mutex mutex_;
   bool closed_ = false;
-  std::uint64_t looks_ = 0;
+  bool looks_ = false;  // a look is due
   std::map<GuidPrefix, Peer> peers_;
 };
 
