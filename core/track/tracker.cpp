@@ -28,9 +28,9 @@ namespace {
 constexpr int kAbsentFrames = 5;      // in a row: the track is lost
 constexpr double kMinSearched = 0.3;  // visible fraction of what a search should find
 constexpr int kDisplaced = 2;  // searches in a row that find an object elsewhere alone: it is there
-// Log odds that an object is there.
-// Of a search that should find it and does not: 19/732 searches of true tracks, 13/27 of false ones
-// in six simulated sequences, log ratio -2.9. Misses come in a row, so that less counts.
+// Log odds that an object is there, by a search that should find it and does not: 19/732 searches
+// of true tracks, 13/27 of false ones in six simulated sequences, log ratio -2.9. Misses come in a
+// row, so that less counts.
 constexpr double kNotFound = -2;
 constexpr double kOtherFound = -3;  // of one that finds another object in its place
 constexpr double kEnds = -0.5;      // below this a track ends
