@@ -22,6 +22,12 @@ OrientationUncertainty orientation_uncertainty(const Eigen::Quaterniond& rotatio
   return out;
 }
 
+double presence(const Placement& placement) {
+  double own = 1;
+  for (const PoseAlternative& other : placement.alternatives) own -= other.weight;
+  return own > placement.probability ? placement.probability / own : 1;
+}
+
 Placement transformed(const Pose& a_from_b, const Placement& placement) {
   const bool same = a_from_b.rotation.coeffs() == Eigen::Quaterniond::Identity().coeffs() &&
                     a_from_b.translation.isZero(0);

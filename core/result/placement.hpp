@@ -52,6 +52,9 @@ struct Placement {
   std::vector<PoseAlternative> alternatives;  ///< Empty: the view leaves no other pose.
 };
 
+/// That the object is there, at this pose or at one of the alternatives; in [0, 1].
+double presence(const Placement& placement);
+
 /// The placement in frame a, from one in frame b: poses, covariance and orientation. To the last
 /// bit the same where a_from_b is the identity.
 Placement transformed(const Pose& a_from_b, const Placement& placement);

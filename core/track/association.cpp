@@ -14,6 +14,10 @@ constexpr double kLeastGate_m = 0.03;
 constexpr double kSpeed = 0.5;  // m/s: of what is not seen
 constexpr double kMostGate_m = 0.6;
 
+// Many improbable poses do not add up to an object: of those with a presence above 0.5, 89/140 were
+// right below this probability of the likeliest pose, 44/57 up to 0.6 (six simulated sequences).
+constexpr double kLeastOfPose = 0.2;
+
 double gate(const TrackRecord& track) {
   const double here = std::max(kLeastGate_m, kSamePlace * track.model->diameter);
   return track.sight == Sight::seen
@@ -25,7 +29,35 @@ Eigen::Vector3d place(const TrackRecord& track) {
   return track.camera_from_object * track.model->centre;
 }
 
+// Where an object is, and how near another one cannot be.
+struct Place {
+  Eigen::Vector3d at;
+  double reach;
+};
+
 }  // namespace
+
+std::vector<Placement> found_objects(const SceneInterpretations& result,
+                                     const ModelLibrary& library, double min_presence) {
+  std::vector<Placement> out;
+  std::vector<Place> taken;
+  for (const Interpretation& interpretation : result.interpretations) {
+    for (const Placement& placement : interpretation.placements) {
+      const auto model = library.find(placement.model);
+      const bool likely =
+          placement.probability >= kLeastOfPose && presence(placement) >= min_presence;
+      if (!model || !likely) continue;
+      const Place place{placement.camera_from_object * model->centre, kSamePlace * model->diameter};
+      const bool free = std::ranges::none_of(taken, [&place](const Place& other) {
+        return (place.at - other.at).norm() < std::min(place.reach, other.reach);
+      });
+      if (!free) continue;
+      taken.push_back(place);
+      out.push_back(placement);
+    }
+  }
+  return out;
+}
 
 std::vector<int> match_tracks(const std::vector<Placement>& placements,
                               const std::vector<TrackRecord>& tracks) {

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/model/library.hpp"
 #include "core/model/object_model.hpp"
+#include "core/result/interpretation.hpp"
 #include "core/result/placement.hpp"
 #include "core/track/follow.hpp"
 
@@ -20,6 +22,12 @@ struct TrackRecord {
   double visible_fraction = 0;
   double unseen_s = 0;
 };
+
+/// What a search has found: placements of objects that are there with at least `min_presence`, at
+/// this pose or an alternative. The best interpretation comes first. Others add what is in a place
+/// of its own.
+std::vector<Placement> found_objects(const SceneInterpretations& result,
+                                     const ModelLibrary& library, double min_presence);
 
 /// For each placement of a frame, the index of the track that it shows; -1: none. A track is given
 /// to one placement, of its model, near to where it was: the nearest pairs first. The longer it was

@@ -19,7 +19,10 @@ constexpr int kSearches = 5;
 // the poses for right.
 constexpr double kDoubt = -2, kMostSaid = 2.5;
 
-double log_odds_of(const Placement& placement) { return bpa::log_odds_of(placement.probability); }
+// A search's covariance is of a hypothesis that may be aligned badly. Squared errors of tracked
+// poses are a tenth of it in the mean, and 0.15 of it in the upper 95 % quantile (11 objects of two
+// simulated sequences, 4700 frames).
+constexpr double kOfSearch = 0.15;
 
 }  // namespace
 
@@ -33,7 +36,7 @@ void Life::believe(const Placement& placement, std::int64_t stamp) {
   found_ns = stamp;
   ++found;
   missed = 0;
-  judge(std::clamp(log_odds_of(placement), kLeastFound, kMostFound));
+  judge(std::clamp(log_odds_of(presence(placement)), kLeastFound, kMostFound));
 }
 
 void Life::doubt(double log_odds) {
@@ -45,7 +48,7 @@ void Life::suggest(const Placement& placement, const Pose& now_from_then) {
   for (const PoseAlternative& other : placement.alternatives) {
     add_mode(body, now_from_then * other.camera_from_object, kDoubt);
   }
-  const double says = std::clamp(log_odds_of(placement), 0.0, kMostSaid);
+  const double says = std::clamp(log_odds_of(placement.probability), 0.0, kMostSaid);
   favour_mode(body, now_from_then * placement.camera_from_object, kDoubt, says);
 }
 
@@ -68,7 +71,7 @@ Track report(const Life& life, std::int64_t stamp_ns) {
             .state = life.state,
             .probability = probability_of(life.evidence),
             .frame_from_object = body.motion.pose(),
-            .covariance = body.motion.covariance(),
+            .covariance = kOfSearch * body.motion.covariance(),
             .velocity = body.motion.velocity(),
             .angular_velocity = body.motion.angular_velocity(),
             .visible_fraction = body.visible_fraction,

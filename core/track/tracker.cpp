@@ -268,14 +268,17 @@ struct Tracker::State {
     background.find(*since.front().frame, *sensor, since.front().frame_from_camera);
   }
 
+  // Later stages of the search may still reject the placement, and compare other poses.
+  bool is_early(const SceneInterpretations& result, const Placement& found) const {
+    return result.partial && found.probability < options.min_confirming;
+  }
+
   void take(const SceneInterpretations& result) {
     const FrameRecord* record = history.record_of(result.stamp_ns);
     if (!record || result.interpretations.empty()) return;
     if (!result.partial || background.planes().empty()) find_background(result.stamp_ns);
-    std::vector<Placement> placements = result.interpretations.front().placements;
-    // What later stages may still reject must be sure.
-    const double least = result.partial ? options.min_confirming : options.min_probability;
-    std::erase_if(placements, [&](const Placement& p) { return p.probability < least; });
+    const std::vector<Placement> placements =
+        found_objects(result, *library, options.min_probability);
     const std::vector<int> matched = match_tracks(placements, record->tracks);
     for (std::size_t t = 0; t < record->tracks.size(); ++t) {
       const TrackRecord& track = record->tracks[t];
@@ -284,7 +287,7 @@ struct Tracker::State {
       const auto by = std::ranges::find(matched, static_cast<int>(t));
       if (by != matched.end()) {
         const Placement& found = placements[by - matched.begin()];
-        if (!result.partial) life->believe(found, record->stamp_ns);
+        if (!is_early(result, found)) life->believe(found, record->stamp_ns);
         find_again(found, track, *record, result.partial, *life);
         continue;
       }
@@ -296,7 +299,9 @@ struct Tracker::State {
       life->doubt(taken ? kOtherFound : kNotFound);
     }
     for (std::size_t p = 0; p < placements.size(); ++p) {
-      if (matched[p] < 0) meet(placements[p], *record, matched);
+      if (matched[p] < 0 && !is_early(result, placements[p])) {
+        meet(placements[p], *record, matched);
+      }
     }
   }
 

@@ -77,9 +77,9 @@ class Tracker {
   void begin_anew(const std::string& reason);
 
   /// Takes the result of a search in a frame that track() was given before. The next track()
-  /// carries it forward. A partial one begins tracks where it is sure (min_confirming), and finds
-  /// what is not seen again; what it lacks counts for nothing. Fails with not_found on a frame that
-  /// is no longer remembered.
+  /// carries it forward. A partial one counts where it is sure (min_confirming), and finds what is
+  /// not seen again; what it lacks counts for nothing. Fails with not_found on a frame that is no
+  /// longer remembered.
   Status add(const SceneInterpretations& found);
 
   /// The share of depths that the newest frame has otherwise than an earlier one; 1 where that is

@@ -10,6 +10,7 @@ namespace {
 std::shared_ptr<const ObjectModel> model(const std::string& name) {
   auto out = std::make_shared<ObjectModel>();
   out->name = name;
+  out->number = name == "mug" ? 1 : 2;
   out->diameter = 0.2;  // metres: its place is 8 cm wide
   return out;
 }
@@ -20,6 +21,12 @@ Placement placed(const std::string& name, double x) {
   Placement out;
   out.model = name;
   out.camera_from_object.translation = {x, 0, 1};
+  return out;
+}
+
+Placement likely(const std::string& name, double x, double probability) {
+  Placement out = placed(name, x);
+  out.probability = probability;
   return out;
 }
 
@@ -49,6 +56,37 @@ TEST(MatchTracks, WhatIsNotSeenMayHaveGoneFurther) {
   EXPECT_EQ(match_tracks(far, {tracked(kMug, 0, Sight::hidden, 1)}), std::vector{0});
   EXPECT_EQ(match_tracks({placed("mug", 0.7)}, {tracked(kMug, 0, Sight::absent, 60)}),
             std::vector{-1});
+}
+
+TEST(FoundObjects, PosesOfAnObjectShareItsPresence) {
+  EXPECT_EQ(presence(placed("mug", 0)), 0);
+  Placement open = likely("mug", 0, 0.4);
+  EXPECT_DOUBLE_EQ(presence(open), 0.4);
+  open.alternatives = {{Pose(), 0.3}, {Pose(), 0.2}};  // its own weight is 0.5
+  EXPECT_DOUBLE_EQ(presence(open), 0.8);
+  open.alternatives[0].weight = 0.5;
+  EXPECT_DOUBLE_EQ(presence(open), 1);
+}
+
+TEST(FoundObjects, ThoseOfOtherInterpretationsInPlacesOfTheirOwn) {
+  ModelLibrary library;
+  ASSERT_TRUE(library.add(kMug).ok());
+  ASSERT_TRUE(library.add(kBox).ok());
+  Placement open = likely("mug", 0.5, 0.3);
+  open.alternatives = {{Pose(), 0.6}};
+  Placement scattered = likely("mug", -0.5, 0.1);
+  scattered.alternatives = {{Pose(), 0.89}};
+  SceneInterpretations result;
+  result.interpretations = {
+      {.placements = {likely("box", 0, 0.9), likely("cup", -0.9, 0.9)}},
+      {.rank = 2, .placements = {likely("mug", 0.05, 0.8), open, scattered, likely("box", 1, 0.4)}},
+      {.rank = 3, .placements = {likely("mug", 0.53, 0.6)}}};
+  const std::vector<Placement> found = found_objects(result, library, 0.5);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].model, "box");
+  EXPECT_EQ(found[0].camera_from_object.translation.x(), 0);
+  EXPECT_EQ(found[1].model, "mug");
+  EXPECT_EQ(found[1].camera_from_object.translation.x(), 0.5);
 }
 
 TEST(ClaimsPlace, OnlyAnotherModelDoes) {

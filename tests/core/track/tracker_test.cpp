@@ -309,6 +309,28 @@ TEST_F(TrackerTest, PartOfAResultBeginsTracksWhereItIsSureAndCountsForNothingEls
             before.tracks[0].probability);
 }
 
+TEST_F(TrackerTest, UnsurePartOfAResultFindsALostTrackAgain) {
+  Tracker tracker = this->tracker();
+  const Pose before = brick_at(-0.15, 0), after = brick_at(0.12, 0.05);
+  follow(tracker, frame(scene({before})));
+  ASSERT_TRUE(tracker.add(found(stamp(), {camera_from_world_ * before})).ok());
+  const TrackedFrame born = follow(tracker, frame(scene({before})));
+  ASSERT_EQ(born.tracks.size(), 1u);
+  TrackedFrame last;
+  for (int i = 0; i < 25; ++i) last = follow(tracker, frame(scene({after})));
+  ASSERT_EQ(last.tracks.size(), 1u);
+  ASSERT_EQ(last.tracks[0].state, TrackState::lost);
+  SceneInterpretations part = found(stamp(), {camera_from_world_ * after}, "brick", 0.6);
+  part.partial = true;
+  ASSERT_TRUE(tracker.add(part).ok());
+  follow(tracker, frame(scene({after})));
+  last = follow(tracker, frame(scene({after})));
+  ASSERT_EQ(last.tracks.size(), 1u);
+  EXPECT_EQ(last.tracks[0].id, born.tracks[0].id);
+  EXPECT_EQ(last.tracks[0].state, TrackState::confirmed);
+  expect_at(last.tracks[0], camera_from_world_ * after);
+}
+
 TEST_F(TrackerTest, PartsAndWholeOfOneSearchCountOnce) {
   Tracker tracker = this->tracker();
   const Pose brick = brick_at(0, 0);
