@@ -27,7 +27,7 @@ struct TrackerOptions {
 
   void visit_fields(auto&& visit) {
     visit("min_probability", min_probability,
-          {0, 1, "Placements of at least this probability begin a track."});
+          {0, 1, "Objects that are there with at least this probability begin a track."});
     visit(
         "min_confirming", min_confirming,
         {0, 1, "A track is confirmed by one placement of this probability, or by two that agree."});
