@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/http_client.hpp"
+#include "tests/support/latest.hpp"
 
 // A server in this process, and clients that send the bytes that they like.
 
@@ -36,7 +37,7 @@ class WebServer : public testing::Test {
       return Status(StatusCode::not_found, "there is no such path");
     };
     const auto handle = [this](Request&& request, Responder respond) {
-      if (request.path == "/never") return kept.push_back(std::move(respond));
+      if (request.path == "/never") return kept.add(respond);
       if (request.path == "/much") {
         return respond(bytes_response(std::make_shared<const std::string>(40 << 20, 'x'), "x"));
       }
@@ -61,7 +62,7 @@ class WebServer : public testing::Test {
     return condition();
   }
 
-  std::vector<Responder> kept;
+  support::Latest<Responder> kept;  ///< Of the thread of the server, too.
   std::unique_ptr<HttpServer> server;
 };
 
@@ -192,9 +193,10 @@ TEST_F(WebServer, AThousandConnectionsDoNotKeepOthersOut) {
 TEST_F(WebServer, MayGoBeforeItsAnswersCome) {
   Connection waiting(server->port());
   waiting.send(http_request("GET", "/never"));
-  ASSERT_TRUE(becomes([this] { return !kept.empty(); }, seconds(5)));
+  const auto respond = kept.wait_for([](const Responder&) { return true; }, seconds(5));
+  ASSERT_TRUE(respond);
   server.reset();
-  kept[0](json_response("{}"));  // nobody is there any more
+  (*respond)(json_response("{}"));  // nobody is there any more
   EXPECT_EQ(waiting.answer(seconds(1)).status, 0);
 }
 
