@@ -9,6 +9,7 @@
 #include <fstream>
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -132,6 +133,7 @@ class Running : public Server {
   Status health() const override {
     const double limit = settings_.get()->detection.hang_s;
     if (limit == 0) return {};
+    const std::shared_lock<std::shared_mutex> lock(leaving_mutex_);
     for (const Busy* busy : threads()) {
       const std::optional<Busy::Work> work = busy->work();
       if (!work || work->seconds <= limit) continue;
@@ -145,20 +147,26 @@ class Running : public Server {
   void abandon(const Status& why) override {
     log(log_, LogLevel::error, why.message + "; the server ends");
     worker_->abandon(why);
-    ready_ = false;
+    {
+      const std::lock_guard<std::shared_mutex> lock(leaving_mutex_);
+      ready_ = false;
+    }
     services_.reset();
     parameters_.reset();
     reporter_.request_stop();
     reporter_.join();
     report_once();
-    sources_.clear();
+    std::shared_ptr<FrameSource> camera;  // ends when the lock is free
+    const std::lock_guard<std::shared_mutex> lock(leaving_mutex_);
+    if (sources_.size() > 1) camera.swap(sources_.back());
+    sources_.resize(1);
   }
 
  private:
-  /// What each thread that must not hang does now.
+  /// What each thread that must not hang does now. The caller holds leaving_mutex_.
   std::vector<const Busy*> threads() const {
-    std::vector<const Busy*> threads = {&worker_->busy(), &tracking_->busy(), &services_->busy(),
-                                        &parameters_->busy(), &reporting_};
+    std::vector<const Busy*> threads = {&worker_->busy(), &tracking_->busy(), &reporting_};
+    if (ready_) threads.insert(threads.end(), {&services_->busy(), &parameters_->busy()});
     if (web::Page* page = open_page_) threads.push_back(&page->busy());
     for (const auto& source : sources_) {
       for (const Busy* busy : source->threads()) threads.push_back(busy);
@@ -265,13 +273,18 @@ class Running : public Server {
         options,
         {context(), setter_, [this] { return brief_status(); }, [this] { return diagnostics(); },
          [this](const auto& request, const auto& answer) {
-           sources_.back()->record(request, answer);  // the camera, if any
+           last_source()->record(request, answer);  // the camera, if any
          },
          [this] { return clock_->stamp_ns(); }},
         feed_, recent_log_);
     open_page_ = page_.get();
     // Not to /rosout: whoever reads the token may use the page.
     log(terminal_, LogLevel::info, "page: " + page_->address());
+  }
+
+  std::shared_ptr<FrameSource> last_source() const {
+    const std::shared_lock<std::shared_mutex> lock(leaving_mutex_);
+    return sources_.back();
   }
 
   void offer_services() {
@@ -311,6 +324,7 @@ class Running : public Server {
 
   Counts counts() const {
     Counts counts = statistics_.counts();
+    const std::shared_lock<std::shared_mutex> lock(leaving_mutex_);
     for (const auto& source : sources_) counts.losses += source->losses();
     if (ready_) {
       counts.losses += services_->losses();
@@ -361,8 +375,11 @@ class Running : public Server {
 
   std::vector<SourceReport> source_reports() const {
     std::vector<SourceReport> reports;
-    for (const auto& source : sources_) {
-      for (SourceReport& report : source->reports()) reports.push_back(std::move(report));
+    {
+      const std::shared_lock<std::shared_mutex> lock(leaving_mutex_);
+      for (const auto& source : sources_) {
+        for (SourceReport& report : source->reports()) reports.push_back(std::move(report));
+      }
     }
     reports.push_back(tracking_->report());
     if (!clock_->is_real()) reports.push_back(clock_->report());
@@ -457,6 +474,7 @@ class Running : public Server {
   std::uint64_t losses_reported_ = 0;
   bool clock_reported_ = false;  ///< That it stands still.
   Busy reporting_;
+  mutable std::shared_mutex leaving_mutex_;  ///< Held by whoever uses what abandon() takes away.
 
   // In the order in which they come up; destroyed in reverse: nothing calls into what is gone.
   std::optional<wire::Participant> participant_;
@@ -466,7 +484,7 @@ class Running : public Server {
   std::unique_ptr<Tracking> tracking_;
   std::optional<TransformSource> transforms_;
   std::unique_ptr<Worker> worker_;
-  std::vector<std::unique_ptr<FrameSource>> sources_;
+  std::vector<std::shared_ptr<FrameSource>> sources_;
   TopicSource* topics_ = nullptr;   ///< One of them.
   std::atomic<bool> ready_{false};  ///< All services are there.
   std::shared_ptr<ParameterSetter> setter_;

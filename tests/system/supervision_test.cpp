@@ -6,13 +6,16 @@
 #include <cstdlib>
 #include <future>
 #include <mutex>
+#include <stop_token>
 #include <string>
+#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "idl/wire/messages.hpp"
 #include "idl/wire/service.hpp"
 #include "idl/wire/subscriber.hpp"
+#include "tests/support/http_client.hpp"
 #include "tests/support/notify_socket.hpp"
 #include "tests/support/stub_server.hpp"
 #include "tests/support/wall_messages.hpp"
@@ -104,6 +107,33 @@ TEST(Supervision, AServerThatHangsSaysSoAnswersAndEnds) {
   EXPECT_EQ(last.rfind("STOPPING=1\nSTATUS=the search of a request's frame", 0), 0U) << last;
   const std::lock_guard<std::mutex> lock(mutex);
   EXPECT_NE(detection.find("it hangs"), std::string::npos) << detection;
+}
+
+/// Of the page of a server that has started; 0 when it does not within 20 s.
+int page_port(const support::StubServer& server) {
+  const std::string before = "page: http://127.0.0.1:";
+  for (int i = 0; i < 200; ++i) {
+    const std::string log = server.log();
+    const std::size_t at = log.find(before);
+    if (at != log.npos) return std::atoi(log.c_str() + at + before.size());
+    std::this_thread::sleep_for(milliseconds(100));
+  }
+  return 0;
+}
+
+// What the server takes away when it leaves is not used by the threads of its page.
+TEST(Supervision, AServerThatHangsEndsInOrderWhileViewersLook) {
+  support::StubServer server({"detection.hang_s=1", "web.listen=0"}, 60000);
+  const int port = page_port(server);
+  ASSERT_NE(port, 0) << server.log();
+  auto participant = support::test_participant("tester");
+  auto detect = wire::ServiceClient<msgs::Detect>::create(*participant, "detect");
+  const std::jthread viewer([port](const std::stop_token& stop) {
+    while (!stop.stop_requested()) (void)support::http(port, "GET", "/api/health");
+  });
+  const auto answer = detect->call(request(), milliseconds(50000));
+  EXPECT_EQ(answer.status().code, StatusCode::unavailable) << server.log();
+  EXPECT_EQ(server.process().wait(milliseconds(20000)), server::kExitHung) << server.log();
 }
 
 TEST(Supervision, ALongSearchThatMayTakeItsTimeDoesNotHang) {
