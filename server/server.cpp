@@ -98,6 +98,9 @@ class Running : public Server {
 
   ~Running() override {
     if (worker_) worker_->stop();  // answers what waits, while the services can still send it
+    const std::lock_guard<std::shared_mutex> lock(leaving_mutex_);
+    ready_ = false;
+    open_page_ = nullptr;
   }
 
   /// Throws a Failure.
@@ -375,11 +378,9 @@ class Running : public Server {
 
   std::vector<SourceReport> source_reports() const {
     std::vector<SourceReport> reports;
-    {
-      const std::shared_lock<std::shared_mutex> lock(leaving_mutex_);
-      for (const auto& source : sources_) {
-        for (SourceReport& report : source->reports()) reports.push_back(std::move(report));
-      }
+    const std::shared_lock<std::shared_mutex> lock(leaving_mutex_);
+    for (const auto& source : sources_) {
+      for (SourceReport& report : source->reports()) reports.push_back(std::move(report));
     }
     reports.push_back(tracking_->report());
     if (!clock_->is_real()) reports.push_back(clock_->report());
@@ -474,7 +475,7 @@ class Running : public Server {
   std::uint64_t losses_reported_ = 0;
   bool clock_reported_ = false;  ///< That it stands still.
   Busy reporting_;
-  mutable std::shared_mutex leaving_mutex_;  ///< Held by whoever uses what abandon() takes away.
+  mutable std::shared_mutex leaving_mutex_;  ///< Held by whoever uses what goes before others.
 
   // In the order in which they come up; destroyed in reverse: nothing calls into what is gone.
   std::optional<wire::Participant> participant_;

@@ -54,6 +54,18 @@ msgs::Detect_Request request() {
   return request;
 }
 
+/// Of the page of a server that has started; 0 when it does not within 20 s.
+int page_port(const support::StubServer& server) {
+  const std::string before = "page: http://127.0.0.1:";
+  for (int i = 0; i < 200; ++i) {
+    const std::string log = server.log();
+    const std::size_t at = log.find(before);
+    if (at != log.npos) return std::atoi(log.c_str() + at + before.size());
+    std::this_thread::sleep_for(milliseconds(100));
+  }
+  return 0;
+}
+
 TEST(Supervision, SystemdLearnsOfStartLifeAndEnd) {
   Systemd systemd("200000");
   support::StubServer server;
@@ -64,6 +76,26 @@ TEST(Supervision, SystemdLearnsOfStartLifeAndEnd) {
   while (last == "WATCHDOG=1") last = systemd.receive();
   EXPECT_EQ(last, "STOPPING=1\nSTATUS=stopping");
   EXPECT_EQ(server.process().wait(milliseconds(10000)), 0) << server.log();
+}
+
+// What the server ends first is not used by the threads that it ends later.
+TEST(Supervision, AServerEndsInOrderWhileItIsAskedForItsStatus) {
+  support::StubServer server({"web.listen=0"});
+  const int port = page_port(server);
+  ASSERT_NE(port, 0) << server.log();
+  auto participant = support::test_participant("tester");
+  auto get_status = wire::ServiceClient<msgs::GetStatus>::create(*participant, "get_status");
+  ASSERT_TRUE(get_status.ok());
+  ASSERT_TRUE(get_status->wait_for_service(milliseconds(10000))) << server.log();
+  const std::jthread client([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) (void)get_status->call({}, milliseconds(1000));
+  });
+  const std::jthread viewer([port](const std::stop_token& stop) {
+    while (!stop.stop_requested()) (void)support::http(port, "GET", "/api/health");
+  });
+  std::this_thread::sleep_for(milliseconds(500));
+  server.process().signal(SIGTERM);
+  EXPECT_EQ(server.process().wait(milliseconds(20000)), 0) << server.log();
 }
 
 // A search takes a minute and counts as hung after a second.
@@ -107,18 +139,6 @@ TEST(Supervision, AServerThatHangsSaysSoAnswersAndEnds) {
   EXPECT_EQ(last.rfind("STOPPING=1\nSTATUS=the search of a request's frame", 0), 0U) << last;
   const std::lock_guard<std::mutex> lock(mutex);
   EXPECT_NE(detection.find("it hangs"), std::string::npos) << detection;
-}
-
-/// Of the page of a server that has started; 0 when it does not within 20 s.
-int page_port(const support::StubServer& server) {
-  const std::string before = "page: http://127.0.0.1:";
-  for (int i = 0; i < 200; ++i) {
-    const std::string log = server.log();
-    const std::size_t at = log.find(before);
-    if (at != log.npos) return std::atoi(log.c_str() + at + before.size());
-    std::this_thread::sleep_for(milliseconds(100));
-  }
-  return 0;
 }
 
 // What the server takes away when it leaves is not used by the threads of its page.
