@@ -19,11 +19,11 @@ int fail(const std::string& message) {
 }
 
 int main() {
-  auto client = bpa::Client::connect();
-  if (!client.ok()) return fail(client.status().message);
-
   std::atomic<int> confirmed{0};
   std::string last;
+  auto client = bpa::Client::connect();  // calls back until it is destroyed: after the above
+  if (!client.ok()) return fail(client.status().message);
+
   const auto subscribed = client->tracks([&](const bpa::TrackSet& set) {
     for (const bpa::TrackedObject& object : set.tracks) {
       const std::string line = std::to_string(object.id) + ' ' + object.name + ' ' + object.model +
