@@ -48,6 +48,7 @@ TEST(Kill, ServerIsBackForNewAndOldClients) {
     return std::make_shared<support::Process>(
         support::own_command("bpa-server", {"--library", folder + "/library"}), log);
   };
+  std::atomic<int> results{0};
   std::optional<Client> client;
   {
     const auto first = start();
@@ -56,7 +57,6 @@ TEST(Kill, ServerIsBackForNewAndOldClients) {
     client.emplace(std::move(connected).value());
   }
   const support::WallView wall;
-  std::atomic<int> results{0};
   ASSERT_TRUE(client->subscribe([&](const DetectionSet&) { ++results; }).ok());
   std::jthread stream([&](const std::stop_token& stop) {
     while (!stop.stop_requested()) {

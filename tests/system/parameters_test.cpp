@@ -223,9 +223,9 @@ TEST_F(ParametersOfAServer, RequestsAboutTooManyHaveAnEmptyAnswer) {
 
 TEST_F(ParametersOfAServer, PausingStopsTheStreamAndNotTheRequests) {
   start();
+  std::atomic<int> results{0};
   auto client = Client::connect(support::client_options());
   ASSERT_TRUE(client.ok()) << client.status().message;
-  std::atomic<int> results{0};
   ASSERT_TRUE(client->subscribe([&](const DetectionSet&) { ++results; }).ok());
   const auto depth = support::wall_depth_mm();
   FrameView frame;

@@ -65,9 +65,9 @@ TEST(TracksOfASequence, AreWhereTheObjectsAreAndKeepTheirIds) {
   const std::string log = support::scratch_folder() + "/server.log";
   const support::Process server(support::own_command("bpa-server", {"--library", sequence.library}),
                                 log);
-  auto client = Client::connect(support::client_options());
-  ASSERT_TRUE(client.ok()) << client.status().message << support::read_text(log);
   support::Latest<TrackSet> sets;
+  auto client = Client::connect(support::client_options());  // calls back until it is destroyed
+  ASSERT_TRUE(client.ok()) << client.status().message << support::read_text(log);
   ASSERT_TRUE(client->tracks([&sets](const TrackSet& set) { sets.add(set); }).ok());
 
   std::int64_t stamp_ns = 0;

@@ -80,8 +80,8 @@ class TracksOfFrames : public testing::Test, protected support::WallView {
     EXPECT_EQ(received, static_cast<std::uint64_t>(sent_));
   }
 
-  std::optional<Client> client_;
   Latest<TrackSet> sets_;
+  std::optional<Client> client_;  ///< Calls back until it is destroyed.
   std::atomic<std::int64_t> sent_{0};
   std::jthread sender_;
 };

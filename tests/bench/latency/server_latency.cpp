@@ -16,12 +16,12 @@ int main(int argc, char** argv) {
   using Clock = std::chrono::steady_clock;
   const int count = argc > 1 ? std::atoi(argv[1]) : 1000;
   bpa::support::StubServer server;
-  auto client = bpa::Client::connect(bpa::support::client_options());
-  if (!client.ok()) return std::fprintf(stderr, "%s\n", client.status().message.c_str()), 1;
-
   std::mutex mutex;
   std::condition_variable changed;
   std::int64_t last_stamp = 0;
+  auto client = bpa::Client::connect(bpa::support::client_options());
+  if (!client.ok()) return std::fprintf(stderr, "%s\n", client.status().message.c_str()), 1;
+
   const bpa::Status status = client->subscribe([&](const bpa::DetectionSet& set) {
     const std::lock_guard<std::mutex> lock(mutex);
     last_stamp = set.stamp_ns;

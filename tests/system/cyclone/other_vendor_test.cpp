@@ -99,9 +99,9 @@ TEST_F(OtherVendor, CameraInDetectionsOutAndRequestsAnswered) {
 /// The server is killed without a word and started again: the robot and an SDK client go on.
 TEST_F(OtherVendor, AServerThatIsKilledAndComesBack) {
   ASSERT_NE(next_detections_ms(0), -1) << said() << server.log();
+  std::atomic<std::int64_t> last_result_ms{0};
   auto client = Client::connect(support::client_options());
   ASSERT_TRUE(client.ok()) << client.status().message;
-  std::atomic<std::int64_t> last_result_ms{0};
   ASSERT_TRUE(client->subscribe([&](const DetectionSet&) { last_result_ms = now_ms(); }).ok());
   server.process().signal(SIGKILL);
   ASSERT_EQ(server.process().wait(seconds(5)), 128 + SIGKILL);

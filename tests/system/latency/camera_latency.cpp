@@ -154,9 +154,9 @@ int camera(const char* name, int frames, int rate_hz, const std::string& profile
 
 int sdk(const char* name, int frames, int rate_hz) {
   support::StubServer server({"queue.frames=10"});
+  Trips trips;
   auto client = Client::connect(support::client_options());
   if (!client.ok()) return std::fprintf(stderr, "%s\n", client.status().message.c_str()), 1;
-  Trips trips;
   if (!client->subscribe([&](const DetectionSet& set) { trips.arrive(set.stamp_ns); }).ok())
     return 1;
   const CameraFrames images;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <memory>
 
 #include <gtest/gtest.h>
 
@@ -113,17 +114,17 @@ TEST_F(Secured, RobotSendsReadsAndCalls) {
   const auto found = robot().detect_in(wall.view());
   ASSERT_TRUE(found.ok()) << found.status().message << log();
   EXPECT_EQ(found->best().size(), 1U);
-  std::atomic<int> results{0};
-  ASSERT_TRUE(robot().subscribe([&](const DetectionSet&) { ++results; }).ok());
+  const auto results = std::make_shared<std::atomic<int>>(0);  // the robot outlives this test
+  ASSERT_TRUE(robot().subscribe([results](const DetectionSet&) { ++*results; }).ok());
   robot_sends();
-  EXPECT_TRUE(becomes_true([&] { return results > 0; })) << log();
+  EXPECT_TRUE(becomes_true([&] { return *results > 0; })) << log();
   expect_unchanged(1, 1);
 }
 
 TEST_F(Secured, ViewerReadsAndNeitherSendsNorCalls) {
+  std::atomic<int> results{0};
   auto viewer = connect(ours(), "/viewer");
   ASSERT_TRUE(viewer.ok()) << viewer.status().message << log();
-  std::atomic<int> results{0};
   ASSERT_TRUE(viewer->subscribe([&](const DetectionSet&) { ++results; }).ok());
   robot_sends();
   EXPECT_TRUE(becomes_true([&] { return results > 0; })) << log();
