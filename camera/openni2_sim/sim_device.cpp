@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -78,14 +79,15 @@ std::vector<OniVideoMode> modes_of(OniSensorType sensor, const Camera& camera, b
 /// device's thread shows frames.
 class SimStream : public oni::driver::StreamBase {
  public:
-  /// `registering` is the device's switch.
+  /// `registering` is the device's switch; the device holds `showing` while it calls show().
   SimStream(bool depth, const std::vector<OniVideoMode>& modes, const SimFrames& frames,
-            const SimConfig& config, const std::atomic<bool>& registering)
+            const SimConfig& config, const std::atomic<bool>& registering, std::mutex& showing)
       : depth_(depth),
         modes_(modes),
         frames_(frames),
         config_(config),
         registering_(registering),
+        showing_(showing),
         mode_(modes.front()) {
     if (depth_) return;
     settings_.insert({{ONI_STREAM_PROPERTY_AUTO_EXPOSURE, TRUE},
@@ -93,8 +95,6 @@ class SimStream : public oni::driver::StreamBase {
                       {ONI_STREAM_PROPERTY_EXPOSURE, 100},  // per cent of what was rendered
                       {ONI_STREAM_PROPERTY_GAIN, 100}});
   }
-  ~SimStream() override { set_running(false); }
-
   OniStatus setProperty(int id, const void* data, int size) override {
     config_.pass();
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -156,7 +156,12 @@ class SimStream : public oni::driver::StreamBase {
     set_running(true);
     return ONI_STATUS_OK;
   }
-  void stop() override { set_running(false); }
+  /// No frame comes after this. Here and not in destroyStream(), which OpenNI2 calls with the lock
+  /// that a frame on its way waits for.
+  void stop() override {
+    set_running(false);
+    const std::lock_guard<std::mutex> shown(showing_);
+  }
 
   /// Delivers the tick's frame if the stream runs and its rate wants it. Ticks come at 30 Hz.
   void show(std::uint64_t tick, std::uint64_t timestamp_us) {
@@ -232,6 +237,7 @@ class SimStream : public oni::driver::StreamBase {
   const SimFrames& frames_;
   const SimConfig& config_;
   const std::atomic<bool>& registering_;
+  std::mutex& showing_;
   std::mutex mutex_;  ///< Guards what follows.
   OniVideoMode mode_;
   /// The properties that can be set freely; mirrored, as real devices start.
@@ -260,21 +266,17 @@ class SimDevice : public oni::driver::DeviceBase {
     config_.pass();
     const bool depth = sensor == ONI_SENSOR_DEPTH;
     if (!depth && !(sensor == ONI_SENSOR_COLOR && config_.color_sensor)) return nullptr;
-    auto* stream =
-        new SimStream(depth, depth ? depth_modes_ : color_modes_, frames_, config_, registering_);
+    const auto stream = std::make_shared<SimStream>(depth, depth ? depth_modes_ : color_modes_,
+                                                    frames_, config_, registering_, showing_);
     const std::lock_guard<std::mutex> lock(mutex_);
     streams_.push_back(stream);
-    return stream;
+    return stream.get();
   }
 
   void destroyStream(oni::driver::StreamBase* stream) override {
     config_.pass();
-    const std::lock_guard<std::mutex> not_shown(showing_);
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      std::erase(streams_, stream);
-    }
-    delete stream;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::erase_if(streams_, [stream](const auto& one) { return one.get() == stream; });
   }
 
   OniStatus setProperty(int id, const void* data, int size) override {
@@ -326,11 +328,11 @@ class SimDevice : public oni::driver::DeviceBase {
       const std::lock_guard<std::mutex> shown(showing_);
       // Depth first, as most devices do; the device's clock started before.
       const auto stamp = static_cast<std::uint64_t>(since_start.count()) + 5'000'000;
-      for (SimStream* stream : streams()) stream->show(tick, stamp);
+      for (const auto& stream : streams()) stream->show(tick, stamp);
     }
   }
 
-  std::vector<SimStream*> streams() {
+  std::vector<std::shared_ptr<SimStream>> streams() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return streams_;
   }
@@ -343,10 +345,10 @@ class SimDevice : public oni::driver::DeviceBase {
       {ONI_SENSOR_DEPTH, static_cast<int>(depth_modes_.size()), depth_modes_.data()},
       {ONI_SENSOR_COLOR, static_cast<int>(color_modes_.size()), color_modes_.data()}};
   std::atomic<bool> registering_{false};
-  std::mutex showing_;  ///< Held while frames are shown: no stream is destroyed meanwhile.
-  std::mutex mutex_;    ///< Guards the list.
-  std::vector<SimStream*> streams_;
-  std::jthread thread_;  ///< Last: runs while all else is there.
+  std::mutex showing_;                               ///< Held while frames are shown.
+  std::mutex mutex_;                                 ///< Guards the list.
+  std::vector<std::shared_ptr<SimStream>> streams_;  ///< Also of the thread while it shows them.
+  std::jthread thread_;                              ///< Last: runs while all else is there.
 };
 
 }  // namespace
