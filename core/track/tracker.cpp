@@ -36,7 +36,7 @@ constexpr double kOtherFound = -3;  // of one that finds another object in its p
 constexpr double kEnds = -0.5;      // below this a track ends
 constexpr int kNewlySeen = 15;      // alignments since it came into sight
 // Newcomers that a frame brings on, and frames that each goes through then.
-constexpr std::size_t kReceivedAtOnce = 4, kStepsAFrame = 6;
+constexpr std::size_t kReceivedAtOnce = 3, kStepsAFrame = 4;
 constexpr double kMostRested_s = 0.3;  // that resting objects are not aligned
 
 }  // namespace
