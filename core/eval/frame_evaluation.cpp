@@ -167,9 +167,8 @@ std::vector<PoseOutcome> open_poses(const io::BopFrame& frame, const EvalObjects
   const auto is_right = [&](const Pose& pose) {
     return paper_cost(objects, options, pose, *nearest) < kNoMatch;
   };
-  std::vector<PoseOutcome> out{{1, is_right(estimate.camera_from_object)}};
+  std::vector<PoseOutcome> out{{own_weight(estimate), is_right(estimate.camera_from_object)}};
   for (const PoseAlternative& other : estimate.alternatives) {
-    out.front().weight -= other.weight;
     out.push_back({other.weight, is_right(other.camera_from_object)});
   }
   return out;

@@ -22,9 +22,14 @@ OrientationUncertainty orientation_uncertainty(const Eigen::Quaterniond& rotatio
   return out;
 }
 
-double presence(const Placement& placement) {
+double own_weight(const Placement& placement) {
   double own = 1;
   for (const PoseAlternative& other : placement.alternatives) own -= other.weight;
+  return own;
+}
+
+double presence(const Placement& placement) {
+  const double own = own_weight(placement);
   return own > placement.probability ? placement.probability / own : 1;
 }
 

@@ -52,7 +52,10 @@ struct Placement {
   std::vector<PoseAlternative> alternatives;  ///< Empty: the view leaves no other pose.
 };
 
-/// That the object is there, at this pose or at one of the alternatives; in [0, 1].
+/// The weight of the placement's own pose beside its alternatives' (PoseAlternative::weight).
+double own_weight(const Placement& placement);
+
+/// The probability that the object is there, at this pose or at an alternative; in [0, 1].
 double presence(const Placement& placement);
 
 /// The placement in frame a, from one in frame b: poses, covariance and orientation. To the last

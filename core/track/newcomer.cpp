@@ -95,11 +95,9 @@ Body Newcomer::take_body() {
 
 void add_alternatives(const Placement& found, const Pose& now_from_then, Body& body) {
   constexpr double kLeastWeight = 0.01;  // of the placement's own pose
-  double own = 1;
-  for (const PoseAlternative& other : found.alternatives) own -= other.weight;
+  const double own = std::max(kLeastWeight, own_weight(found));
   for (const PoseAlternative& other : found.alternatives) {
-    add_mode(body, now_from_then * other.camera_from_object,
-             std::log(other.weight / std::max(kLeastWeight, own)));
+    add_mode(body, now_from_then * other.camera_from_object, std::log(other.weight / own));
   }
 }
 
