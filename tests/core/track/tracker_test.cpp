@@ -284,7 +284,7 @@ TEST_F(TrackerTest, TracksStandStillInTheFixedFrameWhileTheCameraMoves) {
   EXPECT_LT(last.tracks[0].velocity.norm(), 0.02);
 }
 
-TEST_F(TrackerTest, PartOfAResultBeginsTracksWhereItIsSureAndCountsForNothingElse) {
+TEST_F(TrackerTest, PartOfAResultCountsWhereItIsSure) {
   Tracker tracker = this->tracker();
   const std::vector<Pose> bricks = {brick_at(-0.15, 0), brick_at(0.12, 0.05)};
   const Pose sure = camera_from_world_ * bricks[0], unsure = camera_from_world_ * bricks[1];
@@ -307,6 +307,24 @@ TEST_F(TrackerTest, PartOfAResultBeginsTracksWhereItIsSureAndCountsForNothingEls
   }
   EXPECT_EQ(follow(tracker, frame(scene(bricks))).tracks[0].probability,
             before.tracks[0].probability);
+}
+
+TEST_F(TrackerTest, SurePartOfALaterResultConfirmsATrack) {
+  for (const bool sure : {false, true}) {
+    Tracker tracker = this->tracker();
+    const Pose brick = brick_at(0, 0), there = camera_from_world_ * brick;
+    follow(tracker, frame(scene({brick})));
+    ASSERT_TRUE(tracker.add(found(stamp(), {there}, "brick", 0.6)).ok());
+    const TrackedFrame born = follow(tracker, frame(scene({brick})));
+    ASSERT_EQ(born.tracks.size(), 1u);
+    EXPECT_EQ(born.tracks[0].state, TrackState::tentative);
+    SceneInterpretations part = found(stamp(), {there}, "brick", sure ? 0.9 : 0.7);
+    part.partial = true;
+    ASSERT_TRUE(tracker.add(part).ok());
+    follow(tracker, frame(scene({brick})));
+    EXPECT_EQ(follow(tracker, frame(scene({brick}))).tracks[0].state,
+              sure ? TrackState::confirmed : TrackState::tentative);
+  }
 }
 
 TEST_F(TrackerTest, UnsurePartOfAResultFindsALostTrackAgain) {
