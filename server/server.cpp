@@ -475,7 +475,8 @@ class Running : public Server {
   std::uint64_t losses_reported_ = 0;
   bool clock_reported_ = false;  ///< That it stands still.
   Busy reporting_;
-  mutable std::shared_mutex leaving_mutex_;  ///< Of what goes before its readers.
+  /// Guards what ends while other threads may still read it: services, page and sources.
+  mutable std::shared_mutex leaving_mutex_;
 
   // In the order in which they come up; destroyed in reverse: nothing calls into what is gone.
   std::optional<wire::Participant> participant_;

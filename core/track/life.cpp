@@ -19,9 +19,9 @@ constexpr int kSearches = 5;
 // the poses for right.
 constexpr double kDoubt = -2, kMostSaid = 2.5;
 
-// A search's covariance is of a hypothesis that may be aligned badly. Squared errors of tracked
-// poses are a tenth of it in the mean, and 0.15 of it in the upper 95 % quantile (11 objects of two
-// simulated sequences, 4700 frames).
+// Of a search's covariance, which is wide as a hypothesis may be aligned badly. The normalised
+// squared error of tracked poses has 0.10 of chi-square's mean and 0.15 of its 95 % quantile (11
+// objects, 4694 frames: sequences 1 and 9 of docs/server.md).
 constexpr double kOfSearch = 0.15;
 
 }  // namespace

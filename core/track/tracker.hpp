@@ -28,9 +28,10 @@ struct TrackerOptions {
   void visit_fields(auto&& visit) {
     visit("min_probability", min_probability,
           {0, 1, "Objects that are there with at least this probability begin a track."});
-    visit(
-        "min_confirming", min_confirming,
-        {0, 1, "A track is confirmed by one placement of this probability, or by two that agree."});
+    visit("min_confirming", min_confirming,
+          {0, 1,
+           "A track is confirmed by one search that finds the object with this probability, or by "
+           "two."});
     visit("lost_s", lost_s,
           {0.1, 3600, "Seconds after which a track that is not seen ends, unless it is held."});
     visit("hidden_s", hidden_s,

@@ -64,7 +64,7 @@ class Leases {
     std::uint32_t announcement = 0;  ///< The number of the last.
   };
 
-  /// All leases, soon, by one task whatever peers say. The caller holds mutex_.
+  /// Schedules the next look at all leases, as one task for all peers. The caller holds mutex_.
   void look_later();
   void look();
 
