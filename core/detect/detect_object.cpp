@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <atomic>
 #include <functional>
+#include <limits>
+#include <utility>
 
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
@@ -47,6 +49,7 @@ constexpr Stage kStages[] = {
 };
 constexpr std::size_t kRoundStages = 7;    // those that every round runs
 constexpr std::size_t kScoringStages = 2;  // aligned, scored
+constexpr double kNoThreshold = -std::numeric_limits<double>::infinity();
 
 // Runs a stage and records its time and what it rejects.
 Candidates timed(const Stage& stage, Search& search, Candidates candidates, ObjectTrace* trace) {
@@ -58,15 +61,15 @@ Candidates timed(const Stage& stage, Search& search, Candidates candidates, Obje
   return candidates;
 }
 
-// Keeps the `most` best of all models, and what priors suggested.
-void compete(std::span<const Search> searches, int most, std::vector<Candidates>& found) {
+// Rejects what does not exceed the threshold, except what priors suggested.
+void compete(std::span<const Search> searches, int most, const ScoreThreshold& threshold_of,
+             std::vector<Candidates>& found) {
   std::vector<double> scores;
   for (const Candidates& of_model : found) {
     for (const Candidate& candidate : of_model) scores.push_back(candidate.score);
   }
-  if (std::ssize(scores) <= most) return;
-  std::ranges::nth_element(scores, scores.begin() + most, std::greater());
-  const double threshold = scores[most];
+  const double threshold = threshold_of(std::move(scores), most);
+  if (threshold == kNoThreshold) return;
   for (std::size_t i = 0; i < found.size(); ++i) {
     std::erase_if(found[i], [&](const Candidate& candidate) {
       const bool low = candidate.score <= threshold && candidate.found_by != Source::prior;
@@ -83,8 +86,15 @@ std::span<const Stage> round_stages() { return detection_stages().first(kRoundSt
 std::span<const Stage> scoring_stages() { return round_stages().last(kScoringStages); }
 std::span<const Stage> final_stages() { return detection_stages().subspan(kRoundStages); }
 
+double score_threshold(std::vector<double> scores, int most) {
+  if (std::ssize(scores) <= most) return kNoThreshold;
+  std::ranges::nth_element(scores, scores.begin() + most, std::greater());
+  return scores[most];
+}
+
 void run_stages(std::span<const Stage> stages, std::span<Search> searches, int num_threads,
-                std::vector<Candidates>& found, std::vector<ObjectTrace>* traces) {
+                std::vector<Candidates>& found, std::vector<ObjectTrace>* traces,
+                const ScoreThreshold& threshold) {
   if (searches.empty()) return;
   if (traces) traces->resize(searches.size());
   const Deadline deadline = searches.front().deadline;
@@ -102,7 +112,7 @@ void run_stages(std::span<const Stage> stages, std::span<Search> searches, int n
       found[i] = timed(stage, searches[i], std::move(found[i]), traces ? &(*traces)[i] : nullptr);
     });
     if (stage.most_in_library) {
-      compete(searches, stage.most_in_library(searches.front().options), found);
+      compete(searches, stage.most_in_library(searches.front().options), threshold, found);
     }
     if (!traces) continue;
     for (std::size_t i = 0; i < searches.size(); ++i) {

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "core/align/correspondence.hpp"
 #include "core/detect/search.hpp"
@@ -83,13 +85,19 @@ std::span<const Stage> final_stages();
 /// The last ones of a round: what aligns and scores a pose that is known well.
 std::span<const Stage> scoring_stages();
 
+/// The score that candidates must exceed to go on, of the scores of all models, so that at most
+/// `most` do; minus infinity where all go on.
+using ScoreThreshold = std::function<double(std::vector<double> scores, int most)>;
+double score_threshold(std::vector<double> scores, int most);
+
 /// Runs stages for several models of one scene, each stage for all models before the next. Models
-/// compete: where a stage has `most_in_library`, the best of all go on. Priors' candidates always
-/// do. `found` holds the candidates of each search, before and after. Deterministic unless the
-/// deadline of the first search passes; all models get an equal share of the time. `traces`, if
+/// compete: where a stage has `most_in_library`, those above `threshold` go on. Priors' candidates
+/// always do. `found` holds the candidates of each search, before and after. Deterministic unless
+/// the deadline of the first search passes; all models get an equal share of the time. `traces`, if
 /// given, receives the stages of each search.
 void run_stages(std::span<const Stage> stages, std::span<Search> searches, int num_threads,
-                std::vector<Candidates>& found, std::vector<ObjectTrace>* traces = nullptr);
+                std::vector<Candidates>& found, std::vector<ObjectTrace>* traces = nullptr,
+                const ScoreThreshold& threshold = score_threshold);
 
 /// Runs all stages for one model on the scene's first sample: the best placements of the model
 /// (paper section V), best first.

@@ -3,15 +3,15 @@
 #include "core/pipeline/detector.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
-#include "core/cloud/cielab.hpp"
-#include "core/cloud/color_gradients.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/options_yaml.hpp"
 #include "core/pipeline/library_search.hpp"
+#include "core/pipeline/prepare_scene.hpp"
 #include "core/pipeline/search_plan.hpp"
 #include "core/scene/given_others.hpp"
 #include "core/scene/interpretations.hpp"
@@ -58,41 +58,6 @@ Result<Models> chosen_models(const ModelLibrary& library, const DetectRequest& r
     if (!named_twice) chosen.push_back(std::move(model));
   }
   return chosen;
-}
-
-// What detection reads of the frame, with the time of each step.
-SceneFeatures observe(const Frame& frame, const DetectRequest& request, DetectorOptions options,
-                      const Deadline& deadline, std::vector<StageTiming>& timings) {
-  options.surface.num_threads = options.features.num_threads = request.num_threads;
-  options.planes.seed = options.features.seed = request.seed;
-  // With a budget, the search draws the first sample, as large as the time left allows.
-  if (request.budget_ms > 0) options.features.max_references = options.features.round_keypoints = 0;
-  Stopwatch stage;
-  const auto finish_stage = [&](const char* name) {
-    timings.push_back({name, stage.lap_milliseconds()});
-  };
-  SurfaceMap map = surface_map(frame, options.surface);
-  finish_stage("surface");
-  if (!details_fit(timings.back().milliseconds, deadline.milliseconds_left())) {
-    leave_out_details(options.features);
-  }
-  std::vector<Plane> planes;
-  ColorImages colors;
-  run_both(
-      request.num_threads,
-      [&](int threads) {
-        if (!options.features.use_color) return;
-        colors.reduced = reduced_color(frame, map, threads);
-        if (options.features.use_outline) colors.gradients = color_gradients(frame, threads);
-      },
-      [&](int) {
-        if (frame.background.empty()) planes = label_background_planes(map, options.planes);
-      });
-  finish_stage("planes");
-  SceneFeatures scene =
-      scene_features(std::move(map), std::move(planes), options.features, std::move(colors));
-  finish_stage("features");
-  return scene;
 }
 
 // The first `count`, their probabilities scaled to sum to 1 again.
@@ -147,6 +112,18 @@ Detector::Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions 
 
 Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRequest& request,
                                               FrameTrace* trace) const {
+  return detect(frame, request, trace, {});
+}
+
+Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
+                                                        const DetectRequest& request,
+                                                        const MakeSearches& searches) const {
+  return detect(frame, request, nullptr, searches);
+}
+
+Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRequest& request,
+                                              FrameTrace* trace,
+                                              const MakeSearches& searches) const {
   if (Status status = validate(frame); !status.ok()) return status;
   if (Status status = check_request(request); !status.ok()) return status;
   const Result<Models> models = chosen_models(*library_, request);
@@ -157,18 +134,21 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   DetectorOptions options = options_;
   const double prepared_share =
       shorten_preparation(request.budget_ms, resolve_num_threads(request.num_threads), options);
+  std::unique_ptr<ModelSearches> elsewhere;
+  if (searches) elsewhere = searches(*models, options);
   const Stopwatch total;
   SceneInterpretations out;
   out.stamp_ns = frame.stamp_ns;
   out.frame_id = frame.frame_id;
   out.fused_frames = frame.fused;
-  SceneFeatures scene = observe(frame, request, options, deadline, out.timings);
+  SceneFeatures scene = prepare_scene(frame, request, options, deadline, out.timings);
   const double preparation_ms = total.milliseconds() / prepared_share;
   out.sensor = name_of(scene.map.sensor);
 
   Stopwatch stage;
   const Deadline search_end = deadline.part(kTimeOfSearch);
-  LibrarySearch search{scene, options, layers_, request, search_end, preparation_ms};
+  const SearchInputs inputs{scene, options, layers_, request, *models};
+  LibrarySearch search{inputs, search_end, preparation_ms};
   if (request.on_round) {
     search.on_round = [&, so_far = out](Candidates found) mutable {
       so_far.partial = true;
@@ -177,8 +157,12 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
       request.on_round(so_far);
     };
   }
-  Candidates candidates =
-      search.run(*models, trace ? &trace->objects : nullptr, out.budget_exhausted, out.effort);
+  std::optional<LocalSearches> here;
+  if (!elsewhere) here.emplace(inputs, trace ? &trace->objects : nullptr);
+  ModelSearches& used = elsewhere ? *elsewhere : *here;
+  used.prepared(scene, total.milliseconds());
+  Candidates candidates = search.run(used, out.budget_exhausted, out.effort);
+  out.not_searched = used.lost();
   out.timings.push_back({"objects", stage.lap_milliseconds()});
 
   out.interpretations = interpret_scene(scene, layers_, candidates, request, options);

@@ -50,6 +50,14 @@ struct DetectRequest {
   std::function<void(const SceneInterpretations&)> on_round = {};
 };
 
+class ModelSearches;
+
+/// Makes searches of other hosts (model_searches.hpp) for these models, with these options. Called
+/// before the frame is prepared here, so that they can prepare it meanwhile. May throw a Failure, as
+/// may the searches.
+using MakeSearches = std::function<std::unique_ptr<ModelSearches>(
+    const std::vector<std::shared_ptr<const ObjectModel>>&, const DetectorOptions&)>;
+
 /// Finds the objects of a library in RGB-D frames. Immutable after construction; detect() may be
 /// called from several threads at once.
 class Detector {
@@ -63,12 +71,19 @@ class Detector {
   /// given, receives the candidates of each stage.
   Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request = {},
                                       FrameTrace* trace = nullptr) const;
+  /// The same, but the models are searched for where `searches` says. The answer is that of
+  /// detect(), unless there is a budget or a part of the search was lost.
+  Result<SceneInterpretations> detect_elsewhere(const Frame& frame, const DetectRequest& request,
+                                                const MakeSearches& searches) const;
 
   const ModelLibrary& library() const { return *library_; }
   const DetectorOptions& options() const { return options_; }
   const ScoreLayers& score_layers() const { return layers_; }
 
  private:
+  Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request,
+                                      FrameTrace* trace, const MakeSearches& searches) const;
+
   std::shared_ptr<const ModelLibrary> library_;
   DetectorOptions options_;
   ScoreLayers layers_;

@@ -7,8 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/detect/ranking.hpp"
-#include "core/detect/stages.hpp"
 #include "core/pipeline/search_plan.hpp"
 #include "core/scene/interpretations.hpp"
 
@@ -25,25 +23,12 @@ Candidates joined(const std::vector<Candidates>& found) {
   return all;
 }
 
-// What is found so far, for those who cannot wait for the final stages.
-Candidates so_far(const std::vector<Search>& searches, std::vector<Candidates> found) {
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    Search search = searches[i];
-    search.before = nullptr;
-    search.tracing = nullptr;
-    suppress_duplicates(search, found[i]);
-  }
-  return joined(found);
-}
-
 // What the placements found so far explain.
 struct Explained {
-  std::vector<std::uint8_t> certain,
-      likely;        // flags of pixels; the certain ones are searched no more
-  CheckImage image;  // where these are not searched
+  std::vector<std::uint8_t> certain, likely;  // flags of pixels; the certain are searched no more
+  std::vector<std::uint32_t> newly_certain;   // pixels, since they were last taken
 
-  explicit Explained(const CheckImage& observed)
-      : certain(observed.pixels.size(), 0), likely(certain), image(observed) {}
+  explicit Explained(std::size_t pixels) : certain(pixels, 0), likely(pixels, 0) {}
 
   // Returns the number of pixels that have become likely; with `new_places`, only those of
   // placements where nothing was likely. `found` are placements that compete.
@@ -56,7 +41,7 @@ struct Explained {
       int fresh = 0;
       for (const std::uint32_t pixel : candidate.explained) {
         fresh += std::exchange(likely[pixel], 1) == 0;
-        if (is_certain) certain[pixel] = 1, image.pixels[pixel].searched = 0;
+        if (is_certain && !std::exchange(certain[pixel], 1)) newly_certain.push_back(pixel);
       }
       const auto size = static_cast<double>(candidate.explained.size());
       if (!new_places || fresh > kNewPlace * size) gained += fresh;
@@ -74,49 +59,23 @@ double next_share(const SearchPace& pace, int round, const Deadline& rounds_end)
 
 }  // namespace
 
-void LibrarySearch::score_expected(std::vector<Search>& searches, std::vector<Candidates>& found,
-                                   std::vector<ObjectTrace>* traces) const {
-  for (const ExpectedPlacement& expected : request.expected) {
-    for (std::size_t i = 0; i < searches.size(); ++i) {
-      const ObjectModel& model = searches[i].model;
-      if (model.name != expected.model) continue;
-      found[i].push_back({.model = &model,
-                          .refinement = {expected.camera_from_object},
-                          .found_by = Source::prior});
-    }
-  }
-  run_stages(scoring_stages(), searches, request.num_threads, found, traces);
-}
-
-Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectModel>>& models,
-                              std::vector<ObjectTrace>* traces, bool& cut,
-                              SearchEffort& effort) const {
-  std::vector<std::uint8_t> late(models.size(), 0);
-  std::vector<Search> searches;
-  searches.reserve(models.size());
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    Search& search = searches.emplace_back(scene, *models[i], options.detect, layers,
-                                           request.priors, request.seed);
-    search.cut = &late[i];
-  }
-  std::vector<Candidates> found(models.size());
-  Explained explained(scene.image);
+Candidates LibrarySearch::run(ModelSearches& searches, bool& cut, SearchEffort& effort) const {
+  const DetectorOptions& options = inputs.options;
+  Explained explained(inputs.scene.image.pixels.size());
   // Then poses were aligned well before: another round is worth its time for new places alone.
-  const bool follows = !request.expected.empty();
+  const bool follows = !inputs.request.expected.empty();
   const auto explain = [&] {
-    Candidates all = joined(found);
+    Candidates all = joined(searches.found());
     let_compete(all, find_overlaps(all, options.scene.max_shared));
     return explained.add(all, options.rounds, follows);
   };
   const bool limited = !deadline.never();
   const Deadline rounds_end = deadline.part(kTimeOfRounds);
-  for (Search& search : searches) search.deadline = rounds_end;
   if (follows) {
-    score_expected(searches, found, traces);
+    searches.score_expected(rounds_end);
     explain();
   }
-  SearchPace pace(preparation_ms, static_cast<int>(models.size()));
-  SceneSample sample;
+  SearchPace pace(preparation_ms, static_cast<int>(inputs.models.size()));
   double looked_at = 0;                 // of the scene, in whole rounds
   double gained = 0, looked_since = 0;  // pixels, and whole rounds, since the gain was last judged
   // The gain judged before. The first round never ends the search, unless it follows another.
@@ -128,52 +87,36 @@ Candidates LibrarySearch::run(const std::vector<std::shared_ptr<const ObjectMode
     const double share = limited ? std::min(wanted, next_share(pace, round, rounds_end)) : wanted;
     if (share == 0) break;
     const Stopwatch watch;
-    DetectorOptions sized = share < 1 ? sized_round(options, share) : options;
-    sized.features.num_threads = request.num_threads;
-    if (share < wanted) raise_limits(sized.detect);
-    const bool prepared = round == 0 && share == 1 && !limited && !follows;
-    sample =
-        prepared ? scene.sample : next_sample(scene, sample, explained.certain, sized.features);
-    if (round > 0 && sample.empty()) {
+    const bool any_left =
+        searches.run_round({.number = round,
+                            .share = share,
+                            .raised = share < wanted,
+                            .first_sample = round == 0 && share == 1 && !limited && !follows,
+                            .newly_certain = std::exchange(explained.newly_certain, {}),
+                            .deadline = rounds_end});
+    if (!any_left) {
       ended = true;
       break;
     }
-    for (Search& search : searches) {
-      search.round = round;
-      search.before = &found[&search - searches.data()];
-      search.sample = &sample;
-      search.image = &explained.image;
-      search.options = sized.detect;
-    }
     ++effort.rounds;
-    std::vector<Candidates> now(models.size());
-    run_stages(round_stages(), searches, request.num_threads, now, traces);
-    for (std::size_t i = 0; i < models.size(); ++i) {
-      std::ranges::move(now[i], std::back_inserter(found[i]));
-    }
     pace.took(share, watch.milliseconds());
     looked_at += share;
     looked_since += share;
     gained += explain();
-    if (on_round) on_round(so_far(searches, found));
+    if (on_round) on_round(joined(without_duplicates(inputs, searches.found())));
     if (looked_since < 1 && !first_after_another) continue;
     ended = gained + gained_before < options.rounds.min_gain_px;
     gained_before = std::exchange(gained, 0);
     looked_since = 0;
   }
   const double final_share = limited ? pace.share_of_final(deadline.milliseconds_left()) : 1;
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    searches[i].before = nullptr;
-    suppress_duplicates(searches[i], found[i]);
-    searches[i].deadline = deadline;
-    searches[i].options =
-        final_share < 1 ? sized_final(options.detect, final_share) : options.detect;
-  }
-  run_stages(final_stages(), searches, request.num_threads, found, traces);
-  for (const Search& search : searches) effort += search.effort;
+  searches.finish({.share = final_share,
+                   .newly_certain = std::exchange(explained.newly_certain, {}),
+                   .deadline = deadline});
+  effort += searches.effort();
   const bool whole = ended || looked_at >= options.rounds.max_rounds;
-  cut = std::ranges::count(late, 1) > 0 || !whole || final_share < 1;
-  return joined(found);
+  cut = searches.late() || !whole || final_share < 1;
+  return joined(searches.found());
 }
 
 }  // namespace bpa

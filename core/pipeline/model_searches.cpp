@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/model_searches.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/detect/ranking.hpp"
+#include "core/pipeline/search_plan.hpp"
+
+namespace bpa {
+namespace {
+
+Search search_for(const SearchInputs& inputs, const ObjectModel& model) {
+  return Search(inputs.scene, model, inputs.options.detect, inputs.layers, inputs.request.priors,
+                inputs.request.seed);
+}
+
+}  // namespace
+
+LocalSearches::LocalSearches(const SearchInputs& inputs, std::vector<ObjectTrace>* traces,
+                             ScoreThreshold threshold)
+    : inputs_(inputs),
+      traces_(traces),
+      threshold_(std::move(threshold)),
+      late_(inputs.models.size(), 0),
+      certain_(inputs.scene.image.pixels.size(), 0),
+      image_(inputs.scene.image) {
+  found_.resize(inputs.models.size());
+  searches_.reserve(inputs.models.size());
+  for (std::size_t i = 0; i < inputs.models.size(); ++i) {
+    searches_.push_back(search_for(inputs, *inputs.models[i]));
+    searches_.back().cut = &late_[i];
+  }
+}
+
+void LocalSearches::run(std::span<const Stage> stages, const Deadline& deadline,
+                        std::vector<Candidates>& found) {
+  for (Search& search : searches_) search.deadline = deadline;
+  run_stages(stages, searches_, inputs_.request.num_threads, found, traces_, threshold_);
+}
+
+void LocalSearches::explain(const std::vector<std::uint32_t>& newly_certain) {
+  for (const std::uint32_t pixel : newly_certain) {
+    certain_[pixel] = 1;
+    image_.pixels[pixel].searched = 0;
+  }
+}
+
+void LocalSearches::score_expected(const Deadline& deadline) {
+  for (const ExpectedPlacement& expected : inputs_.request.expected) {
+    for (std::size_t i = 0; i < searches_.size(); ++i) {
+      const ObjectModel& model = searches_[i].model;
+      if (model.name != expected.model) continue;
+      found_[i].push_back({.model = &model,
+                           .refinement = {expected.camera_from_object},
+                           .found_by = Source::prior});
+    }
+  }
+  run(scoring_stages(), deadline, found_);
+}
+
+bool LocalSearches::run_round(const RoundPlan& plan) {
+  explain(plan.newly_certain);
+  DetectorOptions sized =
+      plan.share < 1 ? sized_round(inputs_.options, plan.share) : inputs_.options;
+  sized.features.num_threads = inputs_.request.num_threads;
+  if (plan.raised) raise_limits(sized.detect);
+  sample_ = plan.first_sample ? inputs_.scene.sample
+                              : next_sample(inputs_.scene, sample_, certain_, sized.features);
+  if (plan.number > 0 && sample_.empty()) return false;
+  for (std::size_t i = 0; i < searches_.size(); ++i) {
+    Search& search = searches_[i];
+    search.round = plan.number;
+    search.before = &found_[i];
+    search.sample = &sample_;
+    search.image = &image_;
+    search.options = sized.detect;
+  }
+  std::vector<Candidates> now(searches_.size());
+  run(round_stages(), plan.deadline, now);
+  for (std::size_t i = 0; i < searches_.size(); ++i) {
+    std::ranges::move(now[i], std::back_inserter(found_[i]));
+  }
+  return true;
+}
+
+void LocalSearches::finish(const FinalPlan& plan) {
+  explain(plan.newly_certain);
+  const DetectOptions& whole = inputs_.options.detect;
+  for (std::size_t i = 0; i < searches_.size(); ++i) {
+    searches_[i].before = nullptr;
+    suppress_duplicates(searches_[i], found_[i]);
+    searches_[i].options = plan.share < 1 ? sized_final(whole, plan.share) : whole;
+  }
+  run(final_stages(), plan.deadline, found_);
+}
+
+bool LocalSearches::late() const { return std::ranges::count(late_, 1) > 0; }
+
+SearchEffort LocalSearches::effort() const {
+  SearchEffort sum;
+  for (const Search& search : searches_) sum += search.effort;
+  return sum;
+}
+
+std::vector<Candidates> without_duplicates(const SearchInputs& inputs,
+                                           std::vector<Candidates> found) {
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].empty()) continue;
+    suppress_duplicates(search_for(inputs, *inputs.models[i]), found[i]);
+  }
+  return found;
+}
+
+}  // namespace bpa

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/stopwatch.hpp"
+#include "core/detect/search.hpp"
+#include "core/detect/stages.hpp"
+#include "core/pipeline/detector.hpp"
+
+namespace bpa {
+
+/// What one round of the search does. All hosts that take part must get the same plan.
+struct RoundPlan {
+  int number = 0;
+  double share = 1;     ///< Of what a whole round looks at, (0, 1].
+  bool raised = false;  ///< Limits are raised (raise_limits()): fewer candidates go on.
+  bool first_sample = false;  ///< The sample that the scene came with, else the next one.
+  /// Pixels of the reduced image that are searched no more, from this round on.
+  std::vector<std::uint32_t> newly_certain = {};
+  Deadline deadline = {};  ///< Of the rounds.
+};
+
+/// What the final stages do.
+struct FinalPlan {
+  double share = 1;  ///< Of what they would try, (0, 1].
+  std::vector<std::uint32_t> newly_certain = {};  ///< As in RoundPlan.
+  Deadline deadline = {};  ///< Of the search.
+};
+
+/// The searches for some models in one scene, on this host or on others. LibrarySearch plans the
+/// rounds and says what is certain; candidates of all models compete within a round.
+class ModelSearches {
+ public:
+  virtual ~ModelSearches() = default;
+
+  /// Called once, before all else: the scene is prepared, which took so many milliseconds.
+  virtual void prepared(const SceneFeatures&, double) {}
+  /// Scores the placements that an earlier frame showed (DetectRequest::expected).
+  virtual void score_expected(const Deadline& deadline) = 0;
+  /// Adds what a round finds. False: its sample is empty, and nothing is left to search.
+  virtual bool run_round(const RoundPlan& plan) = 0;
+  /// Runs the final stages.
+  virtual void finish(const FinalPlan& plan) = 0;
+
+  /// The candidates so far, of each model.
+  const std::vector<Candidates>& found() const { return found_; }
+  /// Whether a stage was cut by its deadline.
+  virtual bool late() const = 0;
+  /// The work so far, without the number of rounds.
+  virtual SearchEffort effort() const = 0;
+  /// Names of the models whose search was lost with a host. None here.
+  virtual std::vector<std::string> lost() const { return {}; }
+
+ protected:
+  std::vector<Candidates> found_;
+};
+
+/// What the searches for a library's models read; keeps references.
+struct SearchInputs {
+  const SceneFeatures& scene;
+  const DetectorOptions& options;
+  const ScoreLayers& layers;
+  const DetectRequest& request;
+  const std::vector<std::shared_ptr<const ObjectModel>>& models;
+};
+
+/// Searches on this host. `traces`, if given, receives the stages of each model. `threshold`
+/// decides which candidates go on where models compete; by default the models given here compete
+/// among themselves.
+class LocalSearches : public ModelSearches {
+ public:
+  explicit LocalSearches(const SearchInputs& inputs, std::vector<ObjectTrace>* traces = nullptr,
+                         ScoreThreshold threshold = score_threshold);
+
+  void score_expected(const Deadline& deadline) override;
+  bool run_round(const RoundPlan& plan) override;
+  void finish(const FinalPlan& plan) override;
+  bool late() const override;
+  SearchEffort effort() const override;
+
+ private:
+  void explain(const std::vector<std::uint32_t>& newly_certain);
+  void run(std::span<const Stage> stages, const Deadline& deadline, std::vector<Candidates>& found);
+
+  const SearchInputs inputs_;
+  std::vector<ObjectTrace>* const traces_;
+  const ScoreThreshold threshold_;
+  std::vector<std::uint8_t> late_;     // flag of each model
+  std::vector<std::uint8_t> certain_;  // flag of each pixel: is searched no more
+  CheckImage image_;                   // where these are not searched
+  SceneSample sample_;                 // of this round
+  std::vector<Search> searches_;
+};
+
+/// Distinct candidates of each model, for those who cannot wait for the final stages.
+std::vector<Candidates> without_duplicates(const SearchInputs& inputs,
+                                           std::vector<Candidates> found);
+
+}  // namespace bpa
