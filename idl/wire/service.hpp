@@ -167,7 +167,8 @@ class ServiceClient {
   /// Whether a server is there, or came before the time was over.
   bool wait_for_service(std::chrono::milliseconds timeout) const { return impl_->wait(timeout); }
 
-  /// Sends a request and waits for its reply. The time includes waiting for a server: `unavailable`
+  /// Sends a request and waits for its reply. A server that comes while it waits gets the request,
+  /// too: servers must bear it twice. The time includes waiting for a server: `unavailable`
   /// when none came or it went (a server that was killed counts as there for 5 s), `timeout` when
   /// no answer did, `corrupt` when the answer cannot be read, `busy` when as many calls wait as the
   /// history of `qos` holds requests.

@@ -55,23 +55,29 @@ class Client : public RawClient {
       }
       ++writing_;
     }
-    const std::set<Guid> servers = requests_->matches().peers();
-    const SampleId related{replies_->guid()};
-    SampleId written;
-    const Status status = requests_->write(request, &related, &written);
+    std::set<Guid> servers = requests_->matches().peers();
+    std::vector<std::int64_t> sent;
+    Status status = send(request, sent);
+    if (!status.ok()) return status;
 
     std::unique_lock<std::mutex> lock(mutex_);
-    --writing_;
-    if (!status.ok()) return status;
-    Bytes& reply = calls_[written.sequence];
-    if (auto early = early_.extract(written.sequence)) reply = std::move(early.mapped());
-    if (writing_ == 0) early_.clear();
     const auto gone = [&] { return !requests_->matches().contains_any(servers); };
-    while (reply.empty() && Clock::now() < deadline && !gone()) {
+    while (!answer(sent) && Clock::now() < deadline && !gone()) {
       answered_.wait_until(lock, std::min(deadline, Clock::now() + kLookAfterServer));
+      // A server that came meanwhile may have replaced one that died without a word.
+      const std::set<Guid> now = requests_->matches().peers();
+      if (std::includes(servers.begin(), servers.end(), now.begin(), now.end())) continue;
+      servers.insert(now.begin(), now.end());
+      ++writing_;
+      lock.unlock();
+      status = send(request, sent);
+      lock.lock();
+      if (!status.ok()) break;
     }
-    Bytes result = std::move(reply);
-    calls_.erase(written.sequence);
+    Bytes result;
+    if (Bytes* reply = answer(sent)) result = std::move(*reply);
+    for (const std::int64_t sequence : sent) calls_.erase(sequence);
+    if (!status.ok() && result.empty()) return status;
     if (result.empty() && gone()) {
       return Status(StatusCode::unavailable, "the server of " + name_ + " has gone");
     }
@@ -85,6 +91,29 @@ class Client : public RawClient {
   }
 
  private:
+  /// Writes the request once; `writing_` counts it already. Adds its number to those of the call.
+  Status send(const MessageRef& request, std::vector<std::int64_t>& sent) {
+    const SampleId related{replies_->guid()};
+    SampleId written;
+    const Status status = requests_->write(request, &related, &written);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    --writing_;
+    if (!status.ok()) return status;
+    sent.push_back(written.sequence);
+    Bytes& reply = calls_[written.sequence];
+    if (auto early = early_.extract(written.sequence)) reply = std::move(early.mapped());
+    if (writing_ == 0) early_.clear();
+    return {};
+  }
+
+  /// The first reply to one of these requests; null without. The caller holds the mutex.
+  Bytes* answer(const std::vector<std::int64_t>& sent) {
+    for (const std::int64_t sequence : sent) {
+      if (Bytes& reply = calls_[sequence]; !reply.empty()) return &reply;
+    }
+    return nullptr;
+  }
+
   static milliseconds left(Clock::time_point deadline) {
     return std::max(std::chrono::duration_cast<milliseconds>(deadline - Clock::now()),
                     milliseconds{0});
