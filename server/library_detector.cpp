@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <utility>
 #include <vector>
 
 #include "core/base/concat.hpp"
+#include "core/base/failure.hpp"
 #include "core/draw/annotate.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/model_file.hpp"
 #include "core/pipeline/detector.hpp"
+#include "server/group/front.hpp"
 #include "server/library_tracker.hpp"
 #include "server/recognition.hpp"
 
@@ -41,8 +44,7 @@ class LibraryDetector : public Recognition {
         max_models_(detection.max_models),
         num_threads_(detection.threads),
         layers_(std::move(layers)),
-        detector_(std::make_shared<const Detector>(std::make_shared<const ModelLibrary>(), options,
-                                                   layers_)) {}
+        current_{make_detector({}, options), {}, nullptr, nullptr} {}
 
   std::string library() const override { return folder_; }
 
@@ -60,7 +62,45 @@ class LibraryDetector : public Recognition {
 
   Result<SceneInterpretations> detect(const Frame& frame,
                                       const DetectRequest& request) const override {
-    return current()->detect(frame, request);
+    return detect_beside(frame, request, 0);
+  }
+
+  Result<SceneInterpretations> detect_beside(const Frame& frame, const DetectRequest& request,
+                                             std::size_t waiting) const override {
+    const Current now = this->now();
+    if (!now.front) return now.detector->detect(frame, request);
+    try {
+      return now.detector->detect_elsewhere(
+          frame, request, now.front->searches_for(now.shared, frame, request, waiting));
+    } catch (const Failure& failure) {
+      return failure.status();
+    }
+  }
+
+  std::size_t searches_at_once() const override {
+    const auto front = now().front;
+    return front ? front->ready_workers() : 1;
+  }
+
+  void join_group(const wire::Participant& participant, const GroupOptions& options,
+                  LogHook log) override {
+    const std::lock_guard<std::mutex> change_lock(change_mutex_);
+    Current next = now();
+    next.front = or_throw(group::Front::create(
+        participant, {.group = options.name, .threads = num_threads_}, std::move(log)));
+    or_throw(put(std::move(next)));
+  }
+
+  void leave_group() override {
+    const std::lock_guard<std::mutex> change_lock(change_mutex_);
+    Current next = now();
+    next.front = nullptr;
+    (void)put(std::move(next));
+  }
+
+  std::vector<WorkerState> workers() const override {
+    const auto front = now().front;
+    return front ? front->workers() : std::vector<WorkerState>();
   }
 
   std::unique_ptr<ObjectTracker> make_tracker(const track::TrackerOptions& options) const override {
@@ -93,8 +133,9 @@ class LibraryDetector : public Recognition {
 
   Status set_options(const DetectorOptions& options) override {
     const std::lock_guard<std::mutex> lock(change_mutex_);
-    replace(current()->library(), options);
-    return {};
+    Current next = now();
+    next.detector = make_detector(next.detector->library(), options);
+    return put(std::move(next));
   }
 
   Result<std::shared_ptr<const ObjectModel>> load(const std::string& source,
@@ -102,7 +143,9 @@ class LibraryDetector : public Recognition {
     if (Status s = name.empty() ? Status() : check_name("name", name); !s.ok()) return s;
     const std::lock_guard<std::mutex> lock(change_mutex_);
     const bool is_path = source.find('/') != std::string::npos;
-    auto read = is_path ? read_path(source) : read_name(source);
+    auto folder = is_path ? folder_of_path(source) : folder_of_name(source);
+    if (!folder.ok()) return folder.status();
+    auto read = io::load_model(folder->parent_path().string(), folder->filename().string());
     if (!read.ok()) return read.status();
     if (!name.empty()) read->name = name;
     const std::string wanted = read->name;
@@ -121,7 +164,9 @@ class LibraryDetector : public Recognition {
     }
     if (Status s = add_model(std::move(read).value(), num_threads_, library); !s.ok()) return s;
     auto model = library.find(wanted);
-    change(std::move(library));
+    Current next = now();
+    next.folders[wanted] = folder->string();
+    if (Status s = change(std::move(library), std::move(next)); !s.ok()) return s;
     if (!is_path) {  // it has been mended
       const std::lock_guard<std::mutex> mended(mutex_);
       std::erase_if(broken_, [&](const io::BrokenModel& other) { return other.name == source; });
@@ -133,25 +178,36 @@ class LibraryDetector : public Recognition {
     const std::lock_guard<std::mutex> lock(change_mutex_);
     ModelLibrary library = current()->library();
     if (Status s = library.remove(name); !s.ok()) return s;
-    change(std::move(library));
-    return {};
+    return change(std::move(library), now());
   }
 
   /// With what the folder holds.
   void fill(ModelLibrary library, std::vector<io::BrokenModel> broken) {
     broken_ = std::move(broken);
-    change(std::move(library));
+    Current next = now();
+    for (const auto& model : library.models()) {
+      next.folders[model->name] = folder_ + "/" + model->name;
+    }
+    (void)change(std::move(library), std::move(next));  // no front to refuse it
   }
 
  private:
-  /// A model of our folder.
-  Result<ModelSource> read_name(const std::string& name) const {
+  /// What searches use.
+  struct Current {
+    std::shared_ptr<const Detector> detector;
+    std::map<std::string, std::string> folders;          ///< Of models, by name.
+    std::shared_ptr<group::Front> front;                 ///< Null for a single server.
+    std::shared_ptr<const group::SharedLibrary> shared;  ///< With a front: the detector's library.
+  };
+
+  /// Of a model of our folder.
+  Result<std::filesystem::path> folder_of_name(const std::string& name) const {
     if (Status s = check_name("source", name); !s.ok()) return s;
-    return io::load_model(folder_, name);
+    return std::filesystem::path(folder_) / name;
   }
 
-  /// A model elsewhere: its folder, or the description in it.
-  Result<ModelSource> read_path(const std::string& source) const {
+  /// Of a model elsewhere: its folder, or the description in it.
+  Result<std::filesystem::path> folder_of_path(const std::string& source) const {
     if (model_folder_.empty()) {
       return Status(StatusCode::unsupported,
                     "source is a path; without detection.model_folder it must be the name of a "
@@ -162,26 +218,43 @@ class LibraryDetector : public Recognition {
     std::filesystem::path path(*below);
     if (path.filename() == "model.json") path = path.parent_path();
     if (Status s = check_name("the folder's name", path.filename()); !s.ok()) return s;
-    return io::load_model(path.parent_path().string(), path.filename().string());
+    return path;
   }
 
-  std::shared_ptr<const Detector> current() const {
+  Current now() const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return detector_;
+    return current_;
   }
+  std::shared_ptr<const Detector> current() const { return now().detector; }
 
-  void replace(ModelLibrary library, const DetectorOptions& options) {
-    auto detector = std::make_shared<const Detector>(
+  std::shared_ptr<const Detector> make_detector(ModelLibrary library,
+                                                const DetectorOptions& options) const {
+    return std::make_shared<const Detector>(
         std::make_shared<const ModelLibrary>(std::move(library)), options, layers_);
-    const std::lock_guard<std::mutex> lock(mutex_);
-    detector_.swap(detector);
+  }
+
+  /// In force for searches that begin from now on; offered to the group's workers before.
+  Status put(Current next) {
+    if (next.front) {
+      auto shared = group::share_library(next.detector->library(), layers_, next.folders);
+      if (!shared.ok()) return shared.status();
+      next.shared = *std::move(shared);
+      next.front->set_library(next.shared);
+    }
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      std::swap(current_, next);
+    }
+    return {};  // what was before ends here, with the mutex free
   }
 
   /// With the same options, and counts it.
-  void change(ModelLibrary library) {
-    replace(std::move(library), current()->options());
+  Status change(ModelLibrary library, Current next) {
+    next.detector = make_detector(std::move(library), next.detector->options());
+    if (Status s = put(std::move(next)); !s.ok()) return s;
     const std::lock_guard<std::mutex> lock(mutex_);
     ++version_;
+    return {};
   }
 
   const std::string folder_;
@@ -191,7 +264,7 @@ class LibraryDetector : public Recognition {
   const ScoreLayers layers_;  ///< The library's own, or the built-in ones.
   std::mutex change_mutex_;   ///< Held while a change is being made.
   mutable std::mutex mutex_;  ///< Guards what follows, never held for long.
-  std::shared_ptr<const Detector> detector_;
+  Current current_;
   std::vector<io::BrokenModel> broken_;  ///< Of the folder.
   int version_ = 1;
 };

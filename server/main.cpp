@@ -10,6 +10,7 @@
 #include "camera/open_camera.hpp"
 #include "core/base/failure.hpp"
 #include "core/pipeline/detector_options.hpp"
+#include "server/group_servers.hpp"
 #include "server/options.hpp"
 #include "server/participant_options.hpp"
 #include "server/recognition.hpp"
@@ -62,6 +63,9 @@ void add_options(CLI::App& program, CommandLine& line) {
       {"--domain", "network.domain", "DDS domain; default ROS_DOMAIN_ID, else 0"},
       {"--keystore", "security.keystore", "folder that --make-keystore or SROS 2 made"},
       {"--enclave", "security.enclave", "whose keys of it to use, default /bpa_server"},
+      {"--role", "group.role",
+       "single, front or worker: a front's group of workers searches for it"},
+      {"--group", "group.name", "of fronts and workers, default bpa"},
       {"--web", "web.listen",
        "[ADDRESS:]PORT of a page for browsers; a port alone: this machine only"},
       {"--log-level", "log.level", "debug, info, warning or error"},
@@ -121,11 +125,20 @@ bpa::LogHook make_log() {
 
 /// Until a signal comes. Throws a Failure.
 void serve(const ServerOptions& options, const bpa::LogHook& hook, const sigset_t& signals) {
+  if (options.group.role == "worker") {
+    bpa::server::serve_until_signal(bpa::server::make_worker(options, hook), signals, hook);
+    return;
+  }
   const std::string& folder = options.detection.library;
   if (folder.empty()) {
     or_throw(bpa::invalid_argument("no model library: give --library DIR (or detection.library)"));
   }
   auto library = or_throw(bpa::server::open_library(options.detection, options.detector, hook));
+  if (options.group.role == "front") {
+    bpa::server::serve_until_signal(bpa::server::make_front(options, std::move(library), hook),
+                                    signals, hook);
+    return;
+  }
   auto server = or_throw(bpa::server::Server::create(options, std::move(library), hook));
   bpa::log(hook, LogLevel::info, "ready in namespace " + options.node.ros_namespace);
   bpa::server::serve_until_signal(std::move(server), signals, hook);

@@ -4,6 +4,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/io/options_yaml.hpp"
+#include "idl/wire/names.hpp"
 #include "server/web/access.hpp"
 
 namespace bpa::server {
@@ -23,6 +24,14 @@ Status check(const Choice& choice) {
   }
   return invalid_argument(std::string(choice.field) + " is \"" + choice.value +
                           "\"; it must be one of " + rule);
+}
+
+/// Its name is a part of topic names.
+Status check_group(const GroupOptions& group) {
+  const Status status = wire::validate_full_name("/" + group.name);
+  if (status.ok() && group.name.find('/') == std::string::npos) return {};
+  return invalid_argument("group.name is \"", group.name,
+                          "\"; it must have letters, digits and '_', and not begin with a digit");
 }
 
 io::OptionsReading reading_into(ServerOptions& options) {
@@ -49,6 +58,7 @@ Status validate(const ServerOptions& options) {
         "node.use_sim_time is true and capture.source is \"", options.capture.source,
         "\"; a camera of the server's own has this machine's time: set one of them alone");
   }
+  if (status.ok()) status = check_group(options.group);
   if (status.ok() && !options.web.listen.empty()) {
     status = web::parse_listen(options.web.listen).status();
   }

@@ -360,6 +360,31 @@ struct WebOptions {
   }
 };
 
+/// Many hosts that search one library.
+struct GroupOptions {
+  std::string role = "single";
+  std::string name = "bpa";
+  int strength = 0;
+  std::string cache;
+
+  void visit_fields(auto&& visit) {
+    visit("role", role,
+          {0, 0,
+           "single: search in this process. front: clients talk to it, the group's workers search. "
+           "worker: search for the group's front.",
+           false, "single front worker "});
+    visit("name", name, {0, 0, "Fronts and workers of one name are a group."});
+    visit("strength", strength,
+          {-1000000, 1000000,
+           "Of several fronts of a group the strongest serves; another takes over when it is "
+           "gone."});
+    visit("cache", cache,
+          {0, 0,
+           "Folder where a worker keeps the models that it has fetched. Empty: bpa/models below "
+           "XDG_CACHE_HOME or ~/.cache."});
+  }
+};
+
 struct LogOptions {
   std::string level = "info";
 
@@ -379,6 +404,7 @@ struct ServerOptions {
   DetectionOptions detection;
   TrackingOptions tracking;
   WebOptions web;
+  GroupOptions group;
   LogOptions log;
   /// How objects are found; config/detector.yaml shows them all.
   DetectorOptions detector;
@@ -394,6 +420,7 @@ struct ServerOptions {
     visit("detection", detection, "The search.");
     visit("tracking", tracking, "Following objects from frame to frame.");
     visit("web", web, "A page for browsers.");
+    visit("group", group, "Many hosts that search one library.");
     visit("log", log, "What is said on the terminal.");
     visit("detector", detector, "How objects are found. All of it also at run time.");
   }

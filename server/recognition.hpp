@@ -13,11 +13,21 @@
 #include "core/io/model_file.hpp"
 #include "core/pipeline/detector.hpp"
 #include "core/result/interpretation.hpp"
+#include "idl/wire/participant.hpp"
 #include "server/convert/results.hpp"
 #include "server/object_tracker.hpp"
 #include "server/options.hpp"
 
 namespace bpa::server {
+
+/// A worker of the server's group, as its front sees it.
+struct WorkerState {
+  std::string name;
+  bool ready = false;     ///< It has the front's library and program version.
+  std::string problem;    ///< Why it is not.
+  double ms_a_model = 0;  ///< Measured; 0: not yet.
+  int searches = 0;       ///< That it takes part in now.
+};
 
 /// What one component adds to a placement's score.
 struct ScorePart {
@@ -35,6 +45,23 @@ class Recognition {
   /// Finds the models that the request names in a frame.
   virtual Result<SceneInterpretations> detect(const Frame& frame,
                                               const DetectRequest& request) const = 0;
+  /// The same, while `waiting` more frames wait: where several hosts search, they share in that.
+  virtual Result<SceneInterpretations> detect_beside(const Frame& frame,
+                                                     const DetectRequest& request,
+                                                     std::size_t waiting) const {
+    (void)waiting;
+    return detect(frame, request);
+  }
+  /// How many frames can be searched at once without taking time from one another; 1 or more.
+  virtual std::size_t searches_at_once() const { return 1; }
+
+  /// Lets the group's workers search from now on, until leave_group(). The participant stays until
+  /// then. Throws a Failure.
+  virtual void join_group(const wire::Participant&, const GroupOptions&, LogHook) {}
+  virtual void leave_group() {}
+  /// The workers of the group; empty for a single server.
+  virtual std::vector<WorkerState> workers() const { return {}; }
+
   /// The frame's image with the placements drawn on it: row-major rgb, 3 bytes a pixel.
   virtual std::vector<std::uint8_t> annotate(const Frame& frame,
                                              const Interpretation& interpretation) const = 0;

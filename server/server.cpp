@@ -101,6 +101,7 @@ class Running : public Server {
     const std::lock_guard<std::shared_mutex> lock(leaving_mutex_);
     ready_ = false;
     open_page_ = nullptr;
+    if (in_group_) recognition_->leave_group();
   }
 
   /// Throws a Failure.
@@ -113,6 +114,10 @@ class Running : public Server {
     publisher_->publish_vision_info();
     diagnostics_.open(*participant_, options.output.diagnostics, wire::qos::results());
 
+    if (options.group.role == "front") {
+      recognition_->join_group(*participant_, options.group, log_);
+      in_group_ = true;
+    }
     start_tracking(options);
     worker_ = std::make_unique<Worker>(
         recognition_, worker_options(options), statistics_,
@@ -168,7 +173,8 @@ class Running : public Server {
  private:
   /// What each thread that must not hang does now. The caller holds leaving_mutex_.
   std::vector<const Busy*> threads() const {
-    std::vector<const Busy*> threads = {&worker_->busy(), &tracking_->busy(), &reporting_};
+    std::vector<const Busy*> threads = worker_->threads();
+    threads.insert(threads.end(), {&tracking_->busy(), &reporting_});
     if (ready_) threads.insert(threads.end(), {&services_->busy(), &parameters_->busy()});
     if (web::Page* page = open_page_) threads.push_back(&page->busy());
     for (const auto& source : sources_) {
@@ -392,8 +398,20 @@ class Running : public Server {
     return fusion_values(statistics_, settings_.get()->detection.fuse_frames);
   }
 
+  /// Of combined frames and of the group's workers.
+  std::vector<KeyValue> more_values() const {
+    std::vector<KeyValue> values = fusion();
+    for (const WorkerState& worker : recognition_->workers()) {
+      values.push_back({"worker " + worker.name,
+                        worker.ready ? concat("ready, ", fixed(worker.ms_a_model, 0),
+                                              " ms a model, ", worker.searches, " searches")
+                                     : "not used: " + worker.problem});
+    }
+    return values;
+  }
+
   std::vector<KeyValue> details() const {
-    std::vector<KeyValue> details = fusion();
+    std::vector<KeyValue> details = more_values();
     details.push_back({"ms from the last frame's stamp until it came",
                        std::to_string(statistics_.last_age_ns() / 1'000'000)});
     if (const std::optional<double> silence = statistics_.seconds_since_frame()) {
@@ -429,7 +447,7 @@ class Running : public Server {
     }
     return diagnostics_message(
         {participant_->node().full(), status(), rates, drop_counts(statistics_), source_reports(),
-         fusion(), statistics_.median_effort(), counts().losses, health().message},
+         more_values(), statistics_.median_effort(), counts().losses, health().message},
         clock_->stamp_ns());
   }
 
@@ -480,6 +498,7 @@ class Running : public Server {
 
   // In the order in which they come up; destroyed in reverse: nothing calls into what is gone.
   std::optional<wire::Participant> participant_;
+  bool in_group_ = false;
   std::unique_ptr<ResultPublisher> publisher_;
   Output<wire::diagnostic_msgs::DiagnosticArray> diagnostics_;
   std::unique_ptr<TrackPublisher> track_publisher_;

@@ -21,6 +21,8 @@ bool same_search(const DetectRequest& a, const DetectRequest& b) {
 
 // Cameras whose last result is remembered; names of frames come from the wire.
 constexpr std::size_t kFollowedCameras = 16;
+constexpr std::size_t kMaxCameras = 64;  // whose frames wait; names come from the wire
+constexpr std::size_t kMaxHelpers = 63;
 
 /// The request about a frame that came with priors of its own.
 DetectRequest with_priors(DetectRequest request, const std::vector<PosePrior>& priors) {
@@ -48,7 +50,17 @@ Worker::~Worker() { stop(); }
 void Worker::stop() {
   stop_taking(unavailable("the server is stopping"));
   if (thread_.joinable()) thread_.join();
+  for (Helper& helper : helpers_) {  // no thread is left that makes more
+    if (helper.thread.joinable()) helper.thread.join();
+  }
   refuse_waiting();
+}
+
+std::vector<const Busy*> Worker::threads() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<const Busy*> threads = {&busy_};
+  for (const Helper& helper : helpers_) threads.push_back(&helper.busy);
+  return threads;
 }
 
 void Worker::abandon(const Status& why) {
@@ -79,19 +91,29 @@ void Worker::push(IncomingFrame frame) {
   std::optional<IncomingFrame> displaced;  // freed outside the lock
   statistics_.add_frame(ros_clock_->stamp_ns() - frame.stamp_ns);
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!frames_.empty() && frames_.size() >= options_.frame_capacity) {
-    displaced = std::move(frames_.front());
-    frames_.pop_front();
+  const auto of_camera = [&](const IncomingFrame& other) {
+    return other.frame_id == frame.frame_id;
+  };
+  const auto waiting = static_cast<std::size_t>(std::ranges::count_if(frames_, of_camera));
+  auto oldest = frames_.end();
+  if (waiting >= std::max<std::size_t>(options_.frame_capacity, 1)) {
+    oldest = std::ranges::find_if(frames_, of_camera);
+  } else if (frames_.size() >= options_.frame_capacity * kMaxCameras) {
+    oldest = frames_.begin();
+  }
+  if (oldest != frames_.end()) {
+    displaced = std::move(*oldest);
+    frames_.erase(oldest);
     statistics_.add(&Counts::frames_dropped);
   }
   frames_.push_back(std::move(frame));
-  wake_.notify_one();
+  call_helpers();
 }
 
 void Worker::set_options(const WorkerOptions& options) {
   const std::lock_guard<std::mutex> lock(mutex_);
   options_ = options;
-  wake_.notify_one();
+  wake_.notify_all();
 }
 
 /// Until the job's answer could be there: what is left of the search that runs, those ahead of it,
@@ -170,8 +192,46 @@ Status Worker::admit(DetectJob job, std::optional<DetectJob>& displaced) {
   } else {
     awaiting_frame_.push_back(std::move(job));
   }
-  wake_.notify_one();
+  call_helpers();
   return {};
+}
+
+/// Wakes the threads; makes one more where a search waits that could run beside the others. The
+/// caller holds the mutex.
+void Worker::call_helpers() {
+  wake_.notify_all();
+  const std::size_t at_once = recognition_->searches_at_once();
+  const bool room = searching_ + idle_helpers_ < at_once && 1 + helpers_.size() < at_once;
+  if (stopping_ || searching_ == 0 || !room || helpers_.size() >= kMaxHelpers) return;
+  Helper& helper = helpers_.emplace_back(clock_);
+  helper.thread = std::thread([this, &helper] { help(helper.busy); });
+}
+
+/// Searches beside the first thread, as many frames at once as there may be.
+void Worker::help(Busy& busy) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!stopping_) {
+    const WorkerOptions options = options_;
+    // Frames are combined, and taken by requests that wait for one, in the first thread.
+    const bool frame = options.continuous && options.fuse_frames == 1 && awaiting_frame_.empty() &&
+                       next_frame() != frames_.end();
+    const bool room = searching_ > 0 && searching_ < recognition_->searches_at_once();
+    if (room && !requests_.empty()) {
+      search_request(lock, busy);
+    } else if (room && frame) {
+      search_frames(lock, options, busy);
+    } else {
+      ++idle_helpers_;
+      wake_.wait(lock);
+      --idle_helpers_;
+    }
+  }
+}
+
+/// The oldest frame whose camera has none in search; the caller holds the mutex.
+std::deque<IncomingFrame>::iterator Worker::next_frame() {
+  return std::ranges::find_if(
+      frames_, [&](const IncomingFrame& frame) { return !in_search_.contains(frame.frame_id); });
 }
 
 void Worker::run_later(const wire::Guid& client, Errand errand) {
@@ -183,7 +243,7 @@ void Worker::run_later(const wire::Guid& client, Errand errand) {
       full && !stopping ? errands_.displace_for(client) : std::nullopt;
   const bool taken = !stopping && (!full || displaced);
   if (taken) errands_.push(client, std::move(errand));
-  wake_.notify_one();
+  wake_.notify_all();
   lock.unlock();
   const Status busy(StatusCode::busy,
                     "as many changes of the library wait as may (queue.requests); try again later");
@@ -196,9 +256,9 @@ std::size_t Worker::queue_length() const {
   return frames_.size() + requests_.size() + awaiting_frame_.size();
 }
 
-bool Worker::has_work() const {
+bool Worker::has_work() {
   const bool frame_wanted = options_.continuous || !awaiting_frame_.empty();
-  return !errands_.empty() || !requests_.empty() || (!frames_.empty() && frame_wanted);
+  return !errands_.empty() || !requests_.empty() || (frame_wanted && next_frame() != frames_.end());
 }
 
 std::vector<DetectJob> Worker::take_expired() {
@@ -242,29 +302,54 @@ void Worker::run_one(std::unique_lock<std::mutex>& lock) {
   }
   const bool frame_wanted = options.continuous || !awaiting_frame_.empty();
   const bool take_frame =
-      !frames_.empty() && frame_wanted && (requests_.empty() || !frame_was_last_);
+      frame_wanted && next_frame() != frames_.end() && (requests_.empty() || !frame_was_last_);
   if (const std::optional<Errand> errand = errands_.pop()) {
     busy_.begin("a change of the library");
     lock.unlock();
     (void)guard("a change of the library failed", errand->handle);
+    lock.lock();
+    busy_.end();
   } else if (take_frame) {
-    frame_was_last_ = true;
-    busy_.begin("the search of a frame");
-    std::vector<IncomingFrame> taken = take_frames(options);
-    std::vector<DetectJob> waiting = std::exchange(awaiting_frame_, {});
-    lock.unlock();
-    const Status status = guard("the search of a frame failed",
-                                [&] { work_on_frames(options, std::move(taken), waiting); });
-    for (DetectJob& job : waiting) refuse_failed(job, status);
+    search_frames(lock, options, busy_);
   } else {
-    frame_was_last_ = false;
-    busy_.begin("the search of a request's frame");
-    DetectJob job = *requests_.pop();
-    lock.unlock();
-    refuse_failed(job, guard("a request failed", [&] { work_on_request(job); }));
+    search_request(lock, busy_);
   }
+}
+
+/// Takes frames out and searches them with no lock held.
+void Worker::search_frames(std::unique_lock<std::mutex>& lock, const WorkerOptions& options,
+                           Busy& busy) {
+  frame_was_last_ = true;
+  busy.begin("the search of a frame");
+  std::vector<IncomingFrame> taken = take_frames(options);
+  std::vector<DetectJob> waiting = std::exchange(awaiting_frame_, {});
+  const std::string camera = taken.front().frame_id;
+  in_search_.insert(camera);
+  ++searching_;
+  call_helpers();
+  lock.unlock();
+  const Status status = guard("the search of a frame failed",
+                              [&] { work_on_frames(options, std::move(taken), waiting); });
+  for (DetectJob& job : waiting) refuse_failed(job, status);
   lock.lock();
-  busy_.end();
+  --searching_;
+  in_search_.erase(camera);
+  wake_.notify_all();  // another frame of the camera may wait
+  busy.end();
+}
+
+void Worker::search_request(std::unique_lock<std::mutex>& lock, Busy& busy) {
+  frame_was_last_ = false;
+  busy.begin("the search of a request's frame");
+  DetectJob job = *requests_.pop();
+  ++searching_;
+  call_helpers();
+  lock.unlock();
+  refuse_failed(job, guard("a request failed", [&] { work_on_request(job); }));
+  lock.lock();
+  --searching_;
+  wake_.notify_all();
+  busy.end();
 }
 
 /// The failure of work that threw, which is logged.
@@ -309,8 +394,9 @@ void Worker::answer(DetectJob& job, const Frame& frame, const DetectRequest& req
 std::vector<IncomingFrame> Worker::take_frames(const WorkerOptions& options) {
   std::vector<IncomingFrame> taken;
   do {
-    taken.push_back(std::move(frames_.front()));
-    frames_.pop_front();
+    const auto next = next_frame();
+    taken.push_back(std::move(*next));
+    frames_.erase(next);
     if (taken.back().taken) taken.back().taken();
   } while (options.fuse_frames > 1 && !frames_.empty());
   return taken;
@@ -324,19 +410,22 @@ void Worker::note_restart(const std::string& reason) {
 
 void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFrame> taken,
                             std::vector<DetectJob>& waiting) {
-  fusion_.set_max_frames(options.fuse_frames);
+  {
+    const std::lock_guard<std::mutex> lock(stream_mutex_);
+    fusion_.set_max_frames(options.fuse_frames);
+  }
   std::optional<Frame> frame;  // the newest that can be used
   const IncomingFrame* newest = nullptr;
   for (IncomingFrame& incoming : taken) {
     DecodedFrame made = decoded(std::move(incoming.decode));
     if (!made.ok()) {
       statistics_.add_rejection(made.cause());
-      (void)guard("a result was not published",
-                  [&] { on_result_(incoming, nullptr, made.status()); });
+      publish(incoming, nullptr, made.status());
       continue;
     }
     if (newest) {
       statistics_.add(&Counts::frames_fused);
+      const std::lock_guard<std::mutex> lock(stream_mutex_);
       note_restart(fusion_.hold(*frame));
     }
     frame = std::move(made).value();
@@ -349,10 +438,7 @@ void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFr
     waiting.clear();
     return;
   }
-  FusedFrame fused = fusion_.add(*std::move(frame), options.request.num_threads);
-  note_restart(fused.restart);
-  last_fused_ = fused.frame.fused;
-  frame = std::move(fused.frame);
+  frame = fuse(*std::move(frame), options);
   std::optional<Result<SceneInterpretations>> result;
   if (options.continuous) {
     DetectRequest request = with_priors(options.request, newest->priors);
@@ -361,7 +447,7 @@ void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFr
     result.emplace(detect(*frame, request));
     remember(*frame, *result);
     statistics_.add(result->ok() ? &Counts::frames_processed : &Counts::frames_failed);
-    (void)guard("a result was not published", [&] { on_result_(*newest, &*frame, *result); });
+    publish(*newest, &*frame, *result);
   }
   for (DetectJob& job : waiting) {
     refuse_failed(job, guard("a request failed", [&] {
@@ -370,15 +456,31 @@ void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFr
   }
 }
 
+void Worker::publish(const IncomingFrame& incoming, const Frame* frame,
+                     const Result<SceneInterpretations>& result) {
+  const std::lock_guard<std::mutex> lock(publish_mutex_);
+  (void)guard("a result was not published", [&] { on_result_(incoming, frame, result); });
+}
+
+Frame Worker::fuse(Frame frame, const WorkerOptions& options) {
+  const std::lock_guard<std::mutex> lock(stream_mutex_);
+  FusedFrame fused = fusion_.add(std::move(frame), options.request.num_threads);
+  note_restart(fused.restart);
+  last_fused_ = fused.frame.fused;
+  return std::move(fused.frame);
+}
+
 std::vector<ExpectedPlacement> Worker::expected_in(const WorkerOptions& options,
                                                    const Frame& frame) {
   if (options.expected) {
     if (auto tracked = options.expected(frame.frame_id)) return *std::move(tracked);
   }
+  const std::lock_guard<std::mutex> lock(stream_mutex_);
   return expected_[frame.frame_id];
 }
 
 void Worker::remember(const Frame& frame, const Result<SceneInterpretations>& result) {
+  const std::lock_guard<std::mutex> lock(stream_mutex_);
   if (expected_.size() > kFollowedCameras) expected_.clear();
   expected_[frame.frame_id] =
       result.ok() ? expected_after(*result) : std::vector<ExpectedPlacement>{};
@@ -409,8 +511,9 @@ void Worker::work_on_request(DetectJob& job) {
 
 Result<SceneInterpretations> Worker::detect(const Frame& frame, const DetectRequest& request) {
   std::optional<Result<SceneInterpretations>> result;
-  const Status status =
-      guard("the detector failed", [&] { result.emplace(recognition_->detect(frame, request)); });
+  const Status status = guard("the detector failed", [&] {
+    result.emplace(recognition_->detect_beside(frame, request, queue_length()));
+  });
   if (!status.ok()) return status;
   if (result->ok()) statistics_.add_timings(**result);
   return *std::move(result);

@@ -10,7 +10,9 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/base/clock.hpp"
@@ -26,9 +28,11 @@
 #include "server/recognition.hpp"
 #include "server/statistics.hpp"
 
-// Between DDS and the detector: DDS threads put frames and requests into bounded queues and go; one
-// worker takes them out, computes with no lock held and hands the results on. An exception costs
-// the frame or request that caused it: it is counted, answered and logged.
+// Between DDS and the detector: DDS threads put frames and requests into bounded queues and go; the
+// worker takes them out, computes with no lock held and hands the results on. It has one thread, or
+// several where other hosts search (Recognition::searches_at_once()); frames of one camera are
+// searched one after the other. An exception costs the frame or request that caused it: it is
+// counted, answered and logged.
 
 namespace bpa::server {
 
@@ -80,7 +84,8 @@ struct WorkerOptions {
 
 class Worker {
  public:
-  /// `on_result` runs on the worker for every frame of the stream; `frame` is null if illegal.
+  /// `on_result` runs on the worker for every frame of the stream, for one at a time; `frame` is
+  /// null if illegal.
   using OnResult = std::function<void(const IncomingFrame& incoming, const Frame* frame,
                                       const Result<SceneInterpretations>& result)>;
 
@@ -97,12 +102,12 @@ class Worker {
   /// `unavailable`. Not to be called from two threads at once.
   void stop();
 
-  /// What the worker does now: a search, or a change of the library.
-  const Busy& busy() const { return busy_; }
+  /// What each of its threads does now: a search, or a change of the library.
+  std::vector<const Busy*> threads() const;
   /// For a worker that hangs: answers what waits or comes later with `why`, and waits for nothing.
   void abandon(const Status& why);
 
-  /// Never waits; the oldest frame goes when there are too many.
+  /// Never waits; the oldest frame of its camera goes when there are too many.
   void push(IncomingFrame frame);
   /// Accepts the job or refuses it: `busy` when the queue is full, `timeout` when, as searches go
   /// at present, its answer would come after its deadline. `done` is not called then. A full queue
@@ -120,12 +125,23 @@ class Worker {
   std::size_t queue_length() const;
 
  private:
+  /// A thread beside the first one.
+  struct Helper {
+    explicit Helper(std::shared_ptr<const WaitableClock> clock) : busy(std::move(clock)) {}
+
+    Busy busy;
+    std::thread thread;
+  };
+
   void run();
+  void help(Busy& busy);
+  void call_helpers();
+  std::deque<IncomingFrame>::iterator next_frame();
   void stop_taking(const Status& why);
   void refuse_waiting();
   Status admit(DetectJob job, std::optional<DetectJob>& displaced);
   std::optional<DetectJob> displace_for(const wire::Guid& client);
-  bool has_work() const;
+  bool has_work();
   double wait_ms(const DetectJob& job) const;
   std::vector<DetectJob> take_expired();
   Status guard(const char* about, const std::function<void()>& work);
@@ -135,7 +151,12 @@ class Worker {
   void refuse_failed(DetectJob& job, const Status& status);
   void answer(DetectJob& job, const Frame& frame, const DetectRequest& request);
   void run_one(std::unique_lock<std::mutex>& lock);
+  void search_frames(std::unique_lock<std::mutex>& lock, const WorkerOptions& options, Busy& busy);
+  void search_request(std::unique_lock<std::mutex>& lock, Busy& busy);
   std::vector<IncomingFrame> take_frames(const WorkerOptions& options);
+  void publish(const IncomingFrame& incoming, const Frame* frame,
+               const Result<SceneInterpretations>& result);
+  Frame fuse(Frame frame, const WorkerOptions& options);
   void work_on_frames(const WorkerOptions& options, std::vector<IncomingFrame> taken,
                       std::vector<DetectJob>& waiting);
   void note_restart(const std::string& reason);
@@ -154,22 +175,29 @@ class Worker {
   const std::shared_ptr<WaitableClock> clock_;
   const std::shared_ptr<WaitableClock> ros_clock_;
   Busy busy_;
-  // Of the worker's thread alone.
+  int niceness_ = 0;  ///< What is added now; of the first thread alone.
+
+  std::mutex stream_mutex_;  ///< Guards the next three.
   FrameFusion fusion_;
-  int niceness_ = 0;    ///< What is added now.
   int last_fused_ = 1;  ///< How many frames the last one was made of.
   std::map<std::string, std::vector<ExpectedPlacement>> expected_;  ///< By frame_id.
+  std::mutex publish_mutex_;                                        ///< Held while on_result_ runs.
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   WorkerOptions options_;
-  std::deque<IncomingFrame> frames_;           ///< At most options_.frame_capacity.
+  /// At most options_.frame_capacity of each camera, of at most kMaxCameras in all.
+  std::deque<IncomingFrame> frames_;
+  std::set<std::string> in_search_;  ///< Cameras whose frames are searched now.
+  std::size_t searching_ = 0;        ///< Threads that search now.
+  std::size_t idle_helpers_ = 0;
   FairQueue<wire::Guid, DetectJob> requests_;  ///< With frames of their own.
   std::vector<DetectJob> awaiting_frame_;      ///< For the next frame.
   FairQueue<wire::Guid, Errand> errands_;
   bool frame_was_last_ = false;  ///< Whose turn it is when both wait.
   bool stopping_ = false;
   Status why_stopping_;
+  std::deque<Helper> helpers_;
   std::thread thread_;  ///< Last: starts when all else is there.
 };
 

@@ -88,6 +88,7 @@ void print_detections(const DetectionSet& set, int max_interpretations) {
                 set.models_searched, set.total_ms, set.budget_exhausted ? " (time was up)" : "");
     if (set.fused_frames > 1) std::printf(", %d frames combined", set.fused_frames);
     std::printf("\n");
+    if (!set.status.message.empty()) std::printf("  %s\n", set.status.message.c_str());
   }
   int printed = 0;
   for (const RankedInterpretation& interpretation : set.interpretations) {

@@ -53,8 +53,8 @@ struct DetectRequest {
 class ModelSearches;
 
 /// Makes searches of other hosts (model_searches.hpp) for these models, with these options. Called
-/// before the frame is prepared here, so that they can prepare it meanwhile. May throw a Failure, as
-/// may the searches.
+/// before the frame is prepared here, so that they can prepare it meanwhile. May throw a Failure,
+/// as may the searches.
 using MakeSearches = std::function<std::unique_ptr<ModelSearches>(
     const std::vector<std::shared_ptr<const ObjectModel>>&, const DetectorOptions&)>;
 

@@ -18,8 +18,8 @@ namespace bpa {
 /// What one round of the search does. All hosts that take part must get the same plan.
 struct RoundPlan {
   int number = 0;
-  double share = 1;     ///< Of what a whole round looks at, (0, 1].
-  bool raised = false;  ///< Limits are raised (raise_limits()): fewer candidates go on.
+  double share = 1;           ///< Of what a whole round looks at, (0, 1].
+  bool raised = false;        ///< Limits are raised (raise_limits()): fewer candidates go on.
   bool first_sample = false;  ///< The sample that the scene came with, else the next one.
   /// Pixels of the reduced image that are searched no more, from this round on.
   std::vector<std::uint32_t> newly_certain = {};
@@ -28,9 +28,9 @@ struct RoundPlan {
 
 /// What the final stages do.
 struct FinalPlan {
-  double share = 1;  ///< Of what they would try, (0, 1].
+  double share = 1;                               ///< Of what they would try, (0, 1].
   std::vector<std::uint32_t> newly_certain = {};  ///< As in RoundPlan.
-  Deadline deadline = {};  ///< Of the search.
+  Deadline deadline = {};                         ///< Of the search.
 };
 
 /// The searches for some models in one scene, on this host or on others. LibrarySearch plans the

@@ -38,8 +38,8 @@ struct SceneInterpretations {
   bool budget_exhausted = false;  ///< True: without the time budget, more is searched.
   /// Models whose search was lost with a host that searched for them; empty on one host.
   std::vector<std::string> not_searched;
-  bool partial = false;           ///< The search goes on (DetectRequest::on_round).
-  SearchEffort effort;            ///< The work that the search did.
+  bool partial = false;  ///< The search goes on (DetectRequest::on_round).
+  SearchEffort effort;   ///< The work that the search did.
   std::string sensor;    ///< Kind of depth camera that the frame was taken for (SensorKind).
   int fused_frames = 1;  ///< Number of frames combined into the searched depth.
 };

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <map>
+#include <utility>
 
 #include "server/convert/parts.hpp"
 
@@ -86,6 +87,14 @@ msgs::SceneInterpretations interpretations_message(const Result<SceneInterpretat
   message.stage_timings = to_message(result->timings);
   message.total_ms = result->total_milliseconds;
   message.budget_exhausted = result->budget_exhausted;
+  if (!result->not_searched.empty()) {
+    message.models_searched -= static_cast<std::uint32_t>(result->not_searched.size());
+    message.status.message = "not searched for, as the search was lost with its worker: ";
+    const char* separator = "";
+    for (const std::string& name : result->not_searched) {
+      message.status.message += std::exchange(separator, ", ") + name;
+    }
+  }
   message.fused_frames = static_cast<std::uint32_t>(result->fused_frames);
   return message;
 }

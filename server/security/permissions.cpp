@@ -30,6 +30,11 @@ class Topics {
     }
     return *this;
   }
+  /// Everything below a name.
+  Topics& add_below(const std::string& name) {
+    names_.push_back(wire::dds_topic_name(full(name)) + "/*");
+    return *this;
+  }
   const std::vector<std::string>& names() const { return names_; }
   /// "/bpa/*": the name of any service below the server's namespace.
   std::string services() const {
@@ -71,12 +76,17 @@ std::vector<Permissions> default_permissions(const ServerOptions& options) {
     outputs.add(capture.depth_info_topic).add(capture.points_topic);
   }
 
+  // Fronts and workers: servers alone may take part in a group.
+  Topics group(options);
+  group.add_below("group/" + options.group.name);
+
   const std::vector<std::string> graph = {"ros_discovery_info"};
   const std::vector<std::string> requests = {wire::dds_request_topic_name(inputs.services())};
   const std::vector<std::string> replies = {wire::dds_reply_topic_name(inputs.services())};
   const auto readable = joined(joined(graph, inputs.names()), outputs.names());
-  return {{"/bpa_server", joined(joined(graph, outputs.names()), replies),
-           joined(joined(graph, inputs.names()), requests)},
+  const auto members = joined(joined(group.names(), requests), replies);
+  return {{"/bpa_server", joined(joined(graph, outputs.names()), members),
+           joined(joined(graph, inputs.names()), members)},
           {"/robot", joined(joined(graph, inputs.names()), requests), joined(readable, replies)},
           {"/viewer", graph, readable}};
 }

@@ -19,6 +19,7 @@
 #include "idl/wire/messages.hpp"
 #include "idl/wire/service.hpp"
 #include "server/convert/results.hpp"
+#include "tests/support/box_frame.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/stub_server.hpp"
 
@@ -31,29 +32,6 @@ namespace {
 namespace fs = std::filesystem;
 namespace msgs = wire::bpa_msgs;
 using std::chrono::milliseconds;
-
-std::vector<std::uint8_t> bits(msgs::SceneInterpretations message) {
-  message.stage_timings.clear();  // the clock is allowed to differ
-  message.total_ms = 0;
-  std::vector<std::uint8_t> bytes(wire::encoded_size(message));
-  wire::encode(message, bytes.data(), bytes.size());
-  return bytes;
-}
-
-msgs::RgbdFrame message_of(const Frame& frame) {
-  msgs::RgbdFrame message;
-  message.header = {wire::builtin_interfaces::from_ns(frame.stamp_ns), frame.frame_id};
-  message.width = static_cast<std::uint32_t>(frame.camera.width);
-  message.height = static_cast<std::uint32_t>(frame.camera.height);
-  if (!frame.color.empty()) message.color_encoding = "rgb8";
-  message.color = frame.color;
-  message.depth_encoding = "32FC1";
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(frame.depth.data());
-  message.depth.assign(bytes, bytes + frame.depth.size() * sizeof(float));
-  const Camera& c = frame.camera;
-  message.k = {c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1};
-  return message;
-}
 
 PosePrior prior_of(const ExpectedPose& expected) {
   PosePrior prior;
@@ -140,7 +118,7 @@ void expect_identity(const std::string& folder, const Frame& frame) {
   request.num_threads = 1;
   const auto offline = detector.detect(frame, request);
   ASSERT_TRUE(offline.ok()) << offline.status().message;
-  const auto expected = bits(server::interpretations_message(
+  const auto expected = support::bits(server::interpretations_message(
       offline, {frame.stamp_ns, frame.frame_id, library->size(), kSeed}));
 
   for (const char* threads : {"1", "2"}) {
@@ -153,59 +131,15 @@ void expect_identity(const std::string& folder, const Frame& frame) {
     ASSERT_TRUE(detect.ok());
     msgs::Detect_Request call;
     call.has_frame = true;
-    call.frame = message_of(frame);
+    call.frame = support::message_of(frame);
     call.seed = kSeed;
     const auto reply = detect->call(call, milliseconds(90000));
     ASSERT_TRUE(reply.ok()) << reply.status().message << support::read_text(log);
     ASSERT_TRUE(reply->success) << reply->status.message;
     EXPECT_EQ(reply->result.interpretations.size(), offline->interpretations.size());
-    EXPECT_TRUE(bits(reply->result) == expected) << "with " << threads << " threads";
+    EXPECT_TRUE(support::bits(reply->result) == expected) << "with " << threads << " threads";
     if (threads == std::string("2")) expect_same_question(detector, frame, kSeed);
   }
-}
-
-/// A box of 60 x 90 x 40 mm with a smaller one on top.
-TriangleMesh stepped_box() {
-  TriangleMesh mesh;
-  const auto add_box = [&mesh](const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (int i = 0; i < 8; ++i) {
-      mesh.vertices.emplace_back((i & 1) != 0 ? high.x() : low.x(),
-                                 (i & 2) != 0 ? high.y() : low.y(),
-                                 (i & 4) != 0 ? high.z() : low.z());
-    }
-    const std::uint32_t faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                       {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    for (const auto& f : faces) {
-      mesh.triangles.push_back({first + f[0], first + f[1], first + f[2]});
-      mesh.triangles.push_back({first + f[0], first + f[2], first + f[3]});
-    }
-  };
-  add_box({-0.03f, -0.045f, -0.02f}, {0.03f, 0.045f, 0.02f});
-  add_box({-0.03f, -0.045f, 0.02f}, {0.0f, 0.0f, 0.05f});
-  return mesh;
-}
-
-/// The stepped box seen from above, straight on, on a wall 0.6 m away.
-Frame box_frame() {
-  Frame frame;
-  frame.camera = {160, 120, 150, 150, 79.5, 59.5};
-  frame.stamp_ns = 1'234'567'891;
-  frame.frame_id = "box_camera";
-  for (int v = 0; v < 120; ++v) {
-    for (int u = 0; u < 160; ++u) {
-      const auto inside = [&](double z, double x0, double x1, double y0, double y1) {
-        const Eigen::Vector3d p = frame.camera.unproject(u, v, z);
-        return p.x() >= x0 && p.x() <= x1 && p.y() >= y0 && p.y() <= y1;
-      };
-      double z = 0.6;
-      if (inside(0.56, -0.03, 0.03, -0.045, 0.045)) z = 0.56;
-      if (inside(0.53, -0.03, 0.0, 0.0, 0.045)) z = 0.53;
-      frame.depth.push_back(static_cast<float>(z));
-    }
-  }
-  frame.color.assign(3 * frame.depth.size(), 128);
-  return frame;
 }
 
 // A library with a broken model serves the others, says which one is broken, and takes it when it
@@ -214,7 +148,7 @@ TEST(Library, OneBrokenModelCostsNoOther) {
   const std::string folder = support::scratch_folder() + "/broken_library";
   int number = 0;
   for (const char* name : {"good", "bad"}) {
-    const auto source = model_source_from_mesh(stepped_box(), name, ++number);
+    const auto source = model_source_from_mesh(support::stepped_box(), name, ++number);
     ASSERT_TRUE(source.ok());
     ASSERT_TRUE(io::save_model(folder, *source).ok());
   }
@@ -258,10 +192,10 @@ TEST(Library, OneBrokenModelCostsNoOther) {
 
 TEST(Identity, OfASyntheticFrame) {
   const std::string folder = support::scratch_folder() + "/library";
-  const auto model = model_source_from_mesh(stepped_box(), "step", 4);
+  const auto model = model_source_from_mesh(support::stepped_box(), "step", 4);
   ASSERT_TRUE(model.ok()) << model.status().message;
   ASSERT_TRUE(io::save_model(folder, *model).ok());
-  expect_identity(folder, box_frame());
+  expect_identity(folder, support::box_frame());
 }
 
 TEST(Identity, OfARealFrame) {

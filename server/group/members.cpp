@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/group/members.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include "core/base/concat.hpp"
+#include "server/group/session.hpp"
+
+#ifndef BPA_VERSION
+#define BPA_VERSION "0"
+#endif
+
+namespace bpa::server::group {
+namespace {
+
+namespace msgs = wire::bpa_msgs;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kLookForReady(10);
+constexpr std::size_t kMaxWorkers = 1024;
+constexpr auto kForgetAfter = std::chrono::seconds(30);  // of silence
+constexpr double kUsualMsAModel = 150;                   // of a worker that was not measured yet
+
+}  // namespace
+
+void Members::heard(msgs::GroupWorker&& said) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (members_.size() >= kMaxWorkers && !members_.contains(said.worker)) return;
+  Member& member = members_[said.worker];
+  if (member.lost) log(log_, LogLevel::info, concat("worker ", said.name, " is back"));
+  if (said.version != BPA_VERSION && member.said.version != said.version) {
+    log(log_, LogLevel::warning,
+        concat("worker ", said.name, " is not used: its version is ", said.version, ", not ",
+               BPA_VERSION));
+  }
+  if (!said.problem.empty() && said.problem != member.said.problem) {
+    log(log_, LogLevel::warning, concat("worker ", said.name, ": ", said.problem));
+  }
+  member.lost = false;
+  member.heard = Clock::now();
+  member.said = std::move(said);
+}
+
+void Members::welcome() {
+  std::vector<std::uint64_t> fresh;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const auto& [id, member] : members_) {
+      if (!member.steps) fresh.push_back(id);
+    }
+  }
+  for (const std::uint64_t id : fresh) {
+    auto made = StepPublisher::create(participant_, topics_.steps(id), {qos()});
+    if (!made.ok()) {
+      log(log_, LogLevel::error, made.status().message);
+      continue;
+    }
+    auto steps = std::make_shared<StepPublisher>(std::move(made).value());
+    const std::lock_guard<std::mutex> lock(mutex_);
+    Member& member = members_[id];
+    member.steps = std::move(steps);
+    log(log_, LogLevel::info,
+        concat("worker ", member.said.name, " joined, ", member.said.threads, " threads"));
+  }
+}
+
+bool Members::look() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto now = Clock::now();
+  bool any = false;
+  for (auto& [id, member] : members_) {
+    if (member.lost || now - member.heard < kSilence) continue;
+    member.lost = any = true;
+    log(log_, LogLevel::warning,
+        concat("worker ", member.said.name, " is lost: it was silent for ", kSilence.count(),
+               " ms"));
+  }
+  std::erase_if(members_, [&](const auto& entry) {
+    return now - entry.second.heard > kForgetAfter && entry.second.searches.empty();
+  });
+  return any;
+}
+
+bool Members::is_lost(std::uint64_t worker) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto found = members_.find(worker);
+  return found == members_.end() || found->second.lost;
+}
+
+std::vector<std::uint64_t> Members::ready(const std::string& library) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::uint64_t> out, reserve;
+  for (const auto& [id, member] : members_) {
+    if (!can_search(member, library)) continue;
+    (member.said.reserve ? reserve : out).push_back(id);
+  }
+  if (out.empty()) return reserve;
+  std::ranges::stable_sort(out, {},
+                           [&](std::uint64_t id) { return members_.at(id).searches.size(); });
+  return out;
+}
+
+std::vector<std::uint64_t> Members::wait_for_ready(const std::string& library) const {
+  const auto end = Clock::now() + kSilence;
+  std::vector<std::uint64_t> workers = ready(library);
+  while (workers.empty() && Clock::now() < end) {
+    std::this_thread::sleep_for(kLookForReady);
+    workers = ready(library);
+  }
+  return workers;
+}
+
+std::size_t Members::idle(const std::vector<std::uint64_t>& workers) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::ranges::count_if(workers, [&](std::uint64_t id) {
+    const auto found = members_.find(id);
+    return found != members_.end() && found->second.searches.empty();
+  });
+}
+
+double Members::ms_a_model(std::uint64_t worker) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto found = members_.find(worker);
+  const double measured = found == members_.end() ? 0 : found->second.ms_a_model;
+  return measured > 0 ? measured : kUsualMsAModel;
+}
+
+void Members::measured(std::uint64_t worker, double ms_a_model) {
+  constexpr double kOfNew = 0.3;  // by hand
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto found = members_.find(worker);
+  if (found == members_.end()) return;
+  double& mean = found->second.ms_a_model;
+  mean = mean > 0 ? mean + kOfNew * (ms_a_model - mean) : ms_a_model;
+}
+
+void Members::send(std::uint64_t worker, const msgs::GroupStep& step) {
+  std::shared_ptr<StepPublisher> steps;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto found = members_.find(worker);
+    if (found == members_.end()) return;
+    if (step.kind == msgs::GroupStep::kBegin) found->second.searches.insert(step.search);
+    if (step.kind == msgs::GroupStep::kEnd) found->second.searches.erase(step.search);
+    steps = found->second.steps;
+  }
+  if (!steps) return;
+  const Status status = steps->publish(step);
+  if (!status.ok()) log(log_, LogLevel::warning, status.message);
+}
+
+std::string Members::name_of(std::uint64_t worker) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto found = members_.find(worker);
+  return found == members_.end() ? "unknown" : found->second.said.name;
+}
+
+std::vector<WorkerState> Members::states(const std::string& library) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<WorkerState> out;
+  for (const auto& [id, member] : members_) {
+    WorkerState state{.name = member.said.name,
+                      .ready = can_search(member, library),
+                      .problem = member.said.problem,
+                      .ms_a_model = member.ms_a_model,
+                      .searches = static_cast<int>(member.searches.size())};
+    if (member.said.version != BPA_VERSION) state.problem = "version " + member.said.version;
+    if (member.lost) state.problem = "lost";
+    if (!state.ready && state.problem.empty()) state.problem = "fetches models";
+    out.push_back(std::move(state));
+  }
+  return out;
+}
+
+bool Members::can_search(const Member& member, const std::string& library) {
+  return !member.lost && member.said.version == BPA_VERSION &&
+         std::ranges::count(member.said.libraries, library) > 0 && member.steps &&
+         member.steps->matched_count() > 0;
+}
+
+}  // namespace bpa::server::group

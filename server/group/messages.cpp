@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "server/group/messages.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "core/base/options.hpp"
+#include "core/io/options_yaml.hpp"
+#include "server/convert/frames.hpp"
+
+namespace bpa::server::group {
+namespace {
+
+namespace msgs = wire::bpa_msgs;
+
+template <class T>
+std::string exact(T number) {
+  char text[64];
+  const auto end = std::to_chars(text, text + sizeof text, number).ptr;
+  return {text, end};
+}
+
+std::string value_text(const Option& option) {
+  return std::visit(
+      [](auto value) -> std::string {
+        using Value = decltype(value);
+        if constexpr (std::is_same_v<Value, bool*>) {
+          return *value ? "true" : "false";
+        } else if constexpr (std::is_same_v<Value, std::string*>) {
+          return *value;
+        } else if constexpr (std::is_same_v<Value, int*> || std::is_same_v<Value, double*> ||
+                             std::is_same_v<Value, std::uint64_t*>) {
+          return exact(*value);
+        } else {
+          return "";
+        }
+      },
+      option.value);
+}
+
+std::vector<std::string> option_texts(DetectorOptions options) {
+  std::vector<std::string> out;
+  for (const Option& option : options_of(options)) {
+    if (!option.is_group()) out.push_back(option.path + '=' + value_text(option));
+  }
+  return out;
+}
+
+template <class T>
+std::vector<std::uint8_t> bytes_of(const std::vector<T>& values) {
+  std::vector<std::uint8_t> bytes(values.size() * sizeof(T));
+  std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
+
+msgs::RgbdFrame frame_message(const Frame& frame) {
+  const Camera& camera = frame.camera;
+  msgs::RgbdFrame message;
+  message.header.frame_id = frame.frame_id;
+  message.width = static_cast<std::uint32_t>(camera.width);
+  message.height = static_cast<std::uint32_t>(camera.height);
+  message.color_encoding = frame.color.empty() ? "" : "rgb8";
+  message.color = frame.color;
+  message.depth_encoding = "32FC1";
+  message.depth = bytes_of(frame.depth);
+  message.k = {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
+  const RegionOfInterest& roi = frame.roi;
+  message.roi.x_offset = static_cast<std::uint32_t>(roi.x);
+  message.roi.y_offset = static_cast<std::uint32_t>(roi.y);
+  message.roi.width = static_cast<std::uint32_t>(roi.width);
+  message.roi.height = static_cast<std::uint32_t>(roi.height);
+  message.mask = frame.mask;
+  return message;
+}
+
+template <class Matrix, class Array>
+void copy_out(const Matrix& from, Array& to) {
+  std::copy(from.data(), from.data() + from.size(), to.begin());
+}
+
+msgs::GroupPrior prior_message(const PosePrior& prior) {
+  msgs::GroupPrior message{.model = prior.model, .has_position = prior.position.has_value()};
+  if (prior.position) {
+    copy_out(prior.position->mean, message.position);
+    copy_out(prior.position->covariance, message.position_covariance);
+  }
+  copy_out(prior.orientation.axes, message.axes);
+  copy_out(prior.orientation.concentrations, message.concentrations);
+  message.weight = prior.weight;
+  return message;
+}
+
+PosePrior prior_from(const msgs::GroupPrior& message) {
+  PosePrior prior;
+  prior.model = message.model;
+  prior.weight = message.weight;
+  if (message.has_position) {
+    prior.position.emplace();
+    prior.position->mean = Eigen::Map<const Eigen::Vector3d>(message.position.data());
+    prior.position->covariance =
+        Eigen::Map<const Eigen::Matrix3d>(message.position_covariance.data());
+  }
+  prior.orientation.axes = Eigen::Map<const Eigen::Matrix<double, 4, 3>>(message.axes.data());
+  prior.orientation.concentrations =
+      Eigen::Map<const Eigen::Vector3d>(message.concentrations.data());
+  return prior;
+}
+
+constexpr std::size_t kPoseNumbers = 7;
+
+void put(const Pose& pose, double* to) {
+  std::copy_n(pose.rotation.coeffs().data(), 4, to);  // x y z w
+  std::copy_n(pose.translation.data(), 3, to + 4);
+}
+
+Pose pose_from(const double* numbers) {
+  return {Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(numbers)),
+          Eigen::Map<const Eigen::Vector3d>(numbers + 4)};
+}
+
+}  // namespace
+
+msgs::GroupStep begin_message(const Frame& frame, const DetectRequest& request,
+                              const DetectorOptions& options, const SharedLibrary& library) {
+  msgs::GroupStep step;
+  step.kind = msgs::GroupStep::kBegin;
+  step.library = library.offer.digest;
+  step.frame = frame_message(frame);
+  step.background = frame.background;
+  step.fused_frames = static_cast<std::uint32_t>(frame.fused);
+  step.options = option_texts(options);
+  for (const PosePrior& prior : request.priors) step.priors.push_back(prior_message(prior));
+  step.seed = request.seed;
+  step.budget_ms = request.budget_ms;
+  for (const ExpectedPlacement& expected : request.expected) {
+    const auto model = library.models.find(expected.model);
+    if (!model) continue;  // unloaded since
+    step.expected_models.push_back(model->number);
+    step.expected_poses.resize(step.expected_poses.size() + kPoseNumbers);
+    put(expected.camera_from_object, &*step.expected_poses.end() - kPoseNumbers);
+  }
+  return step;
+}
+
+Result<ShareTask> task_of(msgs::GroupStep begin, const SharedLibrary& library) {
+  ShareTask task;
+  for (const int number : begin.models) {
+    auto model = library.find(number);
+    if (!model) return not_found("the library has no model of number ", number);
+    task.models.push_back(std::move(model));
+  }
+  DecodedFrame frame = frame_from_message(std::move(begin.frame));
+  if (!frame.ok()) return frame.status();
+  task.frame = *std::move(frame);
+  task.frame.background = std::move(begin.background);
+  task.frame.fused = static_cast<int>(begin.fused_frames);
+  if (Status status = validate(task.frame); !status.ok()) return status;
+  const std::vector<Option> known = options_of(task.options);
+  for (const std::string& option : begin.options) {
+    if (Status status = io::set_option(option, {known, "-", {}}); !status.ok()) return status;
+  }
+  for (const msgs::GroupPrior& message : begin.priors) {
+    task.request.priors.push_back(prior_from(message));
+    const std::string name = "priors of " + message.model;
+    if (Status status = validate(task.request.priors.back(), name); !status.ok()) return status;
+  }
+  task.request.seed = begin.seed;
+  task.request.budget_ms = begin.budget_ms;
+  if (begin.expected_poses.size() != begin.expected_models.size() * kPoseNumbers) {
+    return corrupt("a search expects ", begin.expected_models.size(), " models in ",
+                   begin.expected_poses.size(), " numbers");
+  }
+  for (std::size_t i = 0; i < begin.expected_models.size(); ++i) {
+    const auto model = library.find(begin.expected_models[i]);
+    if (!model) continue;
+    task.request.expected.push_back(
+        {model->name, pose_from(begin.expected_poses.data() + i * kPoseNumbers)});
+  }
+  return task;
+}
+
+msgs::GroupCandidate to_message(const Candidate& candidate) {
+  msgs::GroupCandidate message;
+  message.model = candidate.model->number;
+  put(candidate.pose(), message.pose.data());
+  copy_out(candidate.refinement.information, message.information);
+  message.correspondences = candidate.refinement.num_correspondences;
+  message.found_by = static_cast<std::uint8_t>(candidate.found_by);
+  message.values.assign(candidate.values.begin(), candidate.values.end());
+  message.prior = candidate.prior;
+  message.score = candidate.score;
+  message.probability = candidate.probability;
+  message.explained = candidate.explained;
+  return message;
+}
+
+Result<Candidate> candidate_from(msgs::GroupCandidate message, const ObjectModel& model,
+                                 std::size_t pixels) {
+  Candidate candidate{.model = &model};
+  const bool in_image = message.explained.empty() || message.explained.back() < pixels;
+  if (message.values.size() != candidate.values.size() || !in_image ||
+      !std::ranges::is_sorted(message.explained) ||
+      message.found_by > static_cast<std::uint8_t>(Source::region)) {
+    return corrupt("a candidate of ", model.name, " has ", message.values.size(),
+                   " score components, not ", candidate.values.size(),
+                   ", or pixels outside of the image");
+  }
+  candidate.refinement.camera_from_object = pose_from(message.pose.data());
+  if (!is_valid(candidate.pose())) return corrupt("a candidate of ", model.name, " has no pose");
+  candidate.refinement.information =
+      Eigen::Map<const Eigen::Matrix<double, 6, 6>>(message.information.data());
+  candidate.refinement.num_correspondences = message.correspondences;
+  candidate.found_by = static_cast<Source>(message.found_by);
+  std::ranges::copy(message.values, candidate.values.begin());
+  candidate.prior = message.prior;
+  candidate.score = message.score;
+  candidate.probability = message.probability;
+  candidate.explained = std::move(message.explained);
+  return candidate;
+}
+
+double milliseconds_left(const Deadline& deadline) {
+  constexpr double kLeast = 1e-3;  // 0 stands for no limit
+  return deadline.never() ? 0 : std::max(kLeast, deadline.milliseconds_left());
+}
+
+}  // namespace bpa::server::group

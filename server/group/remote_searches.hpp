@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "core/pipeline/model_searches.hpp"
+#include "idl/wire/msg/bpa_msgs.hpp"
+#include "server/group/library.hpp"
+#include "server/group/members.hpp"
+#include "server/group/split.hpp"
+
+namespace bpa::server::group {
+
+/// The answers that reach the front, by search.
+class Mailboxes {
+ public:
+  struct Box {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::vector<wire::bpa_msgs::GroupAnswer> answers;
+  };
+
+  std::shared_ptr<Box> open(std::uint64_t search) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return boxes_[search] = std::make_shared<Box>();
+  }
+  void close(std::uint64_t search) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    boxes_.erase(search);
+  }
+  void deliver(wire::bpa_msgs::GroupAnswer&& answer) {
+    std::shared_ptr<Box> box;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      const auto found = boxes_.find(answer.search);
+      if (found == boxes_.end()) return;
+      box = found->second;
+    }
+    const std::lock_guard<std::mutex> lock(box->mutex);
+    box->answers.push_back(std::move(answer));
+    box->changed.notify_all();
+  }
+  void wake_all() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const auto& [search, box] : boxes_) box->changed.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::uint64_t, std::shared_ptr<Box>> boxes_;
+};
+
+/// What is common to all searches of a front.
+struct Links {
+  std::uint64_t front;
+  Members members;
+  Mailboxes mailboxes;
+  std::mutex cost_mutex;
+  SearchCost cost;
+};
+
+/// The searches for one frame's models, on the workers. `begin` is of begin_message(); `waiting` is
+/// how many more frames wait. Throws a Failure where no worker can search, as the searches do.
+std::unique_ptr<ModelSearches> make_remote_searches(
+    std::shared_ptr<Links> links, std::uint64_t search,
+    std::shared_ptr<const SharedLibrary> library,
+    std::vector<std::shared_ptr<const ObjectModel>> models, wire::bpa_msgs::GroupStep&& begin,
+    std::size_t waiting);
+
+}  // namespace bpa::server::group
