@@ -1,0 +1,288 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The bpa authors
+# SPDX-License-Identifier: Apache-2.0
+"""Measures a group of bpa-server on hosts that are network namespaces of this machine.
+
+    group_hosts.py scale  --library DIR --bop DATASET [--workers 1 2 4] [--share 0.25]
+    group_hosts.py faults --library DIR --bop DATASET [--times 20]
+
+A bridge of its own joins the namespaces; no packet leaves them. `--share` is how much of a processor
+each worker gets (cgroup v1, cpu.cfs_quota_us). Needs root, `ip` and `tc`. Prints Markdown tables.
+"""
+import argparse
+import contextlib
+import json
+import os
+import pathlib
+import random
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+BIN = pathlib.Path(__file__).resolve().parents[2] / 'build' / 'release' / 'bin'
+PREFIX = f'bpa{os.getpid() % 10000}'
+CGROUPS = pathlib.Path('/sys/fs/cgroup/cpu')
+PERIOD_US = 100000
+
+
+def sh(*command):
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+
+
+class Hosts:
+    """Namespaces 0 to count - 1, with addresses 10.77.0.1 and so on."""
+
+    def __init__(self, count):
+        self.count = count
+        sh('ip', 'netns', 'add', f'{PREFIX}n')
+        self.in_net('ip', 'link', 'add', 'br', 'type', 'bridge')
+        self.in_net('ip', 'link', 'set', 'br', 'up')
+        for host in range(count):
+            name = self.name(host)
+            sh('ip', 'netns', 'add', name)
+            self.in_net('ip', 'link', 'add', f'p{host}', 'type', 'veth', 'peer', 'name', 'eth0',
+                        'netns', name)
+            self.in_net('ip', 'link', 'set', f'p{host}', 'master', 'br', 'up')
+            for command in (['addr', 'add', f'10.77.0.{host + 1}/24', 'dev', 'eth0'],
+                            ['link', 'set', 'eth0', 'up'], ['link', 'set', 'lo', 'up'],
+                            ['route', 'add', '224.0.0.0/4', 'dev', 'eth0']):
+                sh('ip', '-n', name, *command)
+
+    @staticmethod
+    def name(host):
+        return f'{PREFIX}h{host}'
+
+    @staticmethod
+    def in_net(*command):
+        sh('ip', 'netns', 'exec', f'{PREFIX}n', *command)
+
+    def link(self, host, up):
+        self.in_net('ip', 'link', 'set', f'p{host}', 'up' if up else 'down')
+
+    def delay(self, host, milliseconds):
+        """Of each packet to and from it; 0: none."""
+        verb = ['add', 'root', 'netem', 'delay', f'{milliseconds}ms'] if milliseconds else ['del', 'root']
+        sh('ip', 'netns', 'exec', self.name(host), 'tc', 'qdisc', verb[0], 'dev', 'eth0', *verb[1:])
+
+    def sent_bytes(self, host):
+        out = subprocess.run(['ip', '-j', '-s', '-n', self.name(host), 'link', 'show', 'eth0'],
+                             check=True, capture_output=True, text=True).stdout
+        return json.loads(out)[0]['stats64']['tx']['bytes']
+
+    def close(self):
+        for name in [self.name(host) for host in range(self.count)] + [f'{PREFIX}n']:
+            subprocess.run(['ip', 'netns', 'del', name], check=False)
+
+
+class Group:
+    def __init__(self, hosts, folder, library, share):
+        self.hosts, self.folder, self.library, self.share = hosts, folder, library, share
+        self.processes = {}
+
+    def start(self, name, host, *arguments):
+        environment = {key: value for key, value in os.environ.items() if not key.startswith('ROS_')}
+        command = ['ip', 'netns', 'exec', self.hosts.name(host), BIN / 'bpa-server',
+                   '--set', 'network.range=subnet', '--set', 'detection.follow=false', *arguments]
+        log = open(self.folder / f'{name}.log', 'a', encoding='utf-8')
+        self.processes[name] = subprocess.Popen(command, stdout=log, stderr=log, env=environment)
+        return self.processes[name]
+
+    def front(self, name='front', host=0, *arguments):
+        return self.start(name, host, '--role', 'front', '--library', self.library, '--threads', '1',
+                          *arguments)
+
+    def worker(self, number, *arguments):
+        """On host `number`, from 1."""
+        process = self.start(f'worker{number}', number, '--role', 'worker', '--threads', '1', '--set',
+                             f'group.cache={self.folder}/cache{number}', *arguments)
+        if self.share:
+            group = CGROUPS / f'{PREFIX}w{number}'
+            group.mkdir(exist_ok=True)
+            (group / 'cpu.cfs_period_us').write_text(str(PERIOD_US))
+            (group / 'cpu.cfs_quota_us').write_text(str(int(self.share * PERIOD_US)))
+            (group / 'cgroup.procs').write_text(str(process.pid))
+        return process
+
+    def client(self, *arguments, timeout=600):
+        environment = {key: value for key, value in os.environ.items() if not key.startswith('ROS_')}
+        return subprocess.run(['ip', 'netns', 'exec', self.hosts.name(0), BIN / 'bpa-client', *arguments],
+                              capture_output=True, text=True, timeout=timeout, env=environment, check=False)
+
+    def ready(self):
+        out = self.client('--timeout', '20', 'status').stdout
+        return sum(': ' not in line and 'ready' in line and 'beside' not in line
+                   for line in out.splitlines() if line.strip().startswith('worker'))
+
+    def wait_for(self, workers):
+        end = time.monotonic() + 300
+        while self.ready() != workers:
+            if time.monotonic() > end:
+                raise SystemExit(f'{workers} workers did not come: {self.folder}')
+            time.sleep(0.2)
+
+    def stop(self, name):
+        process = self.processes.pop(name)
+        with contextlib.suppress(ProcessLookupError):
+            process.send_signal(signal.SIGCONT)
+        process.kill()
+        process.wait()
+
+    def close(self):
+        for name in list(self.processes):
+            self.stop(name)
+        for group in CGROUPS.glob(f'{PREFIX}w*'):
+            with contextlib.suppress(OSError):
+                group.rmdir()
+
+
+def frames_of(path):
+    return json.loads(path.read_text(encoding='utf-8'))['frames']
+
+
+def answer_of(frame):
+    """What must be the same whoever searched."""
+    return json.dumps(frame['interpretations'], sort_keys=True)
+
+
+def detect(group, options, *more):
+    path = group.folder / 'answer.json'
+    path.unlink(missing_ok=True)
+    began = time.monotonic()
+    out = group.client('detect', '--bop', options.bop, '--json', path, '--wait', '240', *more)
+    took = time.monotonic() - began
+    return (frames_of(path) if path.exists() else None), took, out.stdout + out.stderr
+
+
+@contextlib.contextmanager
+def cell(options, hosts):
+    network = Hosts(hosts)
+    with tempfile.TemporaryDirectory() as folder:
+        group = Group(network, pathlib.Path(folder), options.library, options.share)
+        try:
+            yield network, group
+        finally:
+            group.close()
+            network.close()
+
+
+def scale(options):
+    print('| workers | seconds a frame (median) | of one worker | efficiency | MB sent by the front a frame '
+          '| same answer |\n|---|---|---|---|---|---|')
+    first, reference = None, None
+    for workers in options.workers:
+        with cell(options, workers + 1) as (hosts, group):
+            group.front()
+            for number in range(1, workers + 1):
+                group.worker(number)
+            group.wait_for(workers)
+            detect(group, options)  # paces are measured
+            before = hosts.sent_bytes(0)
+            frames, _, text = detect(group, options)
+            if frames is None:
+                raise SystemExit(text)
+            sent = (hosts.sent_bytes(0) - before) / len(frames) / 1e6
+        seconds = statistics.median(frame['seconds'] for frame in frames)
+        answers = [answer_of(frame) for frame in frames]
+        first, reference = first or seconds * workers / 1, reference or answers
+        same = sum(a == b for a, b in zip(answers, reference))
+        base = first / options.workers[0]
+        print(f'| {workers} | {seconds:.2f} | {seconds / base:.2f} | '
+              f'{100 * base * options.workers[0] / (seconds * workers):.0f} % | {sent:.2f} | '
+              f'{same}/{len(frames)} |', flush=True)
+
+
+def strike(kind, hosts, group, rng):
+    """One fault while a search runs; returns how it is undone."""
+    time.sleep(rng.uniform(0, 1.5))
+    worker = group.processes['worker2']
+    if kind == 'stopped':
+        worker.send_signal(signal.SIGSTOP)
+        return lambda: worker.send_signal(signal.SIGCONT)
+    if kind == 'killed':
+        group.stop('worker2')
+        return lambda: group.worker(2)
+    if kind == 'cut off':
+        hosts.link(2, False)
+        return lambda: hosts.link(2, True)
+    if kind == 'slow':
+        hosts.delay(2, 100)
+        return lambda: hosts.delay(2, 0)
+    if kind == 'front killed':
+        group.stop('front')
+
+        def start_again():
+            group.front('front', 0, '--set', 'group.strength=1')
+            time.sleep(4)
+        return start_again
+    raise SystemExit(kind)
+
+
+def faults(options):
+    print(f'| fault | answers of {options.times} | the same | refused | without an answer | slowest, s |\n'
+          '|---|---|---|---|---|---|')
+    rng = random.Random(1)
+    budget = ['--budget-ms', str(options.budget_ms)] if options.budget_ms else []
+    for kind in options.kinds:
+        with cell(options, 4) as (hosts, group):
+            group.front('front', 0, '--set', 'group.strength=1')
+            if kind == 'front killed':
+                group.front('second', 3)
+            group.worker(1)
+            group.worker(2)
+            group.wait_for(2)
+            one = ['--scenes', options.scene]
+            frames, usual, text = detect(group, options, *one)
+            reference = [answer_of(frame) for frame in frames]
+            counts, slowest, wrong = {'same': 0, 'refused': 0, 'none': 0, 'answered': 0}, 0, ''
+            for _ in range(options.times):
+                path = group.folder / 'answer.json'
+                path.unlink(missing_ok=True)
+                environment = {k: v for k, v in os.environ.items() if not k.startswith('ROS_')}
+                began = time.monotonic()
+                client = subprocess.Popen(
+                    ['ip', 'netns', 'exec', hosts.name(0), BIN / 'bpa-client', 'detect', '--bop', options.bop,
+                     '--json', path, '--wait', '240', *one, *budget], stdout=subprocess.PIPE,
+                    stderr=subprocess.STDOUT, text=True, env=environment)
+                undo = strike(kind, hosts, group, rng)
+                text = client.communicate(timeout=300)[0]
+                slowest = max(slowest, time.monotonic() - began)
+                frames = frames_of(path) if path.exists() else []
+                if frames:
+                    counts['answered'] += 1
+                    same = [answer_of(frame) for frame in frames] == reference
+                    counts['same'] += same
+                    wrong = wrong or ('' if same or budget else text)
+                elif 'refused' in text or 'unavailable' in text or 'not searched' in text:
+                    counts['refused'] += 1
+                else:
+                    counts['none'] += 1
+                    wrong = wrong or text
+                undo()
+                group.wait_for(2)
+        print(f'| {kind} | {counts["answered"]} | {counts["same"]} | {counts["refused"]} | {counts["none"]} | '
+              f'{slowest:.1f} (without a fault {usual:.1f}) |', flush=True)
+        if wrong:
+            print(wrong[-600:], file=sys.stderr)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('what', choices=['scale', 'faults'])
+    parser.add_argument('--library', required=True)
+    parser.add_argument('--bop', required=True)
+    parser.add_argument('--workers', type=int, nargs='+', default=[1, 2, 4])
+    parser.add_argument('--share', type=float, default=0, help='of a processor, of each worker; 0: all')
+    parser.add_argument('--times', type=int, default=20)
+    parser.add_argument('--scene', default='1', help='whose frames are searched under faults')
+    parser.add_argument('--budget-ms', type=float, default=0)
+    parser.add_argument('--kinds', nargs='+',
+                        default=['killed', 'stopped', 'cut off', 'slow', 'front killed'])
+    options = parser.parse_args()
+    {'scale': scale, 'faults': faults}[options.what](options)
+
+
+if __name__ == '__main__':
+    main()
