@@ -5,6 +5,7 @@
 
     group_hosts.py scale  --library DIR --bop DATASET [--workers 1 2 4] [--share 0.25]
     group_hosts.py faults --library DIR --bop DATASET [--times 20]
+    group_hosts.py discovery --library DIR [--times 10]
 
 A bridge of its own joins the namespaces; no packet leaves them. `--share` is how much of a processor
 each worker gets (cgroup v1, cpu.cfs_quota_us). Needs root, `ip` and `tc`. Prints Markdown tables.
@@ -22,7 +23,7 @@ import sys
 import tempfile
 import time
 
-BIN = pathlib.Path(__file__).resolve().parents[2] / 'build' / 'release' / 'bin'
+PROGRAMS = pathlib.Path(__file__).resolve().parents[2] / 'build' / 'release' / 'bin'
 PREFIX = f'bpa{os.getpid() % 10000}'
 CGROUPS = pathlib.Path('/sys/fs/cgroup/cpu')
 PERIOD_US = 100000
@@ -38,14 +39,14 @@ class Hosts:
     def __init__(self, count):
         self.count = count
         sh('ip', 'netns', 'add', f'{PREFIX}n')
-        self.in_net('ip', 'link', 'add', 'br', 'type', 'bridge')
-        self.in_net('ip', 'link', 'set', 'br', 'up')
+        self.in_net('ip', 'link', 'add', 'name', 'br0', 'type', 'bridge')
+        self.in_net('ip', 'link', 'set', 'br0', 'up')
         for host in range(count):
             name = self.name(host)
             sh('ip', 'netns', 'add', name)
             self.in_net('ip', 'link', 'add', f'p{host}', 'type', 'veth', 'peer', 'name', 'eth0',
                         'netns', name)
-            self.in_net('ip', 'link', 'set', f'p{host}', 'master', 'br', 'up')
+            self.in_net('ip', 'link', 'set', f'p{host}', 'master', 'br0', 'up')
             for command in (['addr', 'add', f'10.77.0.{host + 1}/24', 'dev', 'eth0'],
                             ['link', 'set', 'eth0', 'up'], ['link', 'set', 'lo', 'up'],
                             ['route', 'add', '224.0.0.0/4', 'dev', 'eth0']):
@@ -62,10 +63,12 @@ class Hosts:
     def link(self, host, up):
         self.in_net('ip', 'link', 'set', f'p{host}', 'up' if up else 'down')
 
-    def delay(self, host, milliseconds):
-        """Of each packet to and from it; 0: none."""
-        verb = ['add', 'root', 'netem', 'delay', f'{milliseconds}ms'] if milliseconds else ['del', 'root']
-        sh('ip', 'netns', 'exec', self.name(host), 'tc', 'qdisc', verb[0], 'dev', 'eth0', *verb[1:])
+    def slow(self, host, rate):
+        """Of both directions, such as 20mbit; empty: as fast as it is."""
+        how = ['root', 'tbf', 'rate', rate, 'burst', '64kb', 'latency', '400ms'] if rate else ['root']
+        verb = 'add' if rate else 'del'
+        self.in_net('tc', 'qdisc', verb, 'dev', f'p{host}', *how)
+        sh('ip', 'netns', 'exec', self.name(host), 'tc', 'qdisc', verb, 'dev', 'eth0', *how)
 
     def sent_bytes(self, host):
         out = subprocess.run(['ip', '-j', '-s', '-n', self.name(host), 'link', 'show', 'eth0'],
@@ -78,13 +81,15 @@ class Hosts:
 
 
 class Group:
-    def __init__(self, hosts, folder, library, share):
-        self.hosts, self.folder, self.library, self.share = hosts, folder, library, share
+    def __init__(self, hosts, folder, options):
+        self.hosts, self.folder = hosts, folder
+        self.library, self.share, self.programs = options.library, options.share, options.programs
         self.processes = {}
+        self.environment = {key: value for key, value in os.environ.items() if not key.startswith('ROS_')}
 
     def start(self, name, host, *arguments):
-        environment = {key: value for key, value in os.environ.items() if not key.startswith('ROS_')}
-        command = ['ip', 'netns', 'exec', self.hosts.name(host), BIN / 'bpa-server',
+        environment = self.environment
+        command = ['ip', 'netns', 'exec', self.hosts.name(host), self.programs / 'bpa-server',
                    '--set', 'network.range=subnet', '--set', 'detection.follow=false', *arguments]
         log = open(self.folder / f'{name}.log', 'a', encoding='utf-8')
         self.processes[name] = subprocess.Popen(command, stdout=log, stderr=log, env=environment)
@@ -107,9 +112,8 @@ class Group:
         return process
 
     def client(self, *arguments, timeout=600):
-        environment = {key: value for key, value in os.environ.items() if not key.startswith('ROS_')}
-        return subprocess.run(['ip', 'netns', 'exec', self.hosts.name(0), BIN / 'bpa-client', *arguments],
-                              capture_output=True, text=True, timeout=timeout, env=environment, check=False)
+        return subprocess.run(['ip', 'netns', 'exec', self.hosts.name(0), self.programs / 'bpa-client', *arguments],
+                              capture_output=True, text=True, timeout=timeout, env=self.environment, check=False)
 
     def ready(self):
         out = self.client('--timeout', '20', 'status').stdout
@@ -160,7 +164,7 @@ def detect(group, options, *more):
 def cell(options, hosts):
     network = Hosts(hosts)
     with tempfile.TemporaryDirectory() as folder:
-        group = Group(network, pathlib.Path(folder), options.library, options.share)
+        group = Group(network, pathlib.Path(folder), options)
         try:
             yield network, group
         finally:
@@ -208,8 +212,8 @@ def strike(kind, hosts, group, rng):
         hosts.link(2, False)
         return lambda: hosts.link(2, True)
     if kind == 'slow':
-        hosts.delay(2, 100)
-        return lambda: hosts.delay(2, 0)
+        hosts.slow(2, '20mbit')
+        return lambda: hosts.slow(2, '')
     if kind == 'front killed':
         group.stop('front')
 
@@ -240,12 +244,11 @@ def faults(options):
             for _ in range(options.times):
                 path = group.folder / 'answer.json'
                 path.unlink(missing_ok=True)
-                environment = {k: v for k, v in os.environ.items() if not k.startswith('ROS_')}
                 began = time.monotonic()
                 client = subprocess.Popen(
-                    ['ip', 'netns', 'exec', hosts.name(0), BIN / 'bpa-client', 'detect', '--bop', options.bop,
+                    ['ip', 'netns', 'exec', hosts.name(0), options.programs / 'bpa-client', 'detect', '--bop', options.bop,
                      '--json', path, '--wait', '240', *one, *budget], stdout=subprocess.PIPE,
-                    stderr=subprocess.STDOUT, text=True, env=environment)
+                    stderr=subprocess.STDOUT, text=True, env=group.environment)
                 undo = strike(kind, hosts, group, rng)
                 text = client.communicate(timeout=300)[0]
                 slowest = max(slowest, time.monotonic() - began)
@@ -268,11 +271,50 @@ def faults(options):
             print(wrong[-600:], file=sys.stderr)
 
 
+def discovery(options):
+    """From the start of a worker until the front can give it work."""
+    print(f'| how hosts find one another | seconds until a worker has joined, median of {options.times} '
+          '| largest |\n|---|---|---|')
+    for kind in ('multicast', 'static peers', 'discovery server'):
+        with cell(options, 3) as (hosts, group):
+            peers = []
+            if kind != 'multicast':
+                for host in range(3):
+                    sh('ip', '-n', hosts.name(host), 'link', 'set', 'eth0', 'multicast', 'off')
+            if kind == 'static peers':
+                peers = ['--set', 'network.peers=[10.77.0.1]']
+            if kind == 'discovery server':
+                group.processes['discovery'] = subprocess.Popen(
+                    ['ip', 'netns', 'exec', hosts.name(2), 'fast-discovery-server', '-i', '0', '-l',
+                     '10.77.0.3', '-p', '11811'], stdout=subprocess.DEVNULL)
+                group.environment['ROS_DISCOVERY_SERVER'] = '10.77.0.3:11811'
+                time.sleep(1)
+            group.front()
+            log = group.folder / 'front.log'
+            while 'serves as' not in log.read_text(encoding='utf-8'):
+                time.sleep(0.05)
+            times = []
+            for number in range(options.times):
+                group.start(f'worker{number}', 1, '--role', 'worker', '--threads', '1', '--set',
+                            f'group.cache={group.folder}/cache', *peers)
+                size = log.stat().st_size
+                began = time.monotonic()
+                while ' joined' not in log.read_text(encoding='utf-8')[size:]:
+                    time.sleep(0.01)
+                    if time.monotonic() - began > 30:
+                        break
+                times.append(time.monotonic() - began)
+                group.stop(f'worker{number}')
+                time.sleep(2)
+        print(f'| {kind} | {statistics.median(times):.2f} | {max(times):.2f} |', flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('what', choices=['scale', 'faults'])
+    parser.add_argument('what', choices=['scale', 'faults', 'discovery'])
     parser.add_argument('--library', required=True)
-    parser.add_argument('--bop', required=True)
+    parser.add_argument('--bop', default='')
+    parser.add_argument('--programs', type=pathlib.Path, default=PROGRAMS, help='folder of bpa-server')
     parser.add_argument('--workers', type=int, nargs='+', default=[1, 2, 4])
     parser.add_argument('--share', type=float, default=0, help='of a processor, of each worker; 0: all')
     parser.add_argument('--times', type=int, default=20)
@@ -281,7 +323,7 @@ def main():
     parser.add_argument('--kinds', nargs='+',
                         default=['killed', 'stopped', 'cut off', 'slow', 'front killed'])
     options = parser.parse_args()
-    {'scale': scale, 'faults': faults}[options.what](options)
+    {'scale': scale, 'faults': faults, 'discovery': discovery}[options.what](options)
 
 
 if __name__ == '__main__':
