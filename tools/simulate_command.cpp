@@ -30,7 +30,7 @@ struct SimulateArguments {
 };
 
 void add_frame(io::BopSceneWriter& writer, int im_id, const sim::SimulatedFrame& frame) {
-  or_throw(writer.add(im_id, frame.frame, records_of(frame)));
+  or_throw(writer.add(im_id, frame.frame, records_of(frame), frame.camera_from_world));
 }
 
 /// Returns the visible fractions of the instances.
