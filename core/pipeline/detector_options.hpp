@@ -9,6 +9,7 @@
 #include "core/cloud/surface_map.hpp"
 #include "core/detect/options.hpp"
 #include "core/observation/scene_features.hpp"
+#include "core/pipeline/views_options.hpp"
 #include "core/scene/interpretations.hpp"
 
 namespace bpa {
@@ -52,6 +53,7 @@ struct DetectorOptions {
   RoundOptions rounds;
   DetectOptions detect;  ///< Its groups are listed as the detector's own.
   InterpretationOptions scene;
+  ViewsOptions views;
 
   void visit_groups(auto&& visit) {
     visit("surface", surface, "The surface in the depth image.");
@@ -60,6 +62,7 @@ struct DetectorOptions {
     visit("rounds", rounds, "Rounds of the search.");
     detect.visit_groups(visit);
     visit("scene", scene, "Interpretations of the whole scene (paper section VI).");
+    visit("views", views, "Several views of one scene.");
   }
 };
 
