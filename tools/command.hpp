@@ -156,6 +156,7 @@ void add_bench_alignment(CLI::App& bench);
 void add_bench_accuracy(CLI::App& bench);
 void add_bench_models(CLI::App& bench);
 void add_bench_sensor(CLI::App& bench);
+void add_bench_views(CLI::App& bench);
 void add_bench_speed(CLI::App& bench, CountAllocations allocations);
 
 }  // namespace bpa::cli

@@ -24,6 +24,7 @@ int run_bpa(int argc, char** argv, CountAllocations allocations) {
   add_bench_accuracy(bench);
   add_bench_models(bench);
   add_bench_sensor(bench);
+  add_bench_views(bench);
   add_bench_speed(bench, allocations);
   try {
     program.parse(argc, argv);
