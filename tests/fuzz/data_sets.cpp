@@ -5,6 +5,7 @@
 
 #include "core/io/bop_dataset.hpp"
 #include "core/io/camera_file.hpp"
+#include "core/io/camera_poses_file.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/pose_prior_file.hpp"
 #include "core/io/results.hpp"
@@ -29,6 +30,20 @@ std::vector<std::string> camera_seeds() {
           "image_width: 640\nimage_height: 480\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
           "  data: [525, 0, 319.5, 0, 526, 239.5, 0, 0, 1]\ndistortion_coefficients:\n"
           "  data: [0.1, 0, 0, 0, 0]\ndepth_scale: 1\n"};
+}
+
+void run_camera_poses(std::string_view bytes) {
+  const auto cameras = io::read_camera_poses(file_of(bytes, "cameras.json"));
+  if (!cameras.ok()) return;
+  for (const io::CameraPose& camera : *cameras) {
+    require(is_valid(camera.scene_from_camera), "a camera's pose is a rigid motion");
+  }
+}
+
+std::vector<std::string> camera_poses_seeds() {
+  return {R"({"cameras": [{"name": "left", "scene_from_camera": {"rotation_wxyz": [1, 0, 0, 0],
+  "translation_m": [0.1, 0.2, 0.9]}}, {"scene_from_camera": {"rotation_wxyz": [0, 0, 1, 0],
+  "translation_m": [0, 0, 0]}}]})"};
 }
 
 void run_results_json(std::string_view bytes) {
@@ -141,13 +156,15 @@ std::vector<std::string> bop_scene_seeds() {
 std::vector<Target> data_set_targets() {
   const char* const bop = "core/io/bop_dataset.cpp";
   const char* const results = "core/io/results.cpp";
-  return {{"camera_file", "core/io/camera_file.cpp", run_camera, camera_seeds, 2048},
-          {"results_json", results, run_results_json, results_json_seeds},
-          {"results_csv", results, run_results_csv, results_csv_seeds, 2048},
-          {"tracks_json", "core/io/tracks.cpp", run_tracks_json, tracks_json_seeds},
-          {"pose_priors", "core/io/pose_prior_file.cpp", run_pose_priors, pose_priors_seeds, 4096},
-          {"bop_models", bop, run_bop_models, bop_models_seeds, 4096},
-          {"bop_scene", bop, run_bop_scene, bop_scene_seeds, 4096}};
+  return {
+      {"camera_file", "core/io/camera_file.cpp", run_camera, camera_seeds, 2048},
+      {"results_json", results, run_results_json, results_json_seeds},
+      {"results_csv", results, run_results_csv, results_csv_seeds, 2048},
+      {"tracks_json", "core/io/tracks.cpp", run_tracks_json, tracks_json_seeds},
+      {"camera_poses", "core/io/camera_poses_file.cpp", run_camera_poses, camera_poses_seeds, 4096},
+      {"pose_priors", "core/io/pose_prior_file.cpp", run_pose_priors, pose_priors_seeds, 4096},
+      {"bop_models", bop, run_bop_models, bop_models_seeds, 4096},
+      {"bop_scene", bop, run_bop_scene, bop_scene_seeds, 4096}};
 }
 
 }  // namespace bpa::fuzz
