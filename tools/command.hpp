@@ -147,6 +147,7 @@ void add_model_command(CLI::App& program);
 void add_detect_command(CLI::App& program);
 void add_track_command(CLI::App& program);
 void add_evaluate_command(CLI::App& program);
+void add_calibrate_command(CLI::App& program);
 void add_train_command(CLI::App& program);
 void add_doctor_command(CLI::App& program);
 void add_simulate_command(CLI::App& program);

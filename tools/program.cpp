@@ -13,6 +13,7 @@ int run_bpa(int argc, char** argv, CountAllocations allocations) {
   program.set_version_flag("--version", BPA_VERSION);
   add_model_command(program);
   add_detect_command(program);
+  add_calibrate_command(program);
   add_track_command(program);
   add_evaluate_command(program);
   add_train_command(program);
