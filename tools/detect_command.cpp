@@ -11,6 +11,8 @@
 #include "core/io/file_bytes.hpp"
 #include "core/io/pose_prior_file.hpp"
 #include "core/io/results.hpp"
+#include "core/pipeline/views.hpp"
+#include "tools/detect_views.hpp"
 #include "tools/explain_folder.hpp"
 #include "tools/search.hpp"
 
@@ -72,18 +74,32 @@ io::FrameResult reported(const SceneInterpretations& scene, const Pose& reported
   return result;
 }
 
+DetectRequest request_of(const DetectArguments& a) {
+  DetectRequest request;
+  request.models = a.detector.models;
+  request.top_k = a.top;
+  request.budget_ms = a.budget_ms;
+  request.seed = a.common.seed;
+  request.num_threads = a.common.threads;
+  return request;
+}
+
+void write_results(const DetectArguments& a, const std::vector<io::FrameResult>& results) {
+  if (!a.csv.empty()) or_throw(io::write_results_csv(a.csv, results));
+  if (!a.json.empty()) or_throw(io::write_results_json(a.json, results));
+}
+
 /// Runs over the inputs and writes what was asked for.
 class DetectRun {
  public:
   DetectRun(const DetectArguments& arguments, const Detector& detector, const Given& given,
             bool several_frames)
-      : a_(arguments), detector_(detector), given_(given), fusion_(arguments.fuse) {
+      : a_(arguments),
+        detector_(detector),
+        given_(given),
+        fusion_(arguments.fuse),
+        request_(request_of(arguments)) {
     if (!a_.explain.empty()) explain_.emplace(a_.explain, several_frames);
-    request_.models = a_.detector.models;
-    request_.top_k = a_.top;
-    request_.budget_ms = a_.budget_ms;
-    request_.seed = a_.common.seed;
-    request_.num_threads = a_.common.threads;
   }
 
   /// Takes up a frame. Searches once all that are combined are there, or with a scene's `last`.
@@ -110,8 +126,7 @@ class DetectRun {
   }
 
   void finish() const {
-    if (!a_.csv.empty()) or_throw(io::write_results_csv(a_.csv, results_));
-    if (!a_.json.empty()) or_throw(io::write_results_json(a_.json, results_));
+    write_results(a_, results_);
     if (explain_) explain_->finish();
     if (sheet_.empty()) return;
     std::vector<io::ColorImage> all, worst;
@@ -188,6 +203,11 @@ void detect(const DetectArguments& a) {
   const Given given = read_given(a);
   if (!a.explain.empty()) or_throw(io::make_folder(a.explain));
   const Detector detector = open_detector(a.detector, a.common.threads);
+  if (a.views > 1) {
+    ViewsQuestion question{request_of(a), given.roi, given.mask};
+    question.request.priors = given.priors;
+    return write_results(a, detect_joined(a, entries, detector, question, print_result));
+  }
   DetectRun run(a, detector, given, entries.size() > 1);
   Progress progress("frames", static_cast<int>(entries.size()));
   for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -211,6 +231,21 @@ void add_inputs(CLI::App& command, DetectArguments& a) {
       .add_flag("--follow", a.follow,
                 "Frames of a scene follow each other: look first for what the one before showed")
       ->needs("--bop");
+}
+
+void add_views(CLI::App& command, DetectArguments& a) {
+  auto* const views =
+      add_option(command, "--views", a.views,
+                 "Join N consecutive frames of a scene that stands still, of several cameras or of "
+                 "one that moved; poses are reported in the fixed frame",
+                 "N")
+          ->check(CLI::Range(2, static_cast<int>(kMostViews)));
+  for (const char* other : {"--fuse", "--follow"}) views->excludes(command.get_option(other));
+  add_option(command, "--poses", a.poses,
+             "Where the cameras of --views are, in the order of the frames: JSON that bpa "
+             "calibrate writes. cam_R_w2c of the data set if not given",
+             "FILE")
+      ->needs(views);
 }
 
 void add_question(CLI::App& command, DetectArguments& a) {
@@ -239,6 +274,7 @@ void add_question(CLI::App& command, DetectArguments& a) {
 void add_detect_command(CLI::App& program) {
   const auto [command, a] = add_command(program, "detect", "Find objects in RGB-D frames", detect);
   add_inputs(command, a);
+  add_views(command, a);
   add_question(command, a);
   add_option(command, "--csv", a.csv, "Write the best interpretation as BOP CSV", "FILE");
   add_option(command, "--json", a.json, "Write all interpretations as JSON", "FILE");
@@ -250,7 +286,8 @@ void add_detect_command(CLI::App& program) {
   add_option(command, "--explain", a.explain,
              "Write pictures of each stage of the search for each frame and model. index.html "
              "has counts, times and score components",
-             "DIR");
+             "DIR")
+      ->excludes("--views");
 }
 
 }  // namespace bpa::cli

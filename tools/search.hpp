@@ -39,6 +39,8 @@ struct DetectArguments {
   std::string priors, mask;
   std::vector<int> roi;
   int fuse = 1;
+  int views = 1;      ///< Frames that are joined into one scene.
+  std::string poses;  ///< JSON file of the cameras' poses; empty: those of the data set.
   bool follow = false;
   int top = 20;
   double budget_ms = 0;
