@@ -113,6 +113,10 @@ std::vector<ViewPool::Found> ViewPool::all_found() const {
 
 bool ViewPool::same(const Entry& entry, const Found& found) const {
   if (entry.model != found.candidate->model || entry.known[found.view]) return false;
+  // A fast no: symmetries leave the centre about where it is.
+  const double far = entry.model->diameter / 4 + options_.same_position_m;
+  const Eigen::Vector3d& centre = entry.model->centre;
+  if ((found.scene_from_object * centre - entry.place).norm() > far) return false;
   const Pose pose = joint(entry).camera_from_object;
   const PoseError error = pose_error(found.scene_from_object, pose, entry.model->symmetry);
   return error.position < options_.same_position_m && error.angle < options_.same_angle_rad;
@@ -130,6 +134,7 @@ void ViewPool::add(const Found& found) {
   if (is_new) {
     entry = &entries_.emplace_back();
     entry->model = found.candidate->model;
+    entry->place = found.scene_from_object * entry->model->centre;
     entry->in_view.assign(views_.size(), Candidate{.model = entry->model, .score = kNotSeen});
     entry->known.assign(views_.size(), false);
   }

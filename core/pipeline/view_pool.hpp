@@ -37,8 +37,9 @@ class ViewPool {
   /// One placement: what it is in each view, and where all views that know it say it is.
   struct Entry {
     const ObjectModel* model = nullptr;
-    Candidates in_view;       ///< One for each view, camera frame.
-    std::vector<bool> known;  ///< Whether it is scored there.
+    Eigen::Vector3d place{0, 0, 0};  ///< Of the object's centre, as first found; fixed frame.
+    Candidates in_view;              ///< One for each view, camera frame.
+    std::vector<bool> known;         ///< Whether it is scored there.
   };
 
   std::vector<Found> all_found() const;

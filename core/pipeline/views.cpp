@@ -73,6 +73,17 @@ SceneInterpretations moved(const SceneInterpretations& alone, const Pose& scene_
   return out;
 }
 
+// The request with the priors of all views, in the fixed frame.
+DetectRequest with_priors_of(std::span<const View> views, const DetectRequest& request) {
+  DetectRequest out = request;
+  for (const View& view : views) {
+    for (const PosePrior& prior : view.priors) {
+      out.priors.push_back(transformed(view.scene_from_camera, prior));
+    }
+  }
+  return out;
+}
+
 // What all views together say of times, sensors and effort.
 SceneInterpretations summed(std::span<const ViewSearch* const> views) {
   SceneInterpretations out;
@@ -173,8 +184,9 @@ ViewsResult combine_views(const Detector& detector, std::span<const ViewSearch* 
 }
 
 Result<ViewsResult> detect_views(const Detector& detector, std::span<const View> views,
-                                 const DetectRequest& request) {
+                                 const DetectRequest& asked) {
   if (Status status = check_views(views); !status.ok()) return status;
+  const DetectRequest request = with_priors_of(views, asked);
   std::vector<ViewSearch> searches;
   std::vector<const ViewSearch*> pointers;
   std::vector<Pose> poses;

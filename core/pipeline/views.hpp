@@ -20,7 +20,8 @@ namespace bpa {
 /// One frame of the scene, and where its camera was.
 struct View {
   Frame frame;
-  Pose scene_from_camera;  ///< Of the optical frame, in the fixed frame; metres.
+  Pose scene_from_camera;              ///< Of the optical frame, in the fixed frame; metres.
+  std::vector<PosePrior> priors = {};  ///< Further ones of this view, in its camera frame.
 };
 
 /// What one view shows by itself.
