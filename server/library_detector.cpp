@@ -103,6 +103,11 @@ class LibraryDetector : public Recognition {
     return front ? front->workers() : std::vector<WorkerState>();
   }
 
+  Result<ViewsResult> detect_views(std::span<const View> views,
+                                   const DetectRequest& request) const override {
+    return bpa::detect_views(*current(), views, request);
+  }
+
   std::unique_ptr<ObjectTracker> make_tracker(const track::TrackerOptions& options) const override {
     return make_library_tracker([this] { return current(); }, layers_, options);
   }

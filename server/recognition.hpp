@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "core/cloud/frame.hpp"
 #include "core/io/model_file.hpp"
 #include "core/pipeline/detector.hpp"
+#include "core/pipeline/views.hpp"
 #include "core/result/interpretation.hpp"
 #include "idl/wire/participant.hpp"
 #include "server/convert/results.hpp"
@@ -61,6 +63,12 @@ class Recognition {
   virtual void leave_group() {}
   /// The workers of the group; empty for a single server.
   virtual std::vector<WorkerState> workers() const { return {}; }
+
+  /// The same in several views of one scene, in the fixed frame; `unsupported` where only frames
+  /// are searched.
+  virtual Result<ViewsResult> detect_views(std::span<const View>, const DetectRequest&) const {
+    return Status(StatusCode::unsupported, "several views of one scene are not searched here");
+  }
 
   /// The frame's image with the placements drawn on it: row-major rgb, 3 bytes a pixel.
   virtual std::vector<std::uint8_t> annotate(const Frame& frame,

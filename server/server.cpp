@@ -300,6 +300,7 @@ class Running : public Server {
     const ServiceContext context = this->context();
     services_.emplace(*participant_, log_, wire::qos::services());
     add_detect(context, *services_);
+    add_detect_views(context, tracking_->transforms(), *services_);
     add_library_services(context, *services_);
     add_track_services(*tracking_, *services_);
     services_->add_quick<msgs::GetStatus>(

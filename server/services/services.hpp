@@ -155,10 +155,15 @@ class ServiceSet {
   std::vector<std::shared_ptr<void>> servers_;  ///< Last: they give the thread work.
 };
 
+class TfBuffer;
 class Tracking;
 
-/// Offers `detect`. This and the next three throw a Failure.
+/// Offers `detect`. This and the next four throw a Failure.
 void add_detect(const ServiceContext& context, ServiceSet& services);
+/// Offers `detect_views`, whose searches take turns with changes of the library on the worker;
+/// `transforms` outlives it.
+void add_detect_views(const ServiceContext& context, const TfBuffer& transforms,
+                      ServiceSet& services);
 /// Offers `list_models`, `load_model` and `unload_model`.
 void add_library_services(const ServiceContext& context, ServiceSet& services);
 /// Offers `rename_track`, `hold_track` and `forget_track`; `tracking` outlives them.

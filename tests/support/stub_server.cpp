@@ -59,6 +59,21 @@ class Stub : public bpa::support::StubRecognition {
                                                 const bpa::DetectRequest& request) const override {
     return ::detect(frame, request, delay_ms_);
   }
+  // The object of the first view, in the fixed frame; names of all cameras as warnings.
+  bpa::Result<bpa::ViewsResult> detect_views(std::span<const bpa::View> views,
+                                             const bpa::DetectRequest& request) const override {
+    auto found = ::detect(views[0].frame, request, delay_ms_);
+    if (!found.ok()) return found.status();
+    bpa::ViewsResult out;
+    out.scene = std::move(*found);
+    bpa::Placement& placement = out.scene.interpretations[0].placements[0];
+    placement = transformed(views[0].scene_from_camera, placement);
+    for (const bpa::View& view : views) {
+      out.scene_from_camera.push_back(view.scene_from_camera);
+      out.warnings.push_back(view.frame.frame_id);
+    }
+    return out;
+  }
   bpa::server::Models models() const override { return stub_models(); }
   Status set_options(const bpa::DetectorOptions& detector) override {
     std::cerr << "max_keypoints is " << detector.features.max_keypoints << std::endl;

@@ -95,6 +95,12 @@ class Stranger {
     msgs::Detect_Request detect;
     detect.frame = support::wall_frame();
     service<msgs::Detect>("detect", detect);
+    msgs::DetectViews_Request views;
+    views.fixed_frame = "map";
+    views.frames = {support::wall_frame()};
+    views.scene_from_camera.resize(1);
+    views.scene_from_camera[0].orientation.w = 1;
+    service<msgs::DetectViews>("detect_views", views);
     service<msgs::ListModels>("list_models", {});
     service<msgs::GetStatus>("get_status", {});
     msgs::LoadModel_Request load;

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "idl/wire/messages.hpp"
+#include "idl/wire/publisher.hpp"
 #include "idl/wire/service.hpp"
 #include "idl/wire/subscriber.hpp"
 #include "tests/support/stub_server.hpp"
@@ -183,6 +184,72 @@ TEST(Requests, ThoseRightAfterDiscoveryAreAnswered) {
     const auto reply = service->call({}, milliseconds(10000));
     EXPECT_TRUE(reply.ok()) << i << ": " << reply.status().message << server.log();
   }
+}
+
+// Two cameras, whose poses come with the request or from TF.
+TEST(Requests, SeveralViewsAreAnsweredInTheFixedFrame) {
+  support::StubServer server({"tracking.fixed_frame=map"});
+  auto participant = support::test_participant("tester");
+  ASSERT_TRUE(participant.ok()) << participant.status().message;
+  auto service = wire::ServiceClient<msgs::DetectViews>::create(*participant, "detect_views");
+  ASSERT_TRUE(service.ok());
+  ASSERT_TRUE(service->wait_for_service(milliseconds(10000))) << server.log();
+  const auto ask = [&](const msgs::DetectViews_Request& request) {
+    auto reply = service->call(request, milliseconds(20000));
+    EXPECT_TRUE(reply.ok()) << reply.status().message;
+    return reply.ok() ? std::move(*reply) : msgs::DetectViews_Response();
+  };
+  msgs::DetectViews_Request request;
+  request.frames = {support::wall_frame(1'000), support::wall_frame(3'000)};
+  request.frames[1].header.frame_id = "other_camera";
+  request.scene_from_camera.resize(2);
+  for (auto& pose : request.scene_from_camera) pose.orientation.w = 1;
+  request.scene_from_camera[0].position.z = 2;
+  const auto found = ask(request);
+  ASSERT_TRUE(found.success) << found.status.message;
+  EXPECT_EQ(found.result.header.frame_id, "map");
+  const double depth = static_cast<double>(static_cast<float>(
+      support::wall_depth_mm()[support::kHeight / 2 * support::kWidth + support::kWidth / 2] *
+      0.001));
+  EXPECT_EQ(found.result.interpretations.at(0).placements.at(0).pose.pose.position.z, 2 + depth);
+  ASSERT_EQ(found.scene_from_camera.size(), 2u);
+  EXPECT_EQ(found.scene_from_camera[0].position.z, 2);
+  EXPECT_EQ(found.warnings, (std::vector<std::string>{"wall_camera", "other_camera"}));
+
+  request.scene_from_camera[1].orientation.w = 2;
+  EXPECT_EQ(ask(request).status.message,
+            "scene_from_camera[1] is no rigid motion: its numbers must be finite and its "
+            "quaternion of unit length");
+  request.scene_from_camera.resize(1);
+  EXPECT_EQ(ask(request).status.message,
+            "scene_from_camera has 1 entries; it must have one for each of the 2 frames, or none");
+  request.scene_from_camera.clear();
+  EXPECT_NE(ask(request).status.message.find("; give scene_from_camera"), std::string::npos);
+  request.frames.clear();
+  EXPECT_EQ(ask(request).status.message, "frames has 0 entries; it must have 1 to 16");
+
+  // The same poses from TF.
+  auto tf = wire::Publisher<wire::tf2_msgs::TFMessage>::create(*participant, "tf_static",
+                                                               {wire::qos::static_transforms()});
+  ASSERT_TRUE(tf.ok()) << tf.status().message;
+  wire::tf2_msgs::TFMessage transforms;
+  for (const char* camera : {"wall_camera", "other_camera"}) {
+    auto& transform = transforms.transforms.emplace_back();
+    transform.header.frame_id = "map";
+    transform.child_frame_id = camera;
+    transform.transform.rotation.w = 1;
+    transform.transform.translation.z = 5;
+  }
+  ASSERT_TRUE(tf->publish(transforms).ok());
+  request.frames = {support::wall_frame(1'000), support::wall_frame(3'000)};
+  request.frames[1].header.frame_id = "other_camera";
+  msgs::DetectViews_Response by_tf;
+  for (int i = 0; i < 100 && !by_tf.success; ++i) {
+    by_tf = ask(request);
+    std::this_thread::sleep_for(milliseconds(50));
+  }
+  ASSERT_TRUE(by_tf.success) << by_tf.status.message;
+  EXPECT_EQ(by_tf.result.interpretations.at(0).placements.at(0).pose.pose.position.z, 5 + depth);
 }
 
 TEST(Requests, AThousandAtOnceAreEachAnswered) {

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+#include <utility>
+
+#include "core/base/concat.hpp"
+#include "core/base/guarded.hpp"
+#include "server/convert/frames.hpp"
+#include "server/services/services.hpp"
+#include "server/tf_buffer.hpp"
+
+namespace bpa::server {
+namespace {
+
+namespace msgs = wire::bpa_msgs;
+using ViewsReply = Reply<msgs::DetectViews>;
+
+/// A frame of the largest sides has 604 MB.
+constexpr std::size_t kMaxViewsRequest = std::size_t{640} << 20U;
+constexpr std::uint32_t kMostInterpretations = 100;
+constexpr double kMostBudgetMs = 1'000'000;
+
+/// What one request asks, decoded.
+struct ViewsAsked {
+  std::vector<View> views;
+  DetectRequest search;
+  std::string fixed_frame;
+};
+
+Pose pose_of(const wire::geometry_msgs::Pose& message) {
+  const auto& q = message.orientation;
+  const auto& p = message.position;
+  return {Eigen::Quaterniond(q.w, q.x, q.y, q.z), {p.x, p.y, p.z}};
+}
+
+wire::geometry_msgs::Pose pose_message(const Pose& pose) {
+  wire::geometry_msgs::Pose out;
+  out.position.x = pose.translation.x();
+  out.position.y = pose.translation.y();
+  out.position.z = pose.translation.z();
+  out.orientation.w = pose.rotation.w();
+  out.orientation.x = pose.rotation.x();
+  out.orientation.y = pose.rotation.y();
+  out.orientation.z = pose.rotation.z();
+  return out;
+}
+
+Status check(const msgs::DetectViews_Request& request, const std::string& fixed_frame) {
+  if (request.frames.empty() || request.frames.size() > kMostViews) {
+    return invalid_argument("frames has ", request.frames.size(), " entries; it must have 1 to ",
+                            kMostViews);
+  }
+  if (!request.scene_from_camera.empty() &&
+      request.scene_from_camera.size() != request.frames.size()) {
+    return invalid_argument("scene_from_camera has ", request.scene_from_camera.size(),
+                            " entries; it must have one for each of the ", request.frames.size(),
+                            " frames, or none");
+  }
+  if (fixed_frame.empty()) {
+    return invalid_argument(
+        "fixed_frame is empty; name the frame of the results, or set tracking.fixed_frame");
+  }
+  if (request.top_k > kMostInterpretations) {
+    return invalid_argument("top_k is ", request.top_k, "; it must be between 1 and ",
+                            kMostInterpretations, ", or 0 for the server's setting");
+  }
+  if (!(request.time_budget_ms >= 0 && request.time_budget_ms <= kMostBudgetMs)) {
+    return invalid_argument("time_budget_ms is ", request.time_budget_ms,
+                            "; it must be between 0 and ", kMostBudgetMs);
+  }
+  return {};
+}
+
+/// Where the camera of frame `k` was.
+Result<Pose> camera_of(const msgs::DetectViews_Request& request, std::size_t k,
+                       const ViewsAsked& asked, const Frame& frame, const TfBuffer& transforms) {
+  if (!request.scene_from_camera.empty()) {
+    const Pose pose = pose_of(request.scene_from_camera[k]);
+    if (is_valid(pose)) return pose;
+    return invalid_argument("scene_from_camera[", k, "] is no rigid motion: its numbers must be ",
+                            "finite and its quaternion of unit length");
+  }
+  Result<Pose> pose = transforms.lookup(asked.fixed_frame, frame.frame_id, frame.stamp_ns);
+  if (pose.ok()) return pose;
+  return Status(pose.status().code,
+                concat("frames[", k, "]: ", pose.status().message,
+                       "; give scene_from_camera, or set tracking.fixed_frame for TF"));
+}
+
+Result<ViewsAsked> decode(msgs::DetectViews_Request& request, const ServerOptions& options,
+                          const TfBuffer& transforms) {
+  const DetectionOptions& detection = options.detection;
+  ViewsAsked asked;
+  asked.fixed_frame =
+      request.fixed_frame.empty() ? options.tracking.fixed_frame : request.fixed_frame;
+  if (Status status = check(request, asked.fixed_frame); !status.ok()) return status;
+  asked.search.models = request.models;
+  asked.search.top_k = request.top_k > 0 ? static_cast<int>(request.top_k) : detection.top_k;
+  asked.search.budget_ms =
+      request.time_budget_ms > 0 ? request.time_budget_ms : detection.budget_ms;
+  asked.search.seed = request.seed > 0 ? request.seed : detection.seed;
+  asked.search.num_threads = detection.threads;
+  for (std::size_t k = 0; k < request.frames.size(); ++k) {
+    Result<std::vector<PosePrior>> priors = priors_from_messages(request.frames[k].priors);
+    if (!priors.ok()) return priors.status();
+    DecodedFrame frame = frame_from_message(std::move(request.frames[k]));
+    if (!frame.ok()) {
+      return Status(frame.status().code, concat("frames[", k, "]: ", frame.status().message));
+    }
+    const Result<Pose> pose = camera_of(request, k, asked, *frame, transforms);
+    if (!pose.ok()) return pose.status();
+    asked.views.push_back({std::move(*frame), *pose, std::move(*priors)});
+  }
+  return asked;
+}
+
+void answer(const ServiceContext& context, const TfBuffer& transforms,
+            msgs::DetectViews_Request& request, const ViewsReply& reply) {
+  Result<ViewsAsked> asked = decode(request, *context.settings.get(), transforms);
+  if (!asked.ok()) return reply.refuse(asked.status());
+  Result<ViewsResult> found = context.recognition->detect_views(asked->views, asked->search);
+  if (!found.ok()) return reply.refuse(found.status());
+  for (const std::string& warning : found->warnings) log(reply.log(), LogLevel::warning, warning);
+  const auto& named = asked->search.models;
+  const auto models = named.empty() ? context.recognition->models().size() : named.size();
+  msgs::DetectViews_Response response = reply.refusal({});
+  response.success = true;
+  response.result = interpretations_message(
+      found->scene,
+      {found->scene.stamp_ns, asked->fixed_frame, static_cast<int>(models), asked->search.seed});
+  for (const Pose& pose : found->scene_from_camera) {
+    response.scene_from_camera.push_back(pose_message(pose));
+  }
+  response.warnings = std::move(found->warnings);
+  reply.send(response);
+}
+
+}  // namespace
+
+void add_detect_views(const ServiceContext& context, const TfBuffer& transforms,
+                      ServiceSet& services) {
+  services.add<msgs::DetectViews>(
+      "detect_views",
+      [context, &transforms](msgs::DetectViews_Request&& request, const ViewsReply& reply) {
+        const auto own = std::make_shared<msgs::DetectViews_Request>(std::move(request));
+        const auto work = [context, &transforms, own, reply] {
+          reply.guard([&] { answer(context, transforms, *own, reply); });
+        };
+        const auto refuse = [reply](const Status& status) { reply.refuse(status); };
+        context.worker.run_later(reply.client(), {work, refuse});
+      },
+      kMaxViewsRequest);
+}
+
+}  // namespace bpa::server
