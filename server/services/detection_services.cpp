@@ -26,14 +26,7 @@ constexpr std::size_t kMaxFrameRequest = std::size_t{640} << 20U;
 /// The server's settings where the request leaves the choice.
 Result<DetectRequest> search_of(const msgs::Detect_Request& request,
                                 const DetectionOptions& options) {
-  if (request.top_k > kMaxTopK) {
-    return invalid_argument("top_k is ", request.top_k, "; it must be between 1 and ", kMaxTopK,
-                            ", or 0 for the server's setting");
-  }
-  if (!(request.time_budget_ms >= 0 && request.time_budget_ms <= kMaxBudgetMs)) {
-    return invalid_argument("time_budget_ms is ", request.time_budget_ms,
-                            "; it must be between 0 and ", kMaxBudgetMs);
-  }
+  if (Status s = check_search(request.top_k, request.time_budget_ms); !s.ok()) return s;
   if (!(request.timeout_ms >= 0 && request.timeout_ms <= kMaxTimeoutMs)) {
     return invalid_argument("timeout_ms is ", request.timeout_ms, "; it must be between 0 and ",
                             kMaxTimeoutMs);
@@ -122,6 +115,18 @@ void add_change(const ServiceContext& context, const char* name, Change change,
 }
 
 }  // namespace
+
+Status check_search(std::uint32_t top_k, double time_budget_ms) {
+  if (top_k > kMaxTopK) {
+    return invalid_argument("top_k is ", top_k, "; it must be between 1 and ", kMaxTopK,
+                            ", or 0 for the server's setting");
+  }
+  if (!(time_budget_ms >= 0 && time_budget_ms <= kMaxBudgetMs)) {
+    return invalid_argument("time_budget_ms is ", time_budget_ms, "; it must be between 0 and ",
+                            kMaxBudgetMs);
+  }
+  return {};
+}
 
 Result<DetectJob> detect_job(msgs::Detect_Request&& request, const DetectionOptions& options) {
   const auto shared = std::make_shared<msgs::Detect_Request>(std::move(request));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -41,6 +42,8 @@ struct Asker {
 template <class Service>
 using Answer = std::function<void(const typename Service::Response&)>;
 
+/// Whether these two of a request are in their ranges.
+Status check_search(std::uint32_t top_k, double time_budget_ms);
 /// The job of a request, with the server's settings where the request leaves the choice; its client
 /// and `done` are left to the caller. Fails with invalid_argument.
 Result<DetectJob> detect_job(wire::bpa_msgs::Detect_Request&& request,

@@ -17,8 +17,6 @@ using ViewsReply = Reply<msgs::DetectViews>;
 
 /// A frame of the largest sides has 604 MB.
 constexpr std::size_t kMaxViewsRequest = std::size_t{640} << 20U;
-constexpr std::uint32_t kMostInterpretations = 100;
-constexpr double kMostBudgetMs = 1'000'000;
 
 /// What one request asks, decoded.
 struct ViewsAsked {
@@ -60,15 +58,7 @@ Status check(const msgs::DetectViews_Request& request, const std::string& fixed_
     return invalid_argument(
         "fixed_frame is empty; name the frame of the results, or set tracking.fixed_frame");
   }
-  if (request.top_k > kMostInterpretations) {
-    return invalid_argument("top_k is ", request.top_k, "; it must be between 1 and ",
-                            kMostInterpretations, ", or 0 for the server's setting");
-  }
-  if (!(request.time_budget_ms >= 0 && request.time_budget_ms <= kMostBudgetMs)) {
-    return invalid_argument("time_budget_ms is ", request.time_budget_ms,
-                            "; it must be between 0 and ", kMostBudgetMs);
-  }
-  return {};
+  return check_search(request.top_k, request.time_budget_ms);
 }
 
 /// Where the camera of frame `k` was.
