@@ -206,7 +206,7 @@ void ViewPool::compare() {
 void ViewPool::compare_in(int view, const ObjectModel& model) {
   Candidates candidates;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (entries_[i].model != &model) continue;
+    if (entries_[i].model != &model || entries_[i].in_view[view].score == kNotSeen) continue;
     candidates.push_back(entries_[i].in_view[view]);
     candidates.back().scene_point = static_cast<int>(i);  // the stage sorts them
   }

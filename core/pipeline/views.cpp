@@ -65,6 +65,7 @@ void check_cameras(std::span<const ViewSearch* const> views, const ViewsOptions&
 // Of one view alone: its own interpretations, in the fixed frame.
 SceneInterpretations moved(const SceneInterpretations& alone, const Pose& scene_from_camera) {
   SceneInterpretations out = alone;
+  out.frame_id.clear();
   for (Interpretation& interpretation : out.interpretations) {
     for (Placement& placement : interpretation.placements) {
       placement = transformed(scene_from_camera, placement);
