@@ -9,7 +9,7 @@ namespace bpa {
 /// How several views of one scene are joined.
 struct ViewsOptions {
   bool align_cameras = true;
-  double independence = 1;
+  double independence = 0.7;
   double empty_log_odds = -4;
   double min_pooled_score = -6;
   double same_position_m = 0.015;
