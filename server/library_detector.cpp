@@ -105,7 +105,16 @@ class LibraryDetector : public Recognition {
 
   Result<ViewsResult> detect_views(std::span<const View> views,
                                    const DetectRequest& request) const override {
-    return bpa::detect_views(*current(), views, request);
+    const Current now = this->now();
+    if (!now.front) return bpa::detect_views(*now.detector, views, request);
+    try {
+      return bpa::detect_views(*now.detector, views, request,
+                               [&](const Frame& frame, const DetectRequest& of_view) {
+                                 return now.front->searches_for(now.shared, frame, of_view, 0);
+                               });
+    } catch (const Failure& failure) {
+      return failure.status();
+    }
   }
 
   std::unique_ptr<ObjectTracker> make_tracker(const track::TrackerOptions& options) const override {

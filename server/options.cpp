@@ -4,6 +4,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/io/options_yaml.hpp"
+#include "core/pipeline/views.hpp"
 #include "idl/wire/names.hpp"
 #include "server/web/access.hpp"
 
@@ -34,6 +35,19 @@ Status check_group(const GroupOptions& group) {
                           "\"; it must have letters, digits and '_', and not begin with a digit");
 }
 
+Status check_views(const ServerOptions& options) {
+  const std::size_t cameras = options.input.views.size();
+  if (cameras == 0) return {};
+  if (cameras < 2 || cameras > kMostViews) {
+    return invalid_argument("input.views names ", cameras, " cameras; it must name 2 to ",
+                            kMostViews, ", or none");
+  }
+  if (!options.tracking.fixed_frame.empty()) return {};
+  return invalid_argument(
+      "input.views names cameras and tracking.fixed_frame is empty; set the frame of /tf that "
+      "results are in");
+}
+
 io::OptionsReading reading_into(ServerOptions& options) {
   return {options_of(options), "detector.", [&options] { return validate(options); }};
 }
@@ -59,6 +73,7 @@ Status validate(const ServerOptions& options) {
         "\"; a camera of the server's own has this machine's time: set one of them alone");
   }
   if (status.ok()) status = check_group(options.group);
+  if (status.ok()) status = check_views(options);
   if (status.ok() && !options.web.listen.empty()) {
     status = web::parse_listen(options.web.listen).status();
   }

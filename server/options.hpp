@@ -101,6 +101,8 @@ struct InputOptions {
   double sync_tolerance_ms = 10;
   int sync_queue = 10;
   double silence_s = 2;
+  std::vector<std::string> views;
+  double views_tolerance_ms = 50;
 
   void visit_fields(auto&& visit) {
     visit("frames", frames, {0, 0, "Topic of bpa_msgs/RgbdFrame; empty: none."});
@@ -134,6 +136,13 @@ struct InputOptions {
     visit("silence_s", silence_s,
           at_run_time(
               {0.1, 3600, "Seconds without a message after which a camera is reported as lost."}));
+    visit("views", views,
+          {0, 0,
+           "Cameras of one scene, by the frame_ids of their frames, 2 to 16: frames of nearly one "
+           "time are one search, with results in tracking.fixed_frame. Empty: each frame by "
+           "itself."});
+    visit("views_tolerance_ms", views_tolerance_ms,
+          {0, 10000, "Largest difference in ms between the stamps of such frames."});
   }
 };
 
@@ -181,7 +190,8 @@ struct QueueOptions {
 
   void visit_fields(auto&& visit) {
     visit("frames", frames,
-          at_run_time({1, 100, "Frames that may wait; a newer one displaces the oldest."}));
+          at_run_time(
+              {1, 100, "Frames of each camera that may wait; a newer one displaces the oldest."}));
     visit("requests", requests,
           at_run_time({1, 1000, "Detect requests that may wait; more are refused as busy."}));
   }

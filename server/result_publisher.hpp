@@ -51,13 +51,13 @@ class ResultPublisher {
            markers_.wanted() || tf_.wanted();
   }
 
-  /// `frame` is null when the frame broke a rule; then only the failed interpretations go out.
+  /// `frame` is null when the frame broke a rule, and for several views: then no picture goes out.
   void publish(const Frame* frame, const Result<SceneInterpretations>& result,
                const ResultContext& context) {
     if (interpretations_.is_open()) {
       interpretations_.send(interpretations_message(result, context), log_);
     }
-    if (frame == nullptr || !result.ok()) return;
+    if (!result.ok()) return;
     const Models models = recognition_->models();
     if (detections_.wanted()) detections_.send(detections_message(*result, models), log_);
     if (markers_.wanted()) {
@@ -65,7 +65,7 @@ class ResultPublisher {
       markers_.send(markers_message(*result, models, lifetime_s), log_);
     }
     if (tf_.wanted()) tf_.send(transforms_message(*result, tf_prefix_), log_);
-    if (!annotated_.wanted()) return;
+    if (frame == nullptr || !annotated_.wanted()) return;
     const Interpretation best =
         result->interpretations.empty() ? Interpretation() : result->interpretations.front();
     annotated_.send(image_message(*result, frame->camera.width, frame->camera.height,

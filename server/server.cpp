@@ -38,6 +38,7 @@
 #include "server/statistics.hpp"
 #include "server/track_publisher.hpp"
 #include "server/tracking.hpp"
+#include "server/view_gate.hpp"
 #include "server/web/feed.hpp"
 #include "server/web/page.hpp"
 #include "server/web/recent_log.hpp"
@@ -210,6 +211,13 @@ class Running : public Server {
 
   WorkerOptions worker_options(const ServerOptions& options) const {
     WorkerOptions worker = search_options(options);
+    worker.camera = [this](const std::string& frame_id, std::int64_t stamp_ns) {
+      const Settings::Snapshot now = settings_.get();
+      const auto patience = std::chrono::duration<double, std::milli>(now->tracking.tf_wait_ms);
+      return tracking_->transforms().wait_for(
+          now->tracking.fixed_frame, frame_id, stamp_ns,
+          std::chrono::duration_cast<std::chrono::nanoseconds>(patience), std::stop_token());
+    };
     worker.expected = [this](const std::string& frame_id) { return tracking_->expected(frame_id); };
     worker.tracked = [this] { return tracking_->active(); };
     worker.on_round = [this](const SceneInterpretations& found) { tracking_->add(found); };
@@ -227,7 +235,9 @@ class Running : public Server {
       incoming.taken = [shared = tracked.frame] { shared->set_searched(); };
       feed_.add_frame(tracked.frame, incoming.stamp_ns, incoming.frame_id);
     }
-    if (!publisher_->wanted() && !feed_.wanted() && tracking_->rests()) {
+    if (gate_ && gate_->takes(incoming.frame_id)) {
+      take_view(std::move(incoming));
+    } else if (!publisher_->wanted() && !feed_.wanted() && tracking_->rests()) {
       statistics_.add_frame(clock_->stamp_ns() - incoming.stamp_ns);
       statistics_.add(&Counts::frames_dropped);
       statistics_.add(&Counts::frames_at_rest);
@@ -237,7 +247,25 @@ class Running : public Server {
     tracking_->push(std::move(tracked));
   }
 
+  /// Hands frames of all cameras to the search when they are complete.
+  void take_view(IncomingFrame&& incoming) {
+    statistics_.add_frame(clock_->stamp_ns() - incoming.stamp_ns);
+    std::size_t displaced = 0;
+    auto views = gate_->add(std::move(incoming), displaced);
+    for (std::size_t i = 0; i < displaced; ++i) statistics_.add(&Counts::frames_dropped);
+    if (!views) return;
+    IncomingFrame all;
+    all.frame_id = settings_.get()->tracking.fixed_frame;
+    for (const IncomingFrame& view : *views) all.stamp_ns = std::max(all.stamp_ns, view.stamp_ns);
+    all.views = *std::move(views);
+    worker_->push(std::move(all));
+  }
+
   void start_sources(const ServerOptions& options) {
+    if (!options.input.views.empty()) {
+      gate_.emplace(options.input.views,
+                    static_cast<std::int64_t>(1e6 * options.input.views_tolerance_ms));
+    }
     const auto on_frame = [this](IncomingFrame&& frame) { take(std::move(frame)); };
     ServerOptions topics = options;
     if (!options.capture.source.empty()) topics.input.depth.clear();  // they may be our own
@@ -314,8 +342,10 @@ class Running : public Server {
         frame, result,
         {incoming.stamp_ns, incoming.frame_id, models, settings_.get()->detection.seed});
     if (!result.ok()) return log_failure(result.status());
-    tracking_->add(*result);
-    feed_.add_result(*frame, *result);
+    if (frame != nullptr) {  // else of several views, in the fixed frame
+      tracking_->add(*result);
+      feed_.add_result(*frame, *result);
+    }
     const auto& found = result->interpretations;
     log(log_, LogLevel::debug,
         concat("frame ", incoming.stamp_ns, ": ", found.empty() ? 0 : found[0].placements.size(),
@@ -506,6 +536,7 @@ class Running : public Server {
   std::unique_ptr<Tracking> tracking_;
   std::optional<TransformSource> transforms_;
   std::unique_ptr<Worker> worker_;
+  std::optional<ViewGate<IncomingFrame>> gate_;  ///< Of the cameras of one scene.
   std::vector<std::shared_ptr<FrameSource>> sources_;
   TopicSource* topics_ = nullptr;   ///< One of them.
   std::atomic<bool> ready_{false};  ///< All services are there.

@@ -21,7 +21,7 @@ bool same_search(const DetectRequest& a, const DetectRequest& b) {
 
 // Cameras whose last result is remembered; names of frames come from the wire.
 constexpr std::size_t kFollowedCameras = 16;
-constexpr std::size_t kMaxCameras = 64;  // whose frames wait; names come from the wire
+constexpr std::size_t kMaxCameras = 16;  // whose frames wait; names come from the wire
 constexpr std::size_t kMaxHelpers = 63;
 
 /// The request about a frame that came with priors of its own.
@@ -89,7 +89,8 @@ void Worker::refuse_waiting() {
 
 void Worker::push(IncomingFrame frame) {
   std::optional<IncomingFrame> displaced;  // freed outside the lock
-  statistics_.add_frame(ros_clock_->stamp_ns() - frame.stamp_ns);
+  // Those of several views are counted as they come.
+  if (frame.views.empty()) statistics_.add_frame(ros_clock_->stamp_ns() - frame.stamp_ns);
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto of_camera = [&](const IncomingFrame& other) {
     return other.frame_id == frame.frame_id;
@@ -104,7 +105,9 @@ void Worker::push(IncomingFrame frame) {
   if (oldest != frames_.end()) {
     displaced = std::move(*oldest);
     frames_.erase(oldest);
-    statistics_.add(&Counts::frames_dropped);
+    for (std::size_t i = 0; i < std::max<std::size_t>(displaced->views.size(), 1); ++i) {
+      statistics_.add(&Counts::frames_dropped);
+    }
   }
   frames_.push_back(std::move(frame));
   call_helpers();
@@ -410,6 +413,10 @@ void Worker::note_restart(const std::string& reason) {
 
 void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFrame> taken,
                             std::vector<DetectJob>& waiting) {
+  if (!taken.front().views.empty()) {
+    keep_waiting(waiting);
+    return work_on_views(options, std::move(taken.front()));
+  }
   {
     const std::lock_guard<std::mutex> lock(stream_mutex_);
     fusion_.set_max_frames(options.fuse_frames);
@@ -431,13 +438,7 @@ void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFr
     frame = std::move(made).value();
     newest = &incoming;
   }
-  if (!newest) {  // the jobs go on waiting for a better frame
-    const std::lock_guard<std::mutex> lock(mutex_);
-    awaiting_frame_.insert(awaiting_frame_.begin(), std::make_move_iterator(waiting.begin()),
-                           std::make_move_iterator(waiting.end()));
-    waiting.clear();
-    return;
-  }
+  if (!newest) return keep_waiting(waiting);
   frame = fuse(*std::move(frame), options);
   std::optional<Result<SceneInterpretations>> result;
   if (options.continuous) {
@@ -454,6 +455,59 @@ void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFr
                     answer_next_frame(options, *newest, *frame, job, result ? &*result : nullptr);
                   }));
   }
+}
+
+/// The jobs go on waiting for a better frame.
+void Worker::keep_waiting(std::vector<DetectJob>& waiting) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  awaiting_frame_.insert(awaiting_frame_.begin(), std::make_move_iterator(waiting.begin()),
+                         std::make_move_iterator(waiting.end()));
+  waiting.clear();
+}
+
+void Worker::work_on_views(const WorkerOptions& options, IncomingFrame incoming) {
+  std::vector<IncomingFrame> views = std::move(incoming.views);
+  Result<SceneInterpretations> result = search_views(options, views);
+  if (result.ok()) result->frame_id = incoming.frame_id;
+  publish(incoming, nullptr, result);
+}
+
+/// Counts each of the frames.
+Result<SceneInterpretations> Worker::search_views(const WorkerOptions& options,
+                                                  std::vector<IncomingFrame>& incoming) {
+  std::vector<View> views;
+  Status failed;
+  std::size_t rejected = 0;
+  for (IncomingFrame& one : incoming) {
+    DecodedFrame made = decoded(std::move(one.decode));
+    if (!made.ok()) {
+      statistics_.add_rejection(made.cause());
+      ++rejected;
+      failed = made.status();
+      continue;
+    }
+    const Result<Pose> camera = options.camera(one.frame_id, one.stamp_ns);
+    if (!camera.ok()) failed = camera.status();
+    views.push_back({std::move(made).value(), camera.ok() ? *camera : Pose(), one.priors});
+  }
+  std::optional<Result<SceneInterpretations>> result;
+  if (failed.ok()) {
+    failed = guard("the detector failed", [&] {
+      Result<ViewsResult> found = recognition_->detect_views(views, options.request);
+      if (!found.ok()) {
+        result.emplace(found.status());
+        return;
+      }
+      for (const std::string& warning : found->warnings) log(log_, LogLevel::warning, warning);
+      statistics_.add_timings(found->scene);
+      result.emplace(std::move(found->scene));
+    });
+  }
+  if (!failed.ok()) result.emplace(failed);
+  for (std::size_t i = rejected; i < incoming.size(); ++i) {
+    statistics_.add(result->ok() ? &Counts::frames_processed : &Counts::frames_failed);
+  }
+  return *std::move(result);
 }
 
 void Worker::publish(const IncomingFrame& incoming, const Frame* frame,

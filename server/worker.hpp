@@ -43,6 +43,9 @@ struct IncomingFrame {
   std::string frame_id;
   std::vector<PosePrior> priors = {};  ///< Of the sender, about its objects.
   std::function<void()> taken = {};    ///< Called when its search begins; may be empty.
+  /// Frames of several cameras that are one search; then this is no frame itself, and frame_id is
+  /// that of the results.
+  std::vector<IncomingFrame> views = {};
 };
 
 /// One detect request that waits for its answer.
@@ -71,6 +74,8 @@ struct WorkerOptions {
   int fuse_frames = DetectionOptions().fuse_frames;
   bool follow = DetectionOptions().follow;
   DetectRequest request;  ///< For every frame of the stream.
+  /// Where a camera is in the frame of results; for frames with views.
+  std::function<Result<Pose>(const std::string& frame_id, std::int64_t stamp_ns)> camera = {};
   /// Where objects are in the newest frame of this camera, from tracking. Nothing, or an empty
   /// function: what the camera's frame before showed.
   std::function<std::optional<std::vector<ExpectedPlacement>>(const std::string& frame_id)>
@@ -159,6 +164,10 @@ class Worker {
   Frame fuse(Frame frame, const WorkerOptions& options);
   void work_on_frames(const WorkerOptions& options, std::vector<IncomingFrame> taken,
                       std::vector<DetectJob>& waiting);
+  void work_on_views(const WorkerOptions& options, IncomingFrame incoming);
+  Result<SceneInterpretations> search_views(const WorkerOptions& options,
+                                            std::vector<IncomingFrame>& incoming);
+  void keep_waiting(std::vector<DetectJob>& waiting);
   void note_restart(const std::string& reason);
   std::vector<ExpectedPlacement> expected_in(const WorkerOptions& options, const Frame& frame);
   void remember(const Frame& frame, const Result<SceneInterpretations>& result);

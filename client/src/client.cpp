@@ -107,6 +107,7 @@ struct Client::Impl {
   ClientOptions options;
   wire::Participant participant;
   Caller<msgs::Detect> detect = {};
+  Caller<msgs::DetectViews> detect_views = {};
   Caller<msgs::ListModels> list_models = {};
   Caller<msgs::LoadModel> load_model = {};
   Caller<msgs::UnloadModel> unload_model = {};
@@ -133,6 +134,9 @@ struct Client::Impl {
 
   Result<DetectionSet> search(msgs::Detect_Request request, const DetectQuery& query,
                               Milliseconds asked) const;
+  /// Puts what both kinds of searches ask into a request but for its priors.
+  template <class Request>
+  static Status ask(const DetectQuery& query, Request& request);
   /// Has call() run on the callback thread with convert(message) for each message of the topic.
   /// Replaces the subscription in `slot`. Waits for a publisher if `wait`.
   template <class Message, class Convert, class Call>
@@ -155,6 +159,7 @@ Result<std::unique_ptr<Client::Impl>> Client::Impl::create(const ClientOptions& 
     if (status.ok()) status = caller.open(impl->participant, service);
   };
   make(impl->detect, "detect");
+  make(impl->detect_views, "detect_views");
   make(impl->list_models, "list_models");
   make(impl->load_model, "load_model");
   make(impl->unload_model, "unload_model");
@@ -185,20 +190,26 @@ Status Client::Impl::subscribe(std::optional<wire::Subscriber<Message>>& slot, c
   return {};
 }
 
-Result<DetectionSet> Client::Impl::search(msgs::Detect_Request request, const DetectQuery& query,
-                                          Milliseconds asked) const {
+template <class Request>
+Status Client::Impl::ask(const DetectQuery& query, Request& request) {
   if (query.top_k < 0 || query.top_k > 100) {
     return invalid_argument("top_k is " + std::to_string(query.top_k) +
                             "; it must be between 1 and 100, or 0 for the server's setting");
   }
-  const Milliseconds timeout = asked > Milliseconds(0) ? asked : options.detect_timeout;
-  auto priors = sdk::to_messages(query.priors);
-  if (!priors.ok()) return priors.status();
-  request.frame.priors = std::move(priors).value();
   request.models = query.models;
   request.top_k = static_cast<std::uint32_t>(query.top_k);
   request.time_budget_ms = query.budget_ms;
   request.seed = query.seed;
+  return {};
+}
+
+Result<DetectionSet> Client::Impl::search(msgs::Detect_Request request, const DetectQuery& query,
+                                          Milliseconds asked) const {
+  if (Status status = ask(query, request); !status.ok()) return status;
+  const Milliseconds timeout = asked > Milliseconds(0) ? asked : options.detect_timeout;
+  auto priors = sdk::to_messages(query.priors);
+  if (!priors.ok()) return priors.status();
+  request.frame.priors = std::move(priors).value();
   // The server gives up earlier than we do, so that it can say why.
   const auto total_ms = static_cast<double>(timeout.count());
   request.timeout_ms = std::max(1.0, total_ms - std::clamp(0.25 * total_ms, 50.0, 1000.0));
@@ -289,6 +300,32 @@ Result<DetectionSet> Client::detect_in(const FrameView& frame, const DetectQuery
     request.has_frame = true;
     request.frame = sdk::to_owned_message(frame);
     return impl_->search(std::move(request), query, timeout);
+  });
+}
+
+Result<SceneDetections> Client::detect_views(const std::vector<PosedFrame>& views,
+                                             const std::string& fixed_frame,
+                                             const DetectQuery& query, Milliseconds timeout) {
+  return guarded([&]() -> Result<SceneDetections> {
+    msgs::DetectViews_Request request;
+    if (Status status = impl_->ask(query, request); !status.ok()) return status;
+    for (const PosedFrame& view : views) {
+      if (Status status = sdk::check(view.frame); !status.ok()) return status;
+      request.frames.push_back(sdk::to_owned_message(view.frame));
+      request.scene_from_camera.push_back(sdk::to_message(view.scene_from_camera));
+    }
+    auto priors = sdk::to_messages(query.priors);
+    if (!priors.ok()) return priors.status();
+    if (!views.empty()) request.frames.front().priors = std::move(priors).value();
+    request.fixed_frame = fixed_frame;
+    const auto response = impl_->detect_views.call(
+        request, timeout > Milliseconds(0) ? timeout : impl_->options.detect_timeout);
+    if (Status status = outcome(response); !status.ok()) return status;
+    SceneDetections result{sdk::to_detections(response->result), {}, response->warnings};
+    for (const auto& pose : response->scene_from_camera) {
+      result.scene_from_camera.push_back(sdk::to_pose(pose));
+    }
+    return result;
   });
 }
 

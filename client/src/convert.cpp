@@ -16,12 +16,6 @@ namespace msgs = wire::bpa_msgs;
 constexpr std::int64_t kMinSide = 16;  // of a frame, pixels
 constexpr std::int64_t kMaxSide = 8192;
 
-ObjectPose to_pose(const wire::geometry_msgs::Pose& message) {
-  const auto& p = message.position;
-  const auto& q = message.orientation;
-  return {{{p.x, p.y, p.z}}, {{q.x, q.y, q.z, q.w}}};
-}
-
 OrientationSpread to_spread(const msgs::Bingham& message) {
   OrientationSpread spread;
   for (std::size_t i = 0; i < 12; ++i) spread.axes[i / 4][i % 4] = message.axes[i];
@@ -124,10 +118,7 @@ msgs::BasicRgbdFrame<Bytes> make_message(const FrameView& frame) {
 msgs::PosePrior to_message(const ExpectedPose& prior) {
   msgs::PosePrior message;
   message.model = prior.model;
-  const auto& p = prior.camera_from_object.position;
-  const auto& q = prior.camera_from_object.orientation;
-  message.pose.position = {p[0], p[1], p[2]};
-  message.pose.orientation = {q[0], q[1], q[2], q[3]};
+  message.pose = sdk::to_message(prior.camera_from_object);
   for (std::size_t i = 0; i < 12; ++i) {
     message.orientation.axes[i] = prior.orientation_spread.axes[i / 4][i % 4];
   }
@@ -138,6 +129,18 @@ msgs::PosePrior to_message(const ExpectedPose& prior) {
 }
 
 }  // namespace
+
+ObjectPose to_pose(const wire::geometry_msgs::Pose& message) {
+  const auto& p = message.position;
+  const auto& q = message.orientation;
+  return {{{p.x, p.y, p.z}}, {{q.x, q.y, q.z, q.w}}};
+}
+
+wire::geometry_msgs::Pose to_message(const ObjectPose& pose) {
+  const auto& p = pose.position;
+  const auto& q = pose.orientation;
+  return {{p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]}};
+}
 
 Status to_status(const msgs::Status& message) {
   if (message.code <= static_cast<std::uint8_t>(StatusCode::internal)) {

@@ -60,15 +60,6 @@ Result<Models> chosen_models(const ModelLibrary& library, const DetectRequest& r
   return chosen;
 }
 
-// The first `count`, their probabilities scaled to sum to 1 again.
-void keep_best(std::vector<Interpretation>& interpretations, std::size_t count) {
-  if (interpretations.size() <= count) return;
-  interpretations.resize(count);
-  double sum = 0;
-  for (const Interpretation& interpretation : interpretations) sum += interpretation.probability;
-  for (Interpretation& interpretation : interpretations) interpretation.probability /= sum;
-}
-
 // Judges the candidates again, given the others of a first interpretation.
 void judge_again(const SceneFeatures& scene, const Overlaps& overlaps, const ScoreLayers& layers,
                  const DetectRequest& request, Candidates& candidates) {
@@ -117,8 +108,9 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
 
 Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
                                                         const DetectRequest& request,
-                                                        const MakeSearches& searches) const {
-  return detect(frame, request, nullptr, searches);
+                                                        const MakeSearches& searches,
+                                                        FrameTrace* trace) const {
+  return detect(frame, request, trace, searches);
 }
 
 Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRequest& request,

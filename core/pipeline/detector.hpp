@@ -58,6 +58,9 @@ class ModelSearches;
 using MakeSearches = std::function<std::unique_ptr<ModelSearches>(
     const std::vector<std::shared_ptr<const ObjectModel>>&, const DetectorOptions&)>;
 
+/// The same for each of several frames.
+using SearchesFor = std::function<MakeSearches(const Frame&, const DetectRequest&)>;
+
 /// Finds the objects of a library in RGB-D frames. Immutable after construction; detect() may be
 /// called from several threads at once.
 class Detector {
@@ -73,8 +76,10 @@ class Detector {
                                       FrameTrace* trace = nullptr) const;
   /// The same, but the models are searched for where `searches` says. The answer is that of
   /// detect(), unless there is a budget or a part of the search was lost.
+  /// `trace`, if given, lacks the stages of objects.
   Result<SceneInterpretations> detect_elsewhere(const Frame& frame, const DetectRequest& request,
-                                                const MakeSearches& searches) const;
+                                                const MakeSearches& searches,
+                                                FrameTrace* trace = nullptr) const;
 
   const ModelLibrary& library() const { return *library_; }
   const DetectorOptions& options() const { return options_; }

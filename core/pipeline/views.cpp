@@ -35,14 +35,6 @@ DetectRequest seen_from(const Pose& scene_from_camera, const DetectRequest& requ
   return out;
 }
 
-void keep_first(std::vector<Interpretation>& interpretations, int count) {
-  if (std::ssize(interpretations) <= count) return;
-  interpretations.resize(count);
-  double sum = 0;
-  for (const Interpretation& interpretation : interpretations) sum += interpretation.probability;
-  for (Interpretation& interpretation : interpretations) interpretation.probability /= sum;
-}
-
 // Surfaces of the views in the fixed frame: how far they are apart, and where the cameras then are.
 void check_cameras(std::span<const ViewSearch* const> views, const ViewsOptions& options,
                    ViewsResult& out) {
@@ -92,6 +84,9 @@ SceneInterpretations summed(std::span<const ViewSearch* const> views) {
     const SceneInterpretations& alone = view->alone;
     out.stamp_ns = std::max(out.stamp_ns, alone.stamp_ns);
     out.budget_exhausted |= alone.budget_exhausted;
+    for (const std::string& name : alone.not_searched) {
+      if (std::ranges::count(out.not_searched, name) == 0) out.not_searched.push_back(name);
+    }
     out.effort += alone.effort;
     out.fused_frames = std::max(out.fused_frames, alone.fused_frames);
     out.total_milliseconds += alone.total_milliseconds;
@@ -138,9 +133,9 @@ double combined_log_odds(std::span<const ViewEvidence> views, const ViewsOptions
 }
 
 Result<ViewSearch> search_view(const Detector& detector, const Frame& frame,
-                               const DetectRequest& request) {
+                               const DetectRequest& request, const MakeSearches& elsewhere) {
   FrameTrace trace;
-  Result<SceneInterpretations> alone = detector.detect(frame, request, &trace);
+  Result<SceneInterpretations> alone = detector.detect_elsewhere(frame, request, elsewhere, &trace);
   if (!alone.ok()) return alone.status();
   return ViewSearch{std::move(trace.scene), std::move(trace.candidates), std::move(*alone)};
 }
@@ -179,13 +174,13 @@ ViewsResult combine_views(const Detector& detector, std::span<const ViewSearch* 
   InterpretationOptions interpretation = detector.options().scene;
   interpretation.seed = request.seed;
   out.scene.interpretations = interpret(joined, overlaps, pool.observed_pixels(), interpretation);
-  keep_first(out.scene.interpretations, request.top_k);
+  keep_best(out.scene.interpretations, request.top_k);
   finish_stage("interpretations of views");
   return out;
 }
 
 Result<ViewsResult> detect_views(const Detector& detector, std::span<const View> views,
-                                 const DetectRequest& asked) {
+                                 const DetectRequest& asked, const SearchesFor& elsewhere) {
   if (Status status = check_views(views); !status.ok()) return status;
   const DetectRequest request = with_priors_of(views, asked);
   std::vector<ViewSearch> searches;
@@ -199,7 +194,9 @@ Result<ViewsResult> detect_views(const Detector& detector, std::span<const View>
       const auto left = static_cast<double>(views.size() - v);
       of_view.budget_ms = std::max(1.0, deadline.milliseconds_left() / left);
     }
-    Result<ViewSearch> search = search_view(detector, views[v].frame, of_view);
+    const Frame& frame = views[v].frame;
+    Result<ViewSearch> search =
+        search_view(detector, frame, of_view, elsewhere ? elsewhere(frame, of_view) : nullptr);
     if (!search.ok()) {
       return Status(search.status().code, concat("views[", v, "]: ", search.status().message));
     }

@@ -52,10 +52,10 @@ struct ViewEvidence {
 /// view that sees it gives its own log odds. See ViewsOptions::independence.
 double combined_log_odds(std::span<const ViewEvidence> views, const ViewsOptions& options);
 
-/// Searches one view. Priors and expected placements of `request` are in the camera frame. Errors
-/// as of Detector::detect().
+/// Searches one view, here or on other hosts. Priors and expected placements of `request` are in
+/// the camera frame. Errors as of Detector::detect().
 Result<ViewSearch> search_view(const Detector& detector, const Frame& frame,
-                               const DetectRequest& request);
+                               const DetectRequest& request, const MakeSearches& elsewhere = {});
 
 /// Joins views that were searched, at least one. `scene_from_camera` has a pose for each view.
 /// Priors of `request` are in the fixed frame. The same answer for any number of threads.
@@ -65,9 +65,10 @@ ViewsResult combine_views(const Detector& detector, std::span<const ViewSearch* 
 /// Searches all views and joins them. Priors and expected placements are in the fixed frame. The
 /// time budget is that of all views together. Fails as Detector::detect() does, naming the view,
 /// and with invalid_argument without a view, on more than kMostViews or on a pose that is no rigid
-/// motion. `on_round` is not called.
+/// motion. `on_round` is not called. With `elsewhere`, other hosts search; it may throw a Failure.
 Result<ViewsResult> detect_views(const Detector& detector, std::span<const View> views,
-                                 const DetectRequest& request = {});
+                                 const DetectRequest& request = {},
+                                 const SearchesFor& elsewhere = {});
 
 constexpr std::size_t kMostViews = 16;  ///< Chosen by hand: memory grows with their number.
 

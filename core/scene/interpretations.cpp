@@ -252,4 +252,12 @@ std::vector<Interpretation> interpret(const Candidates& candidates, const Overla
   return out;
 }
 
+void keep_best(std::vector<Interpretation>& interpretations, std::size_t count) {
+  if (interpretations.size() <= count) return;
+  interpretations.resize(count);
+  double sum = 0;
+  for (const Interpretation& interpretation : interpretations) sum += interpretation.probability;
+  for (Interpretation& interpretation : interpretations) interpretation.probability /= sum;
+}
+
 }  // namespace bpa

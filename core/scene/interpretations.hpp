@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -71,5 +72,8 @@ void let_compete(Candidates& candidates, const Overlaps& overlaps);
 /// searched pixels of the reduced image.
 std::vector<Interpretation> interpret(const Candidates& candidates, const Overlaps& overlaps,
                                       int observed_pixels, const InterpretationOptions& options);
+
+/// Keeps the first `count`, at least 1; their probabilities are scaled to sum to 1 again.
+void keep_best(std::vector<Interpretation>& interpretations, std::size_t count);
 
 }  // namespace bpa

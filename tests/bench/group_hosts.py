@@ -121,10 +121,13 @@ class Group:
                    for line in out.splitlines() if line.strip().startswith('worker'))
 
     def wait_for(self, workers):
-        end = time.monotonic() + 300
+        end = time.monotonic() + 60
         while self.ready() != workers:
             if time.monotonic() > end:
-                raise SystemExit(f'{workers} workers did not come: {self.folder}')
+                print(self.client('status').stdout, file=sys.stderr)
+                for log in sorted(self.folder.glob('*.log')):
+                    print(log.name, log.read_text(encoding='utf-8')[-2000:], sep='\n', file=sys.stderr)
+                raise SystemExit(f'{workers} workers did not come')
             time.sleep(0.2)
 
     def stop(self, name):

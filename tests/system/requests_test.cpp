@@ -17,6 +17,7 @@
 #include "idl/wire/publisher.hpp"
 #include "idl/wire/service.hpp"
 #include "idl/wire/subscriber.hpp"
+#include "tests/support/latest.hpp"
 #include "tests/support/stub_server.hpp"
 #include "tests/support/wall_messages.hpp"
 #include "tests/support/wall_view.hpp"
@@ -186,6 +187,68 @@ TEST(Requests, ThoseRightAfterDiscoveryAreAnswered) {
   }
 }
 
+// Frames of two cameras with nearly one stamp are one search; the third frame waits for its
+// partner.
+TEST(Requests, FramesOfSeveralCamerasAtNearlyOneTimeAreOneSearch) {
+  support::StubServer server({"tracking.fixed_frame=map", "input.views=[wall_camera, other_camera]",
+                              "input.views_tolerance_ms=20", "tracking.tf_wait_ms=1000"});
+  auto participant = support::test_participant("tester");
+  ASSERT_TRUE(participant.ok()) << participant.status().message;
+  support::Latest<msgs::SceneInterpretations> latest;
+  auto results = wire::Subscriber<msgs::SceneInterpretations>::create(
+      *participant, "interpretations", {wire::qos::results()},
+      [&](msgs::SceneInterpretations&& found, const wire::SampleMeta&) { latest.add(found); });
+  auto frames =
+      wire::Publisher<msgs::RgbdFrame>::create(*participant, "frames", {wire::qos::frames()});
+  auto tf = wire::Publisher<wire::tf2_msgs::TFMessage>::create(*participant, "tf_static",
+                                                               {wire::qos::static_transforms()});
+  ASSERT_TRUE(results.ok() && frames.ok() && tf.ok());
+  ASSERT_TRUE(frames->wait_for_matched(milliseconds(10000))) << server.log();
+  ASSERT_TRUE(results->wait_for_matched(milliseconds(10000))) << server.log();
+  ASSERT_TRUE(tf->wait_for_matched(milliseconds(10000))) << server.log();
+  wire::tf2_msgs::TFMessage transforms;
+  for (const char* camera : {"wall_camera", "other_camera"}) {
+    auto& transform = transforms.transforms.emplace_back();
+    transform.header.frame_id = "map";
+    transform.child_frame_id = camera;
+    transform.transform.rotation.w = 1;
+    transform.transform.translation.z = 5;
+  }
+  ASSERT_TRUE(tf->publish(transforms).ok());
+  const auto send = [&](const char* camera, std::int64_t stamp_ms) {
+    msgs::RgbdFrame frame = support::wall_frame(1'000'000 * stamp_ms);
+    frame.header.frame_id = camera;
+    ASSERT_TRUE(frames->publish(frame).ok());
+  };
+  send("wall_camera", 1000);
+  send("wall_camera", 1100);   // takes the place of the first
+  send("other_camera", 1115);  // is its partner
+  const auto at = [&](std::int64_t stamp_ms) {
+    return latest.wait_for([&](const msgs::SceneInterpretations& one) {
+      return wire::builtin_interfaces::to_ns(one.header.stamp) == 1'000'000 * stamp_ms;
+    });
+  };
+  const auto found = at(1115);
+  ASSERT_TRUE(found) << server.log();
+  EXPECT_EQ(found->status.message, "");
+  EXPECT_EQ(found->header.frame_id, "map");
+  const double depth = static_cast<double>(static_cast<float>(
+      support::wall_depth_mm()[support::kHeight / 2 * support::kWidth + support::kWidth / 2] *
+      0.001));
+  EXPECT_EQ(found->interpretations.at(0).placements.at(0).pose.pose.position.z, 5 + depth);
+  send("wall_camera", 2000);
+  send("other_camera", 2021);  // too late
+  send("wall_camera", 2030);
+  ASSERT_TRUE(at(2030)) << server.log();
+  auto status = wire::ServiceClient<msgs::GetStatus>::create(*participant, "get_status");
+  ASSERT_TRUE(status.ok());
+  const auto counted = status->call({}, milliseconds(20000));
+  ASSERT_TRUE(counted.ok());
+  EXPECT_EQ(counted->frames_received, 6U);
+  EXPECT_EQ(counted->frames_processed, 4U);
+  EXPECT_EQ(counted->frames_dropped, 2U);
+}
+
 // Two cameras, whose poses come with the request or from TF.
 TEST(Requests, SeveralViewsAreAnsweredInTheFixedFrame) {
   support::StubServer server({"tracking.fixed_frame=map"});
@@ -215,6 +278,19 @@ TEST(Requests, SeveralViewsAreAnsweredInTheFixedFrame) {
   ASSERT_EQ(found.scene_from_camera.size(), 2u);
   EXPECT_EQ(found.scene_from_camera[0].position.z, 2);
   EXPECT_EQ(found.warnings, (std::vector<std::string>{"wall_camera", "other_camera"}));
+
+  auto client = Client::connect(support::client_options());
+  ASSERT_TRUE(client.ok()) << client.status().message;
+  const support::WallView wall;
+  std::vector<PosedFrame> views(2, {wall.view(), ObjectPose()});
+  views[0].scene_from_camera.position[2] = 2;
+  const auto by_sdk = client->detect_views(views, "map");
+  ASSERT_TRUE(by_sdk.ok()) << by_sdk.status().message;
+  EXPECT_EQ(by_sdk->found.frame_id, "map");
+  EXPECT_EQ(by_sdk->found.best().at(0).camera_from_object.position[2], 2 + depth);
+  EXPECT_EQ(by_sdk->scene_from_camera.at(0).position[2], 2);
+  EXPECT_EQ(by_sdk->warnings.size(), 2U);
+  EXPECT_EQ(client->detect_views({}, "map").status().code, StatusCode::invalid_argument);
 
   request.scene_from_camera[1].orientation.w = 2;
   EXPECT_EQ(ask(request).status.message,

@@ -72,6 +72,14 @@ class Client {
   Result<DetectionSet> detect_in(const FrameView& frame, const DetectQuery& query = {},
                                  std::chrono::milliseconds timeout = {});
 
+  /// Searches 1 to 16 frames of one scene as one: the evidence of all views counts. `fixed_frame`
+  /// names the frame of the poses and of the result. Priors of `query` are in the first frame's
+  /// camera.
+  Result<SceneDetections> detect_views(const std::vector<PosedFrame>& views,
+                                       const std::string& fixed_frame,
+                                       const DetectQuery& query = {},
+                                       std::chrono::milliseconds timeout = {});
+
   /// Hands a frame to the server's stream; subscribers get the result. When frames come
   /// faster than they are searched, the server takes the newest. Returns once the frame is sent,
   /// not when it is searched. Fails with `unavailable` when no server listens within the time-out.

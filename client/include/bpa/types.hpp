@@ -147,6 +147,23 @@ struct DetectQuery {
   std::vector<ExpectedPose> priors = {};  ///< What is known beforehand of the frame.
 };
 
+/// A frame of one of several cameras of a scene that stands still, or of one camera that moved.
+struct PosedFrame {
+  FrameView frame;
+  /// Of the camera's optical frame, in the fixed frame; metres.
+  ObjectPose scene_from_camera;
+};
+
+/// What several frames of one scene show together.
+struct SceneDetections {
+  DetectionSet found;  ///< In the fixed frame: camera_from_object is scene_from_object.
+  /// Poses of the cameras as used: moved until their surfaces agree, unless the server's setting
+  /// detector.views.align_cameras is off.
+  std::vector<ObjectPose> scene_from_camera;
+  /// A sentence for each two cameras whose surfaces disagree, with the distance and the angle.
+  std::vector<std::string> warnings;
+};
+
 /// What is known of a tracked object now.
 enum class TrackedState {
   tentative,  ///< Found once; the next frames and searches decide.
