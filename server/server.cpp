@@ -153,6 +153,8 @@ class Running : public Server {
     return {};
   }
 
+  void leave_to_another() override { worker_->leave_to_another(); }
+
   void abandon(const Status& why) override {
     log(log_, LogLevel::error, why.message + "; the server ends");
     worker_->abandon(why);

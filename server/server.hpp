@@ -28,6 +28,9 @@ class Server {
   /// For a server that hangs, before its process ends: says why, answers requests that wait, ends
   /// recordings and withdraws the services. It must not be used or destroyed after this.
   virtual void abandon(const Status& why) = 0;
+  /// Before it is destroyed, where another server has its place: requests that wait or come stay
+  /// without an answer, as the other one answers them.
+  virtual void leave_to_another() {}
 };
 
 }  // namespace bpa::server

@@ -68,6 +68,14 @@ void Worker::abandon(const Status& why) {
   refuse_waiting();
 }
 
+void Worker::leave_to_another() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    silent_ = true;
+  }
+  stop_taking(unavailable("another server has taken over"));
+}
+
 void Worker::stop_taking(const Status& why) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!stopping_) why_stopping_ = why;
@@ -82,7 +90,9 @@ void Worker::refuse_waiting() {
   while (auto job = requests_.pop()) jobs.push_back(*std::move(job));
   std::vector<Errand> errands;
   while (auto errand = errands_.pop()) errands.push_back(*std::move(errand));
+  const bool silent = silent_;
   lock.unlock();
+  if (silent) return;
   for (DetectJob& job : jobs) hand_over(job, nullptr, why);
   for (const Errand& errand : errands) errand.refuse(why);
 }
@@ -126,7 +136,8 @@ double Worker::wait_ms(const DetectJob& job) const {
   const double search_ms = statistics_.median_total_ms();
   double wait = 0;
   if (const auto work = busy_.work()) wait += std::max(0.0, search_ms - 1e3 * work->seconds);
-  if (job.decode) wait += search_ms * static_cast<double>(job.position);
+  const auto at_once = static_cast<double>(recognition_->searches_at_once());
+  if (job.decode) wait += search_ms * static_cast<double>(job.position) / at_once;
   if (!job.request.models.empty()) return wait;
   const double own_ms = statistics_.shortest_total_ms();
   return wait + (job.request.budget_ms > 0 ? std::min(own_ms, job.request.budget_ms) : own_ms);
@@ -164,7 +175,7 @@ Status Worker::push(DetectJob job) {
 }
 
 Status Worker::admit(DetectJob job, std::optional<DetectJob>& displaced) {
-  if (stopping_) return why_stopping_;
+  if (stopping_) return silent_ ? Status() : why_stopping_;
   const std::size_t waiting = requests_.size() + awaiting_frame_.size();
   if (waiting >= options_.request_capacity) {
     displaced = displace_for(job.client);
@@ -239,6 +250,7 @@ std::deque<IncomingFrame>::iterator Worker::next_frame() {
 
 void Worker::run_later(const wire::Guid& client, Errand errand) {
   std::unique_lock<std::mutex> lock(mutex_);
+  if (silent_) return;
   const bool stopping = stopping_;
   const Status why = why_stopping_;
   const bool full = errands_.size() >= options_.request_capacity;

@@ -109,6 +109,9 @@ class Worker {
 
   /// What each of its threads does now: a search, or a change of the library.
   std::vector<const Busy*> threads() const;
+  /// Takes nothing more, and forgets what waits or comes later: another server answers it. stop()
+  /// follows.
+  void leave_to_another();
   /// For a worker that hangs: answers what waits or comes later with `why`, and waits for nothing.
   void abandon(const Status& why);
 
@@ -205,6 +208,7 @@ class Worker {
   FairQueue<wire::Guid, Errand> errands_;
   bool frame_was_last_ = false;  ///< Whose turn it is when both wait.
   bool stopping_ = false;
+  bool silent_ = false;  ///< Then: nobody is told.
   Status why_stopping_;
   std::deque<Helper> helpers_;
   std::thread thread_;  ///< Last: starts when all else is there.

@@ -123,8 +123,14 @@ std::size_t Members::idle(const std::vector<std::uint64_t>& workers) const {
 double Members::ms_a_model(std::uint64_t worker) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto found = members_.find(worker);
-  const double measured = found == members_.end() ? 0 : found->second.ms_a_model;
-  return measured > 0 ? measured : kUsualMsAModel;
+  if (found != members_.end() && found->second.ms_a_model > 0) return found->second.ms_a_model;
+  double sum = 0;
+  int measured = 0;
+  for (const auto& [id, member] : members_) {
+    sum += member.ms_a_model;
+    measured += member.ms_a_model > 0;
+  }
+  return measured > 0 ? sum / measured : kUsualMsAModel;
 }
 
 void Members::measured(std::uint64_t worker, double ms_a_model) {

@@ -61,7 +61,7 @@ class Members {
   /// How many of these search nothing now.
   std::size_t idle(const std::vector<std::uint64_t>& workers) const;
 
-  /// Its measured time for a model of a search; a guess before that.
+  /// Its measured time for a model of a search; before that the mean of others.
   double ms_a_model(std::uint64_t worker) const;
 
   /// Of one more search.

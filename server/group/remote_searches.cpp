@@ -46,7 +46,9 @@ class Searches : public ModelSearches {
     std::size_t count;
     {
       const std::lock_guard<std::mutex> lock(links_->cost_mutex);
-      count = workers_for_frame(links_->cost, waiting + 1, std::max<std::size_t>(idle, 1));
+      SearchCost cost = links_->cost;
+      cost.search_ms *= static_cast<double>(models_.size());
+      count = workers_for_frame(cost, waiting + 1, std::max<std::size_t>(idle, 1));
     }
     std::vector<std::size_t> all(models_.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
@@ -282,7 +284,8 @@ class Searches : public ModelSearches {
       busy_ms += searched_ms;
     }
     const std::lock_guard<std::mutex> lock(links_->cost_mutex);
-    links_->cost.add({preparation_ms_, busy_ms, exchange_ms_});
+    links_->cost.add(
+        {preparation_ms_, busy_ms / static_cast<double>(models_.size()), exchange_ms_});
   }
 
   const std::shared_ptr<Links> links_;

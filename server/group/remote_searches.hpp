@@ -64,7 +64,7 @@ struct Links {
   Members members;
   Mailboxes mailboxes;
   std::mutex cost_mutex;
-  SearchCost cost;
+  SearchCost cost{.search_ms = 150};  ///< search_ms is that of one model.
 };
 
 /// The searches for one frame's models, on the workers. `begin` is of begin_message(); `waiting` is

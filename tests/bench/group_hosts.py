@@ -115,6 +115,12 @@ class Group:
         return subprocess.run(['ip', 'netns', 'exec', self.hosts.name(0), self.programs / 'bpa-client', *arguments],
                               capture_output=True, text=True, timeout=timeout, env=self.environment, check=False)
 
+    def begin(self, *arguments):
+        """A client that runs."""
+        return subprocess.Popen(['ip', 'netns', 'exec', self.hosts.name(0), self.programs / 'bpa-client',
+                                 *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                env=self.environment)
+
     def ready(self):
         out = self.client('--timeout', '20', 'status').stdout
         return sum(': ' not in line and 'ready' in line and 'beside' not in line
@@ -129,6 +135,9 @@ class Group:
                     print(log.name, log.read_text(encoding='utf-8')[-2000:], sep='\n', file=sys.stderr)
                 raise SystemExit(f'{workers} workers did not come')
             time.sleep(0.2)
+
+    def log(self, name):
+        return (self.folder / f'{name}.log').read_text(encoding='utf-8')
 
     def stop(self, name):
         process = self.processes.pop(name)
@@ -177,7 +186,7 @@ def cell(options, hosts):
 
 def scale(options):
     print('| workers | seconds a frame (median) | of one worker | efficiency | MB sent by the front a frame '
-          '| same answer |\n|---|---|---|---|---|---|')
+          f'| same answer | frames a minute of {options.clients} clients at once |\n|---|---|---|---|---|---|---|')
     first, reference = None, None
     for workers in options.workers:
         with cell(options, workers + 1) as (hosts, group):
@@ -191,6 +200,12 @@ def scale(options):
             if frames is None:
                 raise SystemExit(text)
             sent = (hosts.sent_bytes(0) - before) / len(frames) / 1e6
+            began = time.monotonic()
+            clients = [group.begin('detect', '--bop', options.bop, '--wait', '240')
+                       for _ in range(options.clients)]
+            for client in clients:
+                client.communicate(timeout=600)
+            rate = 60 * len(frames) * options.clients / (time.monotonic() - began)
         seconds = statistics.median(frame['seconds'] for frame in frames)
         answers = [answer_of(frame) for frame in frames]
         first, reference = first or seconds * workers / 1, reference or answers
@@ -198,7 +213,7 @@ def scale(options):
         base = first / options.workers[0]
         print(f'| {workers} | {seconds:.2f} | {seconds / base:.2f} | '
               f'{100 * base * options.workers[0] / (seconds * workers):.0f} % | {sent:.2f} | '
-              f'{same}/{len(frames)} |', flush=True)
+              f'{same}/{len(frames)} | {rate:.1f} |', flush=True)
 
 
 def strike(kind, hosts, group, rng):
@@ -217,6 +232,22 @@ def strike(kind, hosts, group, rng):
     if kind == 'slow':
         hosts.slow(2, '20mbit')
         return lambda: hosts.slow(2, '')
+    if kind == 'library changed':  # while it runs: it goes on with the version that it began with
+        group.client('unload', 'banana')
+        return lambda: group.client('load', 'banana')
+    if kind == 'two fronts':  # the second one hears no other, and serves
+        hosts.link(3, False)
+        time.sleep(2)
+
+        def join():
+            before = group.log('second').count('this one waits')
+            hosts.link(3, True)
+            end = time.monotonic() + 30
+            while group.log('second').count('this one waits') == before:
+                if time.monotonic() > end:
+                    raise SystemExit('both fronts serve:\n' + group.log('second')[-2000:])
+                time.sleep(0.1)
+        return join
     if kind == 'front killed':
         group.stop('front')
 
@@ -235,30 +266,32 @@ def faults(options):
     for kind in options.kinds:
         with cell(options, 4) as (hosts, group):
             group.front('front', 0, '--set', 'group.strength=1')
-            if kind == 'front killed':
+            if kind in ('front killed', 'two fronts'):
                 group.front('second', 3)
             group.worker(1)
             group.worker(2)
             group.wait_for(2)
             one = ['--scenes', options.scene]
             frames, usual, text = detect(group, options, *one)
-            reference = [answer_of(frame) for frame in frames]
+            right = [[answer_of(frame) for frame in frames]]
+            if kind == 'library changed':
+                group.client('unload', 'banana')
+                right.append([answer_of(frame) for frame in detect(group, options, *one)[0]])
+                group.client('load', 'banana')
             counts, slowest, wrong = {'same': 0, 'refused': 0, 'none': 0, 'answered': 0}, 0, ''
             for _ in range(options.times):
                 path = group.folder / 'answer.json'
                 path.unlink(missing_ok=True)
                 began = time.monotonic()
-                client = subprocess.Popen(
-                    ['ip', 'netns', 'exec', hosts.name(0), options.programs / 'bpa-client', 'detect', '--bop', options.bop,
-                     '--json', path, '--wait', '240', *one, *budget], stdout=subprocess.PIPE,
-                    stderr=subprocess.STDOUT, text=True, env=group.environment)
+                client = group.begin('detect', '--bop', options.bop, '--json', path, '--wait', '240', *one,
+                                     *budget)
                 undo = strike(kind, hosts, group, rng)
                 text = client.communicate(timeout=300)[0]
                 slowest = max(slowest, time.monotonic() - began)
                 frames = frames_of(path) if path.exists() else []
                 if frames:
                     counts['answered'] += 1
-                    same = [answer_of(frame) for frame in frames] == reference
+                    same = [answer_of(frame) for frame in frames] in right
                     counts['same'] += same
                     wrong = wrong or ('' if same or budget else text)
                 elif 'refused' in text or 'unavailable' in text or 'not searched' in text:
@@ -319,12 +352,14 @@ def main():
     parser.add_argument('--bop', default='')
     parser.add_argument('--programs', type=pathlib.Path, default=PROGRAMS, help='folder of bpa-server')
     parser.add_argument('--workers', type=int, nargs='+', default=[1, 2, 4])
+    parser.add_argument('--clients', type=int, default=4)
     parser.add_argument('--share', type=float, default=0, help='of a processor, of each worker; 0: all')
     parser.add_argument('--times', type=int, default=20)
     parser.add_argument('--scene', default='1', help='whose frames are searched under faults')
     parser.add_argument('--budget-ms', type=float, default=0)
     parser.add_argument('--kinds', nargs='+',
-                        default=['killed', 'stopped', 'cut off', 'slow', 'front killed'])
+                        default=['killed', 'stopped', 'cut off', 'slow', 'library changed', 'front killed',
+                                 'two fronts'])
     options = parser.parse_args()
     {'scale': scale, 'faults': faults, 'discovery': discovery}[options.what](options)
 

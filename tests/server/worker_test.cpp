@@ -84,7 +84,8 @@ class Gate {
 /// Searches by the gate.
 class GatedRecognition : public support::StubRecognition {
  public:
-  explicit GatedRecognition(Gate& gate) : gate_(gate) {}
+  explicit GatedRecognition(Gate& gate, std::size_t at_once = 1) : gate_(gate), at_once_(at_once) {}
+  std::size_t searches_at_once() const override { return at_once_; }
   Result<SceneInterpretations> detect(const Frame& frame,
                                       const DetectRequest& request) const override {
     return gate_.detect(frame, request);
@@ -92,6 +93,7 @@ class GatedRecognition : public support::StubRecognition {
 
  private:
   Gate& gate_;
+  const std::size_t at_once_;
 };
 
 /// Collects answers and lets the test wait for them.
@@ -132,17 +134,17 @@ class Answers {
 
 class WorkerTest : public testing::Test {
  protected:
-  std::unique_ptr<Worker> make(WorkerOptions options = {}) {
+  std::unique_ptr<Worker> make(WorkerOptions options = {}, std::size_t at_once = 1) {
     return std::make_unique<Worker>(
-        std::make_shared<GatedRecognition>(gate), options, statistics,
+        std::make_shared<GatedRecognition>(gate, at_once), options, statistics,
         [collect = streamed.collector()](const IncomingFrame&, const Frame* frame,
                                          const Result<SceneInterpretations>& result) {
           collect({}, frame, result);
         },
         LogHook(), clock);
   }
-  static IncomingFrame frame(std::int64_t stamp) {
-    return {[stamp] { return frame_from_message(support::wall_frame(stamp)); }, stamp, "c"};
+  static IncomingFrame frame(std::int64_t stamp, const std::string& camera = "c") {
+    return {[stamp] { return frame_from_message(support::wall_frame(stamp)); }, stamp, camera};
   }
   static IncomingFrame bad_frame() {
     return {[] { return DecodedFrame(RejectionCause::depth, invalid_argument("too short")); }, 0,
@@ -523,6 +525,58 @@ TEST_F(WorkerTest, WhatThrowsCostsItselfAlone) {
   ASSERT_TRUE(worker->push(job(true)).ok());
   ASSERT_TRUE(answers.wait_for(4));
   EXPECT_EQ(answers.code(3), StatusCode::ok);
+}
+
+TEST_F(WorkerTest, FramesOfSeveralCamerasDoNotDisplaceEachOther) {
+  auto worker = make();
+  worker->push(frame(0));
+  ASSERT_TRUE(gate.wait_for_started(1));
+  for (int stamp = 1; stamp <= 3; ++stamp) {
+    worker->push(frame(stamp, "a"));
+    worker->push(frame(10 + stamp, "b"));
+  }
+  gate.open();
+  ASSERT_TRUE(streamed.wait_for(3));
+  EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 3, 13}));
+  EXPECT_EQ(statistics.counts().frames_dropped, 4U);
+}
+
+// Where others search: several frames at once, but of one camera one after the other.
+TEST_F(WorkerTest, SearchesAsManyFramesAtOnceAsThereMayBe) {
+  auto worker = make({}, 3);
+  worker->push(frame(0, "a"));
+  ASSERT_TRUE(gate.wait_for_started(1));
+  worker->push(frame(1, "a"));  // waits for the first of its camera
+  worker->push(frame(2, "b"));
+  ASSERT_TRUE(gate.wait_for_started(2));
+  ASSERT_TRUE(worker->push(job(true)).ok());
+  ASSERT_TRUE(gate.wait_for_started(3));
+  ASSERT_TRUE(worker->push(job(true, milliseconds(5000), 1, 78)).ok());  // a fourth waits
+  std::this_thread::sleep_for(milliseconds(50));
+  EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 2, 77}));
+  EXPECT_EQ(worker->queue_length(), 2U);
+  gate.open();
+  ASSERT_TRUE(streamed.wait_for(3));
+  ASSERT_TRUE(answers.wait_for(2));
+  EXPECT_EQ(statistics.counts().frames_processed, 3U);
+  EXPECT_EQ(statistics.counts().requests_served, 2U);
+}
+
+TEST_F(WorkerTest, LeavingToAnotherServerAnswersNothingButWhatRuns) {
+  auto worker = make();
+  ASSERT_TRUE(worker->push(job(true)).ok());
+  ASSERT_TRUE(gate.wait_for_started(1));
+  ASSERT_TRUE(worker->push(job(true)).ok());
+  ASSERT_TRUE(worker->push(job(false)).ok());
+  worker->leave_to_another();
+  EXPECT_TRUE(worker->push(job(true)).ok());
+  bool told = false;
+  worker->run_later({}, {[&] { told = true; }, [&](const Status&) { told = true; }});
+  gate.open();
+  worker->stop();
+  EXPECT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers.code(0), StatusCode::ok);
+  EXPECT_FALSE(told);
 }
 
 TEST_F(WorkerTest, StoppingAnswersWhatWaits) {

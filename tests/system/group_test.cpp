@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -152,18 +153,18 @@ TEST_F(Group, AnswersAlthoughWorkersAreKilledOrStopped) {
   const auto front = start("front", "front");
   const std::vector<std::uint8_t> answer = expected();
   const auto stays = start("worker", "stays");
-  for (const int signal : {SIGKILL, SIGSTOP}) {
-    for (const milliseconds after : {milliseconds(0), milliseconds(30), milliseconds(120)}) {
-      const auto goes = start("worker", "goes");
-      wait_for_workers(2);
-      std::jthread killer([&] {
-        std::this_thread::sleep_for(after);
-        goes->signal(signal);
-      });
-      expect_answer(answer);
-    }
-    wait_for_workers(1);
+  const std::pair<int, milliseconds> cases[] = {
+      {SIGKILL, milliseconds(30)}, {SIGKILL, milliseconds(120)}, {SIGSTOP, milliseconds(60)}};
+  for (const auto& [signal, after] : cases) {
+    const auto goes = start("worker", "goes");
+    wait_for_workers(2);
+    std::jthread killer([&, number = signal, time = after] {
+      std::this_thread::sleep_for(time);
+      goes->signal(number);
+    });
+    expect_answer(answer);
   }
+  wait_for_workers(1);
 }
 
 TEST_F(Group, SaysWhichModelsAStoppedWorkerLeftWhereTimeIsShort) {
