@@ -121,10 +121,13 @@ class RunningFront : public Front {
     return library_;
   }
 
+  /// All of the library where a worker may lack it, else that it is the same.
   void offer() {
     const auto library = this->library();
     if (!library) return;
-    msgs::GroupLibrary message = library->offer;
+    msgs::GroupLibrary message;
+    message.digest = library->offer.digest;
+    if (links_->members.any_lacks(message.digest)) message = library->offer;
     message.front = links_->front;
     (void)offer_->publish(message);
   }

@@ -157,6 +157,14 @@ void Members::send(std::uint64_t worker, const msgs::GroupStep& step) {
   if (!status.ok()) log(log_, LogLevel::warning, status.message);
 }
 
+bool Members::any_lacks(const std::string& library) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::ranges::any_of(members_, [&](const auto& entry) {
+    const Member& member = entry.second;
+    return !member.lost && std::ranges::count(member.said.libraries, library) == 0;
+  });
+}
+
 std::string Members::name_of(std::uint64_t worker) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto found = members_.find(worker);

@@ -70,6 +70,9 @@ class Members {
   /// A step of a search that this worker takes part in.
   void send(std::uint64_t worker, const wire::bpa_msgs::GroupStep& step);
 
+  /// Whether a worker that is there has not got this library.
+  bool any_lacks(const std::string& library) const;
+
   /// For people.
   std::string name_of(std::uint64_t worker) const;
 

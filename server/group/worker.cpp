@@ -373,6 +373,7 @@ class RunningWorker : public Worker {
     const std::lock_guard<std::mutex> lock(mutex_);
     heard_[offer.front] = Clock::now();
     if (wanted_ && wanted_->digest == offer.digest) return;
+    if (offer.score_layers.empty()) return;  // all of it comes when the front knows that we lack it
     wanted_ = std::move(offer);
     changed_.notify_all();
   }

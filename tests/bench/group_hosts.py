@@ -103,13 +103,17 @@ class Group:
         """On host `number`, from 1."""
         process = self.start(f'worker{number}', number, '--role', 'worker', '--threads', '1', '--set',
                              f'group.cache={self.folder}/cache{number}', *arguments)
-        if self.share:
-            group = CGROUPS / f'{PREFIX}w{number}'
-            group.mkdir(exist_ok=True)
-            (group / 'cpu.cfs_period_us').write_text(str(PERIOD_US))
-            (group / 'cpu.cfs_quota_us').write_text(str(int(self.share * PERIOD_US)))
-            (group / 'cgroup.procs').write_text(str(process.pid))
         return process
+
+    def limit(self):
+        """Gives each worker its share of a processor."""
+        for name, process in self.processes.items():
+            if self.share and name.startswith('worker'):
+                group = CGROUPS / f'{PREFIX}{name}'
+                group.mkdir(exist_ok=True)
+                (group / 'cpu.cfs_period_us').write_text(str(PERIOD_US))
+                (group / 'cpu.cfs_quota_us').write_text(str(int(self.share * PERIOD_US)))
+                (group / 'cgroup.procs').write_text(str(process.pid))
 
     def client(self, *arguments, timeout=600):
         return subprocess.run(['ip', 'netns', 'exec', self.hosts.name(0), self.programs / 'bpa-client', *arguments],
@@ -127,7 +131,7 @@ class Group:
                    for line in out.splitlines() if line.strip().startswith('worker'))
 
     def wait_for(self, workers):
-        end = time.monotonic() + 60
+        end = time.monotonic() + 300
         while self.ready() != workers:
             if time.monotonic() > end:
                 print(self.client('status').stdout, file=sys.stderr)
@@ -149,7 +153,7 @@ class Group:
     def close(self):
         for name in list(self.processes):
             self.stop(name)
-        for group in CGROUPS.glob(f'{PREFIX}w*'):
+        for group in CGROUPS.glob(f'{PREFIX}worker*'):
             with contextlib.suppress(OSError):
                 group.rmdir()
 
@@ -186,14 +190,18 @@ def cell(options, hosts):
 
 def scale(options):
     print('| workers | seconds a frame (median) | of one worker | efficiency | MB sent by the front a frame '
-          f'| same answer | frames a minute of {options.clients} clients at once |\n|---|---|---|---|---|---|---|')
+          f'| same answer | frames a minute of {options.clients} clients at once '
+          '| seconds to fetch and load the models |\n|---|---|---|---|---|---|---|---|')
     first, reference = None, None
     for workers in options.workers:
         with cell(options, workers + 1) as (hosts, group):
             group.front()
             for number in range(1, workers + 1):
                 group.worker(number)
+            began = time.monotonic()
             group.wait_for(workers)
+            fetched = time.monotonic() - began
+            group.limit()
             detect(group, options)  # paces are measured
             before = hosts.sent_bytes(0)
             frames, _, text = detect(group, options)
@@ -213,7 +221,7 @@ def scale(options):
         base = first / options.workers[0]
         print(f'| {workers} | {seconds:.2f} | {seconds / base:.2f} | '
               f'{100 * base * options.workers[0] / (seconds * workers):.0f} % | {sent:.2f} | '
-              f'{same}/{len(frames)} | {rate:.1f} |', flush=True)
+              f'{same}/{len(frames)} | {rate:.1f} | {fetched:.0f} |', flush=True)
 
 
 def strike(kind, hosts, group, rng):
