@@ -103,6 +103,7 @@ struct InputOptions {
   double silence_s = 2;
   std::vector<std::string> views;
   double views_tolerance_ms = 50;
+  std::string camera_poses;
 
   void visit_fields(auto&& visit) {
     visit("frames", frames, {0, 0, "Topic of bpa_msgs/RgbdFrame; empty: none."});
@@ -143,6 +144,11 @@ struct InputOptions {
            "itself."});
     visit("views_tolerance_ms", views_tolerance_ms,
           {0, 10000, "Largest difference in ms between the stamps of such frames."});
+    visit("camera_poses", camera_poses,
+          {0, 0,
+           "File of `bpa calibrate` that says where cameras of several views are in "
+           "tracking.fixed_frame, by the frame_ids of their frames; others are looked up in TF. "
+           "Empty: all are."});
   }
 };
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <fstream>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
@@ -22,6 +23,7 @@
 #include "core/base/concat.hpp"
 #include "core/base/failure.hpp"
 #include "core/base/guarded.hpp"
+#include "core/io/camera_poses_file.hpp"
 #include "idl/wire/participant.hpp"
 #include "server/busy.hpp"
 #include "server/diagnostics.hpp"
@@ -214,11 +216,7 @@ class Running : public Server {
   WorkerOptions worker_options(const ServerOptions& options) const {
     WorkerOptions worker = search_options(options);
     worker.camera = [this](const std::string& frame_id, std::int64_t stamp_ns) {
-      const Settings::Snapshot now = settings_.get();
-      const auto patience = std::chrono::duration<double, std::milli>(now->tracking.tf_wait_ms);
-      return tracking_->transforms().wait_for(
-          now->tracking.fixed_frame, frame_id, stamp_ns,
-          std::chrono::duration_cast<std::chrono::nanoseconds>(patience), std::stop_token());
+      return camera_at(settings_.get()->tracking.fixed_frame, frame_id, stamp_ns);
     };
     worker.expected = [this](const std::string& frame_id) { return tracking_->expected(frame_id); };
     worker.tracked = [this] { return tracking_->active(); };
@@ -249,6 +247,26 @@ class Running : public Server {
     tracking_->push(std::move(tracked));
   }
 
+  /// fixed_from_camera by the settings, else by TF, for which it waits.
+  Result<Pose> camera_at(const std::string& fixed_frame, const std::string& frame_id,
+                         std::int64_t stamp_ns) const {
+    const Settings::Snapshot now = settings_.get();
+    const auto known = camera_poses_.find(frame_id);
+    const bool in_settings = known != camera_poses_.end();
+    if (in_settings && fixed_frame == now->tracking.fixed_frame) return known->second;
+    const auto patience = std::chrono::duration<double, std::milli>(now->tracking.tf_wait_ms);
+    return tracking_->transforms().wait_for(
+        fixed_frame, frame_id, stamp_ns,
+        std::chrono::duration_cast<std::chrono::nanoseconds>(patience), std::stop_token());
+  }
+
+  void read_camera_poses(const std::string& path) {
+    if (path.empty()) return;
+    for (const io::CameraPose& camera : or_throw(io::read_camera_poses(path))) {
+      camera_poses_[camera.name] = camera.scene_from_camera;
+    }
+  }
+
   /// Hands frames of all cameras to the search when they are complete.
   void take_view(IncomingFrame&& incoming) {
     statistics_.add_frame(clock_->stamp_ns() - incoming.stamp_ns);
@@ -264,6 +282,7 @@ class Running : public Server {
   }
 
   void start_sources(const ServerOptions& options) {
+    read_camera_poses(options.input.camera_poses);
     if (!options.input.views.empty()) {
       gate_.emplace(options.input.views,
                     static_cast<std::int64_t>(1e6 * options.input.views_tolerance_ms));
@@ -330,7 +349,12 @@ class Running : public Server {
     const ServiceContext context = this->context();
     services_.emplace(*participant_, log_, wire::qos::services());
     add_detect(context, *services_);
-    add_detect_views(context, tracking_->transforms(), *services_);
+    add_detect_views(
+        context,
+        [this](const std::string& fixed_frame, const std::string& frame_id, std::int64_t stamp_ns) {
+          return camera_at(fixed_frame, frame_id, stamp_ns);
+        },
+        *services_);
     add_library_services(context, *services_);
     add_track_services(*tracking_, *services_);
     services_->add_quick<msgs::GetStatus>(
@@ -538,6 +562,7 @@ class Running : public Server {
   std::unique_ptr<Tracking> tracking_;
   std::optional<TransformSource> transforms_;
   std::unique_ptr<Worker> worker_;
+  std::map<std::string, Pose> camera_poses_;     ///< By frame_id, in tracking.fixed_frame.
   std::optional<ViewGate<IncomingFrame>> gate_;  ///< Of the cameras of one scene.
   std::vector<std::shared_ptr<FrameSource>> sources_;
   TopicSource* topics_ = nullptr;   ///< One of them.

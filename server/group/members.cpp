@@ -39,6 +39,7 @@ void Members::heard(msgs::GroupWorker&& said) {
     log(log_, LogLevel::warning, concat("worker ", said.name, ": ", said.problem));
   }
   member.lost = false;
+  if (said.searches > 0 || !member.steps) member.resting = Clock::now();
   member.heard = Clock::now();
   member.said = std::move(said);
 }
@@ -87,6 +88,12 @@ bool Members::is_lost(std::uint64_t worker) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto found = members_.find(worker);
   return found == members_.end() || found->second.lost;
+}
+
+bool Members::rests(std::uint64_t worker) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto found = members_.find(worker);
+  return found == members_.end() || Clock::now() - found->second.resting > kSilence;
 }
 
 std::vector<std::uint64_t> Members::ready(const std::string& library) const {

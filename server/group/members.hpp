@@ -29,7 +29,9 @@ struct Member {
   wire::bpa_msgs::GroupWorker said;
   std::chrono::steady_clock::time_point heard{};
   std::shared_ptr<StepPublisher> steps;
-  bool lost = false;                 ///< Silent, as was logged.
+  bool lost = false;  ///< Silent, as was logged.
+  /// Since when its heartbeats say that it searches nothing; of no meaning while it does.
+  std::chrono::steady_clock::time_point resting{};
   double ms_a_model = 0;             ///< 0: not measured yet.
   std::set<std::uint64_t> searches;  ///< Of this front.
 };
@@ -51,6 +53,9 @@ class Members {
 
   /// Whether it is silent, or was never heard.
   bool is_lost(std::uint64_t worker) const;
+  /// Whether it has said for as long as the silence of a lost one that it searches nothing: a step
+  /// that was sent before is lost.
+  bool rests(std::uint64_t worker) const;
 
   /// Ids of workers that can search this library, those with the fewest searches first. The one
   /// beside the front only where there is no other.

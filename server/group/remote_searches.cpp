@@ -125,6 +125,7 @@ class Searches : public ModelSearches {
     SearchEffort effort;
     double busy_ms = 0;
     bool whole = true;  // it has answered every step
+    Stopwatch given;    // since the worker was told
   };
 
   Status no_worker() const {
@@ -187,7 +188,7 @@ class Searches : public ModelSearches {
       std::vector<msgs::GroupAnswer> came = wait_for_answers(milliseconds(50));
       for (msgs::GroupAnswer& answer : came) take(std::move(answer), answers);
       const bool give_up = patience_ms > 0 && watch.milliseconds() > patience_ms;
-      replace_lost(answers, give_up);
+      replace_lost(answers, give_up, watch.milliseconds() > kSilence.count());
       if (std::ranges::all_of(shares_,
                               [&](const Share& share) { return answers.contains(share.number); })) {
         break;
@@ -228,12 +229,16 @@ class Searches : public ModelSearches {
   }
 
   /// Gives the models of lost workers to others; with `give_up`, those that have not answered are
-  /// lost, too, and their models stay unsearched.
-  void replace_lost(const std::map<std::uint32_t, msgs::GroupAnswer>& answers, bool give_up) {
+  /// lost, too, and their models stay unsearched. With `settled`, the step was sent so long ago
+  /// that a worker that searches nothing has lost it.
+  void replace_lost(const std::map<std::uint32_t, msgs::GroupAnswer>& answers, bool give_up,
+                    bool settled) {
     std::vector<std::size_t> open;
     std::erase_if(shares_, [&](const Share& share) {
       if (answers.contains(share.number)) return false;
-      const bool gone = refused_.contains(share.worker) || links_->members.is_lost(share.worker);
+      const bool gone = refused_.contains(share.worker) || links_->members.is_lost(share.worker) ||
+                        (settled && share.given.milliseconds() > kSilence.count() &&
+                         links_->members.rests(share.worker));
       if (!gone && !give_up) return false;
       open.insert(open.end(), share.models.begin(), share.models.end());
       msgs::GroupStep end = step_of(msgs::GroupStep::kEnd);

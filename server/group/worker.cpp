@@ -446,8 +446,9 @@ class RunningWorker : public Worker {
     }
   }
 
-  /// Searches of fronts that have gone. The caller holds the mutex.
+  /// Ends searches of fronts that have gone. The caller holds the mutex.
   void end_orphans() {
+    if (settings_.library) return;  // beside its front
     std::erase_if(heard_,
                   [](const auto& entry) { return Clock::now() - entry.second > kFrontGone; });
     for (const auto& [key, share] : shares_) {

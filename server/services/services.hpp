@@ -155,15 +155,16 @@ class ServiceSet {
   std::vector<std::shared_ptr<void>> servers_;  ///< Last: they give the thread work.
 };
 
-class TfBuffer;
 class Tracking;
 
 /// Offers `detect`. This and the next four throw a Failure.
 void add_detect(const ServiceContext& context, ServiceSet& services);
-/// Offers `detect_views`, whose searches take turns with changes of the library on the worker;
-/// `transforms` outlives it.
-void add_detect_views(const ServiceContext& context, const TfBuffer& transforms,
-                      ServiceSet& services);
+/// Where a camera was: fixed_from_camera by its frame_id, at a stamp.
+using FindCamera = std::function<Result<Pose>(const std::string& fixed_frame,
+                                              const std::string& frame_id, std::int64_t stamp_ns)>;
+
+/// Offers `detect_views`, whose searches take turns with changes of the library on the worker.
+void add_detect_views(const ServiceContext& context, FindCamera camera, ServiceSet& services);
 /// Offers `list_models`, `load_model` and `unload_model`.
 void add_library_services(const ServiceContext& context, ServiceSet& services);
 /// Offers `rename_track`, `hold_track` and `forget_track`; `tracking` outlives them.

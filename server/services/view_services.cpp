@@ -7,7 +7,6 @@
 #include "core/base/guarded.hpp"
 #include "server/convert/frames.hpp"
 #include "server/services/services.hpp"
-#include "server/tf_buffer.hpp"
 
 namespace bpa::server {
 namespace {
@@ -63,14 +62,14 @@ Status check(const msgs::DetectViews_Request& request, const std::string& fixed_
 
 /// Where the camera of frame `k` was.
 Result<Pose> camera_of(const msgs::DetectViews_Request& request, std::size_t k,
-                       const ViewsAsked& asked, const Frame& frame, const TfBuffer& transforms) {
+                       const ViewsAsked& asked, const Frame& frame, const FindCamera& camera) {
   if (!request.scene_from_camera.empty()) {
     const Pose pose = pose_of(request.scene_from_camera[k]);
     if (is_valid(pose)) return pose;
     return invalid_argument("scene_from_camera[", k, "] is no rigid motion: its numbers must be ",
                             "finite and its quaternion of unit length");
   }
-  Result<Pose> pose = transforms.lookup(asked.fixed_frame, frame.frame_id, frame.stamp_ns);
+  Result<Pose> pose = camera(asked.fixed_frame, frame.frame_id, frame.stamp_ns);
   if (pose.ok()) return pose;
   return Status(pose.status().code,
                 concat("frames[", k, "]: ", pose.status().message,
@@ -78,7 +77,7 @@ Result<Pose> camera_of(const msgs::DetectViews_Request& request, std::size_t k,
 }
 
 Result<ViewsAsked> decode(msgs::DetectViews_Request& request, const ServerOptions& options,
-                          const TfBuffer& transforms) {
+                          const FindCamera& camera) {
   const DetectionOptions& detection = options.detection;
   ViewsAsked asked;
   asked.fixed_frame =
@@ -97,16 +96,16 @@ Result<ViewsAsked> decode(msgs::DetectViews_Request& request, const ServerOption
     if (!frame.ok()) {
       return Status(frame.status().code, concat("frames[", k, "]: ", frame.status().message));
     }
-    const Result<Pose> pose = camera_of(request, k, asked, *frame, transforms);
+    const Result<Pose> pose = camera_of(request, k, asked, *frame, camera);
     if (!pose.ok()) return pose.status();
     asked.views.push_back({std::move(*frame), *pose, std::move(*priors)});
   }
   return asked;
 }
 
-void answer(const ServiceContext& context, const TfBuffer& transforms,
+void answer(const ServiceContext& context, const FindCamera& camera,
             msgs::DetectViews_Request& request, const ViewsReply& reply) {
-  Result<ViewsAsked> asked = decode(request, *context.settings.get(), transforms);
+  Result<ViewsAsked> asked = decode(request, *context.settings.get(), camera);
   if (!asked.ok()) return reply.refuse(asked.status());
   Result<ViewsResult> found = context.recognition->detect_views(asked->views, asked->search);
   if (!found.ok()) return reply.refuse(found.status());
@@ -127,14 +126,14 @@ void answer(const ServiceContext& context, const TfBuffer& transforms,
 
 }  // namespace
 
-void add_detect_views(const ServiceContext& context, const TfBuffer& transforms,
-                      ServiceSet& services) {
+void add_detect_views(const ServiceContext& context, FindCamera camera, ServiceSet& services) {
   services.add<msgs::DetectViews>(
       "detect_views",
-      [context, &transforms](msgs::DetectViews_Request&& request, const ViewsReply& reply) {
+      [context, camera = std::move(camera)](msgs::DetectViews_Request&& request,
+                                            const ViewsReply& reply) {
         const auto own = std::make_shared<msgs::DetectViews_Request>(std::move(request));
-        const auto work = [context, &transforms, own, reply] {
-          reply.guard([&] { answer(context, transforms, *own, reply); });
+        const auto work = [context, camera, own, reply] {
+          reply.guard([&] { answer(context, camera, *own, reply); });
         };
         const auto refuse = [reply](const Status& status) { reply.refuse(status); };
         context.worker.run_later(reply.client(), {work, refuse});

@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/io/camera_poses_file.hpp"
 #include "idl/wire/messages.hpp"
 #include "idl/wire/publisher.hpp"
 #include "idl/wire/service.hpp"
@@ -190,8 +191,14 @@ TEST(Requests, ThoseRightAfterDiscoveryAreAnswered) {
 // Frames of two cameras with nearly one stamp are one search; the third frame waits for its
 // partner.
 TEST(Requests, FramesOfSeveralCamerasAtNearlyOneTimeAreOneSearch) {
+  // One camera's pose is in a file, the other's in TF.
+  const std::string poses = support::scratch_folder() + "/cameras.json";
+  ASSERT_TRUE(
+      io::write_camera_poses(poses, {{"wall_camera", {Eigen::Quaterniond::Identity(), {0, 0, 5}}}})
+          .ok());
   support::StubServer server({"tracking.fixed_frame=map", "input.views=[wall_camera, other_camera]",
-                              "input.views_tolerance_ms=20", "tracking.tf_wait_ms=1000"});
+                              "input.views_tolerance_ms=20", "tracking.tf_wait_ms=1000",
+                              "input.camera_poses=" + poses});
   auto participant = support::test_participant("tester");
   ASSERT_TRUE(participant.ok()) << participant.status().message;
   support::Latest<msgs::SceneInterpretations> latest;
@@ -207,13 +214,10 @@ TEST(Requests, FramesOfSeveralCamerasAtNearlyOneTimeAreOneSearch) {
   ASSERT_TRUE(results->wait_for_matched(milliseconds(10000))) << server.log();
   ASSERT_TRUE(tf->wait_for_matched(milliseconds(10000))) << server.log();
   wire::tf2_msgs::TFMessage transforms;
-  for (const char* camera : {"wall_camera", "other_camera"}) {
-    auto& transform = transforms.transforms.emplace_back();
-    transform.header.frame_id = "map";
-    transform.child_frame_id = camera;
-    transform.transform.rotation.w = 1;
-    transform.transform.translation.z = 5;
-  }
+  auto& transform = transforms.transforms.emplace_back();
+  transform.header.frame_id = "map";
+  transform.child_frame_id = "other_camera";
+  transform.transform.rotation.w = 1;
   ASSERT_TRUE(tf->publish(transforms).ok());
   const auto send = [&](const char* camera, std::int64_t stamp_ms) {
     msgs::RgbdFrame frame = support::wall_frame(1'000'000 * stamp_ms);
