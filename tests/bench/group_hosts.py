@@ -224,6 +224,14 @@ def scale(options):
               f'{same}/{len(frames)} | {rate:.1f} | {fetched:.0f} |', flush=True)
 
 
+def held(pid):
+    """What a process holds."""
+    status = pathlib.Path(f'/proc/{pid}/status').read_text(encoding='utf-8')
+    values = dict(line.split(':\t', 1) for line in status.splitlines() if ':\t' in line)
+    descriptors = len(list(pathlib.Path(f'/proc/{pid}/fd').iterdir()))
+    return f'{descriptors}, {values["Threads"].strip()}, {int(values["VmRSS"].split()[0]) // 1024}'
+
+
 def strike(kind, hosts, group, rng):
     """One fault while a search runs; returns how it is undone."""
     time.sleep(rng.uniform(0, 1.5))
@@ -267,8 +275,8 @@ def strike(kind, hosts, group, rng):
 
 
 def faults(options):
-    print(f'| fault | answers of {options.times} | the same | refused | without an answer | slowest, s |\n'
-          '|---|---|---|---|---|---|')
+    print(f'| fault | answers of {options.times} | the same | refused | without an answer | slowest, s | the first '
+          'worker: descriptors, threads, MB, before and after |\n|---|---|---|---|---|---|---|')
     rng = random.Random(1)
     budget = ['--budget-ms', str(options.budget_ms)] if options.budget_ms else []
     for kind in options.kinds:
@@ -286,6 +294,7 @@ def faults(options):
                 group.client('unload', 'banana')
                 right.append([answer_of(frame) for frame in detect(group, options, *one)[0]])
                 group.client('load', 'banana')
+            before = held(group.processes['worker1'].pid)
             counts, slowest, wrong = {'same': 0, 'refused': 0, 'none': 0, 'answered': 0}, 0, ''
             for _ in range(options.times):
                 path = group.folder / 'answer.json'
@@ -309,8 +318,10 @@ def faults(options):
                     wrong = wrong or text
                 undo()
                 group.wait_for(2)
+            time.sleep(7)  # leases of those that were killed
+            after = held(group.processes['worker1'].pid)
         print(f'| {kind} | {counts["answered"]} | {counts["same"]} | {counts["refused"]} | {counts["none"]} | '
-              f'{slowest:.1f} (without a fault {usual:.1f}) |', flush=True)
+              f'{slowest:.1f} (without a fault {usual:.1f}) | {before} -> {after} |', flush=True)
         if wrong:
             print(wrong[-600:], file=sys.stderr)
 

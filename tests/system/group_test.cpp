@@ -171,17 +171,21 @@ TEST_F(Group, SaysWhichModelsAStoppedWorkerLeftWhereTimeIsShort) {
   const auto front = start("front", "front");
   const auto first = start("worker", "first"), second = start("worker", "second");
   wait_for_workers(2);
-  second->signal(SIGSTOP);  // it counts as there for a second
   msgs::Detect_Request hurried = request();
   hurried.time_budget_ms = 300;
-  const auto reply = call<msgs::Detect>("detect", hurried);
-  ASSERT_TRUE(reply) << failure_.message;
-  ASSERT_TRUE(reply->success) << reply->status.message;
-  EXPECT_NE(reply->result.status.message.find("not searched for"), std::string::npos)
-      << reply->result.status.message;
-  EXPECT_LT(reply->result.models_searched, 4U);
-  EXPECT_TRUE(reply->result.budget_exhausted);
-  second->signal(SIGCONT);
+  bool said = false;
+  for (int i = 0; i < 10 && !said; ++i) {  // on a busy machine the front may know in time
+    wait_for_workers(2);
+    second->signal(SIGSTOP);  // it counts as there for a second
+    const auto reply = call<msgs::Detect>("detect", hurried);
+    second->signal(SIGCONT);
+    ASSERT_TRUE(reply) << failure_.message;
+    ASSERT_TRUE(reply->success) << reply->status.message;
+    said = reply->result.status.message.find("not searched for") != std::string::npos;
+    EXPECT_EQ(said, reply->result.models_searched < 4U) << reply->result.status.message;
+    EXPECT_TRUE(!said || reply->result.budget_exhausted);
+  }
+  EXPECT_TRUE(said) << support::read_text(log_of("front"));
   wait_for_workers(2);
   expect_answer(expected());
 }
