@@ -109,6 +109,15 @@ std::vector<std::uint64_t> Members::ready(const std::string& library) const {
   return out;
 }
 
+std::vector<std::uint64_t> Members::reserve(const std::string& library) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::uint64_t> out;
+  for (const auto& [id, member] : members_) {
+    if (member.said.reserve && can_search(member, library)) out.push_back(id);
+  }
+  return out;
+}
+
 std::vector<std::uint64_t> Members::wait_for_ready(const std::string& library) const {
   const auto end = Clock::now() + kSilence;
   std::vector<std::uint64_t> workers = ready(library);

@@ -60,7 +60,10 @@ class Members {
   /// Ids of workers that can search this library, those with the fewest searches first. The one
   /// beside the front only where there is no other.
   std::vector<std::uint64_t> ready(const std::string& library) const;
-  /// The same; waits for one where there is none, as just after a start or a change of the library.
+  /// The one beside the front, if it can search this library.
+  std::vector<std::uint64_t> reserve(const std::string& library) const;
+  /// As ready(); waits for one where there is none, as just after a start or a change of the
+  /// library.
   std::vector<std::uint64_t> wait_for_ready(const std::string& library) const;
 
   /// How many of these search nothing now.

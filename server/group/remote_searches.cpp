@@ -21,6 +21,9 @@ using std::chrono::milliseconds;
 
 // A worker stops by itself when the time of a step is over; its answer is then on its way.
 constexpr double kGraceMs = 150, kGraceShare = 0.1;  // by hand
+// A worker that searches nothing so long after a step was sent has lost it. By hand: a frame takes
+// a second on a link of 20 Mbit/s.
+constexpr double kStepLostMs = 5000;
 
 /// The searches for one frame's models, on the workers.
 class Searches : public ModelSearches {
@@ -188,7 +191,7 @@ class Searches : public ModelSearches {
       std::vector<msgs::GroupAnswer> came = wait_for_answers(milliseconds(50));
       for (msgs::GroupAnswer& answer : came) take(std::move(answer), answers);
       const bool give_up = patience_ms > 0 && watch.milliseconds() > patience_ms;
-      replace_lost(answers, give_up, watch.milliseconds() > kSilence.count());
+      replace_lost(answers, give_up, watch.milliseconds() > kStepLostMs);
       if (std::ranges::all_of(shares_,
                               [&](const Share& share) { return answers.contains(share.number); })) {
         break;
@@ -236,9 +239,12 @@ class Searches : public ModelSearches {
     std::vector<std::size_t> open;
     std::erase_if(shares_, [&](const Share& share) {
       if (answers.contains(share.number)) return false;
-      const bool gone = refused_.contains(share.worker) || links_->members.is_lost(share.worker) ||
-                        (settled && share.given.milliseconds() > kSilence.count() &&
-                         links_->members.rests(share.worker));
+      // Not asked again: on a slow link one more frame would take the place of the first.
+      if (settled && share.given.milliseconds() > kStepLostMs &&
+          links_->members.rests(share.worker)) {
+        refused_.insert(share.worker);
+      }
+      const bool gone = refused_.contains(share.worker) || links_->members.is_lost(share.worker);
       if (!gone && !give_up) return false;
       open.insert(open.end(), share.models.begin(), share.models.end());
       msgs::GroupStep end = step_of(msgs::GroupStep::kEnd);
@@ -248,7 +254,10 @@ class Searches : public ModelSearches {
     });
     if (open.empty()) return;
     std::vector<std::uint64_t> workers = links_->members.ready(library_->offer.digest);
-    std::erase_if(workers, [&](std::uint64_t worker) { return refused_.contains(worker); });
+    const auto refused = [&](std::uint64_t worker) { return refused_.contains(worker); };
+    std::erase_if(workers, refused);
+    if (workers.empty()) workers = links_->members.reserve(library_->offer.digest);
+    std::erase_if(workers, refused);
     if (give_up || workers.empty()) {
       lost_.insert(lost_.end(), open.begin(), open.end());
       log(links_->members.hook(), LogLevel::warning,
