@@ -8,6 +8,7 @@
 #include <cstring>
 #include <utility>
 
+#include "core/base/concat.hpp"
 #include "core/base/options.hpp"
 #include "core/io/options_yaml.hpp"
 #include "server/convert/frames.hpp"
