@@ -103,19 +103,13 @@ Detector::Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions 
 
 Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRequest& request,
                                               FrameTrace* trace) const {
-  return detect(frame, request, trace, {});
+  return detect_elsewhere(frame, request, {}, trace);
 }
 
 Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
                                                         const DetectRequest& request,
                                                         const MakeSearches& searches,
                                                         FrameTrace* trace) const {
-  return detect(frame, request, trace, searches);
-}
-
-Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRequest& request,
-                                              FrameTrace* trace,
-                                              const MakeSearches& searches) const {
   if (Status status = validate(frame); !status.ok()) return status;
   if (Status status = check_request(request); !status.ok()) return status;
   const Result<Models> models = chosen_models(*library_, request);

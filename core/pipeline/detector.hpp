@@ -74,8 +74,8 @@ class Detector {
   /// given, receives the candidates of each stage.
   Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request = {},
                                       FrameTrace* trace = nullptr) const;
-  /// The same, but the models are searched for where `searches` says. The answer is that of
-  /// detect(), unless there is a budget or a part of the search was lost.
+  /// The same, but the models are searched for where `searches` says; here, if it is empty. The
+  /// answer is that of detect(), unless there is a budget or a part of the search was lost.
   /// `trace`, if given, lacks the stages of objects.
   Result<SceneInterpretations> detect_elsewhere(const Frame& frame, const DetectRequest& request,
                                                 const MakeSearches& searches,
@@ -86,9 +86,6 @@ class Detector {
   const ScoreLayers& score_layers() const { return layers_; }
 
  private:
-  Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request,
-                                      FrameTrace* trace, const MakeSearches& searches) const;
-
   std::shared_ptr<const ModelLibrary> library_;
   DetectorOptions options_;
   ScoreLayers layers_;
