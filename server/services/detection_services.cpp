@@ -23,23 +23,19 @@ constexpr int kMaxTimeoutMs = 10'000'000;
 /// A frame of the largest sides has 604 MB: rgba, depth in metres and a mask.
 constexpr std::size_t kMaxFrameRequest = std::size_t{640} << 20U;
 
-/// The server's settings where the request leaves the choice.
-Result<DetectRequest> search_of(const msgs::Detect_Request& request,
-                                const DetectionOptions& options) {
-  if (Status s = check_search(request.top_k, request.time_budget_ms); !s.ok()) return s;
+/// As search_of(), with its priors; checks the time-out, too.
+Result<DetectRequest> whole_search_of(const msgs::Detect_Request& request,
+                                      const DetectionOptions& options) {
+  Result<DetectRequest> search = search_of(request, options);
+  if (!search.ok()) return search;
   if (!(request.timeout_ms >= 0 && request.timeout_ms <= kMaxTimeoutMs)) {
     return invalid_argument("timeout_ms is ", request.timeout_ms, "; it must be between 0 and ",
                             kMaxTimeoutMs);
   }
   auto priors = priors_from_messages(request.frame.priors);
   if (!priors.ok()) return priors.status();
-  return DetectRequest{
-      .models = request.models,
-      .priors = std::move(priors).value(),
-      .top_k = request.top_k > 0 ? static_cast<int>(request.top_k) : options.top_k,
-      .budget_ms = request.time_budget_ms > 0 ? request.time_budget_ms : options.budget_ms,
-      .seed = request.seed > 0 ? request.seed : options.seed,
-      .num_threads = options.threads};
+  search->priors = std::move(priors).value();
+  return search;
 }
 
 /// Makes the job of a request whose fields are legal.
@@ -130,7 +126,7 @@ Status check_search(std::uint32_t top_k, double time_budget_ms) {
 
 Result<DetectJob> detect_job(msgs::Detect_Request&& request, const DetectionOptions& options) {
   const auto shared = std::make_shared<msgs::Detect_Request>(std::move(request));
-  const Result<DetectRequest> search = search_of(*shared, options);
+  const Result<DetectRequest> search = whole_search_of(*shared, options);
   if (!search.ok()) return search.status();
   return job_of(shared, *search, options);
 }

@@ -44,6 +44,19 @@ using Answer = std::function<void(const typename Service::Response&)>;
 
 /// Whether these two of a request are in their ranges.
 Status check_search(std::uint32_t top_k, double time_budget_ms);
+/// What a request asks of a search but for its priors, with the server's settings where it leaves
+/// the choice. Fails as check_search() does.
+template <class Request>
+Result<DetectRequest> search_of(const Request& request, const DetectionOptions& options) {
+  if (Status s = check_search(request.top_k, request.time_budget_ms); !s.ok()) return s;
+  DetectRequest search;
+  search.models = request.models;
+  search.top_k = request.top_k > 0 ? static_cast<int>(request.top_k) : options.top_k;
+  search.budget_ms = request.time_budget_ms > 0 ? request.time_budget_ms : options.budget_ms;
+  search.seed = request.seed > 0 ? request.seed : options.seed;
+  search.num_threads = options.threads;
+  return search;
+}
 /// The job of a request, with the server's settings where the request leaves the choice; its client
 /// and `done` are left to the caller. Fails with invalid_argument.
 Result<DetectJob> detect_job(wire::bpa_msgs::Detect_Request&& request,

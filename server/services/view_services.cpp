@@ -6,6 +6,7 @@
 #include "core/base/concat.hpp"
 #include "core/base/guarded.hpp"
 #include "server/convert/frames.hpp"
+#include "server/convert/parts.hpp"
 #include "server/services/services.hpp"
 
 namespace bpa::server {
@@ -30,18 +31,6 @@ Pose pose_of(const wire::geometry_msgs::Pose& message) {
   return {Eigen::Quaterniond(q.w, q.x, q.y, q.z), {p.x, p.y, p.z}};
 }
 
-wire::geometry_msgs::Pose pose_message(const Pose& pose) {
-  wire::geometry_msgs::Pose out;
-  out.position.x = pose.translation.x();
-  out.position.y = pose.translation.y();
-  out.position.z = pose.translation.z();
-  out.orientation.w = pose.rotation.w();
-  out.orientation.x = pose.rotation.x();
-  out.orientation.y = pose.rotation.y();
-  out.orientation.z = pose.rotation.z();
-  return out;
-}
-
 Status check(const msgs::DetectViews_Request& request, const std::string& fixed_frame) {
   if (request.frames.empty() || request.frames.size() > kMostViews) {
     return invalid_argument("frames has ", request.frames.size(), " entries; it must have 1 to ",
@@ -57,7 +46,7 @@ Status check(const msgs::DetectViews_Request& request, const std::string& fixed_
     return invalid_argument(
         "fixed_frame is empty; name the frame of the results, or set tracking.fixed_frame");
   }
-  return check_search(request.top_k, request.time_budget_ms);
+  return {};
 }
 
 /// Where the camera of frame `k` was.
@@ -78,17 +67,13 @@ Result<Pose> camera_of(const msgs::DetectViews_Request& request, std::size_t k,
 
 Result<ViewsAsked> decode(msgs::DetectViews_Request& request, const ServerOptions& options,
                           const FindCamera& camera) {
-  const DetectionOptions& detection = options.detection;
   ViewsAsked asked;
   asked.fixed_frame =
       request.fixed_frame.empty() ? options.tracking.fixed_frame : request.fixed_frame;
   if (Status status = check(request, asked.fixed_frame); !status.ok()) return status;
-  asked.search.models = request.models;
-  asked.search.top_k = request.top_k > 0 ? static_cast<int>(request.top_k) : detection.top_k;
-  asked.search.budget_ms =
-      request.time_budget_ms > 0 ? request.time_budget_ms : detection.budget_ms;
-  asked.search.seed = request.seed > 0 ? request.seed : detection.seed;
-  asked.search.num_threads = detection.threads;
+  Result<DetectRequest> search = search_of(request, options.detection);
+  if (!search.ok()) return search.status();
+  asked.search = *std::move(search);
   for (std::size_t k = 0; k < request.frames.size(); ++k) {
     Result<std::vector<PosePrior>> priors = priors_from_messages(request.frames[k].priors);
     if (!priors.ok()) return priors.status();
