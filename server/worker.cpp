@@ -413,8 +413,15 @@ std::vector<IncomingFrame> Worker::take_frames(const WorkerOptions& options) {
     taken.push_back(std::move(*next));
     frames_.erase(next);
     if (taken.back().taken) taken.back().taken();
-  } while (options.fuse_frames > 1 && !frames_.empty());
+  } while (options.fuse_frames > 1 && combines_next(taken.front()));
   return taken;
+}
+
+/// Whether a further frame can be searched as one with this: neither is several views. The caller
+/// holds the mutex.
+bool Worker::combines_next(const IncomingFrame& first) {
+  const auto next = next_frame();
+  return first.views.empty() && next != frames_.end() && next->views.empty();
 }
 
 void Worker::note_restart(const std::string& reason) {
@@ -502,24 +509,18 @@ Result<SceneInterpretations> Worker::search_views(const WorkerOptions& options,
     if (!camera.ok()) failed = camera.status();
     views.push_back({std::move(made).value(), camera.ok() ? *camera : Pose(), one.priors});
   }
-  std::optional<Result<SceneInterpretations>> result;
-  if (failed.ok()) {
-    failed = guard("the detector failed", [&] {
-      Result<ViewsResult> found = recognition_->detect_views(views, options.request);
-      if (!found.ok()) {
-        result.emplace(found.status());
-        return;
-      }
-      for (const std::string& warning : found->warnings) log(log_, LogLevel::warning, warning);
-      statistics_.add_timings(found->scene);
-      result.emplace(std::move(found->scene));
-    });
-  }
-  if (!failed.ok()) result.emplace(failed);
+  const auto detect_all = [&]() -> Result<SceneInterpretations> {
+    if (!failed.ok()) return failed;
+    Result<ViewsResult> found = recognition_->detect_views(views, options.request);
+    if (!found.ok()) return found.status();
+    for (const std::string& warning : found->warnings) log(log_, LogLevel::warning, warning);
+    return std::move(found->scene);
+  };
+  Result<SceneInterpretations> result = searched(detect_all);
   for (std::size_t i = rejected; i < incoming.size(); ++i) {
-    statistics_.add(result->ok() ? &Counts::frames_processed : &Counts::frames_failed);
+    statistics_.add(result.ok() ? &Counts::frames_processed : &Counts::frames_failed);
   }
-  return *std::move(result);
+  return result;
 }
 
 void Worker::publish(const IncomingFrame& incoming, const Frame* frame,
@@ -576,10 +577,14 @@ void Worker::work_on_request(DetectJob& job) {
 }
 
 Result<SceneInterpretations> Worker::detect(const Frame& frame, const DetectRequest& request) {
+  return searched([&] { return recognition_->detect_beside(frame, request, queue_length()); });
+}
+
+/// What a search finds, which may throw; its times are counted.
+Result<SceneInterpretations> Worker::searched(
+    const std::function<Result<SceneInterpretations>()>& search) {
   std::optional<Result<SceneInterpretations>> result;
-  const Status status = guard("the detector failed", [&] {
-    result.emplace(recognition_->detect_beside(frame, request, queue_length()));
-  });
+  const Status status = guard("the detector failed", [&] { result.emplace(search()); });
   if (!status.ok()) return status;
   if (result->ok()) statistics_.add_timings(**result);
   return *std::move(result);

@@ -162,6 +162,7 @@ class Worker {
   void search_frames(std::unique_lock<std::mutex>& lock, const WorkerOptions& options, Busy& busy);
   void search_request(std::unique_lock<std::mutex>& lock, Busy& busy);
   std::vector<IncomingFrame> take_frames(const WorkerOptions& options);
+  bool combines_next(const IncomingFrame& first);
   void publish(const IncomingFrame& incoming, const Frame* frame,
                const Result<SceneInterpretations>& result);
   Frame fuse(Frame frame, const WorkerOptions& options);
@@ -179,6 +180,8 @@ class Worker {
                          const Frame& frame, DetectJob& job,
                          const Result<SceneInterpretations>* shared);
   Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request);
+  Result<SceneInterpretations> searched(
+      const std::function<Result<SceneInterpretations>()>& search);
 
   const std::shared_ptr<const Recognition> recognition_;
   Statistics& statistics_;
