@@ -57,7 +57,6 @@ class WorkerServer : public Server {
                                               .name = process_name(),
                                               .cache = cache_folder(options_.group),
                                               .threads = options_.detection.threads,
-                                              .nice = 0,
                                               .library = nullptr},
                                              log_));
     bpa::log(log_, LogLevel::info,

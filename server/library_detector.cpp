@@ -94,6 +94,7 @@ class LibraryDetector : public Recognition {
   void leave_group() override {
     const std::lock_guard<std::mutex> change_lock(change_mutex_);
     Current next = now();
+    if (!next.front) return;
     next.front = nullptr;
     (void)put(std::move(next));
   }

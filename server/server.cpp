@@ -104,7 +104,7 @@ class Running : public Server {
     const std::lock_guard<std::shared_mutex> lock(leaving_mutex_);
     ready_ = false;
     open_page_ = nullptr;
-    if (in_group_) recognition_->leave_group();
+    recognition_->leave_group();
   }
 
   /// Throws a Failure.
@@ -119,7 +119,6 @@ class Running : public Server {
 
     if (options.group.role == "front") {
       recognition_->join_group(*participant_, options.group, log_);
-      in_group_ = true;
     }
     start_tracking(options);
     worker_ = std::make_unique<Worker>(
@@ -555,7 +554,6 @@ class Running : public Server {
 
   // In the order in which they come up; destroyed in reverse: nothing calls into what is gone.
   std::optional<wire::Participant> participant_;
-  bool in_group_ = false;
   std::unique_ptr<ResultPublisher> publisher_;
   Output<wire::diagnostic_msgs::DiagnosticArray> diagnostics_;
   std::unique_ptr<TrackPublisher> track_publisher_;

@@ -40,8 +40,7 @@ class RunningFront : public Front {
         links_(new Links{.front = new_session(),
                          .members = {participant, settings.group, std::move(log)},
                          .mailboxes = {},
-                         .cost_mutex = {},
-                         .cost = {}}) {
+                         .cost_mutex = {}}) {
     offer_.emplace(or_throw(
         wire::Publisher<msgs::GroupLibrary>::create(participant, topics_.library(), {qos()})));
     files_.emplace(or_throw(wire::ServiceServer<msgs::GetModelFile>::create(
@@ -84,7 +83,6 @@ class RunningFront : public Front {
                                          .name = "beside the front",
                                          .cache = {},
                                          .threads = settings_.threads,
-                                         .nice = 0,
                                          .library = std::move(library)},
                                         log_));
     } else {
@@ -136,7 +134,7 @@ class RunningFront : public Front {
     auto offered = Clock::now();
     while (!stop.stop_requested()) {
       links_->members.welcome();
-      if (links_->members.look()) links_->mailboxes.wake_all();
+      links_->members.look();
       if (Clock::now() - offered >= kOfferPeriod) {
         offer();
         offered = Clock::now();

@@ -12,6 +12,7 @@
 #include "core/base/concat.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/model_file.hpp"
+#include "server/convert/results.hpp"
 
 namespace bpa::server::group {
 namespace {
@@ -132,7 +133,7 @@ msgs::GetModelFile_Response read_model_file(const SharedLibrary& library,
                                             const msgs::GetModelFile_Request& request) {
   msgs::GetModelFile_Response response;
   const auto refuse = [&](const Status& status) {
-    response.status = {.code = static_cast<std::uint8_t>(status.code), .message = status.message};
+    response.status = server::to_message(status);
     return response;
   };
   const auto model =

@@ -8,10 +8,6 @@
 #include "core/base/concat.hpp"
 #include "server/group/session.hpp"
 
-#ifndef BPA_VERSION
-#define BPA_VERSION "0"
-#endif
-
 namespace bpa::server::group {
 namespace {
 
@@ -67,13 +63,12 @@ void Members::welcome() {
   }
 }
 
-bool Members::look() {
+void Members::look() {
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto now = Clock::now();
-  bool any = false;
   for (auto& [id, member] : members_) {
     if (member.lost || now - member.heard < kSilence) continue;
-    member.lost = any = true;
+    member.lost = true;
     log(log_, LogLevel::warning,
         concat("worker ", member.said.name, " is lost: it was silent for ", kSilence.count(),
                " ms"));
@@ -81,7 +76,6 @@ bool Members::look() {
   std::erase_if(members_, [&](const auto& entry) {
     return now - entry.second.heard > kForgetAfter && entry.second.searches.empty();
   });
-  return any;
 }
 
 bool Members::is_lost(std::uint64_t worker) const {
@@ -97,24 +91,22 @@ bool Members::rests(std::uint64_t worker) const {
 }
 
 std::vector<std::uint64_t> Members::ready(const std::string& library) const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  std::vector<std::uint64_t> out, reserve;
-  for (const auto& [id, member] : members_) {
-    if (!can_search(member, library)) continue;
-    (member.said.reserve ? reserve : out).push_back(id);
-  }
-  if (out.empty()) return reserve;
-  std::ranges::stable_sort(out, {},
-                           [&](std::uint64_t id) { return members_.at(id).searches.size(); });
-  return out;
+  const std::vector<std::uint64_t> out = able(library, false);
+  return out.empty() ? reserve(library) : out;
 }
 
 std::vector<std::uint64_t> Members::reserve(const std::string& library) const {
+  return able(library, true);
+}
+
+std::vector<std::uint64_t> Members::able(const std::string& library, bool reserve) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<std::uint64_t> out;
   for (const auto& [id, member] : members_) {
-    if (member.said.reserve && can_search(member, library)) out.push_back(id);
+    if (member.said.reserve == reserve && can_search(member, library)) out.push_back(id);
   }
+  std::ranges::stable_sort(out, {},
+                           [&](std::uint64_t id) { return members_.at(id).searches.size(); });
   return out;
 }
 

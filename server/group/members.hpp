@@ -48,8 +48,8 @@ class Members {
   /// Opens the topics of new workers. Not on a DDS thread, where that waits for itself.
   void welcome();
 
-  /// Notes who was silent for too long; whether one has been lost since the last look.
-  bool look();
+  /// Notes who was silent for too long.
+  void look();
 
   /// Whether it is silent, or was never heard.
   bool is_lost(std::uint64_t worker) const;
@@ -89,6 +89,8 @@ class Members {
   const LogHook& hook() const { return log_; }
 
  private:
+  /// Ids of those that can search this library, beside the front or not, by number of searches.
+  std::vector<std::uint64_t> able(const std::string& library, bool reserve) const;
   static bool can_search(const Member& member, const std::string& library);
 
   const wire::Participant& participant_;

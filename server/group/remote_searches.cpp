@@ -6,7 +6,6 @@
 #include <chrono>
 #include <set>
 #include <string>
-#include <thread>
 
 #include "core/base/concat.hpp"
 #include "core/base/failure.hpp"
@@ -64,7 +63,6 @@ class Searches : public ModelSearches {
       end.share = share.number;
       links_->members.send(share.worker, end);
     }
-    links_->mailboxes.close(search_);
   }
 
   void prepared(const SceneFeatures& scene, double took_ms) override {
@@ -289,17 +287,17 @@ class Searches : public ModelSearches {
   }
 
   void measure() {
-    double busy_ms = 0;
+    double busy_ms = 0, models = 0;
     for (const Share& share : shares_) {
-      if (!share.whole || share.models.empty()) continue;
-      const double searched_ms = std::max(1.0, share.busy_ms);
-      links_->members.measured(share.worker,
-                               searched_ms / static_cast<double>(share.models.size()));
-      busy_ms += searched_ms;
+      if (!share.whole) continue;
+      const auto searched = static_cast<double>(share.models.size());
+      links_->members.measured(share.worker, share.busy_ms / searched);
+      busy_ms += share.busy_ms;
+      models += searched;
     }
+    if (models == 0) return;
     const std::lock_guard<std::mutex> lock(links_->cost_mutex);
-    links_->cost.add(
-        {preparation_ms_, busy_ms / static_cast<double>(models_.size()), exchange_ms_});
+    links_->cost.add({preparation_ms_, busy_ms / models, exchange_ms_});
   }
 
   const std::shared_ptr<Links> links_;

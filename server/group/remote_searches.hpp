@@ -28,34 +28,30 @@ class Mailboxes {
     std::vector<wire::bpa_msgs::GroupAnswer> answers;
   };
 
+  /// It takes answers as long as it lives.
   std::shared_ptr<Box> open(std::uint64_t search) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return boxes_[search] = std::make_shared<Box>();
-  }
-  void close(std::uint64_t search) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    boxes_.erase(search);
+    std::erase_if(boxes_, [](const auto& entry) { return entry.second.expired(); });
+    auto box = std::make_shared<Box>();
+    boxes_[search] = box;
+    return box;
   }
   void deliver(wire::bpa_msgs::GroupAnswer&& answer) {
     std::shared_ptr<Box> box;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       const auto found = boxes_.find(answer.search);
-      if (found == boxes_.end()) return;
-      box = found->second;
+      if (found != boxes_.end()) box = found->second.lock();
     }
+    if (!box) return;
     const std::lock_guard<std::mutex> lock(box->mutex);
     box->answers.push_back(std::move(answer));
     box->changed.notify_all();
   }
-  void wake_all() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    for (const auto& [search, box] : boxes_) box->changed.notify_all();
-  }
 
  private:
   std::mutex mutex_;
-  std::map<std::uint64_t, std::shared_ptr<Box>> boxes_;
+  std::map<std::uint64_t, std::weak_ptr<Box>> boxes_;
 };
 
 /// What is common to all searches of a front.

@@ -24,14 +24,10 @@
 #include "idl/wire/service.hpp"
 #include "idl/wire/subscriber.hpp"
 #include "server/busy.hpp"
+#include "server/convert/results.hpp"
 #include "server/group/messages.hpp"
 #include "server/group/session.hpp"
 #include "server/group/topics.hpp"
-#include "server/niceness.hpp"
-
-#ifndef BPA_VERSION
-#define BPA_VERSION "0"
-#endif
 
 namespace bpa::server::group {
 namespace {
@@ -120,7 +116,7 @@ class ShareSearch {
   void refuse(const Status& status) {
     msgs::GroupAnswer answer = plain_answer();
     answer.step = std::max(step_, answer_from_);
-    answer.status = {static_cast<std::uint8_t>(status.code), status.message};
+    answer.status = server::to_message(status);
     send_(answer);
   }
 
@@ -333,7 +329,6 @@ class RunningWorker : public Worker {
         [this](const msgs::GroupAnswer& answer) { (void)answers_->publish(answer); });
     Share* const raw = share.get();
     share->thread = std::thread([this, raw] {
-      if (settings_.nice != 0) (void)set_niceness(niceness() + settings_.nice);
       raw->busy.begin("the search of a share");
       raw->search.run();
       raw->busy.end();

@@ -17,7 +17,6 @@ struct WorkerSettings {
   std::string name;   ///< For people.
   std::string cache;  ///< Folder of fetched models.
   int threads = 0;    ///< 0: one per core.
-  int nice = 0;       ///< Added to the nice value of the searching threads.
   /// The library to search; null: what the front offers is fetched.
   std::shared_ptr<const SharedLibrary> library;
 };
