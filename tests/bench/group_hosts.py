@@ -216,11 +216,10 @@ def scale(options):
             rate = 60 * len(frames) * options.clients / (time.monotonic() - began)
         seconds = statistics.median(frame['seconds'] for frame in frames)
         answers = [answer_of(frame) for frame in frames]
-        first, reference = first or seconds * workers / 1, reference or answers
+        first, reference = first or seconds, reference or answers
         same = sum(a == b for a, b in zip(answers, reference))
-        base = first / options.workers[0]
-        print(f'| {workers} | {seconds:.2f} | {seconds / base:.2f} | '
-              f'{100 * base * options.workers[0] / (seconds * workers):.0f} % | {sent:.2f} | '
+        print(f'| {workers} | {seconds:.2f} | {seconds / first:.2f} | '
+              f'{100 * first * options.workers[0] / (seconds * workers):.0f} % | {sent:.2f} | '
               f'{same}/{len(frames)} | {rate:.1f} | {fetched:.0f} |', flush=True)
 
 
