@@ -64,6 +64,8 @@ void Members::welcome() {
 }
 
 void Members::look() {
+  // Closed after the mutex is free: closing waits for callbacks, which take it.
+  std::vector<std::shared_ptr<StepPublisher>> forgotten;
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto now = Clock::now();
   for (auto& [id, member] : members_) {
@@ -74,7 +76,10 @@ void Members::look() {
                " ms"));
   }
   std::erase_if(members_, [&](const auto& entry) {
-    return now - entry.second.heard > kForgetAfter && entry.second.searches.empty();
+    const Member& member = entry.second;
+    if (now - member.heard <= kForgetAfter || !member.searches.empty()) return false;
+    forgotten.push_back(member.steps);
+    return true;
   });
 }
 
