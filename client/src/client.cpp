@@ -14,6 +14,7 @@
 #include "idl/wire/participant.hpp"
 #include "idl/wire/publisher.hpp"
 #include "idl/wire/service.hpp"
+#include "idl/wire/status.hpp"
 #include "idl/wire/subscriber.hpp"
 #include "idl/wire/worker.hpp"
 
@@ -69,7 +70,7 @@ template <class Response>
 Status outcome(const Result<Response>& response) {
   if (!response.ok()) return response.status();
   if (response->success) return {};
-  Status status = sdk::to_status(response->status);
+  Status status = wire::to_status(response->status);
   if (status.ok()) status = Status(StatusCode::internal, "the server refused without a reason");
   return status;
 }

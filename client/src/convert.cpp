@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/concat.hpp"
+#include "idl/wire/status.hpp"
 
 namespace bpa::sdk {
 namespace {
@@ -142,19 +143,11 @@ wire::geometry_msgs::Pose to_message(const ObjectPose& pose) {
   return {{p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]}};
 }
 
-Status to_status(const msgs::Status& message) {
-  if (message.code <= static_cast<std::uint8_t>(StatusCode::internal)) {
-    return {static_cast<StatusCode>(message.code), message.message};
-  }
-  return {StatusCode::internal,
-          "the server answered with code " + std::to_string(message.code) + ": " + message.message};
-}
-
 DetectionSet to_detections(const msgs::SceneInterpretations& message) {
   DetectionSet set;
   set.stamp_ns = to_ns(message.header.stamp);
   set.frame_id = message.header.frame_id;
-  set.status = to_status(message.status);
+  set.status = wire::to_status(message.status);
   for (const auto& interpretation : message.interpretations) {
     RankedInterpretation ranked{static_cast<int>(interpretation.rank),
                                 interpretation.score,

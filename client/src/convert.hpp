@@ -13,8 +13,6 @@ namespace bpa::sdk {
 
 ObjectPose to_pose(const wire::geometry_msgs::Pose& message);
 wire::geometry_msgs::Pose to_message(const ObjectPose& pose);
-/// The message's status; `internal` for a code that this version does not know.
-Status to_status(const wire::bpa_msgs::Status& message);
 DetectionSet to_detections(const wire::bpa_msgs::SceneInterpretations& message);
 /// A state that this version does not know is `tentative`.
 TrackSet to_tracks(const wire::bpa_msgs::Tracks& message);

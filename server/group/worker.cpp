@@ -22,6 +22,7 @@
 #include "core/pipeline/prepare_scene.hpp"
 #include "idl/wire/publisher.hpp"
 #include "idl/wire/service.hpp"
+#include "idl/wire/status.hpp"
 #include "idl/wire/subscriber.hpp"
 #include "server/busy.hpp"
 #include "server/convert/results.hpp"
@@ -424,7 +425,7 @@ class RunningWorker : public Worker {
     if (stop.stop_requested()) return unavailable("the worker is stopping");
     auto response = files_->call(request, kFetchTime);
     if (!response.ok() || response->success) return response;
-    return Status(static_cast<StatusCode>(response->status.code), response->status.message);
+    return wire::to_status(response->status);
   }
 
   void beat(const std::stop_token& stop) {

@@ -11,6 +11,7 @@
 #include "core/draw/sheet.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/model_file.hpp"
+#include "idl/wire/status.hpp"
 #include "server/web/assets.hpp"
 #include "server/web/json_text.hpp"
 #include "server/web/outlines.hpp"
@@ -61,9 +62,7 @@ void respond_with_picture(const Request& request, const Responder& respond, Show
 
 /// The response of a service in HTTP.
 web::Response response_to(bool success, const wire::bpa_msgs::Status& status, Json more) {
-  if (!success) {
-    return refusal(Status(static_cast<StatusCode>(status.code), status.message));
-  }
+  if (!success) return refusal(wire::to_status(status));
   more["ok"] = true;
   return json_response(json_text(more));
 }

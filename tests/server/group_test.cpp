@@ -10,6 +10,7 @@
 
 #include "core/io/model_file.hpp"
 #include "core/modeling/model_source.hpp"
+#include "idl/wire/status.hpp"
 #include "server/group/claims.hpp"
 #include "server/group/library.hpp"
 #include "server/group/messages.hpp"
@@ -113,7 +114,7 @@ class GroupLibrary : public testing::Test {
           ++calls_;
           msgs::GetModelFile_Response response = read_model_file(front, request);
           if (response.success) return response;
-          return Status(static_cast<StatusCode>(response.status.code), response.status.message);
+          return wire::to_status(response.status);
         },
         1);
   }
