@@ -13,9 +13,11 @@ each worker gets (cgroup v1, cpu.cfs_quota_us). Needs root, `ip` and `tc`. Print
 import argparse
 import contextlib
 import json
+import math
 import os
 import pathlib
 import random
+import shutil
 import signal
 import statistics
 import subprocess
@@ -80,10 +82,18 @@ class Hosts:
             subprocess.run(['ip', 'netns', 'del', name], check=False)
 
 
+def held_by(pid):
+    status = pathlib.Path(f'/proc/{pid}/status').read_text(encoding='utf-8')
+    values = dict(line.split(':\t', 1) for line in status.splitlines() if ':\t' in line)
+    descriptors = len(list(pathlib.Path(f'/proc/{pid}/fd').iterdir()))
+    return f'{descriptors}, {values["Threads"].strip()}, {int(values["VmRSS"].split()[0]) // 1024}'
+
+
 class Group:
     def __init__(self, hosts, folder, options):
         self.hosts, self.folder = hosts, folder
-        self.library, self.share, self.programs = options.library, options.share, options.programs
+        self.library, self.share, self.programs = folder / 'library', options.share, options.programs
+        shutil.copytree(options.library, self.library)
         self.processes = {}
         self.environment = {key: value for key, value in os.environ.items() if not key.startswith('ROS_')}
 
@@ -139,6 +149,10 @@ class Group:
                     print(log.name, log.read_text(encoding='utf-8')[-2000:], sep='\n', file=sys.stderr)
                 raise SystemExit(f'{workers} workers did not come')
             time.sleep(0.2)
+
+    def held(self):
+        """What those hold that no fault ends."""
+        return ' and '.join(held_by(self.processes[name].pid) for name in ('front', 'worker1'))
 
     def log(self, name):
         return (self.folder / f'{name}.log').read_text(encoding='utf-8')
@@ -223,12 +237,43 @@ def scale(options):
               f'{same}/{len(frames)} | {rate:.1f} | {fetched:.0f} |', flush=True)
 
 
-def held(pid):
-    """What a process holds."""
-    status = pathlib.Path(f'/proc/{pid}/status').read_text(encoding='utf-8')
-    values = dict(line.split(':\t', 1) for line in status.splitlines() if ':\t' in line)
-    descriptors = len(list(pathlib.Path(f'/proc/{pid}/fd').iterdir()))
-    return f'{descriptors}, {values["Threads"].strip()}, {int(values["VmRSS"].split()[0]) // 1024}'
+class Versions:
+    """Two versions of one model, which take turns in the library."""
+
+    MODEL = 'banana'
+
+    def __init__(self, group, options):
+        self.group, self.count = group, 0
+        other = group.folder / 'other'
+        number = json.loads((group.library / self.MODEL / 'model.json').read_text(encoding='utf-8'))['number']
+        mesh = pathlib.Path(options.bop) / 'models' / f'obj_{number:06}.ply'
+        sh(group.programs / 'bpa', 'model', 'from-mesh', mesh, '--scale', '0.001', '--name', self.MODEL, '--number',
+           str(number), '--views', '60', '--spacing', '0.003', '--library', other)
+        self.folders = [group.library / self.MODEL, other / self.MODEL]
+
+    def swap(self):
+        self.count += 1
+        folder, other = self.folders  # the front has mapped the files: they may move, not change
+        kept = folder.with_name(f'.{self.count}')
+        folder.rename(kept)
+        other.rename(folder)
+        self.folders[1] = kept
+        loaded = self.group.client('load', self.MODEL)
+        if loaded.returncode:
+            raise SystemExit(loaded.stdout + loaded.stderr)
+
+
+def block_cache(group, number):
+    """A worker that can keep no model: its cache is a file."""
+    cache = group.folder / f'cache{number}'
+    away = cache.with_name('away')
+    cache.rename(away)
+    cache.touch()
+
+    def undo():
+        cache.unlink()
+        away.rename(cache)
+    return undo
 
 
 def strike(kind, hosts, group, rng):
@@ -273,9 +318,28 @@ def strike(kind, hosts, group, rng):
     raise SystemExit(kind)
 
 
+def placed(frame):
+    """Model and position (mm) of what the best interpretation is sure of."""
+    best = frame['interpretations'][0]['placements'] if frame['interpretations'] else []
+    return [(int(one['obj_id']), [1000 * x for x in one['pose']['translation_m']])
+            for one in best if one['probability'] >= 0.5]
+
+
+def false_ones(options, frames):
+    """Objects that are 20 mm or more from every true one of their model."""
+    count = 0
+    for frame in frames:
+        path = pathlib.Path(options.bop) / 'test' / f'{frame["scene_id"]:06}' / 'scene_gt.json'
+        truth = json.loads(path.read_text(encoding='utf-8'))[str(frame['im_id'])]
+        for number, where in placed(frame):
+            count += all(one['obj_id'] != number or math.dist(one['cam_t_m2c'], where) >= 20 for one in truth)
+    return count
+
+
 def faults(options):
-    print(f'| fault | answers of {options.times} | the same | refused | without an answer | slowest, s | the first '
-          'worker: descriptors, threads, MB, before and after |\n|---|---|---|---|---|---|---|')
+    print(f'| fault | answers of {options.times} | the same | models missing, named | false objects | refused '
+          '| without an answer | slowest, s | the front, the first worker: descriptors, threads, MB, after the first '
+          'and the last |\n|---|---|---|---|---|---|---|---|---|')
     rng = random.Random(1)
     budget = ['--budget-ms', str(options.budget_ms)] if options.budget_ms else []
     for kind in options.kinds:
@@ -289,26 +353,45 @@ def faults(options):
             one = ['--scenes', options.scene]
             frames, usual, text = detect(group, options, *one)
             right = [[answer_of(frame) for frame in frames]]
+            usually_false = false_ones(options, frames)
             if kind == 'library changed':
                 group.client('unload', 'banana')
                 right.append([answer_of(frame) for frame in detect(group, options, *one)[0]])
                 group.client('load', 'banana')
-            before = held(group.processes['worker1'].pid)
-            counts, slowest, wrong = {'same': 0, 'refused': 0, 'none': 0, 'answered': 0}, 0, ''
-            for _ in range(options.times):
+            if kind == 'wrong version':
+                versions = Versions(group, options)
+                versions.swap()
+                group.wait_for(2)
+                right.append([answer_of(frame) for frame in detect(group, options, *one)[0]])
+                versions.swap()
+                group.wait_for(2)
+            counts = {'same': 0, 'refused': 0, 'none': 0, 'answered': 0, 'missing': 0, 'false': 0}
+            slowest, wrong, before = 0, '', ''
+            for k in range(options.times):
                 path = group.folder / 'answer.json'
                 path.unlink(missing_ok=True)
+                if kind == 'wrong version':  # worker 2 cannot have it
+                    now_right = [right[(k + 1) % 2]]
+                    shutil.rmtree(group.folder / 'cache2')
+                    (group.folder / 'cache2').mkdir()
+                    undo = block_cache(group, 2)
+                    versions.swap()
+                else:
+                    now_right = right
                 began = time.monotonic()
                 client = group.begin('detect', '--bop', options.bop, '--json', path, '--wait', '240', *one,
                                      *budget)
-                undo = strike(kind, hosts, group, rng)
+                if kind != 'wrong version':
+                    undo = strike(kind, hosts, group, rng)
                 text = client.communicate(timeout=300)[0]
                 slowest = max(slowest, time.monotonic() - began)
                 frames = frames_of(path) if path.exists() else []
                 if frames:
                     counts['answered'] += 1
-                    same = [answer_of(frame) for frame in frames] in right
+                    same = [answer_of(frame) for frame in frames] in now_right
                     counts['same'] += same
+                    counts['missing'] += any('not searched' in frame['message'] for frame in frames)
+                    counts['false'] += false_ones(options, frames)
                     wrong = wrong or ('' if same or budget else text)
                 elif 'refused' in text or 'unavailable' in text or 'not searched' in text:
                     counts['refused'] += 1
@@ -317,9 +400,13 @@ def faults(options):
                     wrong = wrong or text
                 undo()
                 group.wait_for(2)
+                if k == 0:
+                    time.sleep(7)
+                    before = group.held()
             time.sleep(7)  # leases of those that were killed
-            after = held(group.processes['worker1'].pid)
-        print(f'| {kind} | {counts["answered"]} | {counts["same"]} | {counts["refused"]} | {counts["none"]} | '
+            after = group.held()
+        print(f'| {kind} | {counts["answered"]} | {counts["same"]} | {counts["missing"]} | {counts["false"]} '
+              f'({usually_false} a search without a fault) | {counts["refused"]} | {counts["none"]} | '
               f'{slowest:.1f} (without a fault {usual:.1f}) | {before} -> {after} |', flush=True)
         if wrong:
             print(wrong[-600:], file=sys.stderr)
@@ -376,8 +463,8 @@ def main():
     parser.add_argument('--scene', default='1', help='whose frames are searched under faults')
     parser.add_argument('--budget-ms', type=float, default=0)
     parser.add_argument('--kinds', nargs='+',
-                        default=['killed', 'stopped', 'cut off', 'slow', 'library changed', 'front killed',
-                                 'two fronts'])
+                        default=['killed', 'stopped', 'cut off', 'slow', 'wrong version', 'library changed',
+                                 'front killed', 'two fronts'])
     options = parser.parse_args()
     {'scale': scale, 'faults': faults, 'discovery': discovery}[options.what](options)
 
