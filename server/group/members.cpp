@@ -125,12 +125,15 @@ std::vector<std::uint64_t> Members::wait_for_ready(const std::string& library) c
   return workers;
 }
 
-std::size_t Members::idle(const std::vector<std::uint64_t>& workers) const {
+std::size_t Members::searches(const std::vector<std::uint64_t>& workers) const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return std::ranges::count_if(workers, [&](std::uint64_t id) {
-    const auto found = members_.find(id);
-    return found != members_.end() && found->second.searches.empty();
-  });
+  std::set<std::uint64_t> running;
+  for (const std::uint64_t id : workers) {
+    if (const auto found = members_.find(id); found != members_.end()) {
+      running.insert(found->second.searches.begin(), found->second.searches.end());
+    }
+  }
+  return running.size();
 }
 
 double Members::ms_a_model(std::uint64_t worker) const {

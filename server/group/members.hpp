@@ -66,8 +66,8 @@ class Members {
   /// library.
   std::vector<std::uint64_t> wait_for_ready(const std::string& library) const;
 
-  /// How many of these search nothing now.
-  std::size_t idle(const std::vector<std::uint64_t>& workers) const;
+  /// How many searches these take part in now.
+  std::size_t searches(const std::vector<std::uint64_t>& workers) const;
 
   /// Its measured time for a model of a search; before that the mean of others.
   double ms_a_model(std::uint64_t worker) const;

@@ -44,13 +44,13 @@ class Searches : public ModelSearches {
     const std::vector<std::uint64_t> workers =
         links_->members.wait_for_ready(library_->offer.digest);
     if (workers.empty()) or_throw(no_worker());
-    const std::size_t idle = links_->members.idle(workers);
+    const std::size_t frames = links_->members.searches(workers) + waiting + 1;
     std::size_t count;
     {
       const std::lock_guard<std::mutex> lock(links_->cost_mutex);
       SearchCost cost = links_->cost;
       cost.search_ms *= static_cast<double>(models_.size());
-      count = workers_for_frame(cost, waiting + 1, std::max<std::size_t>(idle, 1));
+      count = workers_for_frame(cost, frames, workers.size());
     }
     std::vector<std::size_t> all(models_.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;

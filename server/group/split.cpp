@@ -19,16 +19,16 @@ void SearchCost::add(const SearchCost& measured) {
   move_towards(measured.exchange_ms, exchange_ms);
 }
 
-std::size_t workers_for_frame(const SearchCost& cost, std::size_t frames, std::size_t idle) {
+std::size_t workers_for_frame(const SearchCost& cost, std::size_t frames, std::size_t workers) {
   frames = std::max<std::size_t>(frames, 1);
   std::size_t best = 1;
   double best_ms = 0;
-  for (std::size_t workers = 1; workers <= std::max<std::size_t>(idle, 1); ++workers) {
-    const std::size_t at_once = std::max<std::size_t>(idle / workers, 1);
+  for (std::size_t some = 1; some <= std::max<std::size_t>(workers, 1); ++some) {
+    const std::size_t at_once = std::max<std::size_t>(workers / some, 1);
     const auto turns = static_cast<double>((frames + at_once - 1) / at_once);
-    const double last_ms = turns * cost.milliseconds(workers);
-    if (workers > 1 && last_ms >= best_ms) continue;
-    best = workers;
+    const double last_ms = turns * cost.milliseconds(some);
+    if (some > 1 && last_ms >= best_ms) continue;
+    best = some;
     best_ms = last_ms;
   }
   return best;

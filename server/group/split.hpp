@@ -24,9 +24,9 @@ struct SearchCost {
   void add(const SearchCost& measured);
 };
 
-/// The number of workers that one of `frames` that wait should get, so that the last is answered
-/// first: all for one frame, one each for many. `idle` workers are free. At least 1.
-std::size_t workers_for_frame(const SearchCost& cost, std::size_t frames, std::size_t idle);
+/// The number of `workers` that each of `frames` should get, so that the last is answered first:
+/// all for one frame, one each for many. At least 1.
+std::size_t workers_for_frame(const SearchCost& cost, std::size_t frames, std::size_t workers);
 
 /// Which worker searches for each of `models`: `pace` is each worker's milliseconds for a model.
 /// The slowest share takes as short as it can.
