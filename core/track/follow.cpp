@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "core/detect/candidate.hpp"
@@ -66,6 +67,8 @@ constexpr double kTurnedWeight = -3;   // log weight of a near-symmetric turn th
 constexpr double kMaxSlide_rad = 0.1;  // of a mode, while it is aligned
 constexpr int kMinFramesBetween = 5;   // comparisons
 constexpr std::size_t kMostModes = 40;
+// Modes that are compared in a frame, so that none takes long: 0.17 us a pixel and mode.
+constexpr std::size_t kMostCompared = 10, kLeastCompared = 2, kComparedPixels = 50000;
 
 Sight sight_of(const SurfaceAgreement& surface, int correspondences) {
   const bool agrees = surface.agreeing >= kMinAgreeing && surface.free_space <= kMaxFreeSpace &&
@@ -198,22 +201,21 @@ void settle(Body& body) {
   std::erase_if(body.modes, [](const Mode& mode) { return mode.log_weight < kUnlikely; });
 }
 
-// `own` is the pose, aligned.
+// The first modes; `own` is the pose, aligned.
 void weigh_modes(const SceneFeatures& scene, const Pose& own, const Pose& camera_from_object,
-                 Body& body) {
+                 const ObjectModel& model, std::span<Mode> modes) {
   std::vector<Pose> poses = {own};
-  for (const Mode& mode : body.modes) poses.push_back(camera_from_object * mode.object_from_mode);
-  const auto behind = behind_best(scene, *body.model, poses, poses.size());
+  for (const Mode& mode : modes) poses.push_back(camera_from_object * mode.object_from_mode);
+  const auto behind = behind_best(scene, model, poses, poses.size());
   // Of a mode against the pose. A little says nothing, as the errors of a model favour one of them.
   const auto evidence = [&](std::size_t k) {
     const double nats = behind[k].depth + behind[k].color - behind[0].depth - behind[0].color;
     const double beyond = std::max(0.0, std::abs(nats) - kLittleEvidence);
     return std::copysign(std::min(kMostEvidence, beyond), nats);
   };
-  for (std::size_t k = 0; k < body.modes.size(); ++k) {
-    body.modes[k].log_weight += kTempered * evidence(k + 1);
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    modes[k].log_weight += kTempered * evidence(k + 1);
   }
-  settle(body);
 }
 
 std::optional<RegionOfInterest> surroundings_of(const Frame& frame, const Pose& frame_from_camera,
@@ -296,14 +298,12 @@ void compare_modes(const View& view, Body& body) {
   if (body.modes.empty() && model.index->near_symmetries.empty()) return;
   const Pose camera_from_object = view.in_camera(body.motion.pose());
   const Pose from = camera_from_object.inverse();
-  if (body.compared >= kComparedAtLeast && !is_new_view(body, from)) return;
+  const bool goes_on = body.to_compare > 0;
+  if (!goes_on && body.compared >= kComparedAtLeast && !is_new_view(body, from)) return;
   const auto around = surroundings_of(view.frame, view.frame_from_camera, body);
   if (!around) return;
-  body.compared_from = from;
-  body.frames_since_compared = 0;
-  ++body.compared;
   const SceneFeatures scene =
-      observe_part(view.frame, *around, view.scene.map.sensor, view.scene.planes);
+      observe_part_colors(view.frame, *around, view.scene.map.sensor, view.scene.planes);
   // All are aligned alike, or those that are would seem likelier. A turn that the view leaves open
   // slides to where another mode is; then it stays as it was.
   const auto aligned = [&](const Pose& start) {
@@ -311,13 +311,26 @@ void compare_modes(const View& view, Body& body) {
     return pose_error(pose, start).angle < kMaxSlide_rad ? pose : start;
   };
   const Pose own = aligned(camera_from_object), object_from_own = from * own;
-  for (Mode& mode : body.modes) {
+  if (!goes_on) {
+    body.compared_from = from;
+    body.frames_since_compared = 0;
+    ++body.compared;
+    for (const Pose& motion : model.index->near_symmetries) {
+      propose(body, object_from_own * motion, kTurnedWeight);
+    }
+    body.to_compare = body.modes.size();
+  }
+  const std::size_t at_once =
+      std::clamp(kComparedPixels / scene.image.pixels.size(), kLeastCompared, kMostCompared);
+  const std::size_t count = std::min({body.to_compare, body.modes.size(), at_once});
+  const std::span<Mode> modes = std::span(body.modes).first(count);
+  for (Mode& mode : modes) {
     mode.object_from_mode = from * aligned(camera_from_object * mode.object_from_mode);
   }
-  for (const Pose& motion : model.index->near_symmetries) {
-    propose(body, object_from_own * motion, kTurnedWeight);
-  }
-  weigh_modes(scene, own, camera_from_object, body);
+  weigh_modes(scene, own, camera_from_object, model, modes);
+  body.to_compare = std::min(body.to_compare, body.modes.size()) - count;
+  std::ranges::rotate(body.modes, body.modes.begin() + static_cast<std::ptrdiff_t>(count));
+  settle(body);
 }
 
 void favour_mode(Body& body, const Pose& frame_from_object, double log_weight, double says) {

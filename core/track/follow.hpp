@@ -61,6 +61,7 @@ struct Body {
   Pose compared_from = {};  ///< object_from_camera when the modes were last compared.
   int compared = 0;         ///< Times that the modes were compared.
   int frames_since_compared = 0;
+  std::size_t to_compare = 0;      ///< Modes that this comparison has left, the first ones.
   std::vector<float> around = {};  ///< Depths of the surroundings when it was last aligned.
   RegionOfInterest around_region = {};
 };

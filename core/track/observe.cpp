@@ -29,6 +29,18 @@ SceneFeatures observed(const Frame& frame, SurfaceMapOptions options, SensorKind
   return scene;
 }
 
+// And the part of the frame.
+std::pair<Frame, SceneFeatures> observed_part(const Frame& frame, const RegionOfInterest& part,
+                                              SensorKind sensor,
+                                              std::span<const Plane> background) {
+  SurfaceMapOptions options;
+  options.max_width = part.width / map_reduction(frame.camera.width, options.max_width);
+  options.num_threads = 1;
+  Frame cropped = crop(frame, part);
+  SceneFeatures scene = observed(cropped, options, sensor, background);
+  return {std::move(cropped), std::move(scene)};
+}
+
 }  // namespace
 
 SceneFeatures observe(const Frame& frame, SensorKind sensor, std::span<const Plane> background,
@@ -40,11 +52,12 @@ SceneFeatures observe(const Frame& frame, SensorKind sensor, std::span<const Pla
 
 SceneFeatures observe_part(const Frame& frame, const RegionOfInterest& part, SensorKind sensor,
                            std::span<const Plane> background) {
-  SurfaceMapOptions options;
-  options.max_width = part.width / map_reduction(frame.camera.width, options.max_width);
-  options.num_threads = 1;
-  const Frame cropped = crop(frame, part);
-  SceneFeatures scene = observed(cropped, options, sensor, background);
+  return observed_part(frame, part, sensor, background).second;
+}
+
+SceneFeatures observe_part_colors(const Frame& frame, const RegionOfInterest& part,
+                                  SensorKind sensor, std::span<const Plane> background) {
+  auto [cropped, scene] = observed_part(frame, part, sensor, background);
   if (cropped.color.empty()) return scene;
   SceneFeatureOptions features;
   features.num_threads = 1;

@@ -19,10 +19,14 @@ namespace bpa::track {
 SceneFeatures observe(const Frame& frame, SensorKind sensor, std::span<const Plane> background,
                       int num_threads);
 
-/// The same of a part of the frame, with colours: what behind_best() reads. `part` is in whole
-/// pixels of the reduced image (surroundings()). One thread.
+/// The same of a part of the frame, in whole pixels of the reduced image (surroundings()). One
+/// thread.
 SceneFeatures observe_part(const Frame& frame, const RegionOfInterest& part, SensorKind sensor,
                            std::span<const Plane> background);
+
+/// The same with colours: what behind_best() reads.
+SceneFeatures observe_part_colors(const Frame& frame, const RegionOfInterest& part,
+                                  SensorKind sensor, std::span<const Plane> background);
 
 /// Where the frame shows the object and `margin_m` around it, in whole pixels of the reduced image.
 /// Nothing where that is outside of the image, nearer than the camera sees or less than 16 pixels
