@@ -104,10 +104,11 @@ struct Tracker::State {
     if (!may_rest) rested_s = 0;
     if (all) return;
     const View now = view(frame);
+    const bool has_time = newcomers.empty();  // for what can wait
     parallel_for(tracks.size(), options.num_threads, [&](std::size_t i) {
       if (rests[i]) return;
       correct(now, tracks[i].body);
-      compare_modes(now, tracks[i].body);
+      if (has_time) compare_modes(now, tracks[i].body);
     });
   }
 
