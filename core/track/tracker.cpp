@@ -38,6 +38,8 @@ constexpr int kNewlySeen = 15;      // alignments since it came into sight
 // Newcomers that a frame brings on, and frames that each goes through then.
 constexpr std::size_t kReceivedAtOnce = 3, kStepsAFrame = 4;
 constexpr double kMostRested_s = 0.3;  // that resting objects are not aligned
+// Modes and newcomers take turns, so that no frame takes long: this many frames are newcomers'.
+constexpr int kNewcomersTurns = 3;
 
 }  // namespace
 
@@ -59,6 +61,8 @@ struct Tracker::State {
   std::vector<EndedTrack> ended;  // since the last frame
   std::vector<SceneInterpretations> results;
   std::vector<Newcomer> newcomers;  // in the order of their results
+  bool newcomers_wait = false;      // in the newest frame
+  int newcomers_turns = 0;          // frames in a row
   std::uint64_t last_id = 0;
   std::map<std::string, int> born_of_model;
 
@@ -102,13 +106,17 @@ struct Tracker::State {
     });
     const bool all = std::ranges::count(rests, 0) == 0;
     if (!may_rest) rested_s = 0;
+    newcomers_wait = false;
     if (all) return;
     const View now = view(frame);
-    const bool has_time = newcomers.empty();  // for what can wait
+    const bool none_new = newcomers.empty() && results.empty();
+    newcomers_wait = !none_new && ++newcomers_turns > kNewcomersTurns;
+    const bool modes_turn = none_new || newcomers_wait;
+    if (modes_turn) newcomers_turns = 0;
     parallel_for(tracks.size(), options.num_threads, [&](std::size_t i) {
       if (rests[i]) return;
       correct(now, tracks[i].body);
-      if (has_time) compare_modes(now, tracks[i].body);
+      if (modes_turn) compare_modes(now, tracks[i].body);
     });
   }
 
@@ -212,7 +220,7 @@ struct Tracker::State {
       }
       return known;
     });
-    if (!newcomers.empty()) bring_on(view(newest));
+    if (!newcomers.empty() && !newcomers_wait) bring_on(view(newest));
   }
 
   void bring_on(const View& newest) {
