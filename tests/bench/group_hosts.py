@@ -267,13 +267,12 @@ class Versions:
 def block_cache(group, number):
     """A worker that can keep no model: its cache is a file."""
     cache = group.folder / f'cache{number}'
-    away = cache.with_name('away')
-    cache.rename(away)
+    shutil.rmtree(cache)
     cache.touch()
 
     def undo():
         cache.unlink()
-        away.rename(cache)
+        cache.mkdir()
     return undo
 
 
@@ -373,8 +372,6 @@ def faults(options):
                 path.unlink(missing_ok=True)
                 if kind == 'wrong version':  # worker 2 cannot have it
                     now_right = [right[(k + 1) % 2]]
-                    shutil.rmtree(group.folder / 'cache2')
-                    (group.folder / 'cache2').mkdir()
                     undo = block_cache(group, 2)
                     versions.swap()
                 else:
