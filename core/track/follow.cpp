@@ -67,7 +67,7 @@ constexpr double kTurnedWeight = -3;   // log weight of a near-symmetric turn th
 constexpr double kMaxSlide_rad = 0.1;  // of a mode, while it is aligned
 constexpr int kMinFramesBetween = 5;   // comparisons
 constexpr std::size_t kMostModes = 40;
-// Modes that are compared in a frame, so that none takes long: 0.17 us a pixel and mode.
+// Modes that are compared in a frame, so that none takes long: 0.17 us a pixel and mode. By hand.
 constexpr std::size_t kMostCompared = 10, kLeastCompared = 2, kComparedPixels = 50000;
 
 Sight sight_of(const SurfaceAgreement& surface, int correspondences) {

@@ -38,7 +38,8 @@ constexpr int kNewlySeen = 15;      // alignments since it came into sight
 // Newcomers that a frame brings on, and frames that each goes through then.
 constexpr std::size_t kReceivedAtOnce = 3, kStepsAFrame = 4;
 constexpr double kMostRested_s = 0.3;  // that resting objects are not aligned
-// Modes and newcomers take turns, so that no frame takes long: this many frames are newcomers'.
+// Modes and newcomers take turns, so that no frame takes long: of four frames in a row, three bring
+// newcomers on and one compares modes. By hand.
 constexpr int kNewcomersTurns = 3;
 
 }  // namespace

@@ -19,7 +19,7 @@ TEST_F(Around, IsTheSamePartOfTheWholeMap) {
   const SurfaceMap whole = surface_map(frame, {});
   const auto around = surroundings(frame, *l_, l_truth_, 0.03);
   ASSERT_TRUE(around);
-  const SceneFeatures part = observe_part_colors(frame, *around, SensorKind::structured_light, {});
+  const SceneFeatures part = observe_part(frame, *around, SensorKind::structured_light, {});
   const int u0 = around->x / whole.reduction, v0 = around->y / whole.reduction;
   ASSERT_EQ(part.map.width() * whole.reduction, around->width);
   int compared = 0;
