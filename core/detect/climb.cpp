@@ -37,7 +37,7 @@ void align_from_beside(const Search& search, Best& best) {
   const Pose start = best.pose;
   for (int turn = 0; turn < 6 && !search.late(); ++turn) {
     const Pose beside = turned(start, options.beside_rad * direction(turn));
-    const Pose refined = search.refine(beside, options.refinement).camera_from_object;
+    const Pose refined = search.aligned(beside, options.refinement);
     best.offer(refined, search.quick_score(refined));
   }
 }

@@ -12,7 +12,7 @@ Candidates correct(const Search& search, Candidates checked) {
   };
   for (Candidate& candidate : checked) {
     if (search.late()) break;
-    const Pose corrected = search.refine(candidate.pose(), options.correction).camera_from_object;
+    const Pose corrected = search.aligned(candidate.pose(), options.correction);
     if (check_score(corrected) <= check_score(candidate.pose())) continue;
     candidate.refinement.camera_from_object = corrected;
     candidate.score = search.quick_score(corrected, options.rank_points);

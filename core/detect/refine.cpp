@@ -22,7 +22,7 @@ Candidates refine(const Search& search, Candidates aligned) {
   std::size_t done = 0;
   for (Candidate& candidate : aligned) {
     if (search.late()) break;
-    candidate.refinement = search.refine(candidate.pose(), options.refinement);
+    candidate.refinement = {search.aligned(candidate.pose(), options.refinement)};
     candidate.score = search.quick_score(candidate.pose());
     ++done;
   }

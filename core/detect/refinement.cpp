@@ -100,10 +100,12 @@ Matrix6f damping(double diameter) {
 
 }  // namespace
 
-Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
-                       const RefinementOptions& options) {
+namespace {
+
+// Aligns; with `last`, sets the equations at the pose it ends with.
+Pose gauss_newton(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
+                  const RefinementOptions& options, NormalEquations* last) {
   constexpr int kMinMatches = 6;  // unknowns
-  Refinement out;
   Pose pose = start;
   const Matrix6f prior = damping(model.diameter);
   const FastPose fast_start = to_fast(start);
@@ -111,12 +113,12 @@ Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, con
   const Problem problem{scene, model, view, options};
   const auto start_gate = static_cast<float>(options.start_gate_m);
   const auto end_gate = static_cast<float>(options.end_gate_m);
-  for (int k = 0; k <= options.iterations; ++k) {
+  const int builds = options.iterations + (last ? 1 : 0);
+  for (int k = 0; k < builds; ++k) {
     const float part = static_cast<float>(k) / static_cast<float>(std::max(1, options.iterations));
     const NormalEquations equations =
         problem.build(pose, start_gate + part * (end_gate - start_gate));
-    out.num_correspondences = equations.count;
-    out.information = equations.information.cast<double>();
+    if (last) *last = equations;
     if (k == options.iterations || equations.count < kMinMatches) break;
     const Vector6f step = -(equations.information + prior).ldlt().solve(equations.gradient);
     if (!step.allFinite()) break;
@@ -124,8 +126,21 @@ Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, con
     pose.rotation =
         (rotation_from_vector(step.tail<3>().cast<double>()) * pose.rotation).normalized();
   }
-  out.camera_from_object = pose;
-  return out;
+  return pose;
+}
+
+}  // namespace
+
+Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
+                       const RefinementOptions& options) {
+  NormalEquations last;
+  const Pose pose = gauss_newton(scene, model, start, options, &last);
+  return {pose, last.information.cast<double>(), last.count};
+}
+
+Pose aligned_pose(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
+                  const RefinementOptions& options) {
+  return gauss_newton(scene, model, start, options, nullptr);
 }
 
 }  // namespace bpa

@@ -24,5 +24,8 @@ struct Refinement {
 /// model's nearest view to those of the observed surface.
 Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
                        const RefinementOptions& options);
+/// The same pose alone, which takes one step less.
+Pose aligned_pose(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
+                  const RefinementOptions& options);
 
 }  // namespace bpa

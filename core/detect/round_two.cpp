@@ -86,7 +86,7 @@ Pose aligned(const Search& search, const Pose& start) {
                              search.seed + static_cast<std::uint64_t>(step), search.options));
     gate *= static_cast<float>(options.gate_decay);
   }
-  propose(search.refine(best, options.refinement).camera_from_object);
+  propose(search.aligned(best, options.refinement));
   return best;
 }
 

@@ -47,6 +47,12 @@ Refinement Search::refine(const Pose& start, RefinementOptions refinement) const
   return refine_pose(scene, model, start, refinement);
 }
 
+Pose Search::aligned(const Pose& start, RefinementOptions refinement) const {
+  if (!options.align.use_edges) refinement.max_edges = 0;
+  ++effort.alignments;
+  return aligned_pose(scene, model, start, refinement);
+}
+
 Refinement Search::measured(const Pose& pose) const {
   RefinementOptions still = options.refine.refinement;
   still.iterations = 0;

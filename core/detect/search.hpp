@@ -77,6 +77,8 @@ struct Search {
   bool late() const;
   /// Gradient-based alignment, with edges unless AlignOptions leaves them out.
   Refinement refine(const Pose& start, RefinementOptions refinement) const;
+  /// The pose of refine() alone.
+  Pose aligned(const Pose& start, RefinementOptions refinement) const;
   /// What is known of a pose that stays as it is.
   Refinement measured(const Pose& pose) const;
   /// Log odds of round two, from ScoreOptions::quick_points or so many surface points, with the

@@ -307,7 +307,7 @@ void compare_modes(const View& view, Body& body) {
   // All are aligned alike, or those that are would seem likelier. A turn that the view leaves open
   // slides to where another mode is; then it stays as it was.
   const auto aligned = [&](const Pose& start) {
-    const Pose pose = refine_pose(scene, model, start, kAlignment).camera_from_object;
+    const Pose pose = aligned_pose(scene, model, start, kAlignment);
     return pose_error(pose, start).angle < kMaxSlide_rad ? pose : start;
   };
   const Pose own = aligned(camera_from_object), object_from_own = from * own;
