@@ -51,8 +51,9 @@ struct AlignOptions {
 struct SampleOptions {
   int matches_per_keypoint = 1;
   int draws_per_match = 3;
-  int peaks_per_reference = 5;
-  int rim_peaks_per_reference = 2;
+  int peaks_per_reference = 3;
+  int rim_peaks_per_reference = 1;
+  bool use_colors = true;
   int draws_per_prior = 300;
   double feature_sigma_m = 0.004;
   double pair_sigma_m = 0.008;
@@ -68,6 +69,8 @@ struct SampleOptions {
     visit(
         "rim_peaks_per_reference", rim_peaks_per_reference,
         {0, 100, "The same, voted by pairs with the rim of its face; 0: such pairs are not used."});
+    visit("use_colors", use_colors,
+          {0, 1, "Voted poses lay a reference point on a model point of agreeing colour."});
     visit("draws_per_prior", draws_per_prior, {0, 100000, "Poses drawn from each prior."});
     visit("feature_sigma_m", feature_sigma_m,
           {1e-4, 0.1,
@@ -98,8 +101,8 @@ struct CheckOptions {
   int max_kept = 200;
   int max_ranked_per_cell = 2;
   int max_kept_per_cell = 1;
-  double min_ranked_score = -9;
-  int max_in_library = 2500;
+  double min_ranked_score = -8;
+  int max_in_library = 800;
   int max_suggested = 60;
   RefinementOptions correction{2, 64, 24, 0.020, 0.012};
 
@@ -152,8 +155,8 @@ struct ClusterOptions {
   int max_correspondences = 10;
   int rank_points = 64;
   int max_clusters = 60;
-  double min_cluster_score = -8;
-  int max_in_library = 400;
+  double min_cluster_score = -7;
+  int max_in_library = 180;
   double suggested_share = 0.25;
 
   void visit_fields(auto&& visit) {
@@ -208,8 +211,8 @@ struct RoundTwoOptions {
 
 struct RefineOptions {
   int max_refined = 30;
-  double min_aligned_score = -8;
-  int max_in_library = 126;
+  double min_aligned_score = -7;
+  int max_in_library = 60;
   RefinementOptions refinement{8, 500, 60, 0.015, 0.008};
 
   void visit_fields(auto&& visit) {
@@ -314,6 +317,7 @@ struct SelectOptions {
 struct ScoreOptions {
   bool use_round_three = true;
   int quick_points = 200;
+  double color_points = 2;
 
   void visit_fields(auto&& visit) {
     visit("use_round_three", use_round_three,
@@ -322,6 +326,10 @@ struct ScoreOptions {
            "leaves these components unknown."});
     visit("quick_points", quick_points,
           {1, 100000, "Surface points that round two scores a placement with."});
+    visit("color_points", color_points,
+          {0, 100,
+           "Independent points that the colours of a placement count as in quick scores; 0: "
+           "colours do not count there."});
   }
 };
 

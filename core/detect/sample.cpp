@@ -44,10 +44,13 @@ void from_pairs(const Search& search, Candidates& out) {
   const ModelIndex& index = *search.model.index;
   const auto count = static_cast<int>(index.coarse.size());
   const auto late = [&] { return search.late(); };
-  auto poses = vote_poses(sample.pairs, index.pairs, count, options.peaks_per_reference, late);
+  PairColors colors;
+  if (options.use_colors) colors = {search.scene.coarse_colors, index.coarse_colors};
+  auto poses =
+      vote_poses(sample.pairs, index.pairs, count, options.peaks_per_reference, colors, late);
   if (options.rim_peaks_per_reference > 0) {
-    const auto by_rims =
-        vote_poses(sample.rim_pairs, index.rim_pairs, count, options.rim_peaks_per_reference, late);
+    const auto by_rims = vote_poses(sample.rim_pairs, index.rim_pairs, count,
+                                    options.rim_peaks_per_reference, colors, late);
     poses.insert(poses.end(), by_rims.begin(), by_rims.end());
   }
   std::vector<Eigen::Matrix3f> bases;

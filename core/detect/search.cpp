@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/model/model_index.hpp"
+#include "core/score/color_check.hpp"
 
 namespace bpa {
 
@@ -64,10 +65,17 @@ double Search::quick_score(const Pose& pose) const {
   return quick_score(pose, options.score.quick_points);
 }
 
+double Search::color_evidence(const Pose& pose) const {
+  const double points = options.score.color_points;
+  if (points == 0) return 0;
+  return points * check_colors(*image, scene.match_colors, *model.index, to_fast(pose)).log_odds();
+}
+
 double Search::quick_score(const Pose& pose, int points) const {
   ++effort.quick_scores;
   Evidence evidence(scene, places, pose, points);
-  return layers.round_two.log_odds(measure(evidence, Round::two)) + priors.evidence(pose);
+  return layers.round_two.log_odds(measure(evidence, Round::two)) + priors.evidence(pose) +
+         color_evidence(pose);
 }
 
 Candidate Search::scored(Refinement refinement, Source found_by) const {

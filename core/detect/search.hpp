@@ -82,9 +82,11 @@ struct Search {
   /// What is known of a pose that stays as it is.
   Refinement measured(const Pose& pose) const;
   /// Log odds of round two, from ScoreOptions::quick_points or so many surface points, with the
-  /// caller's priors.
+  /// caller's priors and color_evidence().
   double quick_score(const Pose& pose) const;
   double quick_score(const Pose& pose, int points) const;
+  /// Log odds by check_colors(), of ScoreOptions::color_points points.
+  double color_evidence(const Pose& pose) const;
   /// Scores a candidate at `refinement` with all components.
   Candidate scored(Refinement refinement, Source found_by) const;
   /// Sets score and probability by the last layer, or by that of round two without round three.

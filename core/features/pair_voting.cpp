@@ -110,16 +110,29 @@ class Votes {
   std::vector<Count> votes_, most_;
 };
 
+// Sets which model points have an agreeing colour; false where none has.
+bool find_agreeing(const MatchColor& reference, std::span<const MatchColor> model,
+                   std::vector<std::uint8_t>& agree) {
+  std::uint8_t any = 0;
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    agree[i] = colors_agree(reference, model[i]);
+    any |= agree[i];
+  }
+  return any != 0;
+}
+
 // The model points with the most votes, best first.
 class Peaks {
  public:
   explicit Peaks(std::size_t wanted) : wanted_(wanted) {}
 
-  void find(std::span<const Count> most) {
+  // Of those that agree.
+  void find(std::span<const Count> most, std::span<const std::uint8_t> agree) {
     points_.clear();
     for (std::size_t i = 0; i < most.size(); ++i) {
       const bool full = points_.size() == wanted_;
-      if (most[i] < kMinVotes || wanted_ == 0 || (full && most[i] <= most[points_.back()])) {
+      if (!agree[i] || most[i] < kMinVotes || wanted_ == 0 ||
+          (full && most[i] <= most[points_.back()])) {
         continue;
       }
       if (full) points_.pop_back();
@@ -315,16 +328,19 @@ ScenePairs scene_rim_pairs(const PointCloud& cloud, std::span<const RimPoint> ri
 }
 
 std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable& table,
-                                  int num_model_points, int peaks,
+                                  int num_model_points, int peaks, const PairColors& colors,
                                   const std::function<bool()>& late) {
   std::vector<VotedPose> out;
   Votes votes(static_cast<std::size_t>(num_model_points));
   Peaks best(peaks);
+  const bool colored = !colors.scene.empty() && !colors.model.empty();
+  std::vector<std::uint8_t> agree(static_cast<std::size_t>(num_model_points), 1);
   for (std::size_t r = 0; r < pairs.references.size(); ++r) {
     const bool votes_for_none = pairs.first[r] == pairs.first[r + 1] ||
                                 pairs.partners[pairs.first[r]].distance > table.max_distance();
     if (late && late()) break;
     if (votes_for_none) continue;
+    if (colored && !find_agreeing(colors.scene[pairs.references[r]], colors.model, agree)) continue;
     votes.clear();
     for (std::uint32_t k = pairs.first[r]; k < pairs.first[r + 1]; ++k) {
       const ScenePairs::Partner& partner = pairs.partners[k];
@@ -334,7 +350,7 @@ std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable&
       }
     }
     const std::span<const Count> most = votes.most();
-    best.find(most);
+    best.find(most, agree);
     for (const int point : best.points()) {
       out.push_back({pairs.references[r], point, votes.turn_of_most(point), most[point]});
     }

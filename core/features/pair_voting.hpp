@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/shared_array.hpp"
+#include "core/cloud/match_color.hpp"
 #include "core/cloud/point_cloud.hpp"
 #include "core/features/rim_points.hpp"
 
@@ -142,11 +143,18 @@ struct VotedPose {
   int votes = 0;
 };
 
+/// Colours of the scene's points, by index, and of the model's. Without either they do not count.
+struct PairColors {
+  std::span<const MatchColor> scene, model;
+};
+
 /// Each reference point's pairs vote for its model point and the turn about its normal (Drost et
 /// al., section 3.4). Returns the `peaks` best model points of each reference point, best first.
-/// `num_model_points` is the size of the cloud of `table`. Ends once `late`, if given, says so.
+/// With colours, those alone whose colour agrees with the reference point's (compare Choi and
+/// Christensen, IROS 2012). `num_model_points` is the size of the cloud of `table`. Ends once
+/// `late`, if given, says so.
 std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable& table,
-                                  int num_model_points, int peaks,
+                                  int num_model_points, int peaks, const PairColors& colors = {},
                                   const std::function<bool()>& late = {});
 
 }  // namespace bpa

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/cloud/match_color.hpp"
 #include "core/features/fpfh.hpp"
 #include "core/features/pair_voting.hpp"
 #include "core/model/distance_transform.hpp"
@@ -49,8 +50,10 @@ struct ModelIndex {
   NoiseTable noise;                        ///< Of the model's noise.
   std::vector<Eigen::Vector3f> cielab;     ///< Of the surface points; empty without colours.
   std::vector<Eigen::Vector3f> log_light;  ///< log_light() of `cielab`.
-  std::vector<FlatRest> flat_rests;        ///< flat_rests() of the surface.
-  std::vector<Pose> near_symmetries;       ///< near_symmetries() of the surface.
+  /// Means of `cielab` about the points of `coarse` and `check`; empty without colours.
+  std::vector<MatchColor> coarse_colors, check_colors;
+  std::vector<FlatRest> flat_rests;   ///< flat_rests() of the surface.
+  std::vector<Pose> near_symmetries;  ///< near_symmetries() of the surface.
   double point_area = 0;  ///< Surface that each surface point stands for, square metres.
 };
 
@@ -62,7 +65,7 @@ constexpr int kIndexVersion = 2;
 std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threads);
 
 /// The parts of an index that are not in a file because they are quick to compute: check points,
-/// the tree over `fpfh`, the noise table.
+/// the tree over `fpfh`, the noise table, mean colours.
 void derive_index(const ModelSource& source, ModelIndex& index);
 
 /// near_symmetries() of a model's surface, by `distances` and `check` of its index. An index is of

@@ -23,6 +23,33 @@ constexpr std::size_t kMaxCheckPoints = 1024;
 constexpr float kMaxCoarsePoints = 500;
 constexpr float kFitRadius = 0.008f;  // what a fitted normal averages over
 
+// Means of the surface's colours about `points`; empty without colours.
+std::vector<MatchColor> mean_colors(const PointCloud& surface,
+                                    std::span<const Eigen::Vector3f> cielab,
+                                    std::span<const Eigen::Vector3f> points) {
+  constexpr float kRadius = 0.006f;  // metres: about a pixel and the blur of a frame at 1 m
+  std::vector<MatchColor> out;
+  if (cielab.empty()) return out;
+  const NeighborGrid grid(surface.points, kRadius);
+  for (const Eigen::Vector3f& point : points) {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    int count = 0;
+    grid.for_each_neighbor(point, [&](int i, float) {
+      sum += cielab[i];
+      ++count;
+    });
+    if (count == 0) {  // a sparse surface
+      const auto distance = [&](const Eigen::Vector3f& other) {
+        return (other - point).squaredNorm();
+      };
+      sum = cielab[std::ranges::min_element(surface.points, {}, distance) - surface.points.begin()];
+      count = 1;
+    }
+    out.push_back(match_color(sum / static_cast<float>(count)));
+  }
+  return out;
+}
+
 CheckPoints check_points(const PointCloud& surface) {
   std::vector<std::uint32_t> order(surface.size());
   std::iota(order.begin(), order.end(), 0);
@@ -178,13 +205,13 @@ std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threa
     }
   }
   index->distances = distance_transform(source.surface.points, kDistanceCell, kDistanceMargin);
-  derive_index(source, *index);
-  make_pair_tables(source, *index);
   const CielabConverter convert;
   for (const auto& [r, g, b] : source.surface.colors) {
     index->cielab.push_back(convert(Eigen::Vector3f(r, g, b)));
     index->log_light.push_back(log_light(index->cielab.back()));
   }
+  derive_index(source, *index);
+  make_pair_tables(source, *index);
   index->flat_rests = flat_rests(source.surface.points);
   index->near_symmetries = near_symmetries_of(source, *index);
   index->point_area = mean_point_area(source.surface);
@@ -195,6 +222,8 @@ void derive_index(const ModelSource& source, ModelIndex& index) {
   index.check = check_points(source.surface);
   index.noise = NoiseTable(source.noise);
   index.feature_tree = FeatureTree(index.fpfh);
+  index.coarse_colors = mean_colors(source.surface, index.cielab, index.coarse.points);
+  index.check_colors = mean_colors(source.surface, index.cielab, index.check.points);
 }
 
 std::vector<Pose> near_symmetries_of(const ModelSource& source, const ModelIndex& index) {

@@ -93,6 +93,18 @@ void add_images(ColorImages colors, const SceneFeatureOptions& options, SceneFea
   scene.flat = find_flat_regions(scene.map, scene.planes, blur(sharp_lab, kLittleBlur, threads));
 }
 
+// What hypotheses compare of colours.
+void add_match_colors(int num_threads, SceneFeatures& scene) {
+  if (scene.cielab.empty()) return;
+  scene.match_colors = Image<MatchColor>(scene.cielab.width, scene.cielab.height, {});
+  parallel_for(scene.cielab.size(), num_threads,
+               [&](std::size_t i) { scene.match_colors[i] = match_color(scene.cielab[i]); });
+  for (const Eigen::Vector3f& point : scene.coarse.points) {
+    const int pixel = std::max(0, scene.image.pixel_of(point));  // a mean of points in the image
+    scene.coarse_colors.push_back(scene.match_colors[static_cast<std::size_t>(pixel)]);
+  }
+}
+
 // What is made of the searched points.
 void add_points(const SceneFeatureOptions& options, SceneFeatures& scene) {
   const int threads = options.num_threads;
@@ -154,6 +166,7 @@ SceneFeatures scene_features(SurfaceMap map, std::vector<Plane> planes,
       options.num_threads,
       [&](int threads) { add_images(std::move(colors), with_threads(options, threads), scene); },
       [&](int threads) { add_points(with_threads(options, threads), scene); });
+  add_match_colors(options.num_threads, scene);
   scene.with_flat = with_flat_regions(scene);
   return scene;
 }

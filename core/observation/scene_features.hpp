@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/cloud/match_color.hpp"
 #include "core/cloud/planes.hpp"
 #include "core/cloud/point_cloud.hpp"
 #include "core/cloud/surface_map.hpp"
@@ -43,12 +44,14 @@ struct SceneFeatures {
   std::vector<RimPoint> rims;   ///< Of the faces of `coarse`.
   SceneSample sample;           ///< The first.
   SceneEdges edges;
-  Image<Eigen::Vector3f> cielab;       ///< Blurred, of the map's size; empty without colour.
-  Image<Eigen::Vector3f> log_light;    ///< log_light() of `cielab`; empty without patterns.
-  Image<Eigen::Vector3f> sharp_light;  ///< log_light() without blur; empty without outlines.
-  Image<Eigen::Vector2f> gradients;    ///< color_gradients() of the frame; empty without outlines.
-  Segmentation segmentation;           ///< Super-pixels of the whole map.
-  FlatRegions flat;                    ///< Where thin objects may lie.
+  Image<Eigen::Vector3f> cielab;          ///< Blurred, of the map's size; empty without colour.
+  Image<MatchColor> match_colors;         ///< Of `cielab`.
+  std::vector<MatchColor> coarse_colors;  ///< `match_colors` at the points of `coarse`.
+  Image<Eigen::Vector3f> log_light;       ///< log_light() of `cielab`; empty without patterns.
+  Image<Eigen::Vector3f> sharp_light;     ///< log_light() without blur; empty without outlines.
+  Image<Eigen::Vector2f> gradients;  ///< color_gradients() of the frame; empty without outlines.
+  Segmentation segmentation;         ///< Super-pixels of the whole map.
+  FlatRegions flat;                  ///< Where thin objects may lie.
   /// This scene where the flat regions are searched as well; null where there is none.
   std::shared_ptr<const SceneFeatures> with_flat;
 };

@@ -60,6 +60,13 @@ Result<Models> chosen_models(const ModelLibrary& library, const DetectRequest& r
   return chosen;
 }
 
+// Whether hypotheses of all models are compared by colour.
+bool compares_colors(const Frame& frame, const DetectorOptions& options, const Models& models) {
+  const auto colored = [](const auto& model) { return !model->index->cielab.empty(); };
+  return !frame.color.empty() && options.features.use_color && options.detect.sample.use_colors &&
+         std::ranges::all_of(models, colored);
+}
+
 // Judges the candidates again, given the others of a first interpretation.
 void judge_again(const SceneFeatures& scene, const Overlaps& overlaps, const ScoreLayers& layers,
                  const DetectRequest& request, Candidates& candidates) {
@@ -120,6 +127,7 @@ Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
   DetectorOptions options = options_;
   const double prepared_share =
       shorten_preparation(request.budget_ms, resolve_num_threads(request.num_threads), options);
+  if (!compares_colors(frame, options, *models)) search_without_colors(options.detect);
   std::unique_ptr<ModelSearches> elsewhere;
   if (searches) elsewhere = searches(*models, options);
   const Stopwatch total;

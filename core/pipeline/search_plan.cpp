@@ -3,6 +3,7 @@
 #include "core/pipeline/search_plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace bpa {
@@ -25,6 +26,12 @@ constexpr double kTimeOfPreparation = 0.7;  // of what is left after the surface
 // Measured with 21 models: of the whole preparation's time, for each model. Not the mean but some
 // 20 % more, as a late answer is worse than a little less of the search.
 constexpr double kRoundTime = 0.15, kFinalTime = 0.115;
+
+// The limits of quick scores.
+std::array<double*, 3> limits_of(DetectOptions& options) {
+  return {&options.check.min_ranked_score, &options.cluster.min_cluster_score,
+          &options.refine.min_aligned_score};
+}
 
 int part_of(int count, double share) {
   return std::min(count, std::max(1, static_cast<int>(std::lround(share * count))));
@@ -49,6 +56,21 @@ bool details_fit(double surface_ms, double milliseconds_left) {
   return kRestOfPreparation * surface_ms <= kTimeOfPreparation * milliseconds_left;
 }
 
+void search_without_colors(DetectOptions& options) {
+  // Chosen by hand on simulated piles; 1 of log odds.
+  constexpr int kPeaks = 5, kRimPeaks = 2, kChecked = 3, kOthers = 2;
+  constexpr double kLower = 1;
+  SampleOptions& sample = options.sample;
+  sample.peaks_per_reference = std::max(sample.peaks_per_reference, kPeaks);
+  if (sample.rim_peaks_per_reference > 0) {
+    sample.rim_peaks_per_reference = std::max(sample.rim_peaks_per_reference, kRimPeaks);
+  }
+  options.check.max_in_library *= kChecked;
+  options.cluster.max_in_library *= kOthers;
+  options.refine.max_in_library *= kOthers;
+  for (double* limit : limits_of(options)) *limit -= kLower;
+}
+
 void leave_out_details(SceneFeatureOptions& options) {
   options.use_outline = options.use_flat_regions = false;
 }
@@ -66,10 +88,7 @@ DetectorOptions sized_round(const DetectorOptions& options, double share) {
 void raise_limits(DetectOptions& options) {
   // Chosen on 60 simulated piles with 0.5 s each: 379 of 598 objects are found, 376 without.
   constexpr double kHigher = 2, kOfChecked = 0.6;  // log odds; share of those that are checked
-  for (double* limit : {&options.check.min_ranked_score, &options.cluster.min_cluster_score,
-                        &options.refine.min_aligned_score}) {
-    *limit += kHigher;
-  }
+  for (double* limit : limits_of(options)) *limit += kHigher;
   options.check.max_in_library = part_of(options.check.max_in_library, kOfChecked);
 }
 

@@ -370,5 +370,36 @@ TEST(PairVoting, TheRimOfAFlatFaceFixesItsPose) {
   EXPECT_GT(right, 0.6 * static_cast<double>(voted.size()));
 }
 
+// A half turn maps the plate onto itself; its halves differ in colour.
+TEST(PairVoting, ColoursTellPointsOfOneShapeApart) {
+  const auto color_of = [](const Eigen::Vector3f& point) {
+    return match_color(point.x() > 0 ? Eigen::Vector3f(50, 60, 40) : Eigen::Vector3f(50, 10, -60));
+  };
+  const auto colors_of = [&](const PointCloud& cloud) {
+    std::vector<MatchColor> out;
+    for (const Eigen::Vector3f& point : cloud.points) out.push_back(color_of(point));
+    return out;
+  };
+  const PointCloud model = plate(0.01f, 0.005f), scene = plate(0.011f, 0.003f);
+  const PointPairTable table(model, find_rims(model, beside_plate), kDistanceStep);
+  std::vector<int> references(scene.size());
+  std::iota(references.begin(), references.end(), 0);
+  const ScenePairs pairs =
+      scene_rim_pairs(scene, find_rims(scene, beside_plate), references, 0.3f, 1);
+  const std::vector<MatchColor> of_scene = colors_of(scene), of_model = colors_of(model);
+  const auto disagreeing = [&](const std::vector<VotedPose>& voted) {
+    return std::ranges::count_if(voted, [&](const VotedPose& pose) {
+      return !colors_agree(of_scene[pose.reference], of_model[pose.model_point]);
+    });
+  };
+  const auto count = static_cast<int>(model.size());
+  EXPECT_GT(disagreeing(vote_poses(pairs, table, count, 2)), 0);
+  const auto voted = vote_poses(pairs, table, count, 2, {of_scene, of_model});
+  EXPECT_GT(voted.size(), references.size() / 2);
+  EXPECT_EQ(disagreeing(voted), 0);
+  const std::vector<MatchColor> green(model.size(), match_color({50, -60, 40}));
+  EXPECT_TRUE(vote_poses(pairs, table, count, 2, {of_scene, green}).empty());
+}
+
 }  // namespace
 }  // namespace bpa

@@ -20,6 +20,22 @@ TEST(SearchPlan, ABudgetRaisesTheLimitsOfLogOdds) {
   EXPECT_EQ(after.cluster.max_in_library, before.cluster.max_in_library);
 }
 
+TEST(SearchPlan, WithoutColoursMoreIsTried) {
+  const DetectOptions before;
+  DetectOptions after;
+  search_without_colors(after);
+  EXPECT_GT(after.sample.peaks_per_reference, before.sample.peaks_per_reference);
+  EXPECT_GT(after.sample.rim_peaks_per_reference, before.sample.rim_peaks_per_reference);
+  EXPECT_GT(after.check.max_in_library, before.check.max_in_library);
+  EXPECT_GT(after.cluster.max_in_library, before.cluster.max_in_library);
+  EXPECT_GT(after.refine.max_in_library, before.refine.max_in_library);
+  EXPECT_LT(after.cluster.min_cluster_score, before.cluster.min_cluster_score);
+  DetectOptions no_rims;
+  no_rims.sample.rim_peaks_per_reference = 0;
+  search_without_colors(no_rims);
+  EXPECT_EQ(no_rims.sample.rim_peaks_per_reference, 0);
+}
+
 TEST(SearchPlan, NoBudgetShortensNothing) {
   DetectorOptions options;
   EXPECT_EQ(shorten_preparation(0, 2, options), 1);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/cloud/cielab.hpp"
+#include "core/score/color_check.hpp"
 #include "tests/support/posed_models.hpp"
 
 namespace bpa {
@@ -53,6 +54,22 @@ class ColorScore : public ::testing::Test {
   static inline CheckImage image_;
   static inline Image<Eigen::Vector3f> observed_;
 };
+
+TEST_F(ColorScore, QuickChecksTellAHalfTurn) {
+  Image<MatchColor> colors(observed_.width, observed_.height, {});
+  for (std::size_t i = 0; i < colors.size(); ++i) colors[i] = match_color(observed_[i]);
+  const ModelIndex& index = *model_->index;
+  const ColorCheck right = check_colors(image_, colors, index, to_fast(kBrickTruth));
+  EXPECT_EQ(right.seen, 20);
+  EXPECT_GE(right.agreeing, 18);  // points beside the seam have a mean colour
+  EXPECT_GT(right.log_odds(), 0);
+  const Pose half_turn = kBrickTruth * Pose{from_wxyz({0, 0, 0, 1})};
+  const ColorCheck turned = check_colors(image_, colors, index, to_fast(half_turn));
+  EXPECT_EQ(turned.seen, 20);
+  EXPECT_LE(turned.agreeing, 2);
+  EXPECT_LT(turned.log_odds(), -1);
+  EXPECT_EQ(check_colors(image_, {}, index, to_fast(kBrickTruth)).seen, 0);
+}
 
 // CIELAB of a reflectance under lamps, by its definition: from linear light.
 Eigen::Vector3f lit(const Eigen::Vector3f& light, const Eigen::Vector3f& reflectance) {
