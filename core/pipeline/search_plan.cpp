@@ -25,7 +25,7 @@ constexpr double kTimeOfPreparation = 0.7;  // of what is left after the surface
 
 // Measured with 21 models: of the whole preparation's time, for each model. Not the mean but some
 // 20 % more, as a late answer is worse than a little less of the search.
-constexpr double kRoundTime = 0.15, kFinalTime = 0.115;
+constexpr double kRoundTime = 0.095, kFinalTime = 0.16;
 
 // The limits of quick scores.
 std::array<double*, 3> limits_of(DetectOptions& options) {
