@@ -98,10 +98,6 @@ Matrix6f damping(double diameter) {
   return out;
 }
 
-}  // namespace
-
-namespace {
-
 // Aligns; with `last`, sets the equations at the pose it ends with.
 Pose gauss_newton(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
                   const RefinementOptions& options, NormalEquations* last) {

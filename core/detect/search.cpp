@@ -42,16 +42,18 @@ bool Search::late() const {
   return passed;
 }
 
-Refinement Search::refine(const Pose& start, RefinementOptions refinement) const {
+RefinementOptions Search::begin_alignment(RefinementOptions refinement) const {
   if (!options.align.use_edges) refinement.max_edges = 0;
   effort.alignments += refinement.iterations > 0;
-  return refine_pose(scene, model, start, refinement);
+  return refinement;
 }
 
-Pose Search::aligned(const Pose& start, RefinementOptions refinement) const {
-  if (!options.align.use_edges) refinement.max_edges = 0;
-  ++effort.alignments;
-  return aligned_pose(scene, model, start, refinement);
+Refinement Search::refine(const Pose& start, const RefinementOptions& refinement) const {
+  return refine_pose(scene, model, start, begin_alignment(refinement));
+}
+
+Pose Search::aligned(const Pose& start, const RefinementOptions& refinement) const {
+  return aligned_pose(scene, model, start, begin_alignment(refinement));
 }
 
 Refinement Search::measured(const Pose& pose) const {

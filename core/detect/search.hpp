@@ -76,9 +76,9 @@ struct Search {
   /// Whether the deadline has passed; says so in `cut`.
   bool late() const;
   /// Gradient-based alignment, with edges unless AlignOptions leaves them out.
-  Refinement refine(const Pose& start, RefinementOptions refinement) const;
+  Refinement refine(const Pose& start, const RefinementOptions& refinement) const;
   /// The pose of refine() alone.
-  Pose aligned(const Pose& start, RefinementOptions refinement) const;
+  Pose aligned(const Pose& start, const RefinementOptions& refinement) const;
   /// What is known of a pose that stays as it is.
   Refinement measured(const Pose& pose) const;
   /// Log odds of round two, from ScoreOptions::quick_points or so many surface points, with the
@@ -97,6 +97,10 @@ struct Search {
   PoseCheck check(const Pose& pose, const CheckCount& count) const;
   /// Notes a rejected pose in the trace.
   void reject(std::string_view reason, const Pose& pose) const;
+
+ private:
+  // Counts an alignment; returns it without edges where AlignOptions leaves them out.
+  RefinementOptions begin_alignment(RefinementOptions refinement) const;
 };
 
 }  // namespace bpa

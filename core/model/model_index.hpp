@@ -50,7 +50,8 @@ struct ModelIndex {
   NoiseTable noise;                        ///< Of the model's noise.
   std::vector<Eigen::Vector3f> cielab;     ///< Of the surface points; empty without colours.
   std::vector<Eigen::Vector3f> log_light;  ///< log_light() of `cielab`.
-  /// Means of `cielab` about the points of `coarse` and `check`; empty without colours.
+  /// Means of `cielab` about the points of `coarse` and the first of `check`; empty without
+  /// colours.
   std::vector<MatchColor> coarse_colors, check_colors;
   std::vector<FlatRest> flat_rests;   ///< flat_rests() of the surface.
   std::vector<Pose> near_symmetries;  ///< near_symmetries() of the surface.

@@ -5,8 +5,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
@@ -23,31 +25,30 @@ constexpr std::size_t kMaxCheckPoints = 1024;
 constexpr float kMaxCoarsePoints = 500;
 constexpr float kFitRadius = 0.008f;  // what a fitted normal averages over
 
-// Means of the surface's colours about `points`; empty without colours.
-std::vector<MatchColor> mean_colors(const PointCloud& surface,
-                                    std::span<const Eigen::Vector3f> cielab,
-                                    std::span<const Eigen::Vector3f> points) {
-  constexpr float kRadius = 0.006f;  // metres: about a pixel and the blur of a frame at 1 m
-  std::vector<MatchColor> out;
-  if (cielab.empty()) return out;
+// Sets the colours of `coarse` and of the first points of `check`.
+void add_mean_colors(const PointCloud& surface, ModelIndex& index) {
+  constexpr float kRadius = 0.006f;          // metres: about a pixel and the blur of a frame at 1 m
+  constexpr std::size_t kMostOfCheck = 256;  // check_colors() looks at no more; by hand
+  if (index.cielab.empty()) return;
   const NeighborGrid grid(surface.points, kRadius);
-  for (const Eigen::Vector3f& point : points) {
+  const auto mean_color = [&](const Eigen::Vector3f& point) {
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     int count = 0;
     grid.for_each_neighbor(point, [&](int i, float) {
-      sum += cielab[i];
+      sum += index.cielab[i];
       ++count;
     });
-    if (count == 0) {  // a sparse surface
-      const auto distance = [&](const Eigen::Vector3f& other) {
-        return (other - point).squaredNorm();
-      };
-      sum = cielab[std::ranges::min_element(surface.points, {}, distance) - surface.points.begin()];
-      count = 1;
-    }
-    out.push_back(match_color(sum / static_cast<float>(count)));
-  }
-  return out;
+    if (count > 0) return match_color(sum / static_cast<float>(count));
+    const auto distance = [&](const Eigen::Vector3f& other) {  // a sparse surface
+      return (other - point).squaredNorm();
+    };
+    const auto nearest = std::ranges::min_element(surface.points, {}, distance);
+    return match_color(index.cielab[nearest - surface.points.begin()]);
+  };
+  const std::span<const Eigen::Vector3f> check = index.check.points;
+  std::ranges::transform(index.coarse.points, std::back_inserter(index.coarse_colors), mean_color);
+  std::ranges::transform(check.first(std::min(check.size(), kMostOfCheck)),
+                         std::back_inserter(index.check_colors), mean_color);
 }
 
 CheckPoints check_points(const PointCloud& surface) {
@@ -222,8 +223,7 @@ void derive_index(const ModelSource& source, ModelIndex& index) {
   index.check = check_points(source.surface);
   index.noise = NoiseTable(source.noise);
   index.feature_tree = FeatureTree(index.fpfh);
-  index.coarse_colors = mean_colors(source.surface, index.cielab, index.coarse.points);
-  index.check_colors = mean_colors(source.surface, index.cielab, index.check.points);
+  add_mean_colors(source.surface, index);
 }
 
 std::vector<Pose> near_symmetries_of(const ModelSource& source, const ModelIndex& index) {

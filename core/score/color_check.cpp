@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/score/color_check.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace bpa {
@@ -18,13 +17,11 @@ double ColorCheck::log_odds() const {
 ColorCheck check_colors(const CheckImage& image, const Image<MatchColor>& colors,
                         const ModelIndex& model, const FastPose& pose) {
   // Chosen by hand on simulated piles: points, cosine on the optical axis, metres.
-  constexpr std::size_t kMostTried = 256;
   constexpr int kWanted = 20;
   constexpr float kMinFacing = 0.15f, kOnSurface = 0.012f;
   ColorCheck check;
-  if (colors.empty() || model.check_colors.empty()) return check;
-  const std::size_t last = std::min(model.check.points.size(), kMostTried);
-  for (std::size_t i = 0; i < last && check.seen < kWanted; ++i) {
+  if (colors.empty()) return check;
+  for (std::size_t i = 0; i < model.check_colors.size() && check.seen < kWanted; ++i) {
     const Eigen::Vector3f p = pose * model.check.points[i];
     if ((pose.rotation * model.check.normals[i]).dot(p) > -kMinFacing * p.z()) continue;
     const int pixel = image.pixel_of(p);

@@ -19,8 +19,8 @@ struct ColorCheck {
   double log_odds() const;
 };
 
-/// Compares the colours of the first 20 model points on searched surface, of at most 256. `colors`
-/// has the size of `image`. Counts nothing without the model's or the frame's colours.
+/// Compares ModelIndex::check_colors of the first 20 points on searched surface. `colors` has the
+/// size of `image`. Counts nothing without the model's or the frame's colours.
 ColorCheck check_colors(const CheckImage& image, const Image<MatchColor>& colors,
                         const ModelIndex& model, const FastPose& pose);
 
