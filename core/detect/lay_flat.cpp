@@ -141,9 +141,15 @@ Candidates lay_flat(const Search& whole, Candidates found) {
   if (!thin || !whole.scene.with_flat || whole.options.flat.max_laid == 0) return found;
   const Search search(*whole.scene.with_flat, whole);
   Candidates laid = resting_poses(search);
-  keep_first(search, search.options.flat.max_laid, laid);
+  const DetectOptions& options = search.options;
+  keep_first(search, options.flat.max_laid, laid);
   for (Candidate& candidate : laid) {
     if (search.late()) break;
+    if (search.quick_score(candidate.pose(), options.cluster.rank_points) <
+        options.flat.min_laid_score) {
+      search.reject("score too low", candidate.pose());
+      continue;
+    }
     slide(search, candidate);
     found.push_back(search.scored(search.measured(candidate.pose()), Source::region));
   }

@@ -211,7 +211,7 @@ struct RoundTwoOptions {
 
 struct RefineOptions {
   int max_refined = 30;
-  double min_aligned_score = -7;
+  double min_aligned_score = -7, min_refined_score = -5.5;
   int max_in_library = 60;
   RefinementOptions refinement{8, 500, 60, 0.015, 0.008};
 
@@ -219,9 +219,9 @@ struct RefineOptions {
     visit("max_refined", max_refined,
           {1, 10000, "Placements of one model that are aligned to the end."});
     visit("min_aligned_score", min_aligned_score,
-          {-1000, 1000,
-           "Placements of lower log odds, before or after, are neither aligned nor scored in "
-           "full."});
+          {-1000, 1000, "Placements of lower log odds are not aligned."});
+    visit("min_refined_score", min_refined_score,
+          {-1000, 1000, "Placements of lower log odds after that are not scored in full."});
     visit("max_in_library", max_in_library,
           {1, 1000000, "Placements of all models together that are, and scored in full."});
   }
@@ -269,6 +269,7 @@ struct TurnOptions {
 struct FlatOptions {
   int max_laid = 4;
   int max_per_region = 4;
+  double min_laid_score = -11;
   int slide_rounds = 5;
   double slide_step_m = 0.008;
 
@@ -276,6 +277,8 @@ struct FlatOptions {
     visit("max_laid", max_laid,
           {0, 10000, "Poses at rest on flat regions that are scored in full; 0: none."});
     visit("max_per_region", max_per_region, {1, 10000, "The same of one region."});
+    visit("min_laid_score", min_laid_score,
+          {-1000, 1000, "Poses of lower log odds are neither moved nor scored in full."});
     visit("slide_rounds", slide_rounds, {0, 100, "Rounds of six steps each, on the plane."});
     visit("slide_step_m", slide_step_m, {1e-5, 0.1, "First step at the object's rim, metres."});
   }

@@ -27,7 +27,7 @@ Candidates refine(const Search& search, Candidates aligned) {
     ++done;
   }
   aligned.resize(done);
-  reject_below(search, options.min_aligned_score, aligned);
+  reject_below(search, options.min_refined_score, aligned);
   suppress_duplicates(search, aligned);
   return aligned;
 }

@@ -18,9 +18,9 @@ namespace bpa {
 struct RoundOptions {
   int max_rounds = 12;
   double min_certain = 0.85;
-  double min_likely = 0.1;
-  int min_gain_px = 10;
+  double min_gain = 0.05;
   double expected_share = 0.6;
+  double min_gain_expected = 0.3;
 
   void visit_fields(auto&& visit) {
     visit("max_rounds", max_rounds,
@@ -29,18 +29,16 @@ struct RoundOptions {
           {0, 1,
            "Surface that a placement of at least this probability explains is not searched in "
            "later rounds."});
-    visit(
-        "min_likely", min_likely,
-        {0, 1, "A round gains the surface that placements of at least this probability explain."});
-    visit(
-        "min_gain_px", min_gain_px,
-        {0, 1000000,
-         "Pixels of the reduced image: the search ends after two rounds that together gain fewer. "
-         "0: after max_rounds."});
+    visit("min_gain", min_gain,
+          {0, 1,
+           "The search ends after a round that makes the surface of no placement more probable by "
+           "this. 0: after max_rounds."});
     visit("expected_share", expected_share,
           {0.01, 1,
            "Of a round's sample, what the first round takes where an earlier frame says what to "
            "expect. The search may end after it."});
+    visit("min_gain_expected", min_gain_expected,
+          {0, 1, "min_gain where an earlier frame says what to expect."});
   }
 };
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
 #include <utility>
 
 #include "core/pipeline/search_plan.hpp"
@@ -25,28 +25,35 @@ Candidates joined(const std::vector<Candidates>& found) {
 
 // What the placements found so far explain.
 struct Explained {
-  std::vector<std::uint8_t> certain, likely;  // flags of pixels; the certain are searched no more
-  std::vector<std::uint32_t> newly_certain;   // pixels, since they were last taken
+  std::vector<float> probability;            // of each pixel's most probable placement
+  std::vector<std::uint8_t> certain;         // flags of pixels that are searched no more
+  std::vector<std::uint32_t> newly_certain;  // pixels, since they were last taken
 
-  explicit Explained(std::size_t pixels) : certain(pixels, 0), likely(pixels, 0) {}
+  explicit Explained(std::size_t pixels) : probability(pixels, 0.0f), certain(pixels, 0) {}
 
-  // Returns the number of pixels that have become likely; with `new_places`, only those of
-  // placements where nothing was likely. `found` are placements that compete.
-  int add(const Candidates& found, const RoundOptions& options, bool new_places) {
-    constexpr double kNewPlace = 0.5;  // of its pixels: not likely before. Chosen by hand.
-    int gained = 0;
+  // Adds placements that compete. Returns the largest gain of one: how much more probable it makes
+  // its surface than what was there, in the mean of its pixels.
+  double add(const Candidates& found, const RoundOptions& options) {
+    std::vector<const Candidate*> probable;
     for (const Candidate& candidate : found) {
-      if (candidate.probability < std::min(options.min_likely, options.min_certain)) continue;
-      const bool is_certain = candidate.probability >= options.min_certain;
-      int fresh = 0;
-      for (const std::uint32_t pixel : candidate.explained) {
-        fresh += std::exchange(likely[pixel], 1) == 0;
+      if (candidate.probability < std::min(options.min_gain, options.min_certain)) continue;
+      if (!candidate.explained.empty()) probable.push_back(&candidate);
+    }
+    // The right one first: worse poses of its place are no gain.
+    std::ranges::stable_sort(probable, std::greater(), &Candidate::probability);
+    double most = 0;
+    for (const Candidate* candidate : probable) {
+      const auto now = static_cast<float>(candidate->probability);
+      const bool is_certain = candidate->probability >= options.min_certain;
+      double gain = 0;
+      for (const std::uint32_t pixel : candidate->explained) {
+        gain += double{std::max(0.0f, now - probability[pixel])};
+        probability[pixel] = std::max(probability[pixel], now);
         if (is_certain && !std::exchange(certain[pixel], 1)) newly_certain.push_back(pixel);
       }
-      const auto size = static_cast<double>(candidate.explained.size());
-      if (!new_places || fresh > kNewPlace * size) gained += fresh;
+      most = std::max(most, gain / static_cast<double>(candidate->explained.size()));
     }
-    return gained;
+    return most;
   }
 };
 
@@ -62,12 +69,11 @@ double next_share(const SearchPace& pace, int round, const Deadline& rounds_end)
 Candidates LibrarySearch::run(ModelSearches& searches, bool& cut, SearchEffort& effort) const {
   const DetectorOptions& options = inputs.options;
   Explained explained(inputs.scene.image.pixels.size());
-  // Then poses were aligned well before: another round is worth its time for new places alone.
   const bool follows = !inputs.request.expected.empty();
   const auto explain = [&] {
     Candidates all = joined(searches.found());
     let_compete(all, find_overlaps(all, options.scene.max_shared));
-    return explained.add(all, options.rounds, follows);
+    return explained.add(all, options.rounds);
   };
   const bool limited = !deadline.never();
   const Deadline rounds_end = deadline.part(kTimeOfRounds);
@@ -77,10 +83,8 @@ Candidates LibrarySearch::run(ModelSearches& searches, bool& cut, SearchEffort& 
   }
   SearchPace pace(preparation_ms, static_cast<int>(inputs.models.size()));
   double looked_at = 0;                 // of the scene, in whole rounds
-  double gained = 0, looked_since = 0;  // pixels, and whole rounds, since the gain was last judged
-  // The gain judged before. The first round never ends the search, unless it follows another.
-  double gained_before = follows ? 0 : std::numeric_limits<double>::infinity();
-  bool ended = false;  // before time did
+  double gained = 0, looked_since = 0;  // probability, and whole rounds, since that was last judged
+  bool ended = false;                   // before time did
   for (int round = 0; !ended && looked_at < options.rounds.max_rounds; ++round) {
     const bool first_after_another = follows && round == 0;
     const double wanted = first_after_another ? options.rounds.expected_share : 1;
@@ -102,12 +106,13 @@ Candidates LibrarySearch::run(ModelSearches& searches, bool& cut, SearchEffort& 
     pace.took(share, watch.milliseconds());
     looked_at += share;
     looked_since += share;
-    gained += explain();
+    gained = std::max(gained, explain());
     if (on_round) on_round(joined(without_duplicates(inputs, searches.found())));
     if (looked_since < 1 && !first_after_another) continue;
-    ended = gained + gained_before < options.rounds.min_gain_px;
-    gained_before = std::exchange(gained, 0);
-    looked_since = 0;
+    // The first round never ends the search, unless it follows another.
+    ended = follows ? gained < options.rounds.min_gain_expected
+                    : looked_at >= 2 && gained < options.rounds.min_gain;
+    gained = looked_since = 0;
   }
   const double final_share = limited ? pace.share_of_final(deadline.milliseconds_left()) : 1;
   searches.finish({.share = final_share,

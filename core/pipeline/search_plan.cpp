@@ -28,7 +28,7 @@ constexpr double kTimeOfPreparation = 0.7;  // of what is left after the surface
 // 0.063), as a late answer is worse than a little less of the search.
 constexpr double kRoundTime = 0.095, kFinalTime = 0.16;
 
-// The limits of quick scores.
+// The limits of quick scores before the last alignment.
 std::array<double*, 3> limits_of(DetectOptions& options) {
   return {&options.check.min_ranked_score, &options.cluster.min_cluster_score,
           &options.refine.min_aligned_score};
@@ -70,6 +70,7 @@ void search_without_colors(DetectOptions& options) {
   options.cluster.max_in_library *= kOthers;
   options.refine.max_in_library *= kOthers;
   for (double* limit : limits_of(options)) *limit -= kLower;
+  options.refine.min_refined_score -= kLower;
 }
 
 void leave_out_details(SceneFeatureOptions& options) {
