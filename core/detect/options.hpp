@@ -221,9 +221,9 @@ struct RefineOptions {
     visit("min_aligned_score", min_aligned_score,
           {-1000, 1000, "Placements of lower log odds are not aligned."});
     visit("min_refined_score", min_refined_score,
-          {-1000, 1000, "Placements of lower log odds after that are not scored in full."});
+          {-1000, 1000, "Placements of lower log odds after alignment are not scored in full."});
     visit("max_in_library", max_in_library,
-          {1, 1000000, "Placements of all models together that are, and scored in full."});
+          {1, 1000000, "Placements of all models together that are aligned and scored in full."});
   }
   void visit_groups(auto&& visit) {
     visit("refinement", refinement, "Gradient-based alignment (V.7).");

@@ -31,8 +31,8 @@ struct RoundOptions {
            "later rounds."});
     visit("min_gain", min_gain,
           {0, 1,
-           "The search ends after a round that makes the surface of no placement more probable by "
-           "this. 0: after max_rounds."});
+           "The search ends after a round, but not the first, that makes the surface of no "
+           "placement more probable by this, in the mean of its pixels. 0: after max_rounds."});
     visit("expected_share", expected_share,
           {0.01, 1,
            "Of a round's sample, what the first round takes where an earlier frame says what to "
