@@ -47,7 +47,7 @@ struct CheckImage {
   int pixel_of(const Eigen::Vector3f& point) const {
     if (!(point.z() > kNearest_m)) return -1;
     const Eigen::Vector2f at = project(point);
-    const float u = std::floor(at.x() + 0.5f), v = std::floor(at.y() + 0.5f);
+    const float u = at.x() + 0.5f, v = at.y() + 0.5f;
     const bool inside =
         u >= 0 && v >= 0 && u < static_cast<float>(width) && v < static_cast<float>(height);
     return inside ? static_cast<int>(v) * width + static_cast<int>(u) : -1;

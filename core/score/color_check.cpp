@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/score/projected_block.hpp"
+
 namespace bpa {
 
 double ColorCheck::log_odds() const {
@@ -16,21 +18,22 @@ double ColorCheck::log_odds() const {
 
 ColorCheck check_colors(const CheckImage& image, const Image<MatchColor>& colors,
                         const ModelIndex& model, const FastPose& pose) {
-  // Chosen by hand on simulated piles: points, cosine on the optical axis, metres.
+  // Chosen by hand on simulated piles: points, metres.
   constexpr int kWanted = 20;
-  constexpr float kMinFacing = 0.15f, kOnSurface = 0.012f;
+  constexpr float kOnSurface = 0.012f;
   ColorCheck check;
   if (colors.empty()) return check;
-  for (std::size_t i = 0; i < model.check_colors.size() && check.seen < kWanted; ++i) {
-    const Eigen::Vector3f p = pose * model.check.points[i];
-    if ((pose.rotation * model.check.normals[i]).dot(p) > -kMinFacing * p.z()) continue;
-    const int pixel = image.pixel_of(p);
-    if (pixel < 0) continue;
-    const auto at = static_cast<std::size_t>(pixel);
+  const auto size = static_cast<int>(model.check_colors.size());
+  ProjectedBlock block;
+  for (int i = 0; i < size && check.seen < kWanted; ++i) {
+    const int lane = i % kCheckBlock;
+    if (lane == 0) block.project(image, model.check, pose, i);
+    if (block.pixel[lane] < 0) continue;
+    const auto at = static_cast<std::size_t>(block.pixel[lane]);
     const CheckPixel& seen = image.pixels[at];
-    if (!seen.searched || std::abs(seen.depth - p.z()) > kOnSurface) continue;
+    if (!seen.searched || std::abs(seen.depth - block.z[lane]) > kOnSurface) continue;
     ++check.seen;
-    check.agreeing += colors_agree(colors[at], model.check_colors[i]);
+    check.agreeing += colors_agree(colors[at], model.check_colors[static_cast<std::size_t>(i)]);
   }
   return check;
 }

@@ -3,6 +3,7 @@
 #include "core/score/predicted_surface.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -29,18 +30,18 @@ Span covered(float centre, float radius, int size) {
 }
 
 struct DrawnPoint {
-  float z;  // metres
+  float u, v;       // pixels
+  float inverse_z;  // 1 / metres
   Span us, vs;
   std::uint32_t index;
-  Eigen::Vector3f normal;
-  float offset;  // of the tangent plane: normal . x = offset
+  // Of the tangent plane, whose inverse depth is linear in the image.
+  float per_u, per_v;
+  float least, most;  // inverse depths that are near the point's
 
-  // Of the tangent plane at a pixel, as long as it is near the point.
-  float depth_at(const CheckImage& image, int pixel_u, int pixel_v) const {
-    const Eigen::Vector3f ray((static_cast<float>(pixel_u) - image.cx) / image.fx,
-                              (static_cast<float>(pixel_v) - image.cy) / image.fy, 1);
-    const float depth = offset / normal.dot(ray);
-    return std::abs(depth - z) < kPlaneReach ? depth : z;
+  float inverse_depth_at(int pixel_u, int pixel_v) const {
+    const float inverse = inverse_z + per_u * (static_cast<float>(pixel_u) - u) +
+                          per_v * (static_cast<float>(pixel_v) - v);
+    return inverse > least && inverse < most ? inverse : inverse_z;
   }
 };
 
@@ -57,15 +58,24 @@ std::vector<DrawnPoint> facing_points(const CheckImage& image, const ObjectModel
     if (offset > 0 || offset * offset < kMinCosine * kMinCosine * p.squaredNorm()) continue;
     const Eigen::Vector2f at = image.project(p);
     const float u = at.x(), v = at.y();
-    const float radius = std::min(kMaxRadius, kPointRadius * image.fx / p.z());
+    const float inverse_z = 1 / p.z();
+    const float radius = std::min(kMaxRadius, kPointRadius * image.fx * inverse_z);
     if (!(u > -1 && v > -1 && u < static_cast<float>(image.width) &&
           v < static_cast<float>(image.height))) {
       continue;
     }
-    drawn.push_back({p.z(), covered(u, radius, image.width), covered(v, radius, image.height), i,
-                     normal, offset});
+    const Span us = covered(u, radius, image.width), vs = covered(v, radius, image.height);
+    if (us.last < us.first || vs.last < vs.first) continue;
+    drawn.push_back({u, v, inverse_z, us, vs, i, normal.x() / (offset * image.fx),
+                     normal.y() / (offset * image.fy), 1 / (p.z() + kPlaneReach),
+                     1 / (p.z() - kPlaneReach)});
   }
   return drawn;
+}
+
+// A pixel of the depth buffer: the larger, the nearer, and the first of equal ones.
+std::uint64_t buffer_key(float inverse_depth, std::uint32_t index) {
+  return std::uint64_t{std::bit_cast<std::uint32_t>(inverse_depth)} << 32 | ~index;
 }
 
 PredictedSurface draw(const CheckImage& image, const std::vector<DrawnPoint>& drawn) {
@@ -75,19 +85,30 @@ PredictedSurface draw(const CheckImage& image, const std::vector<DrawnPoint>& dr
     columns = {std::min(columns.first, p.us.first), std::max(columns.last, p.us.last)};
     rows = {std::min(rows.first, p.vs.first), std::max(rows.last, p.vs.last)};
   }
-  if (columns.last < columns.first || rows.last < rows.first) return {};
   const int width = columns.last - columns.first + 1, height = rows.last - rows.first + 1;
-  PredictedSurface out{columns.first, rows.first, {width, height, 0.0f}, {width, height, 0u}};
+  Image<std::uint64_t> nearest(width, height, 0);
   for (const DrawnPoint& p : drawn) {
-    for (int v = p.vs.first; v <= p.vs.last; ++v) {
-      for (int u = p.us.first; u <= p.us.last; ++u) {
-        const std::size_t i = out.depth.index(u - out.u0, v - out.v0);
-        const float depth = p.depth_at(image, u, v);
-        if (out.depth[i] > 0 && out.depth[i] <= depth) continue;
-        out.depth[i] = depth;
-        out.point[i] = p.index;
-      }
+    const auto draw_at = [&](int u, int v) {
+      std::uint64_t& pixel = nearest.at(u - columns.first, v - rows.first);
+      pixel = std::max(pixel, buffer_key(p.inverse_depth_at(u, v), p.index));
+    };
+    if (p.us.last - p.us.first <= 1 && p.vs.last - p.vs.first <= 1) {  // most points
+      // Twice the same where it is one pixel wide: that costs less than a branch.
+      draw_at(p.us.first, p.vs.first);
+      draw_at(p.us.last, p.vs.first);
+      draw_at(p.us.first, p.vs.last);
+      draw_at(p.us.last, p.vs.last);
+      continue;
     }
+    for (int v = p.vs.first; v <= p.vs.last; ++v) {
+      for (int u = p.us.first; u <= p.us.last; ++u) draw_at(u, v);
+    }
+  }
+  PredictedSurface out{columns.first, rows.first, {width, height, 0.0f}, {width, height, 0u}};
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    if (nearest[i] == 0) continue;
+    out.depth[i] = 1 / std::bit_cast<float>(static_cast<std::uint32_t>(nearest[i] >> 32));
+    out.point[i] = ~static_cast<std::uint32_t>(nearest[i]);
   }
   return out;
 }

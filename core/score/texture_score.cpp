@@ -23,59 +23,81 @@ constexpr double kSigma[3] = {0.10, 0.03, 0.06};
 constexpr double kLeastSlope = 0.4, kLargestSlope = 1.5;  // contrast, frame to model
 constexpr double kRidge = 1e-3;  // of the normals' scatter: a flat face says nothing of the light
 
-using Row = Eigen::Matrix<double, 6, 1>;  // 1, normal, predicted, observed
-
 // Squares of what constants and, for the lightness, normals do not explain.
 struct Scatter {
   double predicted, both, observed;
 };
 
-Scatter remove_light(const Eigen::Matrix<double, 6, 6>& products) {
-  Eigen::Matrix4d known = products.topLeftCorner<4, 4>();
-  known.diagonal().tail<3>().array() += kRidge * known(0, 0);
-  const Eigen::Vector4d predicted = products.block<4, 1>(0, 4),
-                        observed = products.block<4, 1>(0, 5);
-  const Eigen::Vector4d p = solve_symmetric(known, predicted), o = solve_symmetric(known, observed);
-  return {products(4, 4) - predicted.dot(p), products(4, 5) - predicted.dot(o),
-          products(5, 5) - observed.dot(o)};
-}
+// Sums over looked-at pixels of what a placement predicts.
+struct PredictedSums {
+  Eigen::Matrix4d known = Eigen::Matrix4d::Zero();      // products of 1 and the normal
+  Eigen::Vector4d lightness = Eigen::Vector4d::Zero();  // these by the lightness
+  double squared_lightness = 0;
+  double chroma[2] = {}, squared_chroma[2] = {};
 
-struct Sums {
-  Eigen::Matrix<double, 6, 6> lightness = Eigen::Matrix<double, 6, 6>::Zero();
-  double chroma[2][5] = {};  // predicted, observed, and the products
-  double count = 0;
-
-  void add(const Eigen::Vector3f& normal, const Eigen::Vector3f& predicted,
-           const Eigen::Vector3f& observed) {
-    Row row;
-    row << 1, normal.cast<double>(), double{predicted[0]}, double{observed[0]};
-    lightness += row * row.transpose();
+  void add(const Eigen::Vector4d& row, const Eigen::Vector3d& predicted) {
+    known += row * row.transpose();
+    lightness += row * predicted[0];
+    squared_lightness += predicted[0] * predicted[0];
     for (int c = 0; c < 2; ++c) {
-      const double p = double{predicted[c + 1]}, o = double{observed[c + 1]};
-      chroma[c][0] += p, chroma[c][1] += o;
-      chroma[c][2] += p * p, chroma[c][3] += p * o, chroma[c][4] += o * o;
+      chroma[c] += predicted[c + 1];
+      squared_chroma[c] += predicted[c + 1] * predicted[c + 1];
     }
-    ++count;
   }
+  double count() const { return known(0, 0); }
+};
 
-  Scatter scatter(int channel) const {
-    if (channel == 0) return remove_light(lightness);
-    const double* s = chroma[channel - 1];
-    return {s[2] - s[0] * s[0] / count, s[3] - s[0] * s[1] / count, s[4] - s[1] * s[1] / count};
-  }
+// Sums over the same pixels of what is observed, and its products with what is predicted.
+struct ObservedSums {
+  Eigen::Vector4d lightness = Eigen::Vector4d::Zero();
+  double lightness_both = 0, squared_lightness = 0;
+  double chroma[2] = {}, chroma_both[2] = {}, squared_chroma[2] = {};
 
-  double log_ratio() const {
-    double sum = 0;
-    for (int channel = 0; channel < 3; ++channel) {
-      const auto [pp, po, oo] = scatter(channel);
-      const double slope = pp > 0 ? std::clamp(po / pp, kLeastSlope, kLargestSlope) : 1;
-      const double left = std::max(0.0, oo - 2 * slope * po + slope * slope * pp);
-      const double noise = count * kSigma[channel] * kSigma[channel];
-      sum += 0.5 * std::log((noise + std::max(0.0, oo)) / (noise + left));
+  void add(const Eigen::Vector4d& row, const Eigen::Vector3d& predicted,
+           const Eigen::Vector3d& observed) {
+    lightness += row * observed[0];
+    lightness_both += predicted[0] * observed[0];
+    squared_lightness += observed[0] * observed[0];
+    for (int c = 0; c < 2; ++c) {
+      chroma[c] += observed[c + 1];
+      chroma_both[c] += predicted[c + 1] * observed[c + 1];
+      squared_chroma[c] += observed[c + 1] * observed[c + 1];
     }
-    return sum;
   }
 };
+
+Scatter scatter(const PredictedSums& p, const ObservedSums& o, int channel) {
+  if (channel == 0) {
+    Eigen::Matrix4d known = p.known;
+    known.diagonal().tail<3>().array() += kRidge * known(0, 0);
+    const Eigen::Vector4d by_predicted = solve_symmetric(known, p.lightness),
+                          by_observed = solve_symmetric(known, o.lightness);
+    return {p.squared_lightness - p.lightness.dot(by_predicted),
+            o.lightness_both - p.lightness.dot(by_observed),
+            o.squared_lightness - o.lightness.dot(by_observed)};
+  }
+  const int c = channel - 1;
+  return {p.squared_chroma[c] - p.chroma[c] * p.chroma[c] / p.count(),
+          o.chroma_both[c] - p.chroma[c] * o.chroma[c] / p.count(),
+          o.squared_chroma[c] - o.chroma[c] * o.chroma[c] / p.count()};
+}
+
+double log_ratio(const PredictedSums& predicted, const ObservedSums& observed) {
+  double sum = 0;
+  for (int channel = 0; channel < 3; ++channel) {
+    const auto [pp, po, oo] = scatter(predicted, observed, channel);
+    const double slope = pp > 0 ? std::clamp(po / pp, kLeastSlope, kLargestSlope) : 1;
+    const double left = std::max(0.0, oo - 2 * slope * po + slope * slope * pp);
+    const double noise = predicted.count() * kSigma[channel] * kSigma[channel];
+    sum += 0.5 * std::log((noise + std::max(0.0, oo)) / (noise + left));
+  }
+  return sum;
+}
+
+// 1 and a normal.
+Eigen::Vector4d light_row(const Eigen::Vector3f& normal) {
+  return normal.cast<double>().homogeneous().reverse();
+}
 
 // Whether the blur of colours mixes the pixel with none beside the outline.
 bool inside(const PredictedSurface& predicted, int u, int v) {
@@ -98,25 +120,30 @@ TextureAgreement compare_texture(const CheckImage& image, const Image<Eigen::Vec
                                  const ObjectModel& model, const PredictedSurface& predicted) {
   const std::vector<Eigen::Vector3f>& colors = model.index->log_light;
   if (observed.empty() || colors.empty()) return {};
-  Sums sums[3][3];
+  PredictedSums sums;
+  ObservedSums shifted[3][3];
   for_each_shown(image, predicted, kStep, [&](int u, int v, std::uint32_t point) {
     if (!inside(predicted, u, v)) return;
     if (!observed.contains(u - kShift, v - kShift) || !observed.contains(u + kShift, v + kShift)) {
       return;
     }
+    const Eigen::Vector4d row = light_row(model.surface.normals[point]);
+    const Eigen::Vector3d predicted_color = colors[point].cast<double>();
+    sums.add(row, predicted_color);
     for (int y = 0; y < 3; ++y) {
       for (int x = 0; x < 3; ++x) {
-        sums[y][x].add(model.surface.normals[point], colors[point],
-                       observed.at(u + kShift * (x - 1), v + kShift * (y - 1)));
+        const Eigen::Vector3f& seen = observed.at(u + kShift * (x - 1), v + kShift * (y - 1));
+        shifted[y][x].add(row, predicted_color, seen.cast<double>());
       }
     }
   });
-  if (sums[0][0].count < kFewestPixels) return {0, 0};
+  if (sums.count() < kFewestPixels) return {0, 0};
   TextureAgreement best{-INFINITY, 0};
-  for (const auto& row : sums) {
-    for (const Sums& shifted : row) best.log_ratio = std::max(best.log_ratio, shifted.log_ratio());
+  for (const auto& row : shifted) {
+    for (const ObservedSums& at : row)
+      best.log_ratio = std::max(best.log_ratio, log_ratio(sums, at));
   }
-  best.total = best.log_ratio * sums[0][0].count / kPixelsApart;
+  best.total = best.log_ratio * sums.count() / kPixelsApart;
   return best;
 }
 
@@ -140,16 +167,19 @@ Pose turn_to_pattern(const CheckImage& image, const Image<Eigen::Vector3f>& obse
   double best_ratio = -INFINITY;
   for (const Pose& element : sampled_elements(model.symmetry, kTurns)) {
     const FastPose turned_from_object = to_fast(element.inverse());
-    Sums sums;
+    PredictedSums sums;
+    ObservedSums seen;
     for (const auto& [u, v, point] : shown) {
       const int there =
           model.index->distances.nearest_to(turned_from_object * model.surface.points[point]);
       if (there < 0) continue;
-      sums.add(model.surface.normals[point], colors[static_cast<std::size_t>(there)],
-               observed.at(u, v));
+      const Eigen::Vector4d row = light_row(model.surface.normals[point]);
+      const Eigen::Vector3d predicted = colors[static_cast<std::size_t>(there)].cast<double>();
+      sums.add(row, predicted);
+      seen.add(row, predicted, observed.at(u, v).cast<double>());
     }
-    if (sums.count < kFewestPixels) continue;
-    const double ratio = sums.log_ratio();
+    if (sums.count() < kFewestPixels) continue;
+    const double ratio = log_ratio(sums, seen);
     if (ratio <= best_ratio) continue;
     best_ratio =
         ratio + (best_ratio == -INFINITY ? kClearlyBetter : 0);  // the pose itself is first

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/geometry/pose.hpp"
+#include "core/model/model_index.hpp"
+#include "core/observation/check_image.hpp"
+
+namespace bpa {
+
+/// Some model points as the camera sees them.
+struct ProjectedBlock {
+  float z[kCheckBlock];          ///< Metres.
+  float normal[3][kCheckBlock];  ///< Camera frame.
+  int pixel[kCheckBlock];        ///< -1 where the point faces away or is outside the image.
+
+  /// Sets all for the kCheckBlock points from `first`, a multiple of kCheckBlock.
+  void project(const CheckImage& image, const CheckPoints& model, const FastPose& pose, int first);
+};
+
+}  // namespace bpa
