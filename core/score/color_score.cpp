@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "core/base/median.hpp"
@@ -16,7 +15,7 @@ namespace {
 
 constexpr double kColorSigma = 12;  // CIELAB
 constexpr float kLightnessWeight = 0.5f;
-constexpr int kMinPixels = 5;        // of 9; with fewer a window is at the rim, with a neighbour's
+constexpr float kMinPixels = 5;      // of 9; with fewer a window is at the rim, with a neighbour's
 constexpr float kRootOfGrey = 0.6f;  // of L = 54
 
 // light_roots() of both sides' mean colours.
@@ -24,24 +23,39 @@ struct Window {
   Eigen::Array3f observed, predicted;
 };
 
-// Of the pixels about (u, v) that the placement explains; nothing where they are few.
-std::optional<Window> compare_at(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
-                                 std::span<const Eigen::Vector3f> surface,
-                                 const PredictedSurface& predicted, int u, int v) {
-  Eigen::Vector3f seen = Eigen::Vector3f::Zero(), expected = Eigen::Vector3f::Zero();
-  int count = 0;
-  for (int y = v - 1; y <= v + 1; ++y) {
-    for (int x = u - 1; x <= u + 1; ++x) {
-      const float z = predicted.depth_at(x, y);
-      if (z <= 0 || !explains(image, x, y, z)) continue;
-      seen += observed.at(x, y);
-      expected += surface[predicted.point.at(x - predicted.u0, y - predicted.v0)];
-      ++count;
-    }
-  }
-  if (count < kMinPixels) return std::nullopt;
-  const auto pixels = static_cast<float>(count);
-  return Window{light_roots(seen / pixels), light_roots(expected / pixels)};
+// Observed and predicted CIELAB colours of pixels that the placement explains, and their number.
+using ColorSum = Eigen::Array<float, 8, 1>;  // observed, predicted, number, nothing
+
+// Adds to each pixel its two neighbours `step` pixels before and after it. The outermost pixels
+// must be zero, and stay as they are.
+void add_neighbors(int step, const std::vector<ColorSum>& of, std::vector<ColorSum>& sums) {
+  const auto size = static_cast<int>(of.size());
+  for (int i = step; i < size - step; ++i) sums[i] = of[i - step] + of[i] + of[i + step];
+}
+
+// Means over 3 x 3 pixels, where the placement explains most of them, row by row.
+std::vector<Window> windows_of(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
+                               std::span<const Eigen::Vector3f> surface,
+                               const PredictedSurface& predicted) {
+  const int width = predicted.depth.width + 2, height = predicted.depth.height + 2;
+  std::vector<ColorSum> pixels(static_cast<std::size_t>(width * height), ColorSum::Zero());
+  const auto index = [&](int u, int v) {
+    return (v - predicted.v0 + 1) * width + u - predicted.u0 + 1;
+  };
+  for_each_explained(image, predicted, [&](int u, int v, std::uint32_t point) {
+    pixels[index(u, v)] << observed.at(u, v), surface[point], 1, 0;
+  });
+  std::vector<ColorSum> rows = pixels, sums = pixels;
+  add_neighbors(1, pixels, rows);
+  add_neighbors(width, rows, sums);
+  std::vector<Window> windows;
+  predicted.for_each([&](int u, int v, float, std::uint32_t) {
+    const ColorSum& sum = sums[index(u, v)];
+    const float count = sum[6];
+    if (count < kMinPixels) return;
+    windows.push_back({light_roots(sum.head<3>() / count), light_roots(sum.segment<3>(3) / count)});
+  });
+  return windows;
 }
 
 // The logarithm of the gain of each root from the model to the frame.
@@ -49,10 +63,9 @@ Eigen::Array3f log_gains(const std::vector<Window>& windows) {
   Eigen::Array3f gains;
   std::vector<float> values(windows.size());
   for (int c = 0; c < 3; ++c) {
-    std::transform(windows.begin(), windows.end(), values.begin(), [c](const Window& window) {
-      return std::log(window.observed[c] / window.predicted[c]);
-    });
-    gains[c] = median(values);
+    std::transform(windows.begin(), windows.end(), values.begin(),
+                   [c](const Window& window) { return window.observed[c] / window.predicted[c]; });
+    gains[c] = std::log(median(values));
   }
   return gains;
 }
@@ -73,11 +86,7 @@ ColorAgreement compare_colors(const CheckImage& image, const Image<Eigen::Vector
                               std::span<const Eigen::Vector3f> surface,
                               const PredictedSurface& predicted) {
   if (observed.empty() || surface.empty()) return {};
-  std::vector<Window> windows;
-  predicted.for_each([&](int u, int v, float, std::uint32_t) {
-    const auto window = compare_at(image, observed, surface, predicted, u, v);
-    if (window) windows.push_back(*window);
-  });
+  const std::vector<Window> windows = windows_of(image, observed, surface, predicted);
   if (windows.empty()) return {};
   const Eigen::Array3f log_gain = log_gains(windows), gains = log_gain.exp();
   double sum = 0;

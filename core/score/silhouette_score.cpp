@@ -16,25 +16,45 @@ constexpr int kFewestOutline = 12;  // pixels of the reduced image
 // In pixels of the reduced image: where the outline is looked for, and where its surroundings are.
 constexpr float kOutlineReach = 1.5f, kBesideFrom = 2.5f, kBesideTo = 4;
 
-// The direction out of the object at one of its pixels; zero inside of it.
-Eigen::Vector2f outward(const PredictedSurface& predicted, int u, int v, float z) {
-  const auto outside = [&](int x, int y) {
-    const float there = predicted.depth_at(x, y);
-    return there <= 0 || there > z + kBehind;
-  };
-  if (!(outside(u + 1, v) || outside(u - 1, v) || outside(u, v + 1) || outside(u, v - 1))) {
-    return Eigen::Vector2f::Zero();
-  }
-  Eigen::Vector2f sum = Eigen::Vector2f::Zero();
-  for (int dv = -2; dv <= 2; ++dv) {
-    for (int du = -2; du <= 2; ++du) {
-      if (outside(u + du, v + dv)) {
-        sum += Eigen::Vector2f(static_cast<float>(du), static_cast<float>(dv));
-      }
+// Predicted depths with kReach pixels of nothing around, so that neighbours are read without
+// tests.
+struct PaddedDepth {
+  static constexpr int kReach = 2;
+
+  explicit PaddedDepth(const PredictedSurface& predicted)
+      : u0(predicted.u0 - kReach),
+        v0(predicted.v0 - kReach),
+        depth(predicted.depth.width + 2 * kReach, predicted.depth.height + 2 * kReach, 0.0f) {
+    for (int y = 0; y < predicted.depth.height; ++y) {
+      std::copy_n(&predicted.depth.at(0, y), predicted.depth.width, &depth.at(kReach, y + kReach));
     }
   }
-  return sum.norm() > 0.5f ? sum.normalized() : Eigen::Vector2f::Zero();
-}
+
+  // The direction out of the object at one of its pixels; zero inside of it.
+  Eigen::Vector2f outward(int u, int v, float z) const {
+    const float* here = &depth.at(u - u0, v - v0);
+    const auto outside = [&](int du, int dv) {
+      const float there = here[dv * depth.width + du];
+      return (there <= 0) | (there > z + kBehind);
+    };
+    if (!(outside(1, 0) | outside(-1, 0) | outside(0, 1) | outside(0, -1))) {
+      return Eigen::Vector2f::Zero();
+    }
+    int sum_u = 0, sum_v = 0;
+    for (int dv = -kReach; dv <= kReach; ++dv) {
+      for (int du = -kReach; du <= kReach; ++du) {
+        const int is_outside = outside(du, dv);
+        sum_u += is_outside * du;
+        sum_v += is_outside * dv;
+      }
+    }
+    if (sum_u == 0 && sum_v == 0) return Eigen::Vector2f::Zero();
+    return Eigen::Vector2f(static_cast<float>(sum_u), static_cast<float>(sum_v)).normalized();
+  }
+
+  int u0, v0;  // image pixel of the first one
+  Image<float> depth;
+};
 
 // The gradient across the outline, `along` full pixels outward of `at`.
 float gradient_across(const Image<Eigen::Vector2f>& gradients, const Eigen::Vector2f& at,
@@ -50,6 +70,7 @@ SilhouetteAgreement compare_silhouette(const CheckImage& image,
                                        const Image<Eigen::Vector2f>& gradients,
                                        const PredictedSurface& predicted) {
   if (gradients.empty()) return {};
+  const PaddedDepth padded(predicted);
   const float scale = static_cast<float>(gradients.width / image.width);
   const auto hidden = [&](int u, int v, float z) {
     if (u < 0 || v < 0 || u >= image.width || v >= image.height) return true;
@@ -58,7 +79,7 @@ SilhouetteAgreement compare_silhouette(const CheckImage& image,
   double on = 0, beside = 0;
   int count = 0;
   predicted.for_each([&](int u, int v, float z, std::uint32_t) {
-    const Eigen::Vector2f out = outward(predicted, u, v, z);
+    const Eigen::Vector2f out = padded.outward(u, v, z);
     if (out.isZero(0)) return;
     const int x = u + static_cast<int>(std::lround(2 * out.x()));
     const int y = v + static_cast<int>(std::lround(2 * out.y()));
