@@ -28,6 +28,12 @@ void parallel_for(Index count, int num_threads, const Body& body) {
   });
 }
 
+/// Calls `body(index)` for every index in [0, count): on the caller's thread, and on those threads
+/// of the parallel_for_pieces() around this call that have nothing left to do. Alone on the
+/// caller's thread without one around it. As there, write results by index; when `body` throws, no
+/// further index begins, and the caller gets the exception of the lowest index.
+void parallel_for_spare(int count, const std::function<void(int index)>& body);
+
 /// Calls both, each with its share of `num_threads` (0 = one per core). At the same time where that
 /// is not 1.
 inline void run_both(int num_threads, const std::function<void(int threads)>& first,

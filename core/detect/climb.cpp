@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "core/base/parallel.hpp"
 #include "core/detect/stages.hpp"
 
 namespace bpa {
@@ -65,14 +66,15 @@ void step_uphill(const Search& search, Best& best) {
 
 Candidates climb(const Search& search, Candidates refined) {
   const auto most = std::min<std::size_t>(refined.size(), search.options.climb.max_climbed);
-  for (std::size_t i = 0; i < most; ++i) {
-    if (search.late() || refined[i].score < search.options.climb.min_climbed_score) break;
-    Best best{refined[i].pose(), search.quick_score(refined[i].pose())};
+  parallel_for_spare(static_cast<int>(most), [&](int i) {
+    Candidate& candidate = refined[i];
+    if (search.late() || candidate.score < search.options.climb.min_climbed_score) return;
+    Best best{candidate.pose(), search.quick_score(candidate.pose())};
     align_from_beside(search, best);
     step_uphill(search, best);
-    Candidate moved = search.scored(search.measured(best.pose), refined[i].found_by);
-    if (moved.score > refined[i].score) refined[i] = std::move(moved);
-  }
+    Candidate moved = search.scored(search.measured(best.pose), candidate.found_by);
+    if (moved.score > candidate.score) candidate = std::move(moved);
+  });
   return refined;
 }
 

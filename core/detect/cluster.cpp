@@ -44,7 +44,7 @@ Pose aligned_pose(const Search& search, const Cluster& cluster) {
     if (member->found_by != Source::prior) pairs.push_back(oriented_pair(search, *member));
   }
   if (pairs.empty()) return cluster.members.front()->pose();
-  ++search.effort.alignments;
+  search.add_effort(&SearchEffort::alignments);
   return align::bpa_mode({.oriented = pairs}).camera_from_object;
 }
 

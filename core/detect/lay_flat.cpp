@@ -143,16 +143,17 @@ Candidates lay_flat(const Search& whole, Candidates found) {
   Candidates laid = resting_poses(search);
   const DetectOptions& options = search.options;
   keep_first(search, options.flat.max_laid, laid);
-  for (Candidate& candidate : laid) {
-    if (search.late()) break;
-    if (search.quick_score(candidate.pose(), options.cluster.rank_points) <
-        options.flat.min_laid_score) {
-      search.reject("score too low", candidate.pose());
-      continue;
-    }
+  std::erase_if(laid, [&](const Candidate& candidate) {
+    const bool low = search.quick_score(candidate.pose(), options.cluster.rank_points) <
+                     options.flat.min_laid_score;
+    if (low) search.reject("score too low", candidate.pose());
+    return low;
+  });
+  change_each(search, laid, [&](Candidate& candidate) {
     slide(search, candidate);
-    found.push_back(search.scored(search.measured(candidate.pose()), Source::region));
-  }
+    candidate = search.scored(search.measured(candidate.pose()), Source::region);
+  });
+  std::ranges::move(laid, std::back_inserter(found));
   whole.effort += search.effort;
   return found;
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "core/base/parallel.hpp"
+
 namespace bpa {
 void sort_by_score(Candidates& candidates) {
   std::ranges::stable_sort(candidates, std::greater(), &Candidate::score);
@@ -62,6 +64,21 @@ void keep_first(const Search& search, int count, Candidates& candidates) {
   const auto end = candidates.begin() + count;
   for (auto c = end; c != candidates.end(); ++c) search.reject("better ones are enough", c->pose());
   candidates.erase(end, candidates.end());
+}
+
+void change_each(const Search& search, Candidates& candidates,
+                 const std::function<void(Candidate&)>& change) {
+  std::vector<std::uint8_t> reached(candidates.size(), 0);
+  parallel_for_spare(static_cast<int>(candidates.size()), [&](int i) {
+    if (search.late()) return;
+    change(candidates[i]);
+    reached[i] = 1;
+  });
+  Candidates kept;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (reached[i]) kept.push_back(std::move(candidates[i]));
+  }
+  candidates = std::move(kept);
 }
 
 }  // namespace bpa

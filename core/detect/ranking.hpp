@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+
 #include "core/detect/search.hpp"
 
 // How stages order candidates and cut their number.
@@ -27,6 +29,11 @@ void reject_below(const Search& search, double min_score, Candidates& candidates
 
 /// Sorts by score and rejects all but the best `count`.
 void keep_best(const Search& search, int count, Candidates& candidates);
+
+/// Calls change(candidate) for each, also on threads that have nothing else to do. Leaves out what
+/// was not reached before the deadline.
+void change_each(const Search& search, Candidates& candidates,
+                 const std::function<void(Candidate&)>& change);
 
 /// Rejects all but the first `count`.
 void keep_first(const Search& search, int count, Candidates& candidates);

@@ -19,28 +19,22 @@ Candidates refine(const Search& search, Candidates aligned) {
   const RefineOptions& options = search.options.refine;
   reject_below(search, options.min_aligned_score, aligned);
   keep_first(search, options.max_refined, aligned);
-  std::size_t done = 0;
-  for (Candidate& candidate : aligned) {
-    if (search.late()) break;
+  change_each(search, aligned, [&](Candidate& candidate) {
     candidate.refinement = {search.aligned(candidate.pose(), options.refinement)};
     candidate.score = search.quick_score(candidate.pose());
-    ++done;
-  }
-  aligned.resize(done);
+  });
   reject_below(search, options.min_refined_score, aligned);
   suppress_duplicates(search, aligned);
   return aligned;
 }
 
 Candidates score(const Search& search, Candidates refined) {
-  Candidates out;
-  for (const Candidate& start : refined) {
-    if (search.late()) break;
-    const Pose pose = turned_to_pattern(search, start.pose());
-    out.push_back(search.scored(search.measured(pose), start.found_by));
-  }
-  sort_by_score(out);
-  return out;
+  change_each(search, refined, [&](Candidate& candidate) {
+    const Pose pose = turned_to_pattern(search, candidate.pose());
+    candidate = search.scored(search.measured(pose), candidate.found_by);
+  });
+  sort_by_score(refined);
+  return refined;
 }
 
 }  // namespace bpa

@@ -81,7 +81,7 @@ Pose aligned(const Search& search, const Pose& start) {
   };
   auto gate = static_cast<float>(options.start_gate_m);
   for (int step = 0; step < options.bpa_steps; ++step) {
-    ++search.effort.alignments;
+    search.add_effort(&SearchEffort::alignments);
     propose(align_to_surface(search.scene, search.model, best, gate,
                              search.seed + static_cast<std::uint64_t>(step), search.options));
     gate *= static_cast<float>(options.gate_decay);

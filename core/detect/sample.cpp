@@ -106,7 +106,7 @@ Candidates sample(const Search& search, Candidates) {
   if (search.round == 0) from_priors(search, out);
   from_features(search, out);
   from_pairs(search, out);
-  search.effort.sampled_poses += std::ssize(out);
+  search.add_effort(&SearchEffort::sampled_poses, std::ssize(out));
   return out;
 }
 

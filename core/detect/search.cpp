@@ -3,6 +3,7 @@
 #include "core/detect/search.hpp"
 
 #include <algorithm>
+#include <atomic>
 
 #include "core/model/model_index.hpp"
 #include "core/score/color_check.hpp"
@@ -38,13 +39,17 @@ Search::Search(const SceneFeatures& s, const Search& other)
 
 bool Search::late() const {
   const bool passed = deadline.passed();
-  if (passed && cut) *cut = 1;
+  if (passed && cut) std::atomic_ref(*cut).store(1, std::memory_order_relaxed);
   return passed;
+}
+
+void Search::add_effort(std::int64_t SearchEffort::*what, std::int64_t more) const {
+  std::atomic_ref(effort.*what).fetch_add(more, std::memory_order_relaxed);
 }
 
 RefinementOptions Search::begin_alignment(RefinementOptions refinement) const {
   if (!options.align.use_edges) refinement.max_edges = 0;
-  effort.alignments += refinement.iterations > 0;
+  add_effort(&SearchEffort::alignments, refinement.iterations > 0);
   return refinement;
 }
 
@@ -74,14 +79,14 @@ double Search::color_evidence(const Pose& pose) const {
 }
 
 double Search::quick_score(const Pose& pose, int points) const {
-  ++effort.quick_scores;
+  add_effort(&SearchEffort::quick_scores);
   Evidence evidence(scene, places, pose, points);
   return layers.round_two.log_odds(measure(evidence, Round::two)) + priors.evidence(pose) +
          color_evidence(pose);
 }
 
 Candidate Search::scored(Refinement refinement, Source found_by) const {
-  ++effort.full_scores;
+  add_effort(&SearchEffort::full_scores);
   Candidate out{.model = &model, .refinement = refinement, .found_by = found_by};
   Evidence evidence(scene, places, out.pose());
   out.values = measure(evidence, options.score.use_round_three ? Round::three : Round::two);
@@ -108,7 +113,7 @@ void Search::reject(std::string_view reason, const Pose& pose) const {
 
 PoseCheck Search::check(const Pose& pose, const CheckCount& count,
                         const CheckTolerance& tolerance) const {
-  ++effort.pose_checks;
+  add_effort(&SearchEffort::pose_checks);
   return check_pose(*image, model.index->check, to_fast(pose), count, tolerance);
 }
 

@@ -71,10 +71,12 @@ struct Search {
   Deadline deadline;              ///< Stages return what they have when it has passed.
   std::uint8_t* cut = nullptr;    ///< Set to 1 when a stage stopped for that; may be null.
   TraceStage* tracing = nullptr;  ///< Of the stage that runs; null unless traced.
-  mutable SearchEffort effort;    ///< Counts so far, by the one thread that runs the search.
+  mutable SearchEffort effort;    ///< Counts so far; see add_effort().
 
-  /// Whether the deadline has passed; says so in `cut`.
+  /// Whether the deadline has passed; says so in `cut`. Any thread may call it.
   bool late() const;
+  /// Adds to one of the counts of `effort`. Any thread may call it.
+  void add_effort(std::int64_t SearchEffort::*what, std::int64_t more = 1) const;
   /// Gradient-based alignment, with edges unless AlignOptions leaves them out.
   Refinement refine(const Pose& start, const RefinementOptions& refinement) const;
   /// The pose of refine() alone.

@@ -15,15 +15,16 @@ Candidates near_symmetric(const Search& search, const Candidates& candidates) {
   const auto most = std::min<std::size_t>(candidates.size(), options.max_turned);
   Candidates out;
   for (std::size_t i = 0; i < most && candidates[i].score > options.min_turned_score; ++i) {
-    if (search.late()) break;
     for (const Pose& motion : search.model.index->near_symmetries) {
       const Pose turned = candidates[i].pose() * motion;
       out.push_back({.model = &search.model,
                      .refinement = {.camera_from_object = turned},
-                     .found_by = candidates[i].found_by,
-                     .score = search.quick_score(turned)});
+                     .found_by = candidates[i].found_by});
     }
   }
+  change_each(search, out, [&](Candidate& candidate) {
+    candidate.score = search.quick_score(candidate.pose());
+  });
   return out;
 }
 
@@ -41,11 +42,11 @@ Candidates try_turned(const Search& search, Candidates climbed) {
     return known;
   });
   keep_first(search, search.options.turn.max_kept_turned, turned);
-  for (const Candidate& start : turned) {
-    if (search.late()) break;
-    climbed.push_back(search.scored(search.refine(start.pose(), search.options.refine.refinement),
-                                    start.found_by));
-  }
+  change_each(search, turned, [&](Candidate& candidate) {
+    candidate = search.scored(search.refine(candidate.pose(), search.options.refine.refinement),
+                              candidate.found_by);
+  });
+  std::ranges::move(turned, std::back_inserter(climbed));
   return climbed;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/parallel.hpp"
 #include "core/cloud/surface_map.hpp"
 #include "core/score/figure_ground.hpp"
 #include "core/score/texture_score.hpp"
@@ -129,7 +130,7 @@ std::vector<RivalEvidence> behind_best(const SceneFeatures& scene, const ObjectM
   constexpr double kFarthest = 500;
   if (poses.empty()) return {};
   const CheckImage& image = scene.image;
-  std::vector<RivalEvidence> evidence(1);
+  std::vector<RivalEvidence> evidence(poses.size());
   if (poses.size() > 1) {
     const PredictedSurface first = predict_whole_surface(image, model, poses.front());
     const auto texture = [&](const PredictedSurface& predicted) {
@@ -138,13 +139,13 @@ std::vector<RivalEvidence> behind_best(const SceneFeatures& scene, const ObjectM
     };
     const FigureColors first_colors(image, scene.sharp_light, model, first);
     evidence.front().color = texture(first);
-    for (const Pose& pose : poses.subspan(1)) {
-      const PredictedSurface other = predict_whole_surface(image, model, pose);
+    parallel_for_spare(static_cast<int>(poses.size()) - 1, [&](int k) {
+      const PredictedSurface other = predict_whole_surface(image, model, poses[k + 1]);
       const FigureColors colors(image, scene.sharp_light, model, other);
       const Pixels pixels = disagreement(image, other, first);
-      evidence.push_back({depth_evidence(image, other, first, pixels),
-                          texture(other) + color_evidence(colors, first_colors, pixels)});
-    }
+      evidence[k + 1] = {depth_evidence(image, other, first, pixels),
+                         texture(other) + color_evidence(colors, first_colors, pixels)};
+    });
   }
   for (double RivalEvidence::*part : {&RivalEvidence::depth, &RivalEvidence::color}) {
     const double best = std::ranges::max(std::span(evidence).first(contenders), {}, part).*part;
