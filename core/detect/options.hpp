@@ -51,7 +51,7 @@ struct AlignOptions {
 struct SampleOptions {
   int matches_per_keypoint = 1;
   int draws_per_match = 3;
-  int peaks_per_reference = 3;
+  int peaks_per_reference = 2;
   int rim_peaks_per_reference = 1;
   bool use_colors = true;
   int draws_per_prior = 300;

@@ -45,7 +45,7 @@ void from_pairs(const Search& search, Candidates& out) {
   const auto count = static_cast<int>(index.coarse.size());
   const auto late = [&] { return search.late(); };
   PairColors colors;
-  if (options.use_colors) colors = {search.scene.coarse_colors, index.coarse_colors};
+  if (options.use_colors) colors = {search.scene.coarse_colors, index.coarse_colors, index.palette};
   auto poses =
       vote_poses(sample.pairs, index.pairs, count, options.peaks_per_reference, colors, late);
   if (options.rim_peaks_per_reference > 0) {

@@ -81,8 +81,8 @@ class Votes {
       : num_points_(num_points), votes_(num_points * kTurnBins), most_(num_points) {}
 
   void clear() { std::fill(votes_.begin(), votes_.end(), Count{0}); }
-  void add(std::size_t point, std::uint8_t turn) {
-    ++votes_[turn / kStepsPerBin * num_points_ + point];
+  void add(std::size_t point, std::uint8_t turn, std::uint32_t vote) {
+    votes_[turn / kStepsPerBin * num_points_ + point] += static_cast<Count>(vote);
   }
   // For each model point, the most votes in a bin and the one after it.
   std::span<const Count> most() {
@@ -120,6 +120,33 @@ bool find_agreeing(const MatchColor& reference, std::span<const MatchColor> mode
   }
   return any != 0;
 }
+
+// For the partners of pairs, a bit for each colour of the palette that agrees with theirs.
+class AgreeingColors {
+ public:
+  AgreeingColors(const ScenePairs& pairs, const PairColors& colors) {
+    if (colors.palette.empty()) return;
+    bits_.resize(colors.scene.size(), kUnknown);
+    for (const ScenePairs::Partner& partner : pairs.partners) {
+      if (partner.point < 0 || bits_[partner.point] != kUnknown) continue;
+      std::uint32_t& bits = bits_[partner.point];
+      bits = 0;
+      for (std::size_t c = 0; c < colors.palette.size(); ++c) {
+        const bool agrees = colors_agree(colors.scene[partner.point], colors.palette[c]);
+        bits |= std::uint32_t{agrees} << c;
+      }
+    }
+  }
+  // All where no colour is known.
+  std::uint32_t of(const ScenePairs::Partner& partner) const {
+    return bits_.empty() || partner.point < 0 ? ~0U : bits_[partner.point];
+  }
+
+ private:
+  static constexpr std::uint32_t kUnknown = 1U << kAnyColor;
+
+  std::vector<std::uint32_t> bits_;  // by the partner's index in the cloud
+};
 
 // The model points with the most votes, best first.
 class Peaks {
@@ -204,22 +231,24 @@ std::uint8_t turn_of(const Eigen::Matrix3f& basis, const Eigen::Vector3f& line) 
 void PointPairTable::fill(const PointCloud& points, const auto& for_each_pair) {
   const std::uint32_t end = end_of_keys(inverse_step_);
   std::vector<std::uint32_t> first;
-  for_each_pair([&](std::size_t, const Eigen::Vector3f&, const PointPairFeature& feature) {
-    max_distance_ = std::max(max_distance_, feature.distance);
-    for_each_key(feature, inverse_step_, [&](std::uint32_t key) {
-      if (key >= end) return;
-      if (key + 2 > first.size()) first.resize(key + 2, 0);
-      ++first[key + 1];
-    });
-  });
+  for_each_pair(
+      [&](std::size_t, const Eigen::Vector3f&, std::uint8_t, const PointPairFeature& feature) {
+        max_distance_ = std::max(max_distance_, feature.distance);
+        for_each_key(feature, inverse_step_, [&](std::uint32_t key) {
+          if (key >= end) return;
+          if (key + 2 > first.size()) first.resize(key + 2, 0);
+          ++first[key + 1];
+        });
+      });
   for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
   std::vector<Entry> entries(first.empty() ? 0 : first.back());
   std::vector<Eigen::Matrix3f> bases;
   for (const Eigen::Vector3f& normal : points.normals) bases.push_back(basis_of(normal));
   std::vector<std::uint32_t> next = first;
-  for_each_pair([&](std::size_t i, const Eigen::Vector3f& second, const PointPairFeature& feature) {
+  for_each_pair([&](std::size_t i, const Eigen::Vector3f& second, std::uint8_t color,
+                    const PointPairFeature& feature) {
     const Entry entry{static_cast<std::uint16_t>(i), turn_of(bases[i], second - points.points[i]),
-                      0};
+                      color};
     for_each_key(feature, inverse_step_, [&](std::uint32_t key) {
       if (key < end) entries[next[key]++] = entry;
     });
@@ -237,11 +266,16 @@ bool PointPairTable::Arrays::fit(std::size_t num_points) const {
   std::uint32_t falling = 0;
   for (std::size_t k = 1; k < first.size(); ++k) falling |= first[k] < first[k - 1];
   std::uint16_t largest = 0;
-  for (const Entry& entry : entries) largest = std::max(largest, entry.point);
-  return falling == 0 && (entries.empty() || largest < num_points);
+  std::uint8_t last_color = 0;
+  for (const Entry& entry : entries) {
+    largest = std::max(largest, entry.point);
+    last_color = std::max(last_color, entry.color);
+  }
+  return falling == 0 && last_color <= kAnyColor && (entries.empty() || largest < num_points);
 }
 
-PointPairTable::PointPairTable(const PointCloud& points, float distance_step)
+PointPairTable::PointPairTable(const PointCloud& points, float distance_step,
+                               std::span<const std::uint8_t> colors)
     : inverse_step_(1 / distance_step) {
   const std::size_t count = std::min(points.size(), kMaxPoints);
   fill(points, [&](const auto& visit) {
@@ -251,7 +285,7 @@ PointPairTable::PointPairTable(const PointCloud& points, float distance_step)
         const PointPairFeature feature = point_pair_feature(points.points[i], points.normals[i],
                                                             points.points[j], points.normals[j]);
         if (feature.distance >= distance_step && fixes_pose(feature)) {
-          visit(i, points.points[j], feature);
+          visit(i, points.points[j], colors.empty() ? kAnyColor : colors[j], feature);
         }
       }
     }
@@ -266,7 +300,7 @@ PointPairTable::PointPairTable(const PointCloud& points, std::span<const RimPoin
     for (std::size_t i = 0; i < count; ++i) {
       for (const RimPoint& rim : rims) {
         const auto feature = rim_feature(points.points[i], points.normals[i], rim);
-        if (feature) visit(i, rim.point, *feature);
+        if (feature) visit(i, rim.point, kAnyColor, *feature);
       }
     }
   });
@@ -295,17 +329,20 @@ ScenePairs pairs_about(const PointCloud& cloud, std::vector<int> references, int
 
 }  // namespace
 
-ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, float reach,
-                       int num_threads) {
+ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, float reach, int step,
+                       int num_threads, std::span<const std::uint8_t> partners) {
   const NeighborGrid grid(cloud.points, reach);
-  const auto add = [&](std::size_t i, const Eigen::Matrix3f& basis, auto& partners) {
+  const auto add = [&](std::size_t i, const Eigen::Matrix3f& basis, auto& found) {
     grid.for_each_neighbor(cloud.points[i], [&](std::size_t j, float) {
-      if (i == j || (i + j) % 3 != 0) return;  // a third of them
+      if (i == j || (i + j) % static_cast<std::size_t>(step) != 0 ||
+          (!partners.empty() && !partners[j]))
+        return;
       const PointPairFeature feature =
           point_pair_feature(cloud.points[i], cloud.normals[i], cloud.points[j], cloud.normals[j]);
       if (!fixes_pose(feature)) return;
-      partners.push_back({feature.distance, pair_angle_key(feature),
-                          turn_of(basis, cloud.points[j] - cloud.points[i])});
+      found.push_back({feature.distance, pair_angle_key(feature),
+                       turn_of(basis, cloud.points[j] - cloud.points[i]),
+                       static_cast<std::int32_t>(j)});
     });
   };
   return pairs_about(cloud, std::move(references), num_threads, add);
@@ -320,8 +357,8 @@ ScenePairs scene_rim_pairs(const PointCloud& cloud, std::span<const RimPoint> ri
     grid.for_each_neighbor(cloud.points[i], [&](std::size_t j, float) {
       const auto feature = rim_feature(cloud.points[i], cloud.normals[i], rims[j]);
       if (!feature) return;
-      partners.push_back(
-          {feature->distance, pair_angle_key(*feature), turn_of(basis, ends[j] - cloud.points[i])});
+      partners.push_back({feature->distance, pair_angle_key(*feature),
+                          turn_of(basis, ends[j] - cloud.points[i]), -1});
     });
   };
   return pairs_about(cloud, std::move(references), num_threads, add);
@@ -335,6 +372,7 @@ std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable&
   Peaks best(peaks);
   const bool colored = !colors.scene.empty() && !colors.model.empty();
   std::vector<std::uint8_t> agree(static_cast<std::size_t>(num_model_points), 1);
+  const AgreeingColors second(pairs, colored ? colors : PairColors{});
   for (std::size_t r = 0; r < pairs.references.size(); ++r) {
     const bool votes_for_none = pairs.first[r] == pairs.first[r + 1] ||
                                 pairs.partners[pairs.first[r]].distance > table.max_distance();
@@ -345,8 +383,11 @@ std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable&
     for (std::uint32_t k = pairs.first[r]; k < pairs.first[r + 1]; ++k) {
       const ScenePairs::Partner& partner = pairs.partners[k];
       if (partner.distance > table.max_distance()) break;
+      const std::uint32_t colors_of_entries = second.of(partner);
+      if (colors_of_entries == 0) continue;
       for (const auto& entry : table.lookup(partner.distance, partner.angle_key)) {
-        votes.add(entry.point, static_cast<std::uint8_t>(partner.turn - entry.turn));
+        votes.add(entry.point, static_cast<std::uint8_t>(partner.turn - entry.turn),
+                  colors_of_entries >> entry.color & 1);
       }
     }
     const std::span<const Count> most = votes.most();

@@ -45,6 +45,10 @@ constexpr double kMaxPairLength = 0.08;
 constexpr int kPairAngleBins = 12;  ///< 15 degrees each.
 constexpr int kTurnSteps = 256;     ///< Of a full turn about a normal.
 
+/// In place of an index in a palette, where the colour is not known. With it, 32 bits say which
+/// colours of a palette agree with one.
+constexpr std::uint8_t kAnyColor = 31;
+
 /// A basis whose third axis is `normal` (unit length); the other two follow from it alone. Turns
 /// about a normal are measured from the first axis toward the second.
 Eigen::Matrix3f basis_of(const Eigen::Vector3f& normal);
@@ -54,8 +58,10 @@ Eigen::Matrix3f basis_of(const Eigen::Vector3f& normal);
 /// from the next bin: noise seldom hides them.
 class PointPairTable {
  public:
-  /// `distance_step` in metres.
-  PointPairTable(const PointCloud& points, float distance_step);
+  /// `distance_step` in metres. `colors`: each point's index in a palette of at most kAnyColor
+  /// colours; empty without colours.
+  PointPairTable(const PointCloud& points, float distance_step,
+                 std::span<const std::uint8_t> colors = {});
 
   /// The pairs of a point and a rim of the face that it is on, under rim_feature().
   PointPairTable(const PointCloud& points, std::span<const RimPoint> rims, float distance_step);
@@ -63,8 +69,8 @@ class PointPairTable {
   /// One pair: its first point, and where the second lies about the first's normal.
   struct Entry {
     std::uint16_t point = 0;
-    std::uint8_t turn = 0;  ///< In kTurnSteps.
-    std::uint8_t unused = 0;
+    std::uint8_t turn = 0;           ///< In kTurnSteps.
+    std::uint8_t color = kAnyColor;  ///< Of the second point, in the palette.
 
     bool operator==(const Entry&) const = default;
   };
@@ -75,7 +81,8 @@ class PointPairTable {
     SharedArray<std::uint32_t> first;  ///< first[key]..first[key + 1] is the cell; may be empty.
     SharedArray<Entry> entries;
 
-    /// Whether no lookup can leave the arrays, and all points are below `num_points`.
+    /// Whether no lookup can leave the arrays, all points are below `num_points`, and colours at
+    /// most kAnyColor.
     bool fit(std::size_t num_points) const;
   };
   /// `arrays` must fit the points that the table is of.
@@ -119,16 +126,18 @@ struct ScenePairs {
     float distance = 0;           ///< To the reference point, metres.
     std::uint16_t angle_key = 0;  ///< pair_angle_key of the pair.
     std::uint8_t turn = 0;        ///< turn_of the line to the partner, about the reference normal.
+    std::int32_t point = -1;      ///< Its index in the cloud; -1 where it is not of the cloud.
   };
   std::vector<int> references;       ///< Indices of the reference points.
   std::vector<std::uint32_t> first;  ///< first[r]..first[r + 1] are the partners of the r-th,
   std::vector<Partner> partners;     ///< by rising distance.
 };
 
-/// A third of the pairs within `reach` metres that fix a pose, about the points `references`: those
-/// whose indices add up to a multiple of three.
-ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, float reach,
-                       int num_threads);
+/// Of the pairs within `reach` metres that fix a pose, about the points `references`, one in
+/// `step`: those whose indices add up to a multiple of it. `partners` flags the points that may be
+/// partners; without it, all may.
+ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, float reach, int step,
+                       int num_threads, std::span<const std::uint8_t> partners = {});
 
 /// All pairs of the points `references` within `reach` metres of a rim of the face they are on.
 ScenePairs scene_rim_pairs(const PointCloud& cloud, std::span<const RimPoint> rims,
@@ -143,16 +152,17 @@ struct VotedPose {
   int votes = 0;
 };
 
-/// Colours of the scene's points, by index, and of the model's. Without either they do not count.
+/// Colours of the scene's points, by index, and of the model's; the palette of the table's entries.
+/// Without either of the first two, colours do not count.
 struct PairColors {
-  std::span<const MatchColor> scene, model;
+  std::span<const MatchColor> scene, model, palette;
 };
 
 /// Each reference point's pairs vote for its model point and the turn about its normal (Drost et
 /// al., section 3.4). Returns the `peaks` best model points of each reference point, best first.
-/// With colours, those alone whose colour agrees with the reference point's (compare Choi and
-/// Christensen, IROS 2012). `num_model_points` is the size of the cloud of `table`. Ends once
-/// `late`, if given, says so.
+/// With colours, those alone whose colour agrees with the reference point's, and by votes of those
+/// pairs alone whose second points' colours agree (compare Choi and Christensen, IROS 2012).
+/// `num_model_points` is the size of the cloud of `table`. Ends once `late`, if given, says so.
 std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable& table,
                                   int num_model_points, int peaks, const PairColors& colors = {},
                                   const std::function<bool()>& late = {});

@@ -126,6 +126,7 @@ void for_each_array(auto& index, auto& tables, auto& near_symmetries, const auto
     visit(view.outward);
   }
   visit(index.distances.nearest);
+  visit(index.palette);
   for (auto& table : tables) {
     visit(table.first);
     visit(table.entries);
@@ -184,7 +185,8 @@ bool fits_together(const IndexFile& file, const Tables& tables, std::size_t poin
               fits_cloud(index.features, true) && fits_cloud(index.coarse, false) &&
               index.fpfh.size() == index.features.size() && below(index.distances.nearest, points);
   fits = fits && (index.cielab.empty() || index.cielab.size() == points) &&
-         index.log_light.size() == index.cielab.size() && finite(index);
+         index.log_light.size() == index.cielab.size() && index.palette.size() <= kAnyColor &&
+         finite(index);
   for (const PointPairTable::Arrays& table : tables) fits = fits && table.fit(index.coarse.size());
   for (const ModelView& view : index.views) {
     fits = fits && view.edge_distance.size() == view.visible.size() &&

@@ -38,11 +38,12 @@ struct ModelIndex {
   /// Normals of the surface points, averaged over what a fitted normal averages over: what a
   /// sensor reports beside a crease.
   std::vector<Eigen::Vector3f> soft_normals;
-  CheckPoints check;             ///< Up to 1024 surface points.
-  PointCloud features;           ///< With curvature, kFeatureSpacing apart.
-  std::vector<Fpfh> fpfh;        ///< Of `features`.
-  FeatureTree feature_tree{{}};  ///< Over `fpfh`.
-  PointCloud coarse;             ///< What `pairs` and `rim_pairs` are made of.
+  CheckPoints check;                ///< Up to 1024 surface points.
+  PointCloud features;              ///< With curvature, kFeatureSpacing apart.
+  std::vector<Fpfh> fpfh;           ///< Of `features`.
+  FeatureTree feature_tree{{}};     ///< Over `fpfh`.
+  PointCloud coarse;                ///< What `pairs` and `rim_pairs` are made of.
+  std::vector<MatchColor> palette;  ///< Of the entries of `pairs`; empty without colours.
   PointPairTable pairs{{}, 1};
   PointPairTable rim_pairs{{}, {}, 1};     ///< Empty where the model is not complete.
   std::vector<ModelView> views;            ///< The 66 views, over `surface`.
@@ -60,7 +61,7 @@ struct ModelIndex {
 
 /// Counts up whenever build_index() gives another index for the same surface, so that stored ones
 /// are told from current ones.
-constexpr int kIndexVersion = 2;
+constexpr int kIndexVersion = 3;
 
 /// The index of a model's surface, which must have normals.
 std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threads);

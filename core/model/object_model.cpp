@@ -175,8 +175,13 @@ std::vector<RimPoint> model_rims(const PointCloud& surface, const DistanceTransf
 // The tables of `index.coarse`.
 void make_pair_tables(const ModelSource& source, ModelIndex& index) {
   constexpr float kDistanceStep = 0.006f;  // metres; chosen by hand
+  std::vector<std::uint8_t> colors;
+  index.palette = color_palette(index.coarse_colors, kAnyColor);
+  for (const MatchColor& color : index.coarse_colors) {
+    colors.push_back(static_cast<std::uint8_t>(nearest_color(index.palette, color)));
+  }
   index.pairs = PointPairTable(
-      index.coarse, std::max(kDistanceStep, 0.05f * static_cast<float>(source.diameter)));
+      index.coarse, std::max(kDistanceStep, 0.05f * static_cast<float>(source.diameter)), colors);
   // An incomplete model ends where its scans do.
   if (!source.complete) return;
   const auto rims = model_rims(source.surface, index.distances, index.coarse);

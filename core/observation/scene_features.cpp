@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/observation/scene_features.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <numeric>
 
 #include "core/base/parallel.hpp"
@@ -143,14 +145,17 @@ SceneSample next_sample(const SceneFeatures& scene, const SceneSample& before,
     if (wanted(scene.surface.points[scene.keypoints[k]])) out.keypoints.push_back(k);
   }
   out.keypoints_passed = k;
+  std::vector<std::uint8_t> partners;
+  std::ranges::transform(scene.coarse.points, std::back_inserter(partners), wanted);
   std::vector<int> references;
   std::size_t r = before.references_passed;
   for (; r < scene.references.size() && std::ssize(references) < options.max_references; ++r) {
-    if (wanted(scene.coarse.points[scene.references[r]])) references.push_back(scene.references[r]);
+    if (partners[scene.references[r]]) references.push_back(scene.references[r]);
   }
   out.references_passed = r;
   const auto reach = static_cast<float>(options.pair_reach_m);
-  out.pairs = scene_pairs(scene.coarse, references, reach, options.num_threads);
+  out.pairs = scene_pairs(scene.coarse, references, reach, options.pair_step, options.num_threads,
+                          partners);
   out.rim_pairs =
       scene_rim_pairs(scene.coarse, scene.rims, std::move(references), reach, options.num_threads);
   return out;

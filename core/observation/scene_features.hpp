@@ -62,6 +62,7 @@ struct SceneFeatureOptions {
   int max_references = 250;
   double coarse_spacing_m = 0.010;
   double pair_reach_m = kMaxPairLength;
+  int pair_step = 5;
   bool use_color = true;
   bool use_texture = true;
   bool use_outline = true;
@@ -84,6 +85,7 @@ struct SceneFeatureOptions {
     visit("pair_reach_m", pair_reach_m,
           {0.01, kMaxPairLength,
            "Length of the longest pairs, metres. What is mostly hidden has no long ones."});
+    visit("pair_step", pair_step, {1, 100, "Of the pairs of a point, one in so many votes."});
     visit("use_color", use_color, {0, 1, "Use the frame's colours; false ignores them."});
     visit("use_texture", use_texture,
           {0, 1, "Compare the patterns of surfaces in colour; false ignores them."});

@@ -57,10 +57,12 @@ bool details_fit(double surface_ms, double milliseconds_left) {
   return kRestOfPreparation * surface_ms <= kTimeOfPreparation * milliseconds_left;
 }
 
-void search_without_colors(DetectOptions& options) {
+void search_without_colors(DetectorOptions& detector) {
   // Near what was chosen on simulated piles before colours counted; of log odds.
-  constexpr int kPeaks = 5, kRimPeaks = 2, kChecked = 3, kOthers = 2;
+  constexpr int kPairStep = 3, kPeaks = 5, kRimPeaks = 2, kChecked = 3, kOthers = 2;
   constexpr double kLower = 1;
+  detector.features.pair_step = std::min(detector.features.pair_step, kPairStep);
+  DetectOptions& options = detector.detect;
   SampleOptions& sample = options.sample;
   sample.peaks_per_reference = std::max(sample.peaks_per_reference, kPeaks);
   if (sample.rim_peaks_per_reference > 0) {

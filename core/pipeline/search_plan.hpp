@@ -19,9 +19,9 @@ double shorten_preparation(double budget_ms, int num_threads, DetectorOptions& o
 /// and flat regions may not. `surface_ms`: what the surface took.
 bool details_fit(double surface_ms, double milliseconds_left);
 
-/// Where colours tell nothing, more poses of each reference point are tried and more candidates go
-/// on.
-void search_without_colors(DetectOptions& options);
+/// Where colours tell nothing, more pairs of each reference point vote, more of its poses are
+/// tried, and more candidates go on.
+void search_without_colors(DetectorOptions& options);
 
 /// No outlines and flat regions.
 void leave_out_details(SceneFeatureOptions& options);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/random.hpp"
 #include "core/cloud/cielab.hpp"
 
 namespace bpa {
@@ -44,6 +45,37 @@ TEST(MatchColor, OtherHuesDisagree) {
 TEST(MatchColor, WarmLightAgrees) {
   EXPECT_TRUE(colors_agree(of_linear(0.3, 0.3, 0.3), of_linear(0.36, 0.3, 0.2)));
 }
+
+TEST(ColorPalette, HasEachOfFewColours) {
+  const std::vector<MatchColor> few = {match_color({50, 60, 40}), match_color({50, 10, -60}),
+                                       match_color({80, 0, 0})};
+  std::vector<MatchColor> many;
+  for (int i = 0; i < 300; ++i) many.push_back(few[i % 3]);
+  const std::vector<MatchColor> palette = color_palette(many, 31);
+  ASSERT_EQ(palette.size(), 3u);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(nearest_color(palette, few[i]), i);
+}
+
+TEST(ColorPalette, IsNearEachOfManyColours) {
+  RandomStream random(1);
+  std::vector<MatchColor> many;
+  for (int i = 0; i < 500; ++i) {
+    const auto of = [&] { return random.uniform(); };
+    many.push_back(of_linear(of(), of(), of()));
+  }
+  const std::vector<MatchColor> palette = color_palette(many, 31);
+  EXPECT_LE(palette.size(), 31u);
+  EXPECT_EQ(color_palette(many, 1).size(), 1u);
+  float sum = 0;
+  for (const MatchColor& color : many) {
+    const float near = color_distance(color, palette[nearest_color(palette, color)]);
+    for (const MatchColor& other : palette) ASSERT_LE(near, color_distance(color, other));
+    sum += near;
+  }
+  EXPECT_LT(sum / 500, kMaxColorDistance / 4);
+}
+
+TEST(ColorPalette, OfNoColoursIsEmpty) { EXPECT_TRUE(color_palette({}, 31).empty()); }
 
 }  // namespace
 }  // namespace bpa

@@ -219,6 +219,7 @@ TEST(PointPairTable, ArraysThatDoNotFitAreTold) {
   EXPECT_FALSE(with([](auto&, auto& first, auto&) { first[first.size() / 2] = 1u << 31; }));
   EXPECT_FALSE(with([](auto&, auto& first, auto&) { first.clear(); }));
   EXPECT_FALSE(with([](auto&, auto&, auto& entries) { entries.pop_back(); }));
+  EXPECT_FALSE(with([](auto&, auto&, auto& entries) { entries[0].color = kAnyColor + 1; }));
   for (const float number : {std::nanf(""), -1.0f, 1e30f, INFINITY}) {
     EXPECT_FALSE(with([number](Arrays& arrays, auto&, auto&) { arrays.inverse_step = number; }));
     EXPECT_FALSE(with([number](Arrays& arrays, auto&, auto&) { arrays.max_distance = number; }));
@@ -249,7 +250,7 @@ TEST(PairVoting, FindsTheModelAmongClutter) {
   std::vector<int> references(30);
   for (int r = 0; r < 30; ++r) references[static_cast<std::size_t>(r)] = 2 * r;
   for (const int threads : {1, 4}) {
-    const ScenePairs pairs = scene_pairs(scene, references, 0.3f, threads);
+    const ScenePairs pairs = scene_pairs(scene, references, 0.3f, 3, threads);
     const auto poses = vote_poses(pairs, table, 60, 1);
     ASSERT_EQ(poses.size(), references.size());
     for (const VotedPose& voted : poses) {
@@ -266,7 +267,7 @@ TEST(PairVoting, FindsTheModelAmongClutter) {
 TEST(PairVoting, PartnersAreThoseWithinReachThatFixAPose) {
   const PointCloud cloud = random_oriented_points(80, 12);
   const float reach = 0.06f;
-  const ScenePairs pairs = scene_pairs(cloud, {3, 40}, reach, 2);
+  const ScenePairs pairs = scene_pairs(cloud, {3, 40}, reach, 3, 2);
   ASSERT_EQ(pairs.first.size(), 3u);
   for (std::size_t r = 0; r < 2; ++r) {
     std::multiset<std::pair<float, int>> expected, found;
@@ -283,6 +284,49 @@ TEST(PairVoting, PartnersAreThoseWithinReachThatFixAPose) {
       }
     }
     EXPECT_EQ(found, expected);
+  }
+}
+
+TEST(PairVoting, PointsThatAreFlaggedAloneArePartners) {
+  const PointCloud cloud = random_oriented_points(80, 12);
+  std::vector<std::uint8_t> partners(cloud.size());
+  for (std::size_t i = 0; i < partners.size(); ++i) partners[i] = i % 2;
+  const auto points_of = [](const ScenePairs& pairs) {
+    std::multiset<int> points;
+    for (const ScenePairs::Partner& partner : pairs.partners) points.insert(partner.point);
+    return points;
+  };
+  std::multiset<int> odd = points_of(scene_pairs(cloud, {3, 40}, 0.06f, 5, 1));
+  ASSERT_GT(std::erase_if(odd, [](int point) { return point % 2 == 0; }), 0u);
+  EXPECT_FALSE(odd.empty());
+  EXPECT_EQ(points_of(scene_pairs(cloud, {3, 40}, 0.06f, 5, 1, partners)), odd);
+}
+
+// Every other point of model and scene is blue. Where the scene's colours are those of the model,
+// as many pairs vote as without colours; where they are exchanged, none does.
+TEST(PairVoting, PairsVoteWhereTheirSecondPointsHaveOneColour) {
+  const PointCloud model = random_oriented_points(60, 9);
+  const std::vector<MatchColor> palette = {match_color({50, 60, 40}), match_color({50, 10, -60})};
+  std::vector<std::uint8_t> indices, exchanged;
+  std::vector<MatchColor> colors, wrong;
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    indices.push_back(i % 2);
+    colors.push_back(palette[i % 2]);
+    wrong.push_back(palette[i < 2 ? i % 2 : 1 - i % 2]);
+  }
+  const PointPairTable table(model, kDistanceStep, indices);
+  const PointCloud scene = moved(model, random_pose(10));
+  const ScenePairs pairs = scene_pairs(scene, {0, 1}, 0.3f, 2, 1);
+  const auto plain = vote_poses(pairs, table, 60, 1);
+  const auto right = vote_poses(pairs, table, 60, 1, {colors, colors, palette});
+  ASSERT_EQ(plain.size(), 2u);
+  ASSERT_EQ(right.size(), 2u);
+  for (int r = 0; r < 2; ++r) {
+    EXPECT_EQ(right[r].model_point, r);
+    EXPECT_EQ(right[r].votes, plain[r].votes);
+  }
+  for (const VotedPose& pose : vote_poses(pairs, table, 60, 1, {wrong, colors, palette})) {
+    EXPECT_LT(pose.votes, plain[pose.reference].votes / 2);
   }
 }
 
@@ -353,7 +397,7 @@ TEST(PairVoting, TheRimOfAFlatFaceFixesItsPose) {
   std::vector<int> references(scene.size());
   std::iota(references.begin(), references.end(), 0);
   constexpr float kReach = 0.3f;
-  EXPECT_TRUE(scene_pairs(scene, references, kReach, 1).partners.empty());
+  EXPECT_TRUE(scene_pairs(scene, references, kReach, 1, 1).partners.empty());
   const ScenePairs pairs = scene_rim_pairs(scene, rims, references, kReach, 2);
   int right = 0;
   const auto voted = vote_poses(pairs, table, static_cast<int>(model.size()), 1);
@@ -394,11 +438,11 @@ TEST(PairVoting, ColoursTellPointsOfOneShapeApart) {
   };
   const auto count = static_cast<int>(model.size());
   EXPECT_GT(disagreeing(vote_poses(pairs, table, count, 2)), 0);
-  const auto voted = vote_poses(pairs, table, count, 2, {of_scene, of_model});
+  const auto voted = vote_poses(pairs, table, count, 2, {of_scene, of_model, {}});
   EXPECT_GT(voted.size(), references.size() / 2);
   EXPECT_EQ(disagreeing(voted), 0);
   const std::vector<MatchColor> green(model.size(), match_color({50, -60, 40}));
-  EXPECT_TRUE(vote_poses(pairs, table, count, 2, {of_scene, green}).empty());
+  EXPECT_TRUE(vote_poses(pairs, table, count, 2, {of_scene, green, {}}).empty());
 }
 
 }  // namespace

@@ -22,18 +22,20 @@ TEST(SearchPlan, ABudgetRaisesTheLimitsOfLogOdds) {
 
 TEST(SearchPlan, WithoutColoursMoreIsTried) {
   const DetectOptions before;
-  DetectOptions after;
-  search_without_colors(after);
+  DetectorOptions changed;
+  search_without_colors(changed);
+  EXPECT_LT(changed.features.pair_step, DetectorOptions().features.pair_step);
+  const DetectOptions& after = changed.detect;
   EXPECT_GT(after.sample.peaks_per_reference, before.sample.peaks_per_reference);
   EXPECT_GT(after.sample.rim_peaks_per_reference, before.sample.rim_peaks_per_reference);
   EXPECT_GT(after.check.max_in_library, before.check.max_in_library);
   EXPECT_GT(after.cluster.max_in_library, before.cluster.max_in_library);
   EXPECT_GT(after.refine.max_in_library, before.refine.max_in_library);
   EXPECT_LT(after.cluster.min_cluster_score, before.cluster.min_cluster_score);
-  DetectOptions no_rims;
-  no_rims.sample.rim_peaks_per_reference = 0;
+  DetectorOptions no_rims;
+  no_rims.detect.sample.rim_peaks_per_reference = 0;
   search_without_colors(no_rims);
-  EXPECT_EQ(no_rims.sample.rim_peaks_per_reference, 0);
+  EXPECT_EQ(no_rims.detect.sample.rim_peaks_per_reference, 0);
 }
 
 TEST(SearchPlan, NoBudgetShortensNothing) {
