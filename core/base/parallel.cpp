@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <iterator>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -96,7 +97,7 @@ void parallel_for_spare(int count, const std::function<void(int)>& body) {
   {
     std::vector<std::jthread> helpers;
     queue.work([&](int index) {
-      while (queue.any_left() && take_spare()) {
+      while (std::ssize(helpers) + 1 < count && queue.any_left() && take_spare()) {
         helpers.emplace_back([&] {
           queue.work(body);
           ++*spare;
