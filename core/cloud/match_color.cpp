@@ -15,7 +15,8 @@ MatchColor match_color(const Eigen::Vector3f& lab) {
 }
 
 std::vector<MatchColor> color_palette(std::span<const MatchColor> colors, int most) {
-  constexpr float kFinest = 0.1f, kCoarser = 1.5f;  // squared standard deviations; factor
+  constexpr float kFinest = 0.1f;   // squared standard deviations; chosen by hand, as the factor
+  constexpr float kCoarser = 1.5f;  // of radii that are tried
   for (float radius = kFinest;; radius *= kCoarser) {
     std::vector<MatchColor> palette;
     for (const MatchColor& color : colors) {

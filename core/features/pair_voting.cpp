@@ -334,9 +334,8 @@ ScenePairs scene_pairs(const PointCloud& cloud, std::vector<int> references, flo
   const NeighborGrid grid(cloud.points, reach);
   const auto add = [&](std::size_t i, const Eigen::Matrix3f& basis, auto& found) {
     grid.for_each_neighbor(cloud.points[i], [&](std::size_t j, float) {
-      if (i == j || (i + j) % static_cast<std::size_t>(step) != 0 ||
-          (!partners.empty() && !partners[j]))
-        return;
+      if (i == j || (i + j) % static_cast<std::size_t>(step) != 0) return;
+      if (!partners.empty() && !partners[j]) return;
       const PointPairFeature feature =
           point_pair_feature(cloud.points[i], cloud.normals[i], cloud.points[j], cloud.normals[j]);
       if (!fixes_pose(feature)) return;

@@ -26,8 +26,7 @@ struct Window {
 // Observed and predicted CIELAB colours of pixels that the placement explains, and their number.
 using ColorSum = Eigen::Array<float, 8, 1>;  // observed, predicted, number, nothing
 
-// Adds to each pixel its two neighbours `step` pixels before and after it. The outermost pixels
-// must be zero, and stay as they are.
+// Sums of each pixel and the two `step` pixels before and after it, but for the outermost pixels.
 void add_neighbors(int step, const std::vector<ColorSum>& of, std::vector<ColorSum>& sums) {
   const auto size = static_cast<int>(of.size());
   for (int i = step; i < size - step; ++i) sums[i] = of[i - step] + of[i] + of[i + step];
@@ -45,12 +44,12 @@ std::vector<Window> windows_of(const CheckImage& image, const Image<Eigen::Vecto
   for_each_explained(image, predicted, [&](int u, int v, std::uint32_t point) {
     pixels[index(u, v)] << observed.at(u, v), surface[point], 1, 0;
   });
-  std::vector<ColorSum> rows = pixels, sums = pixels;
+  std::vector<ColorSum> rows(pixels.size(), ColorSum::Zero());
   add_neighbors(1, pixels, rows);
-  add_neighbors(width, rows, sums);
+  add_neighbors(width, rows, pixels);  // now sums of 3 x 3
   std::vector<Window> windows;
   predicted.for_each([&](int u, int v, float, std::uint32_t) {
-    const ColorSum& sum = sums[index(u, v)];
+    const ColorSum& sum = pixels[index(u, v)];
     const float count = sum[6];
     if (count < kMinPixels) return;
     windows.push_back({light_roots(sum.head<3>() / count), light_roots(sum.segment<3>(3) / count)});

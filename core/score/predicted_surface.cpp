@@ -73,7 +73,7 @@ std::vector<DrawnPoint> facing_points(const CheckImage& image, const ObjectModel
   return drawn;
 }
 
-// A pixel of the depth buffer: the larger, the nearer, and the first of equal ones.
+// A pixel of the depth buffer. The largest is the nearest; of equally near ones, the lowest index.
 std::uint64_t buffer_key(float inverse_depth, std::uint32_t index) {
   return std::uint64_t{std::bit_cast<std::uint32_t>(inverse_depth)} << 32 | ~index;
 }

@@ -96,7 +96,8 @@ double log_ratio(const PredictedSums& predicted, const ObservedSums& observed) {
 
 // 1 and a normal.
 Eigen::Vector4d light_row(const Eigen::Vector3f& normal) {
-  return normal.cast<double>().homogeneous().reverse();
+  const Eigen::Vector3d n = normal.cast<double>();
+  return {1, n.x(), n.y(), n.z()};
 }
 
 // Whether the blur of colours mixes the pixel with none beside the outline.
@@ -140,8 +141,9 @@ TextureAgreement compare_texture(const CheckImage& image, const Image<Eigen::Vec
   if (sums.count() < kFewestPixels) return {0, 0};
   TextureAgreement best{-INFINITY, 0};
   for (const auto& row : shifted) {
-    for (const ObservedSums& at : row)
-      best.log_ratio = std::max(best.log_ratio, log_ratio(sums, at));
+    for (const ObservedSums& seen : row) {
+      best.log_ratio = std::max(best.log_ratio, log_ratio(sums, seen));
+    }
   }
   best.total = best.log_ratio * sums.count() / kPixelsApart;
   return best;

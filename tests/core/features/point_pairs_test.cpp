@@ -303,11 +303,12 @@ TEST(PairVoting, PointsThatAreFlaggedAloneArePartners) {
 }
 
 // Every other point of model and scene is blue. Where the scene's colours are those of the model,
-// as many pairs vote as without colours; where they are exchanged, none does.
+// as many pairs vote for the right points as without colours. Where those of all partners are
+// exchanged, the right pairs do not vote.
 TEST(PairVoting, PairsVoteWhereTheirSecondPointsHaveOneColour) {
   const PointCloud model = random_oriented_points(60, 9);
   const std::vector<MatchColor> palette = {match_color({50, 60, 40}), match_color({50, 10, -60})};
-  std::vector<std::uint8_t> indices, exchanged;
+  std::vector<std::uint8_t> indices;
   std::vector<MatchColor> colors, wrong;
   for (std::size_t i = 0; i < model.size(); ++i) {
     indices.push_back(i % 2);
