@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "core/base/parallel.hpp"
@@ -99,13 +100,18 @@ void run_stages(std::span<const Stage> stages, std::span<Search> searches, int n
   if (traces) traces->resize(searches.size());
   const Deadline deadline = searches.front().deadline;
   const int threads = resolve_num_threads(num_threads);
+  std::vector<std::size_t> order(searches.size());
+  std::iota(order.begin(), order.end(), 0);
   for (const Stage& stage : stages) {
     const Deadline end = deadline.part(stage.time_share);
     // A model's share grows with its candidates.
     const auto work = [&](std::size_t i) { return 1 + static_cast<int>(found[i].size()); };
     std::atomic<int> waiting{0};
     for (std::size_t i = 0; i < searches.size(); ++i) waiting += work(i);
-    parallel_for(searches.size(), num_threads, [&](std::size_t i) {
+    // The most work first, so that no thread ends long before the last.
+    std::ranges::stable_sort(order, std::greater(), work);
+    parallel_for(order.size(), num_threads, [&](std::size_t k) {
+      const std::size_t i = order[k];
       const int own = work(i);
       const double share = static_cast<double>(threads * own) / waiting.fetch_sub(own);
       searches[i].deadline = end.part(std::min(1.0, share));

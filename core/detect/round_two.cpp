@@ -108,14 +108,10 @@ Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, cons
 }
 
 Candidates round_two(const Search& search, Candidates clusters) {
-  std::size_t done = 0;
-  for (Candidate& candidate : clusters) {
-    if (search.late()) break;
+  change_each(search, clusters, [&](Candidate& candidate) {
     candidate.refinement.camera_from_object = aligned(search, candidate.pose());
     candidate.score = search.quick_score(candidate.pose());
-    ++done;
-  }
-  clusters.resize(done);
+  });
   suppress_duplicates(search, clusters);
   return clusters;
 }
