@@ -10,6 +10,7 @@
 #include "core/model/model_index.hpp"
 #include "core/score/likelihood.hpp"
 #include "core/score/predicted_surface.hpp"
+#include "core/score/projected_block.hpp"
 #include "core/score/silhouette_score.hpp"
 
 namespace bpa {
@@ -19,6 +20,9 @@ namespace {
 constexpr float kElongated = 1.4f;    // length over width; below, the longest direction says little
 constexpr int kTurnsOfRound = 8;      // 45 degrees apart, where it says little
 constexpr float kNearlyWhole = 0.8f;  // share of the length in sight
+// Without this, and with 0.6, the same 27/32 objects of YCB-Video and 151/204 of seed 777 are
+// found.
+constexpr double kMinOnRegion = 0.5;   // share of visible points; poses of less are not compared
 constexpr float kEnds[] = {0, 1, -1};  // where a part in sight may be: middle, either end
 
 Eigen::Matrix3f basis_along(const Eigen::Vector3f& axis, const Eigen::Vector3f& up) {
@@ -56,6 +60,28 @@ double agreement(const Search& search, int region, const Pose& pose) {
   return overlap(search, region, predicted) + (std::isnan(contrast) ? 0 : contrast);
 }
 
+// Of the model's visible points, the share that falls on a region; by a few points. Pixel for
+// pixel, overlap() is no larger, and takes twenty times as long.
+double share_on_region(const Search& search, int region, const FastPose& pose) {
+  constexpr int kPoints = 64;
+  const CheckImage& image = search.scene.image;
+  const CheckPoints& points = search.model.index->check;
+  const int last = std::min(kPoints, static_cast<int>(points.points.size()));
+  int on = 0, visible = 0;
+  ProjectedBlock block;
+  for (int first = 0; first < last; first += kCheckBlock) {
+    block.project(image, points, pose, first);
+    for (int k = 0; k < kCheckBlock; ++k) {
+      if (block.pixel[k] < 0) continue;
+      const auto pixel = static_cast<std::size_t>(block.pixel[k]);
+      if (hides(image.pixels[pixel].depth, block.point[2][k])) continue;
+      ++visible;
+      on += search.scene.flat.label[pixel] == region;
+    }
+  }
+  return on / std::max(1.0, static_cast<double>(visible));
+}
+
 // The ways in which the model may rest there; `scene_point` is the region.
 void add_resting(const Search& search, int index, const FlatRest& rest, Candidates& out) {
   const FlatRegion& region = search.scene.flat.regions[index];
@@ -70,6 +96,7 @@ void add_resting(const Search& search, int index, const FlatRest& rest, Candidat
         basis_along(turn * region.axis, region.up) * basis_along(rest.axis, rest.up).transpose();
     for (const float end : std::span(kEnds).first(whole ? 1 : 3)) {
       pose.translation = region.centre + end * hidden * region.axis - pose.rotation * rest.centre;
+      if (share_on_region(search, index, pose) < kMinOnRegion) continue;
       const Pose camera_from_object = to_pose(pose);
       out.push_back({.model = &search.model,
                      .refinement = {.camera_from_object = camera_from_object},

@@ -4,10 +4,15 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
 #include <span>
 
+#include "core/base/dispatch.hpp"
 #include "core/detect/matches.hpp"
 #include "core/model/model_index.hpp"
+#include "core/score/projected_block.hpp"
 
 namespace bpa {
 namespace {
@@ -24,17 +29,108 @@ struct NormalEquations {
   void add(const Eigen::Vector3f& direction, const Eigen::Vector3f& lever, float residual,
            float weight) {
     Vector6f row;
-    row << direction, lever.cross(direction);
+    const Eigen::Vector3f turning = lever.cross(direction);
+    row << direction.x(), direction.y(), direction.z(), turning.x(), turning.y(), turning.z();
     information.noalias() += weight * row * row.transpose();
     gradient += weight * residual * row;
   }
 };
 
 // Tukey's biweight of a residual that is cut off at `gate`, over its variance.
-float weight_of(float residual, float gate, float sigma) {
+inline float weight_of(float residual, float gate, float sigma) {
   const float ratio = residual / gate;
-  const float robust = std::max(0.0f, 1 - ratio * ratio);
+  const float inside = 1 - ratio * ratio;
+  const float robust = inside > 0 ? inside : 0;
   return robust * robust / (sigma * sigma);
+}
+
+// The observed surface at the pixels of a block of model points. Camera frame, metres.
+struct ObservedBlock {
+  float point[3][kCheckBlock], normal[3][kCheckBlock];
+  float matched[kCheckBlock];  // 1; 0 where there is none within the gate along the optical axis
+};
+
+// False where no point of the block has surface within the gate.
+bool look_up(const SceneFeatures& scene, const ProjectedBlock& model, float gate,
+             ObservedBlock& out) {
+  bool any = false;
+  for (int k = 0; k < kCheckBlock; ++k) {
+    out.matched[k] = 0;
+    for (int axis = 0; axis < 3; ++axis) out.point[axis][k] = out.normal[axis][k] = 0;
+    if (model.pixel[k] < 0) continue;
+    const auto pixel = static_cast<std::size_t>(model.pixel[k]);
+    const CheckPixel& seen = scene.image.pixels[pixel];
+    if (!seen.searched || std::abs(seen.depth - model.point[2][k]) >= gate) continue;
+    out.matched[k] = 1;
+    any = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      out.point[axis][k] = scene.map.points[pixel][axis];
+      out.normal[axis][k] = scene.map.normals[pixel][axis];
+    }
+  }
+  return any;
+}
+
+// Sums over surface points, lane by lane: the same for any width of vectors.
+struct SurfaceSums {
+  using Lanes = std::array<float, kCheckBlock>;
+  std::array<Lanes, 21> information{};  // the upper triangle, row by row
+  std::array<Lanes, 6> gradient{};
+  Lanes matched{};
+
+  static float of(const Lanes& lanes) { return std::accumulate(lanes.begin(), lanes.end(), 0.0f); }
+
+  NormalEquations equations() const {
+    NormalEquations out;
+    int entry = 0;
+    for (int row = 0; row < 6; ++row) {
+      out.gradient[row] = of(gradient[row]);
+      for (int column = row; column < 6; ++column) {
+        out.information(row, column) = out.information(column, row) = of(information[entry++]);
+      }
+    }
+    out.count = static_cast<int>(of(matched));
+    return out;
+  }
+};
+
+// Adds the distances of a block's points to the observed tangent planes, as NormalEquations::add
+// does. Straight-line code over arrays, so that the compiler uses the widest vectors there are.
+BPA_DISPATCH void add_block(const ProjectedBlock& model, const ObservedBlock& observed,
+                            const SensorNoise& noise, const Eigen::Vector3f& centre, float gate,
+                            SurfaceSums& __restrict sums) {
+  constexpr float kModelSigma = 0.001f;  // metres, beside the sensor's noise
+  constexpr float kMinCosine = 0.6f;     // between the normals of model and surface
+  const SensorNoise depth_noise = noise;
+  const float cx = centre.x(), cy = centre.y(), cz = centre.z();
+  float row[6][kCheckBlock], weighted[6][kCheckBlock], residual[kCheckBlock];
+  for (int k = 0; k < kCheckBlock; ++k) {
+    const float x = model.point[0][k], y = model.point[1][k], z = model.point[2][k];
+    const float nx = observed.normal[0][k], ny = observed.normal[1][k], nz = observed.normal[2][k];
+    const float dx = x - observed.point[0][k], dy = y - observed.point[1][k],
+                dz = z - observed.point[2][k];
+    const float cosine =
+        nx * model.normal[0][k] + ny * model.normal[1][k] + nz * model.normal[2][k];
+    const bool near = dx * dx + dy * dy + dz * dz < gate * gate;
+    const float matched = near & (cosine > kMinCosine) ? observed.matched[k] : 0;
+    sums.matched[k] += matched;
+    residual[k] = nx * dx + ny * dy + nz * dz;
+    const float sigma = depth_noise(observed.point[2][k]) + kModelSigma;
+    const float weight = matched * weight_of(residual[k], gate, sigma);
+    const float lx = x - cx, ly = y - cy, lz = z - cz;
+    row[0][k] = nx, row[1][k] = ny, row[2][k] = nz;
+    row[3][k] = ly * nz - lz * ny, row[4][k] = lz * nx - lx * nz, row[5][k] = lx * ny - ly * nx;
+    for (int i = 0; i < 6; ++i) weighted[i][k] = weight * row[i][k];
+  }
+  int entry = 0;
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < kCheckBlock; ++k) sums.gradient[i][k] += weighted[i][k] * residual[k];
+    for (int j = i; j < 6; ++j, ++entry) {
+      for (int k = 0; k < kCheckBlock; ++k) {
+        sums.information[entry][k] += weighted[i][k] * row[j][k];
+      }
+    }
+  }
 }
 
 // One alignment problem. Unknowns: translation, then rotation about the object's origin; both along
@@ -46,28 +142,26 @@ struct Problem {
   const RefinementOptions& options;
 
   NormalEquations build(const Pose& pose, float gate) const {
-    NormalEquations equations;
     const FastPose fast = to_fast(pose);
     const Eigen::Vector3f centre = pose.translation.cast<float>();
-    add_surface(fast, centre, gate, equations);
+    NormalEquations equations = surface(fast, centre, gate);
     add_edges(fast, centre, gate, equations);
     return equations;
   }
 
-  void add_surface(const FastPose& pose, const Eigen::Vector3f& centre, float gate,
-                   NormalEquations& equations) const {
-    constexpr float kModelSigma = 0.001f;  // metres, beside the sensor's noise
+  NormalEquations surface(const FastPose& pose, const Eigen::Vector3f& centre, float gate) const {
     const CheckPoints& points = model.index->check;
-    const auto last = std::min<std::size_t>(points.points.size(), options.max_points);
-    SurfaceMatch match;
-    for (std::size_t i = 0; i < last; ++i) {
-      if (!match_surface(scene, points, i, pose, gate, match)) continue;
-      const float residual = match.scene_normal.dot(match.model_point - match.scene_point);
-      const float sigma = scene.map.noise(match.scene_point.z()) + kModelSigma;
-      const float weight = weight_of(residual, gate, sigma);
-      equations.add(match.scene_normal, match.model_point - centre, residual, weight);
-      ++equations.count;
+    const int last = std::min(static_cast<int>(points.points.size()), options.max_points);
+    SurfaceSums sums;
+    ProjectedBlock block;
+    ObservedBlock observed;
+    for (int first = 0; first < last; first += kCheckBlock) {
+      block.project(scene.image, points, pose, first);
+      std::fill(block.pixel + std::min(kCheckBlock, last - first), block.pixel + kCheckBlock, -1);
+      if (!look_up(scene, block, gate, observed)) continue;
+      add_block(block, observed, scene.image.noise, centre, gate, sums);
     }
+    return sums.equations();
   }
 
   // Edge points of the model against where the observed surface ends. From one side, only edges

@@ -31,7 +31,7 @@ ColorCheck check_colors(const CheckImage& image, const Image<MatchColor>& colors
     if (block.pixel[lane] < 0) continue;
     const auto at = static_cast<std::size_t>(block.pixel[lane]);
     const CheckPixel& seen = image.pixels[at];
-    if (!seen.searched || std::abs(seen.depth - block.z[lane]) > kOnSurface) continue;
+    if (!seen.searched || std::abs(seen.depth - block.point[2][lane]) > kOnSurface) continue;
     ++check.seen;
     check.agreeing += colors_agree(colors[at], model.check_colors[static_cast<std::size_t>(i)]);
   }

@@ -44,7 +44,7 @@ PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const Fa
       ++check.facing;
       const CheckPixel& pixel = image.pixels[static_cast<std::size_t>(block.pixel[k])];
       if (pixel.depth <= 0) continue;
-      const float difference = pixel.depth - block.z[k];
+      const float difference = pixel.depth - block.point[2][k];
       if (difference < -depth) continue;  // hidden behind something
       ++check.seen;
       if (difference <= depth) {

@@ -41,7 +41,9 @@ BPA_DISPATCH void project_block(const CheckImage& image, const CheckPoints& mode
     // Of points outside, numbers that an int holds.
     const int column = static_cast<int>(inside ? u : 0), row = static_cast<int>(inside ? v : 0);
     out.pixel[k] = (faces & inside) ? row * width + column : -1;
-    out.z[k] = z;
+    out.point[0][k] = x;
+    out.point[1][k] = y;
+    out.point[2][k] = z;
     out.normal[0][k] = a;
     out.normal[1][k] = b;
     out.normal[2][k] = c;

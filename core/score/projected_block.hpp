@@ -10,7 +10,7 @@ namespace bpa {
 
 /// Some model points as the camera sees them.
 struct ProjectedBlock {
-  float z[kCheckBlock];          ///< Metres.
+  float point[3][kCheckBlock];   ///< Camera frame, metres.
   float normal[3][kCheckBlock];  ///< Camera frame.
   int pixel[kCheckBlock];        ///< -1 where the point faces away or is outside the image.
 
