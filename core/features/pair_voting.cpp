@@ -63,7 +63,7 @@ constexpr std::size_t kMaxPoints = 65535;  // of a table: an entry's index has 1
 constexpr int kTurnBins = 32;
 constexpr int kStepsPerBin = kTurnSteps / kTurnBins;
 using Count = std::int16_t;   // signed: x86-64 without SSE4.1 has no largest of unsigned ones
-constexpr int kMinVotes = 3;  // of a voted pose; chosen by hand
+constexpr Count kMinVotes = 3;  // of a voted pose; chosen by hand
 
 // Raises each to the sum of both, where that is larger.
 BPA_DISPATCH void raise_to_sums(const Count* first, const Count* second, std::size_t size,
@@ -156,16 +156,15 @@ class Peaks {
   // Of those that agree.
   void find(std::span<const Count> most, std::span<const std::uint8_t> agree) {
     points_.clear();
+    if (wanted_ == 0) return;
+    Count least = kMinVotes;  // of a further one
     for (std::size_t i = 0; i < most.size(); ++i) {
-      const bool full = points_.size() == wanted_;
-      if (!agree[i] || most[i] < kMinVotes || wanted_ == 0 ||
-          (full && most[i] <= most[points_.back()])) {
-        continue;
-      }
-      if (full) points_.pop_back();
+      if (most[i] < least || !agree[i]) continue;
+      if (points_.size() == wanted_) points_.pop_back();
       auto at = points_.end();
       while (at != points_.begin() && most[*(at - 1)] < most[i]) --at;
       points_.insert(at, static_cast<int>(i));
+      if (points_.size() == wanted_) least = static_cast<Count>(most[points_.back()] + 1);
     }
   }
   const std::vector<int>& points() const { return points_; }
