@@ -19,6 +19,9 @@ struct SurfaceMatch {
   std::size_t pixel = 0;
 };
 
+/// Points that face the camera less are not matched: see ProjectedBlock::project().
+constexpr float kLeastFacing = 0.1f;
+
 /// Matches the i-th of `points` at a pose. False where it faces away, leaves the image or falls on
 /// background. False where the surface is `gate` metres away or turned by more than 53 degrees.
 bool match_surface(const SceneFeatures& scene, const CheckPoints& points, std::size_t i,

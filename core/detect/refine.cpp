@@ -5,15 +5,6 @@
 #include "core/score/texture_score.hpp"
 
 namespace bpa {
-namespace {
-
-Pose turned_to_pattern(const Search& search, const Pose& pose) {
-  if (!search.options.score.use_round_three) return pose;
-  const SceneFeatures& scene = search.scene;
-  return turn_to_pattern(scene.image, scene.log_light, search.model, pose);
-}
-
-}  // namespace
 
 Candidates refine(const Search& search, Candidates aligned) {
   const RefineOptions& options = search.options.refine;
@@ -30,8 +21,17 @@ Candidates refine(const Search& search, Candidates aligned) {
 
 Candidates score(const Search& search, Candidates refined) {
   change_each(search, refined, [&](Candidate& candidate) {
-    const Pose pose = turned_to_pattern(search, candidate.pose());
-    candidate = search.scored(search.measured(pose), candidate.found_by);
+    const SceneFeatures& scene = search.scene;
+    Pose pose = candidate.pose();
+    std::optional<PredictedSurface> predicted;
+    if (search.options.score.use_round_three && !search.model.symmetry.trivial()) {
+      predicted = predict_surface(scene.image, search.model, pose);
+      const Pose turned =
+          turn_to_pattern(scene.image, scene.log_light, search.model, pose, *predicted);
+      if (pose_error(turned, pose).angle > 0) predicted.reset();
+      pose = turned;
+    }
+    candidate = search.scored(search.measured(pose), candidate.found_by, std::move(predicted));
   });
   sort_by_score(refined);
   return refined;

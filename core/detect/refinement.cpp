@@ -156,7 +156,7 @@ struct Problem {
     ProjectedBlock block;
     ObservedBlock observed;
     for (int first = 0; first < last; first += kCheckBlock) {
-      block.project(scene.image, points, pose, first);
+      block.project(scene.image, points, pose, first, kLeastFacing);
       std::fill(block.pixel + std::min(kCheckBlock, last - first), block.pixel + kCheckBlock, -1);
       if (!look_up(scene, block, gate, observed)) continue;
       add_block(block, observed, scene.image.noise, centre, gate, sums);

@@ -85,10 +85,11 @@ double Search::quick_score(const Pose& pose, int points) const {
          color_evidence(pose);
 }
 
-Candidate Search::scored(Refinement refinement, Source found_by) const {
+Candidate Search::scored(Refinement refinement, Source found_by,
+                         std::optional<PredictedSurface> predicted) const {
   add_effort(&SearchEffort::full_scores);
   Candidate out{.model = &model, .refinement = refinement, .found_by = found_by};
-  Evidence evidence(scene, places, out.pose());
+  Evidence evidence(scene, places, out.pose(), 0, std::move(predicted));
   out.values = measure(evidence, options.score.use_round_three ? Round::three : Round::two);
   out.explained = evidence.take_explained();
   out.prior = priors.evidence(out.pose());

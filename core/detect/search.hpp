@@ -89,8 +89,10 @@ struct Search {
   double quick_score(const Pose& pose, int points) const;
   /// Log odds by check_colors(), of ScoreOptions::color_points points.
   double color_evidence(const Pose& pose) const;
-  /// Scores a candidate at `refinement` with all components.
-  Candidate scored(Refinement refinement, Source found_by) const;
+  /// Scores a candidate at `refinement` with all components. `predicted` is of its pose, where that
+  /// is known.
+  Candidate scored(Refinement refinement, Source found_by,
+                   std::optional<PredictedSurface> predicted = {}) const;
   /// Sets score and probability by the last layer, or by that of round two without round three.
   void apply_layer(Candidate& candidate) const;
   /// Compares `count` of the model's points at a pose with the depth image; without a tolerance,

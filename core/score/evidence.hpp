@@ -24,10 +24,15 @@ namespace bpa {
 /// component first asks for it. Keeps references.
 class Evidence {
  public:
-  /// `max_points` as for measure_surface(). `pose` is camera_from_object.
+  /// `max_points` as for measure_surface(). `pose` is camera_from_object. `predicted` is of that
+  /// pose, where it is known.
   Evidence(const SceneFeatures& scene, const FeaturePlaces& places, const Pose& pose,
-           int max_points = 0)
-      : scene_(scene), places_(places), pose_(pose), max_points_(max_points) {}
+           int max_points = 0, std::optional<PredictedSurface> predicted = {})
+      : scene_(scene),
+        places_(places),
+        pose_(pose),
+        max_points_(max_points),
+        predicted_(std::move(predicted)) {}
 
   const SceneFeatures& scene() const { return scene_; }
   const ObjectModel& model() const { return places_.model(); }

@@ -9,11 +9,10 @@
 namespace bpa {
 namespace {
 
-constexpr float kMinFacing = 0.15f;  // cosine between normal and line of sight, on the optical axis
-
 // Straight-line code over arrays, so that the compiler uses the widest vectors there are.
 BPA_DISPATCH void project_block(const CheckImage& image, const CheckPoints& model,
-                                const FastPose& pose, int first, ProjectedBlock& __restrict out) {
+                                const FastPose& pose, int first, float min_facing,
+                                ProjectedBlock& __restrict out) {
   float r[9];  // column by column
   std::copy_n(pose.rotation.data(), 9, r);
   const Eigen::Vector3f& t = pose.translation;
@@ -36,7 +35,7 @@ BPA_DISPATCH void project_block(const CheckImage& image, const CheckPoints& mode
     const float c = r[2] * nx[k] + r[5] * ny[k] + r[8] * nz[k];
     const float inverse_z = 1 / z;
     const float u = fx * x * inverse_z + cx, v = fy * y * inverse_z + cy;
-    const bool faces = (a * x + b * y + c * z + kMinFacing * z <= 0) & (z > kNearest_m);
+    const bool faces = (a * x + b * y + c * z + min_facing * z <= 0) & (z > kNearest_m);
     const bool inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom);
     // Of points outside, numbers that an int holds.
     const int column = static_cast<int>(inside ? u : 0), row = static_cast<int>(inside ? v : 0);
@@ -53,8 +52,8 @@ BPA_DISPATCH void project_block(const CheckImage& image, const CheckPoints& mode
 }  // namespace
 
 void ProjectedBlock::project(const CheckImage& image, const CheckPoints& model,
-                             const FastPose& pose, int first) {
-  project_block(image, model, pose, first, *this);
+                             const FastPose& pose, int first, float min_facing) {
+  project_block(image, model, pose, first, min_facing, *this);
 }
 
 }  // namespace bpa

@@ -14,8 +14,11 @@ struct ProjectedBlock {
   float normal[3][kCheckBlock];  ///< Camera frame.
   int pixel[kCheckBlock];        ///< -1 where the point faces away or is outside the image.
 
-  /// Sets all for the kCheckBlock points from `first`, a multiple of kCheckBlock.
-  void project(const CheckImage& image, const CheckPoints& model, const FastPose& pose, int first);
+  /// Sets all for the kCheckBlock points from `first`, a multiple of kCheckBlock. A point faces the
+  /// camera if the cosine between its normal and the line of sight is at least `min_facing`, on the
+  /// optical axis.
+  void project(const CheckImage& image, const CheckPoints& model, const FastPose& pose, int first,
+               float min_facing = 0.15f);
 };
 
 }  // namespace bpa

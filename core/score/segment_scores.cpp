@@ -44,17 +44,16 @@ void judge(const Segment& segment, const SurfaceMap& map, const ObjectModel& mod
   match.probability = static_cast<double>(on_model) / static_cast<double>(count);
 }
 
-// The segments' numbers at the pixels that are about where they are predicted.
-std::vector<std::int32_t> touched_labels(const Segmentation& segmentation, const SurfaceMap& map,
-                                         const PredictedSurface& predicted) {
-  std::vector<std::int32_t> labels;
+// Of each segment, the number of pixels that are about where they are predicted.
+std::vector<int> touched_pixels(const Segmentation& segmentation, const SurfaceMap& map,
+                                const PredictedSurface& predicted) {
+  std::vector<int> touched(segmentation.segments.size(), 0);
   predicted.for_each([&](int u, int v, float z, std::uint32_t) {
     const std::size_t i = segmentation.labels.index(u, v);
     if (segmentation.labels[i] < 0 || std::abs(map.depth[i] - z) > kTouching) return;
-    labels.push_back(segmentation.labels[i]);
+    ++touched[static_cast<std::size_t>(segmentation.labels[i])];
   });
-  std::sort(labels.begin(), labels.end());
-  return labels;
+  return touched;
 }
 
 }  // namespace
@@ -65,13 +64,12 @@ std::vector<SegmentMatch> match_segments(const Segmentation& segmentation, const
                                          const SegmentMatchOptions& options) {
   const FastPose object_from_camera = to_fast(camera_from_object.inverse());
   std::vector<SegmentMatch> matches;
-  for (const std::int32_t label : touched_labels(segmentation, map, predicted)) {
-    if (matches.empty() || matches.back().segment != label) matches.push_back({label, 0, 0, -1});
-    ++matches.back().explained;
-  }
-  for (SegmentMatch& match : matches) {
-    judge(segmentation.segments[static_cast<std::size_t>(match.segment)], map, model,
-          object_from_camera, options, match);
+  const std::vector<int> touched = touched_pixels(segmentation, map, predicted);
+  for (std::size_t i = 0; i < touched.size(); ++i) {
+    if (touched[i] == 0) continue;
+    SegmentMatch& match =
+        matches.emplace_back(SegmentMatch{.segment = static_cast<int>(i), .explained = touched[i]});
+    judge(segmentation.segments[i], map, model, object_from_camera, options, match);
   }
   return matches;
 }

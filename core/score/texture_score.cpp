@@ -150,7 +150,8 @@ TextureAgreement compare_texture(const CheckImage& image, const Image<Eigen::Vec
 }
 
 Pose turn_to_pattern(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
-                     const ObjectModel& model, const Pose& camera_from_object) {
+                     const ObjectModel& model, const Pose& camera_from_object,
+                     const PredictedSurface& predicted) {
   constexpr int kTurnStep = 4;             // pixels: there are many turns to try
   constexpr int kTurns = 64;               // 3 mm apart at the rim of a can of 6 cm
   constexpr double kClearlyBetter = 0.05;  // log-likelihood ratio of a pixel
@@ -161,10 +162,9 @@ Pose turn_to_pattern(const CheckImage& image, const Image<Eigen::Vector3f>& obse
     std::uint32_t point;
   };
   std::vector<Pixel> shown;
-  for_each_shown(image, predict_surface(image, model, camera_from_object), kTurnStep,
-                 [&](int u, int v, std::uint32_t point) {
-                   shown.push_back({u, v, point});
-                 });
+  for_each_shown(image, predicted, kTurnStep, [&](int u, int v, std::uint32_t point) {
+    shown.push_back({u, v, point});
+  });
   Pose best = camera_from_object;
   double best_ratio = -INFINITY;
   for (const Pose& element : sampled_elements(model.symmetry, kTurns)) {
@@ -176,9 +176,9 @@ Pose turn_to_pattern(const CheckImage& image, const Image<Eigen::Vector3f>& obse
           model.index->distances.nearest_to(turned_from_object * model.surface.points[point]);
       if (there < 0) continue;
       const Eigen::Vector4d row = light_row(model.surface.normals[point]);
-      const Eigen::Vector3d predicted = colors[static_cast<std::size_t>(there)].cast<double>();
-      sums.add(row, predicted);
-      seen.add(row, predicted, observed.at(u, v).cast<double>());
+      const Eigen::Vector3d color = colors[static_cast<std::size_t>(there)].cast<double>();
+      sums.add(row, color);
+      seen.add(row, color, observed.at(u, v).cast<double>());
     }
     if (sums.count() < kFewestPixels) continue;
     const double ratio = log_ratio(sums, seen);

@@ -32,8 +32,9 @@ TextureAgreement compare_texture(const CheckImage& image, const Image<Eigen::Vec
 
 /// Of the poses that the symmetry of the model's shape makes equal, the one whose pattern is seen
 /// best; `camera_from_object` itself where colours or a symmetry are missing or no other pose is
-/// clearly better.
+/// clearly better. `predicted` is of that pose.
 Pose turn_to_pattern(const CheckImage& image, const Image<Eigen::Vector3f>& observed,
-                     const ObjectModel& model, const Pose& camera_from_object);
+                     const ObjectModel& model, const Pose& camera_from_object,
+                     const PredictedSurface& predicted);
 
 }  // namespace bpa

@@ -198,7 +198,7 @@ TEST_F(TextureScore, RivalsOfOneShapeAreToldApartByTheirPattern) {
 }
 
 Pose turned_to_pattern(const Seen& seen, const Pose& start) {
-  return turn_to_pattern(seen.image, seen.colors, *seen.model, start);
+  return turn_to_pattern(seen.image, seen.colors, *seen.model, start, seen.predicted(start));
 }
 
 TEST_F(TextureScore, OfEqualShapesTheOneWithThePatternIsChosen) {
