@@ -46,13 +46,15 @@ void from_pairs(const Search& search, Candidates& out) {
   const auto late = [&] { return search.late(); };
   PairColors colors;
   if (options.use_colors) colors = {search.scene.coarse_colors, index.coarse_colors, index.palette};
-  auto poses =
-      vote_poses(sample.pairs, index.pairs, count, options.peaks_per_reference, colors, late);
+  auto poses = vote_poses(sample.pairs, index.pairs, count,
+                          {options.peaks_per_reference, options.max_votes}, colors, late);
   if (options.rim_peaks_per_reference > 0) {
-    const auto by_rims = vote_poses(sample.rim_pairs, index.rim_pairs, count,
-                                    options.rim_peaks_per_reference, colors, late);
+    const auto by_rims =
+        vote_poses(sample.rim_pairs, index.rim_pairs, count,
+                   {options.rim_peaks_per_reference, options.max_votes}, colors, late);
     poses.insert(poses.end(), by_rims.begin(), by_rims.end());
   }
+  out.reserve(out.size() + poses.size());
   std::vector<Eigen::Matrix3f> bases;
   for (const Eigen::Vector3f& normal : index.coarse.normals) bases.push_back(basis_of(normal));
   const PointCloud& coarse = search.scene.coarse;

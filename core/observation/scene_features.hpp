@@ -62,7 +62,7 @@ struct SceneFeatureOptions {
   int max_references = 250;
   double coarse_spacing_m = 0.010;
   double pair_reach_m = kMaxPairLength;
-  int pair_step = 5;
+  int pair_step = 3;
   bool use_color = true;
   bool use_texture = true;
   bool use_outline = true;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace bpa {
 namespace {
@@ -61,11 +62,12 @@ bool details_fit(double surface_ms, double milliseconds_left) {
 
 void search_without_colors(DetectorOptions& detector) {
   // Near what was chosen on simulated piles before colours counted; kLower of log odds.
-  constexpr int kPairStep = 3, kPeaks = 5, kRimPeaks = 2, kChecked = 3, kOthers = 2;
+  constexpr int kAllVotes = std::numeric_limits<int>::max();
+  constexpr int kPeaks = 5, kRimPeaks = 2, kChecked = 3, kOthers = 2;
   constexpr double kLower = 1;
-  detector.features.pair_step = std::min(detector.features.pair_step, kPairStep);
   DetectOptions& options = detector.detect;
   SampleOptions& sample = options.sample;
+  sample.max_votes = kAllVotes;
   sample.peaks_per_reference = std::max(sample.peaks_per_reference, kPeaks);
   if (sample.rim_peaks_per_reference > 0) {
     sample.rim_peaks_per_reference = std::max(sample.rim_peaks_per_reference, kRimPeaks);
