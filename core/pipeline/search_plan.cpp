@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace bpa {
 namespace {
@@ -62,7 +61,7 @@ bool details_fit(double surface_ms, double milliseconds_left) {
 
 void search_without_colors(DetectorOptions& detector) {
   // Near what was chosen on simulated piles before colours counted; kLower of log odds.
-  constexpr int kAllVotes = std::numeric_limits<int>::max();
+  constexpr int kAllVotes = 1'000'000'000;  // the largest that the option takes
   constexpr int kPeaks = 5, kRimPeaks = 2, kChecked = 3, kOthers = 2;
   constexpr double kLower = 1;
   DetectOptions& options = detector.detect;
