@@ -41,11 +41,10 @@ struct Walk {
 
 bool match_surface(const SceneFeatures& scene, const CheckPoints& points, std::size_t i,
                    const FastPose& pose, float gate, SurfaceMatch& match) {
-  constexpr float kMinCosine = 0.6f;  // between the normals of model and surface
   match.model_normal = pose.rotation * points.normals[i];
   match.model_point = pose * points.points[i];
   const Eigen::Vector3f& p = match.model_point;
-  if (match.model_normal.dot(p) > -kLeastFacing * p.z()) return false;
+  if (match.model_normal.dot(p) > -kMatchFacing * p.z()) return false;
   const int pixel = scene.image.pixel_of(p);
   if (pixel < 0) return false;
   match.pixel = static_cast<std::size_t>(pixel);
@@ -54,7 +53,7 @@ bool match_surface(const SceneFeatures& scene, const CheckPoints& points, std::s
   match.scene_point = scene.map.points[match.pixel];
   match.scene_normal = scene.map.normals[match.pixel];
   return (match.scene_point - p).squaredNorm() < gate * gate &&
-         match.scene_normal.dot(match.model_normal) > kMinCosine;
+         match.scene_normal.dot(match.model_normal) > kMatchCosine;
 }
 
 EdgePoint edge_point(const ViewEdge& edge, const FastPose& pose) {

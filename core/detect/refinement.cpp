@@ -100,7 +100,6 @@ BPA_DISPATCH void add_block(const ProjectedBlock& model, const ObservedBlock& ob
                             const SensorNoise& noise, const Eigen::Vector3f& centre, float gate,
                             SurfaceSums& __restrict sums) {
   constexpr float kModelSigma = 0.001f;  // metres, beside the sensor's noise
-  constexpr float kMinCosine = 0.6f;     // between the normals of model and surface
   const SensorNoise depth_noise = noise;
   const float cx = centre.x(), cy = centre.y(), cz = centre.z();
   float row[6][kCheckBlock], weighted[6][kCheckBlock], residual[kCheckBlock];
@@ -112,7 +111,7 @@ BPA_DISPATCH void add_block(const ProjectedBlock& model, const ObservedBlock& ob
     const float cosine =
         nx * model.normal[0][k] + ny * model.normal[1][k] + nz * model.normal[2][k];
     const bool near = dx * dx + dy * dy + dz * dz < gate * gate;
-    const float matched = near & (cosine > kMinCosine) ? observed.matched[k] : 0;
+    const float matched = near & (cosine > kMatchCosine) ? observed.matched[k] : 0;
     sums.matched[k] += matched;
     residual[k] = nx * dx + ny * dy + nz * dz;
     const float sigma = depth_noise(observed.point[2][k]) + kModelSigma;
@@ -156,7 +155,7 @@ struct Problem {
     ProjectedBlock block;
     ObservedBlock observed;
     for (int first = 0; first < last; first += kCheckBlock) {
-      block.project(scene.image, points, pose, first, kLeastFacing);
+      block.project(scene.image, points, pose, first, kMatchFacing);
       std::fill(block.pixel + std::min(kCheckBlock, last - first), block.pixel + kCheckBlock, -1);
       if (!look_up(scene, block, gate, observed)) continue;
       add_block(block, observed, scene.image.noise, centre, gate, sums);

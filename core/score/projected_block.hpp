@@ -8,6 +8,9 @@
 
 namespace bpa {
 
+/// Least `min_facing` of pose checks; chosen by hand.
+constexpr float kCheckFacing = 0.15f;
+
 /// Some model points as the camera sees them.
 struct ProjectedBlock {
   float point[3][kCheckBlock];   ///< Camera frame, metres.
@@ -18,7 +21,7 @@ struct ProjectedBlock {
   /// camera if the cosine between its normal and the line of sight is at least `min_facing`, on the
   /// optical axis.
   void project(const CheckImage& image, const CheckPoints& model, const FastPose& pose, int first,
-               float min_facing = 0.15f);
+               float min_facing = kCheckFacing);
 };
 
 }  // namespace bpa
