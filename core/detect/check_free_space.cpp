@@ -100,21 +100,21 @@ Candidates check_free_space(const Search& search, Candidates sampled) {
           {pose_cell(search.model.symmetry, to_fast(candidate.pose())), i, verdict.score});
     }
   }
-  const auto rank = [&](Candidate& candidate) {
-    candidate.score = search.quick_score(candidate.pose(), options.rank_points);
+  const auto rank = [&](Candidate& candidate, double least) {
+    candidate.score = search.quick_score(candidate.pose(), options.rank_points, least);
   };
   keep_best_of_cells(search, sampled, options.max_ranked_per_cell, passed,
                      [](const Passed& pose) { return pose.check_score; });
   for (const Passed& pose : passed) {
     if (search.late()) break;
-    rank(sampled[pose.index]);
+    rank(sampled[pose.index], options.min_ranked_score);
   }
   keep_best_of_cells(search, sampled, options.max_kept_per_cell, passed,
                      [&](const Passed& pose) { return sampled[pose.index].score; });
   Candidates kept, suggested;
   for (const Passed& pose : passed) kept.push_back(std::move(sampled[pose.index]));
   for (const std::size_t i : of_priors) {
-    rank(sampled[i]);
+    rank(sampled[i], kNoLimit);
     suggested.push_back(std::move(sampled[i]));
   }
   reject_below(search, options.min_ranked_score, kept);

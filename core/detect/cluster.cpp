@@ -50,9 +50,13 @@ Pose aligned_pose(const Search& search, const Cluster& cluster) {
 
 // The best member, or the cluster aligned again where that scores better.
 Candidate best_of(const Search& search, const Cluster& cluster) {
+  const ClusterOptions& options = search.options.cluster;
   Candidate best = *cluster.members.front();
+  const auto of_prior = [](const Candidate* member) { return member->found_by == Source::prior; };
+  if (std::ranges::any_of(cluster.members, of_prior)) best.found_by = Source::prior;
+  const double least = best.found_by == Source::prior ? kNoLimit : options.min_cluster_score;
   const auto score = [&](const Pose& pose) {
-    return search.quick_score(pose, search.options.cluster.rank_points);
+    return search.quick_score(pose, options.rank_points, least);
   };
   const Pose aligned = aligned_pose(search, cluster);
   best.score = score(best.pose());
@@ -61,8 +65,6 @@ Candidate best_of(const Search& search, const Cluster& cluster) {
     best.refinement.camera_from_object = aligned;
     best.score = score_aligned;
   }
-  const auto of_prior = [](const Candidate* member) { return member->found_by == Source::prior; };
-  if (std::ranges::any_of(cluster.members, of_prior)) best.found_by = Source::prior;
   return best;
 }
 

@@ -50,7 +50,6 @@ constexpr Stage kStages[] = {
 };
 constexpr std::size_t kRoundStages = 7;    // those that every round runs
 constexpr std::size_t kScoringStages = 2;  // aligned, scored
-constexpr double kNoThreshold = -std::numeric_limits<double>::infinity();
 
 // Runs a stage and records its time and what it rejects.
 Candidates timed(const Stage& stage, Search& search, Candidates candidates, ObjectTrace* trace) {
@@ -70,7 +69,7 @@ void compete(std::span<const Search> searches, int most, const ScoreThreshold& t
     for (const Candidate& candidate : of_model) scores.push_back(candidate.score);
   }
   const double threshold = threshold_of(std::move(scores), most);
-  if (threshold == kNoThreshold) return;
+  if (threshold == kNoLimit) return;
   for (std::size_t i = 0; i < found.size(); ++i) {
     std::erase_if(found[i], [&](const Candidate& candidate) {
       const bool low = candidate.score <= threshold && candidate.found_by != Source::prior;
@@ -88,7 +87,7 @@ std::span<const Stage> scoring_stages() { return round_stages().last(kScoringSta
 std::span<const Stage> final_stages() { return detection_stages().subspan(kRoundStages); }
 
 double score_threshold(std::vector<double> scores, int most) {
-  if (std::ssize(scores) <= most) return kNoThreshold;
+  if (std::ssize(scores) <= most) return kNoLimit;
   std::ranges::nth_element(scores, scores.begin() + most, std::greater());
   return scores[most];
 }

@@ -50,10 +50,9 @@ struct AlignOptions {
 
 struct SampleOptions {
   int matches_per_keypoint = 1;
-  int draws_per_match = 3;
+  int draws_per_match = 1;
   int peaks_per_reference = 2;
   int rim_peaks_per_reference = 1;
-  int max_votes = 1500;
   bool use_colors = true;
   int draws_per_prior = 300;
   double feature_sigma_m = 0.004;
@@ -70,11 +69,6 @@ struct SampleOptions {
     visit(
         "rim_peaks_per_reference", rim_peaks_per_reference,
         {0, 100, "The same, voted by pairs with the rim of its face; 0: such pairs are not used."});
-    visit(
-        "max_votes", max_votes,
-        {1, 1000000000,
-         "Votes about a reference point after which no further pair votes. Pairs of rare features "
-         "vote first."});
     visit("use_colors", use_colors,
           {0, 1, "Voted poses lay a reference point on a model point of agreeing colour."});
     visit("draws_per_prior", draws_per_prior, {0, 100000, "Poses drawn from each prior."});

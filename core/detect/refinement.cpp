@@ -169,9 +169,9 @@ struct Problem {
                  NormalEquations& equations) const {
     // Of the edges of the nearest of 66 views; a pixel's half width is added.
     constexpr float kEdgeSigma = 0.004f;
-    const std::size_t last = std::min<std::size_t>(view.edges.size(), options.max_edges);
-    for (const ViewEdge& of_view : std::span(view.edges).first(last)) {
-      const EdgePoint edge = edge_point(of_view, pose);
+    const std::size_t last = std::min<std::size_t>(view.num_edges, options.max_edges);
+    for (std::size_t k = 0; k < last; ++k) {
+      const EdgePoint edge = edge_point(view.edge(k), pose);
       const std::optional<float> offset = match_edge(scene.image, edge, gate);
       if (!offset) continue;
       const float sigma = kEdgeSigma + 0.5f * edge.point.z() / scene.image.fx;

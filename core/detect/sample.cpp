@@ -36,39 +36,40 @@ void from_features(const Search& search, Candidates& out) {
   }
 }
 
-// Poses voted for by oriented point pairs (Drost et al., CVPR 2010), and by points with the rims
-// of their faces.
-void from_pairs(const Search& search, Candidates& out) {
-  const SampleOptions& options = search.options.sample;
-  const SceneSample& sample = *search.sample;
-  const ModelIndex& index = *search.model.index;
-  const auto count = static_cast<int>(index.coarse.size());
-  const auto late = [&] { return search.late(); };
-  PairColors colors;
-  if (options.use_colors) colors = {search.scene.coarse_colors, index.coarse_colors, index.palette};
-  auto poses = vote_poses(sample.pairs, index.pairs, count,
-                          {options.peaks_per_reference, options.max_votes}, colors, late);
-  if (options.rim_peaks_per_reference > 0) {
-    const auto by_rims =
-        vote_poses(sample.rim_pairs, index.rim_pairs, count,
-                   {options.rim_peaks_per_reference, options.max_votes}, colors, late);
-    poses.insert(poses.end(), by_rims.begin(), by_rims.end());
-  }
+void add_voted(const Search& search, std::span<const VotedPose> poses, Candidates& out) {
+  const PointCloud& scene = search.scene.coarse;
+  const PointCloud& model = search.model.index->coarse;
   out.reserve(out.size() + poses.size());
-  std::vector<Eigen::Matrix3f> bases;
-  for (const Eigen::Vector3f& normal : index.coarse.normals) bases.push_back(basis_of(normal));
-  const PointCloud& coarse = search.scene.coarse;
   for (const VotedPose& voted : poses) {
     const int s = voted.reference, m = voted.model_point;
     FastPose pose;
-    pose.rotation = basis_of(coarse.normals[s]) *
-                    Eigen::AngleAxisf(voted.turn, Eigen::Vector3f::UnitZ()) * bases[m].transpose();
-    pose.translation = coarse.points[s] - pose.rotation * index.coarse.points[m];
+    pose.rotation = basis_of(scene.normals[s]) *
+                    Eigen::AngleAxisf(voted.turn, Eigen::Vector3f::UnitZ()) *
+                    basis_of(model.normals[m]).transpose();
+    pose.translation = scene.points[s] - pose.rotation * model.points[m];
     out.push_back({.model = &search.model,
                    .refinement = {.camera_from_object = to_pose(pose)},
                    .found_by = Source::pairs,
                    .scene_point = s,
                    .model_point = m});
+  }
+}
+
+// Poses voted for by oriented point pairs (Drost et al., CVPR 2010), and by points with the rims
+// of their faces.
+void from_pairs(const Search& search, Candidates& out) {
+  const SampleOptions& options = search.options.sample;
+  const ModelIndex& index = *search.model.index;
+  PairColors colors;
+  if (options.use_colors) colors = {search.scene.coarse_colors, index.coarse_colors, index.palette};
+  const auto vote = [&](const ScenePairs& pairs, const PointPairTable& table, int peaks) {
+    const auto late = [&] { return search.late(); };
+    const auto count = static_cast<int>(index.coarse.size());
+    add_voted(search, vote_poses(pairs, table, count, peaks, colors, late), out);
+  };
+  vote(search.sample->pairs, index.pairs, options.peaks_per_reference);
+  if (options.rim_peaks_per_reference > 0) {
+    vote(search.sample->rim_pairs, index.rim_pairs, options.rim_peaks_per_reference);
   }
 }
 

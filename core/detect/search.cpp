@@ -78,11 +78,13 @@ double Search::color_evidence(const Pose& pose) const {
   return points * check_colors(*image, scene.match_colors, *model.index, to_fast(pose)).log_odds();
 }
 
-double Search::quick_score(const Pose& pose, int points) const {
+double Search::quick_score(const Pose& pose, int points, double least) const {
   add_effort(&SearchEffort::quick_scores);
   Evidence evidence(scene, places, pose, points);
-  return layers.round_two.log_odds(measure(evidence, Round::two)) + priors.evidence(pose) +
-         color_evidence(pose);
+  const double without_color =
+      layers.round_two.log_odds(measure(evidence, Round::two)) + priors.evidence(pose);
+  const double most = without_color + options.score.color_points * ColorCheck::kAgrees;
+  return most < least ? without_color : without_color + color_evidence(pose);
 }
 
 Candidate Search::scored(Refinement refinement, Source found_by,

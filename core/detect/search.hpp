@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -47,6 +48,8 @@ struct ObjectTrace {
 /// Sets score and probability from values and prior.
 void apply_layer(const ScoreLayer& layer, Candidate& candidate);
 
+constexpr double kNoLimit = -std::numeric_limits<double>::infinity();  ///< Of scores.
+
 /// The search for one model in one scene: what every stage reads. Keeps references to
 /// scene, model and layers.
 struct Search {
@@ -84,9 +87,10 @@ struct Search {
   /// What is known of a pose that stays as it is.
   Refinement measured(const Pose& pose) const;
   /// Log odds of round two, from ScoreOptions::quick_points or so many surface points, with the
-  /// caller's priors and color_evidence().
+  /// caller's priors and color_evidence(). Below `least`, any value below `least`: colours are not
+  /// compared where even agreeing ones would not be enough.
   double quick_score(const Pose& pose) const;
-  double quick_score(const Pose& pose, int points) const;
+  double quick_score(const Pose& pose, int points, double least = kNoLimit) const;
   /// Log odds by check_colors(), of ScoreOptions::color_points points.
   double color_evidence(const Pose& pose) const;
   /// Scores a candidate at `refinement` with all components. `predicted` is of its pose, where that

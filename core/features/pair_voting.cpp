@@ -148,28 +148,6 @@ class AgreeingColors {
   std::vector<std::uint32_t> bits_;  // by the partner's index in the cloud
 };
 
-// What a pair of a reference point votes with.
-struct Cell {
-  std::span<const PointPairTable::Entry> entries;
-  std::uint32_t colors;  // a bit for each of the palette that counts
-  std::uint8_t turn;     // of the pair
-};
-
-// The cells of a reference point's pairs, the smallest first: rare features tell most.
-void find_cells(const ScenePairs& pairs, std::size_t reference, const PointPairTable& table,
-                const AgreeingColors& agreeing, std::vector<Cell>& cells) {
-  cells.clear();
-  for (std::uint32_t k = pairs.first[reference]; k < pairs.first[reference + 1]; ++k) {
-    const ScenePairs::Partner& partner = pairs.partners[k];
-    if (partner.distance > table.max_distance()) break;
-    const std::uint32_t colors = agreeing.of(partner);
-    if (colors == 0) continue;
-    const auto entries = table.lookup(partner.distance, partner.angle_key);
-    if (!entries.empty()) cells.push_back({entries, colors, partner.turn});
-  }
-  std::ranges::sort(cells, {}, [](const Cell& cell) { return cell.entries.size(); });
-}
-
 // The model points with the most votes, best first.
 class Peaks {
  public:
@@ -385,15 +363,13 @@ ScenePairs scene_rim_pairs(const PointCloud& cloud, std::span<const RimPoint> ri
 }
 
 std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable& table,
-                                  int num_model_points, const VoteLimits& limits,
-                                  const PairColors& colors, const std::function<bool()>& late) {
+                                  int num_model_points, int peaks, const PairColors& colors,
+                                  const std::function<bool()>& late) {
   std::vector<VotedPose> out;
   Votes votes(static_cast<std::size_t>(num_model_points));
-  Peaks best(static_cast<std::size_t>(limits.peaks));
+  Peaks best(peaks);
   const bool colored = !colors.scene.empty() && !colors.model.empty();
   std::vector<std::uint8_t> agree(static_cast<std::size_t>(num_model_points), 1);
-  const auto most_votes = static_cast<std::size_t>(limits.votes);
-  std::vector<Cell> cells;
   const AgreeingColors second(pairs, colored ? colors : PairColors{});
   for (std::size_t r = 0; r < pairs.references.size(); ++r) {
     const bool votes_for_none = pairs.first[r] == pairs.first[r + 1] ||
@@ -402,14 +378,14 @@ std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable&
     if (votes_for_none) continue;
     if (colored && !find_agreeing(colors.scene[pairs.references[r]], colors.model, agree)) continue;
     votes.clear();
-    find_cells(pairs, r, table, second, cells);
-    std::size_t cast = 0;
-    for (const Cell& cell : cells) {
-      if (cast >= most_votes) break;
-      cast += cell.entries.size();
-      for (const auto& entry : cell.entries) {
-        votes.add(entry.point, static_cast<std::uint8_t>(cell.turn - entry.turn),
-                  cell.colors >> entry.color & 1);
+    for (std::uint32_t k = pairs.first[r]; k < pairs.first[r + 1]; ++k) {
+      const ScenePairs::Partner& partner = pairs.partners[k];
+      if (partner.distance > table.max_distance()) break;
+      const std::uint32_t colors_of_entries = second.of(partner);
+      if (colors_of_entries == 0) continue;
+      for (const auto& entry : table.lookup(partner.distance, partner.angle_key)) {
+        votes.add(entry.point, static_cast<std::uint8_t>(partner.turn - entry.turn),
+                  colors_of_entries >> entry.color & 1);
       }
     }
     const std::span<const Count> most = votes.most();

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -159,22 +158,13 @@ struct PairColors {
   std::span<const MatchColor> scene, model, palette;
 };
 
-/// How much of the votes about one reference point is looked at.
-struct VoteLimits {
-  int peaks = 1;  ///< Model points that are returned.
-  /// After so many votes no further pair votes. Those that agree with the fewest model pairs vote
-  /// first: a rare feature tells most for the time it takes.
-  int votes = std::numeric_limits<int>::max();
-};
-
 /// Each reference point's pairs vote for its model point and the turn about its normal (Drost et
-/// al., section 3.4). Returns the `limits.peaks` best model points of each reference point, best
-/// first. With colours, those alone whose colour agrees with the reference point's, and by votes of
-/// those pairs alone whose second points' colours agree (compare Choi and Christensen, IROS 2012).
+/// al., section 3.4). Returns the `peaks` best model points of each reference point, best first.
+/// With colours, those alone whose colour agrees with the reference point's, and by votes of those
+/// pairs alone whose second points' colours agree (compare Choi and Christensen, IROS 2012).
 /// `num_model_points` is the size of the cloud of `table`. Ends once `late`, if given, says so.
 std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable& table,
-                                  int num_model_points, const VoteLimits& limits,
-                                  const PairColors& colors = {},
+                                  int num_model_points, int peaks, const PairColors& colors = {},
                                   const std::function<bool()>& late = {});
 
 }  // namespace bpa

@@ -260,6 +260,20 @@ void ViewBlock::set(int lane, const ViewPoint& from) {
   normal_variance[lane] = from.normal_variance;
 }
 
+void EdgeBlock::set(int lane, const ViewEdge& from) {
+  for (int axis = 0; axis < 3; ++axis) {
+    point[axis][lane] = from.point[axis];
+    normal[axis][lane] = from.normal[axis];
+    outward[axis][lane] = from.outward[axis];
+  }
+}
+
+ViewEdge EdgeBlock::at(int lane) const {
+  return {{point[0][lane], point[1][lane], point[2][lane]},
+          {normal[0][lane], normal[1][lane], normal[2][lane]},
+          {outward[0][lane], outward[1][lane], outward[2][lane]}};
+}
+
 ViewEdge view_edge(const ObjectModel& model, const ModelView& view, std::size_t k) {
   const std::uint32_t i = view.edges[k];
   return {model.surface.points[i], model.surface.normals[i], view.outward[k]};
@@ -291,8 +305,11 @@ std::vector<ViewSample> sample_views(const ObjectModel& model) {
       if (lane == 0) sample.points.emplace_back();
       sample.points.back().set(lane, view_point(model, view, k));
     });
-    for_each_spread(view.edges.size(),
-                    [&](std::size_t k) { sample.edges.push_back(view_edge(model, view, k)); });
+    for_each_spread(view.edges.size(), [&](std::size_t k) {
+      const auto lane = static_cast<int>(sample.num_edges++ % EdgeBlock::kSize);
+      if (lane == 0) sample.edges.emplace_back();
+      sample.edges.back().set(lane, view_edge(model, view, k));
+    });
   }
   return out;
 }

@@ -70,13 +70,27 @@ struct ViewEdge {
   Eigen::Vector3f point, normal, outward;
 };
 
+/// Edge points of a view, number beside number, for vector instructions. Lanes that hold none are
+/// zero.
+struct EdgeBlock {
+  static constexpr int kSize = 16;
+  float point[3][kSize] = {}, normal[3][kSize] = {}, outward[3][kSize] = {};
+
+  void set(int lane, const ViewEdge& from);
+  ViewEdge at(int lane) const;
+};
+
 /// Points of one view, side by side in memory: the surface as a whole is larger than the cache. Any
 /// first part of them is spread over the view.
 struct ViewSample {
   static constexpr std::size_t kMost = 256;  ///< Of each kind.
-  std::size_t num_points = 0;
+  std::size_t num_points = 0, num_edges = 0;
   std::vector<ViewBlock> points;
-  std::vector<ViewEdge> edges;
+  std::vector<EdgeBlock> edges;
+
+  ViewEdge edge(std::size_t k) const {
+    return edges[k / EdgeBlock::kSize].at(static_cast<int>(k % EdgeBlock::kSize));
+  }
 };
 
 /// A known object, ready for detection.

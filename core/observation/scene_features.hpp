@@ -59,10 +59,10 @@ struct SceneFeatures {
 struct SceneFeatureOptions {
   int max_keypoints = 600;
   int round_keypoints = 15;
-  int max_references = 250;
+  int max_references = 125;
   double coarse_spacing_m = 0.010;
   double pair_reach_m = kMaxPairLength;
-  int pair_step = 3;
+  int pair_step = 2;
   bool use_color = true;
   bool use_texture = true;
   bool use_outline = true;

@@ -61,12 +61,10 @@ bool details_fit(double surface_ms, double milliseconds_left) {
 
 void search_without_colors(DetectorOptions& detector) {
   // Near what was chosen on simulated piles before colours counted; kLower of log odds.
-  constexpr int kAllVotes = 1'000'000'000;  // the largest that the option takes
   constexpr int kPeaks = 5, kRimPeaks = 2, kChecked = 3, kOthers = 2;
   constexpr double kLower = 1;
   DetectOptions& options = detector.detect;
   SampleOptions& sample = options.sample;
-  sample.max_votes = kAllVotes;
   sample.peaks_per_reference = std::max(sample.peaks_per_reference, kPeaks);
   if (sample.rim_peaks_per_reference > 0) {
     sample.rim_peaks_per_reference = std::max(sample.rim_peaks_per_reference, kRimPeaks);

@@ -10,8 +10,6 @@ namespace bpa {
 
 double ColorCheck::log_odds() const {
   constexpr int kMinSeen = 6;
-  // log(0.95 / 0.44) and log(0.05 / 0.56): see colors_agree().
-  constexpr double kAgrees = 0.77, kDisagrees = -2.42;
   if (seen < kMinSeen) return 0;
   return (agreeing * kAgrees + (seen - agreeing) * kDisagrees) / seen;
 }

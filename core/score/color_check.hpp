@@ -11,6 +11,10 @@ namespace bpa {
 
 /// Counts over model points on searched surface.
 struct ColorCheck {
+  /// Log odds of a point that agrees and of one that does not: log(0.95 / 0.44) and
+  /// log(0.05 / 0.56), see colors_agree().
+  static constexpr double kAgrees = 0.77, kDisagrees = -2.42;
+
   int seen = 0;
   int agreeing = 0;  ///< Of the same colour, by colors_agree().
 

@@ -206,38 +206,81 @@ Eigen::Matrix3f symmetric(const std::array<Sums::Lanes, 6>& lanes) {
   return out;
 }
 
+// Where edge points and points beyond them fall, and the normals there.
+struct SeenEdges {
+  static constexpr int kSize = EdgeBlock::kSize;
+  float z[kSize];                // metres
+  float normal[3][kSize];        // camera frame
+  int at[kSize], beyond[kSize];  // pixels; -1 outside the image
+};
+
+// Straight-line code over arrays, so that the compiler uses the widest vectors there are.
+BPA_DISPATCH void place_edges(const CheckImage& image, const EdgeBlock& model, const FastPose& pose,
+                              SeenEdges& __restrict out) {
+  float r[9];  // column by column
+  std::copy_n(pose.rotation.data(), 9, r);
+  const float tx = pose.translation.x(), ty = pose.translation.y(), tz = pose.translation.z();
+  const float fx = image.fx, fy = image.fy, cx = image.cx + 0.5f, cy = image.cy + 0.5f;
+  const int width = image.width;
+  const auto right = static_cast<float>(image.width), bottom = static_cast<float>(image.height);
+  const auto pixel_of = [&](float x, float y, float z) {
+    const float u = fx * x / z + cx, v = fy * y / z + cy;
+    const bool inside = (z > kNearest_m) & (u >= 0) & (v >= 0) & (u < right) & (v < bottom);
+    // Of points outside, numbers that an int holds.
+    const int column = static_cast<int>(inside ? u : 0), row = static_cast<int>(inside ? v : 0);
+    return inside ? row * width + column : -1;
+  };
+  for (int k = 0; k < SeenEdges::kSize; ++k) {
+    const float px = model.point[0][k], py = model.point[1][k], pz = model.point[2][k];
+    const float nx = model.normal[0][k], ny = model.normal[1][k], nz = model.normal[2][k];
+    const float ox = model.outward[0][k], oy = model.outward[1][k], oz = model.outward[2][k];
+    const float x = r[0] * px + r[3] * py + r[6] * pz + tx;
+    const float y = r[1] * px + r[4] * py + r[7] * pz + ty;
+    const float z = r[2] * px + r[5] * py + r[8] * pz + tz;
+    const float a = r[0] * ox + r[3] * oy + r[6] * oz;
+    const float b = r[1] * ox + r[4] * oy + r[7] * oz;
+    const float c = r[2] * ox + r[5] * oy + r[8] * oz;
+    out.z[k] = z;
+    out.normal[0][k] = r[0] * nx + r[3] * ny + r[6] * nz;
+    out.normal[1][k] = r[1] * nx + r[4] * ny + r[7] * nz;
+    out.normal[2][k] = r[2] * nx + r[5] * ny + r[8] * nz;
+    out.at[k] = pixel_of(x, y, z);
+    out.beyond[k] = pixel_of(x + kBeyond * a, y + kBeyond * b, z + kBeyond * c);
+  }
+}
+
 // Beyond a range edge of the model the observed surface must not simply go on: it may be further
-// away, nearer (something in front), or turn (the object stands on it).
-void score_edges(const CheckImage& image, const ObjectModel& model, std::span<const ViewEdge> edges,
-                 const FastPose& pose, SurfaceAgreement& out) {
+// away, nearer (something in front), or turn (the object stands on it). Looks at the first `total`
+// edge points of the sample.
+void score_edges(const CheckImage& image, const ObjectModel& model, const ViewSample& sample,
+                 std::size_t total, const FastPose& pose, SurfaceAgreement& out) {
   if (!model.complete) {  // has no edges to speak for or against it
     out.edge = 0;
     out.edge_support = 0.5;
     return;
   }
-  int visible = 0, total = 0, ends = 0, goes_on = 0;
-  for (const ViewEdge& edge : edges) {
-    const Eigen::Vector3f point = pose * edge.point;
-    const Eigen::Vector3f normal = pose.rotation * edge.normal;
-    const Eigen::Vector3f outward = pose.rotation * edge.outward;
-    const int at = image.pixel_of(point);
-    ++total;
-    if (at < 0) continue;  // the image border hides it
-    const CheckPixel& inside = image.pixels[static_cast<std::size_t>(at)];
-    if (hides(inside.depth, point.z(), kHiding)) continue;
+  int visible = 0, ends = 0, goes_on = 0;
+  SeenEdges seen;
+  for (std::size_t i = 0; i < total; ++i) {
+    const std::size_t k = i % EdgeBlock::kSize;
+    if (k == 0) place_edges(image, sample.edges[i / EdgeBlock::kSize], pose, seen);
+    if (seen.at[k] < 0) continue;  // the image border hides it
+    const float z = seen.z[k];
+    const CheckPixel& inside = image.pixels[static_cast<std::size_t>(seen.at[k])];
+    if (hides(inside.depth, z, kHiding)) continue;
     ++visible;
-    const int at_beyond = image.pixel_of(point + kBeyond * outward);
-    if (at_beyond < 0) continue;
-    const CheckPixel& beyond = image.pixels[static_cast<std::size_t>(at_beyond)];
+    if (seen.beyond[k] < 0) continue;
+    const CheckPixel& beyond = image.pixels[static_cast<std::size_t>(seen.beyond[k])];
     if (beyond.depth <= 0) continue;  // no depth: an edge shadow, neither for nor against
     // Where the model's tangent plane would be if the surface went on.
-    const bool continues =
-        std::abs(beyond.depth - point.z()) < kGoesOn + 2 * image.noise(point.z());
+    const bool continues = std::abs(beyond.depth - z) < kGoesOn + 2 * image.noise(z);
+    const Eigen::Vector3f normal(seen.normal[0][k], seen.normal[1][k], seen.normal[2][k]);
     const bool turns = beyond.direction().dot(normal) < kTurned;
     (continues && !turns ? goes_on : ends) += 1;
   }
-  out.edge_visibility = total > 0 ? static_cast<double>(visible) / total : 0;
-  out.edge_support = total > 0 ? static_cast<double>(ends) / total : 0;
+  const auto all = static_cast<double>(total);
+  out.edge_visibility = total > 0 ? visible / all : 0;
+  out.edge_support = total > 0 ? ends / all : 0;
   out.edge = visible > 0 ? -static_cast<double>(goes_on) / visible : -1;
 }
 
@@ -342,8 +385,7 @@ SurfaceAgreement measure_surface(const CheckImage& image, const ObjectModel& mod
   }
   // Of so many surface points, as many edge points.
   const std::size_t edges = max_points > 0 ? std::min(wanted, kMostEdges) : kAllEdges;
-  score_edges(image, model, std::span(sample.edges).first(std::min(edges, sample.edges.size())),
-              fast, out);
+  score_edges(image, model, sample, std::min(edges, sample.num_edges), fast, out);
   return out;
 }
 

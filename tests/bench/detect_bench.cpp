@@ -78,7 +78,7 @@ void voting(benchmark::State& state) {
   const ScenePairs& pairs = scene().sample.pairs;
   const auto points = static_cast<int>(index.coarse.size());
   for (auto _ : state) {
-    benchmark::DoNotOptimize(vote_poses(pairs, index.pairs, points, {1}));
+    benchmark::DoNotOptimize(vote_poses(pairs, index.pairs, points, 1));
   }
 }
 BENCHMARK(voting)->Name("features/vote_poses")->Unit(benchmark::kMillisecond);
