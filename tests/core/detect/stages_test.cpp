@@ -72,6 +72,36 @@ TEST_F(Stages, SomeAreRightAndClustersBringThemForward) {
   }
 }
 
+TEST_F(Stages, QuickScoresFromTheLimitOnAreExact) {
+  ModelSource painted = *brick_;
+  painted.surface.colors.assign(painted.surface.size(), {200, 60, 50});
+  const auto brick = make_object_model(std::move(painted)).value();
+  for (const bool same_color : {true, false}) {
+    SurfaceMap map = surface_map(test::render(everything(), test::kinect_camera(), 0, 8).frame, {});
+    const Eigen::Vector3f rgb =
+        same_color ? Eigen::Vector3f(200, 60, 50) : Eigen::Vector3f(40, 90, 180);
+    ColorImages images;
+    images.reduced = Image<Eigen::Vector3f>(map.width(), map.height(), rgb);
+    auto planes = label_background_planes(map, {});
+    const SceneFeatures scene =
+        scene_features(std::move(map), std::move(planes), {}, std::move(images));
+    const Search search(scene, *brick);
+    ASSERT_EQ(search.color_evidence(brick_truth_) > 0, same_color);
+    for (int i = 0; i < 200; ++i) {
+      const Pose pose = test::disturbed(brick_truth_, 1e-4 * i, 1e-3 * i, i);
+      const double score = search.quick_score(pose, 64);
+      for (const double least : {score - 1, score - 0.01, score + 0.01, score + 1, score + 8}) {
+        const double found = search.quick_score(pose, 64, least);
+        if (score >= least) {
+          EXPECT_EQ(found, score);
+        } else {
+          EXPECT_LT(found, least);
+        }
+      }
+    }
+  }
+}
+
 TEST_F(Stages, ScoresBelowTheLimitAreRejectedUnlessAPriorSuggestsThem) {
   const SceneFeatures scene = features_of(everything());
   const auto checked = [&](double limit) {
