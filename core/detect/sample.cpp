@@ -36,6 +36,7 @@ void from_features(const Search& search, Candidates& out) {
   }
 }
 
+// Adds the poses that lay a reference point on its model point, turned as voted.
 void add_voted(const Search& search, std::span<const VotedPose> poses, Candidates& out) {
   const PointCloud& scene = search.scene.coarse;
   const PointCloud& model = search.model.index->coarse;

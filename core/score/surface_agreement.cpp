@@ -67,39 +67,68 @@ struct SeenBlock {
   float noise_range[kSize], noise_normal[kSize];  // of the model, by edge distance and slant
 };
 
+struct Coordinates {
+  float x, y, z;
+};
+
+// A pose and a camera as plain numbers, for loops that become vectors.
+class Projection {
+ public:
+  Projection(const CheckImage& image, const FastPose& pose)
+      : tx_(pose.translation.x()),
+        ty_(pose.translation.y()),
+        tz_(pose.translation.z()),
+        fx_(image.fx),
+        fy_(image.fy),
+        cx_(image.cx + 0.5f),
+        cy_(image.cy + 0.5f),
+        right_(static_cast<float>(image.width)),
+        bottom_(static_cast<float>(image.height)),
+        width_(image.width) {
+    std::copy_n(pose.rotation.data(), 9, r_);
+  }
+  // To the camera frame: of a direction, and of a point.
+  Coordinates turned(float x, float y, float z) const {
+    return {r_[0] * x + r_[3] * y + r_[6] * z, r_[1] * x + r_[4] * y + r_[7] * z,
+            r_[2] * x + r_[5] * y + r_[8] * z};
+  }
+  Coordinates moved(float x, float y, float z) const {
+    const Coordinates p = turned(x, y, z);
+    return {p.x + tx_, p.y + ty_, p.z + tz_};
+  }
+  // -1 outside the image, or where not `shown`.
+  int pixel_of(const Coordinates& p, bool shown) const {
+    const float u = fx_ * p.x / p.z + cx_, v = fy_ * p.y / p.z + cy_;
+    const bool inside =
+        shown & (p.z > kNearest_m) & (u >= 0) & (v >= 0) & (u < right_) & (v < bottom_);
+    // Of points outside, numbers that an int holds.
+    const int column = static_cast<int>(inside ? u : 0), row = static_cast<int>(inside ? v : 0);
+    return inside ? row * width_ + column : -1;
+  }
+
+ private:
+  float r_[9];  // column by column
+  float tx_, ty_, tz_, fx_, fy_, cx_, cy_, right_, bottom_;
+  int width_;
+};
+
 // Straight-line code over arrays, so that the compiler uses the widest vectors there are.
 BPA_DISPATCH void place_block(const CheckImage& image, const ViewBlock& model, const FastPose& pose,
                               int count, SeenBlock& __restrict out) {
-  float r[9];  // column by column
-  std::copy_n(pose.rotation.data(), 9, r);
-  const float tx = pose.translation.x(), ty = pose.translation.y(), tz = pose.translation.z();
-  const float fx = image.fx, fy = image.fy, cx = image.cx + 0.5f, cy = image.cy + 0.5f;
-  const int width = image.width;
-  const auto right = static_cast<float>(image.width), bottom = static_cast<float>(image.height);
+  const Projection camera(image, pose);
   for (int k = 0; k < SeenBlock::kSize; ++k) {
-    const float px = model.point[0][k], py = model.point[1][k], pz = model.point[2][k];
-    const float nx = model.normal[0][k], ny = model.normal[1][k], nz = model.normal[2][k];
-    const float sx = model.soft_normal[0][k], sy = model.soft_normal[1][k],
-                sz = model.soft_normal[2][k];
-    const float x = r[0] * px + r[3] * py + r[6] * pz + tx;
-    const float y = r[1] * px + r[4] * py + r[7] * pz + ty;
-    const float z = r[2] * px + r[5] * py + r[8] * pz + tz;
-    const float a = r[0] * nx + r[3] * ny + r[6] * nz;
-    const float b = r[1] * nx + r[4] * ny + r[7] * nz;
-    const float c = r[2] * nx + r[5] * ny + r[8] * nz;
-    const float slant = -(a * x + b * y + c * z) / std::sqrt(x * x + y * y + z * z);
-    out.normal[0][k] = a, out.normal[1][k] = b, out.normal[2][k] = c;
-    out.soft_normal[0][k] = r[0] * sx + r[3] * sy + r[6] * sz;
-    out.soft_normal[1][k] = r[1] * sx + r[4] * sy + r[7] * sz;
-    out.soft_normal[2][k] = r[2] * sx + r[5] * sy + r[8] * sz;
-    const float u = fx * x / z + cx, v = fy * y / z + cy;
-    const bool facing = (z > kNearest_m) & (slant >= kMinSlant) & (k < count);
-    const bool inside = facing & (u >= 0) & (v >= 0) & (u < right) & (v < bottom);
-    // Of points outside, numbers that an int holds.
-    const int column = static_cast<int>(inside ? u : 0), row = static_cast<int>(inside ? v : 0);
-    out.pixel[k] = inside ? row * width + column : -1;
+    const Coordinates p = camera.moved(model.point[0][k], model.point[1][k], model.point[2][k]);
+    const Coordinates n = camera.turned(model.normal[0][k], model.normal[1][k], model.normal[2][k]);
+    const Coordinates soft =
+        camera.turned(model.soft_normal[0][k], model.soft_normal[1][k], model.soft_normal[2][k]);
+    const float slant =
+        -(n.x * p.x + n.y * p.y + n.z * p.z) / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+    out.normal[0][k] = n.x, out.normal[1][k] = n.y, out.normal[2][k] = n.z;
+    out.soft_normal[0][k] = soft.x, out.soft_normal[1][k] = soft.y, out.soft_normal[2][k] = soft.z;
+    const bool facing = (p.z > kNearest_m) & (slant >= kMinSlant) & (k < count);
+    out.pixel[k] = camera.pixel_of(p, facing);
     out.facing[k] = one_if(facing);
-    out.z[k] = facing ? z : 1;
+    out.z[k] = facing ? p.z : 1;
     out.slant[k] = facing ? slant : 1;
   }
 }
@@ -217,35 +246,18 @@ struct SeenEdges {
 // Straight-line code over arrays, so that the compiler uses the widest vectors there are.
 BPA_DISPATCH void place_edges(const CheckImage& image, const EdgeBlock& model, const FastPose& pose,
                               SeenEdges& __restrict out) {
-  float r[9];  // column by column
-  std::copy_n(pose.rotation.data(), 9, r);
-  const float tx = pose.translation.x(), ty = pose.translation.y(), tz = pose.translation.z();
-  const float fx = image.fx, fy = image.fy, cx = image.cx + 0.5f, cy = image.cy + 0.5f;
-  const int width = image.width;
-  const auto right = static_cast<float>(image.width), bottom = static_cast<float>(image.height);
-  const auto pixel_of = [&](float x, float y, float z) {
-    const float u = fx * x / z + cx, v = fy * y / z + cy;
-    const bool inside = (z > kNearest_m) & (u >= 0) & (v >= 0) & (u < right) & (v < bottom);
-    // Of points outside, numbers that an int holds.
-    const int column = static_cast<int>(inside ? u : 0), row = static_cast<int>(inside ? v : 0);
-    return inside ? row * width + column : -1;
-  };
+  const Projection camera(image, pose);
   for (int k = 0; k < SeenEdges::kSize; ++k) {
-    const float px = model.point[0][k], py = model.point[1][k], pz = model.point[2][k];
-    const float nx = model.normal[0][k], ny = model.normal[1][k], nz = model.normal[2][k];
-    const float ox = model.outward[0][k], oy = model.outward[1][k], oz = model.outward[2][k];
-    const float x = r[0] * px + r[3] * py + r[6] * pz + tx;
-    const float y = r[1] * px + r[4] * py + r[7] * pz + ty;
-    const float z = r[2] * px + r[5] * py + r[8] * pz + tz;
-    const float a = r[0] * ox + r[3] * oy + r[6] * oz;
-    const float b = r[1] * ox + r[4] * oy + r[7] * oz;
-    const float c = r[2] * ox + r[5] * oy + r[8] * oz;
-    out.z[k] = z;
-    out.normal[0][k] = r[0] * nx + r[3] * ny + r[6] * nz;
-    out.normal[1][k] = r[1] * nx + r[4] * ny + r[7] * nz;
-    out.normal[2][k] = r[2] * nx + r[5] * ny + r[8] * nz;
-    out.at[k] = pixel_of(x, y, z);
-    out.beyond[k] = pixel_of(x + kBeyond * a, y + kBeyond * b, z + kBeyond * c);
+    const Coordinates p = camera.moved(model.point[0][k], model.point[1][k], model.point[2][k]);
+    const Coordinates n = camera.turned(model.normal[0][k], model.normal[1][k], model.normal[2][k]);
+    const Coordinates outward =
+        camera.turned(model.outward[0][k], model.outward[1][k], model.outward[2][k]);
+    const Coordinates beyond{p.x + kBeyond * outward.x, p.y + kBeyond * outward.y,
+                             p.z + kBeyond * outward.z};
+    out.z[k] = p.z;
+    out.normal[0][k] = n.x, out.normal[1][k] = n.y, out.normal[2][k] = n.z;
+    out.at[k] = camera.pixel_of(p, true);
+    out.beyond[k] = camera.pixel_of(beyond, true);
   }
 }
 
