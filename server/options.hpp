@@ -370,7 +370,9 @@ struct WebOptions {
            "address that other machines reach, one is made and printed at the start."});
     visit("hosts", hosts,
           {0, 0, "More names of this machine that browsers may use, such as robot.local."});
-    visit("history", history, {1, 200, "Results that viewers of the page may go back to."});
+    visit("history", history,
+          {1, 200,
+           "Results that viewers of the page may go back to; one that is held is kept besides."});
     visit("rate_hz", rate_hz,
           at_run_time({0.1, 60, "Most frames a second that a viewer of the page is told of."}));
   }

@@ -138,7 +138,7 @@ Result<std::uint64_t> Api::admit(const RequestHead& head) const {
 
 void Api::poll(const Request& request, Responder respond) {
   const bool tracks = request.value("tracks") == "1";
-  const Status seen = feed_.see(request.value("viewer"), tracks);
+  const Status seen = feed_.see(request.value("viewer"), tracks, number_of(request.value("held")));
   if (!seen.ok()) return respond(refusal(seen));
   polls_.add({request.value("viewer"), number_of(request.value("sequence")),
               number_of(request.value("result")), tracks, std::move(respond)});

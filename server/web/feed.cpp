@@ -3,6 +3,7 @@
 #include "server/web/feed.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "core/base/concat.hpp"
@@ -118,7 +119,12 @@ void Feed::keep(std::shared_ptr<KeptResult> kept) {
     bytes += bytes_of(*(*result)->shown->frame());
     if (count > 0 && (count >= history_ || bytes > kMaxKeptBytes)) break;
   }
-  results_.erase(results_.begin(), results_.end() - static_cast<std::ptrdiff_t>(count));
+  const auto kept_from = results_.end() - static_cast<std::ptrdiff_t>(count);
+  const auto held = [this](const auto& result) {
+    return std::ranges::any_of(
+        viewers_, [&](const auto& viewer) { return viewer.second.held == result->id; });
+  };
+  results_.erase(std::remove_if(results_.begin(), kept_from, std::not_fn(held)), kept_from);
 }
 
 std::uint64_t Feed::add(const Frame& frame, const SceneInterpretations& result,
@@ -155,7 +161,7 @@ void Feed::add_tracks(const TrackedFrame& tracks) {
   changed();
 }
 
-Status Feed::see(const std::string& viewer, bool tracks) {
+Status Feed::see(const std::string& viewer, bool tracks, std::uint64_t held) {
   if (viewer.empty() || viewer.size() > kMaxViewerName) {
     return invalid_argument("viewer must have 1 to ", kMaxViewerName, " characters");
   }
@@ -165,7 +171,7 @@ Status Feed::see(const std::string& viewer, bool tracks) {
     return Status(StatusCode::busy,
                   concat(viewers_.size(), " viewers look, as many as may; try again later"));
   }
-  viewers_[viewer].seen = now;
+  viewers_[viewer] = {now, held};
   last_seen_ = now.time_since_epoch().count();
   if (tracks) last_saw_tracks_ = last_seen_.load();
   return {};

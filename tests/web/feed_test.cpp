@@ -92,6 +92,22 @@ TEST(Feed, KeepsTheLastResults) {
   EXPECT_EQ(all.at("result").at("stamp_ns"), 123);
 }
 
+TEST(Feed, KeepsAResultWhileAViewerHoldsIt) {
+  Feed feed(2, [] { return 7; });
+  ASSERT_TRUE(feed.see("one", false, 1).ok());
+  ASSERT_TRUE(feed.see("another", false, 3).ok());
+  const auto ids = [&feed] {
+    std::vector<std::uint64_t> kept;
+    for (const auto& result : feed.results_after(0)) kept.push_back(result->id);
+    return kept;
+  };
+  for (int i = 0; i < 6; ++i) feed.add_result(frame_of(64, 48), result_of("mug"));
+  EXPECT_EQ(ids(), (std::vector<std::uint64_t>{1, 3, 5, 6}));
+  ASSERT_TRUE(feed.see("one", false).ok());
+  feed.add_result(frame_of(64, 48), result_of("mug"));
+  EXPECT_EQ(ids(), (std::vector<std::uint64_t>{3, 6, 7}));
+}
+
 TEST(Feed, HasRoomForSomeViewers) {
   Feed feed(3, [] { return 7; });
   for (int i = 0; i < 16; ++i) EXPECT_TRUE(feed.see(std::to_string(i), false).ok());

@@ -3,7 +3,7 @@
 // What the page looks at: which result, which interpretation, which placement. Emits "view" when that
 // changes, with {result, outlines, rank, chosen, alternative}.
 
-import {emit, get, on} from './api.js';
+import {emit, get, on, wanted} from './api.js';
 import {guarded} from './dom.js';
 
 export const view = {
@@ -23,6 +23,10 @@ export const view = {
 
 const kSummaries = 200;
 let loading = 0;
+
+on('view', () => {
+  wanted.held = view.pinned && view.result ? view.result.id : 0;
+});
 
 export const interpretation = () =>
   (view.result ? view.result.result.interpretations[view.rank - 1] : undefined);
