@@ -3,7 +3,9 @@
 #include "core/observation/scene_features.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <map>
 #include <numeric>
 
 #include "core/base/parallel.hpp"
@@ -35,6 +37,20 @@ std::vector<int> shuffled(std::size_t count, std::uint64_t seed) {
     std::swap(all[i - 1], all[random.index(static_cast<int>(i))]);
   }
   return all;
+}
+
+// A random order of all points in which each cube of this edge gives one before any gives two.
+std::vector<int> spread(std::span<const Eigen::Vector3f> points, std::uint64_t seed) {
+  constexpr float kCube = 0.025f;  // metres; chosen by hand
+  std::vector<int> order = shuffled(points.size(), seed);
+  std::map<std::array<int, 3>, int> given;  // by each cube
+  std::vector<int> number(points.size());   // of a point in its cube
+  for (const int i : order) {
+    const Eigen::Vector3i cube = (points[i] / kCube).array().floor().cast<int>();
+    number[i] = given[{cube.x(), cube.y(), cube.z()}]++;
+  }
+  std::ranges::stable_sort(order, {}, [&](int i) { return number[i]; });
+  return order;
 }
 
 Image<Eigen::Vector3f> log_light_of(Image<Eigen::Vector3f> lab, int num_threads) {
@@ -117,7 +133,7 @@ void add_points(const SceneFeatureOptions& options, SceneFeatures& scene) {
   scene.keypoints = shuffled(scene.surface.size(), options.seed);
   scene.keypoints.resize(std::min<std::size_t>(scene.keypoints.size(), options.max_keypoints));
   scene.fpfh = compute_fpfh(scene.surface, scene.keypoints, kFeatureRadius, threads);
-  scene.references = shuffled(scene.coarse.size(), options.seed);
+  scene.references = spread(scene.coarse.points, options.seed);
   scene.rims = scene_rims(scene.image, scene.coarse, threads);
   scene.sample = next_sample(scene, {}, {}, options);
 }

@@ -35,14 +35,15 @@ struct SceneSample {
 struct SceneFeatures {
   SurfaceMap map;
   CheckImage image;
-  std::vector<Plane> planes;    ///< Labelled background.
-  PointCloud surface;           ///< Searched surface, kFeatureSpacing apart, with curvature.
-  std::vector<int> keypoints;   ///< Indices into `surface` where FPFH was computed; random order.
-  std::vector<Fpfh> fpfh;       ///< Of the keypoints.
-  PointCloud coarse;            ///< Searched surface, for point pairs.
-  std::vector<int> references;  ///< Indices into `coarse`, in random order: reference points.
-  std::vector<RimPoint> rims;   ///< Of the faces of `coarse`.
-  SceneSample sample;           ///< The first.
+  std::vector<Plane> planes;   ///< Labelled background.
+  PointCloud surface;          ///< Searched surface, kFeatureSpacing apart, with curvature.
+  std::vector<int> keypoints;  ///< Indices into `surface` where FPFH was computed; random order.
+  std::vector<Fpfh> fpfh;      ///< Of the keypoints.
+  PointCloud coarse;           ///< Searched surface, for point pairs.
+  /// Reference points: indices into `coarse`, in a random order that spreads evenly.
+  std::vector<int> references;
+  std::vector<RimPoint> rims;  ///< Of the faces of `coarse`.
+  SceneSample sample;          ///< The first.
   SceneEdges edges;
   Image<Eigen::Vector3f> cielab;          ///< Blurred, of the map's size; empty without colour.
   Image<MatchColor> match_colors;         ///< Of `cielab`.

@@ -83,8 +83,8 @@ class Feed {
   std::uint64_t add_asked(const Frame& frame, const SceneInterpretations& result,
                           std::string origin);
 
-  /// Notes that a viewer asks. The result `held`, 0 for none, is kept until this viewer holds another
-  /// or is gone. `busy` when there are as many viewers as may be.
+  /// Notes that a viewer asks. The result `held`, 0 for none, is kept until this viewer holds
+  /// another or is gone. `busy` when there are as many viewers as may be.
   Status see(const std::string& viewer, bool tracks, std::uint64_t held = 0);
   /// Called after each change, on the thread that caused it; empty: nobody.
   void on_change(std::function<void()> changed);

@@ -331,6 +331,31 @@ TEST(PairVoting, PairsVoteWhereTheirSecondPointsHaveOneColour) {
   }
 }
 
+// A point and so many second points in one place, all in one cell.
+PointCloud one_point_and_others(int count) {
+  RandomStream random(14);
+  PointCloud cloud;
+  cloud.points.push_back({0.05f, 0.01f, 0.02f});
+  cloud.normals.push_back(Eigen::Vector3f(1, 2, 2) / 3);
+  for (int i = 0; i < count; ++i) {
+    cloud.points.push_back(1e-5f * random_vector(random));
+    cloud.normals.push_back(Eigen::Vector3f(2, -1, 2) / 3);
+  }
+  return cloud;
+}
+
+TEST(PairVoting, OfThePairsOfLargeCellsSomeVote) {
+  constexpr int kPartners = 12;
+  const ScenePairs pairs = scene_pairs(one_point_and_others(kPartners), {0}, 0.3f, 1, 1);
+  for (const auto& [entries, voting] : {std::pair{500, 12}, {600, 6}, {2000, 6}, {2100, 3}}) {
+    const PointPairTable table(one_point_and_others(entries), kDistanceStep);
+    const auto poses = vote_poses(pairs, table, entries + 1, 1);
+    ASSERT_EQ(poses.size(), 1u);
+    EXPECT_EQ(poses[0].model_point, 0);
+    EXPECT_EQ(poses[0].votes, voting * entries);
+  }
+}
+
 // A flat plate, 12 x 8 cm, without one corner: no turn maps it onto itself.
 bool on_plate(const Eigen::Vector3f& p) {
   return std::abs(p.x()) < 0.06f && std::abs(p.y()) < 0.04f && (p.x() < 0.02f || p.y() < 0.01f);

@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+#include <map>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -40,6 +43,22 @@ TEST_F(SceneSamples, NoPointIsInTwo) {
   EXPECT_EQ(references.size(), taken_references);
   EXPECT_EQ(keypoints.size(), scene.keypoints.size()) << "all in the end";
   EXPECT_EQ(references.size(), scene.coarse.size());
+}
+
+// A cube of 25 mm gives no second point before all have given one, no third before a second, ...
+TEST_F(SceneSamples, ReferencesSpreadEvenly) {
+  const SceneFeatures scene = features_of(everything());
+  const auto cube = [&scene](int point) {
+    const Eigen::Array3f scaled = scene.coarse.points[point].array() / 0.025f;
+    return std::array{std::floor(scaled.x()), std::floor(scaled.y()), std::floor(scaled.z())};
+  };
+  std::map<std::array<float, 3>, std::size_t> points, given;
+  for (std::size_t i = 0; i < scene.coarse.size(); ++i) ++points[cube(static_cast<int>(i))];
+  ASSERT_LT(points.size(), scene.coarse.size() / 2);
+  for (const int reference : scene.references) {
+    const std::size_t now = ++given[cube(reference)];
+    for (const auto& [other, count] : points) ASSERT_GE(given[other], std::min(count, now - 1));
+  }
 }
 
 TEST_F(SceneSamples, ExplainedSurfaceIsLeftOut) {
