@@ -21,6 +21,8 @@ struct RoundOptions {
   double min_gain = 0.05;
   double expected_share = 0.6;
   double min_gain_expected = 0.3;
+  int step_without_sign = 0;
+  double min_sign = -5;
 
   void visit_fields(auto&& visit) {
     visit("max_rounds", max_rounds,
@@ -39,6 +41,12 @@ struct RoundOptions {
            "expect. The search may end after it."});
     visit("min_gain_expected", min_gain_expected,
           {0, 1, "min_gain where an earlier frame says what to expect."});
+    visit("step_without_sign", step_without_sign,
+          {0, 1000,
+           "From the second round on, models without a sign look at one in so many points of the "
+           "sample. 0: one for each 24 models searched for, so that many cost little more."});
+    visit("min_sign", min_sign,
+          {-1000, 1000, "Log odds of a placement that is a sign of its model."});
   }
 };
 

@@ -16,6 +16,16 @@ Search search_for(const SearchInputs& inputs, const ObjectModel& model) {
                 inputs.request.seed);
 }
 
+// What a model looks at of a round's sample: less where no earlier round found a sign of it.
+EachOf looked_at_in(int round, const ObjectModel& model, const Candidates& found,
+                    const RoundOptions& options) {
+  const bool has_sign = std::ranges::any_of(
+      found, [&](const Candidate& candidate) { return candidate.score >= options.min_sign; });
+  const int step = options.step_without_sign;
+  if (round == 0 || has_sign || step <= 1) return {};
+  return {static_cast<std::size_t>((round + model.number) % step), static_cast<std::size_t>(step)};
+}
+
 }  // namespace
 
 LocalSearches::LocalSearches(const SearchInputs& inputs, std::vector<ObjectTrace>* traces,
@@ -74,6 +84,7 @@ bool LocalSearches::run_round(const RoundPlan& plan) {
     search.round = plan.number;
     search.before = &found_[i];
     search.sample = &sample_;
+    search.looked_at = looked_at_in(plan.number, search.model, found_[i], inputs_.options.rounds);
     search.image = &image_;
     search.options = sized.detect;
   }

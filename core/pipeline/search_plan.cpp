@@ -76,6 +76,12 @@ void search_without_colors(DetectorOptions& detector) {
   options.refine.min_refined_score -= kLower;
 }
 
+void share_among_models(int models, RoundOptions& options) {
+  constexpr int kWholeModels = 24;  // for which whole samples are looked at; chosen by hand
+  if (options.step_without_sign == 0)
+    options.step_without_sign = std::max(1, models / kWholeModels);
+}
+
 void leave_out_details(SceneFeatureOptions& options) {
   options.use_outline = options.use_flat_regions = false;
 }

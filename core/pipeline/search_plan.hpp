@@ -23,6 +23,10 @@ bool details_fit(double surface_ms, double milliseconds_left);
 /// tried, and more candidates go on.
 void search_without_colors(DetectorOptions& options);
 
+/// Sets how much is looked at for models without a sign (RoundOptions::step_without_sign), unless
+/// that is set: less, the more models (1 or more) are searched for.
+void share_among_models(int models, RoundOptions& options);
+
 /// No outlines and flat regions.
 void leave_out_details(SceneFeatureOptions& options);
 

@@ -22,7 +22,7 @@ constexpr SearchEffort kMost{.rounds = 3,
 class EffortOf : public test::LScene {
  protected:
   static SearchEffort searched(const std::vector<test::Solid>& solids, int num_threads = 0,
-                               double budget_ms = 0) {
+                               double budget_ms = 0, const RoundOptions& rounds = {}) {
     const auto library = std::make_shared<ModelLibrary>();
     EXPECT_TRUE(library->add(l_).ok());
     EXPECT_TRUE(library->add(brick_).ok());
@@ -30,7 +30,9 @@ class EffortOf : public test::LScene {
     DetectRequest request;
     request.num_threads = num_threads;
     request.budget_ms = budget_ms;
-    const auto found = Detector(library, {}).detect(frame, request);
+    DetectorOptions options;
+    options.rounds = rounds;
+    const auto found = Detector(library, options).detect(frame, request);
     EXPECT_TRUE(found.ok()) << found.status().message;
     return found.ok() ? found->effort : SearchEffort{};
   }
@@ -49,6 +51,23 @@ TEST_F(EffortOf, StaysWithinItsLimits) {
 TEST_F(EffortOf, IsTheSameForAnyThreads) {
   const SearchEffort one = searched(everything(), 1);
   for (const int threads : {2, 8}) EXPECT_EQ(searched(everything(), threads), one) << threads;
+}
+
+// A sign is what no placement has, or what each has.
+TEST_F(EffortOf, IsLessForModelsWithoutASign) {
+  const SearchEffort whole = searched(everything());
+  RoundOptions options;
+  options.step_without_sign = 8;
+  options.min_sign = 1000;
+  EXPECT_LT(searched(everything(), 0, 0, options).sampled_poses, 0.8 * whole.sampled_poses);
+  options.max_rounds = 1;
+  const SearchEffort first = searched(everything(), 0, 0, options);
+  options.step_without_sign = 1;
+  EXPECT_EQ(searched(everything(), 0, 0, options), first);
+  options = {};
+  options.step_without_sign = 8;
+  options.min_sign = -1000;
+  EXPECT_EQ(searched(everything(), 0, 0, options), whole);
 }
 
 TEST_F(EffortOf, IsLessWhereNothingIsThereOrTimeIsShort) {

@@ -37,6 +37,18 @@ TEST(SearchPlan, WithoutColoursMoreIsTried) {
   EXPECT_EQ(no_rims.detect.sample.rim_peaks_per_reference, 0);
 }
 
+TEST(SearchPlan, ManyModelsShareTheWork) {
+  for (const auto& [models, step] : {std::pair{1, 1}, {21, 1}, {47, 1}, {48, 2}, {200, 8}}) {
+    RoundOptions options;
+    share_among_models(models, options);
+    EXPECT_EQ(options.step_without_sign, step);
+  }
+  RoundOptions set;
+  set.step_without_sign = 3;
+  share_among_models(200, set);
+  EXPECT_EQ(set.step_without_sign, 3);
+}
+
 TEST(SearchPlan, NoBudgetShortensNothing) {
   DetectorOptions options;
   EXPECT_EQ(shorten_preparation(0, 2, options), 1);
