@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -22,19 +23,23 @@ constexpr Stage kStages[] = {
     {"free_space", check_free_space, 0.4, "Checked against the depth image",
      "Poses with over 20 % of their points in free space are rejected, and poses without surface. "
      "The best of each place by score stay, then the best of all models.",
-     [](const DetectOptions& options) { return options.check.max_in_library; }},
+     [](const DetectOptions& options) { return options.check.max_in_library; },
+     [](const DetectOptions& options) { return options.check.place_margin; }},
     {"corrected", correct, 0.4, "Corrected",
      "Two Gauss-Newton steps move each pose onto the surface, where that improves it."},
     {"clusters", cluster, 0.6, "Clustered",
      "Poses within 2.5 cm and pi/16 are a cluster. BPA aligns each one again with the "
      "correspondences of all its poses. The best of all models go on.",
-     [](const DetectOptions& options) { return options.cluster.max_in_library; }},
+     [](const DetectOptions& options) { return options.cluster.max_in_library; },
+     [](const DetectOptions& options) { return options.cluster.place_margin; }},
     {"round_two", round_two, 0.5, "Aligned (round two)",
      "BPA and Gauss-Newton steps move each pose onto the surface around it. A step is accepted if "
      "the score improves. After non-maximum suppression the best of all models go on.",
-     [](const DetectOptions& options) { return options.refine.max_in_library; }},
+     [](const DetectOptions& options) { return options.refine.max_in_library; },
+     [](const DetectOptions& options) { return options.round_two.place_margin; }},
     {"aligned", refine, 0.5, "Refined",
-     "The best are aligned once more by gradients. Non-maximum suppression follows."},
+     "The best are aligned once more by gradients. Non-maximum suppression follows.", nullptr,
+     [](const DetectOptions& options) { return options.refine.place_margin; }},
     {"scored", score, 1, "Scored", "Each is scored with all components (round three)."},
     {"climbed", climb, 0.5, "Climbed",
      "The best climb the score by small steps, from where they are and from beside."},
@@ -61,20 +66,26 @@ Candidates timed(const Stage& stage, Search& search, Candidates candidates, Obje
   return candidates;
 }
 
-// Rejects what does not exceed the threshold, except what priors suggested.
-void compete(std::span<const Search> searches, int most, const ScoreThreshold& threshold_of,
-             std::vector<Candidates>& found) {
-  std::vector<double> scores;
+// Rejects what loses against candidates of all models, except what priors suggested.
+void reject_losers(const Stage& stage, std::span<const Search> searches, const Compete& compete,
+                   std::vector<Candidates>& found) {
+  const DetectOptions& options = searches.front().options;
+  const int most =
+      stage.most_in_library ? stage.most_in_library(options) : std::numeric_limits<int>::max();
+  const double margin = stage.place_margin ? stage.place_margin(options) : -kNoLimit;
+  std::vector<Claim> claims;
   for (const Candidates& of_model : found) {
-    for (const Candidate& candidate : of_model) scores.push_back(candidate.score);
+    std::ranges::transform(of_model, std::back_inserter(claims), claim_of);
   }
-  const double threshold = threshold_of(std::move(scores), most);
-  if (threshold == kNoLimit) return;
+  const Contest contest = compete(std::move(claims), most);
   for (std::size_t i = 0; i < found.size(); ++i) {
     std::erase_if(found[i], [&](const Candidate& candidate) {
-      const bool low = candidate.score <= threshold && candidate.found_by != Source::prior;
+      if (candidate.found_by == Source::prior) return false;
+      const bool low = candidate.score <= contest.threshold;
+      const bool behind = !low && is_behind(claim_of(candidate), contest, margin);
       if (low) searches[i].reject("better ones of other models are enough", candidate.pose());
-      return low;
+      if (behind) searches[i].reject("a better one is in its place", candidate.pose());
+      return low || behind;
     });
   }
 }
@@ -86,15 +97,9 @@ std::span<const Stage> round_stages() { return detection_stages().first(kRoundSt
 std::span<const Stage> scoring_stages() { return round_stages().last(kScoringStages); }
 std::span<const Stage> final_stages() { return detection_stages().subspan(kRoundStages); }
 
-double score_threshold(std::vector<double> scores, int most) {
-  if (std::ssize(scores) <= most) return kNoLimit;
-  std::ranges::nth_element(scores, scores.begin() + most, std::greater());
-  return scores[most];
-}
-
 void run_stages(std::span<const Stage> stages, std::span<Search> searches, int num_threads,
                 std::vector<Candidates>& found, std::vector<ObjectTrace>* traces,
-                const ScoreThreshold& threshold) {
+                const Compete& compete) {
   if (searches.empty()) return;
   if (traces) traces->resize(searches.size());
   const Deadline deadline = searches.front().deadline;
@@ -116,8 +121,8 @@ void run_stages(std::span<const Stage> stages, std::span<Search> searches, int n
       searches[i].deadline = end.part(std::min(1.0, share));
       found[i] = timed(stage, searches[i], std::move(found[i]), traces ? &(*traces)[i] : nullptr);
     });
-    if (stage.most_in_library) {
-      compete(searches, stage.most_in_library(searches.front().options), threshold, found);
+    if (stage.most_in_library || stage.place_margin) {
+      reject_losers(stage, searches, compete, found);
     }
     if (!traces) continue;
     for (std::size_t i = 0; i < searches.size(); ++i) {

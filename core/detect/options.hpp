@@ -103,6 +103,7 @@ struct CheckOptions {
   int max_kept_per_cell = 1;
   double min_ranked_score = -8;
   int max_in_library = 800;
+  double place_margin = 5;
   int max_suggested = 60;
   RefinementOptions correction{2, 64, 24, 0.020, 0.012};
 
@@ -142,6 +143,10 @@ struct CheckOptions {
           {-1000, 1000, "Poses of lower log odds by rank_points are rejected."});
     visit("max_in_library", max_in_library,
           {1, 1000000, "Poses of all models together that go on."});
+    visit("place_margin", place_margin,
+          {0, 1000,
+           "Poses are rejected where another in the same place, of any model, is better by more "
+           "log odds."});
     visit("max_suggested", max_suggested,
           {0, 100000, "Poses drawn from priors that go on, beyond max_kept."});
   }
@@ -157,6 +162,7 @@ struct ClusterOptions {
   int max_clusters = 60;
   double min_cluster_score = -7;
   int max_in_library = 180;
+  double place_margin = 4;
   double suggested_share = 0.25;
 
   void visit_fields(auto&& visit) {
@@ -174,6 +180,10 @@ struct ClusterOptions {
           {-1000, 1000, "Clusters of lower log odds are rejected."});
     visit("max_in_library", max_in_library,
           {1, 1000000, "Clusters of all models together that go on."});
+    visit("place_margin", place_margin,
+          {0, 1000,
+           "Poses are rejected where another in the same place, of any model, is better by more "
+           "log odds."});
     visit("suggested_share", suggested_share,
           {0, 1, "Share of max_clusters kept for poses drawn from priors."});
   }
@@ -187,6 +197,7 @@ struct RoundTwoOptions {
   double start_gate_m = 0.030;
   double gate_decay = 0.8;
   int check_points = 300;
+  double place_margin = 3;
   CheckTolerance tolerance{0.008, 0.020, 0.8};
   RefinementOptions refinement{4, 160, 60, 0.025, 0.012};
 
@@ -202,6 +213,10 @@ struct RoundTwoOptions {
     visit("gate_decay", gate_decay, {0.01, 1, "Factor of the gate from step to step."});
     visit("check_points", check_points,
           {1, 100000, "Model points that proposals are compared with."});
+    visit("place_margin", place_margin,
+          {0, 1000,
+           "Poses are rejected where another in the same place, of any model, is better by more "
+           "log odds."});
   }
   void visit_groups(auto&& visit) {
     visit("tolerance", tolerance, "How proposals are compared.");
@@ -213,6 +228,7 @@ struct RefineOptions {
   int max_refined = 30;
   double min_aligned_score = -7, min_refined_score = -5.5;
   int max_in_library = 60;
+  double place_margin = 1;
   RefinementOptions refinement{8, 500, 60, 0.015, 0.008};
 
   void visit_fields(auto&& visit) {
@@ -224,6 +240,10 @@ struct RefineOptions {
           {-1000, 1000, "Placements of lower log odds after alignment are not scored in full."});
     visit("max_in_library", max_in_library,
           {1, 1000000, "Placements of all models together that are aligned and scored in full."});
+    visit("place_margin", place_margin,
+          {0, 1000,
+           "Poses are rejected where another in the same place, of any model, is better by more "
+           "log odds."});
   }
   void visit_groups(auto&& visit) {
     visit("refinement", refinement, "Gradient-based alignment (V.7).");

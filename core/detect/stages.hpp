@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/align/correspondence.hpp"
+#include "core/detect/contest.hpp"
 #include "core/detect/search.hpp"
 
 // The stages of the search; README.md says what each does, why, and how to add one. A stage takes
@@ -75,6 +76,9 @@ struct Stage {
   std::string_view text;
   /// How many candidates of all models together go on, the best by score; null: all.
   int (*most_in_library)(const DetectOptions&) = nullptr;
+  /// Log odds by which a candidate of any model in the same place is better, to reject one; null:
+  /// none is rejected for that.
+  double (*place_margin)(const DetectOptions&) = nullptr;
 };
 
 /// The stages in their order. The first ones find placements in a sample of the scene, once in each
@@ -85,19 +89,14 @@ std::span<const Stage> final_stages();
 /// The last ones of a round: what aligns and scores a pose that is known well.
 std::span<const Stage> scoring_stages();
 
-/// The score that candidates must exceed to go on, of the scores of all models, so that at most
-/// `most` do; minus infinity where all go on.
-using ScoreThreshold = std::function<double(std::vector<double> scores, int most)>;
-double score_threshold(std::vector<double> scores, int most);
-
 /// Runs stages for several models of one scene, each stage for all models before the next. Models
-/// compete: where a stage has `most_in_library`, those above `threshold` go on. Priors' candidates
-/// always do. `found` holds the candidates of each search, before and after. Deterministic unless
-/// the deadline of the first search passes; all models get an equal share of the time. `traces`, if
-/// given, receives the stages of each search.
+/// compete where a stage has `most_in_library` or `place_margin`, as `compete` decides. Priors'
+/// candidates always go on. `found` holds the candidates of each search, before and after.
+/// Deterministic unless the deadline of the first search passes; all models get an equal share of
+/// the time. `traces`, if given, receives the stages of each search.
 void run_stages(std::span<const Stage> stages, std::span<Search> searches, int num_threads,
                 std::vector<Candidates>& found, std::vector<ObjectTrace>* traces = nullptr,
-                const ScoreThreshold& threshold = score_threshold);
+                const Compete& compete = contest_of);
 
 /// Runs all stages for one model on the scene's first sample: the best placements of the model
 /// (paper section V), best first.

@@ -61,7 +61,7 @@ struct ModelIndex {
 
 /// Counts up whenever build_index() gives another index for the same surface, so that stored ones
 /// are told from current ones.
-constexpr int kIndexVersion = 3;
+constexpr int kIndexVersion = 4;
 
 /// The index of a model's surface, which must have normals.
 std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threads);

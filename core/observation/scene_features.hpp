@@ -59,8 +59,8 @@ struct SceneFeatures {
 
 struct SceneFeatureOptions {
   int max_keypoints = 600;
-  int round_keypoints = 15;
-  int max_references = 125;
+  int round_keypoints = 5;
+  int max_references = 150;
   double coarse_spacing_m = 0.010;
   double pair_reach_m = kMaxPairLength;
   int pair_step = 2;

@@ -29,10 +29,10 @@ EachOf looked_at_in(int round, const ObjectModel& model, const Candidates& found
 }  // namespace
 
 LocalSearches::LocalSearches(const SearchInputs& inputs, std::vector<ObjectTrace>* traces,
-                             ScoreThreshold threshold)
+                             Compete compete)
     : inputs_(inputs),
       traces_(traces),
-      threshold_(std::move(threshold)),
+      compete_(std::move(compete)),
       late_(inputs.models.size(), 0),
       certain_(inputs.scene.image.pixels.size(), 0),
       image_(inputs.scene.image) {
@@ -47,7 +47,7 @@ LocalSearches::LocalSearches(const SearchInputs& inputs, std::vector<ObjectTrace
 void LocalSearches::run(std::span<const Stage> stages, const Deadline& deadline,
                         std::vector<Candidates>& found) {
   for (Search& search : searches_) search.deadline = deadline;
-  run_stages(stages, searches_, inputs_.request.num_threads, found, traces_, threshold_);
+  run_stages(stages, searches_, inputs_.request.num_threads, found, traces_, compete_);
 }
 
 void LocalSearches::explain(const std::vector<std::uint32_t>& newly_certain) {

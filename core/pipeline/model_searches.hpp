@@ -70,13 +70,12 @@ struct SearchInputs {
   const std::vector<std::shared_ptr<const ObjectModel>>& models;
 };
 
-/// Searches on this host. `traces`, if given, receives the stages of each model. `threshold`
-/// decides which candidates go on where models compete; by default the models given here compete
-/// among themselves.
+/// Searches on this host. `traces`, if given, receives the stages of each model. `compete`
+/// decides where models compete; by default the models given here compete among themselves.
 class LocalSearches : public ModelSearches {
  public:
   explicit LocalSearches(const SearchInputs& inputs, std::vector<ObjectTrace>* traces = nullptr,
-                         ScoreThreshold threshold = score_threshold);
+                         Compete compete = contest_of);
 
   void score_expected(const Deadline& deadline) override;
   bool run_round(const RoundPlan& plan) override;
@@ -90,7 +89,7 @@ class LocalSearches : public ModelSearches {
 
   const SearchInputs inputs_;
   std::vector<ObjectTrace>* const traces_;
-  const ScoreThreshold threshold_;
+  const Compete compete_;
   std::vector<std::uint8_t> late_;     // flag of each model
   std::vector<std::uint8_t> certain_;  // flag of each pixel: is searched no more
   CheckImage image_;                   // where these are not searched

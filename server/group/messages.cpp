@@ -184,6 +184,14 @@ Result<ShareTask> task_of(msgs::GroupStep begin, const SharedLibrary& library) {
   return task;
 }
 
+msgs::GroupClaim to_message(const Claim& claim) {
+  return {claim.score, claim.place.x(), claim.place.y(), claim.place.z(), claim.diameter};
+}
+
+Claim claim_from(const msgs::GroupClaim& message) {
+  return {message.score, {message.x, message.y, message.z}, message.diameter};
+}
+
 msgs::GroupCandidate to_message(const Candidate& candidate) {
   msgs::GroupCandidate message;
   message.model = candidate.model->number;

@@ -7,6 +7,7 @@
 
 #include "core/base/status.hpp"
 #include "core/detect/candidate.hpp"
+#include "core/detect/contest.hpp"
 #include "core/pipeline/model_searches.hpp"
 #include "idl/wire/msg/bpa_msgs.hpp"
 #include "server/group/library.hpp"
@@ -32,6 +33,9 @@ struct ShareTask {
 /// Fails with invalid_argument, as where an option is unknown: then the front is of another
 /// version.
 Result<ShareTask> task_of(wire::bpa_msgs::GroupStep begin, const SharedLibrary& library);
+
+wire::bpa_msgs::GroupClaim to_message(const Claim& claim);
+Claim claim_from(const wire::bpa_msgs::GroupClaim& message);
 
 wire::bpa_msgs::GroupCandidate to_message(const Candidate& candidate);
 /// `pixels` is the size of the reduced image. Fails with corrupt.

@@ -71,7 +71,7 @@ class Searches : public ModelSearches {
   }
 
   void score_expected(const Deadline& deadline) override {
-    take_candidates(run(step_of(msgs::GroupStep::kExpected), deadline), false);
+    take_candidates(run_competing(step_of(msgs::GroupStep::kExpected), deadline), false);
   }
 
   bool run_round(const RoundPlan& plan) override {
@@ -81,16 +81,7 @@ class Searches : public ModelSearches {
     step.raised = plan.raised;
     step.first_sample = plan.first_sample;
     step.newly_certain = plan.newly_certain;
-    std::vector<msgs::GroupAnswer> answers = run(std::move(step), plan.deadline);
-    while (!answers.empty() && answers.front().competes) {
-      std::vector<double> scores;
-      for (const msgs::GroupAnswer& answer : answers) {
-        scores.insert(scores.end(), answer.scores.begin(), answer.scores.end());
-      }
-      msgs::GroupStep next = step_of(msgs::GroupStep::kThreshold);
-      next.threshold = score_threshold(std::move(scores), answers.front().most);
-      answers = run(std::move(next), plan.deadline);
-    }
+    std::vector<msgs::GroupAnswer> answers = run_competing(std::move(step), plan.deadline);
     if (answers.empty() || answers.front().exhausted) return false;
     take_candidates(std::move(answers), false);
     return true;
@@ -169,6 +160,23 @@ class Searches : public ModelSearches {
       }
       shares_.push_back(std::move(share));
     }
+  }
+
+  /// Runs a step, and a step for each contest of the candidates of all workers.
+  std::vector<msgs::GroupAnswer> run_competing(msgs::GroupStep&& step, const Deadline& deadline) {
+    std::vector<msgs::GroupAnswer> answers = run(std::move(step), deadline);
+    while (!answers.empty() && answers.front().competes) {
+      std::vector<Claim> claims;
+      for (const msgs::GroupAnswer& answer : answers) {
+        std::ranges::transform(answer.claims, std::back_inserter(claims), claim_from);
+      }
+      const Contest contest = contest_of(std::move(claims), answers.front().most);
+      msgs::GroupStep next = step_of(msgs::GroupStep::kContest);
+      next.threshold = contest.threshold;
+      for (const Claim& claim : contest.claims) next.claims.push_back(to_message(claim));
+      answers = run(std::move(next), deadline);
+    }
+    return answers;
   }
 
   /// Sends the step to all shares, and waits for their answers: one of each that is not lost.

@@ -143,18 +143,20 @@ class ShareSearch {
     send_(answer);
   }
 
-  double threshold(const LocalSearches& searches, std::vector<double>&& scores, int most) {
+  Contest compete(const LocalSearches& searches, const std::vector<Claim>& claims, int most) {
     msgs::GroupAnswer answer = plain_answer();
     answer.competes = true;
-    answer.scores = std::move(scores);
+    for (const Claim& claim : claims) answer.claims.push_back(to_message(claim));
     answer.most = most;
     send(std::move(answer), searches);
     const msgs::GroupStep step = next();
-    if (step.kind != msgs::GroupStep::kThreshold) {
+    if (step.kind != msgs::GroupStep::kContest) {
       or_throw(corrupt("a search got a step of kind ", static_cast<int>(step.kind),
                        " where candidates compete"));
     }
-    return step.threshold;
+    Contest contest{step.threshold, {}};
+    std::ranges::transform(step.claims, std::back_inserter(contest.claims), claim_from);
+    return contest;
   }
 
   /// What was found since `sent`; after the final stages all.
@@ -180,8 +182,8 @@ class ShareSearch {
         prepare_scene(task.frame, task.request, task.options, deadline, timings);
     const SearchInputs inputs{scene, task.options, library->layers, task.request, task.models};
     LocalSearches* running = nullptr;
-    LocalSearches searches(inputs, nullptr, [&](std::vector<double> scores, int most) {
-      return threshold(*running, std::move(scores), most);
+    LocalSearches searches(inputs, nullptr, [&](const std::vector<Claim>& claims, int most) {
+      return compete(*running, claims, most);
     });
     running = &searches;
     std::vector<std::size_t> sent(task.models.size(), 0);

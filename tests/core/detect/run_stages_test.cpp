@@ -13,6 +13,15 @@ namespace {
 
 class RunStages : public test::LScene {
  protected:
+  // Candidates in one place do not compete.
+  static DetectOptions without_margins() {
+    DetectOptions options;
+    for (double* margin : {&options.check.place_margin, &options.cluster.place_margin,
+                           &options.round_two.place_margin, &options.refine.place_margin}) {
+      *margin = 1000;
+    }
+    return options;
+  }
   static std::vector<Search> searches_in(const SceneFeatures& scene, const DetectOptions& options) {
     std::vector<Search> out;
     out.emplace_back(scene, *l_, options);
@@ -22,7 +31,7 @@ class RunStages : public test::LScene {
   // The scores of all models' candidates after clustering, best first.
   static std::vector<double> clustered(const SceneFeatures& scene, int most_in_library,
                                        int num_threads) {
-    DetectOptions options;
+    DetectOptions options = without_margins();
     options.cluster.max_in_library = most_in_library;
     auto searches = searches_in(scene, options);
     std::vector<Candidates> found(2);
@@ -46,9 +55,48 @@ TEST_F(RunStages, TheBestOfAllModelsGoOn) {
   for (std::size_t i = 0; i < few.size(); ++i) EXPECT_EQ(few[i], all[i]);
 }
 
+TEST_F(RunStages, WhatIsFarBehindAnotherModelInItsPlaceIsRejected) {
+  const SceneFeatures scene = features_of(everything(), 1);
+  const auto found_with = [&](double margin) {
+    DetectOptions options = without_margins();
+    options.cluster.place_margin = margin;
+    auto searches = searches_in(scene, options);
+    std::vector<Candidates> found(2);
+    run_stages(round_stages().first(4), searches, 2, found);
+    return found;
+  };
+  constexpr double kMargin = 2;
+  const auto all = found_with(1000), left = found_with(kMargin);
+  const auto is_far_behind = [&](const Candidate& c) {
+    for (const Candidates& of_model : all) {
+      for (const Candidate& other : of_model) {
+        const double smaller = std::min(c.model->diameter, other.model->diameter);
+        if ((other.place() - c.place()).norm() < 0.3 * smaller && other.score > c.score + kMargin) {
+          return true;
+        }
+      }
+    }
+    return false;
+  };
+  int rejected = 0;
+  for (std::size_t m = 0; m < 2; ++m) {
+    std::vector<double> expected, scores;
+    for (const Candidate& c : all[m]) {
+      if (is_far_behind(c)) {
+        ++rejected;
+      } else {
+        expected.push_back(c.score);
+      }
+    }
+    for (const Candidate& c : left[m]) scores.push_back(c.score);
+    EXPECT_EQ(scores, expected);
+  }
+  EXPECT_GT(rejected, 5);
+}
+
 TEST_F(RunStages, OneModelAfterAnotherFindsTheSameUnlessTheyCompete) {
   const SceneFeatures scene = features_of(everything(), 1);
-  DetectOptions options;
+  DetectOptions options = without_margins();
   options.check.max_in_library = options.cluster.max_in_library = options.refine.max_in_library =
       100000;
   auto searches = searches_in(scene, options);

@@ -13,11 +13,11 @@ namespace {
 //   ctest --preset release -R pipeline/effort --verbose
 // Fewer are welcome: lower the limits with them. More need a reason in the message of the commit.
 constexpr SearchEffort kMost{.rounds = 3,
-                             .sampled_poses = 4200,
-                             .pose_checks = 5600,
-                             .alignments = 1150,
-                             .quick_scores = 1900,
-                             .full_scores = 70};
+                             .sampled_poses = 3800,
+                             .pose_checks = 4200,
+                             .alignments = 360,
+                             .quick_scores = 1420,
+                             .full_scores = 20};
 
 class EffortOf : public test::LScene {
  protected:

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/detect/contest.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "core/detect/search.hpp"
+
+namespace bpa {
+
+Claim claim_of(const Candidate& candidate) {
+  return {candidate.score, candidate.place().cast<float>(),
+          static_cast<float>(candidate.model->diameter)};
+}
+
+Contest contest_of(std::vector<Claim> claims, int most) {
+  std::ranges::stable_sort(claims, std::greater(), &Claim::score);
+  Contest out{kNoLimit, std::move(claims)};
+  if (std::ssize(out.claims) <= most) return out;
+  out.threshold = out.claims[most].score;
+  std::erase_if(out.claims, [&](const Claim& claim) { return claim.score <= out.threshold; });
+  return out;
+}
+
+bool is_behind(const Claim& claim, const Contest& contest, double margin) {
+  constexpr float kOnePlace = 0.3f;  // of the smaller diameter; chosen by hand
+  for (const Claim& other : contest.claims) {
+    if (other.score <= claim.score + margin) return false;
+    const float reach = kOnePlace * std::min(other.diameter, claim.diameter);
+    if ((other.place - claim.place).squaredNorm() < reach * reach) return true;
+  }
+  return false;
+}
+
+}  // namespace bpa
