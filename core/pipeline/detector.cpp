@@ -128,7 +128,7 @@ Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
   const double prepared_share =
       shorten_preparation(request.budget_ms, resolve_num_threads(request.num_threads), options);
   if (!compares_colors(frame, options, *models)) search_without_colors(options);
-  share_among_models(static_cast<int>(models->size()), options.rounds);
+  share_among_models(static_cast<int>(models->size()), options);
   std::unique_ptr<ModelSearches> elsewhere;
   if (searches) elsewhere = searches(*models, options);
   const Stopwatch total;

@@ -76,10 +76,20 @@ void search_without_colors(DetectorOptions& detector) {
   options.refine.min_refined_score -= kLower;
 }
 
-void share_among_models(int models, RoundOptions& options) {
+void share_among_models(int models, DetectorOptions& options) {
   constexpr int kWholeModels = 24;  // for which whole samples are looked at; chosen by hand
-  if (options.step_without_sign == 0)
-    options.step_without_sign = std::max(1, models / kWholeModels);
+  if (options.rounds.step_without_sign == 0) {
+    options.rounds.step_without_sign = std::max(1, models / kWholeModels);
+  }
+  constexpr int kMost = 1'000'000;  // that the options allow
+  // Twice as many for four times the models. With 195 models in piles of seed 777 and limits one,
+  // two and three times as high, 107/204, 114/204 and 114/204 objects are found.
+  const double more = std::sqrt(std::max(1.0, static_cast<double>(models) / kWholeModels));
+  DetectOptions& detect = options.detect;
+  for (int* most : {&detect.check.max_in_library, &detect.cluster.max_in_library,
+                    &detect.refine.max_in_library}) {
+    *most = std::min(static_cast<int>(std::lround(more * *most)), kMost);
+  }
 }
 
 void leave_out_details(SceneFeatureOptions& options) {

@@ -23,9 +23,10 @@ bool details_fit(double surface_ms, double milliseconds_left);
 /// tried, and more candidates go on.
 void search_without_colors(DetectorOptions& options);
 
-/// Sets how much is looked at for models without a sign (RoundOptions::step_without_sign), unless
-/// that is set: less, the more models (1 or more) are searched for.
-void share_among_models(int models, RoundOptions& options);
+/// The more models (1 or more) are searched for, the less is looked at for those without a sign
+/// (RoundOptions::step_without_sign), unless that is set, and the more candidates of all models
+/// together go on (max_in_library). Up to 24 models: as the options say.
+void share_among_models(int models, DetectorOptions& options);
 
 /// No outlines and flat regions.
 void leave_out_details(SceneFeatureOptions& options);

@@ -39,14 +39,26 @@ TEST(SearchPlan, WithoutColoursMoreIsTried) {
 
 TEST(SearchPlan, ManyModelsShareTheWork) {
   for (const auto& [models, step] : {std::pair{1, 1}, {21, 1}, {47, 1}, {48, 2}, {200, 8}}) {
-    RoundOptions options;
+    DetectorOptions options;
     share_among_models(models, options);
-    EXPECT_EQ(options.step_without_sign, step);
+    EXPECT_EQ(options.rounds.step_without_sign, step);
   }
-  RoundOptions set;
-  set.step_without_sign = 3;
+  DetectorOptions set;
+  set.rounds.step_without_sign = 3;
   share_among_models(200, set);
-  EXPECT_EQ(set.step_without_sign, 3);
+  EXPECT_EQ(set.rounds.step_without_sign, 3);
+}
+
+TEST(SearchPlan, MoreCandidatesOfManyModelsGoOn) {
+  for (const auto& [models, most] : {std::pair{1, 500}, {24, 500}, {96, 1000}, {216, 1500}}) {
+    DetectorOptions options;
+    options.detect.check.max_in_library = options.detect.cluster.max_in_library =
+        options.detect.refine.max_in_library = 500;
+    share_among_models(models, options);
+    EXPECT_EQ(options.detect.check.max_in_library, most);
+    EXPECT_EQ(options.detect.cluster.max_in_library, most);
+    EXPECT_EQ(options.detect.refine.max_in_library, most);
+  }
 }
 
 TEST(SearchPlan, NoBudgetShortensNothing) {
