@@ -40,6 +40,12 @@ int part_of(int count, double share) {
   return std::min(count, std::max(1, static_cast<int>(std::lround(share * count))));
 }
 
+// How many candidates of all models go on, stage by stage.
+std::array<int*, 3> most_in_library(DetectOptions& options) {
+  return {&options.check.max_in_library, &options.cluster.max_in_library,
+          &options.refine.max_in_library};
+}
+
 }  // namespace
 
 double shorten_preparation(double budget_ms, int num_threads, DetectorOptions& options) {
@@ -85,9 +91,7 @@ void share_among_models(int models, DetectorOptions& options) {
   // Twice as many for four times the models. With 195 models in piles of seed 777 and limits one,
   // two and three times as high, 107/204, 114/204 and 114/204 objects are found.
   const double more = std::sqrt(std::max(1.0, static_cast<double>(models) / kWholeModels));
-  DetectOptions& detect = options.detect;
-  for (int* most : {&detect.check.max_in_library, &detect.cluster.max_in_library,
-                    &detect.refine.max_in_library}) {
+  for (int* most : most_in_library(options.detect)) {
     *most = std::min(static_cast<int>(std::lround(more * *most)), kMost);
   }
 }
@@ -98,11 +102,10 @@ void leave_out_details(SceneFeatureOptions& options) {
 
 DetectorOptions sized_round(const DetectorOptions& options, double share) {
   DetectorOptions out = options;
-  for (int* size : {&out.features.max_references, &out.features.round_keypoints,
-                    &out.detect.check.max_in_library, &out.detect.cluster.max_in_library,
-                    &out.detect.refine.max_in_library}) {
+  for (int* size : {&out.features.max_references, &out.features.round_keypoints}) {
     *size = part_of(*size, share);
   }
+  for (int* most : most_in_library(out.detect)) *most = part_of(*most, share);
   return out;
 }
 
