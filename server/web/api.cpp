@@ -165,7 +165,7 @@ std::string Api::news(const Poll& poll) const {
                                        {"came_ns", frame->came_ns},
                                        {"frame_id", frame->frame_id}});
   }
-  const auto results = feed_.results_after(poll.result);
+  const auto results = feed_.tell(poll.viewer, poll.result);
   text += ",\"results\":[";
   for (const auto& result : results) {
     text += (result == results.front() ? "" : ",") + result->summary();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <ranges>
 #include <utility>
 
 #include "core/base/concat.hpp"
@@ -122,7 +123,9 @@ void Feed::keep(std::shared_ptr<KeptResult> kept) {
   const auto kept_from = results_.end() - static_cast<std::ptrdiff_t>(count);
   const auto held = [this](const auto& result) {
     return std::ranges::any_of(
-        viewers_, [&](const auto& viewer) { return viewer.second.held == result->id; });
+        viewers_ | std::views::values, [id = result->id](const Viewer& viewer) {
+          return viewer.held == id || viewer.told == id;
+        });
   };
   results_.erase(std::remove_if(results_.begin(), kept_from, std::not_fn(held)), kept_from);
 }
@@ -171,7 +174,9 @@ Status Feed::see(const std::string& viewer, bool tracks, std::uint64_t held) {
     return Status(StatusCode::busy,
                   concat(viewers_.size(), " viewers look, as many as may; try again later"));
   }
-  viewers_[viewer] = {now, held};
+  Viewer& seen = viewers_[viewer];
+  seen.seen = now;
+  seen.held = held;
   last_seen_ = now.time_since_epoch().count();
   if (tracks) last_saw_tracks_ = last_seen_.load();
   return {};
@@ -211,6 +216,15 @@ std::vector<std::shared_ptr<const KeptResult>> Feed::results_after(std::uint64_t
   const auto first =
       std::ranges::find_if(results_, [id](const auto& result) { return result->id > id; });
   return {first, results_.end()};
+}
+
+std::vector<std::shared_ptr<const KeptResult>> Feed::tell(const std::string& viewer,
+                                                          std::uint64_t id) {
+  auto results = results_after(id);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto told = viewers_.find(viewer);
+  if (told != viewers_.end() && !results.empty()) told->second.told = results.back()->id;
+  return results;
 }
 
 std::shared_ptr<const KeptResult> Feed::result(std::uint64_t id) const {

@@ -96,6 +96,9 @@ class Feed {
   std::optional<CameraFrame> camera_frame(std::uint64_t id) const;
   /// By rising id; those after `id`.
   std::vector<std::shared_ptr<const KeptResult>> results_after(std::uint64_t id) const;
+  /// The same for a viewer that is told of them. The last is kept until the viewer is told of a
+  /// later one or is gone: what a viewer may show is not dropped before it can say so.
+  std::vector<std::shared_ptr<const KeptResult>> tell(const std::string& viewer, std::uint64_t id);
   /// Null where it is no longer kept.
   std::shared_ptr<const KeptResult> result(std::uint64_t id) const;
   /// JSON; empty without tracks.
@@ -107,7 +110,7 @@ class Feed {
  private:
   struct Viewer {
     Clock::time_point seen{};
-    std::uint64_t held = 0;  ///< A result's id; 0: none.
+    std::uint64_t held = 0, told = 0;  ///< Results' ids; 0: none.
   };
 
   std::uint64_t add(const Frame& frame, const SceneInterpretations& result, std::string origin);

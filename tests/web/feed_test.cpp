@@ -108,6 +108,18 @@ TEST(Feed, KeepsAResultWhileAViewerHoldsIt) {
   EXPECT_EQ(ids(), (std::vector<std::uint64_t>{3, 6, 7}));
 }
 
+TEST(Feed, KeepsTheResultThatAViewerWasToldOfLast) {
+  Feed feed(2, [] { return 7; });
+  ASSERT_TRUE(feed.see("viewer", false).ok());
+  feed.add_result(frame_of(64, 48), result_of("mug"));
+  ASSERT_EQ(feed.tell("viewer", 0).size(), 1U);
+  for (int i = 0; i < 5; ++i) feed.add_result(frame_of(64, 48), result_of("mug"));
+  EXPECT_TRUE(feed.result(1));
+  ASSERT_EQ(feed.tell("viewer", 1).back()->id, 6U);
+  feed.add_result(frame_of(64, 48), result_of("mug"));
+  EXPECT_FALSE(feed.result(1));
+}
+
 TEST(Feed, HasRoomForSomeViewers) {
   Feed feed(3, [] { return 7; });
   for (int i = 0; i < 16; ++i) EXPECT_TRUE(feed.see(std::to_string(i), false).ok());

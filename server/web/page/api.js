@@ -47,8 +47,8 @@ export const events = new EventTarget();
 export const emit = (name, detail) => events.dispatchEvent(new CustomEvent(name, {detail}));
 export const on = (name, react) => events.addEventListener(name, (event) => react(event.detail));
 
-/** What the page asks the server for: tracks, and to keep the result of this number (0: none). */
-export const wanted = {tracks: false, held: 0};
+/** What the page asks the server for: tracks, and to keep the result that it shows (0: none). */
+export const wanted = {tracks: false, held: () => 0};
 
 const viewer = crypto.getRandomValues(new Uint32Array(2)).join('-');
 const known = {sequence: 0, result: 0, uptime: 0};
@@ -56,7 +56,7 @@ const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 
 async function once() {
   const query = new URLSearchParams({viewer, sequence: known.sequence, result: known.result,
-    tracks: wanted.tracks ? 1 : 0, held: wanted.held});
+    tracks: wanted.tracks ? 1 : 0, held: wanted.held()});
   const news = await (await ask(`/api/live?${query}`, {}, kPatience)).json();
   if (!news.status) return;
   if (news.status.uptime_s < known.uptime) {  // another server than before

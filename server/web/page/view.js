@@ -24,9 +24,7 @@ export const view = {
 const kSummaries = 200;
 let loading = 0;
 
-on('view', () => {
-  wanted.held = view.pinned && view.result ? view.result.id : 0;
-});
+wanted.held = () => (view.result ? view.result.id : 0);
 
 export const interpretation = () =>
   (view.result ? view.result.result.interpretations[view.rank - 1] : undefined);
