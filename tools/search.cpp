@@ -89,9 +89,10 @@ Detector open_detector(const DetectorArguments& a, int num_threads) {
     const auto model = or_throw(make_object_model(std::move(source), num_threads), name);
     or_throw(library->add(model));
   }
-  return Detector(
-      library, read_detector_options(a.config),
-      a.built_in_layers ? default_score_layers() : or_throw(library_score_layers(a.library)));
+  DetectorOptions options = read_detector_options(a.config);
+  if (!a.for_training) return Detector(library, options, or_throw(library_score_layers(a.library)));
+  options.detect.score.stop_early = false;
+  return Detector(library, options, default_score_layers());
 }
 
 std::vector<io::BopFrame> list_inputs(const DetectArguments& a) {

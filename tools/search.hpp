@@ -17,7 +17,8 @@ struct DetectorArguments {
   std::string library;              ///< Folder of the models.
   std::string config;               ///< YAML file of settings; empty: the defaults.
   std::vector<std::string> models;  ///< Names; empty: all of the library.
-  bool built_in_layers = false;     ///< Ignore score layers that the library has learned.
+  /// Ignore score layers that the library has learned, and score every placement in full.
+  bool for_training = false;
 };
 
 /// Adds --library and --config.

@@ -263,7 +263,7 @@ void check_usage(const TrainArguments& a) {
 void train(const TrainArguments& a) {
   check_usage(a);
   DetectorArguments built_in = a.detector;
-  built_in.built_in_layers = true;
+  built_in.for_training = true;
   const Detector detector = open_detector(built_in, a.common.threads);
   ScoreLayers layers = default_score_layers();
   if (!a.bop.empty()) layers = learn_all(a, detector, layers);

@@ -339,6 +339,7 @@ struct SelectOptions {
 
 struct ScoreOptions {
   bool use_round_three = true;
+  bool stop_early = true;
   int quick_points = 200;
   double color_points = 2;
 
@@ -347,6 +348,8 @@ struct ScoreOptions {
           {0, 1,
            "Score with edges, random walks, segments, features, colours and rivals; false "
            "leaves these components unknown."});
+    visit("stop_early", stop_early,
+          {0, 1, "Reject a placement as soon as its first score components make it improbable."});
     visit("quick_points", quick_points,
           {1, 100000, "Surface points that round two scores a placement with."});
     visit("color_points", color_points,

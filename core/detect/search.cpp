@@ -92,9 +92,22 @@ Candidate Search::scored(Refinement refinement, Source found_by,
   add_effort(&SearchEffort::full_scores);
   Candidate out{.model = &model, .refinement = refinement, .found_by = found_by};
   Evidence evidence(scene, places, out.pose(), 0, std::move(predicted));
-  out.values = measure(evidence, options.score.use_round_three ? Round::three : Round::two);
-  out.explained = evidence.take_explained();
   out.prior = priors.evidence(out.pose());
+  if (!options.score.use_round_three) {
+    out.values = measure(evidence, Round::two);
+  } else if (!options.score.stop_early) {
+    out.values = measure(evidence, Round::three);
+  } else {
+    const bool colored = !scene.cielab.empty() && !model.index->cielab.empty();
+    const auto values = measure_while_probable(
+        evidence, colored ? layers.round_three : layers.without_color, out.prior);
+    if (!values) {
+      out.score = kNoLimit;
+      return out;
+    }
+    out.values = *values;
+  }
+  out.explained = evidence.take_explained();
   apply_layer(out);
   return out;
 }

@@ -95,7 +95,7 @@ struct Search {
   /// Log odds by check_colors(), of ScoreOptions::color_points points.
   double color_evidence(const Pose& pose) const;
   /// Scores a candidate at `refinement` with all components. `predicted` is of its pose, where that
-  /// is known.
+  /// is known. The score is minus infinity where measure_while_probable() stops.
   Candidate scored(Refinement refinement, Source found_by,
                    std::optional<PredictedSurface> predicted = {}) const;
   /// Sets score and probability by the last layer, or by that of round two without round three.

@@ -119,6 +119,9 @@ std::vector<Candidates> without_duplicates(const SearchInputs& inputs,
                                            std::vector<Candidates> found) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i].empty()) continue;
+    std::erase_if(found[i], [&](const Candidate& candidate) {
+      return candidate.score < inputs.options.detect.select.min_score;
+    });
     suppress_duplicates(search_for(inputs, *inputs.models[i]), found[i]);
   }
   return found;

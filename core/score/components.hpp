@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 #include "core/model/model_index.hpp"
@@ -14,9 +15,10 @@
 #include "core/score/likelihood.hpp"
 #include "core/score/random_walk_score.hpp"
 
-// Every score component of a placement, declared once. Layers, files, results, training, the
-// explainer and the tests read this table: a new component is a function of the evidence and an
-// entry here. Layers that do not know it yet count it as nothing until they are trained again.
+// Every score component of a placement, declared once, in the order in which they are measured:
+// what tells most for its time is first. Layers, files, results, training, the explainer and the
+// tests read this table: a new component is a function of the evidence and an entry here. Layers
+// that do not know it yet count it as nothing until they are trained again.
 
 namespace bpa {
 
@@ -34,6 +36,9 @@ struct ComponentType {
   std::string_view meaning;
   bool needs_color = false;  ///< Known only where frame and model have colours.
   bool rises = false;  ///< More never speaks against a placement: training keeps the curve rising.
+  /// Log odds of the components up to here. A placement with lower ones is measured no further: of
+  /// 8532 in YCB-Video and piles of seeds 100 and 777, none had more than -5 in the end.
+  double least = -std::numeric_limits<double>::infinity();
 };
 
 constexpr auto kScoreComponents = std::to_array<ComponentType>({
@@ -88,6 +93,42 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
     {"support", "root of pixels", 0, 600, Round::two, true,
      [](Evidence& e) -> double { return std::sqrt(std::max(0.0, e.surface().support())); },
      "Root of the pixels that speak for the placement."},
+    {"below", "share", 0, 1, Round::three, true,
+     [](Evidence& e) -> double { return e.resting().below; },
+     "Model points beneath a plane that is seen there."},
+    {"gap", "metres", -0.05, 0.2, Round::three, true,
+     [](Evidence& e) -> double { return e.resting().gap; },
+     "From the largest plane to the lowest point, beyond 1 cm."},
+    {"balance", "diameters", -2, 2, Round::three, true,
+     [](Evidence& e) -> double { return e.resting().balance; },
+     "How far the centre is inside of what rests on the plane; negative: it would fall.", false, false, -9.4},
+    {"silhouette", "share", 0, 1, Round::three, true,
+     [](Evidence& e) -> double { return e.silhouette().on; },
+     "Strength of the colour gradients across the outline.", true},
+    {"silhouette_contrast", "share", -1, 1, Round::three, true,
+     [](Evidence& e) -> double { return e.silhouette().contrast; },
+     "The same less that beside the outline.", true, false, -8.75},
+    {"color", "log-likelihood", -1, 0, Round::three, true,
+     [](Evidence& e) -> double { return e.colors().likelihood; },
+     "Colours of the surface, under the frame's light.", true},
+    {"tint", "CIELAB", 0, 200, Round::three, true,
+     [](Evidence& e) -> double { return e.colors().tint; },
+     "Colour shift of the whole placement.", true},
+    {"exposure", "log of the cube root of light", -2.4, 2.4, Round::three, false,
+     [](Evidence& e) -> double { return e.colors().exposure; },
+     "Light of the whole placement, frame to model.", true, false, -7.05},
+    {"texture", "log-likelihood ratio", -5, 10, Round::three, true,
+     [](Evidence& e) -> double { return e.texture().log_ratio; },
+     "Mean over pixels: the model's pattern against a surface of one colour.", true},
+    {"texture_evidence", "log-likelihood ratio", -1e5, 1e5, Round::three, true,
+     [](Evidence& e) -> double { return e.texture().total; },
+     "Sum over independent pixels of the same.", true, false, -8.1},
+    {"segment", "log-likelihood", -1, 0, Round::three, true,
+     [](Evidence& e) -> double { return segment_score(e.segments()); },
+     "Distance of the touched super-pixels from the model."},
+    {"segment_affinity", "log-likelihood", -1, 0, Round::three, true,
+     [](Evidence& e) -> double { return segment_affinity_score(e.scene().segmentation, e.segments()); },
+     "Super-pixels of one object should be explained together.", false, false, -6.7},
     {"edge_likelihood", "log-likelihood", -1, 0, Round::three, true,
      [](Evidence& e) -> double { return edge_likelihood_score(e.scene().image, e.edges(), e.model(), e.pose()); },
      "Predicted range edges in the edge image."},
@@ -97,45 +138,9 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
     {"random_walk", "log-likelihood", -1, 0, Round::three, true,
      [](Evidence& e) -> double { return random_walk_score(e.scene().image, e.edges(), e.model(), e.pose(), e.predicted()); },
      "Ends of random walks that do not cross edges."},
-    {"segment", "log-likelihood", -1, 0, Round::three, true,
-     [](Evidence& e) -> double { return segment_score(e.segments()); },
-     "Distance of the touched super-pixels from the model."},
-    {"segment_affinity", "log-likelihood", -1, 0, Round::three, true,
-     [](Evidence& e) -> double { return segment_affinity_score(e.scene().segmentation, e.segments()); },
-     "Super-pixels of one object should be explained together."},
     {"fpfh", "log-likelihood", -1, 0, Round::three, true,
      [](Evidence& e) -> double { return fpfh_score(e.scene().surface, e.scene().keypoints, e.scene().fpfh, e.places(), e.pose()); },
      "FPFH features that lie on the model."},
-    {"below", "share", 0, 1, Round::three, true,
-     [](Evidence& e) -> double { return e.resting().below; },
-     "Model points beneath a plane that is seen there."},
-    {"gap", "metres", -0.05, 0.2, Round::three, true,
-     [](Evidence& e) -> double { return e.resting().gap; },
-     "From the largest plane to the lowest point, beyond 1 cm."},
-    {"balance", "diameters", -2, 2, Round::three, true,
-     [](Evidence& e) -> double { return e.resting().balance; },
-     "How far the centre is inside of what rests on the plane; negative: it would fall."},
-    {"color", "log-likelihood", -1, 0, Round::three, true,
-     [](Evidence& e) -> double { return e.colors().likelihood; },
-     "Colours of the surface, under the frame's light.", true},
-    {"tint", "CIELAB", 0, 200, Round::three, true,
-     [](Evidence& e) -> double { return e.colors().tint; },
-     "Colour shift of the whole placement.", true},
-    {"exposure", "log of the cube root of light", -2.4, 2.4, Round::three, false,
-     [](Evidence& e) -> double { return e.colors().exposure; },
-     "Light of the whole placement, frame to model.", true},
-    {"texture", "log-likelihood ratio", -5, 10, Round::three, true,
-     [](Evidence& e) -> double { return e.texture().log_ratio; },
-     "Mean over pixels: the model's pattern against a surface of one colour.", true},
-    {"texture_evidence", "log-likelihood ratio", -1e5, 1e5, Round::three, true,
-     [](Evidence& e) -> double { return e.texture().total; },
-     "Sum over independent pixels of the same.", true},
-    {"silhouette", "share", 0, 1, Round::three, true,
-     [](Evidence& e) -> double { return e.silhouette().on; },
-     "Strength of the colour gradients across the outline.", true},
-    {"silhouette_contrast", "share", -1, 1, Round::three, true,
-     [](Evidence& e) -> double { return e.silhouette().contrast; },
-     "The same less that beside the outline.", true},
     {"rivals", "log-likelihood", -500, 0, Round::rivals, true,
      [](Evidence&) -> double { return kNotKnown; },
      "Depth: log-likelihood behind the best pose in the same place; see behind_best()."},

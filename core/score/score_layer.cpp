@@ -223,6 +223,19 @@ double ScoreLayer::log_odds(const ScoreValues& values) const {
   return sum;
 }
 
+std::optional<ScoreValues> measure_while_probable(Evidence& evidence, const ScoreLayer& layer,
+                                                  double prior) {
+  ScoreValues values;
+  double log_odds = layer.bias + prior;
+  for (std::size_t i = 0; i < kNumComponents; ++i) {
+    const ComponentType& type = kScoreComponents[i];
+    values[i] = type.round <= Round::three ? type.measure(evidence) : kNotKnown;
+    log_odds += layer.components[i].at(values[i]);
+    if (log_odds < type.least) return std::nullopt;
+  }
+  return values;
+}
+
 Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames) {
   std::array<std::vector<std::pair<double, bool>>, kNumComponents> values;
   for (const ScoreFrame& frame : frames) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,12 @@ struct ScoreLayer {
 
   double log_odds(const ScoreValues& values) const;
 };
+
+/// The components that are known up to round three, in the order of the table. Nothing where the
+/// log odds of those so far, `prior` added, are below ComponentType::least: the placement is
+/// improbable.
+std::optional<ScoreValues> measure_while_probable(Evidence& evidence, const ScoreLayer& layer,
+                                                  double prior);
 
 /// The layers of a detector.
 struct ScoreLayers {

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/random.hpp"
 #include "core/detect/stages.hpp"
 #include "core/model/model_index.hpp"
 #include "core/score/rival_poses.hpp"
@@ -118,6 +119,52 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
       hanging += check.free_space > 0;
     }
     EXPECT_GT(hanging, 0.98 * static_cast<double>(dropped.poses.size()));
+  }
+}
+
+TEST_F(SingleObject, MeasuresNoFurtherThanTheFirstComponentsAreProbable) {
+  const SceneFeatures scene = features_of(everything(), 1);
+  const FeaturePlaces places(*l_);
+  const ScoreLayer& layer = default_score_layers().round_three;
+  RandomStream random(5);
+  int stopped = 0, measured = 0;
+  for (int i = 0; i < 200; ++i) {
+    Pose pose = l_truth_;
+    for (double& x : pose.translation) x += 0.02 * (i % 4) * random.uniform(-1, 1);
+    Evidence whole(scene, places, pose);
+    const ScoreValues values = measure(whole, Round::three);
+    double log_odds = layer.bias - 1;
+    bool probable = true;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      log_odds += layer.components[k].at(values[k]);
+      probable &= log_odds >= kScoreComponents[k].least;
+    }
+    Evidence again(scene, places, pose);
+    const auto some = measure_while_probable(again, layer, -1);
+    ASSERT_EQ(some.has_value(), probable) << i;
+    ++(probable ? measured : stopped);
+    if (!some) continue;
+    EXPECT_NEAR(layer.log_odds(*some), layer.log_odds(values), 1e-12);
+  }
+  EXPECT_GT(stopped, 50);
+  EXPECT_GT(measured, 50);
+}
+
+TEST_F(SingleObject, StoppingEarlyLosesNoProbablePlacement) {
+  const SceneFeatures scene = features_of(everything(), 1);
+  DetectOptions options;
+  options.select.min_score = -5;
+  for (const auto& model : {l_, brick_}) {
+    options.score.stop_early = true;
+    const auto early = detect_object(Search(scene, *model, options));
+    options.score.stop_early = false;
+    const auto whole = detect_object(Search(scene, *model, options));
+    ASSERT_FALSE(whole.empty()) << model->name;
+    ASSERT_EQ(early.size(), whole.size()) << model->name;
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      EXPECT_EQ(early[i].pose().translation, whole[i].pose().translation) << model->name;
+      EXPECT_EQ(early[i].score, whole[i].score) << model->name;
+    }
   }
 }
 

@@ -224,7 +224,9 @@ TEST_F(PriorsOf, DecideBetweenPosesThatLookTheSame) {
   EXPECT_LT(error.angle, 0.06);
   // Each score is the image's, which rivals are compared in, and what the prior adds.
   const ModelPriors priors(given, *brick);
-  const Search search(scene, *brick);
+  DetectOptions in_full;
+  in_full.score.stop_early = false;
+  const Search search(scene, *brick, in_full);
   for (const Candidate& c : candidates) {
     EXPECT_EQ(c.prior, priors.evidence(c.pose()));
     Candidate alone = search.scored(c.refinement, c.found_by);
