@@ -18,7 +18,8 @@ namespace bpa {
 struct RoundOptions {
   int max_rounds = 12;
   double min_certain = 0.85;
-  double min_gain = 0.05;
+  double min_gain = 0.02;
+  double min_gain_of_two = 0.15;
   double expected_share = 0.6;
   double min_gain_expected = 0.3;
   int step_without_sign = 0;
@@ -34,7 +35,11 @@ struct RoundOptions {
     visit("min_gain", min_gain,
           {0, 1,
            "The search ends after a round, but not the first, that makes the surface of no "
-           "placement more probable by this, in the mean of its pixels. 0: after max_rounds."});
+           "placement more probable by this, in the mean of its pixels."});
+    visit("min_gain_of_two", min_gain_of_two,
+          {0, 1,
+           "It ends, too, after two rounds in a row neither of which gains this. With both 0, it "
+           "ends after max_rounds."});
     visit("expected_share", expected_share,
           {0.01, 1,
            "Of a round's sample, what the first round takes where an earlier frame says what to "

@@ -86,6 +86,7 @@ Candidates LibrarySearch::run(ModelSearches& searches, bool& cut, SearchEffort& 
   SearchPace pace(preparation_ms, static_cast<int>(inputs.models.size()));
   double looked_at = 0;                 // of the scene, in whole rounds
   double gained = 0, looked_since = 0;  // probability, and whole rounds, since that was last judged
+  double gained_before = 1;             // when it was last judged
   bool ended = false;                   // before time did
   for (int round = 0; !ended && looked_at < options.rounds.max_rounds; ++round) {
     const bool first_after_another = follows && round == 0;
@@ -113,7 +114,10 @@ Candidates LibrarySearch::run(ModelSearches& searches, bool& cut, SearchEffort& 
     if (looked_since < 1 && !first_after_another) continue;
     // The first round never ends the search, unless it follows another.
     ended = follows ? gained < options.rounds.min_gain_expected
-                    : looked_at >= 2 && gained < options.rounds.min_gain;
+                    : looked_at >= 2 &&
+                          (gained < options.rounds.min_gain ||
+                           std::max(gained, gained_before) < options.rounds.min_gain_of_two);
+    gained_before = gained;
     gained = looked_since = 0;
   }
   const double final_share = limited ? pace.share_of_final(deadline.milliseconds_left()) : 1;
