@@ -52,7 +52,7 @@ inline void spill(const std::string& path, const std::string& bytes) {
 /// The folder of real RGB-D frames; empty when it is not there (the test should be skipped).
 inline std::string real_data() {
   const char* named = std::getenv("BPA_DATA");
-  const std::string path = named ? named : std::string(BPA_SOURCE_DIR) + "/../shared/data";
+  const std::string path = named ? named : BPA_SOURCE_DIR "/../shared/data";
   return std::filesystem::is_directory(path + "/ycbv") ? path : std::string();
 }
 

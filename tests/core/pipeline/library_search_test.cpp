@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/library_search.hpp"
+
+#include <numeric>
+
+#include "core/score/score_layer.hpp"
+#include "tests/support/l_scene.hpp"
+
+namespace bpa {
+namespace {
+
+// Each round finds one placement, of surface that no other explains: its probability is the gain.
+class ScriptedSearches : public ModelSearches {
+ public:
+  ScriptedSearches(const ObjectModel& model, std::vector<double> gains)
+      : model_(model), gains_(std::move(gains)) {
+    found_.resize(1);
+  }
+
+  void score_expected(const Deadline&) override {}
+  bool run_round(const RoundPlan& plan) override {
+    Candidate candidate{.model = &model_};
+    candidate.refinement.camera_from_object.translation.x() = plan.number;
+    candidate.score = log_odds_of(gains_.at(static_cast<std::size_t>(plan.number)));
+    candidate.explained.resize(100);
+    std::iota(candidate.explained.begin(), candidate.explained.end(), 100U * plan.number);
+    found_[0].push_back(candidate);
+    return true;
+  }
+  void finish(const FinalPlan&) override {}
+  bool late() const override { return false; }
+  SearchEffort effort() const override { return {}; }
+
+ private:
+  const ObjectModel& model_;
+  const std::vector<double> gains_;
+};
+
+class LibrarySearchEnds : public test::LScene {
+ protected:
+  // The rounds that a search takes whose rounds gain that much.
+  static std::int64_t after(std::vector<double> gains, const DetectorOptions& options = {}) {
+    const SceneFeatures scene = features_of(everything());
+    const DetectRequest request;
+    const std::vector<std::shared_ptr<const ObjectModel>> models = {l_};
+    const SearchInputs inputs{scene, options, default_score_layers(), request, models};
+    ScriptedSearches searches(*l_, std::move(gains));
+    bool cut = true;
+    SearchEffort effort;
+    const Candidates found = LibrarySearch{inputs, {}}.run(searches, cut, effort);
+    EXPECT_FALSE(cut);
+    EXPECT_EQ(found.size(), static_cast<std::size_t>(effort.rounds));
+    return effort.rounds;
+  }
+};
+
+TEST_F(LibrarySearchEnds, AfterARoundThatGainsNearlyNothing) {
+  EXPECT_EQ(after({0.9, 0.5, 0.9, 0.01, 0.9}), 4);
+  EXPECT_EQ(after({0.01, 0.5, 0.01, 0.9}), 3) << "but not after the first";
+}
+
+TEST_F(LibrarySearchEnds, AfterTwoRoundsInARowThatGainLittle) {
+  EXPECT_EQ(after({0.9, 0.1, 0.5, 0.1, 0.14, 0.9}), 5);
+  EXPECT_EQ(after({0.1, 0.1, 0.9}), 2);
+}
+
+TEST_F(LibrarySearchEnds, AfterMaxRoundsWithoutLimits) {
+  DetectorOptions options;
+  options.rounds.min_gain = options.rounds.min_gain_of_two = 0;
+  options.rounds.max_rounds = 5;
+  EXPECT_EQ(after({0.9, 0.001, 0.001, 0.001, 0.001, 0.9}, options), 5);
+}
+
+}  // namespace
+}  // namespace bpa
