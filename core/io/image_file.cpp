@@ -1,17 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// OpenCV's codecs are private to this file. They allocate what a header says before anything here
-// can refuse it. So headers are read here first, and only a file reaches them whose header they
-// cannot read in another way: whatever stands in its place is refused, not skipped. libpng reports
-// damage on stderr before OpenCV can say anything, so PNG checksums are compared here, too.
+// libpng and libjpeg-turbo are private to this file. They allocate what a header says before
+// anything here can refuse it. So headers are read here first, and only a file reaches them whose
+// header they cannot read in another way: whatever stands in its place is refused, not skipped.
+// OpenCV's codecs bring GDAL and what that needs: 120 libraries, which take 70 ms to load.
 #include "core/io/image_file.hpp"
 
 #include <algorithm>
+#include <csetjmp>
 #include <fstream>
-#include <limits>
+#include <memory>
 #include <optional>
 
-#include <opencv2/imgcodecs.hpp>
+#include <png.h>
+#include <turbojpeg.h>
+#include <zlib.h>
 
 #include "core/base/concat.hpp"
 #include "core/io/file_bytes.hpp"
@@ -114,105 +117,194 @@ Result<std::string> pixel_chunks(const std::string& path, std::string_view bytes
   return corrupt(path, " is truncated");
 }
 
-/// Has OpenCV decode a file of that size.
-Result<cv::Mat> decode_checked(const std::string& path, std::string_view bytes, int flags,
+Status not_decodable(const std::string& path) {
+  return corrupt(path, " is not an image that can be decoded");
+}
+
+/// Has libpng decode a file of that size to rows of PNG_FORMAT_... pixels without padding.
+template <class T>
+Status decode_png(const std::string& path, std::string_view bytes, const ImageSize& size,
+                  png_uint_32 format, std::vector<T>& pixels) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) {
+    return not_decodable(path);
+  }
+  const auto free = [](png_image* read) { png_image_free(read); };
+  const std::unique_ptr<png_image, decltype(free)> owner(&image, free);
+  if (static_cast<int>(image.width) != size.width ||
+      static_cast<int>(image.height) != size.height) {
+    return not_decodable(path);
+  }
+  // Colours of 16 bits are those of 8 bits, not linear in light. Depth is not colour.
+  if ((format & PNG_FORMAT_FLAG_COLOR) != 0) image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
+  image.format = format;
+  pixels.resize(PNG_IMAGE_SIZE(image) / sizeof(T));
+  if (png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr) == 0) {
+    return not_decodable(path);
+  }
+  return {};
+}
+
+struct CloseJpeg {
+  void operator()(void* handle) const { tjDestroy(handle); }
+};
+using Jpeg = std::unique_ptr<void, CloseJpeg>;
+
+/// Has libjpeg-turbo decode a file of that size to rgb.
+Result<ColorImage> decode_jpeg(const std::string& path, std::string_view bytes,
                                const ImageSize& size) {
-  if (bytes.size() > std::numeric_limits<int>::max()) {
-    return invalid_argument(path, " has ", bytes.size(),
-                            " bytes; an image must have less than 2 GB");
+  const Jpeg jpeg(tjInitDecompress());
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+  const bool cmyk = size.channels == 4;
+  const std::size_t channels = cmyk ? 4 : 3;
+  std::vector<std::uint8_t> pixels(channels * size.width * size.height);
+  int width = 0, height = 0, subsampling = 0, colorspace = 0;
+  if (tjDecompressHeader3(jpeg.get(), data, bytes.size(), &width, &height, &subsampling,
+                          &colorspace) != 0 ||
+      width != size.width || height != size.height) {
+    return not_decodable(path);
   }
-  cv::Mat image;
-  try {
-    image = cv::imdecode(
-        cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data())), flags);
-  } catch (const std::exception&) {
+  // What libjpeg-turbo only warns of, such as bytes between segments, is read as far as it goes.
+  if (tjDecompress2(jpeg.get(), data, bytes.size(), pixels.data(), width, 0, height,
+                    cmyk ? TJPF_CMYK : TJPF_RGB, 0) != 0 &&
+      tjGetErrorCode(jpeg.get()) != TJERR_WARNING) {
+    return not_decodable(path);
   }
-  if (image.empty() || image.cols != size.width || image.rows != size.height) {
-    return corrupt(path, " is not an image that can be decoded");
+  ColorImage image{width, height, {}};
+  if (!cmyk) {
+    image.pixels = std::move(pixels);
+    return image;
+  }
+  for (std::size_t i = 0; i < pixels.size(); i += 4) {  // inks are stored inverted
+    for (std::size_t c = 0; c < 3; ++c) {
+      image.pixels.push_back(static_cast<std::uint8_t>(pixels[i + c] * pixels[i + 3] / 255));
+    }
   }
   return image;
 }
 
-/// Decodes a PNG, or with `jpeg_too` a JPEG, whose header passes check(size).
-Result<cv::Mat> decode(const std::string& path, std::string_view bytes, int flags, bool jpeg_too,
-                       const auto& check) {
+/// The PNG chunks to decode, or with `jpeg_too` the JPEG, whose header passes check(size).
+Result<std::string> checked_image(const std::string& path, std::string_view bytes, bool jpeg_too,
+                                  const auto& check, ImageSize& size) {
   const bool jpeg = jpeg_too && bytes.starts_with(kJpegSignature);
   if (!jpeg && !bytes.starts_with(kPngSignature)) {
     if (kPngSignature.starts_with(bytes)) return corrupt(path, " is truncated");
     return Status(StatusCode::unsupported,
                   path + (jpeg_too ? " is not a PNG or JPEG image" : " is not a PNG image"));
   }
-  const Result<ImageSize> size =
+  const Result<ImageSize> header =
       jpeg ? parse_jpeg_header(path, bytes) : parse_png_header(path, bytes);
-  if (!size.ok()) return size.status();
-  if (Status status = check(*size); !status.ok()) return status;
-  if (jpeg) {
-    if (Status status = check_jpeg_scans(path, bytes); !status.ok()) return status;
-    return decode_checked(path, bytes, flags, *size);
+  if (!header.ok()) return header.status();
+  size = *header;
+  if (Status status = check(size); !status.ok()) return status;
+  if (!jpeg) return pixel_chunks(path, bytes);
+  if (Status status = check_jpeg_scans(path, bytes); !status.ok()) return status;
+  return std::string(bytes);
+}
+
+Result<ColorImage> decode_color(const std::string& path, std::string_view bytes,
+                                const auto& check) {
+  ImageSize size;
+  const Result<std::string> checked = checked_image(path, bytes, true, check, size);
+  if (!checked.ok()) return checked.status();
+  if (bytes.starts_with(kJpegSignature)) return decode_jpeg(path, *checked, size);
+  ColorImage image{size.width, size.height, {}};
+  const bool alpha = size.channels == 2 || size.channels == 4;
+  Status status =
+      decode_png(path, *checked, size, alpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB, image.pixels);
+  if (!status.ok()) return status;
+  if (alpha) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+      if (i % 4 != 3) image.pixels[kept++] = image.pixels[i];
+    }
+    image.pixels.resize(kept);
   }
-  const Result<std::string> chunks = pixel_chunks(path, bytes);
-  if (!chunks.ok()) return chunks.status();
-  return decode_checked(path, *chunks, flags, *size);
+  return image;
 }
 
-Result<cv::Mat> read_image(const std::string& path, int flags, bool jpeg_too, const auto& check) {
-  const Result<std::string> bytes = read_file(path);
-  if (!bytes.ok()) return bytes.status();
-  return decode(path, *bytes, flags, jpeg_too, check);
+Result<GrayImage> decode_gray(const std::string& path, std::string_view bytes, const auto& check) {
+  ImageSize size;
+  const Result<std::string> checked = checked_image(path, bytes, false, check, size);
+  if (!checked.ok()) return checked.status();
+  GrayImage image{size.width, size.height, {}};
+  if (size.bit_depth == 16) {
+    Status status = decode_png(path, *checked, size, PNG_FORMAT_LINEAR_Y, image.pixels);
+    if (!status.ok()) return status;
+    return image;
+  }
+  std::vector<std::uint8_t> pixels;
+  if (Status status = decode_png(path, *checked, size, PNG_FORMAT_GRAY, pixels); !status.ok()) {
+    return status;
+  }
+  image.pixels.assign(pixels.begin(), pixels.end());
+  return image;
 }
 
-/// The file of width x height pixels of an OpenCV type, of which `pixels` holds `channels` values
-/// each; `extension` is the kind of file.
+Status check_pixels(const std::string& path, int width, int height, std::size_t channels,
+                    std::size_t values) {
+  if (width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide &&
+      values == channels * static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+    return {};
+  }
+  return invalid_argument(path, ": the image has ", values, " values; it must have ", channels,
+                          " x ", width, " x ", height);
+}
+
+void append_to_string(png_structp png, png_bytep data, std::size_t size) {
+  static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(data), size);
+}
+
+/// Appends the PNG of an image to a string that has room for it. False where libpng fails, which
+/// then jumps: nothing here has a destructor. libpng's simple interface takes twice the time.
+bool append_png(const std::uint8_t* pixels, int width, int height, int color_type, int bit_depth,
+                std::string& bytes) {
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png ? png_create_info_struct(png) : nullptr;
+  if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
+    png_destroy_write_struct(&png, &info);
+    return false;
+  }
+  png_set_write_fn(png, &bytes, append_to_string, nullptr);
+  png_set_compression_level(png, Z_BEST_SPEED);
+  png_set_compression_strategy(png, Z_RLE);
+  png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height),
+               bit_depth, color_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  png_write_info(png, info);
+  if (bit_depth == 16) png_set_swap(png);
+  const std::size_t stride = png_get_rowbytes(png, info);
+  for (int y = 0; y < height; ++y)
+    png_write_row(png, pixels + stride * static_cast<std::size_t>(y));
+  png_write_end(png, info);
+  png_destroy_write_struct(&png, &info);
+  return true;
+}
+
+/// The PNG of width x height pixels, gray or rgb.
 template <class T>
-Result<std::string> encoded(const std::string& path, int width, int height, int type, int channels,
-                            const std::vector<T>& pixels, const char* extension = ".png",
-                            const std::vector<int>& parameters = {}) {
-  if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide ||
-      pixels.size() != static_cast<std::size_t>(width * height * channels)) {
-    return invalid_argument(path, ": the image has ", pixels.size(), " values; it must have ",
-                            channels, " x ", width, " x ", height);
+Result<std::string> encoded_png(const std::string& path, int width, int height, int color_type,
+                                const std::vector<T>& pixels) {
+  const std::size_t channels = color_type == PNG_COLOR_TYPE_RGB ? 3 : 1;
+  if (Status status = check_pixels(path, width, height, channels, pixels.size()); !status.ok()) {
+    return status;
   }
-  const cv::Mat image(height, width, type, const_cast<T*>(pixels.data()));
-  std::vector<std::uint8_t> bytes;
-  bool done = false;
-  try {
-    done = cv::imencode(extension, image, bytes, parameters);
-  } catch (const std::exception&) {
+  std::string bytes;
+  bytes.reserve(2 * sizeof(T) * pixels.size() + 65536);
+  const auto* data = reinterpret_cast<const std::uint8_t*>(pixels.data());
+  if (!append_png(data, width, height, color_type, 8 * sizeof(T), bytes)) {
+    return Status(StatusCode::internal, path + " cannot be encoded");
   }
-  if (!done) return Status(StatusCode::internal, path + " cannot be encoded");
-  return std::string(bytes.begin(), bytes.end());
+  bytes.shrink_to_fit();
+  return bytes;
 }
 
 Status write_image(const std::string& path, const Result<std::string>& bytes) {
   if (!bytes.ok()) return bytes.status();
   // Of many images each would have to wait for the disk.
   return write_file(path, *bytes, Sync::later);
-}
-
-constexpr int kColorFlags = cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION;
-
-void swap_red_and_blue(std::vector<std::uint8_t>& pixels) {
-  for (std::size_t i = 0; i + 2 < pixels.size(); i += 3) std::swap(pixels[i], pixels[i + 2]);
-}
-
-ColorImage to_color_image(const cv::Mat& bgr) {
-  ColorImage image{bgr.cols, bgr.rows, {bgr.datastart, bgr.dataend}};
-  swap_red_and_blue(image.pixels);
-  return image;
-}
-
-GrayImage to_gray_image(const cv::Mat& gray) {
-  GrayImage image{gray.cols, gray.rows, std::vector<std::uint16_t>(gray.total())};
-  cv::Mat pixels(gray.size(), CV_16U, image.pixels.data());
-  gray.convertTo(pixels, CV_16U);
-  return image;
-}
-
-Result<std::string> encoded_color(const std::string& path, const ColorImage& image,
-                                  const char* extension, const std::vector<int>& parameters) {
-  std::vector<std::uint8_t> bgr = image.pixels;
-  swap_red_and_blue(bgr);
-  return encoded(path, image.width, image.height, CV_8UC3, 3, bgr, extension, parameters);
 }
 
 }  // namespace
@@ -231,9 +323,9 @@ Result<ColorImage> read_color_image(const std::string& path) {
     return invalid_argument(path, " has ", size.bit_depth,
                             " bits a channel; a colour image must have 8");
   };
-  const Result<cv::Mat> image = read_image(path, kColorFlags, true, check);
-  if (!image.ok()) return image.status();
-  return to_color_image(*image);
+  const Result<std::string> bytes = read_file(path);
+  if (!bytes.ok()) return bytes.status();
+  return decode_color(path, *bytes, check);
 }
 
 Result<ColorImage> decode_color_image(std::string_view bytes, const std::string& name,
@@ -243,9 +335,7 @@ Result<ColorImage> decode_color_image(std::string_view bytes, const std::string&
     if (pixels <= max_pixels) return {};
     return invalid_argument(name, " has ", pixels, " pixels; at most ", max_pixels, " can be read");
   };
-  const Result<cv::Mat> image = decode(name, bytes, kColorFlags, true, check);
-  if (!image.ok()) return image.status();
-  return to_color_image(*image);
+  return decode_color(name, bytes, check);
 }
 
 Result<GrayImage> read_gray_png(const std::string& path) {
@@ -254,9 +344,9 @@ Result<GrayImage> read_gray_png(const std::string& path) {
     return invalid_argument(path, " has ", size.channels, " channels of ", size.bit_depth,
                             " bits; a depth image must have 1 of 16");
   };
-  const Result<cv::Mat> image = read_image(path, cv::IMREAD_UNCHANGED, false, check);
-  if (!image.ok()) return image.status();
-  return to_gray_image(*image);
+  const Result<std::string> bytes = read_file(path);
+  if (!bytes.ok()) return bytes.status();
+  return decode_gray(path, *bytes, check);
 }
 
 Result<GrayImage> decode_depth_png(std::string_view bytes, const std::string& name) {
@@ -266,34 +356,46 @@ Result<GrayImage> decode_depth_png(std::string_view bytes, const std::string& na
                   concat(name, " has ", size.channels, " channels of ", size.bit_depth,
                          " bits; a depth image must have 1 of 16"));
   };
-  const Result<cv::Mat> image = decode(name, bytes, cv::IMREAD_UNCHANGED, false, check);
-  if (!image.ok()) return image.status();
-  return to_gray_image(*image);
+  return decode_gray(name, bytes, check);
 }
 
 Result<std::string> encode_color_png(const ColorImage& image) {
-  return encoded_color("the colour image", image, ".png", {});
+  return encoded_png("the colour image", image.width, image.height, PNG_COLOR_TYPE_RGB,
+                     image.pixels);
 }
 
 Result<std::string> encode_gray_png(const GrayImage& image) {
-  return encoded("the depth image", image.width, image.height, CV_16U, 1, image.pixels);
+  return encoded_png("the depth image", image.width, image.height, PNG_COLOR_TYPE_GRAY,
+                     image.pixels);
 }
 
 Result<std::string> encode_jpeg(const ColorImage& image, int quality) {
-  return encoded_color("the picture", image, ".jpg", {cv::IMWRITE_JPEG_QUALITY, quality});
+  const std::string name = "the picture";
+  Status status = check_pixels(name, image.width, image.height, 3, image.pixels.size());
+  if (!status.ok()) return status;
+  const Jpeg jpeg(tjInitCompress());
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  const int failed = tjCompress2(jpeg.get(), image.pixels.data(), image.width, 0, image.height,
+                                 TJPF_RGB, &bytes, &size, TJSAMP_420, quality, 0);
+  const std::unique_ptr<unsigned char, decltype(&tjFree)> owner(bytes, tjFree);
+  if (failed != 0) return Status(StatusCode::internal, name + " cannot be encoded");
+  return std::string(bytes, bytes + size);
 }
 
 Status write_color_png(const std::string& path, const ColorImage& image) {
-  return write_image(path, encoded_color(path, image, ".png", {}));
+  return write_image(
+      path, encoded_png(path, image.width, image.height, PNG_COLOR_TYPE_RGB, image.pixels));
 }
 
 Status write_gray_png(const std::string& path, const GrayImage& image) {
-  return write_image(path, encoded(path, image.width, image.height, CV_16U, 1, image.pixels));
+  return write_image(
+      path, encoded_png(path, image.width, image.height, PNG_COLOR_TYPE_GRAY, image.pixels));
 }
 
 Status write_mask_png(const std::string& path, int width, int height,
                       const std::vector<std::uint8_t>& mask) {
-  return write_image(path, encoded(path, width, height, CV_8U, 1, mask));
+  return write_image(path, encoded_png(path, width, height, PNG_COLOR_TYPE_GRAY, mask));
 }
 
 Result<Frame> frame_of_images(const GrayImage& depth, const ColorImage* color, const Camera& camera,

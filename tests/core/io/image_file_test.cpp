@@ -3,6 +3,9 @@
 #include "core/io/image_file.hpp"
 
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <turbojpeg.h>
 
 #include "tests/support/temporary_folder.hpp"
 
@@ -54,6 +57,83 @@ TEST(ImageFile, DepthKeepsAll16Bits) {
   EXPECT_EQ(size->height, 30);
   EXPECT_EQ(size->bit_depth, 16);
   EXPECT_EQ(size->channels, 1);
+}
+
+std::string encoded_by_opencv(const char* extension, const cv::Mat& image) {
+  std::vector<std::uint8_t> bytes;
+  EXPECT_TRUE(cv::imencode(extension, image, bytes));
+  return {bytes.begin(), bytes.end()};
+}
+
+cv::Mat decoded_by_opencv(const std::string& bytes, int flags) {
+  return cv::imdecode(std::vector<std::uint8_t>(bytes.begin(), bytes.end()), flags);
+}
+
+cv::Mat random_image(int type) {
+  cv::Mat image(37, 53, type);
+  cv::RNG random(7);
+  random.fill(image, cv::RNG::UNIFORM, 0, CV_MAT_DEPTH(type) == CV_16U ? 65536 : 256);
+  cv::blur(image, image, {3, 3});
+  return image;
+}
+
+// The largest difference of a value from those of bgr.
+int largest_difference(const ColorImage& image, const cv::Mat& bgr) {
+  cv::Mat rgb;
+  cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
+  const cv::Mat own(image.height, image.width, CV_8UC3,
+                    const_cast<std::uint8_t*>(image.pixels.data()));
+  return static_cast<int>(cv::norm(own, rgb, cv::NORM_INF));
+}
+
+TEST(ImageFile, ColorsAreDecodedAsByOpenCv) {
+  for (const char* extension : {".png", ".jpg"}) {
+    for (const int type : {CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC3}) {
+      if (extension[1] == 'j' && type != CV_8UC1 && type != CV_8UC3) continue;
+      const std::string bytes = encoded_by_opencv(extension, random_image(type));
+      const Result<ColorImage> image = decode_color_image(bytes, "it", 10000);
+      ASSERT_TRUE(image.ok()) << extension << type << image.status().message;
+      const cv::Mat other = decoded_by_opencv(bytes, cv::IMREAD_COLOR);
+      // From 16 bits to 8, OpenCV takes the upper byte, and libpng rounds.
+      EXPECT_LE(largest_difference(*image, other), type == CV_16UC3 ? 1 : 0) << extension << type;
+    }
+  }
+}
+
+TEST(ImageFile, DepthIsDecodedAsByOpenCv) {
+  const cv::Mat depth = random_image(CV_16UC1);
+  const Result<GrayImage> image = decode_depth_png(encoded_by_opencv(".png", depth), "it");
+  ASSERT_TRUE(image.ok()) << image.status().message;
+  EXPECT_EQ(image->pixels,
+            std::vector<std::uint16_t>(depth.begin<std::uint16_t>(), depth.end<std::uint16_t>()));
+  const Result<std::string> bytes = encode_gray_png(*image);
+  ASSERT_TRUE(bytes.ok());
+  EXPECT_EQ(cv::norm(decoded_by_opencv(*bytes, cv::IMREAD_UNCHANGED), depth, cv::NORM_INF), 0);
+}
+
+TEST(ImageFile, JpegsAreDecodedByOpenCv) {
+  const ColorImage image = gradient(64, 48);
+  const Result<std::string> bytes = encode_jpeg(image, 95);
+  ASSERT_TRUE(bytes.ok());
+  const Result<ColorImage> back = decode_color_image(*bytes, "it", 10000);
+  ASSERT_TRUE(back.ok()) << back.status().message;
+  EXPECT_EQ(largest_difference(*back, decoded_by_opencv(*bytes, cv::IMREAD_COLOR)), 0);
+}
+
+TEST(ImageFile, InksAreDecodedAsByOpenCv) {
+  const cv::Mat cmyk = random_image(CV_8UC4);
+  const std::unique_ptr<void, decltype(&tjDestroy)> jpeg(tjInitCompress(), tjDestroy);
+  unsigned char* data = nullptr;
+  unsigned long size = 0;
+  ASSERT_EQ(tjCompress2(jpeg.get(), cmyk.data, cmyk.cols, 0, cmyk.rows, TJPF_CMYK, &data, &size,
+                        TJSAMP_444, 95, 0),
+            0);
+  const std::string bytes(data, data + size);
+  tjFree(data);
+  const Result<ColorImage> image = decode_color_image(bytes, "it", 10000);
+  ASSERT_TRUE(image.ok()) << image.status().message;
+  // OpenCV divides by 256.
+  EXPECT_LE(largest_difference(*image, decoded_by_opencv(bytes, cv::IMREAD_COLOR)), 2);
 }
 
 TEST(ImageFile, EveryTruncationIsCorruptAndNamesTheFile) {
