@@ -18,8 +18,9 @@ double cielab_root(double value) {
 
 template <std::size_t N>
 float interpolate(const std::array<float, N>& table, float position) {
-  const auto below = static_cast<std::size_t>(position);
-  const float part = position - static_cast<float>(below);
+  const int whole = static_cast<int>(position);  // to 64 bits without sign takes twice the time
+  const float part = position - static_cast<float>(whole);
+  const auto below = static_cast<std::size_t>(whole);
   return table[below] + part * (table[below + 1] - table[below]);
 }
 

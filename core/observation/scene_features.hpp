@@ -58,8 +58,8 @@ struct SceneFeatures {
 };
 
 struct SceneFeatureOptions {
-  int max_keypoints = 600;
-  int round_keypoints = 5;
+  int max_keypoints = 300;
+  int round_keypoints = 3;
   int max_references = 150;
   double coarse_spacing_m = 0.010;
   double pair_reach_m = kMaxPairLength;
