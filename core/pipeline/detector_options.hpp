@@ -18,7 +18,7 @@ namespace bpa {
 struct RoundOptions {
   int max_rounds = 12;
   double min_certain = 0.85;
-  double min_gain = 0.02;
+  double min_gain = 0.04;
   double min_gain_of_two = 0.15;
   double expected_share = 0.6;
   double min_gain_expected = 0.3;
