@@ -121,13 +121,16 @@ Status not_decodable(const std::string& path) {
   return corrupt(path, " is not an image that can be decoded");
 }
 
-/// Has libpng decode a file of that size to rows of PNG_FORMAT_... pixels without padding.
+/// Has libpng decode the pixel chunks of a file of that size to rows of PNG_FORMAT_... pixels
+/// without padding.
 template <class T>
 Status decode_png(const std::string& path, std::string_view bytes, const ImageSize& size,
                   png_uint_32 format, std::vector<T>& pixels) {
+  const Result<std::string> chunks = pixel_chunks(path, bytes);
+  if (!chunks.ok()) return chunks.status();
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
-  if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) {
+  if (png_image_begin_read_from_memory(&image, chunks->data(), chunks->size()) == 0) {
     return not_decodable(path);
   }
   const auto free = [](png_image* read) { png_image_free(read); };
@@ -154,6 +157,7 @@ using Jpeg = std::unique_ptr<void, CloseJpeg>;
 /// Has libjpeg-turbo decode a file of that size to rgb.
 Result<ColorImage> decode_jpeg(const std::string& path, std::string_view bytes,
                                const ImageSize& size) {
+  if (Status status = check_jpeg_scans(path, bytes); !status.ok()) return status;
   const Jpeg jpeg(tjInitDecompress());
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
   const bool cmyk = size.channels == 4;
@@ -184,35 +188,30 @@ Result<ColorImage> decode_jpeg(const std::string& path, std::string_view bytes,
   return image;
 }
 
-/// The PNG chunks to decode, or with `jpeg_too` the JPEG, whose header passes check(size).
-Result<std::string> checked_image(const std::string& path, std::string_view bytes, bool jpeg_too,
-                                  const auto& check, ImageSize& size) {
+/// The size of a PNG, or with `jpeg_too` of a JPEG, which passes check(size).
+Result<ImageSize> checked_size(const std::string& path, std::string_view bytes, bool jpeg_too,
+                               const auto& check) {
   const bool jpeg = jpeg_too && bytes.starts_with(kJpegSignature);
   if (!jpeg && !bytes.starts_with(kPngSignature)) {
     if (kPngSignature.starts_with(bytes)) return corrupt(path, " is truncated");
     return Status(StatusCode::unsupported,
                   path + (jpeg_too ? " is not a PNG or JPEG image" : " is not a PNG image"));
   }
-  const Result<ImageSize> header =
-      jpeg ? parse_jpeg_header(path, bytes) : parse_png_header(path, bytes);
-  if (!header.ok()) return header.status();
-  size = *header;
-  if (Status status = check(size); !status.ok()) return status;
-  if (!jpeg) return pixel_chunks(path, bytes);
-  if (Status status = check_jpeg_scans(path, bytes); !status.ok()) return status;
-  return std::string(bytes);
+  Result<ImageSize> size = jpeg ? parse_jpeg_header(path, bytes) : parse_png_header(path, bytes);
+  if (!size.ok()) return size;
+  if (Status status = check(*size); !status.ok()) return status;
+  return size;
 }
 
 Result<ColorImage> decode_color(const std::string& path, std::string_view bytes,
                                 const auto& check) {
-  ImageSize size;
-  const Result<std::string> checked = checked_image(path, bytes, true, check, size);
-  if (!checked.ok()) return checked.status();
-  if (bytes.starts_with(kJpegSignature)) return decode_jpeg(path, *checked, size);
-  ColorImage image{size.width, size.height, {}};
-  const bool alpha = size.channels == 2 || size.channels == 4;
+  const Result<ImageSize> size = checked_size(path, bytes, true, check);
+  if (!size.ok()) return size.status();
+  if (bytes.starts_with(kJpegSignature)) return decode_jpeg(path, bytes, *size);
+  ColorImage image{size->width, size->height, {}};
+  const bool alpha = size->channels == 2 || size->channels == 4;
   Status status =
-      decode_png(path, *checked, size, alpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB, image.pixels);
+      decode_png(path, bytes, *size, alpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB, image.pixels);
   if (!status.ok()) return status;
   if (alpha) {
     std::size_t kept = 0;
@@ -225,17 +224,16 @@ Result<ColorImage> decode_color(const std::string& path, std::string_view bytes,
 }
 
 Result<GrayImage> decode_gray(const std::string& path, std::string_view bytes, const auto& check) {
-  ImageSize size;
-  const Result<std::string> checked = checked_image(path, bytes, false, check, size);
-  if (!checked.ok()) return checked.status();
-  GrayImage image{size.width, size.height, {}};
-  if (size.bit_depth == 16) {
-    Status status = decode_png(path, *checked, size, PNG_FORMAT_LINEAR_Y, image.pixels);
+  const Result<ImageSize> size = checked_size(path, bytes, false, check);
+  if (!size.ok()) return size.status();
+  GrayImage image{size->width, size->height, {}};
+  if (size->bit_depth == 16) {
+    Status status = decode_png(path, bytes, *size, PNG_FORMAT_LINEAR_Y, image.pixels);
     if (!status.ok()) return status;
     return image;
   }
   std::vector<std::uint8_t> pixels;
-  if (Status status = decode_png(path, *checked, size, PNG_FORMAT_GRAY, pixels); !status.ok()) {
+  if (Status status = decode_png(path, bytes, *size, PNG_FORMAT_GRAY, pixels); !status.ok()) {
     return status;
   }
   image.pixels.assign(pixels.begin(), pixels.end());
