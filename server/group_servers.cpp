@@ -117,9 +117,9 @@ class FrontServer : public Server {
       if (is_to_serve && !serving()) {
         begin();
       } else if (!is_to_serve && serving()) {
-        log(log_, LogLevel::warning, "another front of the group serves: this one waits");
         serving()->leave_to_another();
         end();
+        log(log_, LogLevel::warning, "another front of the group serves: this one waits");
       } else if (!is_to_serve && !std::exchange(waits, true)) {
         log(log_, LogLevel::info, "waits as a front of group " + options_.group.name);
       }
