@@ -15,6 +15,7 @@
 #include "tools/process_meter.hpp"
 #include "tools/search.hpp"
 #include "tools/search_tally.hpp"
+#include "tools/shape_library.hpp"
 #include "tools/speed_report.hpp"
 
 namespace bpa::cli {
@@ -31,13 +32,23 @@ struct SpeedArguments {
   CountAllocations allocations = nullptr;
 };
 
-/// The library's models, those of the data set's truth first.
+/// The library's models, those of the data set's truth first, then made shapes.
 struct RankedModels {
   std::vector<int> numbers;
   std::vector<std::string> names;
   int in_truth = 0;
 
   int size() const { return static_cast<int>(names.size()); }
+  /// The true placements of the models that are here.
+  std::vector<ExpectedPlacement> placements(const std::vector<io::BopInstance>& truth) const {
+    std::vector<ExpectedPlacement> placements;
+    for (const io::BopInstance& instance : truth) {
+      const auto number = std::ranges::find(numbers, instance.obj_id);
+      if (number == numbers.end()) continue;
+      placements.push_back({names[number - numbers.begin()], instance.camera_from_object});
+    }
+    return placements;
+  }
   /// The models that are truly in a frame, and the first of the others, `count` in all.
   std::vector<std::string> of_frame(const std::vector<io::BopInstance>& truth, int count) const {
     std::vector<std::string> there, others;
@@ -68,6 +79,24 @@ RankedModels rank_models(const std::string& library, const std::set<int>& true_n
     if (of_truth) ranked.in_truth = ranked.size();
   }
   return ranked;
+}
+
+/// Adds made shapes until there are `count` models.
+void add_shapes(const SpeedArguments& a, int count, RankedModels& ranked) {
+  const int missing = count - ranked.size();
+  if (missing <= 0) return;
+  if (a.detector.further.empty()) {
+    std::printf("The library has %d models; no more are searched for. --shapes DIR adds some.\n",
+                ranked.size());
+    return;
+  }
+  complete_shape_library(a.detector.further, missing, a.common);
+  for (const std::string& name : io::list_models(a.detector.further)) {
+    const int number = or_throw(io::describe_model(a.detector.further, name)).number;
+    if (number - kFirstShapeNumber >= missing) continue;
+    ranked.numbers.push_back(number);
+    ranked.names.push_back(name);
+  }
 }
 
 /// What is truly in a data set.
@@ -171,6 +200,28 @@ SpeedReport measure_stages(const SpeedArguments& a, const Detector& detector) {
   return stages;
 }
 
+/// The same with the true poses given beforehand, which are aligned and scored as any other, and as
+/// many rounds: what is not found then is lost to look-alikes and scores, the rest to the search.
+int found_when_given(const SpeedArguments& a, const Detector& detector, int models,
+                     const RankedModels& ranked) {
+  DetectorOptions options = detector.options();
+  options.rounds.expected_share = 1;
+  options.rounds.min_gain_expected = options.rounds.min_gain;
+  const Detector patient(std::make_shared<ModelLibrary>(detector.library()), options,
+                         detector.score_layers());
+  DetectRequest request;
+  request.seed = a.common.seed;
+  request.num_threads = a.common.threads;
+  RightPlacements placements;
+  read_true_frames(a.dataset, [&](const TrueFrame& frame) {
+    request.models = ranked.of_frame(frame.truth, models);
+    request.expected = ranked.placements(frame.truth);
+    placements.add(frame.truth, or_throw(patient.detect(frame.frame, request)), patient.library(),
+                   a.min_visible);
+  });
+  return placements.found.hits;
+}
+
 /// Loads as many models as are searched for, or as the truth has, and searches.
 SpeedReport measure_models(const SpeedArguments& a, int count, const RankedModels& ranked) {
   const int loaded = std::max(count, ranked.in_truth);
@@ -183,15 +234,13 @@ SpeedReport measure_models(const SpeedArguments& a, int count, const RankedModel
   row["peak_memory_mb"] = nullptr;
   measure(a, detector, 0, count, ranked, row);
   if (const auto peak = peak_memory_mb(); peak && peak_is_known) row["peak_memory_mb"] = *peak;
+  row["found_when_given"] = found_when_given(a, detector, count, ranked);
   return row;
 }
 
-/// The numbers of models to search for; says which the library is too small for.
+/// The numbers of models to search for, in order.
 std::vector<int> possible_counts(std::vector<int> wanted, int most) {
   std::ranges::sort(wanted);
-  if (wanted.back() > most) {
-    std::printf("The library has %d models; no more are searched for.\n", most);
-  }
   for (int& count : wanted) count = std::min(count, most);
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
   return wanted;
@@ -209,11 +258,12 @@ void bench_speed(const SpeedArguments& a) {
   report["seed"] = a.common.seed;
   report["frames"] = truth.frames;
   report["budgets"] = report["models"] = SpeedReport::array();
-  const RankedModels ranked = rank_models(a.detector.library, truth.numbers);
+  RankedModels ranked = rank_models(a.detector.library, truth.numbers);
   if (ranked.in_truth < std::ssize(truth.numbers)) {
     std::printf("The library has %d of the %zu models of the truth.\n", ranked.in_truth,
                 truth.numbers.size());
   }
+  add_shapes(a, std::ranges::max(a.model_counts), ranked);
   // The smallest number is first: memory that is free again is still there.
   for (const int count : possible_counts(a.model_counts, ranked.size())) {
     report["models"].push_back(measure_models(a, count, ranked));
@@ -246,10 +296,14 @@ void add_bench_speed(CLI::App& bench, CountAllocations allocations) {
       ->check(CLI::NonNegativeNumber);
   add_option(command, "--model-counts", a.model_counts,
              "Numbers of models to search for; those truly in a frame always, the first others of "
-             "the library",
+             "the library, then those of --shapes",
              "LIST")
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
+  add_option(command, "--shapes", a.detector.further,
+             "Library of simulated shapes that make up for what the library has too few of; made "
+             "where they are not there yet, 2 seconds a model",
+             "DIR");
   add_option(command, "--json", a.json, "Write the report as JSON", "FILE");
   add_option(command, "--plot", a.plot, "Write recall over time as PNG", "FILE");
   add_option(command, "--compare", a.compare, "Print ratios to an earlier report that --json wrote",

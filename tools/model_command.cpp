@@ -31,7 +31,7 @@ struct ModelArguments {
   std::string name;
   double scale = 0;  // metres of a unit; 0 = guess
   int number = 0;
-  int views = 120;
+  int views = kSimulatedViews;
   std::string symmetry = "find";
   std::string render;          // a PNG
   std::string split = "test";  // of scans
@@ -46,20 +46,11 @@ struct ModelArguments {
   }
 };
 
-/// Leaves of a model what a simulated sensor sees of its mesh, and learns what that is off by.
-void look_at(const TriangleMesh& mesh, const ModelArguments& a, ModelSource& source) {
-  if (a.views == 0) return;
-  keep_measured(source,
-                simulate_views(mesh, a.views, a.common.seed, a.common.threads,
-                               source.name + ", simulated views"),
-                a.common.threads);
-}
-
 ModelSource source_from_mesh(const io::MeshFile& file, const std::string& path,
                              const ModelArguments& a, const std::string& name, int number) {
   ModelSource source =
       or_throw(model_source_from_mesh(file.mesh, name, number, a.options_with_threads()), path);
-  look_at(file.mesh, a, source);
+  if (a.views > 0) look_at(file.mesh, a.views, a.common, source);
   source.warnings.insert(source.warnings.end(), file.warnings.begin(), file.warnings.end());
   return source;
 }
@@ -152,7 +143,9 @@ ModelSource source_from_file(const ModelArguments& a, int number) {
   const PointCloud cloud = or_throw(io::read_point_cloud(a.input, scale > 0 ? scale : 1.0));
   ModelSource source =
       or_throw(model_source_from_points(cloud, a.name, number, a.options_with_threads()), a.input);
-  if (source.complete) look_at(squares_of(source.surface), a, source);
+  if (source.complete && a.views > 0) {
+    look_at(squares_of(source.surface), a.views, a.common, source);
+  }
   return source;
 }
 

@@ -224,4 +224,11 @@ std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::
   return views;
 }
 
+void look_at(const TriangleMesh& mesh, int count, const CommonOptions& common,
+             ModelSource& source) {
+  const std::string title = source.name + ", simulated views";
+  keep_measured(source, simulate_views(mesh, count, common.seed, common.threads, title),
+                common.threads);
+}
+
 }  // namespace bpa::cli

@@ -30,6 +30,11 @@ std::vector<PosedView> read_posed_views(const std::string& dataset, const std::s
 std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::uint64_t seed,
                                       int num_threads, const std::string& title);
 
+constexpr int kSimulatedViews = 120;  ///< Of a mesh that becomes a model, unless told otherwise.
+
+/// Leaves of a model what simulate_views() measures of its mesh, and learns what that is off by.
+void look_at(const TriangleMesh& mesh, int count, const CommonOptions& common, ModelSource& source);
+
 /// A surface of squares, one for each oriented point, large enough to leave no hole between
 /// neighbours: what a camera can look at in place of a point cloud.
 TriangleMesh squares_of(const PointCloud& cloud);

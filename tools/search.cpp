@@ -14,15 +14,18 @@
 namespace bpa::cli {
 namespace {
 
-/// The models of a library; reads no others. No names: all.
-std::vector<ModelSource> wanted_models(const std::string& folder, std::vector<std::string> names,
-                                       int num_threads) {
-  if (names.empty()) return or_throw(io::load_library(folder, num_threads));
+/// The models that the arguments name; reads no others.
+std::vector<ModelSource> wanted_models(const DetectorArguments& a, int num_threads) {
+  std::vector<std::string> names = a.models;
+  if (names.empty()) return or_throw(io::load_library(a.library, num_threads));
+  const std::vector<std::string> own = io::list_models(a.library);
   std::ranges::sort(names);
   names.erase(std::unique(names.begin(), names.end()), names.end());
   std::vector<ModelSource> models(names.size());
-  parallel_for(names.size(), num_threads,
-               [&](std::size_t i) { models[i] = or_throw(io::load_model(folder, names[i])); });
+  parallel_for(names.size(), num_threads, [&](std::size_t i) {
+    const bool is_own = a.further.empty() || std::ranges::binary_search(own, names[i]);
+    models[i] = or_throw(io::load_model(is_own ? a.library : a.further, names[i]));
+  });
   return models;
 }
 
@@ -80,7 +83,7 @@ DetectorOptions read_detector_options(const std::string& config) {
 }
 
 Detector open_detector(const DetectorArguments& a, int num_threads) {
-  std::vector<ModelSource> sources = wanted_models(a.library, a.models, num_threads);
+  std::vector<ModelSource> sources = wanted_models(a, num_threads);
   const auto library = std::make_shared<ModelLibrary>();
   Progress progress("models", static_cast<int>(sources.size()));
   for (ModelSource& source : sources) {

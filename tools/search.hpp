@@ -15,8 +15,9 @@ namespace bpa::cli {
 /// What a detector is made of.
 struct DetectorArguments {
   std::string library;              ///< Folder of the models.
+  std::string further;              ///< Folder of models that `library` lacks; empty: none.
   std::string config;               ///< YAML file of settings; empty: the defaults.
-  std::vector<std::string> models;  ///< Names; empty: all of the library.
+  std::vector<std::string> models;  ///< Names; empty: all of `library`.
   /// Ignore score layers that the library has learned, and score every placement in full.
   bool for_training = false;
 };

@@ -28,8 +28,10 @@ constexpr TablePart kTables[] = {{"budgets", "budget_s", "seconds allowed"},
                                  {"models", "models", "models"}};
 
 /// Counts that are shown as parts of another.
-constexpr std::pair<const char*, const char*> kShares[] = {
-    {"right", "reported"}, {"found", "instances"}, {"found_in_twenty", "instances"}};
+constexpr std::pair<const char*, const char*> kShares[] = {{"right", "reported"},
+                                                           {"found", "instances"},
+                                                           {"found_in_twenty", "instances"},
+                                                           {"found_when_given", "instances"}};
 constexpr const char* kStages = "stages_ms";
 
 std::string text(const SpeedReport& value) {

@@ -12,7 +12,8 @@
 //   "bpa", "cpu", "dataset": texts; "threads", "seed", "frames": numbers
 //   "budgets": a row for each time budget, "budget_s": seconds, null: none
 //   "models": a row for each number of models, "models": searched for in each frame; "loaded": in
-//     memory; "load_ms": time to load these; "peak_memory_mb": of loading and searching, 10^6 bytes
+//     memory; "load_ms": time to load these; "peak_memory_mb": of loading and searching, 10^6
+//     bytes; "found_when_given": instances found when the true poses are candidates from the start
 //   "stages_ms": mean milliseconds of each stage without a budget
 //
 // A row has the placements "right" of those "reported"; instances "found" in the best

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/geometry/sphere_directions.hpp"
@@ -126,6 +127,22 @@ SimulatedObject printed_otherwise(SimulatedObject object, std::uint64_t seed) {
       },
       object.mesh);
   return object;
+}
+
+std::vector<SimulatedObject> varied_objects(int count, int num_threads) {
+  constexpr double kDifference = 0.15;
+  constexpr std::uint64_t kSizes = 4000, kPrints = 5000;  // streams of random numbers
+  std::vector<SimulatedObject> originals = household_objects(num_threads);
+  for (SimulatedObject& tool : workshop_objects(num_threads)) originals.push_back(std::move(tool));
+  std::vector<SimulatedObject> objects(static_cast<std::size_t>(count));
+  parallel_for(objects.size(), num_threads, [&](std::size_t i) {
+    const std::size_t turn = i / originals.size();
+    const SimulatedObject sized =
+        made_inexactly(originals[i % originals.size()], kDifference, RandomStream(kSizes, i)());
+    objects[i] = printed_otherwise(sized, RandomStream(kPrints, i)());
+    objects[i].name = concat(objects[i].name, "_", turn + 1);
+  });
+  return objects;
 }
 
 double diameter(const TriangleMesh& mesh) { return largest_distance(mesh.vertices, 2000); }

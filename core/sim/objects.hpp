@@ -65,6 +65,12 @@ SimulatedObject made_inexactly(SimulatedObject object, double error, std::uint64
 /// random colours.
 SimulatedObject printed_otherwise(SimulatedObject object, std::uint64_t seed);
 
+/// Objects in abundance: those of the household and the workshop in turn, each with sizes along its
+/// axes that differ by 15 % (standard deviation), and printed otherwise. Object i is the same
+/// whatever `count` is; its name is that of its kind and the turn, as mug_1. The symmetries are
+/// those of the original, which the sizes may break.
+std::vector<SimulatedObject> varied_objects(int count, int num_threads = 0);
+
 /// The largest distance between two vertices, metres.
 double diameter(const TriangleMesh& mesh);
 

@@ -60,7 +60,8 @@ TEST_F(BenchSpeed, ReportsWhatIsFoundAndWhatItCosts) {
                         "--json", folder_ / "r.json", "--plot", folder_ / "r.png"},
                        [] { return std::uint64_t{0}; });
   ASSERT_EQ(done.exit_code, 0) << done.error;
-  EXPECT_NE(done.out.find("The library has 2 models; no more are searched for."),
+  EXPECT_NE(done.out.find("The library has 2 models; no more are searched for. --shapes DIR adds "
+                          "some."),
             std::string::npos);
   const Json json = report("r.json");
   EXPECT_EQ(json.at("format"), "bpa speed bench");
@@ -94,6 +95,33 @@ TEST_F(BenchSpeed, ReportsWhatIsFoundAndWhatItCosts) {
   EXPECT_TRUE(json.at("stages_ms").contains("objects: sampled"));
   EXPECT_EQ(json.at("stages_ms").back(), json.at("stages_ms").at("total"));
   EXPECT_TRUE(io::read_color_image(folder_ / "r.png").ok());
+}
+
+TEST_F(BenchSpeed, FillsUpALibraryWithMadeShapes) {
+  const std::vector<std::string> options = {
+      "--budgets",        "0",      "--model-counts",  "2,4", "--shapes",
+      folder_ / "shapes", "--json", folder_ / "r.json"};
+  const Run first = run(options);
+  ASSERT_EQ(first.exit_code, 0) << first.error;
+  EXPECT_EQ(io::list_models(folder_ / "shapes"), (std::vector<std::string>{"bowl_1", "mug_1"}));
+  const Json made = report("r.json");
+  ASSERT_EQ(made.at("models").size(), 2u);
+  const Json& row = made.at("models").at(1);
+  EXPECT_EQ(row.at("models"), 4);
+  EXPECT_EQ(row.at("loaded"), 4);
+  EXPECT_EQ(row.at("found"), 1);
+  EXPECT_EQ(row.at("found_when_given"), 1);
+  EXPECT_GT(row.at("sampled_poses"), made.at("models").at(0).at("sampled_poses"));
+  EXPECT_EQ(made.at("budgets").at(0).at("pose_checks"), made.at("models").at(0).at("pose_checks"))
+      << "budgets are measured with the library alone";
+
+  // What is there already is not made again, and what it lacks is.
+  const std::string kept = folder_ / "shapes/mug_1/model.json";
+  const auto written = std::filesystem::last_write_time(kept);
+  std::filesystem::remove_all(folder_ / "shapes/bowl_1");
+  ASSERT_EQ(run(options).exit_code, 0);
+  EXPECT_EQ(std::filesystem::last_write_time(kept), written);
+  EXPECT_EQ(report("r.json").at("models").at(1).at("pose_checks"), row.at("pose_checks"));
 }
 
 TEST_F(BenchSpeed, ComparesWithAnEarlierReport) {

@@ -257,6 +257,28 @@ TEST(Objects, PrintedOtherwiseHaveTheSameShapeAndOtherColours) {
   EXPECT_GT(changed(one, printed_otherwise(can, 2)), 0.9);
 }
 
+TEST(Objects, VariedOnesAreOfAllKindsAndOfOtherSizes) {
+  const std::vector<SimulatedObject> varied = varied_objects(34);
+  const std::vector<SimulatedObject>& originals = objects();
+  ASSERT_EQ(varied.size(), 34u);
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < varied.size(); ++i) {
+    const SimulatedObject& original = originals[i % 32];
+    EXPECT_EQ(varied[i].name, original.name + (i < 32 ? "_1" : "_2"));
+    EXPECT_EQ(varied[i].mesh.triangles, original.mesh.triangles);
+    const double ratio = diameter(varied[i].mesh) / diameter(original.mesh);
+    EXPECT_GT(ratio, 0.4) << varied[i].name;
+    EXPECT_LT(ratio, 1.6) << varied[i].name;
+    EXPECT_GT(std::abs(ratio - 1), 1e-4) << varied[i].name;
+  }
+  EXPECT_NE(varied[0].mesh.vertices, varied[32].mesh.vertices) << "two mugs";
+  const std::vector<SimulatedObject> fewer = varied_objects(2, 1);
+  for (std::size_t i = 0; i < fewer.size(); ++i) {
+    EXPECT_EQ(fewer[i].mesh.vertices, varied[i].mesh.vertices);
+    EXPECT_EQ(fewer[i].mesh.colors, varied[i].mesh.colors);
+  }
+}
+
 // The mug says itself which vertices are its handle's.
 TEST(Objects, WhatStandsOutOfAMugIsItsHandle) {
   const auto vessels = household_objects({"mug", "can", "milk_carton"});
