@@ -302,7 +302,7 @@ void add_bench_speed(CLI::App& bench, CountAllocations allocations) {
       ->check(CLI::PositiveNumber);
   add_option(command, "--shapes", a.detector.further,
              "Library of simulated shapes that make up for what the library has too few of; made "
-             "where they are not there yet, 2 seconds a model",
+             "where they are not there yet, about a second a model",
              "DIR");
   add_option(command, "--json", a.json, "Write the report as JSON", "FILE");
   add_option(command, "--plot", a.plot, "Write recall over time as PNG", "FILE");

@@ -49,7 +49,7 @@ struct RoundOptions {
     visit("step_without_sign", step_without_sign,
           {0, 1000,
            "From the second round on, models without a sign look at one in so many points of the "
-           "sample. 0: one for each 24 models searched for, so that many cost little more."});
+           "sample. 0: one for each 60 models searched for, so that many cost little more."});
     visit("min_sign", min_sign,
           {-1000, 1000, "Log odds of a placement that is a sign of its model."});
   }

@@ -38,7 +38,7 @@ TEST(SearchPlan, WithoutColoursMoreIsTried) {
 }
 
 TEST(SearchPlan, ManyModelsShareTheWork) {
-  for (const auto& [models, step] : {std::pair{1, 1}, {21, 1}, {47, 1}, {48, 2}, {200, 8}}) {
+  for (const auto& [models, step] : {std::pair{1, 1}, {21, 1}, {119, 1}, {120, 2}, {200, 3}}) {
     DetectorOptions options;
     share_among_models(models, options);
     EXPECT_EQ(options.rounds.step_without_sign, step);
@@ -50,7 +50,7 @@ TEST(SearchPlan, ManyModelsShareTheWork) {
 }
 
 TEST(SearchPlan, MoreCandidatesOfManyModelsGoOn) {
-  for (const auto& [models, most] : {std::pair{1, 500}, {24, 500}, {96, 1000}, {216, 1500}}) {
+  for (const auto& [models, most] : {std::pair{1, 500}, {24, 500}, {192, 1000}, {648, 1500}}) {
     DetectorOptions options;
     options.detect.check.max_in_library = options.detect.cluster.max_in_library =
         options.detect.refine.max_in_library = 500;
