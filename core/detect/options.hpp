@@ -289,7 +289,7 @@ struct TurnOptions {
 struct FlatOptions {
   int max_laid = 4;
   int max_per_region = 4;
-  double min_laid_score = -5;
+  double min_laid_score = -8;
   int slide_rounds = 5;
   double slide_step_m = 0.008;
 
