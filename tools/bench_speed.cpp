@@ -90,10 +90,7 @@ void add_shapes(const SpeedArguments& a, int count, RankedModels& ranked) {
                 ranked.size());
     return;
   }
-  complete_shape_library(a.detector.further, missing, a.common);
-  for (const std::string& name : io::list_models(a.detector.further)) {
-    const int number = or_throw(io::describe_model(a.detector.further, name)).number;
-    if (number - kFirstShapeNumber >= missing) continue;
+  for (const auto& [number, name] : complete_shape_library(a.detector.further, missing, a.common)) {
     ranked.numbers.push_back(number);
     ranked.names.push_back(name);
   }
@@ -247,6 +244,10 @@ std::vector<int> possible_counts(std::vector<int> wanted, int most) {
 }
 
 void bench_speed(const SpeedArguments& a) {
+  std::error_code error;  // of folders that are not there yet
+  if (std::filesystem::equivalent(a.detector.library, a.detector.further, error)) {
+    throw Failure(invalid_argument("--shapes is the library itself; it must be another folder"));
+  }
   SpeedReport earlier;
   if (!a.compare.empty()) earlier = read_speed_report(a.compare);
   const TrueObjects truth = true_objects(a.dataset);

@@ -171,6 +171,8 @@ TEST_F(BenchSpeed, SaysWhatIsWrong) {
   EXPECT_EQ(run({"--budgets", "-1"}).exit_code, 2);
   EXPECT_EQ(run({"--model-counts", "0"}).exit_code, 2);
   EXPECT_NE(refusal({"--scenes", "7"}).find("has no scene 7"), std::string::npos);
+  EXPECT_EQ(refusal({"--shapes", folder_ / "library"}),
+            "bpa: --shapes is the library itself; it must be another folder\n");
   std::filesystem::remove_all(folder_ / "library");
   EXPECT_NE(refusal({}).find("library is not there"), std::string::npos) << refusal({});
 }
