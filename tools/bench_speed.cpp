@@ -171,12 +171,14 @@ class Measurement {
   SearchEffort effort_;
 };
 
+DetectRequest request_of(const CommonOptions& common) {
+  return {.seed = common.seed, .num_threads = common.threads};
+}
+
 /// Searches all frames, for `models` of each; 0: all of the detector.
 void measure(const SpeedArguments& a, const Detector& detector, double budget_s, int models,
              const RankedModels& ranked, SpeedReport& row) {
-  DetectRequest request;
-  request.seed = a.common.seed;
-  request.num_threads = a.common.threads;
+  DetectRequest request = request_of(a.common);
   request.budget_ms = 1000 * budget_s;
   Measurement measurement(a);
   read_true_frames(a.dataset, [&](const TrueFrame& frame) {
@@ -206,9 +208,7 @@ int found_when_given(const SpeedArguments& a, const Detector& detector, int mode
   options.rounds.min_gain_expected = options.rounds.min_gain;
   const Detector patient(std::make_shared<ModelLibrary>(detector.library()), options,
                          detector.score_layers());
-  DetectRequest request;
-  request.seed = a.common.seed;
-  request.num_threads = a.common.threads;
+  DetectRequest request = request_of(a.common);
   RightPlacements placements;
   read_true_frames(a.dataset, [&](const TrueFrame& frame) {
     request.models = ranked.of_frame(frame.truth, models);

@@ -50,7 +50,7 @@ ModelSource source_from_mesh(const io::MeshFile& file, const std::string& path,
                              const ModelArguments& a, const std::string& name, int number) {
   ModelSource source =
       or_throw(model_source_from_mesh(file.mesh, name, number, a.options_with_threads()), path);
-  if (a.views > 0) look_at(file.mesh, a.views, a.common, source);
+  look_at(file.mesh, a.views, a.common, source);
   source.warnings.insert(source.warnings.end(), file.warnings.begin(), file.warnings.end());
   return source;
 }
@@ -143,9 +143,7 @@ ModelSource source_from_file(const ModelArguments& a, int number) {
   const PointCloud cloud = or_throw(io::read_point_cloud(a.input, scale > 0 ? scale : 1.0));
   ModelSource source =
       or_throw(model_source_from_points(cloud, a.name, number, a.options_with_threads()), a.input);
-  if (source.complete && a.views > 0) {
-    look_at(squares_of(source.surface), a.views, a.common, source);
-  }
+  if (source.complete) look_at(squares_of(source.surface), a.views, a.common, source);
   return source;
 }
 

@@ -226,6 +226,7 @@ std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::
 
 void look_at(const TriangleMesh& mesh, int count, const CommonOptions& common,
              ModelSource& source) {
+  if (count == 0) return;
   const std::string title = source.name + ", simulated views";
   keep_measured(source, simulate_views(mesh, count, common.seed, common.threads, title),
                 common.threads);

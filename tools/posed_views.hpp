@@ -33,6 +33,7 @@ std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::
 constexpr int kSimulatedViews = 120;  ///< Of a mesh that becomes a model, unless told otherwise.
 
 /// Leaves of a model what simulate_views() measures of its mesh, and learns what that is off by.
+/// With a count of 0 the model stays as it is.
 void look_at(const TriangleMesh& mesh, int count, const CommonOptions& common, ModelSource& source);
 
 /// A surface of squares, one for each oriented point, large enough to leave no hole between

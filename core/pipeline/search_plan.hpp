@@ -25,7 +25,8 @@ void search_without_colors(DetectorOptions& options);
 
 /// The more models (1 or more) are searched for, the less is looked at for those without a sign
 /// (RoundOptions::step_without_sign), unless that is set, and the more candidates of all models
-/// together go on (max_in_library). Up to 24 models: as the options say.
+/// together go on (max_in_library). Up to 24 models: as the options say; up to 119
+/// all models look at whole samples.
 void share_among_models(int models, DetectorOptions& options);
 
 /// No outlines and flat regions.

@@ -261,7 +261,6 @@ TEST(Objects, VariedOnesAreOfAllKindsAndOfOtherSizes) {
   const std::vector<SimulatedObject> varied = varied_objects(34);
   const std::vector<SimulatedObject>& originals = objects();
   ASSERT_EQ(varied.size(), 34u);
-  std::set<std::string> names;
   for (std::size_t i = 0; i < varied.size(); ++i) {
     const SimulatedObject& original = originals[i % 32];
     EXPECT_EQ(varied[i].name, original.name + (i < 32 ? "_1" : "_2"));
