@@ -129,7 +129,7 @@ ParameterDescriptor describe_parameter(const std::string& name) {
   if (!setting) return descriptor;
   const FieldRule& rule = setting->rule;
   descriptor.type = type_of(*setting);
-  descriptor.description = rule.description;
+  descriptor.description = setting->description;
   descriptor.read_only = is_read_only(*setting);
   if (!std::isfinite(rule.min) || !std::isfinite(rule.max)) return descriptor;
   if (descriptor.type == ParameterType::kInteger) {

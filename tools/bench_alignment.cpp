@@ -89,9 +89,14 @@ nlohmann::json to_json(const align::ConvergenceCurve& curve) {
 std::string report_json(align::ConvergenceOptions set, const Experiment& experiment,
                         const align::ConvergenceResult& result) {
   nlohmann::json options;
-  set.visit_fields([&](std::string_view name, auto& value, const FieldRule&) {
-    if (name != "num_threads") options[std::string(name)] = value;
-  });
+  for (const Option& option : options_of(set)) {
+    if (option.path == "num_threads") continue;
+    std::visit(
+        [&]<class Value>(Value value) {
+          if constexpr (std::is_pointer_v<Value>) options[option.path] = *value;
+        },
+        option.value);
+  }
   const nlohmann::json report = {{"experiment", "bpa bench alignment"},
                                  {"placements", experiment.placements.size()},
                                  {"trials", result.trials},
@@ -174,7 +179,7 @@ void add_bench_alignment(CLI::App& bench) {
   add_option(command, "--plots", a.plots, "Write plots as PNG and alignment.json", "DIR");
   add_option(command, "--json", a.json, "Write the curves as JSON", "FILE");
   add_min_visible_option(command, a.min_visible);
-  add_options(command, a.options,
+  add_options(command, options_of(a.options),
               {{"--starts", "starts"},
                {"--iterations", "iterations"},
                {"--points", "points"},

@@ -3,8 +3,10 @@
 #include "tools/command.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdio>
 #include <mutex>
+#include <sstream>
 
 #include <unistd.h>
 
@@ -15,6 +17,22 @@ namespace bpa::cli {
 void print_warnings(const std::string& name, const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) {
     std::fprintf(stderr, "warning: %s: %s\n", name.c_str(), warning.c_str());
+  }
+}
+
+void add_options(CLI::App& command, const std::vector<Option>& options,
+                 std::initializer_list<OptionField> fields) {
+  for (const OptionField& field : fields) {
+    const auto option = std::ranges::find(options, field.field, &Option::path);
+    assert(option != options.end());
+    std::ostringstream text;
+    text << option->description << ' ' << option->rule.min << " to " << option->rule.max << '.';
+    std::visit(
+        [&]<class Value>(Value value) {
+          if constexpr (std::is_pointer_v<Value>)
+            command.add_option(field.option, *value, text.str())->capture_default_str();
+        },
+        option->value);
   }
 }
 

@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cassert>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -54,20 +52,9 @@ struct OptionField {
   std::string_view field;
 };
 
-/// Adds an option for each of these fields, by visit_fields; validate() checks when it runs.
-void add_options(CLI::App& command, auto& options, std::initializer_list<OptionField> fields) {
-  for (const OptionField& wanted : fields) {
-    [[maybe_unused]] bool known = false;
-    options.visit_fields([&](std::string_view name, auto& value, const FieldRule& rule) {
-      if (name != wanted.field) return;
-      known = true;
-      std::ostringstream text;
-      text << rule.description << " " << rule.min << " to " << rule.max << ".";
-      command.add_option(wanted.option, value, text.str())->capture_default_str();
-    });
-    assert(known);
-  }
-}
+/// Adds an option for each of these fields of `options`; validate() checks when it runs.
+void add_options(CLI::App& command, const std::vector<Option>& options,
+                 std::initializer_list<OptionField> fields);
 
 /// Adds an option of two values MIN,MAX.
 template <class Value>

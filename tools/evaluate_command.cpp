@@ -92,7 +92,8 @@ void add_evaluate_command(CLI::App& program) {
       "Tracks as JSON, against a sequence. Of results as JSON, the placements of each model are "
       "linked from frame to frame where they are at most 10 cm apart",
       "FILE");
-  add_options(command, a.track_options, {{"--match", "match_m"}, {"--hidden", "hidden_s"}});
+  add_options(command, options_of(a.track_options),
+              {{"--match", "match_m"}, {"--hidden", "hidden_s"}});
   add_option(command, "--json-out", a.json_out, "Write the report as JSON", "FILE");
   add_option(command, "--plots", a.plots, "Write plots as PNG", "DIR");
   add_min_visible_option(command, a.options.min_visible_fraction);

@@ -293,7 +293,7 @@ void add_new_model_options(CLI::App& command, ModelArguments& a) {
              "find: look for symmetries and use them; confirm: and take them as confirmed; "
              "none: the object has none")
       ->check(CLI::IsMember({"find", "confirm", "none"}));
-  add_options(command, a.options, {{"--spacing", "spacing_m"}});
+  add_options(command, options_of(a.options), {{"--spacing", "spacing_m"}});
 }
 
 void add_from_mesh(CLI::App& model) {
@@ -310,7 +310,7 @@ void add_from_mesh(CLI::App& model) {
 void add_from_bop(CLI::App& model) {
   const auto [command, a] = add(model, "from-bop", "Every model of a BOP data set", from_bop);
   add_option(command, "dataset", a.input, "Folder of the data set")->required();
-  add_options(command, a.options, {{"--spacing", "spacing_m"}});
+  add_options(command, options_of(a.options), {{"--spacing", "spacing_m"}});
   add_views_option(command, a);
 }
 

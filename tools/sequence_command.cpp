@@ -121,7 +121,7 @@ void add_sequence_command(CLI::App& simulate) {
                    "Range from the camera to the middle, metres; 0.7,1.1 if not given");
   add_sensor_option(command, a.options.sensor, a.options.mixed_sensors, "sequence");
   command.add_flag("--masks", a.masks, "Also write the masks of the visible pixels");
-  add_options(command, a.options,
+  add_options(command, options_of(a.options),
               {{"--seconds", "seconds"},
                {"--rate", "rate"},
                {"--drop", "drop"},

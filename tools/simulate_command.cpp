@@ -179,7 +179,7 @@ void add_scenes(CLI::App& simulate) {
              "which are not in the truth")
       ->check(CLI::Range(0, 20))
       ->capture_default_str();
-  add_options(command, a.scene,
+  add_options(command, options_of(a.scene),
               {{"--views", "views"},
                {"--shots", "shots"},
                {"--empty", "empty_share"},
@@ -199,7 +199,7 @@ void add_turntable(CLI::App& simulate) {
   auto* mesh =
       add_option(command, "--mesh", a.mesh, "PLY, OBJ, STL, GLB, glTF or DAE mesh", "FILE");
   add_option(command, "--object", a.object, "One of our objects instead", "NAME")->excludes(mesh);
-  add_options(command, a.turntable,
+  add_options(command, options_of(a.turntable),
               {{"--step-deg", "step_deg"}, {"--positions", "resting_positions"}});
 }
 

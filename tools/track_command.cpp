@@ -187,7 +187,7 @@ void add_track_command(CLI::App& program) {
       ->check(CLI::PositiveNumber);
   command.add_flag("--no-camera-poses", a.no_poses,
                    "Ignore where the data set says that the camera was");
-  add_options(command, a.tracker,
+  add_options(command, options_of(a.tracker),
               {{"--min-probability", "min_probability"}, {"--lost-s", "lost_s"}});
   add_option(command, "--json", a.json, "Write the tracks of every frame as JSON", "FILE");
   add_option(

@@ -59,38 +59,23 @@ struct TruePlacement {
 };
 
 struct ConvergenceOptions {
-  int starts = 50;                 ///< Noisy starts for each true placement.
-  int iterations = 20;             ///< Alignment steps from each.
-  int points = 10;                 ///< Scene points matched in a step.
-  double start_position_m = 0.01;  ///< Standard deviation of a start's position per axis.
-  double start_angle_deg = 8;      ///< Standard deviation of a start's rotation per axis.
-  double gate_m = 0.03;            ///< Scene points further from the placed model do not match.
-  double patch_m = 0.02;           ///< Size of the patches that the scene is cut into.
-  double assign_m = 0.015;         ///< A patch belongs to the model with the probability that its
-  double assign_deg = 22.5;        ///< points are within these of the nearest model point.
-  double sigma_m = 0.01;           ///< Of a correspondence's position, for BPA.
-  std::uint64_t seed = 0;
-  int num_threads = 0;
-
-  void visit_fields(auto&& visit) {
-    visit("starts", starts, {1, 100000, "Noisy starts for each true placement."});
-    visit("iterations", iterations, {1, 1000, "Alignment steps from each start."});
-    visit("points", points, {3, 1000, "Scene points matched in a step."});
-    visit("start_position_m", start_position_m,
-          {0, 1, "Standard deviation of a start's position per axis, metres."});
-    visit("start_angle_deg", start_angle_deg,
-          {0, 180, "Standard deviation of a start's rotation per axis, degrees."});
-    visit("gate_m", gate_m, {0.001, 1, "Largest distance of a match, metres."});
-    visit("patch_m", patch_m, {0.001, 1, "Size of scene patches, metres."});
-    visit("assign_m", assign_m,
-          {1e-4, 1, "Distance at which a scene point fits the model, metres."});
-    visit("assign_deg", assign_deg,
-          {1, 180, "Angle between normals at which a scene point fits the model, degrees."});
-    visit("sigma_m", sigma_m,
-          {1e-5, 1, "Standard deviation of a match's position for BPA, metres."});
-    visit("seed", seed, {0, 1.8e19, "Same seed, same answer."});
-    visit("num_threads", num_threads, {0, 256, "0 = one per core."});
-  }
+  BPA_OPTION(int, starts, 50, (1, 100000), "Noisy starts for each true placement.");
+  BPA_OPTION(int, iterations, 20, (1, 1000), "Alignment steps from each start.");
+  BPA_OPTION(int, points, 10, (3, 1000), "Scene points matched in a step.");
+  BPA_OPTION(double, start_position_m, 0.01, (0, 1),
+             "Standard deviation of a start's position per axis, metres.");
+  BPA_OPTION(double, start_angle_deg, 8, (0, 180),
+             "Standard deviation of a start's rotation per axis, degrees.");
+  BPA_OPTION(double, gate_m, 0.03, (0.001, 1), "Largest distance of a match, metres.");
+  BPA_OPTION(double, patch_m, 0.02, (0.001, 1), "Size of scene patches, metres.");
+  BPA_OPTION(double, assign_m, 0.015, (1e-4, 1),
+             "Distance at which a scene point fits the model, metres.");
+  BPA_OPTION(double, assign_deg, 22.5, (1, 180),
+             "Angle between normals at which a scene point fits the model, degrees.");
+  BPA_OPTION(double, sigma_m, 0.01, (1e-5, 1),
+             "Standard deviation of a match's position for BPA, metres.");
+  BPA_OPTION(std::uint64_t, seed, 0, (0, 1.8e19), "Same seed, same answer.");
+  BPA_OPTION(int, num_threads, 0, (0, 256), "0 = one per core.");
 };
 
 /// Entry k: the mean over all trials of the least error within the first k steps; entry 0 is the

@@ -8,79 +8,135 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "core/base/status.hpp"
 
-// Options are trees of structs of defaults. A struct describes its fields and the structs inside of
-// it once:
+// Options are trees of structs of defaults. A macro declares a plain member and describes it: name,
+// default, range and sentence stand in one place.
 //
-//   void visit_fields(auto&& visit) {
-//     visit("max_range_m", max_range_m, {0.1, 20, "Surface further away is ignored."});
-//   }
-//   void visit_groups(auto&& visit) {
-//     visit("refinement", refinement, "Gradient-based alignment.");
-//   }
+//   struct CameraOptions {
+//     BPA_OPTION(double, max_range_m, 2.5, (0.1, 20), "Surface further away is ignored, metres.");
+//     BPA_OPTION(int, queue, 1, (1, 100).at_run_time(), "Frames that may wait.");
+//     BPA_OPTION(std::string, mode, "raw", ("raw compressed "), "How images are sent.");
+//     BPA_OPTION(bool, color, true, (), "Take colour images beside depth.");
+//     BPA_GROUP(RefinementOptions, refinement, "Gradient-based alignment.") = {4, 160};
+//     int num_threads = 0;  // No option: only code sets it.
+//   };
 //
-// Reading files, checks, printing, help texts and run-time parameters use these functions. Fields
-// are bool, int, double, std::uint64_t, std::string and std::vector<std::string>.
+// Files, checks, printing, help texts and run-time parameters use options_of().
+
+/// A member `type name = value` that is an option, with the arguments of its FieldRule.
+#define BPA_OPTION(type, name, value, rule, description) \
+  BPA_NAMED_OPTION(#name, type, name, value, rule, description)
+
+/// The same where users know it by another name, `path`.
+#define BPA_NAMED_OPTION(path, type, name, value, rule, description) \
+  BPA_LISTED(field(path, &name, ::bpa::FieldRule rule, description)) type name = value
+
+/// A member `type name` that is a group of options. Defaults of its own may follow.
+#define BPA_GROUP(type, name, description) BPA_LISTED(group(#name, name, description)) type name
+
+/// A member `type name` whose options are listed as the struct's own.
+#define BPA_INLINE_GROUP(type, name) BPA_LISTED(list(name)) type name
+
+/// Lists the options of the base class `type` here.
+#define BPA_BASE_OPTIONS(type) BPA_LISTED(list(static_cast<type&>(*this)))
+
+/// These functions overload by the line of their macro; OptionList::list() finds them in order.
+#define BPA_LISTED(entry)                                                          \
+  ::bpa::detail::Line<__LINE__> list_option(::bpa::detail::Line<__LINE__>,         \
+                                            ::bpa::detail::OptionList& bpa_list) { \
+    bpa_list.entry;                                                                \
+    return {};                                                                     \
+  }
 
 namespace bpa {
 
-/// The rule and the meaning of one field. `min` and `max` are inclusive; bools and texts ignore
-/// them.
+/// The rule of one field. `min` and `max` are inclusive; bools and texts ignore them.
 struct FieldRule {
+  constexpr FieldRule() = default;
+  constexpr FieldRule(double lowest, double highest) : min(lowest), max(highest) {}
+  constexpr explicit FieldRule(std::string_view values) : choices(values) {}
+
+  /// The same rule for a field that may change while the program runs.
+  constexpr FieldRule at_run_time() const {
+    FieldRule rule = *this;
+    rule.runtime = true;
+    return rule;
+  }
+
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  const char* description = "";
-  bool runtime = false;  ///< May change while the program runs.
+  bool runtime = false;
   /// Of a text: the values it may have, each followed by a space; empty for any text.
   std::string_view choices = {};
 };
-
-/// The same rule for a field that may change while the program runs.
-constexpr FieldRule at_run_time(FieldRule rule) {
-  rule.runtime = true;
-  return rule;
-}
 
 /// One entry of a tree of options: a group (no value) or a field of a struct.
 struct Option {
   using Value = std::variant<std::monostate, bool*, int*, double*, std::uint64_t*, std::string*,
                              std::vector<std::string>*>;
   std::string path;  ///< Such as "round_two.refinement.iterations".
-  FieldRule rule;    ///< Of a group: its description alone.
+  const char* description;
+  FieldRule rule;
   Value value;
 
   bool is_group() const { return std::holds_alternative<std::monostate>(value); }
 };
 
+/// The fields of a struct in the order of their declarations, then its groups, each before what is
+/// in it. The values point into `options`.
+template <class Options>
+std::vector<Option> options_of(Options& options);
+
 namespace detail {
-struct AnyVisitor {
-  template <class... Arguments>
-  void operator()(Arguments&&...) const {}
+constexpr int kLastLine = 600;  ///< No file is longer (tests/style/sources.py).
+
+/// Of two overloads, the one for the later line wins.
+template <int kLine>
+struct Line : Line<kLine - 1> {
+  static_assert(kLine <= kLastLine);
+  static constexpr int kBefore = kLine - 1;
+};
+template <>
+struct Line<0> {};
+
+struct OptionList {
+  std::vector<Option> fields, groups;
+
+  void field(const char* name, Option::Value value, FieldRule rule, const char* description) {
+    fields.push_back({name, description, rule, value});
+  }
+
+  void group(const std::string& name, auto& options, const char* description) {
+    groups.push_back({name, description, {}, {}});
+    for (Option& option : options_of(options)) {
+      option.path = name + "." + option.path;
+      groups.push_back(std::move(option));
+    }
+  }
+
+  /// What is declared up to a line.
+  template <int kUpTo = kLastLine, class Options>
+  void list(Options& options) {
+    if constexpr (requires { options.list_option(Line<kUpTo>(), *this); }) {
+      using Last = decltype(options.list_option(Line<kUpTo>(), *this));
+      list<Last::kBefore>(options);
+      options.list_option(Last(), *this);
+    }
+  }
 };
 }  // namespace detail
 
-/// Every group and field of a tree, in the order of its declarations, each group before its fields.
-/// The values point into `options`.
 template <class Options>
-std::vector<Option> options_of(Options& options, const std::string& prefix = "") {
-  std::vector<Option> out;
-  if constexpr (requires { options.visit_fields(detail::AnyVisitor()); }) {
-    options.visit_fields([&](const char* name, auto& value, const FieldRule& rule) {
-      out.push_back({prefix + name, rule, &value});
-    });
-  }
-  if constexpr (requires { options.visit_groups(detail::AnyVisitor()); }) {
-    options.visit_groups([&](const char* name, auto& group, const char* description) {
-      out.push_back({prefix + name, {.description = description}, std::monostate()});
-      for (Option& option : options_of(group, prefix + name + "."))
-        out.push_back(std::move(option));
-    });
-  }
-  return out;
+std::vector<Option> options_of(Options& options) {
+  detail::OptionList list;
+  list.list(options);
+  list.fields.insert(list.fields.end(), list.groups.begin(), list.groups.end());
+  return std::move(list.fields);
 }
 
 namespace detail {

@@ -22,27 +22,17 @@ struct PosedSurface {
 };
 
 struct SurfaceAlignmentOptions {
-  int iterations = 12;
-  int max_points = 3000;
-  double start_gate_m = 0.030;
-  double end_gate_m = 0.008;
-  double position_sigma_m = 0.010;
-  double angle_sigma_deg = 1;
-  int min_matches = 200;
-
-  void visit_fields(auto&& visit) {
-    visit("iterations", iterations, {1, 100, "Gauss-Newton steps."});
-    visit("max_points", max_points, {100, 100000, "Points of each view that are compared."});
-    visit("start_gate_m", start_gate_m,
-          {0.001, 0.2, "Largest distance of a point to the other view's surface, first step, m."});
-    visit("end_gate_m", end_gate_m, {0.001, 0.2, "The same of the last step, m."});
-    visit("position_sigma_m", position_sigma_m,
-          {1e-4, 1, "Expected error of a camera's position, standard deviation, m."});
-    visit("angle_sigma_deg", angle_sigma_deg,
-          {1e-3, 45, "Expected error of a camera's orientation, standard deviation, degrees."});
-    visit("min_matches", min_matches,
-          {10, 100000, "Two views with fewer common points are not compared."});
-  }
+  BPA_OPTION(int, iterations, 12, (1, 100), "Gauss-Newton steps.");
+  BPA_OPTION(int, max_points, 3000, (100, 100000), "Points of each view that are compared.");
+  BPA_OPTION(double, start_gate_m, 0.030, (0.001, 0.2),
+             "Largest distance of a point to the other view's surface, first step, m.");
+  BPA_OPTION(double, end_gate_m, 0.008, (0.001, 0.2), "The same of the last step, m.");
+  BPA_OPTION(double, position_sigma_m, 0.010, (1e-4, 1),
+             "Expected error of a camera's position, standard deviation, m.");
+  BPA_OPTION(double, angle_sigma_deg, 1, (1e-3, 45),
+             "Expected error of a camera's orientation, standard deviation, degrees.");
+  BPA_OPTION(int, min_matches, 200, (10, 100000),
+             "Two views with fewer common points are not compared.");
 };
 
 /// How far the surfaces of two views are apart in the fixed frame.

@@ -22,22 +22,14 @@ struct Plane {
 };
 
 struct PlaneOptions {
-  bool label_planes = true;
-  double min_extent_m = 0.35;
-  double min_fraction = 0.04;
-  int max_planes = 3;
-  int num_samples = 300;
+  BPA_OPTION(bool, label_planes, true, (), "Label large planes (table, wall) as background.");
+  BPA_NAMED_OPTION("plane_min_extent_m", double, min_extent_m, 0.35, (0.1, 10),
+                   "Smaller planes may be faces of objects and are kept, metres.");
+  BPA_OPTION(double, min_fraction, 0.04, (0, 1),
+             "Share of the valid pixels that a plane must hold.");
+  BPA_OPTION(int, max_planes, 3, (0, 100), "Planes that are labelled at most.");
+  BPA_OPTION(int, num_samples, 300, (1, 100000), "RANSAC samples for each plane.");
   std::uint64_t seed = 0;
-
-  void visit_fields(auto&& visit) {
-    visit("label_planes", label_planes, {0, 1, "Label large planes (table, wall) as background."});
-    visit("plane_min_extent_m", min_extent_m,
-          {0.1, 10, "Smaller planes may be faces of objects and are kept, metres."});
-    visit("min_fraction", min_fraction,
-          {0, 1, "Share of the valid pixels that a plane must hold."});
-    visit("max_planes", max_planes, {0, 100, "Planes that are labelled at most."});
-    visit("num_samples", num_samples, {1, 100000, "RANSAC samples for each plane."});
-  }
 };
 
 /// The large planes of the scene (table, wall, floor), largest first, by RANSAC with normals. Their

@@ -37,24 +37,16 @@ struct SurfaceMap {
 };
 
 struct SurfaceMapOptions {
-  double max_range_m = 2.5;
-  double normal_radius_m = 0.010;
-  int max_width = 400;
-  std::string sensor = "auto";
+  BPA_OPTION(double, max_range_m, 2.5, (0.2, 20),
+             "Surface further away than this is ignored, metres.");
+  BPA_OPTION(double, normal_radius_m, 0.010, (0.003, 0.05),
+             "Radius of the window a surface normal is fitted in, metres.");
+  BPA_OPTION(int, max_width, 400, (64, 8192),
+             "Wider frames are halved until they are not wider, pixels.");
+  BPA_OPTION(std::string, sensor, "auto", ("auto structured_light active_stereo time_of_flight "),
+             "Kind of depth camera: structured_light, active_stereo or time_of_flight; auto tells "
+             "it from each frame.");
   int num_threads = 0;  ///< 0: one per core. Does not change the result.
-
-  void visit_fields(auto&& visit) {
-    visit("max_range_m", max_range_m,
-          {0.2, 20, "Surface further away than this is ignored, metres."});
-    visit("normal_radius_m", normal_radius_m,
-          {0.003, 0.05, "Radius of the window a surface normal is fitted in, metres."});
-    visit("max_width", max_width,
-          {64, 8192, "Wider frames are halved until they are not wider, pixels."});
-    visit("sensor", sensor,
-          {.description = "Kind of depth camera: structured_light, active_stereo or "
-                          "time_of_flight; auto tells it from each frame.",
-           .choices = "auto structured_light active_stereo time_of_flight "});
-  }
 };
 
 /// Frame pixels per map pixel in each direction: the fewest, up to 8, for which a map of a frame of

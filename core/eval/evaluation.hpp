@@ -20,22 +20,15 @@ namespace bpa::eval {
 /// The tolerances of a right placement, and which instances count. Paper, section VII: 2.5 cm and
 /// π/16 "with respect to the model's symmetry group" on Clutter, RMSE 1 cm on Kinect.
 struct EvaluationOptions {
-  double position_m = kPoseTolerance_m;
-  double angle_rad = kPoseTolerance_rad;
-  double rmse_m = 0.01;
-  double min_visible_fraction = 0.1;
-  bool bop_errors = true;
-  int num_threads = 0;
-
-  void visit_fields(auto&& visit) {
-    visit("position_m", position_m, {0.001, 1, "Largest position error of a match, metres."});
-    visit("angle_rad", angle_rad, {0.001, 3.2, "Largest angle error of a match, radians."});
-    visit("rmse_m", rmse_m, {0.001, 1, "Largest RMSE of a match, metres."});
-    visit("min_visible_fraction", min_visible_fraction,
-          {0, 1, "Less visible instances are neither required nor false positives."});
-    visit("bop_errors", bop_errors, {0, 1, "Also compute ADD, VSD, MSSD and MSPD."});
-    visit("num_threads", num_threads, {0, 256, "0 = one per core."});
-  }
+  BPA_OPTION(double, position_m, kPoseTolerance_m, (0.001, 1),
+             "Largest position error of a match, metres.");
+  BPA_OPTION(double, angle_rad, kPoseTolerance_rad, (0.001, 3.2),
+             "Largest angle error of a match, radians.");
+  BPA_OPTION(double, rmse_m, 0.01, (0.001, 1), "Largest RMSE of a match, metres.");
+  BPA_OPTION(double, min_visible_fraction, 0.1, (0, 1),
+             "Less visible instances are neither required nor false positives.");
+  BPA_OPTION(bool, bop_errors, true, (0, 1), "Also compute ADD, VSD, MSSD and MSPD.");
+  BPA_OPTION(int, num_threads, 0, (0, 256), "0 = one per core.");
 };
 
 /// An object with the mesh that errors are measured on.

@@ -29,19 +29,11 @@
 namespace bpa::eval {
 
 struct TrackEvaluationOptions {
-  double match_m = 0.05;
-  double min_visible_fraction = 0.1;
-  double hidden_s = 1;
-  int num_threads = 0;
-
-  void visit_fields(auto&& visit) {
-    visit("match_m", match_m, {0.001, 1, "Largest distance of a match, metres."});
-    visit("min_visible_fraction", min_visible_fraction,
-          {0, 1, "Less visible instances are hidden."});
-    visit("hidden_s", hidden_s,
-          {0, 60, "Seconds for which a hidden instance counts, after it was visible."});
-    visit("num_threads", num_threads, {0, 256, "0 = one per core."});
-  }
+  BPA_OPTION(double, match_m, 0.05, (0.001, 1), "Largest distance of a match, metres.");
+  BPA_OPTION(double, min_visible_fraction, 0.1, (0, 1), "Less visible instances are hidden.");
+  BPA_OPTION(double, hidden_s, 1, (0, 60),
+             "Seconds for which a hidden instance counts, after it was visible.");
+  BPA_OPTION(int, num_threads, 0, (0, 256), "0 = one per core.");
 };
 
 /// Sums over frames; the measures come from them.

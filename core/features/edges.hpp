@@ -18,13 +18,10 @@ enum class RangeEdge : std::uint8_t {
   occluded = 2,   ///< On the further surface: something is hidden from here on.
 };
 
+/// The default is chosen by hand.
 struct RangeEdgeOptions {
-  int max_gap_px = 20;  ///< Chosen by hand.
+  BPA_OPTION(int, max_gap_px, 20, (0, 200), "Pixels without depth that an edge spans.");
   int num_threads = 0;  ///< 0: one for each core.
-
-  void visit_fields(auto&& visit) {
-    visit("max_gap_px", max_gap_px, {0, 200, "Pixels without depth that an edge spans."});
-  }
 };
 
 /// Depth discontinuities (paper, V.2) between each pixel and the next one with a depth, in the
@@ -34,16 +31,11 @@ Image<RangeEdge> range_edges(const SurfaceMap& map, const RangeEdgeOptions& opti
 
 /// The defaults are chosen by hand.
 struct ImageEdgeOptions {
-  double blur_px = 0.8;
-  double low = 10;
-  double high = 25;
+  BPA_OPTION(double, blur_px, 0.8, (0, 10),
+             "Standard deviation of the blur before gradients, pixels.");
+  BPA_OPTION(double, low, 10, (0, 255), "Step of luminance (of 255) that continues an image edge.");
+  BPA_OPTION(double, high, 25, (0, 255), "Step of luminance (of 255) that begins an image edge.");
   int num_threads = 0;  ///< 0: one for each core.
-
-  void visit_fields(auto&& visit) {
-    visit("blur_px", blur_px, {0, 10, "Standard deviation of the blur before gradients, pixels."});
-    visit("low", low, {0, 255, "Step of luminance (of 255) that continues an image edge."});
-    visit("high", high, {0, 255, "Step of luminance (of 255) that begins an image edge."});
-  }
 };
 
 /// Intensity discontinuities of an rgb image in [0, 255], by Canny's detector: 1 on an edge, else
@@ -53,18 +45,12 @@ Image<std::uint8_t> image_edges(const Image<Eigen::Vector3f>& rgb,
 
 /// The defaults are chosen by hand.
 struct CurvatureEdgeOptions {
-  double baseline_m = 0.010;
-  double min_concavity = 30;
-  double max_baseline_px = 8;
+  BPA_OPTION(double, baseline_m, 0.010, (0.001, 0.1),
+             "Normals this far to either side are compared, metres.");
+  BPA_OPTION(double, min_concavity, 30, (0, 1000),
+             "Least concavity of an edge, 1 / radius of the hollow, per metre.");
+  BPA_OPTION(double, max_baseline_px, 8, (1, 50), "Largest baseline in the image, pixels.");
   int num_threads = 0;  ///< 0: one for each core.
-
-  void visit_fields(auto&& visit) {
-    visit("baseline_m", baseline_m,
-          {0.001, 0.1, "Normals this far to either side are compared, metres."});
-    visit("min_concavity", min_concavity,
-          {0, 1000, "Least concavity of an edge, 1 / radius of the hollow, per metre."});
-    visit("max_baseline_px", max_baseline_px, {1, 50, "Largest baseline in the image, pixels."});
-  }
 };
 
 /// The lowest normal curvature among the four directions of the grid and its diagonals, per metre:
@@ -85,21 +71,15 @@ Image<std::uint8_t> curvature_edges(const SurfaceMap& map,
 
 /// The defaults are chosen by hand; the paper gives no numbers.
 struct EdgeImageOptions {
-  double blur_px = 1.0;
-  double range_weight = 1.0;
-  double curvature_weight = 0.6;
-  double image_weight = 0.3;
+  BPA_NAMED_OPTION("edge_blur_px", double, blur_px, 1.0, (0, 10),
+                   "Standard deviation of the edge image's blur, pixels.");
+  BPA_OPTION(double, range_weight, 1.0, (0, 10), "Weight of range edges.");
+  BPA_OPTION(double, curvature_weight, 0.6, (0, 10), "Weight of curvature edges.");
+  BPA_OPTION(double, image_weight, 0.3, (0, 10), "Weight of image edges.");
   RangeEdgeOptions range;
   ImageEdgeOptions image;
   CurvatureEdgeOptions curvature;
   int num_threads = 0;
-
-  void visit_fields(auto&& visit) {
-    visit("edge_blur_px", blur_px, {0, 10, "Standard deviation of the edge image's blur, pixels."});
-    visit("range_weight", range_weight, {0, 10, "Weight of range edges."});
-    visit("curvature_weight", curvature_weight, {0, 10, "Weight of curvature edges."});
-    visit("image_weight", image_weight, {0, 10, "Weight of image edges."});
-  }
 };
 
 /// The three kinds of edges of a frame and what they say together. All of the surface map's size.

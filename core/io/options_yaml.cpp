@@ -179,7 +179,7 @@ std::string options_yaml(const std::vector<Option>& options, bool hidden) {
     const auto depth = std::count(option.path.begin(), option.path.end(), '.');
     const std::string indent(2 * depth, ' ');
     if (option.is_group()) out << (depth == 0 ? "\n" : "");
-    out << indent << "# " << option.rule.description;
+    out << indent << "# " << option.description;
     const std::size_t kind = option.value.index();
     const bool number = kind >= 2 && kind <= 4;
     if (number) out << ' ' << option.rule.min << " to " << option.rule.max << '.';

@@ -14,13 +14,8 @@ namespace bpa {
 
 /// Options of making a model from a surface.
 struct ModelOptions {
-  double spacing_m = 0.0025;  ///< Distance of neighbouring surface points.
-  int num_threads = 0;
-
-  void visit_fields(auto&& visit) {
-    visit("spacing_m", spacing_m, {0.0005, 0.02, "Distance of surface points."});
-    visit("num_threads", num_threads, {0, 256, "0 = one per core."});
-  }
+  BPA_OPTION(double, spacing_m, 0.0025, (0.0005, 0.02), "Distance of surface points.");
+  BPA_OPTION(int, num_threads, 0, (0, 256), "0 = one per core.");
 };
 
 /// The evenly spaced, outwardly visible surface of a mesh or a dense oriented point cloud. Fails

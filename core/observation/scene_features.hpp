@@ -58,49 +58,30 @@ struct SceneFeatures {
 };
 
 struct SceneFeatureOptions {
-  int max_keypoints = 300;
-  int round_keypoints = 3;
-  int max_references = 150;
-  double coarse_spacing_m = 0.010;
-  double pair_reach_m = kMaxPairLength;
-  int pair_step = 2;
-  bool use_color = true;
-  bool use_texture = true;
-  bool use_outline = true;
-  bool use_flat_regions = true;
-  double color_blur_px = 1.5;
-  EdgeImageOptions edges;
-  SuperPixelOptions segments;
+  BPA_OPTION(int, max_keypoints, 300, (10, 100000),
+             "Scene points whose features are compared with the models'.");
+  BPA_OPTION(int, round_keypoints, 3, (1, 100000),
+             "Of these, how many one round matches with the models.");
+  BPA_OPTION(int, max_references, 150, (0, 100000),
+             "Scene points whose pairs with others vote for poses in one round.");
+  BPA_OPTION(double, coarse_spacing_m, 0.010, (0.002, 0.1),
+             "Spacing of the points that make pairs, metres.");
+  BPA_OPTION(double, pair_reach_m, kMaxPairLength, (0.01, kMaxPairLength),
+             "Length of the longest pairs, metres. What is mostly hidden has no long ones.");
+  BPA_OPTION(int, pair_step, 2, (1, 100), "Of the pairs of a point, one in so many votes.");
+  BPA_OPTION(bool, use_color, true, (), "Use the frame's colours; false ignores them.");
+  BPA_OPTION(bool, use_texture, true, (),
+             "Compare the patterns of surfaces in colour; false ignores them.");
+  BPA_OPTION(bool, use_outline, true, (),
+             "Compare outlines with the colour image; false ignores them.");
+  BPA_OPTION(bool, use_flat_regions, true, (),
+             "Look for thin objects where a plane's colours or heights differ.");
+  BPA_OPTION(double, color_blur_px, 1.5, (0, 10),
+             "Standard deviation of the blur of the colours, pixels.");
+  BPA_GROUP(EdgeImageOptions, edges, "The edge image.");
+  BPA_GROUP(SuperPixelOptions, segments, "Super-pixels.");
   std::uint64_t seed = 0;
   int num_threads = 0;  ///< 0: one per core. Does not change the result.
-
-  void visit_fields(auto&& visit) {
-    visit("max_keypoints", max_keypoints,
-          {10, 100000, "Scene points whose features are compared with the models'."});
-    visit("round_keypoints", round_keypoints,
-          {1, 100000, "Of these, how many one round matches with the models."});
-    visit("max_references", max_references,
-          {0, 100000, "Scene points whose pairs with others vote for poses in one round."});
-    visit("coarse_spacing_m", coarse_spacing_m,
-          {0.002, 0.1, "Spacing of the points that make pairs, metres."});
-    visit("pair_reach_m", pair_reach_m,
-          {0.01, kMaxPairLength,
-           "Length of the longest pairs, metres. What is mostly hidden has no long ones."});
-    visit("pair_step", pair_step, {1, 100, "Of the pairs of a point, one in so many votes."});
-    visit("use_color", use_color, {0, 1, "Use the frame's colours; false ignores them."});
-    visit("use_texture", use_texture,
-          {0, 1, "Compare the patterns of surfaces in colour; false ignores them."});
-    visit("use_outline", use_outline,
-          {0, 1, "Compare outlines with the colour image; false ignores them."});
-    visit("use_flat_regions", use_flat_regions,
-          {0, 1, "Look for thin objects where a plane's colours or heights differ."});
-    visit("color_blur_px", color_blur_px,
-          {0, 10, "Standard deviation of the blur of the colours, pixels."});
-  }
-  void visit_groups(auto&& visit) {
-    visit("edges", edges, "The edge image.");
-    visit("segments", segments, "Super-pixels.");
-  }
 };
 
 /// The colours of a frame, empty without.

@@ -16,65 +16,39 @@ namespace bpa {
 
 /// How often the search looks at the scene.
 struct RoundOptions {
-  int max_rounds = 12;
-  double min_certain = 0.85;
-  double min_gain = 0.04;
-  double min_gain_of_two = 0.15;
-  double expected_share = 0.6;
-  double min_gain_expected = 0.3;
-  int step_without_sign = 0;
-  double min_sign = -5;
-
-  void visit_fields(auto&& visit) {
-    visit("max_rounds", max_rounds,
-          {1, 100, "Rounds of the search, each with another sample of the scene."});
-    visit("min_certain", min_certain,
-          {0, 1,
-           "Surface that a placement of at least this probability explains is not searched in "
-           "later rounds."});
-    visit("min_gain", min_gain,
-          {0, 1,
-           "The search ends after a round, but not the first, that makes the surface of no "
-           "placement more probable by this, in the mean of its pixels."});
-    visit("min_gain_of_two", min_gain_of_two,
-          {0, 1,
-           "It ends, too, after two rounds in a row neither of which gains this. With both 0, it "
-           "ends after max_rounds."});
-    visit("expected_share", expected_share,
-          {0.01, 1,
-           "Of a round's sample, what the first round takes where an earlier frame says what to "
-           "expect. The search may end after it."});
-    visit("min_gain_expected", min_gain_expected,
-          {0, 1, "min_gain where an earlier frame says what to expect."});
-    visit("step_without_sign", step_without_sign,
-          {0, 1000,
-           "From the second round on, models without a sign look at one in so many points of the "
-           "sample. 0: one for each 60 models searched for, so that many cost little more."});
-    visit("min_sign", min_sign,
-          {-1000, 1000, "Log odds of a placement that is a sign of its model."});
-  }
+  BPA_OPTION(int, max_rounds, 12, (1, 100),
+             "Rounds of the search, each with another sample of the scene.");
+  BPA_OPTION(double, min_certain, 0.85, (0, 1),
+             "Surface that a placement of at least this probability explains is not searched in "
+             "later rounds.");
+  BPA_OPTION(double, min_gain, 0.04, (0, 1),
+             "The search ends after a round, but not the first, that makes the surface of no "
+             "placement more probable by this, in the mean of its pixels.");
+  BPA_OPTION(double, min_gain_of_two, 0.15, (0, 1),
+             "It ends, too, after two rounds in a row neither of which gains this. With both 0, it "
+             "ends after max_rounds.");
+  BPA_OPTION(double, expected_share, 0.6, (0.01, 1),
+             "Of a round's sample, what the first round takes where an earlier frame says what to "
+             "expect. The search may end after it.");
+  BPA_OPTION(double, min_gain_expected, 0.3, (0, 1),
+             "min_gain where an earlier frame says what to expect.");
+  BPA_OPTION(int, step_without_sign, 0, (0, 1000),
+             "From the second round on, models without a sign look at one in so many points of the "
+             "sample. 0: one for each 60 models searched for, so that many cost little more.");
+  BPA_OPTION(double, min_sign, -5, (-1000, 1000),
+             "Log odds of a placement that is a sign of its model.");
 };
 
 /// Every setting of the detector, a group for each stage. The defaults are meant for a Kinect-class
 /// sensor and household objects; config/detector.yaml lists them all.
 struct DetectorOptions {
-  SurfaceMapOptions surface;
-  PlaneOptions planes;
-  SceneFeatureOptions features;
-  RoundOptions rounds;
-  DetectOptions detect;  ///< Its groups are listed as the detector's own.
-  InterpretationOptions scene;
-  ViewsOptions views;
-
-  void visit_groups(auto&& visit) {
-    visit("surface", surface, "The surface in the depth image.");
-    visit("planes", planes, "Background planes.");
-    visit("features", features, "What is computed once for all models.");
-    visit("rounds", rounds, "Rounds of the search.");
-    detect.visit_groups(visit);
-    visit("scene", scene, "Interpretations of the whole scene (paper section VI).");
-    visit("views", views, "Several views of one scene.");
-  }
+  BPA_GROUP(SurfaceMapOptions, surface, "The surface in the depth image.");
+  BPA_GROUP(PlaneOptions, planes, "Background planes.");
+  BPA_GROUP(SceneFeatureOptions, features, "What is computed once for all models.");
+  BPA_GROUP(RoundOptions, rounds, "Rounds of the search.");
+  BPA_INLINE_GROUP(DetectOptions, detect);
+  BPA_GROUP(InterpretationOptions, scene, "Interpretations of the whole scene (paper section VI).");
+  BPA_GROUP(ViewsOptions, views, "Several views of one scene.");
 };
 
 /// Reads a YAML file that overrides some defaults: groups of fields, or fields by their own name

@@ -14,46 +14,30 @@
 namespace bpa {
 
 struct InterpretationOptions {
-  double min_probability = 0.5;
-  double object_penalty = 0;
-  double explained_weight = 2;
-  double max_shared = 0.3;
-  int annealing_steps = 20000;
-  double start_temperature = 2;
-  double end_temperature = 0.05;
-  double min_shown = 0.001;
-  bool judge_given_others = true;
-  int max_different = 20;
-  int max_interpretations = 100;
+  BPA_OPTION(double, min_probability, 0.5, (0, 1),
+             "Placements less probable than this are not part of the best interpretation.");
+  BPA_OPTION(double, object_penalty, 0, (0, 100),
+             "Log odds that each further object of an interpretation costs, beyond those of "
+             "min_probability.");
+  BPA_OPTION(double, explained_weight, 2, (0, 1000),
+             "Weight of the ratio of explained to observed surface.");
+  BPA_OPTION(double, max_shared, 0.3, (0, 1),
+             "Share of the smaller one's pixels that two placements may share.");
+  BPA_OPTION(int, annealing_steps, 20000, (0, 10000000),
+             "Moves of simulated annealing (paper section VI).");
+  BPA_OPTION(double, start_temperature, 2, (0, 1000),
+             "Temperature of the first move, in units of the score.");
+  BPA_OPTION(double, end_temperature, 0.05, (1e-6, 1000),
+             "Temperature of the last move, in units of the score.");
+  BPA_OPTION(double, min_shown, 0.001, (0, 1),
+             "Less probable placements are in no interpretation.");
+  BPA_OPTION(bool, judge_given_others, true, (),
+             "Judge each placement again, given the others of a first interpretation.");
+  BPA_OPTION(int, max_different, 20, (1, 100),
+             "Interpretations that show something new, with the best.");
+  BPA_OPTION(int, max_interpretations, 100, (1, 100),
+             "Best interpretations kept (paper section VI: 100).");
   std::uint64_t seed = 0;
-
-  void visit_fields(auto&& visit) {
-    visit("min_probability", min_probability,
-          {0, 1,
-           "Placements less probable than this are not part of the best "
-           "interpretation."});
-    visit("object_penalty", object_penalty,
-          {0, 100,
-           "Log odds that each further object of an interpretation costs, beyond those of "
-           "min_probability."});
-    visit("explained_weight", explained_weight,
-          {0, 1000, "Weight of the ratio of explained to observed surface."});
-    visit("max_shared", max_shared,
-          {0, 1, "Share of the smaller one's pixels that two placements may share."});
-    visit("annealing_steps", annealing_steps,
-          {0, 10000000, "Moves of simulated annealing (paper section VI)."});
-    visit("start_temperature", start_temperature,
-          {0, 1000, "Temperature of the first move, in units of the score."});
-    visit("end_temperature", end_temperature,
-          {1e-6, 1000, "Temperature of the last move, in units of the score."});
-    visit("min_shown", min_shown, {0, 1, "Less probable placements are in no interpretation."});
-    visit("judge_given_others", judge_given_others,
-          {0, 1, "Judge each placement again, given the others of a first interpretation."});
-    visit("max_different", max_different,
-          {1, 100, "Interpretations that show something new, with the best."});
-    visit("max_interpretations", max_interpretations,
-          {1, 100, "Best interpretations kept (paper section VI: 100)."});
-  }
 };
 
 /// Replaces the probabilities of single candidates by those under competition with their rivals

@@ -29,20 +29,13 @@ struct PoseCheck {
 
 /// Tolerances of a check. The options that hold one say their defaults.
 struct CheckTolerance {
-  double depth_m = 0;
-  double free_depth_m = 0;
-  double normal_cosine = 0;
-
-  void visit_fields(auto&& visit) {
-    visit("depth_m", depth_m,
-          {1e-4, 1, "Depth difference of a model point on the surface, metres."});
-    visit("free_depth_m", free_depth_m,
-          {1e-4, 1,
-           "A point this far in front of the surface is in free space, metres. The paper "
-           "has 0.05 (V.3)."});
-    visit("normal_cosine", normal_cosine,
-          {-1, 1, "Smallest cosine between the normals of model and surface."});
-  }
+  BPA_OPTION(double, depth_m, 0, (1e-4, 1),
+             "Depth difference of a model point on the surface, metres.");
+  BPA_OPTION(double, free_depth_m, 0, (1e-4, 1),
+             "A point this far in front of the surface is in free space, metres. The paper has "
+             "0.05 (V.3).");
+  BPA_OPTION(double, normal_cosine, 0, (-1, 1),
+             "Smallest cosine between the normals of model and surface.");
 };
 
 /// How many of the model's points a check looks at.

@@ -40,35 +40,20 @@ namespace bpa::sim {
 
 /// Every effect can be turned down to none.
 struct ActiveStereoOptions {
-  double baseline = 0.055;
-  int width = 1280;
-  int height = 720;
-  double infrared_focal = 924;
-  double disparity_noise = 0.08;
-  double disparity_step = 0.03125;
-  double fattening = 1;
-  double dropouts = 1;
-  bool registered = true;
-  double color_baseline = -0.015;
-  double min_range = 0.45;
-  double max_range = 10;
-
-  void visit_fields(auto&& visit) {
-    visit("baseline", baseline, {0.001, 0.5, "Left to right infrared camera, metres."});
-    visit("width", width, {64, 4096, "Of the infrared images, pixels."});
-    visit("height", height, {64, 4096, "Of the infrared images, pixels."});
-    visit("infrared_focal", infrared_focal, {50, 4000, "Of the infrared images, pixels."});
-    visit("disparity_noise", disparity_noise, {0, 2, "Standard deviation, pixels."});
-    visit("disparity_step", disparity_step, {0, 4, "Steps of disparity, pixels; 0 = none."});
-    visit("fattening", fattening, {0, 2, "Times the usual growth of silhouettes; 0 = none."});
-    visit("dropouts", dropouts, {0, 10, "Times the usual chance that a pixel has no depth."});
-    visit("registered", registered,
-          {0, 1, "Measure from beside the colour camera and carry over."});
-    visit("color_baseline", color_baseline,
-          {-0.5, 0.5, "Left infrared to colour camera, metres to the right."});
-    visit("min_range", min_range, {0, 20, "Nearest depth measured, metres."});
-    visit("max_range", max_range, {0, 20, "Farthest depth measured, metres."});
-  }
+  BPA_OPTION(double, baseline, 0.055, (0.001, 0.5), "Left to right infrared camera, metres.");
+  BPA_OPTION(int, width, 1280, (64, 4096), "Of the infrared images, pixels.");
+  BPA_OPTION(int, height, 720, (64, 4096), "Of the infrared images, pixels.");
+  BPA_OPTION(double, infrared_focal, 924, (50, 4000), "Of the infrared images, pixels.");
+  BPA_OPTION(double, disparity_noise, 0.08, (0, 2), "Standard deviation, pixels.");
+  BPA_OPTION(double, disparity_step, 0.03125, (0, 4), "Steps of disparity, pixels; 0 = none.");
+  BPA_OPTION(double, fattening, 1, (0, 2), "Times the usual growth of silhouettes; 0 = none.");
+  BPA_OPTION(double, dropouts, 1, (0, 10), "Times the usual chance that a pixel has no depth.");
+  BPA_OPTION(bool, registered, true, (0, 1),
+             "Measure from beside the colour camera and carry over.");
+  BPA_OPTION(double, color_baseline, -0.015, (-0.5, 0.5),
+             "Left infrared to colour camera, metres to the right.");
+  BPA_OPTION(double, min_range, 0.45, (0, 20), "Nearest depth measured, metres.");
+  BPA_OPTION(double, max_range, 10, (0, 20), "Farthest depth measured, metres.");
 };
 
 /// The standard deviation of depth that the model must meet, metres (step 4), for a surface that

@@ -38,39 +38,22 @@ namespace bpa::sim {
 
 /// Every effect can be turned down to none.
 struct KinectOptions {
-  double baseline = 0.075;
-  double disparity_step = 0.125;
-  double infrared_focal = 570.3;
-  double axial_noise = 1;
-  double calibration_error = 0;
-  double lateral_noise = 1;
-  double edge_gaps = 1;
-  double dropouts = 1;
-  bool shadows = true;
-  bool registered = true;
-  double color_baseline = 0.025;
-  double min_range = 0.4;
-  double max_range = 4.5;
-
-  void visit_fields(auto&& visit) {
-    visit("baseline", baseline, {0, 0.5, "Infrared camera to projector, metres."});
-    visit("disparity_step", disparity_step, {0, 4, "Steps of disparity, pixels; 0 = none."});
-    visit("infrared_focal", infrared_focal,
-          {200, 4000, "Focal length of the 640x480 infrared image, pixels."});
-    visit("axial_noise", axial_noise, {0, 10, "Times the published noise along the axis."});
-    visit(
-        "calibration_error", calibration_error,
-        {0, 2, "Standard deviation of the smooth error of disparity, pixels; 0.4 is 1 cm at 1 m."});
-    visit("lateral_noise", lateral_noise, {0, 10, "Times the published noise of edges."});
-    visit("edge_gaps", edge_gaps, {0, 2, "Times the usual share of a window that must agree."});
-    visit("dropouts", dropouts, {0, 10, "Times the usual chance that a pixel has no depth."});
-    visit("shadows", shadows, {0, 1, "No depth where the projector does not reach."});
-    visit("registered", registered,
-          {0, 1, "Measure from beside the colour camera and carry over."});
-    visit("color_baseline", color_baseline, {0, 0.5, "Infrared to colour camera, metres."});
-    visit("min_range", min_range, {0, 20, "Nearest depth measured, metres."});
-    visit("max_range", max_range, {0, 20, "Farthest depth measured, metres."});
-  }
+  BPA_OPTION(double, baseline, 0.075, (0, 0.5), "Infrared camera to projector, metres.");
+  BPA_OPTION(double, disparity_step, 0.125, (0, 4), "Steps of disparity, pixels; 0 = none.");
+  BPA_OPTION(double, infrared_focal, 570.3, (200, 4000),
+             "Focal length of the 640x480 infrared image, pixels.");
+  BPA_OPTION(double, axial_noise, 1, (0, 10), "Times the published noise along the axis.");
+  BPA_OPTION(double, calibration_error, 0, (0, 2),
+             "Standard deviation of the smooth error of disparity, pixels; 0.4 is 1 cm at 1 m.");
+  BPA_OPTION(double, lateral_noise, 1, (0, 10), "Times the published noise of edges.");
+  BPA_OPTION(double, edge_gaps, 1, (0, 2), "Times the usual share of a window that must agree.");
+  BPA_OPTION(double, dropouts, 1, (0, 10), "Times the usual chance that a pixel has no depth.");
+  BPA_OPTION(bool, shadows, true, (0, 1), "No depth where the projector does not reach.");
+  BPA_OPTION(bool, registered, true, (0, 1),
+             "Measure from beside the colour camera and carry over.");
+  BPA_OPTION(double, color_baseline, 0.025, (0, 0.5), "Infrared to colour camera, metres.");
+  BPA_OPTION(double, min_range, 0.4, (0, 20), "Nearest depth measured, metres.");
+  BPA_OPTION(double, max_range, 4.5, (0, 20), "Farthest depth measured, metres.");
 };
 
 /// The axial standard deviation of depth that the model must meet, metres (step 4). For a surface

@@ -25,54 +25,30 @@ enum class SceneKind {
 
 /// The ranges that scenes are drawn from.
 struct SceneOptions {
-  int min_objects = 10;
-  int max_objects = 14;
-  double min_clutter = 0.6;
-  double max_clutter = 1;
-  double bin_share = 1;
-  int max_distractors = 2;
-  double min_distance = 0.6;
-  double max_distance = 1.4;
-  double min_elevation_deg = 25;
-  double max_elevation_deg = 65;
-  int views = 1;
-  int shots = 1;
-  double empty_share = 0;
-  double distractor_share = 0;
-  double border_share = 0.1;
-  double ambiguous_share = 0;
-  double min_focal = 0;
-  double max_focal = 0;
+  BPA_OPTION(int, min_objects, 10, (0, 100), "Fewest objects in a pile.");
+  BPA_OPTION(int, max_objects, 14, (0, 100), "Most objects in a pile.");
+  BPA_OPTION(double, min_clutter, 0.6, (0, 1), "0 = apart on the table, 1 = a heap.");
+  BPA_OPTION(double, max_clutter, 1, (0, 1), "0 = apart on the table, 1 = a heap.");
+  BPA_OPTION(double, bin_share, 1, (0, 1), "Chance that a heap lies in an open bin.");
+  BPA_OPTION(int, max_distractors, 2, (0, 20), "Most distractors in a pile.");
+  BPA_OPTION(double, min_distance, 0.6, (0.3, 4), "Camera to the middle of the pile, metres.");
+  BPA_OPTION(double, max_distance, 1.4, (0.3, 4), "Camera to the middle of the pile, metres.");
+  BPA_OPTION(double, min_elevation_deg, 25, (5, 89), "Camera above the table, degrees.");
+  BPA_OPTION(double, max_elevation_deg, 65, (5, 89), "Camera above the table, degrees.");
+  BPA_OPTION(int, views, 1, (1, 1000), "Viewpoints of each scene, all around.");
+  BPA_OPTION(int, shots, 1, (1, 100), "Frames from each viewpoint, which differ in noise.");
+  BPA_OPTION(double, empty_share, 0, (0, 1), "Share of scenes with an empty table.");
+  BPA_OPTION(double, distractor_share, 0, (0, 1), "Share of scenes with distractors only.");
+  BPA_OPTION(double, border_share, 0.1, (0, 1),
+             "Share of scenes with an object cut by the image's border.");
+  BPA_OPTION(double, ambiguous_share, 0, (0, 1),
+             "Share of scenes with one mug whose handle is out of sight.");
+  BPA_OPTION(double, min_focal, 0, (0, 4000), "Shortest focal length, pixels.");
+  BPA_OPTION(double, max_focal, 0, (0, 4000), "Longest focal length; 0 = the camera's own.");
   Camera camera{640, 480, 525, 525, 319.5, 239.5};  ///< Of the colour image and the frame.
-  SensorOptions sensor;
-  bool mixed_sensors = false;
-
-  void visit_fields(auto&& visit) {
-    visit("min_objects", min_objects, {0, 100, "Fewest objects in a pile."});
-    visit("max_objects", max_objects, {0, 100, "Most objects in a pile."});
-    visit("min_clutter", min_clutter, {0, 1, "0 = apart on the table, 1 = a heap."});
-    visit("max_clutter", max_clutter, {0, 1, "0 = apart on the table, 1 = a heap."});
-    visit("bin_share", bin_share, {0, 1, "Chance that a heap lies in an open bin."});
-    visit("max_distractors", max_distractors, {0, 20, "Most distractors in a pile."});
-    visit("min_distance", min_distance, {0.3, 4, "Camera to the middle of the pile, metres."});
-    visit("max_distance", max_distance, {0.3, 4, "Camera to the middle of the pile, metres."});
-    visit("min_elevation_deg", min_elevation_deg, {5, 89, "Camera above the table, degrees."});
-    visit("max_elevation_deg", max_elevation_deg, {5, 89, "Camera above the table, degrees."});
-    visit("views", views, {1, 1000, "Viewpoints of each scene, all around."});
-    visit("shots", shots, {1, 100, "Frames from each viewpoint, which differ in noise."});
-    visit("empty_share", empty_share, {0, 1, "Share of scenes with an empty table."});
-    visit("distractor_share", distractor_share, {0, 1, "Share of scenes with distractors only."});
-    visit("border_share", border_share,
-          {0, 1, "Share of scenes with an object cut by the image's border."});
-    visit("ambiguous_share", ambiguous_share,
-          {0, 1, "Share of scenes with one mug whose handle is out of sight."});
-    visit("min_focal", min_focal, {0, 4000, "Shortest focal length, pixels."});
-    visit("max_focal", max_focal, {0, 4000, "Longest focal length; 0 = the camera's own."});
-    sensor.visit_fields(visit);
-    visit("mixed_sensors", mixed_sensors,
-          {0, 1, "Each scene takes one of the three kinds of sensors by its seed."});
-  }
-  void visit_groups(auto&& visit) { sensor.visit_groups(visit); }
+  BPA_INLINE_GROUP(SensorOptions, sensor);
+  BPA_OPTION(bool, mixed_sensors, false, (0, 1),
+             "Each scene takes one of the three kinds of sensors by its seed.");
 };
 
 /// One object in one frame.

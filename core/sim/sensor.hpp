@@ -18,33 +18,18 @@ namespace bpa::sim {
 
 /// The colour image has exposure, white balance, blur and noise of its own.
 struct ColorCameraOptions {
-  double misregistration = 0;
-  double color_noise = 1;
-  double exposure_spread = 0.12;
-
-  void visit_fields(auto&& visit) {
-    visit("misregistration", misregistration, {0, 50, "Shift of colour against depth, pixels."});
-    visit("color_noise", color_noise, {0, 10, "Times the usual noise of colours."});
-    visit("exposure_spread", exposure_spread, {0, 2, "Standard deviation of the log exposure."});
-  }
+  BPA_OPTION(double, misregistration, 0, (0, 50), "Shift of colour against depth, pixels.");
+  BPA_OPTION(double, color_noise, 1, (0, 10), "Times the usual noise of colours.");
+  BPA_OPTION(double, exposure_spread, 0.12, (0, 2), "Standard deviation of the log exposure.");
 };
 
 /// Every effect can be turned down to none. Only the options of `kind` count.
 struct SensorOptions {
   SensorKind kind = SensorKind::structured_light;
-  KinectOptions kinect;
-  ActiveStereoOptions active_stereo;
-  TimeOfFlightOptions time_of_flight;
-  ColorCameraOptions color;
-
-  void visit_fields(auto&& visit) {
-    kinect.visit_fields(visit);
-    color.visit_fields(visit);
-  }
-  void visit_groups(auto&& visit) {
-    visit("active_stereo", active_stereo, "Two infrared cameras and a projector.");
-    visit("time_of_flight", time_of_flight, "The phase of modulated light.");
-  }
+  BPA_INLINE_GROUP(KinectOptions, kinect);
+  BPA_GROUP(ActiveStereoOptions, active_stereo, "Two infrared cameras and a projector.");
+  BPA_GROUP(TimeOfFlightOptions, time_of_flight, "The phase of modulated light.");
+  BPA_INLINE_GROUP(ColorCameraOptions, color);
 };
 
 /// Of the infrared image that depth is measured in, pixels.

@@ -41,49 +41,27 @@ std::optional<SequenceKind> sequence_kind(std::string_view name);
 /// The ranges that sequences are drawn from.
 struct SequenceOptions {
   SequenceKind kind = SequenceKind::mixed;
-  double seconds = 20;
-  double rate = 30;
-  double drop = 0.03;
-  int min_objects = 8;
-  int max_objects = 8;
-  int max_distractors = 2;
-  double camera_speed = 0.5;
-  double camera_turn_deg = 90;
-  double object_speed = 0.5;
-  double object_turn_deg = 90;
-  double max_occlusion = 1;
-  double min_distance = 0.7;
-  double max_distance = 1.1;
-  double min_elevation_deg = 30;
-  double max_elevation_deg = 60;
+  BPA_OPTION(double, seconds, 20, (0.1, 60), "Length of a sequence.");
+  BPA_OPTION(double, rate, 30, (1, 240), "Frames per second.");
+  BPA_OPTION(double, drop, 0.03, (0, 0.9), "Share of frames that are missing; never the first.");
+  BPA_OPTION(int, min_objects, 8, (1, 40), "Fewest objects.");
+  BPA_OPTION(int, max_objects, 8, (1, 40), "Most objects.");
+  BPA_OPTION(int, max_distractors, 2, (0, 12), "Most distractors, which stand.");
+  BPA_OPTION(double, camera_speed, 0.5, (0, 2), "Largest speed of the camera, m/s; 0 = it stands.");
+  BPA_OPTION(double, camera_turn_deg, 90, (0, 360),
+             "Largest turn rate of the camera, degrees/s; 0 = it stands.");
+  BPA_OPTION(double, object_speed, 0.5, (0.01, 2), "Largest speed of an object's origin, m/s.");
+  BPA_OPTION(double, object_turn_deg, 90, (1, 360), "Largest turn rate of an object, degrees/s.");
+  BPA_OPTION(double, max_occlusion, 1, (0.2, 10),
+             "Longest time that an arm hides an object, seconds.");
+  BPA_OPTION(double, min_distance, 0.7, (0.5, 4), "Camera to the middle of the table, metres.");
+  BPA_OPTION(double, max_distance, 1.1, (0.5, 4), "Camera to the middle of the table, metres.");
+  BPA_OPTION(double, min_elevation_deg, 30, (15, 85), "Camera above the table, degrees.");
+  BPA_OPTION(double, max_elevation_deg, 60, (15, 85), "Camera above the table, degrees.");
   Camera camera{640, 480, 525, 525, 319.5, 239.5};  ///< Of the colour image and the frame.
-  SensorOptions sensor;
-  bool mixed_sensors = false;
-
-  void visit_fields(auto&& visit) {
-    visit("seconds", seconds, {0.1, 60, "Length of a sequence."});
-    visit("rate", rate, {1, 240, "Frames per second."});
-    visit("drop", drop, {0, 0.9, "Share of frames that are missing; never the first."});
-    visit("min_objects", min_objects, {1, 40, "Fewest objects."});
-    visit("max_objects", max_objects, {1, 40, "Most objects."});
-    visit("max_distractors", max_distractors, {0, 12, "Most distractors, which stand."});
-    visit("camera_speed", camera_speed, {0, 2, "Largest speed of the camera, m/s; 0 = it stands."});
-    visit("camera_turn_deg", camera_turn_deg,
-          {0, 360, "Largest turn rate of the camera, degrees/s; 0 = it stands."});
-    visit("object_speed", object_speed, {0.01, 2, "Largest speed of an object's origin, m/s."});
-    visit("object_turn_deg", object_turn_deg,
-          {1, 360, "Largest turn rate of an object, degrees/s."});
-    visit("max_occlusion", max_occlusion,
-          {0.2, 10, "Longest time that an arm hides an object, seconds."});
-    visit("min_distance", min_distance, {0.5, 4, "Camera to the middle of the table, metres."});
-    visit("max_distance", max_distance, {0.5, 4, "Camera to the middle of the table, metres."});
-    visit("min_elevation_deg", min_elevation_deg, {15, 85, "Camera above the table, degrees."});
-    visit("max_elevation_deg", max_elevation_deg, {15, 85, "Camera above the table, degrees."});
-    sensor.visit_fields(visit);
-    visit("mixed_sensors", mixed_sensors,
-          {0, 1, "Each sequence takes one of the three kinds of sensors by its seed."});
-  }
-  void visit_groups(auto&& visit) { sensor.visit_groups(visit); }
+  BPA_INLINE_GROUP(SensorOptions, sensor);
+  BPA_OPTION(bool, mixed_sensors, false, (0, 1),
+             "Each sequence takes one of the three kinds of sensors by its seed.");
 };
 
 /// One event.

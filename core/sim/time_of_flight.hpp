@@ -40,35 +40,20 @@ namespace bpa::sim {
 
 /// Every effect can be turned down to none.
 struct TimeOfFlightOptions {
-  int width = 640;
-  int height = 576;
-  double infrared_focal = 505;
-  double modulation_hz = 80e6;
-  double axial_noise = 1;
-  double multipath = 1;
-  bool flying_pixels = true;
-  double dropouts = 1;
-  bool registered = true;
-  double color_baseline = 0.032;
-  double min_range = 0.25;
-  double max_range = 5.5;
-
-  void visit_fields(auto&& visit) {
-    visit("width", width, {64, 4096, "Of the infrared image, pixels."});
-    visit("height", height, {64, 4096, "Of the infrared image, pixels."});
-    visit("infrared_focal", infrared_focal, {50, 4000, "Of the infrared image, pixels."});
-    visit("modulation_hz", modulation_hz, {1e6, 1e9, "Frequency of the light's modulation."});
-    visit("axial_noise", axial_noise, {0, 10, "Times the published noise along the axis."});
-    visit("multipath", multipath, {0, 10, "Times the light of one bounce."});
-    visit("flying_pixels", flying_pixels, {0, 1, "Mix surfaces in the pixels of an edge."});
-    visit("dropouts", dropouts, {0, 10, "Times the usual chance that a pixel has no depth."});
-    visit("registered", registered,
-          {0, 1, "Measure from beside the colour camera and carry over."});
-    visit("color_baseline", color_baseline,
-          {-0.5, 0.5, "Infrared to colour camera, metres to the right."});
-    visit("min_range", min_range, {0, 20, "Nearest depth measured, metres."});
-    visit("max_range", max_range, {0, 20, "Farthest depth measured, metres."});
-  }
+  BPA_OPTION(int, width, 640, (64, 4096), "Of the infrared image, pixels.");
+  BPA_OPTION(int, height, 576, (64, 4096), "Of the infrared image, pixels.");
+  BPA_OPTION(double, infrared_focal, 505, (50, 4000), "Of the infrared image, pixels.");
+  BPA_OPTION(double, modulation_hz, 80e6, (1e6, 1e9), "Frequency of the light's modulation.");
+  BPA_OPTION(double, axial_noise, 1, (0, 10), "Times the published noise along the axis.");
+  BPA_OPTION(double, multipath, 1, (0, 10), "Times the light of one bounce.");
+  BPA_OPTION(bool, flying_pixels, true, (0, 1), "Mix surfaces in the pixels of an edge.");
+  BPA_OPTION(double, dropouts, 1, (0, 10), "Times the usual chance that a pixel has no depth.");
+  BPA_OPTION(bool, registered, true, (0, 1),
+             "Measure from beside the colour camera and carry over.");
+  BPA_OPTION(double, color_baseline, 0.032, (-0.5, 0.5),
+             "Infrared to colour camera, metres to the right.");
+  BPA_OPTION(double, min_range, 0.25, (0, 20), "Nearest depth measured, metres.");
+  BPA_OPTION(double, max_range, 5.5, (0, 20), "Farthest depth measured, metres.");
 };
 
 /// The standard deviation of depth that the model must meet, metres (step 4), for a surface that

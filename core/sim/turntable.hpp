@@ -14,26 +14,16 @@ namespace bpa::sim {
 
 /// How an object is scanned.
 struct TurntableOptions {
-  int resting_positions = 2;
-  double step_deg = 10;
-  int max_views = 90;
-  double distance = 0.8;
-  double elevation_deg = 35;
-  double spread = 0.03;
-  double plate_radius = 0.16;
+  BPA_OPTION(int, resting_positions, 2, (1, 6), "Ways the object is put down.");
+  BPA_OPTION(double, step_deg, 10, (1, 90), "Turn of the plate between views, degrees.");
+  BPA_OPTION(int, max_views, 90, (3, 2000), "Views in all; shared among the resting positions.");
+  BPA_OPTION(double, distance, 0.8, (0.4, 3), "Camera to the middle of the plate, metres.");
+  BPA_OPTION(double, elevation_deg, 35, (5, 85), "Camera above the plate, degrees.");
+  BPA_OPTION(double, spread, 0.03, (0, 0.2),
+             "How far off centre the object and the axis are, metres.");
+  BPA_OPTION(double, plate_radius, 0.16, (0.05, 0.5), "Of the turning plate, metres.");
   Camera camera{640, 480, 525, 525, 319.5, 239.5};
-  SensorOptions sensor;
-
-  void visit_fields(auto&& visit) {
-    visit("resting_positions", resting_positions, {1, 6, "Ways the object is put down."});
-    visit("step_deg", step_deg, {1, 90, "Turn of the plate between views, degrees."});
-    visit("max_views", max_views, {3, 2000, "Views in all; shared among the resting positions."});
-    visit("distance", distance, {0.4, 3, "Camera to the middle of the plate, metres."});
-    visit("elevation_deg", elevation_deg, {5, 85, "Camera above the plate, degrees."});
-    visit("spread", spread, {0, 0.2, "How far off centre the object and the axis are, metres."});
-    visit("plate_radius", plate_radius, {0.05, 0.5, "Of the turning plate, metres."});
-    sensor.visit_fields(visit);
-  }
+  BPA_INLINE_GROUP(SensorOptions, sensor);
 };
 
 /// One view; the frame's only instance is the object.

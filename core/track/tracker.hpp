@@ -19,26 +19,17 @@
 namespace bpa::track {
 
 struct TrackerOptions {
-  double min_probability = 0.5;
-  double min_confirming = 0.8;
-  double lost_s = 10;
-  double hidden_s = 30;
-  int num_threads = 0;
-
-  void visit_fields(auto&& visit) {
-    visit("min_probability", min_probability,
-          {0, 1, "Objects that are there with at least this probability begin a track."});
-    visit("min_confirming", min_confirming,
-          {0, 1,
-           "A track is confirmed by one search that finds the object with this probability, or by "
-           "two."});
-    visit("lost_s", lost_s,
-          {0.1, 3600, "Seconds after which a track that is not seen ends, unless it is held."});
-    visit("hidden_s", hidden_s,
-          {0.1, 86400,
-           "The same of a track that nearer surface hides, or that is outside of the image."});
-    visit("num_threads", num_threads, {0, 256, "0: one per core. Does not change the answer."});
-  }
+  BPA_OPTION(double, min_probability, 0.5, (0, 1).at_run_time(),
+             "Objects that are there with at least this probability begin a track.");
+  BPA_OPTION(
+      double, min_confirming, 0.8, (0, 1).at_run_time(),
+      "A track is confirmed by one search that finds the object with this probability, or by two.");
+  BPA_OPTION(double, lost_s, 10, (0.1, 3600).at_run_time(),
+             "Seconds after which a track that is not seen ends, unless it is held.");
+  BPA_OPTION(double, hidden_s, 30, (0.1, 86400).at_run_time(),
+             "The same of a track that nearer surface hides, or that is outside of the image.");
+  BPA_OPTION(int, num_threads, 0, (0, 256).at_run_time(),
+             "0: one per core. Does not change the answer.");
 };
 
 /// Where the camera is, in a frame that stands still.
