@@ -155,7 +155,7 @@ bool Access::spend(const Address& address, Clock::time_point now) {
   return true;
 }
 
-std::optional<Refused> Access::check(const RequestHead& head, Clock::time_point now) {
+std::optional<Refused> Access::check(const RequestHead& head, Right right, Clock::time_point now) {
   const auto refused = [](Refusal cause, int status, std::string why) {
     return Refused{cause, status, invalid_argument(std::move(why))};
   };
@@ -177,7 +177,7 @@ std::optional<Refused> Access::check(const RequestHead& head, Clock::time_point 
   }
   const std::string given =
       head.authorization.starts_with("Bearer ") ? head.authorization.substr(7) : "";
-  if (token_.empty() || !head.path.starts_with("/api/") || same_text(token_, given)) return {};
+  if (token_.empty() || right == Right::everyone || same_text(token_, given)) return {};
   return refused(Refusal::token, 401,
                  given.empty() ? "a token is needed: open the address that the server printed when "
                                  "it started, or send \"Authorization: Bearer TOKEN\""

@@ -58,9 +58,9 @@ class Access {
   /// An empty token asks for none. `hosts` are more names of this machine that a browser may use.
   Access(const ListenAddress& listen, std::string token, std::vector<std::string> hosts);
 
-  /// Nothing where the request may go on. Paths that do not begin with /api/ need no token: the
-  /// page itself is no secret.
-  std::optional<Refused> check(const RequestHead& head, Clock::time_point now = Clock::now());
+  /// Nothing where the request may go on. `right`: of the route that will serve it.
+  std::optional<Refused> check(const RequestHead& head, Right right,
+                               Clock::time_point now = Clock::now());
 
  private:
   /// Requests that an address may still make, and when that was counted.

@@ -77,7 +77,7 @@ auto answer_of_change(const Responder& respond) {
 
 }  // namespace
 
-const Api::Route Api::kRoutes[] = {
+const Api::Endpoint Api::kEndpoints[] = {
     {"GET", "/api/frames/*/color", 0, &Api::frame_picture},
     {"GET", "/api/frames/*/depth", 0, &Api::frame_picture},
     {"GET", "/api/results/*", 0, &Api::result},
@@ -110,11 +110,11 @@ Api::Api(PageLinks links, Feed& feed, const RecentLog& log)
           feed, [this] { return links_.context.settings.get()->web.rate_hz; },
           [this](const Poll& poll) { return news(poll); }) {}
 
-const Api::Route* Api::find(const RequestHead& head, std::vector<std::string>& parts) {
+const Api::Endpoint* Api::find(const RequestHead& head, std::vector<std::string>& parts) {
   const std::vector<std::string> path = split(head.path);
-  for (const Route& route : kRoutes) {
-    const std::vector<std::string> pattern = split(route.pattern);
-    if (head.method != route.method || path.size() != pattern.size()) continue;
+  for (const Endpoint& endpoint : kEndpoints) {
+    const std::vector<std::string> pattern = split(endpoint.pattern);
+    if (head.method != endpoint.method || path.size() != pattern.size()) continue;
     parts.clear();
     bool same = true;
     for (std::size_t i = 0; i < path.size() && same; ++i) {
@@ -124,16 +124,37 @@ const Api::Route* Api::find(const RequestHead& head, std::vector<std::string>& p
         same = path[i] == pattern[i];
       }
     }
-    if (same) return &route;
+    if (same) return &endpoint;
   }
   return nullptr;
 }
 
-Result<std::uint64_t> Api::admit(const RequestHead& head) const {
+Result<Route> Api::route(const RequestHead& head, const TakeTurn& take_turn) {
+  if (const Asset* asset = head.method == "GET" ? find_asset(head.path) : nullptr) {
+    return Route{
+        .right = Right::everyone, .serve = [asset](Request&&, const Responder& respond) {
+          respond({.type = std::string(asset->type), .fixed = asset->zipped, .zipped = true});
+        }};
+  }
+  if (head.method == "GET" && head.path == "/api/live") {  // waits for news, and needs no turn
+    return Route{.serve = [this](Request&& request, Responder respond) {
+      poll(request, std::move(respond));
+    }};
+  }
   std::vector<std::string> parts;
-  if (head.method == "GET" && (is_poll(head) || find_asset(head.path))) return std::uint64_t{0};
-  if (const Route* route = find(head, parts)) return route->max_body;
-  return not_found("there is nothing to ", head.method, " at this path");
+  const Endpoint* endpoint = find(head, parts);
+  if (endpoint == nullptr) return not_found("there is nothing to ", head.method, " at this path");
+  return Route{.max_body = endpoint->max_body,
+               .serve = [this, endpoint, parts = std::move(parts), &take_turn](Request&& request,
+                                                                               Responder respond) {
+                 const auto shared = std::make_shared<const Request>(std::move(request));
+                 take_turn(
+                     shared->address,
+                     [=, this] {
+                       (this->*endpoint->handle)({*shared, parts, respond});
+                     },
+                     respond);
+               }};
 }
 
 void Api::poll(const Request& request, Responder respond) {
@@ -142,16 +163,6 @@ void Api::poll(const Request& request, Responder respond) {
   if (!seen.ok()) return respond(refusal(seen));
   polls_.add({request.value("viewer"), number_of(request.value("sequence")),
               number_of(request.value("result")), tracks, std::move(respond)});
-}
-
-void Api::handle(const Request& request, const Responder& respond) {
-  if (const Asset* asset = request.method == "GET" ? find_asset(request.path) : nullptr) {
-    return respond({.type = std::string(asset->type), .fixed = asset->zipped, .zipped = true});
-  }
-  std::vector<std::string> parts;
-  const Route* route = find(request, parts);
-  if (route == nullptr) return respond(refusal(not_found("there is no such path")));
-  (this->*route->handle)({request, parts, respond});
 }
 
 /// What happened since the viewer asked last. Of several new results the last has everything.

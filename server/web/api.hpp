@@ -36,13 +36,12 @@ class Api {
  public:
   Api(PageLinks links, Feed& feed, const RecentLog& log);
 
-  /// The most bytes that the body of this request may have. Fails with not_found for a path that
-  /// there is not.
-  Result<std::uint64_t> admit(const RequestHead& head) const;
-  /// Whether a request only waits for news, and so needs no turn.
-  static bool is_poll(const RequestHead& head) { return head.path == "/api/live"; }
-  void poll(const Request& request, Responder respond);
-  void handle(const Request& request, const Responder& respond);
+  /// Makes a call in its client's turn, on another thread.
+  using TakeTurn = std::function<void(const Address& client, std::function<void()> call,
+                                      const Responder& respond)>;
+  /// What serves the request. The page's own files need no token: they are no secret. Fails with
+  /// not_found where there is no such method and path. `take_turn` outlives the route.
+  Result<Route> route(const RequestHead& head, const TakeTurn& take_turn);
 
  private:
   struct Call {
@@ -50,14 +49,15 @@ class Api {
     const std::vector<std::string>& parts;  ///< Of the path, that its pattern leaves open.
     const Responder& respond;
   };
-  struct Route {
+  struct Endpoint {
     const char* method;
     const char* pattern;  ///< "*" stands for one part.
     std::uint64_t max_body;
     void (Api::*handle)(const Call&);
   };
-  static const Route kRoutes[];
-  static const Route* find(const RequestHead& head, std::vector<std::string>& parts);
+  static const Endpoint kEndpoints[];
+  static const Endpoint* find(const RequestHead& head, std::vector<std::string>& parts);
+  void poll(const Request& request, Responder respond);
 
   std::string news(const Poll& poll) const;
   void frame_picture(const Call& call);

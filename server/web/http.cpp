@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/web/http.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 #include "server/web/json_text.hpp"
@@ -43,6 +44,17 @@ Response refusal(int status, const Status& why) {
 }
 
 Response refusal(const Status& why) { return refusal(http_status(why.code), why); }
+
+Result<Target> parse_target(std::string_view text) {
+  const auto visible = [](unsigned char c) { return c > ' ' && c < 0x7f && c != '#'; };
+  if (!text.starts_with('/') || !std::ranges::all_of(text, visible)) {
+    return invalid_argument(
+        "the request target must be a path that begins with '/', of visible ASCII characters");
+  }
+  const std::size_t mark = std::min(text.find('?'), text.size());
+  return Target{std::string(text.substr(0, mark)),
+                std::string(text.substr(std::min(mark + 1, text.size())))};
+}
 
 Result<std::string> url_decoded(std::string_view text) {
   std::string out;

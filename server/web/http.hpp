@@ -41,6 +41,14 @@ struct Request : RequestHead {
   std::string body;
 };
 
+/// A request target: "/api/results/3?rank=2".
+struct Target {
+  std::string path;   ///< From '/' to '?'; not decoded.
+  std::string query;  ///< What follows '?'; not decoded.
+};
+/// Splits a target of origin-form (RFC 9112, 3.2.1). Fails with invalid_argument on any other form.
+Result<Target> parse_target(std::string_view text);
+
 /// Bytes that several responses may share.
 using Bytes = std::shared_ptr<const std::string>;
 
@@ -67,6 +75,17 @@ Response refusal(const Status& why);
 
 /// Answers one request, once, from any thread, also after the server is gone.
 using Responder = std::function<void(Response)>;
+
+/// Who may use a route. A route that declares nothing asks for the token.
+enum class Right : std::uint8_t { token, everyone };
+
+/// What serves a request. Access is decided on it, and the request is passed to it.
+struct Route {
+  Right right = Right::token;
+  std::uint64_t max_body = 0;  ///< Bytes.
+  /// Runs on the thread of the server and must return soon; it may throw.
+  std::function<void(Request&&, Responder)> serve = {};
+};
 
 /// A text of a query or a form: "+" is a space, "%41" an A. Nothing where it is malformed.
 Result<std::string> url_decoded(std::string_view text);

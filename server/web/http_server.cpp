@@ -39,9 +39,8 @@ Address address_of(const tcp::endpoint& endpoint) {
 class BeastServer : public HttpServer {
  public:
   /// Throws a boost::system::system_error.
-  BeastServer(const ListenAddress& listen, Access access, HttpHandlers handlers, LogHook log)
-      : shared_(
-            std::make_shared<HttpShared>(std::move(handlers), std::move(access), std::move(log))),
+  BeastServer(const ListenAddress& listen, Access access, Router router, LogHook log)
+      : shared_(std::make_shared<HttpShared>(std::move(router), std::move(access), std::move(log))),
         acceptor_(*context_),
         timer_(*context_) {
     const tcp::endpoint endpoint(asio::ip::make_address(listen.address), listen.port);
@@ -152,10 +151,10 @@ class BeastServer : public HttpServer {
 }  // namespace
 
 Result<std::unique_ptr<HttpServer>> HttpServer::create(const ListenAddress& listen, Access access,
-                                                       HttpHandlers handlers, LogHook log) {
+                                                       Router router, LogHook log) {
   try {
     return std::unique_ptr<HttpServer>(std::make_unique<BeastServer>(
-        listen, std::move(access), std::move(handlers), std::move(log)));
+        listen, std::move(access), std::move(router), std::move(log)));
   } catch (const boost::system::system_error& error) {
     return unavailable("web.listen: ", listen.address, " port ", listen.port,
                        " cannot be listened on: ", error.code().message());

@@ -29,19 +29,15 @@ struct HttpCounts {
   std::array<std::atomic<std::uint64_t>, kRefusals> refused{};
 };
 
-struct HttpHandlers {
-  /// Of a request that access allows: the most bytes that its body may have, or why it is refused.
-  std::function<Result<std::uint64_t>(const RequestHead&)> admit;
-  /// Runs on the thread of the server and must return soon; it may throw.
-  std::function<void(Request&&, Responder)> handle;
-};
+/// Finds what serves a request, by method and path. Runs on the thread of the server.
+using Router = std::function<Result<Route>(const RequestHead&)>;
 
 /// Serves HTTP/1.1 on one thread of its own until it is destroyed.
 class HttpServer {
  public:
   /// `unavailable` where the address cannot be listened on.
   static Result<std::unique_ptr<HttpServer>> create(const ListenAddress& listen, Access access,
-                                                    HttpHandlers handlers, LogHook log);
+                                                    Router router, LogHook log);
   virtual ~HttpServer() = default;
   /// The one that was asked for, or that the system chose for 0.
   virtual std::uint16_t port() const = 0;

@@ -160,13 +160,16 @@ class Session : public HttpSession, public std::enable_shared_from_this<Session>
     request_.fetch_site = field("Sec-Fetch-Site");
     request_.authorization = field(http::field::authorization);
     request_.body_bytes = parser_->content_length().value_or(0);
-    const std::string target(message.target());
-    const std::size_t mark = target.find('?');
-    request_.path = target.substr(0, mark);
-    if (const auto refused = shared_->access.check(request_)) {
+    const std::string_view text(message.target().data(), message.target().size());
+    Result<Target> target = parse_target(text);
+    if (!target.ok()) return refuse(Refusal::path, refusal(target.status()));
+    request_.path = std::move(target->path);
+    Result<Route> route = shared_->router(request_);
+    const Right right = route.ok() ? route->right : Right::token;
+    if (const auto refused = shared_->access.check(request_, right)) {
       return refuse(refused->cause, refusal(refused->status, refused->why));
     }
-    auto query = parse_query(mark == target.npos ? "" : target.substr(mark + 1));
+    auto query = parse_query(target->query);
     if (!query.ok()) return refuse(Refusal::path, refusal(query.status()));
     request_.query = std::move(query).value();
     if (request_.method != "GET" && request_.method != "POST") {
@@ -174,13 +177,9 @@ class Session : public HttpSession, public std::enable_shared_from_this<Session>
                     refusal(405, invalid_argument("the method is ", request_.method,
                                                   "; it must be GET or POST")));
     }
-    const Result<std::uint64_t> most = shared_->handlers.admit(request_);
-    if (!most.ok()) {
-      return refuse(most.status().code == StatusCode::busy ? Refusal::busy : Refusal::path,
-                    refusal(most.status()));
-    }
-    limit_ = *most;
-    if (request_.body_bytes > limit_) return refuse_size();
+    if (!route.ok()) return refuse(Refusal::path, refusal(route.status()));
+    route_ = std::move(route).value();
+    if (request_.body_bytes > route_.max_body) return refuse_size();
     if (parser_->chunked()) {
       return refuse(Refusal::size, refusal(411, invalid_argument("the body is sent in chunks; it "
                                                                  "must have a Content-Length")));
@@ -190,7 +189,7 @@ class Session : public HttpSession, public std::enable_shared_from_this<Session>
                                                   "another upload is under way; try again later")));
     }
     set_large(request_.body_bytes > kLargeBody);
-    parser_->body_limit(limit_);
+    parser_->body_limit(route_.max_body);
     if (field(http::field::expect) == "100-continue") {  // curl waits for a second otherwise
       static const std::string kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
       error_code ignored;
@@ -209,7 +208,7 @@ class Session : public HttpSession, public std::enable_shared_from_this<Session>
 
   void refuse_size() {
     refuse(Refusal::size,
-           refusal(413, invalid_argument("the body has more than ", limit_,
+           refusal(413, invalid_argument("the body has more than ", route_.max_body,
                                          " bytes; send no more to ", request_.path)));
   }
 
@@ -224,7 +223,7 @@ class Session : public HttpSession, public std::enable_shared_from_this<Session>
     request_.body = std::move(parser_->get().body());
     stream_.expires_never();
     kept_ = shared_from_this();
-    shared_->handlers.handle(std::move(request_), responder());
+    route_.serve(std::move(request_), responder());
   }
 
   /// The server may be gone when it is called, or the connection.
@@ -278,7 +277,7 @@ class Session : public HttpSession, public std::enable_shared_from_this<Session>
   const Address address_;
   boost::optional<http::request_parser<http::string_body>> parser_;
   Request request_;
-  std::uint64_t limit_ = 0;
+  Route route_;  ///< Of request_.
   bool keep_alive_ = false;
   bool large_ = false;  ///< Its request has a large body.
   bool waiting_ = false;

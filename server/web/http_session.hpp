@@ -20,10 +20,10 @@ class HttpSession;
 
 /// What the connections have in common; of the thread of the server alone but for the counts.
 struct HttpShared {
-  HttpShared(HttpHandlers all, Access who, LogHook hook)
-      : handlers(std::move(all)), access(std::move(who)), log(std::move(hook)) {}
+  HttpShared(Router find_route, Access who, LogHook hook)
+      : router(std::move(find_route)), access(std::move(who)), log(std::move(hook)) {}
 
-  const HttpHandlers handlers;
+  const Router router;
   Access access;
   const LogHook log;
   HttpCounts counts;

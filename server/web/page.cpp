@@ -31,13 +31,9 @@ class OpenPage : public Page {
     } else if (!listen_.is_loopback()) {
       token = shown_token_ = make_token();
     }
-    server_ =
-        or_throw(HttpServer::create(listen_, Access(listen_, token, options.hosts),
-                                    {[this](const RequestHead& head) { return api_.admit(head); },
-                                     [this](Request&& request, Responder respond) {
-                                       take(std::move(request), std::move(respond));
-                                     }},
-                                    log_));
+    server_ = or_throw(HttpServer::create(
+        listen_, Access(listen_, token, options.hosts),
+        [this](const RequestHead& head) { return api_.route(head, take_turn_); }, log_));
   }
 
   std::string address() const override {
@@ -76,25 +72,21 @@ class OpenPage : public Page {
   const Busy& busy() const override { return calls_.busy(); }
 
  private:
-  /// On the thread of the server: requests have their turns on another one.
-  void take(Request&& request, Responder respond) {
-    if (Api::is_poll(request)) return api_.poll(request, std::move(respond));
-    const wire::Guid client = request.address;
-    const auto shared = std::make_shared<const Request>(std::move(request));
-    calls_.push(client, {[this, shared, respond] {
-                           const Status status = guarded("the request failed",
-                                                         [&] { api_.handle(*shared, respond); });
-                           if (!status.ok()) respond(refusal(status));
-                         },
-                         [respond](const Status& status) { respond(refusal(status)); }});
-  }
-
   Feed& feed_;
   const LogHook log_;
   Api api_;
   const ListenAddress listen_;
   std::string shown_token_;  ///< Empty where none was made.
   RequestThread calls_;
+  /// On the thread of the server: requests have their turns on another one.
+  const Api::TakeTurn take_turn_ = [this](const wire::Guid& client, std::function<void()> call,
+                                          const Responder& respond) {
+    calls_.push(client, {[call = std::move(call), respond] {
+                           const Status status = guarded("the request failed", call);
+                           if (!status.ok()) respond(refusal(status));
+                         },
+                         [respond](const Status& status) { respond(refusal(status)); }});
+  };
   std::unique_ptr<HttpServer> server_;  ///< Last: it calls what stands above.
 };
 

@@ -163,6 +163,8 @@ TEST_F(Web, AsksForTheTokenOfItsFile) {
   EXPECT_EQ(status("/api/models", ""), 401);
   EXPECT_EQ(status("/api/models", "Bearer another-token-of-some"), 401);
   EXPECT_EQ(status("/api/models", "Bearer a-token-of-some-length"), 200);
+  EXPECT_EQ(status("Xapi/models", ""), 400);
+  EXPECT_EQ(status("//api/models", ""), 401);
   EXPECT_EQ(server.log().find("a-token"), std::string::npos);
   server.stop();
   chmod(path.c_str(), 0644);

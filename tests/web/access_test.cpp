@@ -95,8 +95,8 @@ RequestHead head_of(const std::string& host, const std::string& path = "/api/mod
 }
 
 /// The cause of a refusal; nothing where the request may go on.
-std::optional<Refusal> cause(Access& access, const RequestHead& head) {
-  const auto refused = access.check(head);
+std::optional<Refusal> cause(Access& access, const RequestHead& head, Right right = Right::token) {
+  const auto refused = access.check(head, right);
   return refused ? std::optional(refused->cause) : std::nullopt;
 }
 
@@ -144,7 +144,7 @@ TEST(Access, NeedsTheWholeToken) {
        {"", "0123456789abcdef", "Bearer", "Bearer ", "Bearer 0123456789abcde",
         "Bearer 0123456789abcdef0", "Bearer 0123456789abcdeF", "Basic 0123456789abcdef"}) {
     head.authorization = wrong;
-    const auto refused = access.check(head);
+    const auto refused = access.check(head, Right::token);
     ASSERT_TRUE(refused) << wrong;
     EXPECT_EQ(refused->cause, Refusal::token);
     EXPECT_EQ(refused->status, 401);
@@ -152,8 +152,11 @@ TEST(Access, NeedsTheWholeToken) {
   }
   head.authorization = "Bearer 0123456789abcdef";
   EXPECT_EQ(cause(access, head), std::nullopt);
-  // The page itself is no secret: its script asks for the token.
-  EXPECT_EQ(cause(access, head_of("10.0.0.1:8080", "/")), std::nullopt);
+  // Whatever its path says, the route decides.
+  for (const char* path : {"/", "api/models", "/page.css"}) {
+    EXPECT_EQ(cause(access, head_of("10.0.0.1:8080", path)), Refusal::token) << path;
+    EXPECT_EQ(cause(access, head_of("10.0.0.1:8080", path), Right::everyone), std::nullopt);
+  }
 }
 
 TEST(Access, LimitsTheRequestsOfEachAddress) {
@@ -162,12 +165,12 @@ TEST(Access, LimitsTheRequestsOfEachAddress) {
   RequestHead head = head_of("localhost");
   const auto allowed = [&](int count, Access::Clock::time_point now) {
     int passed = 0;
-    for (int i = 0; i < count; ++i) passed += access.check(head, now) ? 0 : 1;
+    for (int i = 0; i < count; ++i) passed += access.check(head, Right::token, now) ? 0 : 1;
     return passed;
   };
   EXPECT_EQ(allowed(1000, start), 600);  // the burst
   EXPECT_EQ(allowed(1000, start + seconds(1)), 300);
-  const auto refused = access.check(head, start + seconds(1));
+  const auto refused = access.check(head, Right::token, start + seconds(1));
   ASSERT_TRUE(refused);
   EXPECT_EQ(refused->status, 429);
   head.address[15] = 1;  // another one is not concerned

@@ -26,16 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 class WebServer : public testing::Test {
  protected:
-  WebServer() {
-    const auto admit = [](const RequestHead& head) -> Result<std::uint64_t> {
-      if (head.path == "/small") return std::uint64_t{1000};
-      if (head.path == "/large") return std::uint64_t{64 << 20};
-      if (head.path == "/throws") throw std::runtime_error("a bug");
-      if (head.path == "/" || head.path == "/much" || head.path == "/never") {
-        return std::uint64_t{0};
-      }
-      return Status(StatusCode::not_found, "there is no such path");
-    };
+  explicit WebServer(const std::string& token = "") {
     const auto handle = [this](Request&& request, Responder respond) {
       if (request.path == "/never") return kept.add(respond);
       if (request.path == "/much") {
@@ -43,8 +34,16 @@ class WebServer : public testing::Test {
       }
       respond(json_response("{\"bytes\":" + std::to_string(request.body.size()) + "}"));
     };
+    const auto route = [handle](const RequestHead& head) -> Result<Route> {
+      if (head.path == "/small") return Route{.max_body = 1000, .serve = handle};
+      if (head.path == "/large") return Route{.max_body = 64 << 20, .serve = handle};
+      if (head.path == "/throws") throw std::runtime_error("a bug");
+      if (head.path == "/") return Route{.right = Right::everyone, .serve = handle};
+      if (head.path == "/much" || head.path == "/never") return Route{.serve = handle};
+      return not_found("there is no such path");
+    };
     auto made =
-        HttpServer::create({"127.0.0.1", 0}, Access({"127.0.0.1", 0}, "", {}), {admit, handle}, {});
+        HttpServer::create({"127.0.0.1", 0}, Access({"127.0.0.1", 0}, token, {}), route, {});
     EXPECT_TRUE(made.ok()) << made.status().message;
     server = std::move(made).value();
   }
@@ -108,6 +107,40 @@ TEST_F(WebServer, RefusesWithOneSentence) {
     EXPECT_NE(answer.body.find("\"message\":\""), std::string::npos) << answer.body;
     EXPECT_EQ(refused(c.cause), before + 1) << c.method << ' ' << c.path;
   }
+}
+
+class GuardedWebServer : public WebServer {
+ protected:
+  GuardedWebServer() : WebServer("0123456789abcdef") {}
+  int status_of(const std::string& target, const std::string& authorization = "") const {
+    Connection connection(server->port());
+    connection.send("GET " + target + " HTTP/1.1\r\nHost: localhost\r\n" +
+                    (authorization.empty() ? "" : "Authorization: " + authorization + "\r\n") +
+                    "\r\n");
+    return connection.answer().status;
+  }
+};
+
+// RFC 9112, 3.2: absolute-form, authority-form and asterisk-form are for proxies and OPTIONS.
+TEST_F(GuardedWebServer, TakesTargetsOfOriginFormAlone) {
+  const std::string bearer = "Bearer 0123456789abcdef";
+  for (const char* target :
+       {"Xmuch", "much", "*", "http://localhost/much", "localhost:80", "?a=1", "%2Fmuch", "./much",
+        "\\much", "/much#x", "/mu\x01ch", "/m\xc3\xbcch"}) {
+    EXPECT_EQ(status_of(target), 400) << target;
+    EXPECT_EQ(status_of(target, bearer), 400) << target;
+  }
+}
+
+TEST_F(GuardedWebServer, RefusesWhatDeclaresNoRight) {
+  EXPECT_EQ(status_of("/"), 200);
+  EXPECT_EQ(status_of("/?token=1"), 200);
+  // What there is not is refused like what there is, so that a stranger learns nothing.
+  for (const char* target : {"/much", "//much", "/nothing", "/much/", "/%6duch", "/..;/much"}) {
+    EXPECT_EQ(status_of(target), 401) << target;
+  }
+  EXPECT_EQ(status_of("/much", "Bearer 0123456789abcdef"), 200);
+  EXPECT_EQ(status_of("/nothing", "Bearer 0123456789abcdef"), 404);
 }
 
 TEST_F(WebServer, RefusesABodyBeforeItIsSent) {
