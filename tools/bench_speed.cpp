@@ -139,6 +139,7 @@ class Measurement {
     cpu_seconds_ += cpu_seconds() - cpu;
     milliseconds_.push_back(result.total_milliseconds);
     effort_ += result.effort;
+    plan_ = result.plan;
     placements_.add(frame.truth, result, detector.library(), a_.min_visible);
   }
 
@@ -160,6 +161,8 @@ class Measurement {
     for (const auto& [name, count] : kEffortCounts) {
       row[name] = static_cast<double>(effort_.*count) / frames();
     }
+    for (const auto& [name, value, reason] : plan_)
+      row["plan"][name] = {{"value", value}, {"why", reason}};
   }
 
  private:
@@ -169,6 +172,7 @@ class Measurement {
   std::vector<double> milliseconds_;
   double cpu_seconds_ = 0, executed_ = 0, allocated_ = 0;
   SearchEffort effort_;
+  std::vector<PlanEntry> plan_;  // of the last frame
 };
 
 DetectRequest request_of(const CommonOptions& common) {

@@ -264,6 +264,15 @@ void write_timings(const SceneInterpretations& result, Page& page) {
   page.table({"stage of the frame", "milliseconds"}, rows);
 }
 
+void write_plan(const SceneInterpretations& result, Page& page) {
+  std::vector<Row> rows;
+  for (const auto& [name, value, reason] : result.plan) {
+    rows.push_back({HtmlPage::escape(name), HtmlPage::escape(value), HtmlPage::escape(reason)});
+  }
+  page.heading("What the search ran with");
+  page.table({"entry", "value", "why"}, rows);
+}
+
 void write_models(const ExplainedFrame& frame, const std::string& folder, Page& page) {
   std::vector<Row> rows;
   for (std::size_t m = 0; m < frame.trace.models.size(); ++m) {
@@ -300,6 +309,7 @@ void ExplainFolder::add(const ExplainedFrame& frame) {
       found += (found.empty() ? "" : ", ") + p.model + " " + fixed(p.probability, 2);
     }
   }
+  write_plan(frame.result, page);
   frames_.push_back({HtmlPage::link(frame.name + "/index.html", frame.title),
                      HtmlPage::escape(found), fixed(frame.result.total_milliseconds, 0)});
   page.write();

@@ -34,8 +34,7 @@ struct Samples {
 };
 
 // What round two has to order: right poses, and every fifth wrong one, none of which competes.
-ScoreFrame round_two_samples(const FrameTrace& trace, const DetectorOptions& options,
-                             const std::vector<io::BopInstance>& truth) {
+ScoreFrame round_two_samples(const FrameTrace& trace, const std::vector<io::BopInstance>& truth) {
   ScoreFrame out;
   int wrong = 0;
   for (std::size_t m = 0; m < trace.objects.size(); ++m) {
@@ -47,7 +46,7 @@ ScoreFrame round_two_samples(const FrameTrace& trace, const DetectorOptions& opt
         const Pose pose = to_pose(fast);
         const bool right = eval::is_right_about_any(pose, model, truth);
         if (!right && wrong++ % 5 != 0) continue;
-        Evidence evidence(trace.scene, places, pose, options.detect.score.quick_points);
+        Evidence evidence(trace.scene, places, pose, kQuickPoints);
         out.samples.push_back({measure(evidence, Round::two), right});
       }
     }
@@ -86,16 +85,18 @@ Candidates others_of(const Detector& detector, const FrameTrace& trace, const Tr
 // explain is taken from the truth.
 ScoreFrame round_three_samples(const Detector& detector, const FrameTrace& trace,
                                const TrueFrame& frame, int num_threads) {
-  const double max_shared = detector.options().scene.max_shared;
+  const double competing = (*detector.score_layers().limits.at(
+      detector.options().detect.score.keep_right, true))[Limit::competing];
   Candidates all = trace.candidates;
   const std::size_t count = all.size();
   std::ranges::move(others_of(detector, trace, frame), std::back_inserter(all));
   std::vector<bool> present(count, false);
   present.resize(all.size(), true);
-  measure_given_others(trace.scene, find_overlaps(all, max_shared), present, all, num_threads);
+  measure_given_others(trace.scene, find_overlaps(all, competing), present, all, competing,
+                       num_threads);
   all.resize(count);
   ScoreFrame out;
-  out.competition = competition_of(all, find_overlaps(all, max_shared));
+  out.competition = competition_of(all, find_overlaps(all, competing));
   for (const Candidate& candidate : all) {
     out.samples.push_back({candidate.values, eval::is_right_about_any(
                                                  candidate.pose(), *candidate.model, frame.truth)});
@@ -107,12 +108,11 @@ ScoreFrame round_three_samples(const Detector& detector, const FrameTrace& trace
 // a wrong pose, and wrong objects, each aligned as well as possible (paper section V).
 void collect(const TrainArguments& a, const Detector& detector, const Folders& folders,
              int models_per_frame, Samples* round_two, Samples* round_three) {
-  const DetectorOptions& options = detector.options();
   const auto use = [&](const TrueFrame& frame, const auto&, const FrameTrace& trace) {
     const int index = static_cast<int>(frame.index);
     const bool held_out = !a.adapt && a.held_out > 0 && index % a.held_out == a.held_out - 1;
     const auto part = held_out ? &Samples::held_out : &Samples::training;
-    if (round_two) (round_two->*part).push_back(round_two_samples(trace, options, frame.truth));
+    if (round_two) (round_two->*part).push_back(round_two_samples(trace, frame.truth));
     if (round_three) {
       (round_three->*part).push_back(round_three_samples(detector, trace, frame, a.common.threads));
     }
@@ -238,7 +238,7 @@ ScoreLayers learn_all(const TrainArguments& a, const Detector& detector, const S
   Samples round_two, round_three;
   collect(a, detector, a.bop, a.models_per_frame, &round_two, &round_three);
   collect(a, detector, a.round_two_bop, a.models_per_frame, &round_two, nullptr);
-  ScoreLayers layers;
+  ScoreLayers layers = start;  // its limits are not measured anew
   layers.round_two =
       learn(a, "round two", together(a.bop, a.round_two_bop), start.round_two, round_two);
   layers.without_color =

@@ -25,10 +25,9 @@ struct PlaneOptions {
   BPA_OPTION(bool, label_planes, true, (), "Label large planes (table, wall) as background.");
   BPA_NAMED_OPTION("plane_min_extent_m", double, min_extent_m, 0.35, (0.1, 10),
                    "Smaller planes may be faces of objects and are kept, metres.");
-  BPA_OPTION(double, min_fraction, 0.04, (0, 1),
-             "Share of the valid pixels that a plane must hold.");
+  double min_fraction = 0.04;  ///< Share of the valid pixels that a plane must hold.
   BPA_OPTION(int, max_planes, 3, (0, 100), "Planes that are labelled at most.");
-  BPA_OPTION(int, num_samples, 300, (1, 100000), "RANSAC samples for each plane.");
+  int num_samples = 300;  ///< RANSAC samples for each plane.
   std::uint64_t seed = 0;
 };
 

@@ -39,8 +39,7 @@ struct SurfaceMap {
 struct SurfaceMapOptions {
   BPA_OPTION(double, max_range_m, 2.5, (0.2, 20),
              "Surface further away than this is ignored, metres.");
-  BPA_OPTION(double, normal_radius_m, 0.010, (0.003, 0.05),
-             "Radius of the window a surface normal is fitted in, metres.");
+  double normal_radius_m = 0.010;  ///< Radius of the window a surface normal is fitted in, metres.
   BPA_OPTION(int, max_width, 400, (64, 8192),
              "Wider frames are halved until they are not wider, pixels.");
   BPA_OPTION(std::string, sensor, "auto", ("auto structured_light active_stereo time_of_flight "),

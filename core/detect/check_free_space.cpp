@@ -9,23 +9,29 @@
 namespace bpa {
 namespace {
 
+constexpr int kHiddenPoints = 512;  // model points at most, until kFewSeen are in sight
+constexpr int kFewSeen = 20, kMinSeen = 6;
+constexpr float kMinCheckScore = 0.15f;
+// Poses of one cell, the best by check score, that the round-two score ranks; those that go on.
+constexpr int kRankedPerCell = 2, kKeptPerCell = 1;
+constexpr int kMaxSuggested = 60;  // poses of priors that go on beside the others
+
 struct Verdict {
   const char* reason;  // to reject; null where there is none
   float score;         // of the check
 };
 
 Verdict judge(const Search& search, const Pose& pose) {
-  const CheckOptions& options = search.options.check;
+  const CheckOptions& options = search.plan.check;
   // Where most of the object is hidden, the few points in sight are too few to judge by.
-  const PoseCheck check =
-      search.check(pose, {options.points, options.few_seen, options.hidden_points});
+  const PoseCheck check = search.check(pose, {options.points, kFewSeen, kHiddenPoints});
   const float score = check.score();
   if (check.free_space > 0 &&
       static_cast<double>(check.free_space) / check.seen > options.max_free_space) {
     return {"too much in free space", score};
   }
-  if (check.seen < options.min_seen) return {"too few points in sight", score};
-  const bool off = score < static_cast<float>(options.min_check_score);
+  if (check.seen < kMinSeen) return {"too few points in sight", score};
+  const bool off = score < kMinCheckScore;
   return {off ? "not on the surface" : nullptr, score};
 }
 
@@ -84,7 +90,7 @@ void keep_best_of_cells(const Search& search, const Candidates& sampled, int mos
 }  // namespace
 
 Candidates check_free_space(const Search& search, Candidates sampled) {
-  const CheckOptions& options = search.options.check;
+  const CheckOptions& options = search.plan.check;
   std::vector<Passed> passed;
   std::vector<std::size_t> of_priors;
   for (std::size_t i = 0; i < sampled.size(); ++i) {
@@ -101,15 +107,15 @@ Candidates check_free_space(const Search& search, Candidates sampled) {
     }
   }
   const auto rank = [&](Candidate& candidate, double least) {
-    candidate.score = search.quick_score(candidate.pose(), options.rank_points, least);
+    candidate.score = search.quick_score(candidate.pose(), kCheckRankPoints, least);
   };
-  keep_best_of_cells(search, sampled, options.max_ranked_per_cell, passed,
+  keep_best_of_cells(search, sampled, kRankedPerCell, passed,
                      [](const Passed& pose) { return pose.check_score; });
   for (const Passed& pose : passed) {
     if (search.late()) break;
-    rank(sampled[pose.index], options.min_ranked_score);
+    rank(sampled[pose.index], search.plan.limits[Limit::ranked]);
   }
-  keep_best_of_cells(search, sampled, options.max_kept_per_cell, passed,
+  keep_best_of_cells(search, sampled, kKeptPerCell, passed,
                      [&](const Passed& pose) { return sampled[pose.index].score; });
   Candidates kept, suggested;
   for (const Passed& pose : passed) kept.push_back(std::move(sampled[pose.index]));
@@ -117,8 +123,8 @@ Candidates check_free_space(const Search& search, Candidates sampled) {
     rank(sampled[i], kNoLimit);
     suggested.push_back(std::move(sampled[i]));
   }
-  reject_below(search, options.min_ranked_score, kept);
-  keep_best(search, options.max_suggested, suggested);
+  reject_below(search, search.plan.limits[Limit::ranked], kept);
+  keep_best(search, kMaxSuggested, suggested);
   keep_best(search, options.max_kept, kept);
   std::ranges::move(suggested, std::back_inserter(kept));
   sort_by_score(kept);

@@ -8,6 +8,11 @@
 namespace bpa {
 namespace {
 
+constexpr double kBeside_rad = 0.17;    // turn of the six poses beside the start
+constexpr double kFirstStep_m = 0.006;  // at the object's rim
+constexpr int kStepRounds = 4;          // of twelve steps each
+constexpr RefinementOptions kFromBeside{6, 200, 60, 0.020, 0.008};
+
 // The best pose so far and its score.
 struct Best {
   Pose pose;
@@ -34,19 +39,18 @@ Eigen::Vector3d direction(int move) {
 
 // Alignments from six poses beside the start: from there, gradients may lead elsewhere.
 void align_from_beside(const Search& search, Best& best) {
-  const ClimbOptions& options = search.options.climb;
   const Pose start = best.pose;
   for (int turn = 0; turn < 6 && !search.late(); ++turn) {
-    const Pose beside = turned(start, options.beside_rad * direction(turn));
-    const Pose refined = search.aligned(beside, options.refinement);
+    const Pose beside = turned(start, kBeside_rad * direction(turn));
+    const Pose refined = search.aligned(beside, kFromBeside);
     best.offer(refined, search.quick_score(refined));
   }
 }
 
 // Small steps along and about each axis of the camera; smaller ones when none improves.
 void step_uphill(const Search& search, Best& best) {
-  double step = search.options.climb.step_m;
-  for (int round = 0; round < search.options.climb.rounds && !search.late(); ++round) {
+  double step = kFirstStep_m;
+  for (int round = 0; round < kStepRounds && !search.late(); ++round) {
     const double angle = step / (0.5 * search.model.diameter);
     bool improved = false;
     for (int move = 0; move < 12; ++move) {
@@ -65,10 +69,10 @@ void step_uphill(const Search& search, Best& best) {
 }  // namespace
 
 Candidates climb(const Search& search, Candidates refined) {
-  const auto most = std::min<std::size_t>(refined.size(), search.options.climb.max_climbed);
+  const auto most = std::min<std::size_t>(refined.size(), search.plan.climb.max_climbed);
   parallel_for_spare(static_cast<int>(most), [&](int i) {
     Candidate& candidate = refined[i];
-    if (search.late() || candidate.score < search.options.climb.min_climbed_score) return;
+    if (search.late() || candidate.score < search.plan.limits[Limit::climbed]) return;
     Best best{candidate.pose(), search.quick_score(candidate.pose())};
     align_from_beside(search, best);
     step_uphill(search, best);

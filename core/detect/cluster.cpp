@@ -9,6 +9,9 @@
 namespace bpa {
 namespace {
 
+constexpr std::ptrdiff_t kMaxCorrespondences = 10;  // that a cluster is aligned with
+constexpr double kSuggestedShare = 0.25;            // of max_clusters, kept for poses of priors
+
 // Candidates near the first, which is the best.
 struct Cluster {
   Pose pose;
@@ -40,7 +43,7 @@ std::vector<Cluster> group(const Search& search, const Candidates& candidates) {
 Pose aligned_pose(const Search& search, const Cluster& cluster) {
   std::vector<align::OrientedPair> pairs;
   for (const Candidate* member : cluster.members) {
-    if (std::ssize(pairs) == search.options.cluster.max_correspondences) break;
+    if (std::ssize(pairs) == kMaxCorrespondences) break;
     if (member->found_by != Source::prior) pairs.push_back(oriented_pair(search, *member));
   }
   if (pairs.empty()) return cluster.members.front()->pose();
@@ -50,13 +53,13 @@ Pose aligned_pose(const Search& search, const Cluster& cluster) {
 
 // The best member, or the cluster aligned again where that scores better.
 Candidate best_of(const Search& search, const Cluster& cluster) {
-  const ClusterOptions& options = search.options.cluster;
   Candidate best = *cluster.members.front();
   const auto of_prior = [](const Candidate* member) { return member->found_by == Source::prior; };
   if (std::ranges::any_of(cluster.members, of_prior)) best.found_by = Source::prior;
-  const double least = best.found_by == Source::prior ? kNoLimit : options.min_cluster_score;
+  const double least =
+      best.found_by == Source::prior ? kNoLimit : search.plan.limits[Limit::clustered];
   const auto score = [&](const Pose& pose) {
-    return search.quick_score(pose, options.rank_points, least);
+    return search.quick_score(pose, kClusterRankPoints, least);
   };
   const Pose aligned = aligned_pose(search, cluster);
   best.score = score(best.pose());
@@ -70,8 +73,8 @@ Candidate best_of(const Search& search, const Cluster& cluster) {
 
 // The best; some places are kept for what priors suggested.
 void keep_clusters(const Search& search, Candidates& clusters) {
-  const ClusterOptions& options = search.options.cluster;
-  const int most_suggested = static_cast<int>(options.suggested_share * options.max_clusters);
+  const ClusterOptions& options = search.plan.cluster;
+  const int most_suggested = static_cast<int>(kSuggestedShare * options.max_clusters);
   sort_by_score(clusters);
   Candidates suggested, others;
   for (Candidate& cluster : clusters) {
@@ -91,7 +94,7 @@ Candidates cluster(const Search& search, Candidates checked) {
   for (const Cluster& group_of_poses : group(search, checked)) {
     if (search.late()) break;
     const Candidate& first = *group_of_poses.members.front();
-    const bool few = std::ssize(group_of_poses.members) < search.options.cluster.min_features;
+    const bool few = std::ssize(group_of_poses.members) < search.plan.cluster.min_features;
     if (few && first.found_by == Source::feature) {
       search.reject("too few feature matches", first.pose());
     } else if (rejected_before(search, first.pose())) {
@@ -100,7 +103,7 @@ Candidates cluster(const Search& search, Candidates checked) {
       out.push_back(best_of(search, group_of_poses));
     }
   }
-  reject_below(search, search.options.cluster.min_cluster_score, out);
+  reject_below(search, search.plan.limits[Limit::clustered], out);
   keep_clusters(search, out);
   return out;
 }

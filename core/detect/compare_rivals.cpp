@@ -16,7 +16,7 @@ std::vector<std::size_t> rivals_of(const Search& search, const Candidates& candi
     const double distance = (candidates[i].place() - candidates[best].place()).norm();
     if (compared[i] || distance > kSamePlace * search.model.diameter) continue;
     compared[i] = true;
-    if (candidates[i].score < candidates[best].score - search.options.rivals.max_behind) continue;
+    if (candidates[i].score < candidates[best].score - search.plan.margins.rival) continue;
     rivals.push_back(i);
   }
   return rivals;
@@ -38,19 +38,18 @@ RivalEvidence best_of_same_pose(const Search& search, const std::vector<Pose>& p
 }  // namespace
 
 Candidates compare_rivals(const Search& search, Candidates candidates) {
-  if (!search.options.score.use_round_three) return candidates;
-  const RivalOptions& options = search.options.rivals;
+  if (!search.plan.score.use_round_three) return candidates;
   sort_by_score(candidates);
   std::vector<bool> compared(candidates.size(), false);
   for (std::size_t best = 0; best < candidates.size(); ++best) {
-    if (compared[best] || candidates[best].score < options.min_rival_score) continue;
+    if (compared[best] || candidates[best].score < search.plan.limits[Limit::compared]) continue;
     if (search.late()) break;
     const auto rivals = rivals_of(search, candidates, best, compared);
     std::vector<Pose> poses;
     std::size_t contenders = 0;  // scores fall: the first of them
     for (const std::size_t i : rivals) {
       poses.push_back(candidates[i].pose());
-      contenders += candidates[i].score >= candidates[best].score - options.contender_margin;
+      contenders += candidates[i].score >= candidates[best].score - search.plan.margins.contender;
     }
     const auto behind = behind_best(search.scene, search.model, poses, contenders);
     for (std::size_t k = 0; k < rivals.size(); ++k) {

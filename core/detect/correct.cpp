@@ -5,19 +5,24 @@
 #include "core/detect/stages.hpp"
 
 namespace bpa {
+namespace {
+
+constexpr int kRecheckPoints = 256;  // model points of the check after the correction
+constexpr RefinementOptions kCorrection{2, 64, 24, 0.020, 0.012};
+
+}  // namespace
 
 Candidates correct(const Search& search, Candidates checked) {
-  const CheckOptions& options = search.options.check;
   const auto check_score = [&](const Pose& pose) {
-    return search.check(pose, {options.recheck_points}).score();
+    return search.check(pose, {kRecheckPoints}).score();
   };
   parallel_for_spare(static_cast<int>(checked.size()), [&](int i) {
     if (search.late()) return;
     Candidate& candidate = checked[i];
-    const Pose corrected = search.aligned(candidate.pose(), options.correction);
+    const Pose corrected = search.aligned(candidate.pose(), kCorrection);
     if (check_score(corrected) <= check_score(candidate.pose())) return;
     candidate.refinement.camera_from_object = corrected;
-    candidate.score = search.quick_score(corrected, options.rank_points);
+    candidate.score = search.quick_score(corrected, kCheckRankPoints);
   });
   sort_by_score(checked);
   return checked;

@@ -23,23 +23,20 @@ constexpr Stage kStages[] = {
     {"free_space", check_free_space, 0.4, "Checked against the depth image",
      "Poses with over 20 % of their points in free space are rejected, and poses without surface. "
      "The best of each place by score stay, then the best of all models.",
-     [](const DetectOptions& options) { return options.check.max_in_library; },
-     [](const DetectOptions& options) { return options.check.place_margin; }},
+     [](const DetectPlan& plan) { return plan.check.max_in_library; }, &PlaceMargins::checked},
     {"corrected", correct, 0.4, "Corrected",
      "Two Gauss-Newton steps move each pose onto the surface, where that improves it."},
     {"clusters", cluster, 0.6, "Clustered",
      "Poses within 2.5 cm and pi/16 are a cluster. BPA aligns each one again with the "
      "correspondences of all its poses. The best of all models go on.",
-     [](const DetectOptions& options) { return options.cluster.max_in_library; },
-     [](const DetectOptions& options) { return options.cluster.place_margin; }},
+     [](const DetectPlan& plan) { return plan.cluster.max_in_library; }, &PlaceMargins::clustered},
     {"round_two", round_two, 0.5, "Aligned (round two)",
      "BPA and Gauss-Newton steps move each pose onto the surface around it. A step is accepted if "
      "the score improves. After non-maximum suppression the best of all models go on.",
-     [](const DetectOptions& options) { return options.refine.max_in_library; },
-     [](const DetectOptions& options) { return options.round_two.place_margin; }},
+     [](const DetectPlan& plan) { return plan.refine.max_in_library; }, &PlaceMargins::aligned},
     {"aligned", refine, 0.5, "Refined",
      "The best are aligned once more by gradients. Non-maximum suppression follows.", nullptr,
-     [](const DetectOptions& options) { return options.refine.place_margin; }},
+     &PlaceMargins::refined},
     {"scored", score, 1, "Scored", "Each is scored with all components (round three)."},
     {"climbed", climb, 0.5, "Climbed",
      "The best climb the score by small steps, from where they are and from beside."},
@@ -69,10 +66,10 @@ Candidates timed(const Stage& stage, Search& search, Candidates candidates, Obje
 // Rejects what loses against candidates of all models, except what priors suggested.
 void reject_losers(const Stage& stage, std::span<const Search> searches, const Compete& compete,
                    std::vector<Candidates>& found) {
-  const DetectOptions& options = searches.front().options;
+  const DetectPlan& plan = searches.front().plan;
   const int most =
-      stage.most_in_library ? stage.most_in_library(options) : std::numeric_limits<int>::max();
-  const double margin = stage.place_margin ? stage.place_margin(options) : -kNoLimit;
+      stage.most_in_library ? stage.most_in_library(plan) : std::numeric_limits<int>::max();
+  const double margin = stage.place_margin ? plan.margins.*stage.place_margin : -kNoLimit;
   std::vector<Claim> claims;
   for (const Candidates& of_model : found) {
     std::ranges::transform(of_model, std::back_inserter(claims), claim_of);

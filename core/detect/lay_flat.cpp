@@ -17,6 +17,8 @@ namespace bpa {
 namespace {
 
 // Chosen by hand on simulated tables, as all constants of this file.
+constexpr double kSlideStep_m = 0.008;  // first step at the object's rim
+constexpr int kSlideRounds = 5;         // of six steps each, on the plane
 constexpr float kElongated = 1.4f;    // length over width; below, the longest direction says little
 constexpr int kTurnsOfRound = 8;      // 45 degrees apart, where it says little
 constexpr float kNearlyWhole = 0.8f;  // share of the length in sight
@@ -117,7 +119,7 @@ Candidates resting_poses(const Search& search) {
       if (may_show(flat.regions[index], rest)) add_resting(search, index, rest, here);
     }
     suppress_duplicates(search, here);
-    keep_first(search, search.options.flat.max_per_region, here);
+    keep_first(search, search.plan.flat.max_laid, here);
     std::ranges::move(here, std::back_inserter(all));
   }
   sort_by_score(all);
@@ -145,8 +147,8 @@ Pose moved(const Search& search, const Candidate& candidate, int move, double st
 
 // Small steps on the plane; smaller ones when none improves. Depth would drag the pose off it.
 void slide(const Search& search, Candidate& candidate) {
-  double step = search.options.flat.slide_step_m;
-  for (int round = 0; round < search.options.flat.slide_rounds && !search.late(); ++round) {
+  double step = kSlideStep_m;
+  for (int round = 0; round < kSlideRounds && !search.late(); ++round) {
     bool improved = false;
     for (int move = 0; move < 6; ++move) {
       const Pose pose = moved(search, candidate, move, step);
@@ -164,14 +166,14 @@ void slide(const Search& search, Candidate& candidate) {
 
 Candidates lay_flat(const Search& whole, Candidates found) {
   const bool thin = !whole.model.index->flat_rests.empty();
-  if (!thin || !whole.scene.with_flat || whole.options.flat.max_laid == 0) return found;
+  if (!thin || !whole.scene.with_flat || whole.plan.flat.max_laid == 0) return found;
   const Search search(*whole.scene.with_flat, whole);
   Candidates laid = resting_poses(search);
-  const DetectOptions& options = search.options;
+  const DetectPlan& options = search.plan;
   keep_first(search, options.flat.max_laid, laid);
   std::erase_if(laid, [&](const Candidate& candidate) {
-    const bool low = search.quick_score(candidate.pose(), options.cluster.rank_points) <
-                     options.flat.min_laid_score;
+    const bool low =
+        search.quick_score(candidate.pose(), kClusterRankPoints) < search.plan.limits[Limit::laid];
     if (low) search.reject("score too low", candidate.pose());
     return low;
   });

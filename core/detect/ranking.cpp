@@ -17,14 +17,14 @@ bool duplicates(const Search& search, const Pose& a, const Pose& b) {
   const Eigen::Vector3d& centre = search.model.centre;
   if ((a * centre - b * centre).norm() > kFar) return false;
   const PoseError error = pose_error(a, b, search.model.symmetry);
-  const SelectOptions& options = search.options.select;
-  return error.position < options.duplicate_m && error.angle < options.duplicate_rad;
+  constexpr double kDuplicate_m = 0.008, kDuplicate_rad = 0.05;
+  return error.position < kDuplicate_m && error.angle < kDuplicate_rad;
 }
 
 bool rejected_before(const Search& search, const Pose& pose) {
-  constexpr double kHopeless = -5;  // log odds; chosen by hand
   return search.before && std::ranges::any_of(*search.before, [&](const Candidate& other) {
-           return other.score < kHopeless && duplicates(search, pose, other.pose());
+           return other.score < search.plan.limits[Limit::repeated] &&
+                  duplicates(search, pose, other.pose());
          });
 }
 

@@ -7,14 +7,14 @@
 namespace bpa {
 
 Candidates refine(const Search& search, Candidates aligned) {
-  const RefineOptions& options = search.options.refine;
-  reject_below(search, options.min_aligned_score, aligned);
+  const RefineOptions& options = search.plan.refine;
+  reject_below(search, search.plan.limits[Limit::aligned], aligned);
   keep_first(search, options.max_refined, aligned);
   change_each(search, aligned, [&](Candidate& candidate) {
-    candidate.refinement = {search.aligned(candidate.pose(), options.refinement)};
+    candidate.refinement = {search.aligned(candidate.pose(), kLastAlignment)};
     candidate.score = search.quick_score(candidate.pose());
   });
-  reject_below(search, options.min_refined_score, aligned);
+  reject_below(search, search.plan.limits[Limit::refined], aligned);
   suppress_duplicates(search, aligned);
   return aligned;
 }
@@ -24,7 +24,7 @@ Candidates score(const Search& search, Candidates refined) {
     const SceneFeatures& scene = search.scene;
     Pose pose = candidate.pose();
     std::optional<PredictedSurface> predicted;
-    if (search.options.score.use_round_three && !search.model.symmetry.trivial()) {
+    if (search.plan.score.use_round_three && !search.model.symmetry.trivial()) {
       predicted = predict_surface(scene.image, search.model, pose);
       const Pose turned =
           turn_to_pattern(scene.image, scene.log_light, search.model, pose, *predicted);

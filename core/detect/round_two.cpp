@@ -12,6 +12,13 @@
 namespace bpa {
 namespace {
 
+constexpr std::ptrdiff_t kMinPairs = 4;  // with fewer the pose stays
+constexpr double kSegmentShare = 0.7;    // of the super-pixels that one alignment uses
+constexpr float kFirstGate_m = 0.030f, kGateDecay = 0.8f;  // of correspondences, step by step
+constexpr int kCheckPoints = 300;                          // that proposals are compared with
+constexpr CheckTolerance kTolerance{0.008, 0.020, 0.8};
+constexpr RefinementOptions kLastProposal{4, 160, 60, 0.025, 0.012};
+
 constexpr double kSigmaOfGate = 0.5;  // a correspondence's standard deviation, of the gate
 constexpr int kSurfaceTries = 8, kEdgeTries = 3;  // random points for each correspondence wanted
 
@@ -32,8 +39,7 @@ std::vector<align::OrientedPair> surface_pairs(const SceneFeatures& scene, const
     const int i = random.index(static_cast<int>(points.points.size()));
     if (!match_surface(scene, points, i, pose, gate, match)) continue;
     if (options.align.use_segments &&
-        !segment_sampled(scene.segmentation.labels[match.pixel], options.round_two.segment_share,
-                         segment_seed)) {
+        !segment_sampled(scene.segmentation.labels[match.pixel], kSegmentShare, segment_seed)) {
       continue;
     }
     align::OrientedPair& pair = pairs.emplace_back();
@@ -66,9 +72,9 @@ std::vector<align::PositionPair> edge_pairs(const SceneFeatures& scene, const Ob
 
 // Proposes alignments; each is accepted if the check score improves.
 Pose aligned(const Search& search, const Pose& start) {
-  const RoundTwoOptions& options = search.options.round_two;
+  const RoundTwoOptions& options = search.plan.round_two;
   const auto check_score = [&](const Pose& pose) {
-    return search.check(pose, {options.check_points}, options.tolerance).score();
+    return search.check(pose, {kCheckPoints}, kTolerance).score();
   };
   Pose best = start;
   float best_score = check_score(start);
@@ -79,14 +85,14 @@ Pose aligned(const Search& search, const Pose& start) {
       best_score = score;
     }
   };
-  auto gate = static_cast<float>(options.start_gate_m);
+  auto gate = kFirstGate_m;
   for (int step = 0; step < options.bpa_steps; ++step) {
     search.add_effort(&SearchEffort::alignments);
     propose(align_to_surface(search.scene, search.model, best, gate,
-                             search.seed + static_cast<std::uint64_t>(step), search.options));
-    gate *= static_cast<float>(options.gate_decay);
+                             search.seed + static_cast<std::uint64_t>(step), search.plan));
+    gate *= kGateDecay;
   }
-  propose(search.aligned(best, options.refinement));
+  propose(search.aligned(best, kLastProposal));
   return best;
 }
 
@@ -97,7 +103,7 @@ Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, cons
   RandomStream random(seed, Stream::segments);
   const FastPose pose = to_fast(start);
   const auto oriented = surface_pairs(scene, model, pose, gate, options, random);
-  if (std::ssize(oriented) < options.round_two.min_pairs) return start;
+  if (std::ssize(oriented) < kMinPairs) return start;
   std::vector<align::PositionPair> positions;
   if (options.align.use_edges) {
     positions = edge_pairs(scene, model, pose, gate, options.round_two.max_pairs / 2, random);

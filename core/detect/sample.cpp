@@ -11,9 +11,14 @@
 namespace bpa {
 namespace {
 
+// Position errors of correspondences: about the spacing of the features, and of the coarse surface.
+// Depth noise is added.
+constexpr double kFeatureSigma_m = 0.004, kPairSigma_m = 0.008;
+constexpr RefinementOptions kPriorAlignment{4, 100, 30, 0.050, 0.015};
+
 // One-correspondence poses by BPA from FPFH matches.
 void from_features(const Search& search, Candidates& out) {
-  const SampleOptions& options = search.options.sample;
+  const SampleOptions& options = search.plan.sample;
   const SceneFeatures& scene = search.scene;
   RandomStream random(search.seed + search.round, Stream::feature_draws, search.model.number);
   std::vector<Fpfh> fpfh;
@@ -63,7 +68,7 @@ void add_voted(const Search& search, std::span<const VotedPose> poses, Candidate
 // Poses voted for by oriented point pairs (Drost et al., CVPR 2010), and by points with the rims
 // of their faces.
 void from_pairs(const Search& search, Candidates& out) {
-  const SampleOptions& options = search.options.sample;
+  const SampleOptions& options = search.plan.sample;
   const ModelIndex& index = *search.model.index;
   PairColors colors;
   if (options.use_colors) colors = {search.scene.coarse_colors, index.coarse_colors, index.palette};
@@ -80,13 +85,12 @@ void from_pairs(const Search& search, Candidates& out) {
 
 // A pose drawn from a prior is off by the prior's uncertainty: it is tried as drawn and aligned.
 void from_priors(const Search& search, Candidates& out) {
-  const SampleOptions& options = search.options.sample;
+  const SampleOptions& options = search.plan.sample;
   RandomStream random(search.seed, Stream::prior_draws, search.model.number);
   for (const Pose& pose :
        search.priors.draw(search.scene.coarse, options.draws_per_prior, random)) {
     if (search.late()) return;
-    for (const Refinement& tried :
-         {Refinement{pose}, search.refine(pose, options.prior_alignment)}) {
+    for (const Refinement& tried : {Refinement{pose}, search.refine(pose, kPriorAlignment)}) {
       out.push_back({.model = &search.model, .refinement = tried, .found_by = Source::prior});
     }
   }
@@ -97,14 +101,13 @@ void from_priors(const Search& search, Candidates& out) {
 align::OrientedPair oriented_pair(const Search& search, const Candidate& candidate) {
   const bool feature = candidate.found_by == Source::feature;
   const ModelIndex& model = *search.model.index;
-  const SampleOptions& options = search.options.sample;
   align::OrientedPair pair;
   pair.scene = align::oriented_point(feature ? search.scene.surface : search.scene.coarse,
                                      candidate.scene_point, feature);
   pair.model = align::oriented_point(feature ? model.features : model.coarse, candidate.model_point,
                                      feature);
   pair.sigma =
-      (feature ? options.feature_sigma_m : options.pair_sigma_m) +
+      (feature ? kFeatureSigma_m : kPairSigma_m) +
       static_cast<double>(search.scene.map.noise(static_cast<float>(pair.scene.point.z())));
   return pair;
 }

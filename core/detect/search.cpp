@@ -9,16 +9,24 @@
 #include "core/score/color_check.hpp"
 
 namespace bpa {
+namespace {
 
-Search::Search(const SceneFeatures& s, const ObjectModel& m, const DetectOptions& o,
-               const ScoreLayers& l, std::span<const PosePrior> p, std::uint64_t random_seed)
+constexpr double kColorPoints = 2;  // independent points that colours count as in quick scores
+// The depth tolerance of checks, by the model's diameter.
+constexpr double kDepthShare = 0.05, kMinDepth_m = 0.006, kMaxDepth_m = 0.015;
+constexpr double kNormalCosine = 0.7;  // of the normals of model and surface
+
+}  // namespace
+
+Search::Search(const SceneFeatures& s, const ObjectModel& m, const DetectPlan& p,
+               const ScoreLayers& l, std::span<const PosePrior> known, std::uint64_t random_seed)
     : scene(s),
       sample(&s.sample),
       image(&s.image),
       model(m),
-      options(o),
+      plan(p),
       layers(l),
-      priors(p, m),
+      priors(known, m),
       seed(random_seed),
       places(m) {}
 
@@ -28,7 +36,7 @@ Search::Search(const SceneFeatures& s, const Search& other)
       image(&s.image),
       round(other.round),
       model(other.model),
-      options(other.options),
+      plan(other.plan),
       layers(other.layers),
       priors(other.priors),
       seed(other.seed),
@@ -48,7 +56,7 @@ void Search::add_effort(std::int64_t SearchEffort::*what, std::int64_t more) con
 }
 
 RefinementOptions Search::begin_alignment(RefinementOptions refinement) const {
-  if (!options.align.use_edges) refinement.max_edges = 0;
+  if (!plan.align.use_edges) refinement.max_edges = 0;
   add_effort(&SearchEffort::alignments, refinement.iterations > 0);
   return refinement;
 }
@@ -62,20 +70,17 @@ Pose Search::aligned(const Pose& start, const RefinementOptions& refinement) con
 }
 
 Refinement Search::measured(const Pose& pose) const {
-  RefinementOptions still = options.refine.refinement;
+  RefinementOptions still = kLastAlignment;
   still.iterations = 0;
   still.start_gate_m = still.end_gate_m;
   return refine(pose, still);
 }
 
-double Search::quick_score(const Pose& pose) const {
-  return quick_score(pose, options.score.quick_points);
-}
+double Search::quick_score(const Pose& pose) const { return quick_score(pose, kQuickPoints); }
 
 double Search::color_evidence(const Pose& pose) const {
-  const double points = options.score.color_points;
-  if (points == 0) return 0;
-  return points * check_colors(*image, scene.match_colors, *model.index, to_fast(pose)).log_odds();
+  return kColorPoints *
+         check_colors(*image, scene.match_colors, *model.index, to_fast(pose)).log_odds();
 }
 
 double Search::quick_score(const Pose& pose, int points, double least) const {
@@ -83,7 +88,7 @@ double Search::quick_score(const Pose& pose, int points, double least) const {
   Evidence evidence(scene, places, pose, points);
   const double without_color =
       layers.round_two.log_odds(measure(evidence, Round::two)) + priors.evidence(pose);
-  const double most = without_color + options.score.color_points * ColorCheck::kAgrees;
+  const double most = without_color + kColorPoints * ColorCheck::kAgrees;
   return most < least ? without_color : without_color + color_evidence(pose);
 }
 
@@ -93,14 +98,15 @@ Candidate Search::scored(Refinement refinement, Source found_by,
   Candidate out{.model = &model, .refinement = refinement, .found_by = found_by};
   Evidence evidence(scene, places, out.pose(), 0, std::move(predicted));
   out.prior = priors.evidence(out.pose());
-  if (!options.score.use_round_three) {
+  if (!plan.score.use_round_three) {
     out.values = measure(evidence, Round::two);
-  } else if (!options.score.stop_early) {
+  } else if (!plan.score.stop_early) {
     out.values = measure(evidence, Round::three);
   } else {
     const bool colored = !scene.cielab.empty() && !model.index->cielab.empty();
-    const auto values = measure_while_probable(
-        evidence, colored ? layers.round_three : layers.without_color, out.prior);
+    const auto values =
+        measure_while_probable(evidence, colored ? layers.round_three : layers.without_color,
+                               out.prior, plan.limits_by_color[colored]);
     if (!values) {
       out.score = kNoLimit;
       return out;
@@ -119,8 +125,7 @@ void apply_layer(const ScoreLayer& layer, Candidate& candidate) {
 
 void Search::apply_layer(Candidate& candidate) const {
   bpa::apply_layer(
-      options.score.use_round_three ? layers.last_for(candidate.values) : layers.round_two,
-      candidate);
+      plan.score.use_round_three ? layers.last_for(candidate.values) : layers.round_two, candidate);
 }
 
 void Search::reject(std::string_view reason, const Pose& pose) const {
@@ -134,9 +139,8 @@ PoseCheck Search::check(const Pose& pose, const CheckCount& count,
 }
 
 PoseCheck Search::check(const Pose& pose, const CheckCount& count) const {
-  const CheckOptions& o = options.check;
-  const double depth = std::clamp(o.depth_share * model.diameter, o.min_depth_m, o.max_depth_m);
-  return check(pose, count, {depth, o.free_depth_m, o.normal_cosine});
+  const double depth = std::clamp(kDepthShare * model.diameter, kMinDepth_m, kMaxDepth_m);
+  return check(pose, count, {depth, plan.check.free_depth_m, kNormalCosine});
 }
 
 }  // namespace bpa

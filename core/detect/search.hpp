@@ -10,7 +10,7 @@
 
 #include "core/base/stopwatch.hpp"
 #include "core/detect/candidate.hpp"
-#include "core/detect/options.hpp"
+#include "core/detect/detect_plan.hpp"
 #include "core/detect/pose_prior.hpp"
 #include "core/observation/scene_features.hpp"
 #include "core/result/search_effort.hpp"
@@ -48,13 +48,19 @@ struct ObjectTrace {
 /// Sets score and probability from values and prior.
 void apply_layer(const ScoreLayer& layer, Candidate& candidate);
 
+constexpr int kQuickPoints = 200;  ///< Surface points that round two scores a placement with.
+/// The same for the ranks of poses after the check and of clusters.
+constexpr int kCheckRankPoints = 24, kClusterRankPoints = 64;
+/// Gradient-based alignment to the end (V.7).
+constexpr RefinementOptions kLastAlignment{8, 500, 60, 0.015, 0.008};
+
 constexpr double kNoLimit = -std::numeric_limits<double>::infinity();  ///< Of scores.
 
 /// The search for one model in one scene: what every stage reads. Keeps references to
 /// scene, model and layers.
 struct Search {
   /// Priors of other models are ignored; each must be valid.
-  Search(const SceneFeatures& scene, const ObjectModel& model, const DetectOptions& options = {},
+  Search(const SceneFeatures& scene, const ObjectModel& model, const DetectPlan& plan = {},
          const ScoreLayers& layers = default_score_layers(), std::span<const PosePrior> priors = {},
          std::uint64_t seed = 0);
   /// The same search in another view of the scene.
@@ -67,7 +73,7 @@ struct Search {
   int round = 0;
   const Candidates* before = nullptr;  ///< What earlier rounds have scored; null in the first.
   const ObjectModel& model;
-  DetectOptions options;
+  DetectPlan plan;
   const ScoreLayers& layers;
   ModelPriors priors;
   const std::uint64_t seed;
@@ -87,12 +93,12 @@ struct Search {
   Pose aligned(const Pose& start, const RefinementOptions& refinement) const;
   /// What is known of a pose that stays as it is.
   Refinement measured(const Pose& pose) const;
-  /// Log odds of round two, from ScoreOptions::quick_points or so many surface points, with the
+  /// Log odds of round two, from kQuickPoints or so many surface points, with the
   /// caller's priors and color_evidence(). Below `least`, any value below `least`: colours are not
   /// compared where even agreeing ones would not be enough.
   double quick_score(const Pose& pose) const;
   double quick_score(const Pose& pose, int points, double least = kNoLimit) const;
-  /// Log odds by check_colors(), of ScoreOptions::color_points points.
+  /// Log odds by check_colors().
   double color_evidence(const Pose& pose) const;
   /// Scores a candidate at `refinement` with all components. `predicted` is of its pose, where that
   /// is known. The score is minus infinity where measure_while_probable() stops.

@@ -6,9 +6,9 @@
 namespace bpa {
 
 Candidates select(const Search& search, Candidates compared) {
-  const SelectOptions& options = search.options.select;
+  const SelectOptions& options = search.plan.select;
   std::erase_if(compared, [&](const Candidate& candidate) {
-    const bool low = candidate.score < options.min_score;
+    const bool low = candidate.score < search.plan.limits[Limit::selected];
     if (low) search.reject("low score", candidate.pose());
     return low;
   });

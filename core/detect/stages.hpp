@@ -75,10 +75,10 @@ struct Stage {
   std::string_view title;  ///< For people.
   std::string_view text;
   /// How many candidates of all models together go on, the best by score; null: all.
-  int (*most_in_library)(const DetectOptions&) = nullptr;
+  int (*most_in_library)(const DetectPlan&) = nullptr;
   /// Log odds by which a candidate of any model in the same place is better, to reject one; null:
   /// none is rejected for that.
-  double (*place_margin)(const DetectOptions&) = nullptr;
+  double PlaceMargins::*place_margin = nullptr;
 };
 
 /// The stages in their order. The first ones find placements in a sample of the scene, once in each

@@ -9,12 +9,15 @@
 namespace bpa {
 namespace {
 
+constexpr int kTurnsOfOne = 6;  // near-symmetric poses that are aligned, for each that is turned
+
 // The best candidates in near-symmetric poses, each with its quick score.
 Candidates near_symmetric(const Search& search, const Candidates& candidates) {
-  const TurnOptions& options = search.options.turn;
+  const TurnOptions& options = search.plan.turn;
   const auto most = std::min<std::size_t>(candidates.size(), options.max_turned);
   Candidates out;
-  for (std::size_t i = 0; i < most && candidates[i].score > options.min_turned_score; ++i) {
+  for (std::size_t i = 0; i < most && candidates[i].score > search.plan.limits[Limit::turned];
+       ++i) {
     for (const Pose& motion : search.model.index->near_symmetries) {
       const Pose turned = candidates[i].pose() * motion;
       out.push_back({.model = &search.model,
@@ -33,7 +36,7 @@ Candidates near_symmetric(const Search& search, const Candidates& candidates) {
 Candidates try_turned(const Search& search, Candidates climbed) {
   sort_by_score(climbed);
   Candidates turned = near_symmetric(search, climbed);
-  reject_below(search, search.options.refine.min_aligned_score, turned);
+  reject_below(search, search.plan.limits[Limit::aligned], turned);
   suppress_duplicates(search, turned);
   std::erase_if(turned, [&](const Candidate& t) {
     const bool known = std::ranges::any_of(
@@ -41,10 +44,9 @@ Candidates try_turned(const Search& search, Candidates climbed) {
     if (known) search.reject("there already", t.pose());
     return known;
   });
-  keep_first(search, search.options.turn.max_kept_turned, turned);
+  keep_first(search, kTurnsOfOne * search.plan.turn.max_turned, turned);
   change_each(search, turned, [&](Candidate& candidate) {
-    candidate = search.scored(search.refine(candidate.pose(), search.options.refine.refinement),
-                              candidate.found_by);
+    candidate = search.scored(search.refine(candidate.pose(), kLastAlignment), candidate.found_by);
   });
   std::ranges::move(turned, std::back_inserter(climbed));
   return climbed;

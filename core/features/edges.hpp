@@ -73,9 +73,9 @@ Image<std::uint8_t> curvature_edges(const SurfaceMap& map,
 struct EdgeImageOptions {
   BPA_NAMED_OPTION("edge_blur_px", double, blur_px, 1.0, (0, 10),
                    "Standard deviation of the edge image's blur, pixels.");
-  BPA_OPTION(double, range_weight, 1.0, (0, 10), "Weight of range edges.");
-  BPA_OPTION(double, curvature_weight, 0.6, (0, 10), "Weight of curvature edges.");
-  BPA_OPTION(double, image_weight, 0.3, (0, 10), "Weight of image edges.");
+  double range_weight = 1.0;      ///< Weight of range edges.
+  double curvature_weight = 0.6;  ///< Weight of curvature edges.
+  double image_weight = 0.3;      ///< Weight of image edges.
   RangeEdgeOptions range;
   ImageEdgeOptions image;
   CurvatureEdgeOptions curvature;

@@ -172,6 +172,13 @@ Status set_option(const std::string& assignment, const OptionsReading& reading) 
   }
 }
 
+std::string value_text(const Option& option) {
+  std::ostringstream out;
+  out << std::setprecision(12) << std::boolalpha;
+  std::visit(ValueWriter{out}, option.value);
+  return out.str().erase(0, out.str().empty() ? 0 : 1);
+}
+
 std::string options_yaml(const std::vector<Option>& options, bool hidden) {
   std::ostringstream out;
   out << std::setprecision(12) << std::boolalpha;

@@ -27,6 +27,9 @@ Status read_options(const std::string& path, const OptionsReading& reading);
 /// Sets one field from text such as "queue.requests=4".
 Status set_option(const std::string& assignment, const OptionsReading& reading);
 
+/// The value as YAML; empty of a group.
+std::string value_text(const Option& option);
+
 /// The options as a YAML file, with description and rule in comments; # before values if `hidden`.
 std::string options_yaml(const std::vector<Option>& options, bool hidden = false);
 

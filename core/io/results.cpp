@@ -25,6 +25,23 @@ struct nlohmann::adl_serializer<std::vector<bpa::ScoreComponent>> {
   }
 };
 
+/// The plan as an object: name -> {value, reason}.
+template <>
+struct nlohmann::adl_serializer<std::vector<bpa::PlanEntry>> {
+  static void to_json(json& out, const std::vector<bpa::PlanEntry>& plan) {
+    out = json::object();
+    for (const auto& [name, value, reason] : plan) {
+      const json typed = json::parse(value, nullptr, false);
+      out[name] = {{"value", typed.is_discarded() ? json(value) : typed}, {"reason", reason}};
+    }
+  }
+  static void from_json(const json& in, std::vector<bpa::PlanEntry>& plan) {
+    for (const auto& [name, entry] : in.items()) {
+      plan.push_back({name, entry.at("value").dump(), entry.at("reason").get<std::string>()});
+    }
+  }
+};
+
 /// A code by its name; a name that this version does not know is `internal`.
 template <>
 struct nlohmann::adl_serializer<bpa::StatusCode> {
@@ -89,6 +106,7 @@ static void fields(auto& visit, Is<FrameResult> auto& frame) {
   if (!frame.server) {
     visit("sensor", frame.sensor, kOptional);
     visit("effort", frame.effort, kOptional);
+    visit("plan", frame.plan, kOptional);
     return;
   }
   visit("frame_id", frame.frame_id, kOptional);

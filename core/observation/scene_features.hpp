@@ -64,11 +64,10 @@ struct SceneFeatureOptions {
              "Of these, how many one round matches with the models.");
   BPA_OPTION(int, max_references, 150, (0, 100000),
              "Scene points whose pairs with others vote for poses in one round.");
-  BPA_OPTION(double, coarse_spacing_m, 0.010, (0.002, 0.1),
-             "Spacing of the points that make pairs, metres.");
-  BPA_OPTION(double, pair_reach_m, kMaxPairLength, (0.01, kMaxPairLength),
-             "Length of the longest pairs, metres. What is mostly hidden has no long ones.");
-  BPA_OPTION(int, pair_step, 2, (1, 100), "Of the pairs of a point, one in so many votes.");
+  double coarse_spacing_m = 0.010;       ///< Spacing of the points that make pairs, metres.
+  double pair_reach_m = kMaxPairLength;  ///< Length of the longest pairs, metres. What is mostly
+                                         ///< hidden has no long ones.
+  int pair_step = 2;                     ///< Of the pairs of a point, one in so many votes.
   BPA_OPTION(bool, use_color, true, (), "Use the frame's colours; false ignores them.");
   BPA_OPTION(bool, use_texture, true, (),
              "Compare the patterns of surfaces in colour; false ignores them.");
@@ -76,10 +75,9 @@ struct SceneFeatureOptions {
              "Compare outlines with the colour image; false ignores them.");
   BPA_OPTION(bool, use_flat_regions, true, (),
              "Look for thin objects where a plane's colours or heights differ.");
-  BPA_OPTION(double, color_blur_px, 1.5, (0, 10),
-             "Standard deviation of the blur of the colours, pixels.");
-  BPA_GROUP(EdgeImageOptions, edges, "The edge image.");
-  BPA_GROUP(SuperPixelOptions, segments, "Super-pixels.");
+  double color_blur_px = 1.5;  ///< Standard deviation of the blur of the colours, pixels.
+  EdgeImageOptions edges;
+  SuperPixelOptions segments;
   std::uint64_t seed = 0;
   int num_threads = 0;  ///< 0: one per core. Does not change the result.
 };

@@ -19,8 +19,6 @@
 namespace bpa {
 namespace {
 
-constexpr double kTimeOfSearch = 0.93;  // after preparation; the rest interprets. By hand.
-
 using Models = std::vector<std::shared_ptr<const ObjectModel>>;
 
 Status check_request(const DetectRequest& request) {
@@ -69,9 +67,10 @@ bool compares_colors(const Frame& frame, const DetectorOptions& options, const M
 
 // Judges the candidates again, given the others of a first interpretation.
 void judge_again(const SceneFeatures& scene, const Overlaps& overlaps, const ScoreLayers& layers,
-                 const DetectRequest& request, Candidates& candidates) {
+                 const SearchPlan& plan, Candidates& candidates) {
   const auto present = first_interpretation(candidates, overlaps);
-  measure_given_others(scene, overlaps, present, candidates, request.num_threads);
+  measure_given_others(scene, overlaps, present, candidates, plan.detect.limits[Limit::competing],
+                       plan.features.num_threads);
   for (Candidate& candidate : candidates) {
     apply_layer(layers.last_for(candidate.values), candidate);
   }
@@ -80,18 +79,16 @@ void judge_again(const SceneFeatures& scene, const Overlaps& overlaps, const Sco
 
 // Lets the candidates compete and ranks interpretations of the scene.
 std::vector<Interpretation> interpret_scene(const SceneFeatures& scene, const ScoreLayers& layers,
-                                            Candidates& candidates, const DetectRequest& request,
-                                            const DetectorOptions& detector) {
-  InterpretationOptions options = detector.scene;
-  options.seed = request.seed;
-  const auto overlaps = find_overlaps(candidates, options.max_shared);
+                                            Candidates& candidates, const SearchPlan& plan,
+                                            int top_k) {
+  const auto overlaps = find_overlaps(candidates, plan.detect.limits[Limit::competing]);
   let_compete(candidates, overlaps);
-  if (options.judge_given_others && detector.detect.score.use_round_three) {
-    judge_again(scene, overlaps, layers, request, candidates);
+  if (plan.scene.judge_given_others && plan.detect.score.use_round_three) {
+    judge_again(scene, overlaps, layers, plan, candidates);
   }
   const auto observed = static_cast<int>(std::ranges::count(scene.map.searched, 1));
-  std::vector<Interpretation> ranked = interpret(candidates, overlaps, observed, options);
-  keep_best(ranked, request.top_k);
+  std::vector<Interpretation> ranked = interpret(candidates, overlaps, observed, plan.scene);
+  keep_best(ranked, top_k);
   return ranked;
 }
 
@@ -106,7 +103,23 @@ Result<DetectorOptions> load_detector_options(const std::string& path) {
 
 Detector::Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions options,
                    ScoreLayers layers)
-    : library_(std::move(library)), options_(std::move(options)), layers_(std::move(layers)) {}
+    : library_(std::move(library)),
+      options_(std::move(options)),
+      layers_(std::move(layers)),
+      costs_(std::make_shared<CostMeter>()) {}
+
+SearchFacts Detector::facts_of(const Frame& frame, const DetectRequest& request,
+                               const Models& models) const {
+  const int threads = resolve_num_threads(request.num_threads);
+  SearchFacts facts{.models = static_cast<int>(models.size()),
+                    .colored = compares_colors(frame, options_, models),
+                    .follows = !request.expected.empty(),
+                    .threads = threads,
+                    .seed = request.seed,
+                    .budget_ms = request.budget_ms};
+  if (request.budget_ms > 0) facts.costs = costs_->costs(frame.depth.size(), threads);
+  return facts;
+}
 
 Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRequest& request,
                                               FrameTrace* trace) const {
@@ -124,30 +137,30 @@ Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
   if (Status status = check_priors(*library_, request.priors); !status.ok()) return status;
 
   const Deadline deadline = Deadline::after(request.budget_ms);
-  DetectorOptions options = options_;
-  const double prepared_share =
-      shorten_preparation(request.budget_ms, resolve_num_threads(request.num_threads), options);
-  if (!compares_colors(frame, options, *models)) search_without_colors(options);
-  share_among_models(static_cast<int>(models->size()), options);
+  const SearchFacts facts = facts_of(frame, request, *models);
+  const Result<SearchPlan> planned = plan_search(options_, layers_, facts);
+  if (!planned.ok()) return planned.status();
+  const SearchPlan& plan = *planned;
   std::unique_ptr<ModelSearches> elsewhere;
-  if (searches) elsewhere = searches(*models, options);
+  if (searches) elsewhere = searches(*models, options_, facts);
   const Stopwatch total;
   SceneInterpretations out;
   out.stamp_ns = frame.stamp_ns;
   out.frame_id = frame.frame_id;
   out.fused_frames = frame.fused;
-  SceneFeatures scene = prepare_scene(frame, request, options, deadline, out.timings);
-  const double preparation_ms = total.milliseconds() / prepared_share;
+  out.plan = plan.entries;
+  SceneFeatures scene = prepare_scene(frame, plan, deadline, out.timings);
+  Costs measured{.preparation_ms = total.milliseconds() / plan.prepared_share};
   out.sensor = name_of(scene.map.sensor);
 
   Stopwatch stage;
-  const Deadline search_end = deadline.part(kTimeOfSearch);
-  const SearchInputs inputs{scene, options, layers_, request, *models};
-  LibrarySearch search{inputs, search_end, preparation_ms};
+  const Deadline search_end = deadline.part(plan.time.search);
+  const SearchInputs inputs{scene, plan, layers_, request, *models};
+  LibrarySearch search{inputs, search_end, facts.costs, measured.preparation_ms};
   if (request.on_round) {
     search.on_round = [&, so_far = out](Candidates found) mutable {
       so_far.partial = true;
-      so_far.interpretations = interpret_scene(scene, layers_, found, request, options);
+      so_far.interpretations = interpret_scene(scene, layers_, found, plan, request.top_k);
       so_far.total_milliseconds = total.milliseconds();
       request.on_round(so_far);
     };
@@ -160,7 +173,7 @@ Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
   out.not_searched = used.lost();
   out.timings.push_back({"objects", stage.lap_milliseconds()});
 
-  out.interpretations = interpret_scene(scene, layers_, candidates, request, options);
+  out.interpretations = interpret_scene(scene, layers_, candidates, plan, request.top_k);
   out.timings.push_back({"interpretations", stage.lap_milliseconds()});
   out.total_milliseconds = total.milliseconds();
   if (trace) {

@@ -13,7 +13,7 @@
 #include "core/cloud/frame.hpp"
 #include "core/detect/search.hpp"
 #include "core/model/library.hpp"
-#include "core/pipeline/detector_options.hpp"
+#include "core/pipeline/search_plan.hpp"
 #include "core/result/interpretation.hpp"
 #include "core/score/score_layer.hpp"
 
@@ -37,10 +37,9 @@ struct DetectRequest {
   std::vector<ExpectedPlacement> expected = {};
   int top_k = kDefaultTopK;  ///< Number of interpretations to return, 1 to 100.
   /// Time for the frame, milliseconds; 0: no limit. The less time, the smaller the part of the
-  /// scene that is searched, for all models alike; below 200 ms the frame is prepared in less
-  /// detail (see search_plan.hpp). Preparation is not cut: 25 ms at 640 x 480 on two cores, 60 ms
-  /// from 200 ms on. Returns the best found by then. With a budget, the answer depends on the
-  /// machine's speed.
+  /// scene that is searched, for all models alike; where it is short beside a whole
+  /// preparation, the frame is prepared in less detail (search_plan.hpp). Preparation is not cut.
+  /// Returns the best found by then. With a budget, the answer depends on the machine's speed.
   double budget_ms = 0;
   std::uint64_t seed = 0;  ///< Same frame, library, options and seed: same answer.
   int num_threads = 0;     ///< 0 = one per core. Does not change the answer.
@@ -52,11 +51,12 @@ struct DetectRequest {
 
 class ModelSearches;
 
-/// Makes searches of other hosts (model_searches.hpp) for these models, with these options. Called
-/// before the frame is prepared here, so that they can prepare it meanwhile. May throw a Failure,
-/// as may the searches.
+/// Makes searches of other hosts (model_searches.hpp) for these models. They make the same plan of
+/// these options and facts (plan_search()). Called before the frame is prepared here, so that they
+/// can prepare it meanwhile. May throw a Failure, as may the searches.
 using MakeSearches = std::function<std::unique_ptr<ModelSearches>(
-    const std::vector<std::shared_ptr<const ObjectModel>>&, const DetectorOptions&)>;
+    const std::vector<std::shared_ptr<const ObjectModel>>&, const DetectorOptions&,
+    const SearchFacts&)>;
 
 /// The same for each of several frames.
 using SearchesFor = std::function<MakeSearches(const Frame&, const DetectRequest&)>;
@@ -86,9 +86,13 @@ class Detector {
   const ScoreLayers& score_layers() const { return layers_; }
 
  private:
+  SearchFacts facts_of(const Frame& frame, const DetectRequest& request,
+                       const std::vector<std::shared_ptr<const ObjectModel>>& models) const;
+
   std::shared_ptr<const ModelLibrary> library_;
   DetectorOptions options_;
   ScoreLayers layers_;
+  std::shared_ptr<CostMeter> costs_;  ///< Of searches with a budget.
 };
 
 /// The file of a library's own score layers: "FOLDER/score_layer.json".

@@ -32,11 +32,9 @@ struct RoundOptions {
              "expect. The search may end after it.");
   BPA_OPTION(double, min_gain_expected, 0.3, (0, 1),
              "min_gain where an earlier frame says what to expect.");
-  BPA_OPTION(int, step_without_sign, 0, (0, 1000),
-             "From the second round on, models without a sign look at one in so many points of the "
-             "sample. 0: one for each 60 models searched for, so that many cost little more.");
-  BPA_OPTION(double, min_sign, -5, (-1000, 1000),
-             "Log odds of a placement that is a sign of its model.");
+  BPA_OPTION(int, step_without_support, 0, (0, 1000),
+             "From the second round on, models without support search one in so many points of the "
+             "sample. 0: one in (models / 60).");
 };
 
 /// Every setting of the detector, a group for each stage. The defaults are meant for a Kinect-class

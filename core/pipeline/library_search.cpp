@@ -13,12 +13,6 @@
 namespace bpa {
 namespace {
 
-// Of the search, for the rounds, so that the final stages have time too; and of what the rounds
-// have left, for one of them, which is guessed. Chosen by hand. With 0.7 and with 0.82 for the
-// rounds, two seeds find 320/758 and 341/758 objects of YCB-Video and of seeds 100 and 777 in
-// 0.1 s, and 540/758 and 541/758 in 0.5 s.
-constexpr double kTimeOfRounds = 0.82, kTimeOfFirstRound = 0.5, kTimeOfNextRound = 0.8;
-
 Candidates joined(const std::vector<Candidates>& found) {
   Candidates all;
   for (const Candidates& of_model : found) all.insert(all.end(), of_model.begin(), of_model.end());
@@ -60,44 +54,46 @@ struct Explained {
 };
 
 // The share of a whole round that the next one is; 0 where no other fits.
-double next_share(const SearchPace& pace, int round, const Deadline& rounds_end) {
-  const double part = round == 0 ? kTimeOfFirstRound : kTimeOfNextRound;
-  const double share = pace.share_of_round(part * rounds_end.milliseconds_left());
-  return round == 0 ? std::max(share, kSmallestRound) : share;
+double next_share(const SearchPace& pace, const TimePlan& time, int round,
+                  const Deadline& rounds_end) {
+  const double part = round == 0 ? time.first_round : time.next_round;
+  const double share =
+      pace.share_of_round(part * rounds_end.milliseconds_left(), time.smallest_round);
+  return round == 0 ? std::max(share, time.smallest_round) : share;
 }
 
 }  // namespace
 
 Candidates LibrarySearch::run(ModelSearches& searches, bool& cut, SearchEffort& effort) const {
-  const DetectorOptions& options = inputs.options;
+  const SearchPlan& plan = inputs.plan;
   Explained explained(inputs.scene.image.pixels.size());
   const bool follows = !inputs.request.expected.empty();
   const auto explain = [&] {
     Candidates all = joined(searches.found());
-    let_compete(all, find_overlaps(all, options.scene.max_shared));
-    return explained.add(all, options.rounds);
+    let_compete(all, find_overlaps(all, plan.detect.limits[Limit::competing]));
+    return explained.add(all, plan.rounds);
   };
-  const bool limited = !deadline.never();
-  const Deadline rounds_end = deadline.part(kTimeOfRounds);
+  const bool limited = plan.limited;
+  const Deadline rounds_end = deadline.part(plan.time.rounds);
   if (follows) {
     searches.score_expected(rounds_end);
     explain();
   }
-  SearchPace pace(preparation_ms, static_cast<int>(inputs.models.size()));
+  SearchPace pace(costs, preparation_ms, static_cast<int>(inputs.models.size()));
   double looked_at = 0;                 // of the scene, in whole rounds
   double gained = 0, looked_since = 0;  // probability, and whole rounds, since that was last judged
   double gained_before = 1;             // when it was last judged
   bool ended = false;                   // before time did
-  for (int round = 0; !ended && looked_at < options.rounds.max_rounds; ++round) {
-    const bool first_after_another = follows && round == 0;
-    const double wanted = first_after_another ? options.rounds.expected_share : 1;
-    const double share = limited ? std::min(wanted, next_share(pace, round, rounds_end)) : wanted;
+  for (int round = 0; !ended && looked_at < plan.rounds.max_rounds; ++round) {
+    const double wanted = round == 0 ? plan.end.first_share : 1;
+    const double share =
+        limited ? std::min(wanted, next_share(pace, plan.time, round, rounds_end)) : wanted;
     if (share == 0) break;
     const Stopwatch watch;
     const bool any_left =
         searches.run_round({.number = round,
                             .share = share,
-                            .raised = share < wanted,
+                            .hurried = share < wanted,
                             .first_sample = round == 0 && share == 1 && !limited && !follows,
                             .newly_certain = std::exchange(explained.newly_certain, {}),
                             .deadline = rounds_end});
@@ -111,12 +107,11 @@ Candidates LibrarySearch::run(ModelSearches& searches, bool& cut, SearchEffort& 
     looked_since += share;
     gained = std::max(gained, explain());
     if (on_round) on_round(joined(without_duplicates(inputs, searches.found())));
-    if (looked_since < 1 && !first_after_another) continue;
-    // The first round never ends the search, unless it follows another.
-    ended = follows ? gained < options.rounds.min_gain_expected
-                    : looked_at >= 2 &&
-                          (gained < options.rounds.min_gain ||
-                           std::max(gained, gained_before) < options.rounds.min_gain_of_two);
+    const bool may_end = plan.end.may_end_at_first;
+    if (looked_since < 1 && !(may_end && round == 0)) continue;
+    ended =
+        (may_end || looked_at >= 2) &&
+        (gained < plan.end.min_gain || std::max(gained, gained_before) < plan.end.min_gain_of_two);
     gained_before = gained;
     gained = looked_since = 0;
   }
@@ -125,7 +120,7 @@ Candidates LibrarySearch::run(ModelSearches& searches, bool& cut, SearchEffort& 
                    .newly_certain = std::exchange(explained.newly_certain, {}),
                    .deadline = deadline});
   effort += searches.effort();
-  const bool whole = ended || looked_at >= options.rounds.max_rounds;
+  const bool whole = ended || looked_at >= plan.rounds.max_rounds;
   cut = searches.late() || !whole || final_share < 1;
   return joined(searches.found());
 }

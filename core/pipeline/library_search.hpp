@@ -16,7 +16,8 @@ namespace bpa {
 struct LibrarySearch {
   const SearchInputs& inputs;
   Deadline deadline;
-  double preparation_ms = 0;  ///< Of the whole preparation; the search may be that much slower.
+  Costs costs = {};
+  double preparation_ms = 0;                      ///< Of the whole preparation of this frame.
   std::function<void(Candidates)> on_round = {};  ///< Receives the candidates after each round.
 
   /// The candidates of all models; `searches` is where they are searched. `cut`: whether time ran

@@ -6,23 +6,23 @@
 #include <utility>
 
 #include "core/detect/ranking.hpp"
-#include "core/pipeline/search_plan.hpp"
 
 namespace bpa {
 namespace {
 
 Search search_for(const SearchInputs& inputs, const ObjectModel& model) {
-  return Search(inputs.scene, model, inputs.options.detect, inputs.layers, inputs.request.priors,
+  return Search(inputs.scene, model, inputs.plan.detect, inputs.layers, inputs.request.priors,
                 inputs.request.seed);
 }
 
-// What a model looks at of a round's sample: less where no earlier round found a sign of it.
+// What a model looks at of a round's sample: less where no earlier round found support for it.
 EachOf looked_at_in(int round, const ObjectModel& model, const Candidates& found,
-                    const RoundOptions& options) {
-  const bool has_sign = std::ranges::any_of(
-      found, [&](const Candidate& candidate) { return candidate.score >= options.min_sign; });
-  const int step = options.step_without_sign;
-  if (round == 0 || has_sign || step <= 1) return {};
+                    const SearchPlan& plan) {
+  const bool has_support = std::ranges::any_of(found, [&](const Candidate& candidate) {
+    return candidate.score >= plan.detect.limits[Limit::support];
+  });
+  const int step = plan.rounds.step_without_support;
+  if (round == 0 || has_support || step <= 1) return {};
   return {static_cast<std::size_t>((round + model.number) % step), static_cast<std::size_t>(step)};
 }
 
@@ -72,21 +72,19 @@ void LocalSearches::score_expected(const Deadline& deadline) {
 
 bool LocalSearches::run_round(const RoundPlan& plan) {
   explain(plan.newly_certain);
-  DetectorOptions sized =
-      plan.share < 1 ? sized_round(inputs_.options, plan.share) : inputs_.options;
-  sized.features.num_threads = inputs_.request.num_threads;
-  if (plan.raised) raise_limits(sized.detect);
   sample_ = plan.first_sample ? inputs_.scene.sample
-                              : next_sample(inputs_.scene, sample_, certain_, sized.features);
+                              : next_sample(inputs_.scene, sample_, certain_,
+                                            round_sample(inputs_.plan, plan.share));
   if (plan.number > 0 && sample_.empty()) return false;
+  const DetectPlan of_round = round_plan(inputs_.plan.detect, plan.share, plan.hurried);
   for (std::size_t i = 0; i < searches_.size(); ++i) {
     Search& search = searches_[i];
     search.round = plan.number;
     search.before = &found_[i];
     search.sample = &sample_;
-    search.looked_at = looked_at_in(plan.number, search.model, found_[i], inputs_.options.rounds);
+    search.looked_at = looked_at_in(plan.number, search.model, found_[i], inputs_.plan);
     search.image = &image_;
-    search.options = sized.detect;
+    search.plan = of_round;
   }
   std::vector<Candidates> now(searches_.size());
   run(round_stages(), plan.deadline, now);
@@ -98,11 +96,11 @@ bool LocalSearches::run_round(const RoundPlan& plan) {
 
 void LocalSearches::finish(const FinalPlan& plan) {
   explain(plan.newly_certain);
-  const DetectOptions& whole = inputs_.options.detect;
+  const DetectPlan of_final = final_plan(inputs_.plan.detect, plan.share);
   for (std::size_t i = 0; i < searches_.size(); ++i) {
     searches_[i].before = nullptr;
     suppress_duplicates(searches_[i], found_[i]);
-    searches_[i].options = plan.share < 1 ? sized_final(whole, plan.share) : whole;
+    searches_[i].plan = of_final;
   }
   run(final_stages(), plan.deadline, found_);
 }
@@ -120,7 +118,7 @@ std::vector<Candidates> without_duplicates(const SearchInputs& inputs,
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i].empty()) continue;
     std::erase_if(found[i], [&](const Candidate& candidate) {
-      return candidate.score < inputs.options.detect.select.min_score;
+      return candidate.score < inputs.plan.detect.limits[Limit::selected];
     });
     suppress_duplicates(search_for(inputs, *inputs.models[i]), found[i]);
   }

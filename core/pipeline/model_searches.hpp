@@ -12,6 +12,7 @@
 #include "core/detect/search.hpp"
 #include "core/detect/stages.hpp"
 #include "core/pipeline/detector.hpp"
+#include "core/pipeline/search_plan.hpp"
 
 namespace bpa {
 
@@ -19,7 +20,7 @@ namespace bpa {
 struct RoundPlan {
   int number = 0;
   double share = 1;           ///< Of what a whole round looks at, (0, 1].
-  bool raised = false;        ///< Limits are raised (raise_limits()): fewer candidates go on.
+  bool hurried = false;       ///< Fewer candidates go on (round_plan()).
   bool first_sample = false;  ///< The sample that the scene came with, else the next one.
   /// Pixels of the reduced image that are searched no more, from this round on.
   std::vector<std::uint32_t> newly_certain = {};
@@ -64,7 +65,7 @@ class ModelSearches {
 /// What the searches for a library's models read; keeps references.
 struct SearchInputs {
   const SceneFeatures& scene;
-  const DetectorOptions& options;
+  const SearchPlan& plan;
   const ScoreLayers& layers;
   const DetectRequest& request;
   const std::vector<std::shared_ptr<const ObjectModel>>& models;

@@ -5,15 +5,16 @@
 #include <vector>
 
 #include "core/base/stopwatch.hpp"
-#include "core/pipeline/detector.hpp"
+#include "core/cloud/frame.hpp"
+#include "core/observation/scene_features.hpp"
+#include "core/pipeline/search_plan.hpp"
+#include "core/result/interpretation.hpp"
 
 namespace bpa {
 
 /// What a search reads of the frame, with the time of each step appended to `timings`. The frame
-/// must be valid; `options` are those of this search (shorten_preparation()). The pixels of the
-/// reduced image follow from frame and options alone.
-SceneFeatures prepare_scene(const Frame& frame, const DetectRequest& request,
-                            DetectorOptions options, const Deadline& deadline,
+/// must be valid. The pixels of the reduced image follow from frame and plan alone.
+SceneFeatures prepare_scene(const Frame& frame, const SearchPlan& plan, const Deadline& deadline,
                             std::vector<StageTiming>& timings);
 
 }  // namespace bpa

@@ -3,142 +3,158 @@
 #include "core/pipeline/search_plan.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "core/base/concat.hpp"
+#include "core/io/options_yaml.hpp"
 
 namespace bpa {
 namespace {
 
-// What a small budget leaves of the preparation. Budgets and sizes are chosen by hand on real and
-// simulated frames of 640 x 480, on two cores of a 2.5 GHz EPYC: a whole preparation takes 60 ms.
+// What a budget below so many whole preparations leaves of the preparation. The sizes were chosen
+// by hand on real and simulated frames of 640 x 480.
 struct Shortened {
-  double below_ms;  // of the budget
-  int max_width;    // pixels
-  double share;     // of the whole preparation's time; measured
+  double preparations;
+  int max_width;  // pixels
+  double share;   // of the whole preparation's time; measured
 };
 constexpr int kAnyWidth = 1 << 20;
-constexpr Shortened kShortened[] = {{70, 160, 0.3}, {140, 240, 0.4}, {200, kAnyWidth, 0.75}};
+constexpr Shortened kShortened[] = {{1.2, 160, 0.3}, {2.3, 240, 0.4}, {3.3, kAnyWidth, 0.75}};
 constexpr int kFewKeypoints = 200;          // with any of them
-constexpr double kOneThread = 0.55;         // what two do in a time, one does in so much of it
 constexpr double kRestOfPreparation = 5;    // times the surface; measured
 constexpr double kTimeOfPreparation = 0.7;  // of what is left after the surface, at most; by hand
 
-// Measured with 21 models: of the whole preparation's time, for each model. Not the mean of all
-// frames but some 10 % more than YCB-Video's 0.085, and its 0.157 (18 models in piles: 0.069 and
-// 0.063), as a late answer is worse than a little less of the search. Rounds are shorter since
-// pairs vote by colour (bb0343a). But with 0.08 and 0.11, 266/379 and 263/379 objects of YCB-Video
-// and of seeds 100 and 777 are found in 0.5 s by two seeds, and with these 269/379 and 268/379.
-constexpr double kRoundTime = 0.095, kFinalTime = 0.16;
+// For how many models whole samples are searched. With 200 models and one in 2, 3 and 8 points for
+// models without support, three seeds find 420/612, 412/612 and 388/612 objects of seed 777, in
+// 2.5, 2.4 and 1.9 times as long as 20 models take.
+constexpr int kWholeModels = 60;
 
-// The limits of quick scores before the last alignment.
-std::array<double*, 3> limits_of(DetectOptions& options) {
-  return {&options.check.min_ranked_score, &options.cluster.min_cluster_score,
-          &options.refine.min_aligned_score};
+void shorten_preparation(const SearchFacts& facts, SearchPlan& plan, PlanReasons& reasons) {
+  for (const Shortened& shortened : kShortened) {
+    if (facts.budget_ms >= shortened.preparations * facts.costs.preparation_ms) continue;
+    plan.surface.max_width = std::min(plan.surface.max_width, shortened.max_width);
+    plan.features.max_keypoints = std::min(plan.features.max_keypoints, kFewKeypoints);
+    leave_out_details(plan.features);
+    plan.prepared_share = shortened.share;
+    const std::string why =
+        concat("a budget of ", facts.budget_ms, " ms is less than ", shortened.preparations,
+               " preparations of ", std::lround(facts.costs.preparation_ms), " ms");
+    for (const char* name : {"surface.max_width", "features.max_keypoints", "features.use_outline",
+                             "features.use_flat_regions"}) {
+      reasons[name] = why;
+    }
+    return;
+  }
 }
 
-int part_of(int count, double share) {
-  return std::min(count, std::max(1, static_cast<int>(std::lround(share * count))));
+EndRule end_rule(const SearchFacts& facts, const RoundOptions& rounds, PlanReasons& reasons) {
+  if (!facts.follows) return {1, false, rounds.min_gain, rounds.min_gain_of_two};
+  for (const char* name : {"end.first_share", "end.may_end_at_first", "end.min_gain"}) {
+    reasons[name] = "an earlier frame says what to expect";
+  }
+  return {rounds.expected_share, true, rounds.min_gain_expected, 0};
 }
 
-// How many candidates of all models go on, stage by stage.
-std::array<int*, 3> most_in_library(DetectOptions& options) {
-  return {&options.check.max_in_library, &options.cluster.max_in_library,
-          &options.refine.max_in_library};
+// Every setting as planned, beside the user's and the default.
+std::vector<PlanEntry> settings_of(const SearchPlan& plan, DetectorOptions given,
+                                   const PlanReasons& reasons) {
+  DetectorOptions planned{plan.surface, plan.planes, plan.features, plan.rounds,
+                          plan.detect,  plan.scene,  given.views};
+  DetectorOptions defaults;
+  const auto used = options_of(planned), asked = options_of(given), usual = options_of(defaults);
+  std::vector<PlanEntry> out;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (used[i].is_group()) continue;
+    const std::string value = io::value_text(used[i]);
+    const auto reason = reasons.find(used[i].path);
+    const bool planned_here = value != io::value_text(asked[i]) && reason != reasons.end();
+    const std::string own = value == io::value_text(usual[i]) ? "default" : "setting";
+    out.push_back({used[i].path, value, planned_here ? reason->second : own});
+  }
+  return out;
+}
+
+std::vector<PlanEntry> entries_of(const SearchPlan& plan, const DetectorOptions& options,
+                                  const LearnedLimits& limits, const PlanReasons& reasons) {
+  std::vector<PlanEntry> out = settings_of(plan, options, reasons);
+  const auto add = [&](const std::string& name, const auto& value, const std::string& reason) {
+    const auto found = reasons.find(name);
+    out.push_back({name, concat(value), found == reasons.end() ? reason : found->second});
+  };
+  add("end.first_share", plan.end.first_share, "a whole round");
+  add("end.may_end_at_first", plan.end.may_end_at_first ? "true" : "false", "no earlier frame");
+  add("end.min_gain", plan.end.min_gain, "rounds.min_gain");
+  add("end.min_gain_of_two", plan.end.min_gain_of_two, "rounds.min_gain_of_two");
+  add("limits.provenance", limits.provenance, "score layers");
+  const std::string kept = concat("keeps ", plan.detect.score.keep_right, " of the right ones");
+  for (std::size_t i = 0; i < kLimits; ++i) {
+    add(concat("limits.", kLimitNames[i]), plan.detect.limits.stages[i], kept);
+  }
+  if (!plan.limited) return out;
+  const std::string why = "share of the time left";
+  add("time.search", plan.time.search, why);
+  add("time.rounds", plan.time.rounds, why);
+  add("time.first_round", plan.time.first_round, why);
+  add("time.next_round", plan.time.next_round, why);
+  add("time.smallest_round", plan.time.smallest_round, "share of a whole round");
+  return out;
 }
 
 }  // namespace
 
-double shorten_preparation(double budget_ms, int num_threads, DetectorOptions& options) {
-  if (!(budget_ms > 0)) return 1;
-  if (num_threads == 1) budget_ms *= kOneThread;
-  for (const Shortened& shortened : kShortened) {
-    if (budget_ms >= shortened.below_ms) continue;
-    options.surface.max_width = std::min(options.surface.max_width, shortened.max_width);
-    options.features.max_keypoints = std::min(options.features.max_keypoints, kFewKeypoints);
-    leave_out_details(options.features);
-    return shortened.share;
+Result<SearchPlan> plan_search(const DetectorOptions& options, const ScoreLayers& layers,
+                               const SearchFacts& facts) {
+  const double keep_right = options.detect.score.keep_right;
+  if (const auto limits = layers.limits.at(keep_right, facts.colored); !limits.ok()) {
+    return limits.status();
   }
-  return 1;
+  PlanReasons reasons;
+  SearchPlan plan{
+      .surface = options.surface,
+      .planes = options.planes,
+      .features = options.features,
+      .rounds = options.rounds,
+      .detect = DetectPlan(options.detect, layers, {facts.models, facts.colored}, &reasons),
+      .scene = options.scene,
+      .limited = facts.budget_ms > 0};
+  plan.surface.num_threads = plan.features.num_threads = facts.threads;
+  plan.planes.seed = plan.features.seed = plan.scene.seed = facts.seed;
+  if (plan.limited) shorten_preparation(facts, plan, reasons);
+  if (plan.rounds.step_without_support == 0) {
+    plan.rounds.step_without_support = std::max(1, facts.models / kWholeModels);
+    reasons["rounds.step_without_support"] = concat(facts.models, " models / ", kWholeModels);
+  }
+  plan.end = end_rule(facts, options.rounds, reasons);
+  plan.entries = entries_of(plan, options, layers.limits, reasons);
+  return plan;
+}
+
+SceneFeatureOptions round_sample(const SearchPlan& plan, double share) {
+  SceneFeatureOptions out = plan.features;
+  if (share >= 1) return out;
+  for (int* size : {&out.max_references, &out.round_keypoints}) *size = part_of(*size, share);
+  return out;
 }
 
 bool details_fit(double surface_ms, double milliseconds_left) {
   return kRestOfPreparation * surface_ms <= kTimeOfPreparation * milliseconds_left;
 }
 
-void search_without_colors(DetectorOptions& detector) {
-  // Near what was chosen on simulated piles before colours counted; kLower of log odds.
-  constexpr int kPeaks = 5, kRimPeaks = 2, kChecked = 3, kOthers = 2;
-  constexpr double kLower = 1;
-  DetectOptions& options = detector.detect;
-  SampleOptions& sample = options.sample;
-  sample.peaks_per_reference = std::max(sample.peaks_per_reference, kPeaks);
-  if (sample.rim_peaks_per_reference > 0) {
-    sample.rim_peaks_per_reference = std::max(sample.rim_peaks_per_reference, kRimPeaks);
-  }
-  options.check.max_in_library *= kChecked;
-  options.cluster.max_in_library *= kOthers;
-  options.refine.max_in_library *= kOthers;
-  for (double* limit : limits_of(options)) *limit -= kLower;
-  options.refine.min_refined_score -= kLower;
-}
-
-void share_among_models(int models, DetectorOptions& options) {
-  // For how many whole samples are looked at, and for how many the limits are. With 200 models,
-  // limits 2.9 times as high, and one in 2, 3 and 8 points, three seeds of the search find 420/612,
-  // 412/612 and 388/612 objects of seed 777, in 2.5, 2.4 and 1.9 times as long as 20 models take.
-  constexpr int kWholeModels = 60, kLimitedModels = 24;
-  if (options.rounds.step_without_sign == 0) {
-    options.rounds.step_without_sign = std::max(1, models / kWholeModels);
-  }
-  constexpr int kMost = 1'000'000;  // that the options allow
-  // Twice as many for eight times the models. With 200 models, one in 3 points, and limits 1.5, 2
-  // and 2.9 times as high: 400/612, 403/612 and 412/612, in 2.0, 2.1 and 2.4 times as long.
-  const double more = std::cbrt(std::max(1.0, static_cast<double>(models) / kLimitedModels));
-  for (int* most : most_in_library(options.detect)) {
-    *most = std::min(static_cast<int>(std::lround(more * *most)), kMost);
-  }
-}
-
 void leave_out_details(SceneFeatureOptions& options) {
   options.use_outline = options.use_flat_regions = false;
 }
 
-DetectorOptions sized_round(const DetectorOptions& options, double share) {
-  DetectorOptions out = options;
-  for (int* size : {&out.features.max_references, &out.features.round_keypoints}) {
-    *size = part_of(*size, share);
-  }
-  for (int* most : most_in_library(out.detect)) *most = part_of(*most, share);
-  return out;
-}
+SearchPace::SearchPace(const Costs& costs, double preparation_ms, int models)
+    : round_ms_(costs.round_share * preparation_ms * models),
+      final_per_round_(costs.final_share / costs.round_share) {}
 
-void raise_limits(DetectOptions& options) {
-  // Chosen with 0.5 s a frame. At 29e0ac6, 141/204 and 99/143 objects of seeds 777 and 100 are
-  // found, and with 1 and all of the checked 141/204 and 98/143.
-  constexpr double kHigher = 2, kOfChecked = 0.6;  // log odds; share of those that are checked
-  for (double* limit : limits_of(options)) *limit += kHigher;
-  options.check.max_in_library = part_of(options.check.max_in_library, kOfChecked);
-}
-
-DetectOptions sized_final(const DetectOptions& options, double share) {
-  DetectOptions out = options;
-  for (int* size : {&out.climb.max_climbed, &out.turn.max_turned, &out.turn.max_kept_turned,
-                    &out.flat.max_laid, &out.flat.max_per_region}) {
-    *size = part_of(*size, share);
-  }
-  return out;
-}
-
-SearchPace::SearchPace(double preparation_ms, int models)
-    : round_ms_(kRoundTime * preparation_ms * models) {}
-
-double SearchPace::share_of_round(double milliseconds) const {
+double SearchPace::share_of_round(double milliseconds, double smallest) const {
   const double share = milliseconds / round_ms_;
-  return share < kSmallestRound ? 0 : std::min(share, 1.0);
+  return share < smallest ? 0 : std::min(share, 1.0);
 }
 
 double SearchPace::share_of_final(double milliseconds) const {
-  return std::min(1.0, milliseconds / (round_ms_ * kFinalTime / kRoundTime));
+  return std::min(1.0, milliseconds / (round_ms_ * final_per_round_));
 }
 
 void SearchPace::took(double share, double milliseconds) { round_ms_ = milliseconds / share; }

@@ -2,67 +2,92 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/pipeline/detector_options.hpp"
+#include <vector>
 
-// How a time budget is kept: what is searched follows from the time there is. No function looks at
-// a clock.
+#include "core/detect/detect_plan.hpp"
+#include "core/pipeline/costs.hpp"
+#include "core/pipeline/detector_options.hpp"
+#include "core/result/plan_entry.hpp"
+
+// What a search runs with: one value, made of options and facts. Nothing else changes a setting.
 
 namespace bpa {
 
-/// Lets the preparation of a frame do less where `budget_ms` > 0 is small: below 200 ms fewer
-/// keypoints, no outlines and no flat regions; below 140 ms an image of at most 240 pixels a row
-/// too, and below 70 ms of 160. With one of `num_threads` (1 or more) so from 1.8 times the budget.
-/// Returns about which share of the whole preparation's time is left, (0, 1].
-double shorten_preparation(double budget_ms, int num_threads, DetectorOptions& options);
+/// What a plan depends on, besides options and score layers.
+struct SearchFacts {
+  int models = 1;          ///< That are searched for, 1 or more.
+  bool colored = true;     ///< Hypotheses of all models are compared by colour.
+  bool follows = false;    ///< An earlier frame says what to expect.
+  int threads = 1;         ///< 1 or more.
+  std::uint64_t seed = 0;  ///< Of the request.
+  double budget_ms = 0;    ///< 0: no limit.
+  Costs costs = {};        ///< What parts of a search cost here, for a budget.
+};
 
-/// Whether the rest of the preparation leaves time for a search: on a slow or busy machine outlines
-/// and flat regions may not. `surface_ms`: what the surface took.
+/// When rounds end.
+struct EndRule {
+  double first_share = 1;  ///< Of a whole round, what the first one examines.
+  bool may_end_at_first = false;
+  double min_gain = 0, min_gain_of_two = 0;  ///< See RoundOptions.
+};
+
+/// Shares of the time that a budget leaves. Chosen by hand: with 0.7 and with 0.82 for the rounds,
+/// two seeds find 320/758 and 341/758 objects of YCB-Video and of seeds 100 and 777 in 0.1 s, and
+/// 540/758 and 541/758 in 0.5 s.
+struct TimePlan {
+  double search = 0.93;          ///< After preparation; the rest interprets.
+  double rounds = 0.82;          ///< Of the search; the final stages have the rest.
+  double first_round = 0.5;      ///< Of the rounds: its cost is a guess.
+  double next_round = 0.8;       ///< Of what is left of them.
+  double smallest_round = 0.06;  ///< Of a whole round: with less, most objects have no point.
+};
+
+struct SearchPlan {
+  SurfaceMapOptions surface;
+  PlaneOptions planes;
+  SceneFeatureOptions features;  ///< Of a whole round: its numbers of points.
+  RoundOptions rounds;
+  DetectPlan detect;  ///< Of a whole round.
+  InterpretationOptions scene;
+  EndRule end = {};
+  TimePlan time = {};
+  bool limited = false;                 ///< There is a time budget.
+  double prepared_share = 1;            ///< Of the work of a whole preparation, (0, 1].
+  std::vector<PlanEntry> entries = {};  ///< All of it, with reasons, for people.
+};
+
+/// Pure: the same input gives the same plan. Fails with invalid_argument where the limits of the
+/// layers do not hold `score.keep_right`.
+Result<SearchPlan> plan_search(const DetectorOptions& options, const ScoreLayers& layers,
+                               const SearchFacts& facts);
+
+/// The points of the sample of a round that examines `share`, (0, 1], of a whole one.
+SceneFeatureOptions round_sample(const SearchPlan& plan, double share);
+
+/// Whether outlines and flat regions leave time for a search. `surface_ms`: what the surface took.
 bool details_fit(double surface_ms, double milliseconds_left);
-
-/// Where colours tell nothing, more pairs of each reference point vote, more of its poses are
-/// tried, and more candidates go on.
-void search_without_colors(DetectorOptions& options);
-
-/// The more models (1 or more) are searched for, the less is looked at for those without a sign
-/// (RoundOptions::step_without_sign), unless that is set, and the more candidates of all models
-/// together go on (max_in_library). Up to 24 models: as the options say; up to 119
-/// all models look at whole samples.
-void share_among_models(int models, DetectorOptions& options);
 
 /// No outlines and flat regions.
 void leave_out_details(SceneFeatureOptions& options);
-
-/// `options` for a round that looks at `share` (0 to 1) of what a whole round looks at: reference
-/// points, keypoints, and the candidates of all models that go on. Each is at least one.
-DetectorOptions sized_round(const DetectorOptions& options, double share);
-
-/// Lets a round go on with fewer candidates: what is nearly hopeless takes time that a budget does
-/// not have.
-void raise_limits(DetectOptions& options);
-
-/// `options` for final stages that try `share` (0 to 1) of what they would, at least one of each.
-DetectOptions sized_final(const DetectOptions& options, double share);
 
 /// How much of the search fits in a time: the work of a round grows with its share, and with the
 /// number of models.
 class SearchPace {
  public:
-  /// A first guess, from the time that the whole preparation of this frame takes on this machine.
-  SearchPace(double preparation_ms, int models);
+  /// From the time that the whole preparation of this frame takes on this machine.
+  SearchPace(const Costs& costs, double preparation_ms, int models);
 
-  /// The share of a whole round that fits, at most 1; 0 where that is too small for a round.
-  double share_of_round(double milliseconds) const;
+  /// The share of a whole round that fits, at most 1; 0 where that is less than `smallest`.
+  double share_of_round(double milliseconds, double smallest) const;
   /// The share of the final stages that fits, at most 1.
   double share_of_final(double milliseconds) const;
   /// A round of that share took so long: later guesses are made from this.
   void took(double share, double milliseconds);
+  double round_ms() const { return round_ms_; }
 
  private:
   double round_ms_;  // of a whole round for all models
+  double final_per_round_;
 };
-
-/// The smallest share of a whole round: with less, most objects have no reference point. Chosen by
-/// hand.
-constexpr double kSmallestRound = 0.06;
 
 }  // namespace bpa

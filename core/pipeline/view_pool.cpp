@@ -19,7 +19,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 // Log odds of what a view does not see at all: no stage looks at it there.
-constexpr double kNotSeen = kHopelessScore - 1;
+constexpr double kNotSeen = std::numeric_limits<double>::lowest();
 // Of the largest part that any view shows of a placement: a view that shows less does not decide
 // whether two placements exclude one another. Chosen by hand.
 constexpr double kDecidingShare = 0.25;
@@ -86,7 +86,8 @@ ViewPool::ViewPool(const Detector& detector, std::span<const ViewSearch* const> 
       views_(views),
       scene_from_camera_(std::move(scene_from_camera)),
       request_(request),
-      options_(options) {
+      options_(options),
+      plan_(detector.options().detect, detector.score_layers()) {
   std::uint32_t pixels = 0;
   for (std::size_t v = 0; v < views_.size(); ++v) {
     first_pixel_.push_back(pixels);
@@ -158,7 +159,7 @@ void ViewPool::gather() {
 }
 
 Search ViewPool::search_in(int view, const ObjectModel& model) const {
-  return {views_[view]->scene,      model,         detector_.options().detect,
+  return {views_[view]->scene,      model,         plan_,
           detector_.score_layers(), priors_[view], request_.seed};
 }
 
@@ -180,7 +181,7 @@ void ViewPool::for_each_model_and_view(
 // cameras' poses are not exact.
 void ViewPool::score_in(int view, const ObjectModel& model, SearchEffort& effort) {
   const Search search = search_in(view, model);
-  RefinementOptions near = detector_.options().detect.refine.refinement;
+  RefinementOptions near = kLastAlignment;
   near.start_gate_m = std::min(near.start_gate_m, options_.same_position_m);
   near.end_gate_m = std::min(near.end_gate_m, near.start_gate_m);
   for (Entry& entry : entries_) {
@@ -280,8 +281,7 @@ Candidates ViewPool::joined() const {
 }
 
 Overlaps ViewPool::overlaps(const Candidates& joined) const {
-  const double max_shared = detector_.options().scene.max_shared;
-  Overlaps out = find_overlaps(joined, max_shared);
+  Overlaps out = find_overlaps(joined, plan_.limits[Limit::competing]);
   const auto conflict_in_a_view = [&](const Entry& a, const Entry& b) {
     for (std::size_t v = 0; v < views_.size(); ++v) {
       const auto& first = a.in_view[v].explained;
@@ -290,7 +290,7 @@ Overlaps ViewPool::overlaps(const Candidates& joined) const {
       const auto seen =
           static_cast<double>(std::min(most_explained(a.in_view), most_explained(b.in_view)));
       if (smaller == 0 || smaller < kDecidingShare * seen) continue;
-      if (common_pixels(first, second) > max_shared * smaller) return true;
+      if (common_pixels(first, second) > kMaxShared * smaller) return true;
     }
     return false;
   };
@@ -307,7 +307,8 @@ void ViewPool::judge(const std::vector<bool>& present, const Overlaps& overlaps)
   for (std::size_t v = 0; v < views_.size(); ++v) {
     Candidates candidates;
     for (Entry& entry : entries_) candidates.push_back(std::move(entry.in_view[v]));
-    measure_given_others(views_[v]->scene, overlaps, present, candidates, request_.num_threads);
+    measure_given_others(views_[v]->scene, overlaps, present, candidates,
+                         plan_.limits[Limit::competing], request_.num_threads);
     for (std::size_t i = 0; i < entries_.size(); ++i) {
       Candidate& candidate = candidates[i];
       if (candidate.score > kNotSeen) {

@@ -57,7 +57,8 @@ class ViewPool {
   std::span<const ViewSearch* const> views_;
   std::vector<Pose> scene_from_camera_;
   const DetectRequest& request_;
-  ViewsOptions options_;
+  const ViewsOptions options_;
+  const DetectPlan plan_;
   std::vector<std::vector<PosePrior>> priors_;  ///< Of each view, camera frame.
   std::vector<std::uint32_t> first_pixel_;      ///< Of each view among the pixels of all.
   std::vector<Entry> entries_;

@@ -12,10 +12,9 @@ struct ViewsOptions {
              "Move the cameras' poses so that the surfaces of their frames agree.");
   BPA_OPTION(double, independence, 0.7, (0, 1),
              "How much views count by themselves: 1 adds the log odds of all, 0 takes their mean.");
-  BPA_OPTION(double, empty_log_odds, -4, (-20, 0),
-             "Log odds of a placement before any view is looked at.");
-  BPA_OPTION(double, min_pooled_score, -6, (-20, 20),
-             "What one view gives at least this log odds is scored in the other views.");
+  double empty_log_odds = -4;  ///< Log odds of a placement before any view is looked at.
+  double min_pooled_score =
+      -6;  ///< What one view gives at least this log odds is scored in the other views.
   BPA_OPTION(double, same_position_m, 0.015, (0.001, 0.1),
              "Placements of two views this near are one placement, metres.");
   BPA_OPTION(double, same_angle_rad, 0.1, (0.01, 1),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/result/placement.hpp"
+#include "core/result/plan_entry.hpp"
 #include "core/result/search_effort.hpp"
 
 namespace bpa {
@@ -38,10 +39,11 @@ struct SceneInterpretations {
   bool budget_exhausted = false;  ///< True: without the time budget, more is searched.
   /// Models whose search was lost with a host that searched for them; empty on one host.
   std::vector<std::string> not_searched;
-  bool partial = false;  ///< The search goes on (DetectRequest::on_round).
-  SearchEffort effort;   ///< The work that the search did.
-  std::string sensor;    ///< Kind of depth camera that the frame was taken for (SensorKind).
-  int fused_frames = 1;  ///< Number of frames combined into the searched depth.
+  bool partial = false;         ///< The search goes on (DetectRequest::on_round).
+  SearchEffort effort;          ///< The work that the search did.
+  std::vector<PlanEntry> plan;  ///< What it ran with. Empty where it came over the wire.
+  std::string sensor;           ///< Kind of depth camera that the frame was taken for (SensorKind).
+  int fused_frames = 1;         ///< Number of frames combined into the searched depth.
 };
 
 /// A placement of an earlier frame.

@@ -147,11 +147,11 @@ std::vector<bool> first_interpretation(const Candidates& candidates, const Overl
 
 void measure_given_others(const SceneFeatures& scene, const Overlaps& overlaps,
                           const std::vector<bool>& present, Candidates& candidates,
-                          int num_threads) {
+                          double competing, int num_threads) {
   const std::vector<int> owners = owners_of(scene, present, candidates);
   parallel_for(candidates.size(), num_threads, [&](std::size_t i) {
     Candidate& candidate = candidates[i];
-    if (candidate.score < kHopelessScore) return;
+    if (candidate.score < competing) return;
     const Judge judge(scene, candidate, overlaps[i], present, i, owners);
     candidate.values[component("hidden_by_unknown")] = judge.hidden_by_unknown();
     candidate.values[component("left_over")] = judge.left_over();

@@ -17,10 +17,11 @@ namespace bpa {
 /// with none before.
 std::vector<bool> first_interpretation(const Candidates& candidates, const Overlaps& overlaps);
 
-/// Measures the components of Round::others for each candidate that is not hopeless. The others are
+/// Measures the components of Round::others for each candidate of at least
+/// `competing` log odds. The others are
 /// the `present` candidates that it does not conflict with.
 void measure_given_others(const SceneFeatures& scene, const Overlaps& overlaps,
                           const std::vector<bool>& present, Candidates& candidates,
-                          int num_threads);
+                          double competing, int num_threads);
 
 }  // namespace bpa

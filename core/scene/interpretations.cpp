@@ -14,6 +14,11 @@
 namespace bpa {
 namespace {
 
+constexpr double kExplainedWeight = 2;  // of the ratio of explained to observed surface
+// Of simulated annealing, in units of the score.
+constexpr double kStartTemperature = 2, kEndTemperature = 0.05;
+constexpr double kMinShown = 0.001;  // less probable placements are in no interpretation
+
 // What a placement adds to the score by itself: its log odds beyond those asked for, less the
 // penalty (paper section VI, components 1 and 3).
 double single_worth(const Candidate& c, const InterpretationOptions& options) {
@@ -32,7 +37,7 @@ class SubsetScore {
               const InterpretationOptions& options)
       : candidates_(candidates),
         options_(options),
-        per_pixel_(options.explained_weight / std::max(1, observed_pixels)),
+        per_pixel_(kExplainedWeight / std::max(1, observed_pixels)),
         overlaps_(overlaps),
         chosen_(candidates.size(), false) {}
 
@@ -141,8 +146,8 @@ void anneal(SubsetScore& state, const std::vector<std::size_t>& among,
   double current = state.total();
   for (int step = 0; step < options.annealing_steps; ++step) {
     const double temperature =
-        options.start_temperature * (1 - static_cast<double>(step) / options.annealing_steps) +
-        options.end_temperature;
+        kStartTemperature * (1 - static_cast<double>(step) / options.annealing_steps) +
+        kEndTemperature;
     const std::size_t i = among[random.index(static_cast<int>(among.size()))];
     std::vector<std::size_t> removed;
     const bool was_chosen = state.chosen(i);
@@ -225,7 +230,7 @@ std::vector<Interpretation> interpret(const Candidates& candidates, const Overla
   std::vector<std::size_t> among, probable;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const double probability = candidates[i].probability;
-    if (probability >= options.min_shown) among.push_back(i);
+    if (probability >= kMinShown) among.push_back(i);
     if (probability >= options.min_probability) probable.push_back(i);
   }
   SubsetScore state(candidates, overlaps, observed_pixels, options);

@@ -19,24 +19,13 @@ struct InterpretationOptions {
   BPA_OPTION(double, object_penalty, 0, (0, 100),
              "Log odds that each further object of an interpretation costs, beyond those of "
              "min_probability.");
-  BPA_OPTION(double, explained_weight, 2, (0, 1000),
-             "Weight of the ratio of explained to observed surface.");
-  BPA_OPTION(double, max_shared, 0.3, (0, 1),
-             "Share of the smaller one's pixels that two placements may share.");
   BPA_OPTION(int, annealing_steps, 20000, (0, 10000000),
              "Moves of simulated annealing (paper section VI).");
-  BPA_OPTION(double, start_temperature, 2, (0, 1000),
-             "Temperature of the first move, in units of the score.");
-  BPA_OPTION(double, end_temperature, 0.05, (1e-6, 1000),
-             "Temperature of the last move, in units of the score.");
-  BPA_OPTION(double, min_shown, 0.001, (0, 1),
-             "Less probable placements are in no interpretation.");
   BPA_OPTION(bool, judge_given_others, true, (),
              "Judge each placement again, given the others of a first interpretation.");
-  BPA_OPTION(int, max_different, 20, (1, 100),
-             "Interpretations that show something new, with the best.");
   BPA_OPTION(int, max_interpretations, 100, (1, 100),
              "Best interpretations kept (paper section VI: 100).");
+  int max_different = 20;  ///< Interpretations that show something new, with the best.
   std::uint64_t seed = 0;
 };
 

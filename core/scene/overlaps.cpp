@@ -101,10 +101,10 @@ bool nearly_same_pose(const Competition& competition, std::size_t a, std::size_t
 
 }  // namespace
 
-Overlaps find_overlaps(const Candidates& candidates, double max_shared) {
+Overlaps find_overlaps(const Candidates& candidates, double competing) {
   std::vector<std::uint32_t> running;
   for (std::uint32_t i = 0; i < candidates.size(); ++i) {
-    if (candidates[i].score >= kHopelessScore) running.push_back(i);
+    if (candidates[i].score >= competing) running.push_back(i);
   }
   const std::vector<int> common = common_pixels(candidates, running);
   Overlaps overlaps(candidates.size());
@@ -115,7 +115,7 @@ Overlaps find_overlaps(const Candidates& candidates, double max_shared) {
       const int shared = common[a * running.size() + b];
       const auto smaller =
           static_cast<double>(std::min(first.explained.size(), second.explained.size()));
-      const bool conflicting = shared > max_shared * smaller || same_place(first, second) ||
+      const bool conflicting = shared > kMaxShared * smaller || same_place(first, second) ||
                                interpenetrate(first, second);
       if (shared == 0 && !conflicting) continue;
       overlaps[running[a]].push_back({running[b], shared, conflicting});

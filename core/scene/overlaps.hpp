@@ -18,14 +18,14 @@ struct Overlap {
 };
 using Overlaps = std::vector<std::vector<Overlap>>;  ///< Of each candidate.
 
-/// Candidates of lower log odds are ignored: they are no rivals of others.
-constexpr double kHopelessScore = -8;
+/// For each candidate of at least `competing` log odds (Limit::competing), the others of these that
+/// share observed pixels or its position, by rising `other`. Two conflict when they share more than
+/// 0.3 of the smaller one's explained pixels. Also when their origins are too near for two solid
+/// objects. Also when more than a tenth of one's surface lies over 1 cm deep inside of the other.
+Overlaps find_overlaps(const Candidates& candidates, double competing);
 
-/// For each candidate that is not hopeless, the others that share observed pixels or its position,
-/// by rising `other`. Two conflict when they share more than `max_shared` of the smaller one's
-/// explained pixels. Also when their origins are too near for two solid objects. Also when more
-/// than a tenth of one's surface lies over 1 cm deep inside of the other.
-Overlaps find_overlaps(const Candidates& candidates, double max_shared);
+/// Share of the smaller one's pixels that two placements may share. Chosen by hand.
+constexpr double kMaxShared = 0.3;
 
 /// The rivals of each candidate: those that it conflicts with.
 Competition competition_of(const Candidates& candidates, const Overlaps& overlaps);

@@ -36,9 +36,6 @@ struct ComponentType {
   std::string_view meaning;
   bool needs_color = false;  ///< Known only where frame and model have colours.
   bool rises = false;  ///< More never speaks against a placement: training keeps the curve rising.
-  /// Log odds of the components up to here. A placement with lower ones is measured no further: of
-  /// 8532 in YCB-Video and piles of seeds 100 and 777, none had more than -5 in the end.
-  double least = -std::numeric_limits<double>::infinity();
 };
 
 constexpr auto kScoreComponents = std::to_array<ComponentType>({
@@ -101,13 +98,13 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
      "From the largest plane to the lowest point, beyond 1 cm."},
     {"balance", "diameters", -2, 2, Round::three, true,
      [](Evidence& e) -> double { return e.resting().balance; },
-     "How far the centre is inside of what rests on the plane; negative: it would fall.", false, false, -9.4},
+     "How far the centre is inside of what rests on the plane; negative: it would fall."},
     {"silhouette", "share", 0, 1, Round::three, true,
      [](Evidence& e) -> double { return e.silhouette().on; },
      "Strength of the colour gradients across the outline.", true},
     {"silhouette_contrast", "share", -1, 1, Round::three, true,
      [](Evidence& e) -> double { return e.silhouette().contrast; },
-     "The same less that beside the outline.", true, false, -8.75},
+     "The same less that beside the outline.", true},
     {"color", "log-likelihood", -1, 0, Round::three, true,
      [](Evidence& e) -> double { return e.colors().likelihood; },
      "Colours of the surface, under the frame's light.", true},
@@ -116,19 +113,19 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
      "Colour shift of the whole placement.", true},
     {"exposure", "log of the cube root of light", -2.4, 2.4, Round::three, false,
      [](Evidence& e) -> double { return e.colors().exposure; },
-     "Light of the whole placement, frame to model.", true, false, -7.05},
+     "Light of the whole placement, frame to model.", true},
     {"texture", "log-likelihood ratio", -5, 10, Round::three, true,
      [](Evidence& e) -> double { return e.texture().log_ratio; },
      "Mean over pixels: the model's pattern against a surface of one colour.", true},
     {"texture_evidence", "log-likelihood ratio", -1e5, 1e5, Round::three, true,
      [](Evidence& e) -> double { return e.texture().total; },
-     "Sum over independent pixels of the same.", true, false, -8.1},
+     "Sum over independent pixels of the same.", true},
     {"segment", "log-likelihood", -1, 0, Round::three, true,
      [](Evidence& e) -> double { return segment_score(e.segments()); },
      "Distance of the touched super-pixels from the model."},
     {"segment_affinity", "log-likelihood", -1, 0, Round::three, true,
      [](Evidence& e) -> double { return segment_affinity_score(e.scene().segmentation, e.segments()); },
-     "Super-pixels of one object should be explained together.", false, false, -6.7},
+     "Super-pixels of one object should be explained together."},
     {"edge_likelihood", "log-likelihood", -1, 0, Round::three, true,
      [](Evidence& e) -> double { return edge_likelihood_score(e.scene().image, e.edges(), e.model(), e.pose()); },
      "Predicted range edges in the edge image."},

@@ -224,14 +224,14 @@ double ScoreLayer::log_odds(const ScoreValues& values) const {
 }
 
 std::optional<ScoreValues> measure_while_probable(Evidence& evidence, const ScoreLayer& layer,
-                                                  double prior) {
+                                                  double prior, const Limits& limits) {
   ScoreValues values;
   double log_odds = layer.bias + prior;
   for (std::size_t i = 0; i < kNumComponents; ++i) {
     const ComponentType& type = kScoreComponents[i];
     values[i] = type.round <= Round::three ? type.measure(evidence) : kNotKnown;
     log_odds += layer.components[i].at(values[i]);
-    if (log_odds < type.least) return std::nullopt;
+    if (log_odds < limits.components[i]) return std::nullopt;
   }
   return values;
 }

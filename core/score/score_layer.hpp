@@ -13,6 +13,7 @@
 #include "core/base/status.hpp"
 #include "core/score/competition.hpp"
 #include "core/score/components.hpp"
+#include "core/score/limits.hpp"
 
 namespace bpa {
 
@@ -35,10 +36,10 @@ struct ScoreLayer {
 };
 
 /// The components that are known up to round three, in the order of the table. Nothing where the
-/// log odds of those so far, `prior` added, are below ComponentType::least: the placement is
+/// log odds of those so far, `prior` added, are below Limits::components: the placement is
 /// improbable.
 std::optional<ScoreValues> measure_while_probable(Evidence& evidence, const ScoreLayer& layer,
-                                                  double prior);
+                                                  double prior, const Limits& limits);
 
 /// The layers of a detector.
 struct ScoreLayers {
@@ -48,6 +49,8 @@ struct ScoreLayers {
   ScoreLayer round_three;
   /// Of all components, for frames or models without colour.
   ScoreLayer without_color;
+  /// Of the log odds that these layers give.
+  LearnedLimits limits;
 
   const ScoreLayer& last_for(const ScoreValues& values) const {
     return std::isnan(values[component("color")]) ? without_color : round_three;

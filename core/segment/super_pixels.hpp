@@ -15,17 +15,14 @@ namespace bpa {
 /// The defaults are chosen by hand; tests/core/segment/boundary_recall_test.cpp measures what share
 /// of the true boundaries they find.
 struct SuperPixelOptions {
-  BPA_OPTION(int, spacing_px, 8, (3, 64),
-             "Spacing of the first centres: the size of a super-pixel, pixels.");
-  BPA_OPTION(int, iterations, 4, (1, 50), "Iterations of k-means.");
-  BPA_OPTION(int, min_pixels, 10, (1, 1000),
-             "Smaller super-pixels join a neighbour if no edge is between.");
-  BPA_OPTION(double, angle_deg, 25, (1, 360),
-             "Angle of normals that counts as one spacing, degrees.");
-  BPA_OPTION(double, color, 12, (0.1, 1000), "CIELAB distance that counts as one spacing.");
-  BPA_OPTION(double, edge, 0.5, (0.01, 100), "Edge likelihood that counts as one spacing.");
-  BPA_OPTION(double, strong_edge, 0.8, (0.01, 1), "Edge likelihood that no super-pixel crosses.");
-  int num_threads = 0;  ///< 0: one for each core.
+  int spacing_px = 8;        ///< Spacing of the first centres: the size of a super-pixel, pixels.
+  int iterations = 4;        ///< Iterations of k-means.
+  int min_pixels = 10;       ///< Smaller super-pixels join a neighbour if no edge is between.
+  double angle_deg = 25;     ///< Angle of normals that counts as one spacing, degrees.
+  double color = 12;         ///< CIELAB distance that counts as one spacing.
+  double edge = 0.5;         ///< Edge likelihood that counts as one spacing.
+  double strong_edge = 0.8;  ///< Edge likelihood that no super-pixel crosses.
+  int num_threads = 0;       ///< 0: one for each core.
 };
 
 /// A 3-D super-pixel: a connected piece of surface of similar position, normal and colour.

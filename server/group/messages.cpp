@@ -126,7 +126,8 @@ Pose pose_from(const double* numbers) {
 }  // namespace
 
 msgs::GroupStep begin_message(const Frame& frame, const DetectRequest& request,
-                              const DetectorOptions& options, const SharedLibrary& library) {
+                              const DetectorOptions& options, const SearchFacts& facts,
+                              const SharedLibrary& library) {
   msgs::GroupStep step;
   step.kind = msgs::GroupStep::kBegin;
   step.library = library.offer.digest;
@@ -137,6 +138,10 @@ msgs::GroupStep begin_message(const Frame& frame, const DetectRequest& request,
   for (const PosePrior& prior : request.priors) step.priors.push_back(prior_message(prior));
   step.seed = request.seed;
   step.budget_ms = request.budget_ms;
+  step.library_models = static_cast<std::uint32_t>(facts.models);
+  step.colored = facts.colored;
+  step.follows = facts.follows;
+  step.preparation_ms = facts.costs.preparation_ms;
   for (const ExpectedPlacement& expected : request.expected) {
     const auto model = library.models.find(expected.model);
     if (!model) continue;  // unloaded since
@@ -171,6 +176,17 @@ Result<ShareTask> task_of(msgs::GroupStep begin, const SharedLibrary& library) {
   }
   task.request.seed = begin.seed;
   task.request.budget_ms = begin.budget_ms;
+  task.facts = {.models = static_cast<int>(begin.library_models),
+                .colored = begin.colored,
+                .follows = begin.follows,
+                .seed = begin.seed,
+                .budget_ms = begin.budget_ms,
+                .costs = {.preparation_ms = begin.preparation_ms}};
+  if (task.facts.models < 1 || !(task.facts.budget_ms >= 0) ||
+      !(task.facts.costs.preparation_ms >= 0)) {
+    return corrupt("a search is for ", task.facts.models, " models in ", task.facts.budget_ms,
+                   " ms with preparations of ", task.facts.costs.preparation_ms, " ms");
+  }
   if (begin.expected_poses.size() != begin.expected_models.size() * kPoseNumbers) {
     return corrupt("a search expects ", begin.expected_models.size(), " models in ",
                    begin.expected_poses.size(), " numbers");

@@ -19,7 +19,7 @@ namespace bpa::server::group {
 
 /// The parts of BEGIN that all shares have.
 wire::bpa_msgs::GroupStep begin_message(const Frame& frame, const DetectRequest& request,
-                                        const DetectorOptions& options,
+                                        const DetectorOptions& options, const SearchFacts& facts,
                                         const SharedLibrary& library);
 
 /// What a share of a search is about.
@@ -27,6 +27,7 @@ struct ShareTask {
   Frame frame;
   DetectRequest request;
   DetectorOptions options;
+  SearchFacts facts;
   std::vector<std::shared_ptr<const ObjectModel>> models;
 };
 

@@ -78,7 +78,7 @@ class Searches : public ModelSearches {
     msgs::GroupStep step = step_of(msgs::GroupStep::kRound);
     step.round = static_cast<std::uint32_t>(plan.number);
     step.part = plan.share;
-    step.raised = plan.raised;
+    step.hurried = plan.hurried;
     step.first_sample = plan.first_sample;
     step.newly_certain = plan.newly_certain;
     std::vector<msgs::GroupAnswer> answers = run_competing(std::move(step), plan.deadline);

@@ -176,11 +176,11 @@ class ShareSearch {
     if (!library) or_throw(not_found("this worker has no library ", begin_.library));
     const Deadline deadline = Deadline::after(begin_.left_ms);
     ShareTask task = or_throw(task_of(std::move(begin_), *library));
-    task.request.num_threads = threads_;
+    task.request.num_threads = task.facts.threads = threads_;
+    const SearchPlan plan = or_throw(plan_search(task.options, library->layers, task.facts));
     std::vector<StageTiming> timings;
-    const SceneFeatures scene =
-        prepare_scene(task.frame, task.request, task.options, deadline, timings);
-    const SearchInputs inputs{scene, task.options, library->layers, task.request, task.models};
+    const SceneFeatures scene = prepare_scene(task.frame, plan, deadline, timings);
+    const SearchInputs inputs{scene, plan, library->layers, task.request, task.models};
     LocalSearches* running = nullptr;
     LocalSearches searches(inputs, nullptr, [&](const std::vector<Claim>& claims, int most) {
       return compete(*running, claims, most);
@@ -199,7 +199,7 @@ class ShareSearch {
       } else if (step.kind == msgs::GroupStep::kRound) {
         const bool any_left = searches.run_round({.number = static_cast<int>(step.round),
                                                   .share = step.part,
-                                                  .raised = step.raised,
+                                                  .hurried = step.hurried,
                                                   .first_sample = step.first_sample,
                                                   .newly_certain = std::move(step.newly_certain),
                                                   .deadline = until});

@@ -197,9 +197,15 @@ TEST_F(GroupLibrary, SearchReachesTheWorkerToTheBit) {
   const Pose pose{Eigen::Quaterniond(0.1, 0.7, -0.3, 0.2).normalized(), {0.1, 1.0 / 3, 0.7}};
   request.expected = {{"brick", pose}};
   DetectorOptions options;
-  options.detect.check.depth_share *= 1.0 / 3;
+  options.detect.check.free_depth_m *= 1.0 / 3;
   options.scene.judge_given_others = false;
-  msgs::GroupStep begin = begin_message(frame, request, options, *front);
+  const SearchFacts facts{.models = 7,
+                          .colored = false,
+                          .follows = true,
+                          .seed = request.seed,
+                          .budget_ms = request.budget_ms,
+                          .costs = {.preparation_ms = 31}};
+  msgs::GroupStep begin = begin_message(frame, request, options, facts, *front);
   begin.models = {2};
   const auto task = task_of(begin, *front);
   ASSERT_TRUE(task.ok()) << task.status().message;
@@ -216,6 +222,10 @@ TEST_F(GroupLibrary, SearchReachesTheWorkerToTheBit) {
   EXPECT_EQ(task->request.expected[0].camera_from_object.rotation.coeffs(), pose.rotation.coeffs());
   ASSERT_EQ(task->models.size(), 1U);
   EXPECT_EQ(task->models[0]->name, "plate");
+  EXPECT_EQ(task->facts.models, 7);
+  EXPECT_FALSE(task->facts.colored);
+  EXPECT_TRUE(task->facts.follows);
+  EXPECT_EQ(task->facts.costs.preparation_ms, 31);
   auto sent = options_of(options), got = options_of(const_cast<DetectorOptions&>(task->options));
   ASSERT_EQ(sent.size(), got.size());
   for (std::size_t i = 0; i < sent.size(); ++i) {

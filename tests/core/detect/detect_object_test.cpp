@@ -34,15 +34,15 @@ TEST_F(SingleObject, BestPlacementIsTheTruth) {
 
 TEST_F(SingleObject, PlacementsAreRankedAndDistinct) {
   const SceneFeatures scene = features_of(everything(), 1);
-  DetectOptions options;
-  options.select.min_score = -20;
-  const auto candidates = detect_object(Search(scene, *l_, options));
+  DetectPlan plan;
+  plan.limits[Limit::selected] = -20;
+  const auto candidates = detect_object(Search(scene, *l_, plan));
   ASSERT_GT(candidates.size(), 1u);
-  EXPECT_LE(candidates.size(), static_cast<std::size_t>(options.select.max_placements));
+  EXPECT_LE(candidates.size(), static_cast<std::size_t>(plan.select.max_placements));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];
     EXPECT_EQ(c.model, l_.get());
-    EXPECT_GE(c.score, options.select.min_score);
+    EXPECT_GE(c.score, plan.limits[Limit::selected]);
     EXPECT_LE(c.score, candidates[i > 0 ? i - 1 : 0].score);
     EXPECT_NEAR(c.probability, 1 / (1 + std::exp(-c.score)), 1e-9);
     EXPECT_TRUE(std::is_sorted(c.explained.begin(), c.explained.end()));
@@ -51,10 +51,10 @@ TEST_F(SingleObject, PlacementsAreRankedAndDistinct) {
       EXPECT_FALSE(error.position < 0.004 && error.angle < 0.05) << i << " repeats " << j;
     }
   }
-  options.select.max_placements = 1;
-  EXPECT_EQ(detect_object(Search(scene, *l_, options)).size(), 1u);
-  options.select.min_score = 1e9;
-  EXPECT_TRUE(detect_object(Search(scene, *l_, options)).empty());
+  plan.select.max_placements = 1;
+  EXPECT_EQ(detect_object(Search(scene, *l_, plan)).size(), 1u);
+  plan.limits[Limit::selected] = 1e9;
+  EXPECT_TRUE(detect_object(Search(scene, *l_, plan)).empty());
 }
 
 TEST_F(SingleObject, SameSeedSameCandidates) {
@@ -126,6 +126,7 @@ TEST_F(SingleObject, MeasuresNoFurtherThanTheFirstComponentsAreProbable) {
   const SceneFeatures scene = features_of(everything(), 1);
   const FeaturePlaces places(*l_);
   const ScoreLayer& layer = default_score_layers().round_three;
+  const Limits limits = DetectPlan().limits;
   RandomStream random(5);
   int stopped = 0, measured = 0;
   for (int i = 0; i < 200; ++i) {
@@ -137,10 +138,10 @@ TEST_F(SingleObject, MeasuresNoFurtherThanTheFirstComponentsAreProbable) {
     bool probable = true;
     for (std::size_t k = 0; k < values.size(); ++k) {
       log_odds += layer.components[k].at(values[k]);
-      probable &= log_odds >= kScoreComponents[k].least;
+      probable &= log_odds >= limits.components[k];
     }
     Evidence again(scene, places, pose);
-    const auto some = measure_while_probable(again, layer, -1);
+    const auto some = measure_while_probable(again, layer, -1, limits);
     ASSERT_EQ(some.has_value(), probable) << i;
     ++(probable ? measured : stopped);
     if (!some) continue;
@@ -152,13 +153,13 @@ TEST_F(SingleObject, MeasuresNoFurtherThanTheFirstComponentsAreProbable) {
 
 TEST_F(SingleObject, StoppingEarlyLosesNoProbablePlacement) {
   const SceneFeatures scene = features_of(everything(), 1);
-  DetectOptions options;
-  options.select.min_score = -5;
+  DetectPlan plan;
+  plan.limits[Limit::selected] = -5;
   for (const auto& model : {l_, brick_}) {
-    options.score.stop_early = true;
-    const auto early = detect_object(Search(scene, *model, options));
-    options.score.stop_early = false;
-    const auto whole = detect_object(Search(scene, *model, options));
+    plan.score.stop_early = true;
+    const auto early = detect_object(Search(scene, *model, plan));
+    plan.score.stop_early = false;
+    const auto whole = detect_object(Search(scene, *model, plan));
     ASSERT_FALSE(whole.empty()) << model->name;
     ASSERT_EQ(early.size(), whole.size()) << model->name;
     for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -217,10 +218,10 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
 
 TEST_F(SingleObject, OfPosesInOnePlaceTheBestIsBehindNone) {
   const SceneFeatures scene = features_of(everything(), 1);
-  DetectOptions options;
-  options.rivals = {.max_behind = 1000,
-                    .min_rival_score = -1000};  // compares also what is hopeless
-  const auto candidates = detect_object(Search(scene, *l_, options));
+  DetectPlan plan;
+  plan.margins.rival = 1000;
+  plan.limits[Limit::compared] = -1000;
+  const auto candidates = detect_object(Search(scene, *l_, plan));
   ASSERT_FALSE(candidates.empty());
   EXPECT_LT(pose_error(candidates[0].pose(), l_truth_, l_->symmetry).position, 0.01);
   EXPECT_GT(candidates[0].values[component("rivals")], -10);

@@ -14,15 +14,12 @@ namespace {
 class RunStages : public test::LScene {
  protected:
   // Candidates in one place do not compete.
-  static DetectOptions without_margins() {
-    DetectOptions options;
-    for (double* margin : {&options.check.place_margin, &options.cluster.place_margin,
-                           &options.round_two.place_margin, &options.refine.place_margin}) {
-      *margin = 1000;
-    }
-    return options;
+  static DetectPlan without_margins() {
+    DetectPlan plan;
+    plan.margins = {1000, 1000, 1000, 1000};
+    return plan;
   }
-  static std::vector<Search> searches_in(const SceneFeatures& scene, const DetectOptions& options) {
+  static std::vector<Search> searches_in(const SceneFeatures& scene, const DetectPlan& options) {
     std::vector<Search> out;
     out.emplace_back(scene, *l_, options);
     out.emplace_back(scene, *brick_, options);
@@ -31,7 +28,7 @@ class RunStages : public test::LScene {
   // The scores of all models' candidates after clustering, best first.
   static std::vector<double> clustered(const SceneFeatures& scene, int most_in_library,
                                        int num_threads) {
-    DetectOptions options = without_margins();
+    DetectPlan options = without_margins();
     options.cluster.max_in_library = most_in_library;
     auto searches = searches_in(scene, options);
     std::vector<Candidates> found(2);
@@ -58,8 +55,8 @@ TEST_F(RunStages, TheBestOfAllModelsGoOn) {
 TEST_F(RunStages, WhatIsFarBehindAnotherModelInItsPlaceIsRejected) {
   const SceneFeatures scene = features_of(everything(), 1);
   const auto found_with = [&](double margin) {
-    DetectOptions options = without_margins();
-    options.cluster.place_margin = margin;
+    DetectPlan options = without_margins();
+    options.margins.clustered = margin;
     auto searches = searches_in(scene, options);
     std::vector<Candidates> found(2);
     run_stages(round_stages().first(4), searches, 2, found);
@@ -96,7 +93,7 @@ TEST_F(RunStages, WhatIsFarBehindAnotherModelInItsPlaceIsRejected) {
 
 TEST_F(RunStages, OneModelAfterAnotherFindsTheSameUnlessTheyCompete) {
   const SceneFeatures scene = features_of(everything(), 1);
-  DetectOptions options = without_margins();
+  DetectPlan options = without_margins();
   options.check.max_in_library = options.cluster.max_in_library = options.refine.max_in_library =
       100000;
   auto searches = searches_in(scene, options);

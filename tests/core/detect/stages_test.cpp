@@ -105,10 +105,10 @@ TEST_F(Stages, QuickScoresFromTheLimitOnAreExact) {
 TEST_F(Stages, ScoresBelowTheLimitAreRejectedUnlessAPriorSuggestsThem) {
   const SceneFeatures scene = features_of(everything());
   const auto checked = [&](double limit) {
-    DetectOptions options;
-    options.check.max_kept = 100000;
-    options.check.min_ranked_score = limit;
-    const Search search(scene, *l_, options);
+    DetectPlan plan;
+    plan.check.max_kept = 100000;
+    plan.limits[Limit::ranked] = limit;
+    const Search search(scene, *l_, plan);
     Candidates sampled = sample(search, {});
     for (std::size_t i = 0; i < sampled.size(); i += 10) sampled[i].found_by = Source::prior;
     return check_free_space(search, std::move(sampled));

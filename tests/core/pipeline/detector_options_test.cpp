@@ -40,13 +40,13 @@ std::string values(DetectorOptions options) { return io::options_yaml(options_of
 
 TEST_F(DetectorOptionsFile, OverridesOnlyWhatItNames) {
   const auto options = load(
-      "surface:\n  max_range_m: 1.5\nfeatures: {max_keypoints: 700}\nround_two:\n"
-      "  refinement: {iterations: 2}\nplanes:\n  label_planes: false\n");
+      "surface:\n  max_range_m: 1.5\nfeatures: {max_keypoints: 700}\nround_two: {bpa_steps: 2}\n"
+      "planes:\n  label_planes: false\n");
   ASSERT_TRUE(options.ok()) << options.status().message;
   DetectorOptions expected;
   expected.surface.max_range_m = 1.5;
   expected.features.max_keypoints = 700;
-  expected.detect.round_two.refinement.iterations = 2;
+  expected.detect.round_two.bpa_steps = 2;
   expected.planes.label_planes = false;
   EXPECT_EQ(values(*options), values(expected));
 }
@@ -56,8 +56,9 @@ TEST_F(DetectorOptionsFile, AFieldMayBeNamedWithoutItsGroupIfOnlyOneHasTheName) 
   ASSERT_TRUE(options.ok()) << options.status().message;
   EXPECT_EQ(options->features.max_keypoints, 700);
   EXPECT_FALSE(options->detect.align.use_orientation);
-  EXPECT_EQ(refusal("rank_points: 1\n", 1),
-            "unknown key rank_points; there is check.rank_points or cluster.rank_points");
+  EXPECT_EQ(refusal("max_in_library: 1\n", 1),
+            "unknown key max_in_library; there is check.max_in_library or cluster.max_in_library "
+            "or refine.max_in_library");
 }
 
 TEST_F(DetectorOptionsFile, EmptyFilesChangeNothing) {

@@ -44,7 +44,8 @@ class LibrarySearchEnds : public test::LScene {
     const SceneFeatures scene = features_of(everything());
     const DetectRequest request;
     const std::vector<std::shared_ptr<const ObjectModel>> models = {l_};
-    const SearchInputs inputs{scene, options, default_score_layers(), request, models};
+    const SearchPlan plan = *plan_search(options, default_score_layers(), {});
+    const SearchInputs inputs{scene, plan, default_score_layers(), request, models};
     ScriptedSearches searches(*l_, std::move(gains));
     bool cut = true;
     SearchEffort effort;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/pipeline/search_plan.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -9,87 +10,133 @@
 namespace bpa {
 namespace {
 
-TEST(SearchPlan, ABudgetRaisesTheLimitsOfLogOdds) {
-  const DetectOptions before;
-  DetectOptions after;
-  raise_limits(after);
-  EXPECT_GT(after.check.min_ranked_score, before.check.min_ranked_score);
-  EXPECT_GT(after.cluster.min_cluster_score, before.cluster.min_cluster_score);
-  EXPECT_GT(after.refine.min_aligned_score, before.refine.min_aligned_score);
-  EXPECT_LT(after.check.max_in_library, before.check.max_in_library);
-  EXPECT_EQ(after.cluster.max_in_library, before.cluster.max_in_library);
+SearchPlan plan_of(const SearchFacts& facts, const DetectorOptions& options = {}) {
+  auto plan = plan_search(options, default_score_layers(), facts);
+  EXPECT_TRUE(plan.ok()) << plan.status().message;
+  return std::move(plan).value();
 }
 
+SearchFacts with_budget(double budget_ms) {
+  return {.budget_ms = budget_ms, .costs = {.preparation_ms = 60}};
+}
+
+std::string reason(const SearchPlan& plan, const std::string& name) {
+  const auto found = std::ranges::find(plan.entries, name, &PlanEntry::name);
+  return found == plan.entries.end() ? "no entry" : found->reason;
+}
+
+TEST(SearchPlan, AHurriedRoundRaisesTheLimits) {
+  const DetectPlan whole = plan_of({}).detect, hurried = round_plan(whole, 0.9, true);
+  for (const Limit limit : {Limit::ranked, Limit::clustered, Limit::aligned}) {
+    EXPECT_EQ(hurried.limits[limit], whole.limits[limit] + 2);
+  }
+  EXPECT_EQ(hurried.limits[Limit::refined], whole.limits[Limit::refined]);
+  EXPECT_LT(hurried.check.max_in_library, round_plan(whole, 0.9, false).check.max_in_library);
+}
+
+// The numbers are those that were chosen on simulated piles.
 TEST(SearchPlan, WithoutColoursMoreIsTried) {
-  const DetectOptions before;
-  DetectorOptions changed;
-  search_without_colors(changed);
-  const DetectOptions& after = changed.detect;
-  EXPECT_GT(after.sample.peaks_per_reference, before.sample.peaks_per_reference);
-  EXPECT_GT(after.sample.rim_peaks_per_reference, before.sample.rim_peaks_per_reference);
-  EXPECT_GT(after.check.max_in_library, before.check.max_in_library);
-  EXPECT_GT(after.cluster.max_in_library, before.cluster.max_in_library);
-  EXPECT_GT(after.refine.max_in_library, before.refine.max_in_library);
-  EXPECT_LT(after.cluster.min_cluster_score, before.cluster.min_cluster_score);
-  DetectorOptions no_rims;
-  no_rims.detect.sample.rim_peaks_per_reference = 0;
-  search_without_colors(no_rims);
-  EXPECT_EQ(no_rims.detect.sample.rim_peaks_per_reference, 0);
+  const DetectPlan with = plan_of({}).detect, without = plan_of({.colored = false}).detect;
+  EXPECT_EQ(with.sample.peaks_per_reference, 2);
+  EXPECT_EQ(without.sample.peaks_per_reference, 5);
+  EXPECT_EQ(with.sample.rim_peaks_per_reference, 1);
+  EXPECT_EQ(without.sample.rim_peaks_per_reference, 2);
+  EXPECT_EQ(with.check.max_in_library, 800);
+  EXPECT_EQ(without.check.max_in_library, 2400);
+  EXPECT_EQ(with.cluster.max_in_library, 180);
+  EXPECT_EQ(without.cluster.max_in_library, 360);
+  EXPECT_EQ(with.refine.max_in_library, 60);
+  EXPECT_EQ(without.refine.max_in_library, 120);
+  EXPECT_EQ(with.limits[Limit::clustered], -7);
+  EXPECT_EQ(without.limits[Limit::clustered], -8);
 }
 
-TEST(SearchPlan, ManyModelsShareTheWork) {
+TEST(SearchPlan, WhatTheUserSetsIsUsed) {
+  DetectorOptions options;
+  options.detect.sample.peaks_per_reference = 1;
+  options.detect.sample.rim_peaks_per_reference = 0;
+  options.detect.check.max_in_library = 500;
+  options.rounds.step_without_support = 7;
+  const SearchPlan plan = plan_of({.models = 648, .colored = false}, options);
+  EXPECT_EQ(plan.detect.sample.peaks_per_reference, 1);
+  EXPECT_EQ(plan.detect.sample.rim_peaks_per_reference, 0);
+  EXPECT_EQ(plan.detect.check.max_in_library, 500);
+  EXPECT_EQ(plan.rounds.step_without_support, 7);
+  EXPECT_EQ(reason(plan, "check.max_in_library"), "setting");
+  EXPECT_EQ(reason(plan, "climb.max_climbed"), "default");
+}
+
+TEST(SearchPlan, GrowsWithTheCubeRootOfTheModels) {
+  for (const auto& [models, most] : {std::pair{1, 800}, {24, 800}, {192, 1600}, {648, 2400}}) {
+    EXPECT_EQ(plan_of({.models = models}).detect.check.max_in_library, most);
+  }
   for (const auto& [models, step] : {std::pair{1, 1}, {21, 1}, {119, 1}, {120, 2}, {200, 3}}) {
-    DetectorOptions options;
-    share_among_models(models, options);
-    EXPECT_EQ(options.rounds.step_without_sign, step);
+    EXPECT_EQ(plan_of({.models = models}).rounds.step_without_support, step);
   }
-  DetectorOptions set;
-  set.rounds.step_without_sign = 3;
-  share_among_models(200, set);
-  EXPECT_EQ(set.rounds.step_without_sign, 3);
+  EXPECT_EQ(reason(plan_of({.models = 192, .colored = false}), "check.max_in_library"),
+            "800 x 3 without colours x cbrt(192 models / 24)");
 }
 
-TEST(SearchPlan, MoreCandidatesOfManyModelsGoOn) {
-  for (const auto& [models, most] : {std::pair{1, 500}, {24, 500}, {192, 1000}, {648, 1500}}) {
-    DetectorOptions options;
-    options.detect.check.max_in_library = options.detect.cluster.max_in_library =
-        options.detect.refine.max_in_library = 500;
-    share_among_models(models, options);
-    EXPECT_EQ(options.detect.check.max_in_library, most);
-    EXPECT_EQ(options.detect.cluster.max_in_library, most);
-    EXPECT_EQ(options.detect.refine.max_in_library, most);
+TEST(SearchPlan, RefusesAShareThatItsLayersDoNotKnow) {
+  DetectorOptions options;
+  options.detect.score.keep_right = 0.5;
+  const auto plan = plan_search(options, default_score_layers(), {});
+  ASSERT_FALSE(plan.ok());
+  EXPECT_NE(plan.status().message.find("score.keep_right is 0.5"), std::string::npos);
+  options.detect.score.keep_right = 1;
+  EXPECT_EQ(plan_of({}, options).detect.limits[Limit::ranked],
+            -std::numeric_limits<double>::infinity());
+}
+
+TEST(SearchPlan, EveryEntryHasAReason) {
+  const SearchPlan plan = plan_of(with_budget(100));
+  for (const PlanEntry& entry : plan.entries) {
+    EXPECT_FALSE(entry.value.empty()) << entry.name;
+    EXPECT_FALSE(entry.reason.empty()) << entry.name;
   }
+  EXPECT_EQ(reason(plan, "surface.max_width"),
+            "a budget of 100 ms is less than 2.3 preparations of 60 ms");
+  EXPECT_EQ(reason(plan, "time.rounds"), "share of the time left");
+}
+
+TEST(SearchPlan, FollowsAnEarlierFrame) {
+  const EndRule alone = plan_of({}).end, follows = plan_of({.follows = true}).end;
+  EXPECT_EQ(alone.first_share, 1);
+  EXPECT_FALSE(alone.may_end_at_first);
+  EXPECT_LT(follows.first_share, 1);
+  EXPECT_TRUE(follows.may_end_at_first);
+  EXPECT_GT(follows.min_gain, alone.min_gain);
 }
 
 TEST(SearchPlan, NoBudgetShortensNothing) {
-  DetectorOptions options;
-  EXPECT_EQ(shorten_preparation(0, 2, options), 1);
-  EXPECT_EQ(shorten_preparation(1000, 2, options), 1);
-  EXPECT_EQ(options.features.max_keypoints, DetectorOptions().features.max_keypoints);
-  EXPECT_EQ(options.surface.max_width, DetectorOptions().surface.max_width);
-  EXPECT_TRUE(options.features.use_outline);
+  for (const double budget_ms : {0, 1000}) {
+    const SearchPlan plan = plan_of(with_budget(budget_ms));
+    EXPECT_EQ(plan.prepared_share, 1);
+    EXPECT_EQ(plan.features.max_keypoints, DetectorOptions().features.max_keypoints);
+    EXPECT_EQ(plan.surface.max_width, DetectorOptions().surface.max_width);
+    EXPECT_TRUE(plan.features.use_outline);
+  }
 }
 
 TEST(SearchPlan, SmallerBudgetsPrepareLess) {
   double before = 0;
   int keypoints = 0, width = 0;
   for (const double budget_ms : {20, 50, 70, 139, 140, 150, 200, 500}) {
-    DetectorOptions options;
-    const double share = shorten_preparation(budget_ms, 2, options);
-    EXPECT_GT(share, 0);
-    EXPECT_GE(share, before) << budget_ms;
-    EXPECT_GE(options.features.max_keypoints, keypoints) << budget_ms;
-    EXPECT_GE(options.surface.max_width, width) << budget_ms;
-    before = share;
-    keypoints = options.features.max_keypoints;
-    width = options.surface.max_width;
+    const SearchPlan plan = plan_of(with_budget(budget_ms));
+    EXPECT_GT(plan.prepared_share, 0);
+    EXPECT_GE(plan.prepared_share, before) << budget_ms;
+    EXPECT_GE(plan.features.max_keypoints, keypoints) << budget_ms;
+    EXPECT_GE(plan.surface.max_width, width) << budget_ms;
+    before = plan.prepared_share;
+    keypoints = plan.features.max_keypoints;
+    width = plan.surface.max_width;
   }
 }
 
-TEST(SearchPlan, OneThreadPreparesLess) {
-  DetectorOptions one, two;
-  EXPECT_LT(shorten_preparation(150, 1, one), shorten_preparation(150, 2, two));
-  EXPECT_LT(one.surface.max_width, two.surface.max_width);
+TEST(SearchPlan, ASlowMachinePreparesLess) {
+  SearchFacts slow = with_budget(150);
+  slow.costs.preparation_ms *= 2;
+  EXPECT_LT(plan_of(slow).prepared_share, plan_of(with_budget(150)).prepared_share);
 }
 
 TEST(SearchPlan, DetailsAreLeftOutWhereTimeIsShort) {
@@ -99,58 +146,62 @@ TEST(SearchPlan, DetailsAreLeftOutWhereTimeIsShort) {
   EXPECT_FALSE(details_fit(50, 200));
 }
 
-TEST(SearchPlan, AWholeRoundHasItsOptions) {
-  const DetectorOptions options, whole = sized_round(options, 1);
-  EXPECT_EQ(whole.features.max_references, options.features.max_references);
-  EXPECT_EQ(whole.features.round_keypoints, options.features.round_keypoints);
-  EXPECT_EQ(whole.detect.check.max_in_library, options.detect.check.max_in_library);
-  EXPECT_EQ(whole.detect.cluster.max_in_library, options.detect.cluster.max_in_library);
-  EXPECT_EQ(whole.detect.refine.max_in_library, options.detect.refine.max_in_library);
-  EXPECT_EQ(sized_final(options.detect, 1).flat.max_laid, options.detect.flat.max_laid);
-}
-
-TEST(SearchPlan, SmallSharesLookAtLessButAtSomething) {
-  const DetectorOptions options, half = sized_round(options, 0.5);
-  EXPECT_EQ(half.features.max_references, (options.features.max_references + 1) / 2);
-  EXPECT_EQ(half.detect.refine.max_in_library, options.detect.refine.max_in_library / 2);
-  const DetectorOptions least = sized_round(options, 1e-6);
-  EXPECT_EQ(least.features.max_references, 1);
-  EXPECT_EQ(least.detect.check.max_in_library, 1);
-  EXPECT_EQ(sized_final(options.detect, 1e-6).climb.max_climbed, 1);
+TEST(SearchPlan, SmallSharesExamineLessButSomething) {
+  const SearchPlan plan = plan_of({});
+  EXPECT_EQ(round_sample(plan, 1).max_references, plan.features.max_references);
+  EXPECT_EQ(round_sample(plan, 0.5).max_references, (plan.features.max_references + 1) / 2);
+  EXPECT_EQ(round_plan(plan.detect, 0.5, false).refine.max_in_library, 30);
+  EXPECT_EQ(round_sample(plan, 1e-6).max_references, 1);
+  EXPECT_EQ(round_plan(plan.detect, 1e-6, false).check.max_in_library, 1);
+  EXPECT_EQ(final_plan(plan.detect, 1e-6).climb.max_climbed, 1);
 }
 
 TEST(SearchPlan, WhatIsOffStaysOff) {
   DetectorOptions options;
   options.features.max_references = 0;
   options.detect.flat.max_laid = 0;
-  EXPECT_EQ(sized_round(options, 0.5).features.max_references, 0);
-  EXPECT_EQ(sized_final(options.detect, 0.5).flat.max_laid, 0);
+  const SearchPlan plan = plan_of({}, options);
+  EXPECT_EQ(round_sample(plan, 0.5).max_references, 0);
+  EXPECT_EQ(final_plan(plan.detect, 0.5).flat.max_laid, 0);
 }
 
+constexpr double kSmallest = 0.06;
+
 TEST(SearchPace, MoreTimeIsALargerRound) {
-  const SearchPace pace(60, 21);
+  const SearchPace pace({}, 60, 21);
   double before = 0;
   for (double milliseconds = 0; milliseconds < 2000; milliseconds += 10) {
-    const double share = pace.share_of_round(milliseconds);
+    const double share = pace.share_of_round(milliseconds, kSmallest);
     EXPECT_GE(share, before);
     EXPECT_LE(share, 1);
-    EXPECT_TRUE(share == 0 || share >= kSmallestRound) << share;
+    EXPECT_TRUE(share == 0 || share >= kSmallest) << share;
     before = share;
   }
   EXPECT_EQ(before, 1);
 }
 
 TEST(SearchPace, MoreModelsAreASmallerRoundOfEach) {
-  EXPECT_GT(SearchPace(60, 5).share_of_round(100), SearchPace(60, 21).share_of_round(100));
-  EXPECT_GT(SearchPace(60, 5).share_of_final(20), SearchPace(60, 21).share_of_final(20));
+  const SearchPace few({}, 60, 5), many({}, 60, 21);
+  EXPECT_GT(few.share_of_round(100, kSmallest), many.share_of_round(100, kSmallest));
+  EXPECT_GT(few.share_of_final(20), many.share_of_final(20));
 }
 
 TEST(SearchPace, LearnsFromRounds) {
-  SearchPace pace(60, 21);
+  SearchPace pace({}, 60, 21);
   pace.took(0.1, 50);
-  EXPECT_NEAR(pace.share_of_round(100), 0.2, 1e-9);
+  EXPECT_NEAR(pace.share_of_round(100, kSmallest), 0.2, 1e-9);
   pace.took(0.2, 50);
-  EXPECT_NEAR(pace.share_of_round(100), 0.4, 1e-9);
+  EXPECT_NEAR(pace.share_of_round(100, kSmallest), 0.4, 1e-9);
+}
+
+TEST(CostMeter, MeasuresThisProcess) {
+  CostMeter meter;
+  EXPECT_GT(meter.costs(640 * 480, 1).preparation_ms, 0);
+  meter.add(640 * 480, 2, {.preparation_ms = 40, .round_share = 0.2, .final_share = 0});
+  EXPECT_NEAR(meter.costs(640 * 480, 2).preparation_ms, 40, 1e-9);
+  EXPECT_NEAR(meter.costs(320 * 240, 2).preparation_ms, 10, 1e-9);
+  EXPECT_GT(meter.costs(640 * 480, 2).round_share, Costs().round_share);
+  EXPECT_EQ(meter.costs(640 * 480, 2).final_share, Costs().final_share);
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ Candidate turned(const std::shared_ptr<const ObjectModel>& which, double degrees
 
 std::vector<PoseAlternative> alternatives(const std::vector<Candidate>& candidates,
                                           std::size_t chosen) {
-  return alternatives_of(candidates, competition_of(candidates, find_overlaps(candidates, 0.3)),
+  return alternatives_of(candidates, competition_of(candidates, find_overlaps(candidates, -8)),
                          chosen);
 }
 

@@ -56,7 +56,7 @@ class GivenOthers : public ::testing::Test {
   // A component of the brick at the back, given the others.
   double measured(std::string_view name, const std::vector<bool>& present,
                   const Overlaps& overlaps = Overlaps(2)) {
-    measure_given_others(scene_, overlaps, present, candidates_, 1);
+    measure_given_others(scene_, overlaps, present, candidates_, -8, 1);
     for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
       if (kScoreComponents[i].name == name) return candidates_[kBack].values[i];
     }
@@ -106,7 +106,7 @@ TEST_F(GivenOthers, ARivalIsNoOther) {
 
 TEST_F(GivenOthers, HopelessPlacementsAreNotMeasured) {
   candidates_[kBack].values.fill(kNotKnown);
-  candidates_[kBack].score = kHopelessScore - 1;
+  candidates_[kBack].score = -9;
   EXPECT_TRUE(std::isnan(measured("left_over", {false, true})));
 }
 

@@ -51,7 +51,7 @@ Subset subset_of(const Interpretation& interpretation) {
 
 std::vector<Interpretation> interpret_all(const std::vector<Candidate>& candidates, int observed,
                                           const InterpretationOptions& options) {
-  return interpret(candidates, find_overlaps(candidates, options.max_shared), observed, options);
+  return interpret(candidates, find_overlaps(candidates, -8), observed, options);
 }
 
 // Ranked by score alone.

@@ -23,7 +23,7 @@ class OverlapsOf : public ::testing::Test {
     return out;
   }
   static bool conflict(const Candidate& a, const Candidate& b) {
-    const auto overlaps = find_overlaps({a, b}, 0.3);
+    const auto overlaps = find_overlaps({a, b}, -8);
     EXPECT_EQ(overlaps[0].empty(), overlaps[1].empty());
     return !overlaps[0].empty() && overlaps[0][0].conflicting;
   }
@@ -94,7 +94,7 @@ TEST_F(OverlapsOf, AThingMayLieOnATray) {
 TEST_F(OverlapsOf, PixelsAreOwnedOnce) {
   const Candidate first = brick_at(0, 0, 0);
   EXPECT_TRUE(conflict(first, brick_at(0.5, 0, 60))) << "40 of 100 pixels shared";
-  const auto overlaps = find_overlaps({first, brick_at(0.5, 0, 80)}, 0.3);
+  const auto overlaps = find_overlaps({first, brick_at(0.5, 0, 80)}, -8);
   ASSERT_EQ(overlaps[0].size(), 1u);
   EXPECT_EQ(overlaps[0][0].common, 20);
   EXPECT_FALSE(overlaps[0][0].conflicting);
@@ -102,7 +102,7 @@ TEST_F(OverlapsOf, PixelsAreOwnedOnce) {
 
 TEST_F(OverlapsOf, TheHopelessTakeNothingFromOthers) {
   Candidate hopeless = brick_at(0, 0, 0);
-  hopeless.score = kHopelessScore - 1;
+  hopeless.score = -9;
   EXPECT_FALSE(conflict(brick_at(0, 0, 0), hopeless));
 }
 
