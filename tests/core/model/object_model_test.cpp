@@ -113,7 +113,8 @@ TEST(ObjectModel, LargeObjectsStayWithinTheLimits) {
   // Sparse as its points are, the surface has no holes: the edges of a face seen straight on are
   // at its border.
   const ModelIndex& index = *(*model)->index;
-  const ModelView& view = nearest_view(index.views, Eigen::Vector3f::UnitZ());
+  const Eigen::Vector3f above = Eigen::Vector3f::UnitZ();
+  const ModelView& view = nearest_view(index.views, above);
   EXPECT_GT(view.edges.size(), 100u);
   for (const std::uint32_t i : view.edges) {
     const Eigen::Vector3f& p = (*model)->surface.points[i];

@@ -155,7 +155,8 @@ TEST(ViewSphere, WhatIsBehindIsHidden) {
     }
   }
   const auto views = render_views(surface, 0.003f, 1);
-  const ModelView& view = nearest_view(views, Eigen::Vector3f::UnitZ());
+  const Eigen::Vector3f above = Eigen::Vector3f::UnitZ();
+  const ModelView& view = nearest_view(views, above);
   ASSERT_GT(view.direction.z(), 0.97f);
   int lower = 0, upper = 0;
   for (const std::uint32_t i : view.visible) (surface.points[i].z() > 0.02f ? upper : lower) += 1;
