@@ -30,12 +30,12 @@ function(bpa_compile_cold target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# bpa_compile_options(TARGET): language level, warnings as errors, sanitizers.
+# bpa_compile_options(TARGET): language level, warnings, sanitizers.
 function(bpa_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-align
-    -Woverloaded-virtual -Werror
+    -Woverloaded-virtual
     -fno-math-errno -fno-trapping-math -ffp-contract=off)
   if(BPA_SANITIZE_ADDRESS)
     target_compile_options(${target} PRIVATE

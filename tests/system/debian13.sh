@@ -54,7 +54,8 @@ inside bash -c 'cd /bpa.new && find . -type f | while read -r file; do
 rm -rf "$folder/bpa.new"
 
 say "build"
-inside cmake -S /bpa -B /bpa/build/release -G Ninja -DCMAKE_BUILD_TYPE=Release
+inside cmake -S /bpa -B /bpa/build/release -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_COMPILE_WARNING_AS_ERROR=ON
 if [[ -n ${TARGETS:-} ]]; then
   read -r -a targets <<<"$TARGETS"
   inside cmake --build /bpa/build/release --target "${targets[@]}"
