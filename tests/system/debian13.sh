@@ -37,6 +37,7 @@ inside() {
 
 if [[ ! -e $folder/etc/debian_version ]]; then
   say "Debian 13 into $folder"
+  command -v debootstrap >/dev/null || { apt-get -q -y update && apt-get -q -y install debootstrap; }
   debootstrap --variant=minbase trixie "$folder" "$mirror"
 fi
 

@@ -32,6 +32,7 @@ cpack --config build/release/CPackConfig.cmake -B build/release/packages
 
 if [[ ! -e $folder/etc/debian_version ]]; then
   say "Debian 12 into $folder"
+  command -v debootstrap >/dev/null || { apt-get -q -y update && apt-get -q -y install debootstrap; }
   debootstrap --variant=minbase bookworm "$folder" "${MIRROR:-http://deb.debian.org/debian}"
 fi
 
