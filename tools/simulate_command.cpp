@@ -158,8 +158,22 @@ void add_scenes(CLI::App& simulate) {
                    "Fewest and most objects of a scene; 10,14 if not given");
   add_range_option(command, "--clutter", a.scene.min_clutter, a.scene.max_clutter,
                    "Range of clutter, 0.6,1 if not given; 0 = apart on the table, 1 = heap");
+  add_range_option(command, "--foreign", a.scene.min_distractors, a.scene.max_distractors,
+                   "Fewest and most distractors beside the objects, at most 12; 0,2 if not given. "
+                   "They are not in the truth");
+  const auto set_size = [&scene = a.scene](const std::vector<int>& size) {
+    scene.camera = sim::camera_of_size(size[0], size[1]);
+  };
+  command
+      .add_option_function<std::vector<int>>(
+          "--size", set_size,
+          "Size of the images, pixels; 640,480 if not given. The focal length grows with the width")
+      ->delimiter(',')
+      ->expected(2)
+      ->check(CLI::Range(160, 4096))
+      ->type_name("WIDTH,HEIGHT");
   add_range_option(command, "--focal", a.scene.min_focal, a.scene.max_focal,
-                   "Range of the focal length, pixels; 525 if not given");
+                   "Range of the focal length, pixels; 525 for each 640 of the width if not given");
   add_range_option(command, "--distance", a.scene.min_distance, a.scene.max_distance,
                    "Range from the camera to the middle of the pile, metres; 0.6,1.4 if not given");
   add_sensor_option(command, a.scene.sensor, a.scene.mixed_sensors, "scene");
@@ -186,6 +200,7 @@ void add_scenes(CLI::App& simulate) {
                {"--distractors", "distractor_share"},
                {"--border", "border_share"},
                {"--ambiguous", "ambiguous_share"},
+               {"--equal", "equal_share"},
                {"--misregistration", "misregistration"},
                {"--exposure-spread", "exposure_spread"},
                {"--lateral-noise", "lateral_noise"},

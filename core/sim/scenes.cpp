@@ -44,6 +44,7 @@ SceneKind draw_kind(const SceneOptions& options, RandomStream& random) {
   if ((u -= options.distractor_share) < 0) return SceneKind::distractors;
   if ((u -= options.border_share) < 0) return SceneKind::border;
   if ((u -= options.ambiguous_share) < 0) return SceneKind::ambiguous;
+  if ((u -= options.equal_share) < 0) return SceneKind::equal;
   return SceneKind::pile;
 }
 
@@ -62,16 +63,22 @@ std::vector<int> choose_bodies(const Stage& stage, const SceneOptions& options, 
   const int span = std::max(options.max_objects - options.min_objects, 0) + 1;
   int wanted = options.min_objects + random.index(span);
   if (kind == SceneKind::border) wanted = std::max(wanted, 1);
-  int others = random.index(options.max_distractors + 1);
+  const int more = std::max(options.max_distractors - options.min_distractors, 0);
+  int others = options.min_distractors + random.index(more + 1);
   if (kind == SceneKind::distractors) {
     others = std::max(3, wanted);
     wanted = 0;
   }
   const int objects = static_cast<int>(stage.objects().size());
   const int distractors = static_cast<int>(stage.scenery().size()) - kFirstDistractor;
-  std::vector<int> bodies = kind == SceneKind::ambiguous
-                                ? std::vector<int>{choose_ambiguous(stage, random)}
-                                : chosen_without_repetition(wanted, objects, random);
+  std::vector<int> bodies;
+  if (kind == SceneKind::ambiguous) {
+    bodies = {choose_ambiguous(stage, random)};
+  } else if (kind == SceneKind::equal) {
+    bodies.assign(wanted, random.index(objects));
+  } else {
+    bodies = chosen_without_repetition(wanted, objects, random);
+  }
   for (const int i : chosen_without_repetition(others, distractors, random)) {
     bodies.push_back(objects + kFirstDistractor + i);
   }
@@ -174,6 +181,12 @@ Pose draw_pose(const std::vector<PosedMesh>& pile, std::size_t num_objects, cons
 }
 
 }  // namespace
+
+Camera camera_of_size(int width, int height) {
+  constexpr double kFocalPerWidth = 525.0 / 640;
+  const double focal = kFocalPerWidth * width;
+  return {width, height, focal, focal, (width - 1) / 2.0, (height - 1) / 2.0};
+}
 
 Stage::Stage(std::vector<SimulatedObject> objects, int num_threads,
              std::vector<SimulatedObject> look_alikes)

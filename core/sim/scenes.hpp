@@ -21,7 +21,11 @@ enum class SceneKind {
   distractors,  ///< Distractors only.
   border,       ///< A pile of which one object is cut by the image's border.
   ambiguous,    ///< One object whose telltales are out of sight, and perhaps a few distractors.
+  equal,        ///< A pile of copies of one object, and perhaps a few distractors.
 };
+
+/// A camera whose images span 62.7 degrees from left to right, as those of a Kinect.
+Camera camera_of_size(int width, int height);
 
 /// The ranges that scenes are drawn from.
 struct SceneOptions {
@@ -30,6 +34,7 @@ struct SceneOptions {
   BPA_OPTION(double, min_clutter, 0.6, (0, 1), "0 = apart on the table, 1 = a heap.");
   BPA_OPTION(double, max_clutter, 1, (0, 1), "0 = apart on the table, 1 = a heap.");
   BPA_OPTION(double, bin_share, 1, (0, 1), "Chance that a heap lies in an open bin.");
+  BPA_OPTION(int, min_distractors, 0, (0, 20), "Fewest distractors in a pile.");
   BPA_OPTION(int, max_distractors, 2, (0, 20), "Most distractors in a pile.");
   BPA_OPTION(double, min_distance, 0.6, (0.3, 4), "Camera to the middle of the pile, metres.");
   BPA_OPTION(double, max_distance, 1.4, (0.3, 4), "Camera to the middle of the pile, metres.");
@@ -43,6 +48,8 @@ struct SceneOptions {
              "Share of scenes with an object cut by the image's border.");
   BPA_OPTION(double, ambiguous_share, 0, (0, 1),
              "Share of scenes with one mug whose handle is out of sight.");
+  BPA_OPTION(double, equal_share, 0, (0, 1),
+             "Share of scenes whose objects are copies of one, drawn for each scene.");
   BPA_OPTION(double, min_focal, 0, (0, 4000), "Shortest focal length, pixels.");
   BPA_OPTION(double, max_focal, 0, (0, 4000), "Longest focal length; 0 = the camera's own.");
   Camera camera{640, 480, 525, 525, 319.5, 239.5};  ///< Of the colour image and the frame.

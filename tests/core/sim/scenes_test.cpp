@@ -161,6 +161,57 @@ TEST(Scenes, AreTheSameForAnyNumberOfThreads) {
   EXPECT_NE(one.frames[0].frame.depth, other.frames[0].frame.depth);
 }
 
+TEST(Scenes, AnEqualSceneHoldsCopiesOfOneObject) {
+  SceneOptions options = small_options();
+  options.equal_share = 1;
+  std::set<int> drawn;
+  for (int i = 0; i < 4; ++i) {
+    const SimulatedScene scene = simulate_scene(stage(), options, scene_seed(21, i), 2);
+    const std::vector<SimulatedInstance>& instances = scene.frames[0].instances;
+    EXPECT_GE(instances.size(), 2u);
+    std::set<int> objects;
+    for (const SimulatedInstance& instance : instances) objects.insert(instance.object);
+    EXPECT_EQ(objects.size(), 1u);
+    drawn.insert(objects.begin(), objects.end());
+  }
+  EXPECT_GT(drawn.size(), 1u);
+}
+
+// All twelve distractors there are, beside no object: the table shows twelve bodies more.
+TEST(Scenes, ForeignClutterIsAsMuchAsWanted) {
+  SceneOptions options = small_options();
+  options.min_objects = options.max_objects = 0;
+  options.min_clutter = options.max_clutter = 0;
+  options.bin_share = 0;
+  const auto raised = [&options](int foreign) {
+    options.min_distractors = options.max_distractors = foreign;
+    const SimulatedFrame frame = simulate_scene(stage(), options, 31, 2).frames[0];
+    const Pose world_from_camera = frame.camera_from_world.inverse();
+    int pixels = 0;
+    for (int p = 0; p < options.camera.width * options.camera.height; ++p) {
+      if (frame.ideal_depth[p] <= 0) continue;
+      const Eigen::Vector3d point = options.camera.unproject(
+          p % options.camera.width, p / options.camera.width, frame.ideal_depth[p]);
+      pixels += (world_from_camera * point).z() > 0.01 && (world_from_camera * point).z() < 0.2;
+    }
+    return pixels;
+  };
+  const int none = raised(0), few = raised(3), all = raised(12);
+  EXPECT_GT(few, none + 500);
+  EXPECT_GT(all, few + 500);
+}
+
+TEST(Scenes, CamerasOfAnySizeSpanTheSameAngle) {
+  const Camera wide = camera_of_size(1920, 1080);
+  EXPECT_EQ(wide.fx, 1575);  // three times 525
+  EXPECT_EQ(wide.cx, 959.5);
+  EXPECT_EQ(wide.cy, 539.5);
+  const Camera usual = camera_of_size(640, 480), standard = SceneOptions{}.camera;
+  EXPECT_EQ(usual.fx, standard.fx);
+  EXPECT_EQ(usual.cx, standard.cx);
+  EXPECT_EQ(usual.cy, standard.cy);
+}
+
 TEST(Scenes, HeapsHideMoreThanTidyTables) {
   const auto mean_visible = [](double clutter) {
     SceneOptions options = small_options();
