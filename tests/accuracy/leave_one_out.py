@@ -14,7 +14,7 @@ import json
 import sys
 from pathlib import Path
 
-import cells
+import table
 
 # Each part, what the table calls it, and the settings that leave it out (config/detector.yaml).
 PARTS = {
@@ -83,17 +83,18 @@ def parts_table(folder):
     """Costs are the mean milliseconds of a frame with everything, less those without the part."""
     rows, all_ms = [], None
     for name, title in ROWS:
-        run = cells.load(folder / f"{name}.json")
-        if not run:
+        path = folder / f"{name}.json"
+        if not path.is_file():
             continue
+        run = json.loads(path.read_text(encoding="utf-8"))
         alive, ms = run["alive"], run["mean_milliseconds"]["total"]
         all_ms = ms if name == "all" else all_ms
         shares = [(alive[stage], alive["instances"]) for stage in ("final", "best 20", "best")]
         shares.append((run["right"], run["reported"]))
         rows.append([title,
-                     *(cells.percent({"hits": hits, "total": total}) for hits, total in shares),
+                     *(table.percent({"hits": hits, "total": total}) for hits, total in shares),
                      f"{ms:.0f}", "" if name == "all" or all_ms is None else f"{all_ms - ms:.0f}"])
-    return cells.table(["left out", "right pose in the final 50", "in the best 20 interpretations",
+    return table.table(["left out", "right pose in the final 50", "in the best 20 interpretations",
                         "in the best", "precision of the best", "ms a frame",
                         "cost of the part, ms"], rows)
 

@@ -7,6 +7,7 @@ import re
 import unittest
 from pathlib import Path
 
+import domains
 import leave_one_out
 
 HERE = Path(__file__).resolve().parent
@@ -50,11 +51,9 @@ class Settings(unittest.TestCase):
             with self.subTest(name=name):
                 self.expect_change(settings)
 
-    def test_settings_that_the_shell_scripts_write_exist(self):
-        written = [text for path in sorted(HERE.glob("*.sh"))
-                   for text in re.findall(r"printf '(\w+: [^'%]*)\\n'", path.read_text(encoding="utf-8"))]
-        self.assertGreater(len(written), 0)
-        for text in written:
+    def test_the_settings_of_efforts_and_domains_exist(self):
+        written = [*domains.EFFORTS.values(), *(domain.settings for domain in domains.DOMAINS)]
+        for text in dict.fromkeys("".join(written).splitlines()):
             with self.subTest(text=text):
                 self.expect_change(text)
 
