@@ -4,13 +4,14 @@
 
 Each row holds means over seeds of the search, and the range. Frames are the same for all seeds.
 Simulates and builds libraries where they are missing in OUTPUT, detects, evaluates, and writes
-OUTPUT/accuracy.json after each row, OUTPUT/accuracy.md at the end. Needs nothing but Debian's
-python3.
+OUTPUT/accuracy.json after each row, OUTPUT/accuracy.md at the end. Searches that the same detector
+has made there are kept. Needs nothing but Debian's python3.
 """
 
 import argparse
 import datetime
 import fnmatch
+import functools
 import hashlib
 import json
 import math
@@ -50,6 +51,7 @@ def commit():
     return done.stdout.strip() or "unknown"
 
 
+@functools.cache
 def digest(path):
     """Of a file, or of all files of a folder: frames that differ cannot be compared."""
     whole = hashlib.sha256()
@@ -67,17 +69,19 @@ class Bench:
         self.bpa, self.detector = arguments.programs / "bpa", arguments.detector
         self.threads, self.detector_digest = arguments.threads, digest(arguments.detector)
 
-    def made(self, folder, stamp, command):
-        """Runs the command that makes the folder, unless it was made by the same one."""
-        mark = folder.parent / f"{folder.name}.made_by"
-        if folder.exists() and mark.exists() and mark.read_text(encoding="utf-8") == stamp:
-            return folder
-        if folder.exists():
-            shutil.rmtree(folder)
-        folder.parent.mkdir(parents=True, exist_ok=True)
+    @staticmethod
+    def made(path, stamp, command):
+        """Runs the command that makes a file or folder, unless it is there with this stamp."""
+        mark = path.with_name(path.name + ".made_by")
+        if path.exists() and mark.exists() and mark.read_text(encoding="utf-8") == stamp:
+            return path
+        mark.unlink(missing_ok=True)
+        if path.is_dir():
+            shutil.rmtree(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
         run(*command)
         mark.write_text(stamp, encoding="utf-8")
-        return folder
+        return path
 
     def is_there(self, domain):
         """Whether the data that the domain needs are there."""
@@ -117,15 +121,17 @@ class Bench:
         frames, library = self.frames(domain), self.library(domain)
         folder = self.output / "results" / domain.name.replace(" ", "_") / effort
         folder.mkdir(parents=True, exist_ok=True)
-        config, result, report = (folder / name for name in
-                                  ("detector.yaml", f"{seed}.json", f"{seed}_evaluation.json"))
-        config.write_text(EFFORTS[effort] + domain.settings, encoding="utf-8")
+        config, settings = folder / "detector.yaml", EFFORTS[effort] + domain.settings
+        config.write_text(settings, encoding="utf-8")
         clouds = [frames] if frames.is_file() else organised_clouds(frames)
         source = ["--pcd", *clouds] if clouds else ["--bop", frames]
+        report = folder / f"{seed}_evaluation.json"
+        result = folder / f"{seed}.json"
         command = [self.detector, "detect", "--library", library, *source, "--config", config,
-                   "--seed", seed, "--json", result]
-        run(*command, "--threads", self.threads)
+                   "--seed", seed, "--threads", self.threads, "--json", result]
         words = " ".join(str(word) for word in command)
+        stamp = f"{words}\n{settings}{self.detector_digest} {digest(frames)}"
+        self.made(result, stamp, command)
         if domain.poses:
             return judged(result, domain.poses), words
         truth = ["--nothing-there"] if domain.nothing_known else ["--bop", frames]
@@ -151,10 +157,10 @@ def organised_clouds(folder):
 
 def counts(report):
     """Of an evaluation."""
-    right, reported = (report["precision"][key] for key in ("hits", "total"))
-    in_twenty = report["recall_at"].get("20", {"hits": 0})
-    return {"frames": report["frames"], "instances": report["recall"]["total"], "found": right,
-            "false_positives": reported - right, "found_in_twenty": in_twenty["hits"],
+    precision, recall = report["precision"], report["recall"]
+    return {"frames": report["frames"], "instances": recall["total"], "found": recall["hits"],
+            "false_positives": precision["total"] - precision["hits"],
+            "found_in_twenty": report["recall_at"].get("20", {"hits": 0})["hits"],
             "seconds": report["seconds"]["median"]}
 
 
@@ -235,8 +241,7 @@ def options():
 EPILOG = """default effort: the detector's defaults. exhaustive effort: rounds go on until no
 surface is left.
 
-Simulated frames are kept in OUTPUT/sets, models in OUTPUT/libraries. Another detector makes the
-models again.
+Frames, models and results are kept in OUTPUT. Another detector makes models and results again.
 
 """ + table.RULE
 
