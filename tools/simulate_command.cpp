@@ -176,6 +176,8 @@ void add_scenes(CLI::App& simulate) {
                    "Range of the focal length, pixels; 525 for each 640 of the width if not given");
   add_range_option(command, "--distance", a.scene.min_distance, a.scene.max_distance,
                    "Range from the camera to the middle of the pile, metres; 0.6,1.4 if not given");
+  add_range_option(command, "--elevation", a.scene.min_elevation_deg, a.scene.max_elevation_deg,
+                   "Range of the camera above the table, degrees; 25,65 if not given");
   add_sensor_option(command, a.scene.sensor, a.scene.mixed_sensors, "scene");
   add_object_options(command, a.objects);
   add_option(command, "--model-error", a.model_error,

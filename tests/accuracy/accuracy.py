@@ -199,6 +199,7 @@ def measure(arguments):
               "commit": arguments.commit or commit(), "machine": machine(),
               "date": datetime.date.today().isoformat(),
               "threads": arguments.threads, "skipped": [], "rows": []}
+    arguments.output.mkdir(parents=True, exist_ok=True)
     for effort in arguments.effort.split(","):
         seeds = arguments.exhaustive_seeds if effort == "exhaustive" else arguments.seeds
         for domain in chosen(arguments.domains):

@@ -46,8 +46,8 @@ def piles(name, simulate, **more):
 
 
 def bins(name, simulate):
-    return simulated(name, "--scenes 8 --clutter 1,1 --border 0 --foreign 0,0 " + simulate,
-                     models="industrial")
+    return simulated(name, "--scenes 8 --clutter 1,1 --border 0 --foreign 0,0 --distance 0.6,0.9"
+                     " --elevation 60,85 " + simulate, models="industrial")
 
 
 DOMAINS = [
@@ -55,8 +55,9 @@ DOMAINS = [
     *(Domain(f"real {name}", f"real/{name}", folder=f"real/{name}")
       for name in ("bin", "d400", "figure", "flush", "small", "basket", "foreign", "no_depth")),
     Domain("osd_clutter", "ycbv", folder="osd_clutter", nothing_known=True),
-    Domain("pcl_milk", "pcl_milk/milk.pcd", folder="pcl_milk/milk_cartoon_all_small_clorox.pcd",
-           poses={"milk": MILK}),
+    *also_without_colours(
+        Domain("pcl_milk", "pcl_milk/milk.pcd", poses={"milk": MILK},
+               folder="pcl_milk/milk_cartoon_all_small_clorox.pcd")),
     simulated("piles seed 100", "--scenes 8 --seed 100", chosen_on=True),
     piles("piles seed 777", "--seed 777", chosen_on=True),
     *also_without_colours(piles("piles structured light", "--seed 5001")),

@@ -39,7 +39,6 @@ def write(report, path):
     """A row on each line."""
     head = json.dumps(report | {"rows": None})
     rows = ",\n ".join(json.dumps(row) for row in report["rows"])
-    path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(head.replace('"rows": null', '"rows": [\n ' + rows + "\n]") + "\n",
                     encoding="utf-8")
 
