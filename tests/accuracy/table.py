@@ -13,7 +13,7 @@ COUNTS = {"found": ("found", True), "false_positives": ("false positives", False
           "found_in_twenty": ("found in twenty interpretations", True)}
 RULE = """A domain is better or worse where both hold: the mean of each lies outside the other's
 range over the seeds, and the means differ by more than two standard errors of their difference.
-One seed is never judged."""
+One seed is never judged. With five, chance alone makes one comparison in twenty so."""
 
 
 def percent(ratio):
