@@ -18,8 +18,6 @@ DEFINITION = re.compile(r"\bconstexpr\s+[\w:]+\s+(k(?:Max|Most|Longest|Largest)\
                         r"(?:=\s*|(?=\{))([^;]+);")
 # Of nothing that comes from outside.
 NO_INPUTS = {
-    ("camera/openni2_sim/sim_device.cpp", "kMaxDepthMm"),     # of the simulated sensor
-    ("camera/openni2_sim/sim_scenes.cpp", "kMaxFrames"),
     ("core/io/model_parts.cpp", "kMost"),                     # of an integer
     ("core/io/model_parts.cpp", "kMostSigned"),
     ("core/io/organised_cloud.cpp", "kMaxMeanResidual"),      # of a fit, in pixels

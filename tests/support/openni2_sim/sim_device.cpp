@@ -15,7 +15,7 @@
 #include <openni2/Driver/OniDriverAPI.h>
 #include <openni2/PS1080.h>
 
-#include "camera/openni2_sim/sim_scenes.hpp"
+#include "tests/support/openni2_sim/sim_scenes.hpp"
 
 namespace bpa::sim_driver {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/openni2_sim/sim_scenes.hpp"
+#include "tests/support/openni2_sim/sim_scenes.hpp"
 
 #include <chrono>
 #include <cmath>
