@@ -8,7 +8,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/align/convergence.hpp"
 #include "core/cloud/curvature.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/cloud/planes.hpp"
@@ -16,6 +15,7 @@
 #include "core/io/file_bytes.hpp"
 #include "core/io/model_file.hpp"
 #include "core/model/model_index.hpp"
+#include "tools/convergence.hpp"
 #include "tools/search.hpp"
 
 namespace bpa::cli {
@@ -28,14 +28,14 @@ struct AlignmentArguments {
   DatasetOptions dataset;
   std::string library, plots, json;
   double min_visible = 0.1;
-  align::ConvergenceOptions options;
+  ConvergenceOptions options;
 };
 
 // Models, scenes and what is truly where; lists, so that placements can point into them.
 struct Experiment {
   std::map<int, PointCloud> models;
   std::list<PointCloud> scenes;
-  std::vector<align::TruePlacement> placements;
+  std::vector<TruePlacement> placements;
 };
 
 void load_models(const AlignmentArguments& a, Experiment& experiment) {
@@ -82,12 +82,12 @@ void load_placements(const AlignmentArguments& a, Experiment& experiment) {
   }
 }
 
-nlohmann::json to_json(const align::ConvergenceCurve& curve) {
+nlohmann::json to_json(const ConvergenceCurve& curve) {
   return {{"mean_min_position_m", curve.position_m}, {"mean_min_angle_rad", curve.angle_rad}};
 }
 
-std::string report_json(align::ConvergenceOptions set, const Experiment& experiment,
-                        const align::ConvergenceResult& result) {
+std::string report_json(ConvergenceOptions set, const Experiment& experiment,
+                        const ConvergenceResult& result) {
   nlohmann::json options;
   for (const Option& option : options_of(set)) {
     if (option.path == "num_threads") continue;
@@ -112,15 +112,15 @@ struct Quantity {
   const char* name;
   const char* unit;
   double scale;
-  std::vector<double> align::ConvergenceCurve::*values;
+  std::vector<double> ConvergenceCurve::*values;
 };
 
 constexpr Quantity kQuantities[] = {
-    {"position", "mm", 1e3, &align::ConvergenceCurve::position_m},
-    {"orientation", "degrees", kDegrees, &align::ConvergenceCurve::angle_rad}};
+    {"position", "mm", 1e3, &ConvergenceCurve::position_m},
+    {"orientation", "degrees", kDegrees, &ConvergenceCurve::angle_rad}};
 
-io::ColorImage plot(const Quantity& quantity, const align::ConvergenceResult& result) {
-  const auto series = [&](const char* name, const align::ConvergenceCurve& curve) {
+io::ColorImage plot(const Quantity& quantity, const ConvergenceResult& result) {
+  const auto series = [&](const char* name, const ConvergenceCurve& curve) {
     draw::Series out{name, {}, {}};
     for (const double value : curve.*quantity.values) {
       out.x.push_back(out.x.size());
@@ -136,13 +136,13 @@ io::ColorImage plot(const Quantity& quantity, const align::ConvergenceResult& re
        series("ICP", result.icp)});
 }
 
-void print_table(const Experiment& experiment, const align::ConvergenceResult& result) {
+void print_table(const Experiment& experiment, const ConvergenceResult& result) {
   std::printf("%zu placements, %d trials; mean of the least error so far\n",
               experiment.placements.size(), result.trials);
   std::printf("iteration   BPA mm   deg   normals only mm   deg   ICP mm   deg\n");
   for (std::size_t k = 0; k < result.bpa.position_m.size(); ++k) {
-    const auto mm = [k](const align::ConvergenceCurve& c) { return 1e3 * c.position_m[k]; };
-    const auto deg = [k](const align::ConvergenceCurve& c) { return kDegrees * c.angle_rad[k]; };
+    const auto mm = [k](const ConvergenceCurve& c) { return 1e3 * c.position_m[k]; };
+    const auto deg = [k](const ConvergenceCurve& c) { return kDegrees * c.angle_rad[k]; };
     std::printf("%9zu   %6.1f %5.1f   %15.1f %5.1f   %6.1f %5.1f\n", k, mm(result.bpa),
                 deg(result.bpa), mm(result.bpa_normals), deg(result.bpa_normals), mm(result.icp),
                 deg(result.icp));
@@ -150,14 +150,14 @@ void print_table(const Experiment& experiment, const align::ConvergenceResult& r
 }
 
 void bench_alignment(const AlignmentArguments& a) {
-  align::ConvergenceOptions options = a.options;
+  ConvergenceOptions options = a.options;
   options.seed = a.common.seed;
   options.num_threads = a.common.threads;
   or_throw(validate(options));
   Experiment experiment;
   load_models(a, experiment);
   load_placements(a, experiment);
-  const align::ConvergenceResult result = run_convergence(experiment.placements, options);
+  const ConvergenceResult result = run_convergence(experiment.placements, options);
   print_table(experiment, result);
   const std::string report = report_json(options, experiment, result);
   if (!a.json.empty()) or_throw(io::write_file(a.json, report));

@@ -1,16 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "tools/convergence.hpp"
+
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "core/align/convergence.hpp"
 #include "tests/core/align/align_problems.hpp"
 
-namespace bpa::align {
+namespace bpa::cli {
 namespace {
+
+using align::random_pose;
+using align::random_vector;
 
 // A box of 12 x 8 x 5 cm with normals, a point every 5 mm.
 PointCloud box() {
@@ -47,37 +51,6 @@ PointCloud seen(const PointCloud& model, const Pose& pose, RandomStream& random)
     scene.normals.push_back((n + random_vector(random, 0.05)).normalized().cast<float>());
   }
   return scene;
-}
-
-TEST(Iterate, ReachesTheTruthWhenMatchesAreRight) {
-  RandomStream random(1);
-  const Pose truth = random_pose(random);
-  std::vector<Eigen::Vector3d> points;
-  for (int i = 0; i < 20; ++i) points.push_back(random_vector(random, 0.05));
-  int calls = 0;
-  const MatchFunction match = [&](const Pose&, Matches& matches) {
-    EXPECT_TRUE(matches.positions.empty());
-    for (const Eigen::Vector3d& p : points) matches.positions.push_back({p, truth * p, 0.001});
-    ++calls;
-  };
-  IterationOptions options;
-  options.position_tol_m = options.angle_tol_rad = 1e-6;
-  for (const Method method : {Method::bpa, Method::icp}) {
-    calls = 0;
-    options.method = method;
-    const IterationResult result = iterate(random_pose(random), match, options);
-    EXPECT_TRUE(result.converged);
-    EXPECT_EQ(calls, 2);  // The second sees that nothing moves.
-    EXPECT_LT(rotation_angle(result.estimate.camera_from_object.rotation, truth.rotation), 1e-9);
-  }
-}
-
-TEST(Iterate, StaysWhereNothingMatches) {
-  const Pose start{Eigen::Quaterniond::Identity(), {0, 0, 1}};
-  const IterationResult result = iterate(start, [](const Pose&, Matches&) {});
-  EXPECT_EQ(result.poses.size(), 20U);
-  EXPECT_FALSE(result.converged);
-  EXPECT_EQ(result.estimate.camera_from_object.translation, start.translation);
 }
 
 TEST(Convergence, OrientationTurnsInFasterOnABox) {
@@ -122,4 +95,4 @@ TEST(Convergence, OrientationTurnsInFasterOnABox) {
 }
 
 }  // namespace
-}  // namespace bpa::align
+}  // namespace bpa::cli

@@ -1,18 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/align/convergence.hpp"
+#include "tools/convergence.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
+#include "core/align/align.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/geometry/pose.hpp"
 
-namespace bpa::align {
+namespace bpa::cli {
 namespace {
+
+using align::OrientedPair;
+
+constexpr std::size_t kMinMatches = 3;  // With fewer a step leaves the pose as it is.
 
 // Finds correspondences of one placement.
 class Matcher {
@@ -44,7 +49,8 @@ class Matcher {
 
   const TruePlacement& placement() const { return placement_; }
 
-  void find(const Pose& pose, bool curvature, RandomStream& random, Matches& matches) const {
+  void find(const Pose& pose, bool curvature, RandomStream& random,
+            std::vector<OrientedPair>& matches) const {
     const FastPose object_from_camera = to_fast(pose.inverse());
     std::vector<std::size_t> assigned;
     for (const std::vector<std::size_t>& patch : patches_) {
@@ -64,9 +70,9 @@ class Matcher {
       const Eigen::Vector3f n = object_from_camera.rotation * scene_.normals[i];
       const int nearest = nearest_model_point(model_grid_, p, n);
       if (nearest < 0) continue;
-      matches.oriented.push_back({oriented_point(model_, nearest, curvature),
-                                  oriented_point(scene_, i, curvature), options_.sigma_m});
-      if (std::ssize(matches.oriented) == options_.points) break;
+      matches.push_back({align::oriented_point(model_, nearest, curvature),
+                         align::oriented_point(scene_, i, curvature), options_.sigma_m});
+      if (std::ssize(matches) == options_.points) break;
     }
   }
 
@@ -135,24 +141,29 @@ Pose disturb(const Pose& truth, const ConvergenceOptions& options, RandomStream&
   return {(rotation_from_vector(turn) * truth.rotation).normalized(), truth.translation + move};
 }
 
+// The alignment between two matchings.
+using Method = align::PoseEstimate (*)(const align::Correspondences&);
+
 // The least errors so far, after each step of one trial.
-ConvergenceCurve run_trial(const Matcher& matcher, const Pose& start, Method method, bool curvature,
+ConvergenceCurve run_trial(const Matcher& matcher, Pose pose, Method align, bool curvature,
                            RandomStream random, int iterations) {
   const TruePlacement& placement = matcher.placement();
-  const MatchFunction match = [&](const Pose& pose, Matches& matches) {
-    matcher.find(pose, curvature, random, matches);
-  };
-  std::vector<Pose> poses =
-      iterate(start, match, {.method = method, .max_iterations = iterations}).poses;
-  poses.insert(poses.begin(), start);
   ConvergenceCurve curve;
   double position = INFINITY, angle = INFINITY;
-  for (const Pose& pose : poses) {
+  const auto record = [&] {
     const PoseError error = pose_error(pose, placement.camera_from_object, placement.symmetry);
     position = std::min(position, error.position);
     angle = std::min(angle, error.angle);
     curve.position_m.push_back(position);
     curve.angle_rad.push_back(angle);
+  };
+  record();
+  std::vector<OrientedPair> matches;
+  for (int step = 0; step < iterations; ++step) {
+    matches.clear();
+    matcher.find(pose, curvature, random, matches);
+    if (matches.size() >= kMinMatches) pose = align({.oriented = matches}).camera_from_object;
+    record();
   }
   return curve;
 }
@@ -168,31 +179,6 @@ void add(const ConvergenceCurve& curve, double share, ConvergenceCurve& mean) {
 
 }  // namespace
 
-IterationResult iterate(const Pose& start, const MatchFunction& match,
-                        const IterationOptions& options) {
-  IterationResult result;
-  result.estimate.camera_from_object = start;
-  Matches matches;
-  for (int step = 0; step < options.max_iterations && !result.converged; ++step) {
-    const Pose before = result.estimate.camera_from_object;
-    matches.oriented.clear();
-    matches.positions.clear();
-    match(before, matches);
-    if (std::ssize(matches.oriented) + std::ssize(matches.positions) < options.min_matches) {
-      result.poses.push_back(before);  // The next matches may be others.
-      continue;
-    }
-    const Correspondences data{.oriented = matches.oriented, .positions = matches.positions};
-    result.estimate = options.method == Method::bpa ? bpa_mode(data) : icp_mode(data);
-    const Pose& after = result.estimate.camera_from_object;
-    result.poses.push_back(after);
-    const double moved = (after.translation - before.translation).norm();
-    const double turned = rotation_angle(after.rotation, before.rotation);
-    result.converged = moved < options.position_tol_m && turned < options.angle_tol_rad;
-  }
-  return result;
-}
-
 ConvergenceResult run_convergence(const std::vector<TruePlacement>& placements,
                                   const ConvergenceOptions& options) {
   std::vector<std::unique_ptr<Matcher>> matchers;
@@ -207,7 +193,8 @@ ConvergenceResult run_convergence(const std::vector<TruePlacement>& placements,
     const auto run = [&](Method method, bool curvature) {
       return run_trial(*matchers[p], start, method, curvature, random, options.iterations);
     };
-    results[trial] = {run(Method::bpa, true), run(Method::bpa, false), run(Method::icp, false), 1};
+    results[trial] = {run(align::bpa_mode, true), run(align::bpa_mode, false),
+                      run(align::icp_mode, false), 1};
   });
   ConvergenceResult mean{.trials = trials};
   for (const ConvergenceResult& result : results) {
@@ -218,4 +205,4 @@ ConvergenceResult run_convergence(const std::vector<TruePlacement>& placements,
   return mean;
 }
 
-}  // namespace bpa::align
+}  // namespace bpa::cli

@@ -3,51 +3,17 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
-#include "core/align/align.hpp"
 #include "core/base/options.hpp"
 #include "core/cloud/point_cloud.hpp"
+#include "core/geometry/pose.hpp"
 #include "core/geometry/symmetry.hpp"
 
-// Match, align, match again; and the paper's experiment of BPA against ICP (its section "BPA vs.
-// ICP"), on plain clouds.
+// The paper's experiment of BPA against ICP (its section "BPA vs. ICP"), on plain clouds: match,
+// align, match again.
 
-namespace bpa::align {
-
-/// Correspondences found at a pose. Memory is kept from one iteration to the next.
-struct Matches {
-  std::vector<OrientedPair> oriented;
-  std::vector<PositionPair> positions;
-};
-
-/// Fills `matches`, empty when called, with the correspondences that a pose suggests.
-using MatchFunction = std::function<void(const Pose& camera_from_object, Matches& matches)>;
-
-enum class Method {
-  bpa,  ///< Positions and orientations.
-  icp,  ///< The same correspondences, positions only: the paper's ablation.
-};
-
-struct IterationOptions {
-  Method method = Method::bpa;
-  int max_iterations = 20;
-  int min_matches = 3;        ///< With fewer a step leaves the pose as it is.
-  double position_tol_m = 0;  ///< Ends when a step is smaller than this and
-  double angle_tol_rad = 0;   ///< than this. 0: never, as with correspondences drawn at random.
-};
-
-struct IterationResult {
-  PoseEstimate estimate;    ///< Of the last step; the start alone if there was none.
-  std::vector<Pose> poses;  ///< After each step.
-  bool converged = false;   ///< The tolerances were reached.
-};
-
-/// Bingham Procrustean Alignment in the place of Horn's method in ICP: match, align, match again
-/// (paper, section II.B).
-IterationResult iterate(const Pose& start, const MatchFunction& match,
-                        const IterationOptions& options = {});
+namespace bpa::cli {
 
 /// One object that is truly in a scene. Both clouds have normals, and curvatures with principal
 /// directions where those are to count.
@@ -98,4 +64,4 @@ struct ConvergenceResult {
 ConvergenceResult run_convergence(const std::vector<TruePlacement>& placements,
                                   const ConvergenceOptions& options = {});
 
-}  // namespace bpa::align
+}  // namespace bpa::cli
