@@ -83,7 +83,7 @@ PoseEstimate make_estimate(const Mode& mode, const Moments& moments) {
   if (moments.weight > 0) {
     pose.translation = moments.scene_centroid - pose.rotation * moments.model_centroid;
   }
-  return {pose, mode.exponent, moments.weight, moments.model_centroid, mode.value};
+  return {pose, mode.exponent, mode.value};
 }
 
 Matrix4d prior_exponent(const Correspondences& data) {

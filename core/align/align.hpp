@@ -16,14 +16,10 @@ namespace bpa::align {
 
 /// The most probable pose, and the posterior about it.
 struct PoseEstimate {
-  Pose camera_from_object;
+  Pose camera_from_object;  ///< Without positions its translation means nothing.
   /// The orientation's posterior is exp(qᵀ exponent q) / F with the curvature signs chosen here:
   /// Bingham::from_exponent(exponent).
   Eigen::Matrix4d exponent = Eigen::Matrix4d::Zero();
-  /// The model's centroid lands at N(R model_centroid + t, I / position_weight), independently of
-  /// the orientation. 0 when there were no positions; then the translation means nothing.
-  double position_weight = 0;
-  Eigen::Vector3d model_centroid = Eigen::Vector3d::Zero();  ///< Weighted by 1 / σ². Metres.
   /// Log likelihood (and log prior ratio) at the mode, relative to perfect agreement: the sum over
   /// pairs of -d² / 2 σ² + λ3 ex² + κ (ey² + ez²). At most 0.
   double log_score = 0;

@@ -78,11 +78,6 @@ double curvature_concentration(double c1, double c2, double kappa) {
   return std::max(10 * (1 - larger / smaller), kappa);
 }
 
-Bingham feature_bingham(const OrientedPoint& feature) {
-  return Bingham::about(feature.orientation,
-                        Vector3d(feature.lambda3, feature.kappa, feature.kappa));
-}
-
 FeatureConcentration compose(const OrientedPoint& model, const OrientedPoint& scene) {
   return {compose(model.kappa, scene.kappa, kTilt), compose(model.lambda3, scene.lambda3, kTwist)};
 }

@@ -51,9 +51,6 @@ inline Eigen::Quaterniond reversed_curvature(const Eigen::Quaterniond& q) {
   return Eigen::Quaterniond(-q.x(), q.w(), q.z(), -q.y());
 }
 
-/// The Bingham of a feature's true orientation given the observed one (paper, appendix).
-Bingham feature_bingham(const OrientedPoint& feature);
-
 /// Concentrations of the deviation between two features seen independently, each with its own.
 struct FeatureConcentration {
   double kappa = 0;

@@ -9,7 +9,6 @@
 
 #include "core/align/moments.hpp"
 #include "core/bingham/normalizer.hpp"
-#include "core/bingham/region.hpp"
 
 namespace bpa::align {
 namespace {

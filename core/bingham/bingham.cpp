@@ -75,29 +75,12 @@ double Bingham::log_ratio_to_mode(const Quaterniond& q) const {
   return lambda_.dot(x.cwiseAbs2());
 }
 
-double Bingham::density(const Quaterniond& q) const { return std::exp(log_density(q)); }
-
 Matrix4d Bingham::scatter() const {
   return axes_ * bingham_normalizer(lambda_).gradient.asDiagonal() * axes_.transpose();
 }
 
-double Bingham::entropy() const {
-  const BinghamNormalizer normalizer = bingham_normalizer(lambda_);
-  return normalizer.log_f - lambda_.dot(normalizer.gradient);
-}
-
-Bingham Bingham::rotated_left(const Quaterniond& r) const {
-  return Bingham({lambda_, left_product(r) * axes_});
-}
-
 Bingham Bingham::rotated_right(const Quaterniond& r) const {
   return Bingham({lambda_, right_product(r) * axes_});
-}
-
-Bingham Bingham::inverse() const {
-  Bingham result = *this;
-  result.axes_.bottomRows<3>() *= -1;
-  return result;
 }
 
 Quaterniond Bingham::sample(RandomStream& random, int* trials) const {
@@ -113,15 +96,6 @@ Bingham product(std::span<const Bingham> factors) {
   Matrix4d sum = Matrix4d::Zero();
   for (const Bingham& factor : factors) sum += factor.exponent();
   return Bingham::from_exponent(sum);
-}
-
-double kl_divergence(const Bingham& truth, const Bingham& approximation) {
-  const BinghamNormalizer normalizer = bingham_normalizer(truth.concentrations());
-  const Matrix4d scatter =
-      truth.axes() * normalizer.gradient.asDiagonal() * truth.axes().transpose();
-  return approximation.log_normalizer() - normalizer.log_f +
-         truth.concentrations().dot(normalizer.gradient) -
-         approximation.exponent().cwiseProduct(scatter).sum();
 }
 
 Vector4d sample_diagonal_bingham(const Vector4d& lambda, RandomStream& random, int* trials) {
@@ -172,12 +146,6 @@ double BinghamMixture::log_density(const Eigen::Quaterniond& q) const {
     sum += std::exp(std::log(c.weight) + c.bingham.log_density(q) - largest);
   }
   return largest + std::log(sum);
-}
-
-Eigen::Matrix4d BinghamMixture::scatter() const {
-  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
-  for (const Component& c : components) sum += c.weight * c.bingham.scatter();
-  return sum;
 }
 
 Eigen::Quaterniond BinghamMixture::sample(RandomStream& random) const {

@@ -49,18 +49,11 @@ class Bingham {
   double log_density(const Eigen::Quaterniond& q) const {
     return log_ratio_to_mode(q) - log_normalizer();
   }
-  double density(const Eigen::Quaterniond& q) const;
   /// E[q qᵀ]; trace 1.
   Eigen::Matrix4d scatter() const;
-  /// -E[log p], nats.
-  double entropy() const;
 
-  /// The distribution of r ∘ q.
-  Bingham rotated_left(const Eigen::Quaterniond& r) const;
   /// The distribution of q ∘ r.
   Bingham rotated_right(const Eigen::Quaterniond& r) const;
-  /// The distribution of the inverse rotation.
-  Bingham inverse() const;
 
   /// One exact draw: rejection from an angular central Gaussian (Kent, Ganeiban and Mardia 2013).
   /// `trials`, if given, is increased by the number of proposals.
@@ -77,8 +70,10 @@ class Bingham {
 Bingham product(const Bingham& a, const Bingham& b);
 Bingham product(std::span<const Bingham> factors);
 
-/// Kullback-Leibler divergence of `approximation` from `truth`, E_truth[log truth - log approx].
-double kl_divergence(const Bingham& truth, const Bingham& approximation);
+/// E[ω ωᵀ] of the rotation vector ω, q = exp(ω) ∘ mode, angle in [0, π], rad²; exact for any
+/// concentrations. The axes are those of the frame that q maps into: the 3x3 block of a ROS
+/// covariance.
+Eigen::Matrix3d rotation_covariance(const Bingham& bingham);
 
 /// Draws x on S3 with density proportional to exp(Σ λi xi²); λ ≤ 0 with the largest entry 0.
 /// What Bingham::sample does before its axes turn the answer.
@@ -98,7 +93,6 @@ struct BinghamMixture {
   std::vector<Component> components;
 
   double log_density(const Eigen::Quaterniond& q) const;
-  Eigen::Matrix4d scatter() const;
   Eigen::Quaterniond sample(RandomStream& random) const;
 };
 

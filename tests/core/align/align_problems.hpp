@@ -31,6 +31,11 @@ inline OrientedPoint random_feature(RandomStream& random, double kappa, double l
   return {random_vector(random, 0.05), random_rotation(random), kappa, lambda3};
 }
 
+/// The Bingham of a feature's true orientation given the observed one (paper, appendix).
+inline Bingham feature_bingham(const OrientedPoint& feature) {
+  return Bingham::about(feature.orientation, {feature.lambda3, feature.kappa, feature.kappa});
+}
+
 /// A pair drawn from the model: the scene's point is off by σ per axis, its orientation by the
 /// pair's Bingham.
 inline OrientedPair draw_pair(const OrientedPoint& model, const Pose& camera_from_object,

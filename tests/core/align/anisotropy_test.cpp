@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/align/anisotropy.hpp"
+#include "tests/core/align/anisotropy.hpp"
 
 #include <Eigen/Cholesky>
 #include <vector>

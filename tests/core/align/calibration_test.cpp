@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/align/anisotropy.hpp"
 #include "core/align/posterior.hpp"
-#include "core/bingham/region.hpp"
 #include "tests/core/align/align_problems.hpp"
+#include "tests/core/align/anisotropy.hpp"
+#include "tests/core/bingham/credible_regions.hpp"
 
 // On data drawn from the model, regions of 50, 90 and 95 % hold the truth that often. There are
 // about eighty comparisons with three standard errors, of which one in four hundred fails by

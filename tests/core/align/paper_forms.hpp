@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "core/align/anisotropy.hpp"
 #include "core/align/moments.hpp"
 #include "core/align/posterior.hpp"
+#include "tests/core/align/anisotropy.hpp"
 
 // The paper's own forms of what core/align computes in another way: claims 1 and 2, and its
 // sampler.
@@ -24,9 +24,7 @@ inline Bingham position_bingham(const Eigen::Vector3d& model, const Eigen::Vecto
   const Eigen::Quaterniond s_prime =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), scene);
   const double lambda = -2 * model.norm() * scene.norm() / (sigma * sigma);
-  return Bingham::about(Eigen::Quaterniond::Identity(), {0, lambda, lambda})
-      .rotated_left(s_prime)
-      .rotated_right(s);
+  return Bingham::about(s_prime, {0, lambda, lambda}).rotated_right(s);
 }
 
 /// The exponent of the pairs' orientations and of the prior's: the product of their Binghams.

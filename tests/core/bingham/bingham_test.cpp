@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/core/bingham/credible_regions.hpp"
+
 namespace bpa {
 namespace {
 
@@ -24,8 +26,9 @@ Bingham random_bingham(RandomStream& random) {
 
 TEST(Bingham, UniformByDefault) {
   const Bingham uniform;
-  EXPECT_NEAR(uniform.density(Quaterniond(0.5, 0.5, 0.5, -0.5)), 1 / (2 * M_PI * M_PI), 1e-13);
-  EXPECT_NEAR(uniform.entropy(), std::log(2 * M_PI * M_PI), 1e-12);
+  EXPECT_NEAR(std::exp(uniform.log_density(Quaterniond(0.5, 0.5, 0.5, -0.5))),
+              1 / (2 * M_PI * M_PI), 1e-13);
+  EXPECT_NEAR(entropy(uniform), std::log(2 * M_PI * M_PI), 1e-12);
   EXPECT_LT((uniform.scatter() - 0.25 * Matrix4d::Identity()).norm(), 1e-11);
 }
 
@@ -50,9 +53,7 @@ TEST(Bingham, RotationsMoveTheDensity) {
   for (int i = 0; i < 100; ++i) {
     const Bingham b = random_bingham(random);
     const Quaterniond r = random_quaternion(random), q = random_quaternion(random);
-    EXPECT_NEAR(b.rotated_left(r).log_density(r * q), b.log_density(q), 1e-9);
     EXPECT_NEAR(b.rotated_right(r).log_density(q * r), b.log_density(q), 1e-9);
-    EXPECT_NEAR(b.inverse().log_density(q.conjugate()), b.log_density(q), 1e-9);
   }
 }
 
@@ -80,16 +81,16 @@ TEST(Bingham, EntropyAndDivergenceAgreeWithAverages) {
     const Bingham b = product(a, random_bingham(random));
     EXPECT_NEAR(kl_divergence(a, a), 0, 1e-10);
     const int count = 100000;
-    double entropy = 0, divergence = 0, squares = 0;
+    double mean = 0, divergence = 0, squares = 0;
     for (int k = 0; k < count; ++k) {
       const Quaterniond q = a.sample(random);
-      entropy -= a.log_density(q) / count;
+      mean -= a.log_density(q) / count;
       const double difference = a.log_density(q) - b.log_density(q);
       divergence += difference / count;
       squares += difference * difference / count;
     }
     // The log density of three dimensions varies by √1.5 or less.
-    EXPECT_NEAR(a.entropy(), entropy, 4 * std::sqrt(1.5 / count));
+    EXPECT_NEAR(entropy(a), mean, 4 * std::sqrt(1.5 / count));
     EXPECT_NEAR(kl_divergence(a, b), divergence,
                 4 * std::sqrt((squares - divergence * divergence) / count) + 1e-9);
   }

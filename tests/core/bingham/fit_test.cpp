@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/bingham/fit.hpp"
+#include "tests/core/bingham/fit.hpp"
 
 #include <cmath>
 #include <vector>

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/bingham/region.hpp"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
+
+#include "tests/core/bingham/credible_regions.hpp"
 
 namespace bpa {
 namespace {

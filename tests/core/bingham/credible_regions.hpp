@@ -1,29 +1,43 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/bingham/region.hpp"
+#pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "core/bingham/bingham.hpp"
 #include "core/bingham/normalizer.hpp"
 
-namespace bpa {
-namespace {
+// How sure a Bingham is, by which tests judge it. Exact (to about 1e-6) for any concentrations,
+// uniform ones included. With A = |λ1| sin²α ≤ B = |λ2| cos²β + |λ3| sin²β,
+//
+//   P(energy ≤ c) = (8/F) ∫∫_[0,π/2]² max(0, e^-A - e^-min(B,c)) / (B - A) dα dβ,
+//   P(angle ≤ θ) = (2/F) ∫₀^(θ/2) sin²φ F2(sin²φ (λ1, λ2, λ3)) dφ,   F2 the normaliser on S2.
 
-using Eigen::Matrix3d;
-using Eigen::Quaterniond;
-using Eigen::Vector3d;
-using Eigen::Vector4d;
+namespace bpa {
+
+/// -E[log p], nats.
+inline double entropy(const Bingham& bingham) {
+  const BinghamNormalizer normalizer = bingham_normalizer(bingham.concentrations());
+  return normalizer.log_f - bingham.concentrations().dot(normalizer.gradient);
+}
+
+/// Kullback-Leibler divergence of `approximation` from `truth`, E_truth[log truth - log approx].
+inline double kl_divergence(const Bingham& truth, const Bingham& approximation) {
+  return approximation.log_normalizer() - entropy(truth) -
+         approximation.exponent().cwiseProduct(truth.scatter()).sum();
+}
 
 // Gauss and Legendre's sixteen points, the positive half.
-constexpr double kPoints[8] = {0.0950125098376374, 0.2816035507792589, 0.4580167776572274,
-                               0.6178762444026438, 0.7554044083550030, 0.8656312023878318,
-                               0.9445750230732326, 0.9894009349916499};
-constexpr double kWeights[8] = {0.1894506104550685, 0.1826034150449236, 0.1691565193950025,
-                                0.1495959888165767, 0.1246289712555339, 0.0951585116824928,
-                                0.0622535239386479, 0.0271524594117541};
+inline constexpr double kPoints[8] = {0.0950125098376374, 0.2816035507792589, 0.4580167776572274,
+                                      0.6178762444026438, 0.7554044083550030, 0.8656312023878318,
+                                      0.9445750230732326, 0.9894009349916499};
+inline constexpr double kWeights[8] = {0.1894506104550685, 0.1826034150449236, 0.1691565193950025,
+                                       0.1495959888165767, 0.1246289712555339, 0.0951585116824928,
+                                       0.0622535239386479, 0.0271524594117541};
 
-double integrate(double from, double to, int pieces, const auto& f) {
+inline double integrate(double from, double to, int pieces, const auto& f) {
   const double half = 0.5 * (to - from) / pieces;
   double sum = 0;
   for (int piece = 0; piece < pieces; ++piece) {
@@ -37,7 +51,7 @@ double integrate(double from, double to, int pieces, const auto& f) {
 
 // Where the increasing function f reaches `target`, between lower and upper (false position with
 // the Illinois rule, bisecting when that is slow).
-double solve_increasing(double lower, double upper, double target, const auto& f) {
+inline double solve_increasing(double lower, double upper, double target, const auto& f) {
   double f_lower = f(lower) - target, f_upper = f(upper) - target;
   if (f_lower >= 0) return lower;
   if (f_upper <= 0) return upper;
@@ -99,36 +113,18 @@ struct CredibleIntegral {
   }
 };
 
-// Calls `add(φ, weight)` at the nodes of a rule for ∫ ... dφ from 0 to `end` ≤ π/2, whose pieces
-// double in length from the scale of the largest concentration.
-void for_half_angles(const Bingham& bingham, double end, const auto& add) {
-  const Vector4d& lambda = bingham.concentrations();
-  double from = 0;
-  double to = std::min(end, 1 / std::sqrt(1 - lambda[3]));
-  while (from < end) {
-    const double half = 0.5 * (to - from), middle = 0.5 * (to + from);
-    for (int i = 0; i < 8; ++i) {
-      add(middle - half * kPoints[i], half * kWeights[i]);
-      add(middle + half * kPoints[i], half * kWeights[i]);
-    }
-    const double s = std::sin(to);
-    if (-lambda[1] * s * s > 80) break;  // The rest is below 1e-34.
-    from = to;
-    to = std::min(end, 2 * to);
-  }
-}
-
-}  // namespace
-
-double credible_mass(const Bingham& bingham, double energy) {
-  const Vector4d magnitude = -bingham.concentrations();
+/// The probability that the energy -log(p(q) / p(mode)) is at most `energy`.
+inline double credible_mass(const Bingham& bingham, double energy) {
+  const Eigen::Vector4d magnitude = -bingham.concentrations();
   if (!(energy > 0)) return 0;
   if (energy >= magnitude[3] || energy > 700) return 1;
   const CredibleIntegral integral{magnitude[1], magnitude[2], magnitude[3], energy};
   return std::min(1.0, 8 * integral.value() * std::exp(-bingham.log_normalizer()));
 }
 
-double credible_energy(const Bingham& bingham, double probability) {
+/// The energy such that {q : energy(q) ≤ it}, the highest density region, has `probability` in
+/// [0, 1).
+inline double credible_energy(const Bingham& bingham, double probability) {
   const double largest = std::min(-bingham.concentrations()[3], 700.0);
   // Like half a chi-square of three degrees of freedom, or less.
   double upper = std::min(largest, 8.0);
@@ -137,35 +133,30 @@ double credible_energy(const Bingham& bingham, double probability) {
                           [&](double energy) { return credible_mass(bingham, energy); });
 }
 
-double angle_mass(const Bingham& bingham, double angle) {
-  const Vector3d lambda = bingham.concentrations().tail<3>();
+/// The probability that the rotation from the mode is by at most `angle` radians, in [0, π].
+inline double angle_mass(const Bingham& bingham, double angle) {
+  const Eigen::Vector3d lambda = bingham.concentrations().tail<3>();
   const double log_f = bingham.log_normalizer();
   double sum = 0;
-  for_half_angles(bingham, 0.5 * std::clamp(angle, 0.0, M_PI), [&](double phi, double weight) {
-    const double s2 = std::sin(phi) * std::sin(phi);
-    sum += weight * s2 * std::exp(bingham_log_normalizer_s2(s2 * lambda) - log_f);
-  });
+  const double end = 0.5 * std::clamp(angle, 0.0, M_PI);
+  // Pieces double in length from the scale of the largest concentration.
+  double from = 0, to = std::min(end, 1 / std::sqrt(1 - lambda[2]));
+  while (from < end) {
+    sum += integrate(from, to, 1, [&](double phi) {
+      const double s2 = std::sin(phi) * std::sin(phi);
+      return s2 * std::exp(bingham_log_normalizer_s2(s2 * lambda) - log_f);
+    });
+    from = to;
+    to = std::min(end, 2 * to);
+  }
   return std::min(1.0, 2 * sum);
 }
 
-double angle_bound(const Bingham& bingham, double probability) {
+/// The angle in radians that the rotation from the mode exceeds with probability 1 - `probability`
+/// only.
+inline double angle_bound(const Bingham& bingham, double probability) {
   return solve_increasing(0, M_PI, probability,
                           [&](double angle) { return angle_mass(bingham, angle); });
-}
-
-Matrix3d rotation_covariance(const Bingham& bingham) {
-  const Vector3d lambda = bingham.concentrations().tail<3>();
-  const double log_f = bingham.log_normalizer();
-  Vector3d variance = Vector3d::Zero();
-  for_half_angles(bingham, 0.5 * M_PI, [&](double phi, double weight) {
-    const double s2 = std::sin(phi) * std::sin(phi);
-    const double density = std::exp(bingham_log_normalizer_s2(s2 * lambda) - log_f);
-    variance += (weight * 2 * s2 * density * 4 * phi * phi) * bingham_gradient_s2(s2 * lambda);
-  });
-  // v ∘ mode⁻¹ is a pure quaternion: the fixed axis of a deviation along v.
-  const Eigen::Matrix4d turned = bingham.rotated_right(bingham.mode().conjugate()).axes();
-  const Matrix3d axes = turned.bottomRightCorner<3, 3>();
-  return axes * variance.asDiagonal() * axes.transpose();
 }
 
 }  // namespace bpa
