@@ -52,14 +52,10 @@ class FramePairs {
 
   struct Pair {
     Image depth;
-    std::int64_t depth_us = 0;
     Image color;
   };
 
-  void add_depth(Image image, std::int64_t stamp_us) {
-    if (depth_) ++unpaired_depth_;
-    depth_.emplace(std::move(image), stamp_us);
-  }
+  void add_depth(Image image, std::int64_t stamp_us) { depth_.emplace(std::move(image), stamp_us); }
   void add_color(Image image, std::int64_t stamp_us) { color_.emplace(std::move(image), stamp_us); }
 
   /// The pair, if there is one now. Drops what is too old to find a partner.
@@ -67,12 +63,9 @@ class FramePairs {
     if (!depth_ || !color_) return std::nullopt;
     const std::int64_t apart = depth_->second - color_->second;
     if (apart > tolerance_us_) color_.reset();
-    if (apart < -tolerance_us_) {
-      depth_.reset();
-      ++unpaired_depth_;
-    }
+    if (apart < -tolerance_us_) depth_.reset();
     if (!depth_ || !color_) return std::nullopt;
-    Pair pair{std::move(depth_->first), depth_->second, std::move(color_->first)};
+    Pair pair{std::move(depth_->first), std::move(color_->first)};
     clear();
     return pair;
   }
@@ -84,14 +77,11 @@ class FramePairs {
     depth_.reset();
     color_.reset();
   }
-  /// Depth frames that went away without colour.
-  std::uint64_t unpaired_depth() const { return unpaired_depth_; }
 
  private:
   std::int64_t tolerance_us_;
   std::optional<std::pair<Image, std::int64_t>> depth_;
   std::optional<std::pair<Image, std::int64_t>> color_;
-  std::uint64_t unpaired_depth_ = 0;
 };
 
 }  // namespace bpa::camera

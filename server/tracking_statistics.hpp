@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <deque>
 #include <mutex>
-#include <numeric>
 #include <vector>
 
 #include "core/base/clock.hpp"
@@ -38,10 +37,6 @@ struct TrackingCounts {
   std::array<std::uint64_t, std::size(kUnfollowed)> unfollowed{};
   std::uint64_t waiting = 0;
   std::uint64_t untracked_searches = 0;  ///< Results of searches whose frame was not followed.
-
-  std::uint64_t sum_unfollowed() const {
-    return std::accumulate(unfollowed.begin(), unfollowed.end(), std::uint64_t{0});
-  }
 };
 
 /// Milliseconds of the last 1000 frames that were followed.

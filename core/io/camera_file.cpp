@@ -91,8 +91,4 @@ std::string camera_json(const Camera& camera, double depth_scale_mm) {
   return json.dump(2) + "\n";
 }
 
-Status write_camera(const std::string& path, const Camera& camera, double depth_scale_mm) {
-  return write_file(path, camera_json(camera, depth_scale_mm));
-}
-
 }  // namespace bpa::io

@@ -26,7 +26,5 @@ Result<CameraFile> read_camera(const std::string& path);
 
 /// The BOP form.
 std::string camera_json(const Camera& camera, double depth_scale_mm);
-/// Writes it.
-Status write_camera(const std::string& path, const Camera& camera, double depth_scale_mm);
 
 }  // namespace bpa::io

@@ -75,9 +75,8 @@ void for_each_difference(const CheckImage& image, const PredictedSurface& first,
   });
 }
 
-using Pixels = std::vector<Eigen::Vector2i>;
+}  // namespace
 
-// The pixels where the two disagree.
 Pixels disagreement(const CheckImage& image, const PredictedSurface& first,
                     const PredictedSurface& second) {
   Pixels pixels;
@@ -90,7 +89,6 @@ Pixels disagreement(const CheckImage& image, const PredictedSurface& first,
   return pixels;
 }
 
-// The log-likelihood ratio of the observed depths at these pixels.
 double depth_evidence(const CheckImage& image, const PredictedSurface& first,
                       const PredictedSurface& second, const Pixels& pixels) {
   double sum = 0;
@@ -103,6 +101,8 @@ double depth_evidence(const CheckImage& image, const PredictedSurface& first,
   }
   return sum;
 }
+
+namespace {
 
 // The same of colours: does the image show the object or what is around it?
 double color_evidence(const FigureColors& first, const FigureColors& second, const Pixels& pixels) {
@@ -119,11 +119,6 @@ double color_evidence(const FigureColors& first, const FigureColors& second, con
 }
 
 }  // namespace
-
-double rival_evidence(const CheckImage& image, const PredictedSurface& first,
-                      const PredictedSurface& second) {
-  return depth_evidence(image, first, second, disagreement(image, first, second));
-}
 
 std::vector<RivalEvidence> behind_best(const SceneFeatures& scene, const ObjectModel& model,
                                        std::span<const Pose> poses, std::size_t contenders) {

@@ -13,13 +13,17 @@
 
 namespace bpa {
 
-/// Log-likelihood ratio of the observed depths under two poses of one object; positive favours
-/// `first`. Sums over the pixels where the poses disagree: one predicts surface and the other,
-/// within 6 mm beside, none of that depth. A pixel that a pose does not cover may have any depth.
-/// Occluded pixels count for almost nothing. A visible handle favours the pose that predicts it
-/// there.
-double rival_evidence(const CheckImage& image, const PredictedSurface& first,
-                      const PredictedSurface& second);
+using Pixels = std::vector<Eigen::Vector2i>;
+
+/// Where two poses of one object disagree: one predicts surface and the other, within 6 mm beside,
+/// none of that depth.
+Pixels disagreement(const CheckImage& image, const PredictedSurface& first,
+                    const PredictedSurface& second);
+
+/// Log-likelihood ratio of the observed depths at these pixels; positive favours `first`. A pixel
+/// that a pose does not cover may have any depth. Occluded pixels count for almost nothing.
+double depth_evidence(const CheckImage& image, const PredictedSurface& first,
+                      const PredictedSurface& second, const Pixels& pixels);
 
 /// Log-likelihoods of one of several poses.
 struct RivalEvidence {

@@ -16,8 +16,6 @@ namespace bpa::sim {
 struct Material {
   double infrared = 0.7;  ///< Diffuse reflectance at 830 nm, in [0, 1]; below 0.2 is dark.
   double shine = 0.1;     ///< Mirror-like part, in [0, 1]; above 0.5 is shiny.
-
-  bool dark() const { return infrared < 0.2; }
 };
 
 /// The corners of a convex body; its hull is what collides.

@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <future>
 #include <mutex>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
@@ -74,7 +75,8 @@ class TrackingThread : public testing::Test {
       std::this_thread::sleep_for(milliseconds(1));
       counts = tracking_->counts();
     }
-    EXPECT_EQ(counts.received, counts.followed + counts.sum_unfollowed());
+    EXPECT_EQ(counts.received,
+              std::accumulate(counts.unfollowed.begin(), counts.unfollowed.end(), counts.followed));
     return counts;
   }
   static std::uint64_t unfollowed(const TrackingCounts& counts, Unfollowed cause) {

@@ -13,6 +13,7 @@
 #include "core/base/failure.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/camera_file.hpp"
+#include "core/io/file_bytes.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/model_file.hpp"
 #include "core/modeling/model_source.hpp"
@@ -82,7 +83,7 @@ class Doctor : public test::LScene {
       depth.pixels.push_back(static_cast<std::uint16_t>(std::lround(1000 * z)));
     }
     ASSERT_TRUE(io::write_gray_png(scratch("depth.png"), depth).ok());
-    ASSERT_TRUE(io::write_camera(scratch("camera.json"), frame.camera, 1).ok());
+    ASSERT_TRUE(io::write_file(scratch("camera.json"), io::camera_json(frame.camera, 1)).ok());
   }
 
   static std::vector<std::string> files(const std::string& camera = "camera.json") {
@@ -101,7 +102,7 @@ TEST_F(Doctor, SaysNothingOfGoodFiles) {
 
 TEST_F(Doctor, SaysWhatIsWrongWithFilesAndHowToMendIt) {
   Camera camera = test::kinect_camera();
-  ASSERT_TRUE(io::write_camera(scratch("unit.json"), camera, 1000).ok());
+  ASSERT_TRUE(io::write_file(scratch("unit.json"), io::camera_json(camera, 1000)).ok());
   DoctorReport outcome = doctor(files("unit.json"));
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.whats(), Whats{"depth is in the wrong unit"});
@@ -109,7 +110,7 @@ TEST_F(Doctor, SaysWhatIsWrongWithFilesAndHowToMendIt) {
   EXPECT_NE(outcome.text.find("\n  remedy: "), std::string::npos) << outcome.text;
 
   camera.cx = 600;
-  ASSERT_TRUE(io::write_camera(scratch("center.json"), camera, 1).ok());
+  ASSERT_TRUE(io::write_file(scratch("center.json"), io::camera_json(camera, 1)).ok());
   outcome = doctor(files("center.json"));
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.whats(), Whats{"the principal point is far from the centre"});

@@ -5,6 +5,7 @@
 
 #include "core/io/camera_file.hpp"
 #include "core/io/camera_poses_file.hpp"
+#include "core/io/file_bytes.hpp"
 #include "core/io/image_file.hpp"
 #include "tests/support/board_image.hpp"
 #include "tests/support/posed_models.hpp"
@@ -26,7 +27,7 @@ TEST(CalibrateBoard, WritesWhereTheCamerasAre) {
   const Camera& camera = test::kBoardCamera;
   const Pose left = test::look_at({0.1, -0.4, 0.5}, {0.1, -0.06, 0});
   const Pose right = test::look_at({0.5, 0.1, 0.4}, {0.1, -0.06, 0});
-  ASSERT_TRUE(io::write_camera(folder / "camera.json", camera, 1).ok());
+  ASSERT_TRUE(io::write_file(folder / "camera.json", io::camera_json(camera, 1)).ok());
   for (const auto& [name, pose] : {std::pair{"left", left}, std::pair{"right", right}}) {
     ASSERT_TRUE(io::write_color_png(folder / (std::string(name) + ".png"),
                                     {camera.width, camera.height, test::board_image(pose)})

@@ -8,7 +8,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 // Little-endian values one after the other. Only arrays that are read in place have padding.
 
@@ -18,14 +17,6 @@ static_assert(std::endian::native == std::endian::little, "values are written as
 
 inline void append(std::string& bytes, const auto& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-/// An array as its length (u64) and its values.
-template <class T>
-void append_array(std::string& bytes, const std::vector<T>& values) {
-  append(bytes, static_cast<std::uint64_t>(values.size()));
-  if (values.empty()) return;
-  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
 }
 
 /// Arrays that are read in place begin at multiples of this in their file, so that any element is
@@ -60,15 +51,6 @@ class ByteReader {
     T number = 0;
     copy(&number, 1);
     return number;
-  }
-  /// A length past the end takes no memory.
-  template <class T>
-  void array(std::vector<T>& out) {
-    const auto count = next<std::uint64_t>();
-    ok_ = ok_ && count <= bytes_.size() / sizeof(T);
-    if (!ok_) return;
-    out.resize(count);
-    copy(out.data(), out.size());
   }
   /// What append_aligned() wrote, in place: the bytes must outlive it. Their beginning must be
   /// aligned as the file's is; else, and past the end, it is empty.

@@ -231,9 +231,10 @@ TEST_F(SingleObject, OfPosesInOnePlaceTheBestIsBehindNone) {
     const double distance = (c.pose().translation - candidates[0].pose().translation).norm();
     if (distance > kSamePlace * l_->diameter || std::isnan(c.values[component("rivals")])) continue;
     EXPECT_LE(c.values[component("rivals")], 0);
-    const double evidence =
-        rival_evidence(scene.image, predict_whole_surface(scene.image, *l_, c.pose()), first);
-    EXPECT_LE(evidence, 10) << "better than what is called the best";
+    const PredictedSurface other = predict_whole_surface(scene.image, *l_, c.pose());
+    EXPECT_LE(depth_evidence(scene.image, other, first, disagreement(scene.image, other, first)),
+              10)
+        << "better than what is called the best";
     behind += c.values[component("rivals")] < -30;
   }
   EXPECT_GT(behind, 0);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/io/file_bytes.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace bpa::io {
@@ -13,7 +14,9 @@ using test::spill;
 
 TEST(CameraFile, BopJson) {
   const test::TemporaryFolder folder;
-  ASSERT_TRUE(write_camera(folder / "camera.json", {640, 480, 525.5, 526, 319.5, 239}, 0.1).ok());
+  ASSERT_TRUE(
+      write_file(folder / "camera.json", camera_json({640, 480, 525.5, 526, 319.5, 239}, 0.1))
+          .ok());
   const Result<CameraFile> file = read_camera(folder / "camera.json");
   ASSERT_TRUE(file.ok()) << file.status().message;
   EXPECT_EQ(file->camera.width, 640);

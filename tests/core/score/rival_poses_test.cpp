@@ -37,6 +37,11 @@ PredictedSurface square_at(int u, int v) { return rectangle_at(u, v, 10, 0.8f); 
 // 2012).
 constexpr double kKinectSigma = 0.0012 + 0.0019 * (0.8 - 0.4) * (0.8 - 0.4);
 
+double rival_evidence(const CheckImage& image, const PredictedSurface& first,
+                      const PredictedSurface& second) {
+  return depth_evidence(image, first, second, disagreement(image, first, second));
+}
+
 double against_nothing(float observed) {
   return rival_evidence(image_at(observed), square_at(10, 10), {});
 }

@@ -15,6 +15,7 @@
 #include "core/eval/pose_errors.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/camera_file.hpp"
+#include "core/io/file_bytes.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/mesh_file.hpp"
 #include "core/io/results.hpp"
@@ -97,7 +98,7 @@ class BadInput : public ::testing::Test {
     io::ColorImage color{160, 120, {}};
     color.pixels.assign(3 * 160 * 120, 100);
     ASSERT_TRUE(io::write_color_png(folder_ / "c.png", color).ok());
-    ASSERT_TRUE(io::write_camera(folder_ / "camera.json", kCamera, 1.0).ok());
+    ASSERT_TRUE(io::write_file(folder_ / "camera.json", io::camera_json(kCamera, 1.0)).ok());
   }
 
   void write_depth(const std::string& name, int width, int height, std::uint16_t value) {
@@ -118,7 +119,8 @@ class BadInput : public ::testing::Test {
 TEST_F(BadInput, DepthOfTheWrongSize) {
   write_depth("small.png", 80, 60, 700);
   expect_failure(detect("small.png"), {"depth", "80x60", "160x120"});
-  ASSERT_TRUE(io::write_camera(folder_ / "s.json", {80, 60, 70, 70, 40, 30}, 1.0).ok());
+  ASSERT_TRUE(
+      io::write_file(folder_ / "s.json", io::camera_json({80, 60, 70, 70, 40, 30}, 1.0)).ok());
   expect_failure(detect("small.png", "s.json"), {"depth", "80x60", "colour", "160x120"});
 }
 

@@ -25,6 +25,7 @@
 #include "core/cloud/frame.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/camera_file.hpp"
+#include "core/io/file_bytes.hpp"
 #include "core/io/image_file.hpp"
 #include "idl/wire/messages.hpp"
 #include "idl/wire/subscriber.hpp"
@@ -82,7 +83,7 @@ inline void write_scenes(const std::string& folder, const std::vector<Frame>& fr
 
 /// Adds the depth camera's own view of one frame, in millimetres.
 inline void write_infrared(const std::string& folder, const Frame& frame, int im_id) {
-  ASSERT_TRUE(io::write_camera(folder + "/camera_ir.json", frame.camera, 1.0).ok());
+  ASSERT_TRUE(io::write_file(folder + "/camera_ir.json", io::camera_json(frame.camera, 1.0)).ok());
   io::GrayImage image{frame.camera.width, frame.camera.height, {}};
   for (const float z : frame.depth) {
     image.pixels.push_back(static_cast<std::uint16_t>(std::lround(1000 * z)));
