@@ -129,14 +129,6 @@ void run_stages(std::span<const Stage> stages, std::span<Search> searches, int n
   for (Search& search : searches) search.deadline = deadline;
 }
 
-Candidates detect_object(Search search, ObjectTrace* trace) {
-  std::vector<Candidates> found(1);
-  std::vector<ObjectTrace> traces;
-  run_stages(kStages, {&search, 1}, 1, found, trace ? &traces : nullptr);
-  if (trace) *trace = std::move(traces.front());
-  return std::move(found.front());
-}
-
 TraceStage& ObjectTrace::stage(std::string_view name, std::string_view title,
                                std::string_view text) {
   const auto found = std::ranges::find(stages, name, &TraceStage::name);

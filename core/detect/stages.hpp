@@ -98,8 +98,4 @@ void run_stages(std::span<const Stage> stages, std::span<Search> searches, int n
                 std::vector<Candidates>& found, std::vector<ObjectTrace>* traces = nullptr,
                 const Compete& compete = contest_of);
 
-/// Runs all stages for one model on the scene's first sample: the best placements of the model
-/// (paper section V), best first.
-Candidates detect_object(Search search, ObjectTrace* trace = nullptr);
-
 }  // namespace bpa

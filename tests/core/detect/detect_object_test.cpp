@@ -12,6 +12,7 @@
 #include "core/detect/stages.hpp"
 #include "core/model/model_index.hpp"
 #include "core/score/rival_poses.hpp"
+#include "tests/support/all_stages.hpp"
 #include "tests/support/l_scene.hpp"
 
 namespace bpa {
@@ -23,7 +24,7 @@ TEST_F(SingleObject, BestPlacementIsTheTruth) {
   for (const float noise : {0.0f, 1.0f}) {
     const SceneFeatures scene = features_of(everything(), noise);
     for (const auto& [model, truth] : {std::pair(l_, l_truth_), std::pair(brick_, brick_truth_)}) {
-      const auto candidates = detect_object(Search(scene, *model));
+      const auto candidates = test::run_all_stages(Search(scene, *model));
       ASSERT_FALSE(candidates.empty()) << model->name;
       const PoseError error = pose_error(candidates[0].pose(), truth, model->symmetry);
       EXPECT_LT(error.position, 0.004) << model->name;
@@ -36,7 +37,7 @@ TEST_F(SingleObject, PlacementsAreRankedAndDistinct) {
   const SceneFeatures scene = features_of(everything(), 1);
   DetectPlan plan;
   plan.limits[Limit::selected] = -20;
-  const auto candidates = detect_object(Search(scene, *l_, plan));
+  const auto candidates = test::run_all_stages(Search(scene, *l_, plan));
   ASSERT_GT(candidates.size(), 1u);
   EXPECT_LE(candidates.size(), static_cast<std::size_t>(plan.select.max_placements));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -52,16 +53,16 @@ TEST_F(SingleObject, PlacementsAreRankedAndDistinct) {
     }
   }
   plan.select.max_placements = 1;
-  EXPECT_EQ(detect_object(Search(scene, *l_, plan)).size(), 1u);
+  EXPECT_EQ(test::run_all_stages(Search(scene, *l_, plan)).size(), 1u);
   plan.limits[Limit::selected] = 1e9;
-  EXPECT_TRUE(detect_object(Search(scene, *l_, plan)).empty());
+  EXPECT_TRUE(test::run_all_stages(Search(scene, *l_, plan)).empty());
 }
 
 TEST_F(SingleObject, SameSeedSameCandidates) {
   const SceneFeatures one = features_of(everything(), 1, 1);
   const SceneFeatures many = features_of(everything(), 1, 8);
-  const auto a = detect_object(Search(one, *l_));
-  const auto b = detect_object(Search(many, *l_));
+  const auto a = test::run_all_stages(Search(one, *l_));
+  const auto b = test::run_all_stages(Search(many, *l_));
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].pose().translation, b[i].pose().translation);
@@ -74,8 +75,8 @@ TEST_F(SingleObject, SameSeedSameCandidates) {
 TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
   const SceneFeatures scene = features_of(everything(), 1);
   ObjectTrace trace;
-  const auto traced = detect_object(Search(scene, *l_), &trace);
-  const auto plain = detect_object(Search(scene, *l_));
+  const auto traced = test::run_all_stages(Search(scene, *l_), &trace);
+  const auto plain = test::run_all_stages(Search(scene, *l_));
   ASSERT_EQ(traced.size(), plain.size());
   for (std::size_t i = 0; i < plain.size(); ++i) {
     EXPECT_EQ(traced[i].pose().translation, plain[i].pose().translation);
@@ -157,9 +158,9 @@ TEST_F(SingleObject, StoppingEarlyLosesNoProbablePlacement) {
   plan.limits[Limit::selected] = -5;
   for (const auto& model : {l_, brick_}) {
     plan.score.stop_early = true;
-    const auto early = detect_object(Search(scene, *model, plan));
+    const auto early = test::run_all_stages(Search(scene, *model, plan));
     plan.score.stop_early = false;
-    const auto whole = detect_object(Search(scene, *model, plan));
+    const auto whole = test::run_all_stages(Search(scene, *model, plan));
     ASSERT_FALSE(whole.empty()) << model->name;
     ASSERT_EQ(early.size(), whole.size()) << model->name;
     for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -173,7 +174,7 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
   const SceneFeatures scene = features_of(everything(), 1);
   DetectOptions options;
   options.score.use_round_three = false;
-  const auto candidates = detect_object(Search(scene, *l_, options));
+  const auto candidates = test::run_all_stages(Search(scene, *l_, options));
   ASSERT_FALSE(candidates.empty());
   EXPECT_LT(pose_error(candidates[0].pose(), l_truth_, l_->symmetry).position, 0.01);
   const std::set<std::string> third = {"edge_likelihood",
@@ -221,7 +222,7 @@ TEST_F(SingleObject, OfPosesInOnePlaceTheBestIsBehindNone) {
   DetectPlan plan;
   plan.margins.rival = 1000;
   plan.limits[Limit::compared] = -1000;
-  const auto candidates = detect_object(Search(scene, *l_, plan));
+  const auto candidates = test::run_all_stages(Search(scene, *l_, plan));
   ASSERT_FALSE(candidates.empty());
   EXPECT_LT(pose_error(candidates[0].pose(), l_truth_, l_->symmetry).position, 0.01);
   EXPECT_GT(candidates[0].values[component("rivals")], -10);
@@ -242,14 +243,14 @@ TEST_F(SingleObject, OfPosesInOnePlaceTheBestIsBehindNone) {
 
 TEST_F(SingleObject, EmptyTableHoldsNothingProbable) {
   const SceneFeatures scene = features_of(table_only());
-  for (const Candidate& c : detect_object(Search(scene, *l_))) {
+  for (const Candidate& c : test::run_all_stages(Search(scene, *l_))) {
     EXPECT_LT(c.probability, 0.5);
   }
 }
 
 TEST_F(SingleObject, UncertaintyIsReportedInBothForms) {
   const SceneFeatures scene = features_of(everything(), 1);
-  const auto candidates = detect_object(Search(scene, *l_));
+  const auto candidates = test::run_all_stages(Search(scene, *l_));
   ASSERT_FALSE(candidates.empty());
   const Placement placement = to_placement(candidates[0]);
   EXPECT_EQ(placement.model, "l");

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "core/detect/stages.hpp"
+#include "tests/support/all_stages.hpp"
 #include "tests/support/l_scene.hpp"
 
 namespace bpa {
@@ -217,7 +218,8 @@ TEST_F(PriorsOf, DecideBetweenPosesThatLookTheSame) {
   const auto brick = ambiguous_brick();
   const Pose turned_over = brick_truth_ * Pose{Eigen::Quaterniond(0, 0, 0, 1), {0, 0, 0}};
   std::vector<PosePrior> given = {prior_at("brick", turned_over)};
-  const auto candidates = detect_object(Search(scene, *brick, {}, default_score_layers(), given));
+  const auto candidates =
+      test::run_all_stages(Search(scene, *brick, {}, default_score_layers(), given));
   ASSERT_FALSE(candidates.empty());
   const PoseError error = pose_error(candidates[0].pose(), turned_over);
   EXPECT_LT(error.position, 0.005);
@@ -247,7 +249,8 @@ TEST_F(PriorsOf, WrongOnesDoNotHideAClearObject) {
   Pose elsewhere = l_truth_;
   elsewhere.translation.x() += 0.3;
   std::vector<PosePrior> given = {prior_at("l", elsewhere, 0.02, 0.1)};
-  const auto candidates = detect_object(Search(scene, *l_, {}, default_score_layers(), given));
+  const auto candidates =
+      test::run_all_stages(Search(scene, *l_, {}, default_score_layers(), given));
   ASSERT_FALSE(candidates.empty());
   const PoseError error = pose_error(candidates[0].pose(), l_truth_, l_->symmetry);
   EXPECT_LT(error.position, 0.005);
@@ -259,11 +262,12 @@ TEST_F(PriorsOf, WrongOnesDoNotHideAClearObject) {
 TEST_F(PriorsOf, FindWhatFeaturesDoNot) {
   SceneFeatures scene = features_of(everything(), 1);
   scene.sample = {};
-  ASSERT_TRUE(detect_object(Search(scene, *l_)).empty()) << "nothing suggests a pose";
+  ASSERT_TRUE(test::run_all_stages(Search(scene, *l_)).empty()) << "nothing suggests a pose";
   // Off by what a tracker is off by.
   std::vector<PosePrior> given = {
       prior_at("l", test::disturbed(l_truth_, 0.02, 0.2, 5), 0.02, 0.2)};
-  const auto candidates = detect_object(Search(scene, *l_, {}, default_score_layers(), given));
+  const auto candidates =
+      test::run_all_stages(Search(scene, *l_, {}, default_score_layers(), given));
   ASSERT_FALSE(candidates.empty());
   const PoseError error = pose_error(candidates[0].pose(), l_truth_, l_->symmetry);
   EXPECT_LT(error.position, 0.005);
@@ -277,7 +281,8 @@ TEST_F(PriorsOf, FindWhatFeaturesDoNot) {
     given = {prior};
     DetectOptions options;
     options.sample.draws_per_prior = 1000;
-    const auto found = detect_object(Search(scene, *l_, options, default_score_layers(), given));
+    const auto found =
+        test::run_all_stages(Search(scene, *l_, options, default_score_layers(), given));
     EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const Candidate& c) {
       return pose_error(c.pose(), l_truth_, l_->symmetry).position < 0.01;
     })) << (prior.position ? "position" : "orientation");

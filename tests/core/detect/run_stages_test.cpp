@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/detect/stages.hpp"
+#include "tests/support/all_stages.hpp"
 #include "tests/support/l_scene.hpp"
 
 namespace bpa {
@@ -99,8 +100,8 @@ TEST_F(RunStages, OneModelAfterAnotherFindsTheSameUnlessTheyCompete) {
   auto searches = searches_in(scene, options);
   std::vector<Candidates> found(2);
   run_stages(detection_stages(), searches, 2, found);
-  const Candidates alone[] = {detect_object(Search(scene, *l_, options)),
-                              detect_object(Search(scene, *brick_, options))};
+  const Candidates alone[] = {test::run_all_stages(Search(scene, *l_, options)),
+                              test::run_all_stages(Search(scene, *brick_, options))};
   for (std::size_t m = 0; m < 2; ++m) {
     ASSERT_EQ(found[m].size(), alone[m].size());
     for (std::size_t i = 0; i < found[m].size(); ++i) {
