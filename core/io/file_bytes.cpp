@@ -3,10 +3,8 @@
 #include "core/io/file_bytes.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cctype>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -16,6 +14,8 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#define XXH_INLINE_ALL  // nothing to link
+#include <xxhash.h>
 #include <zlib.h>
 
 #include "core/base/concat.hpp"
@@ -23,25 +23,6 @@
 namespace bpa::io {
 namespace fs = std::filesystem;
 namespace {
-
-// XXH64: its primes, and the mixing of eight bytes into a lane.
-constexpr std::uint64_t kPrime1 = 0x9E3779B185EBCA87, kPrime2 = 0xC2B2AE3D27D4EB4F,
-                        kPrime3 = 0x165667B19E3779F9, kPrime4 = 0x85EBCA77C2B2AE63,
-                        kPrime5 = 0x27D4EB2F165667C5;
-
-std::uint64_t mixed(std::uint64_t lane, std::uint64_t word) {
-  return std::rotl(lane + word * kPrime2, 31) * kPrime1;
-}
-
-// The next bytes of `left` as a little-endian number.
-template <class Number>
-std::uint64_t take(std::string_view& left) {
-  static_assert(std::endian::native == std::endian::little);
-  Number number = 0;
-  std::memcpy(&number, left.data(), sizeof number);
-  left.remove_prefix(sizeof number);
-  return number;
-}
 
 // A file descriptor that closes itself.
 struct Descriptor {
@@ -165,35 +146,7 @@ std::uint32_t crc32(std::string_view bytes, std::uint32_t seed) {
   return static_cast<std::uint32_t>(::crc32_z(seed, data, bytes.size()));
 }
 
-std::uint64_t xxh64(std::string_view bytes) {
-  std::string_view left = bytes;
-  std::uint64_t hash = kPrime5;
-  constexpr std::size_t kStripe = 32;
-  if (left.size() >= kStripe) {
-    std::uint64_t a = kPrime1 + kPrime2, b = kPrime2, c = 0, d = 0 - kPrime1;
-    while (left.size() >= kStripe) {
-      a = mixed(a, take<std::uint64_t>(left));
-      b = mixed(b, take<std::uint64_t>(left));
-      c = mixed(c, take<std::uint64_t>(left));
-      d = mixed(d, take<std::uint64_t>(left));
-    }
-    hash = std::rotl(a, 1) + std::rotl(b, 7) + std::rotl(c, 12) + std::rotl(d, 18);
-    for (const std::uint64_t lane : {a, b, c, d}) {
-      hash = (hash ^ mixed(0, lane)) * kPrime1 + kPrime4;
-    }
-  }
-  hash += bytes.size();
-  while (left.size() >= 8) {
-    hash = std::rotl(hash ^ mixed(0, take<std::uint64_t>(left)), 27) * kPrime1 + kPrime4;
-  }
-  if (left.size() >= 4) {
-    hash = std::rotl(hash ^ take<std::uint32_t>(left) * kPrime1, 23) * kPrime2 + kPrime3;
-  }
-  while (!left.empty()) hash = std::rotl(hash ^ take<std::uint8_t>(left) * kPrime5, 11) * kPrime1;
-  hash = (hash ^ hash >> 33) * kPrime2;
-  hash = (hash ^ hash >> 29) * kPrime3;
-  return hash ^ hash >> 32;
-}
+std::uint64_t xxh64(std::string_view bytes) { return XXH64(bytes.data(), bytes.size(), 0); }
 
 std::string lower_extension(const std::string& path) {
   std::string extension = fs::path(path).extension().string();
