@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include "tests/support/all_stages.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
@@ -12,7 +14,6 @@
 #include "core/detect/stages.hpp"
 #include "core/model/model_index.hpp"
 #include "core/score/rival_poses.hpp"
-#include "tests/support/all_stages.hpp"
 #include "tests/support/l_scene.hpp"
 
 namespace bpa {
