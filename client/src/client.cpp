@@ -16,7 +16,7 @@
 #include "idl/wire/service.hpp"
 #include "idl/wire/status.hpp"
 #include "idl/wire/subscriber.hpp"
-#include "idl/wire/worker.hpp"
+#include "idl/wire/task_thread.hpp"
 
 namespace bpa {
 namespace {
@@ -123,7 +123,7 @@ struct Client::Impl {
   std::optional<wire::Publisher<msgs::RgbdFrame>> frames = {};
   bool listened = false;  ///< The server has told that it takes our frames.
   /// So that a slow callback never holds up DDS.
-  wire::Worker callbacks{{}, kMaxWaitingCallbacks};
+  wire::TaskThread callbacks{{}, kMaxWaitingCallbacks};
   // Last: they give the thread above work until they are destroyed.
   std::optional<wire::Subscriber<msgs::SceneInterpretations>> results = {};
   std::optional<wire::Subscriber<wire::sensor_msgs::Image>> images = {};
@@ -183,7 +183,8 @@ Status Client::Impl::subscribe(std::optional<wire::Subscriber<Message>>& slot, c
         using Value = std::decay_t<decltype(convert(std::move(message)))>;
         auto value = std::make_shared<const Value>(convert(std::move(message)));
         // What the user's function throws is the user's: it ends the program.
-        callbacks.run_at(wire::Worker::Clock::now(), [call, value]() noexcept { call(*value); });
+        callbacks.run_at(wire::TaskThread::Clock::now(),
+                         [call, value]() noexcept { call(*value); });
       });
   if (!subscriber.ok()) return subscriber.status();
   slot.emplace(std::move(subscriber).value());

@@ -65,7 +65,7 @@ struct SubscriberOptions {
   Qos qos = qos::sensor_input();
 };
 
-class Worker;
+class TaskThread;
 
 namespace detail {
 
@@ -191,7 +191,7 @@ class PeerCounts {
 
 /// What services need of their participant.
 const LogHook& participant_log(const Participant& participant);
-Worker& participant_worker(const Participant& participant);
+TaskThread& participant_tasks(const Participant& participant);
 
 Result<std::unique_ptr<RawWriter>> make_writer(const Participant& participant, EndpointSpec spec);
 Result<std::unique_ptr<RawReader>> make_reader(const Participant& participant, EndpointSpec spec,

@@ -10,12 +10,12 @@
 #include "core/base/guarded.hpp"
 #include "idl/wire/private/service_framing.hpp"
 #include "idl/wire/service.hpp"
-#include "idl/wire/worker.hpp"
+#include "idl/wire/task_thread.hpp"
 
 namespace bpa::wire::detail {
 namespace {
 
-using Clock = Worker::Clock;
+using Clock = TaskThread::Clock;
 using std::chrono::milliseconds;
 using Bytes = std::vector<std::uint8_t>;
 
@@ -204,9 +204,9 @@ class Server : public RawServer, public std::enable_shared_from_this<Server> {
     return writer.write(bytes_ref(reply.bytes), beside ? &reply.address.related : nullptr, nullptr);
   }
 
-  /// Runs it later on the worker, if the server still exists.
+  /// Runs it later on the task thread, if the server still exists.
   void run_after(milliseconds time, std::function<void(Server&)> task) {
-    participant_worker(participant_)
+    participant_tasks(participant_)
         .run_at(Clock::now() + time, [weak = weak_from_this(), task = std::move(task)] {
           if (const auto self = weak.lock()) task(*self);
         });
@@ -286,7 +286,7 @@ Result<std::shared_ptr<RawServer>> make_server(const Participant& participant,
   auto server =
       std::make_shared<Server>(participant, spec.request.dds_topic, max_request, std::move(decode));
   if (Status s = server->open(spec); !s.ok()) return s;
-  // What waits on the worker may hold the server for longer than its owner does.
+  // What waits on the task thread may hold the server for longer than its owner does.
   return std::shared_ptr<RawServer>(server.get(), [server](RawServer*) { server->stop(); });
 }
 

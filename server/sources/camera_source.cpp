@@ -10,8 +10,8 @@
 #include "core/base/concat.hpp"
 #include "core/io/file_bytes.hpp"
 #include "idl/wire/messages.hpp"
+#include "idl/wire/task_thread.hpp"
 #include "idl/wire/time.hpp"
-#include "idl/wire/worker.hpp"
 #include "server/convert/results.hpp"
 #include "server/options.hpp"
 #include "server/output.hpp"
@@ -34,7 +34,7 @@ class CameraPublisher {
  public:
   /// Throws a Failure.
   CameraPublisher(const wire::Participant& participant, const CaptureOptions& options, LogHook log)
-      : log_(std::move(log)), worker_(log_, 1) {
+      : log_(std::move(log)), sender_(log_, 1) {
     const wire::Qos qos = wire::qos::frames();
     color_.open(participant, options.color_topic, qos);
     depth_.open(participant, options.depth_topic, qos);
@@ -49,7 +49,8 @@ class CameraPublisher {
         !points_.wanted()) {
       return;
     }
-    if (!worker_.run_at(wire::Worker::Clock::now(), [this, images] { send(images); })) ++dropped_;
+    const auto now = wire::TaskThread::Clock::now();
+    if (!sender_.run_at(now, [this, images] { send(images); })) ++dropped_;
   }
   /// Sets of images that gave way to newer ones.
   std::uint64_t dropped() const { return dropped_; }
@@ -73,7 +74,7 @@ class CameraPublisher {
   Output<wire::sensor_msgs::CameraInfo> color_info_, depth_info_;
   Output<wire::sensor_msgs::PointCloud2> points_;
   std::atomic<std::uint64_t> dropped_{0};
-  wire::Worker worker_;  ///< Last: ends while all else is there.
+  wire::TaskThread sender_;  ///< Last: ends while all else is there.
 };
 
 IncomingFrame incoming(const CameraImages& images) {

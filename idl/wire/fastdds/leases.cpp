@@ -53,7 +53,7 @@ void Leases::close() {
 void Leases::look_later() {
   if (looks_ || peers_.empty()) return;
   looks_ = true;
-  worker_.run_at(Clock::now() + kBetweenLooks, [this] { look(); });
+  tasks_.run_at(Clock::now() + kBetweenLooks, [this] { look(); });
 }
 
 void Leases::look() {

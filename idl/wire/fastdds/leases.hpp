@@ -12,7 +12,7 @@
 
 #include "idl/wire/fastdds/version.hpp"
 #include "idl/wire/private/announcements.hpp"
-#include "idl/wire/worker.hpp"
+#include "idl/wire/task_thread.hpp"
 
 #if BPA_FASTDDS_MAJOR >= 3
 #include <fastdds/rtps/transport/ChainingTransport.hpp>
@@ -47,7 +47,7 @@ class Leases {
     rtps::Locator_t local, remote;
   };
 
-  explicit Leases(Worker& worker) : worker_(worker) {}
+  explicit Leases(TaskThread& tasks) : tasks_(tasks) {}
 
   /// Notes the packet's sender. True when `changed` is what goes on in place of the packet.
   bool note(const Packet& packet, std::vector<rtps::octet>& changed);
@@ -55,7 +55,7 @@ class Leases {
   void close();
 
  private:
-  using Clock = Worker::Clock;
+  using Clock = TaskThread::Clock;
   struct Peer {
     Clock::time_point heard;
     Clock::duration lease{};
@@ -68,7 +68,7 @@ class Leases {
   void look_later();
   void look();
 
-  Worker& worker_;
+  TaskThread& tasks_;
   std::mutex leaving_mutex_;  // held while a peer is said to leave; before the other
   std::mutex mutex_;
   bool closed_ = false;

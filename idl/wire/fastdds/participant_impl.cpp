@@ -144,7 +144,7 @@ ParticipantImpl::ParticipantImpl(ParticipantOptions options, Discovery discovery
       discovery_(std::move(discovery)),
       enclave_(std::move(enclave)),
       listener_(std::make_unique<Listener>(*this)),
-      worker_(options_.log) {}
+      tasks_(options_.log) {}
 
 Status ParticipantImpl::start() {
   auto* factory = dds::DomainParticipantFactory::get_instance();
@@ -372,7 +372,7 @@ void ParticipantImpl::on_peer(const Peer& peer) {
   if (peer.change == Peer::Change::came) check_servers(peer);
   if (graph_layout() == before) return;
   // Not from here: the caller holds the locks of the discovery protocol.
-  worker_.run_at(Worker::Clock::now(), [this] { publish_graph(); });
+  tasks_.run_at(TaskThread::Clock::now(), [this] { publish_graph(); });
 }
 
 }  // namespace detail
@@ -457,8 +457,8 @@ const LogHook& detail::participant_log(const Participant& participant) {
   return participant.impl()->options().log;
 }
 
-Worker& detail::participant_worker(const Participant& participant) {
-  return participant.impl()->worker();
+TaskThread& detail::participant_tasks(const Participant& participant) {
+  return participant.impl()->tasks();
 }
 
 }  // namespace bpa::wire

@@ -21,7 +21,7 @@
 #include "idl/wire/participant.hpp"
 #include "idl/wire/private/enclave.hpp"
 #include "idl/wire/private/graph.hpp"
-#include "idl/wire/worker.hpp"
+#include "idl/wire/task_thread.hpp"
 
 // Private to idl/wire/fastdds, the only folder that includes Fast DDS.
 
@@ -55,7 +55,7 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
 
   dds::Publisher* publisher() { return publisher_; }
   dds::Subscriber* subscriber() { return subscriber_; }
-  Worker& worker() { return worker_; }
+  TaskThread& tasks() { return tasks_; }
   Guid guid() const { return participant_of(to_guid(participant_->guid())); }
 
   /// Makes an endpoint on its topic and lists it in the graph. `make` makes the DDS entity and
@@ -119,8 +119,8 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
   Guid ours_{};                                   // our participant, entity 0
   std::set<Guid> rivals_;                         // participants that offer one of them, too
 
-  const std::shared_ptr<Leases> leases_ = std::make_shared<Leases>(worker_);
-  Worker worker_;  // last: its tasks use the others
+  const std::shared_ptr<Leases> leases_ = std::make_shared<Leases>(tasks_);
+  TaskThread tasks_;  // last: its tasks use the others
 };
 
 /// As make_writer, for a participant that is not public yet.

@@ -19,23 +19,24 @@
 namespace bpa::wire {
 
 /// One thread that runs tasks at their time. What a DDS callback must not do itself goes here.
-class Worker {
+class TaskThread {
  public:
   using Clock = std::chrono::steady_clock;
 
   /// When more than `max_waiting` tasks wait, the one that is due first is dropped. `log` is told
   /// what a task throws.
-  explicit Worker(LogHook log, std::size_t max_waiting = std::numeric_limits<std::size_t>::max())
+  explicit TaskThread(LogHook log,
+                      std::size_t max_waiting = std::numeric_limits<std::size_t>::max())
       : max_waiting_(max_waiting),
         thread_([state = state_, log = std::move(log)] { loop(*state, log); }) {}
   /// Drops what has not run yet and waits for what is running, unless that is the caller.
-  ~Worker() {
+  ~TaskThread() {
     {
       const std::lock_guard<std::mutex> lock(state_->mutex);
       state_->stop = true;
     }
     state_->wake.notify_all();
-    // A task may have been the last to hold what owns the worker.
+    // A task may have been the last to hold what owns the thread.
     if (thread_.get_id() == std::this_thread::get_id()) {
       thread_.detach();
     } else {
