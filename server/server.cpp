@@ -33,6 +33,7 @@
 #include "server/participant_options.hpp"
 #include "server/result_publisher.hpp"
 #include "server/ros_clock.hpp"
+#include "server/search_queue.hpp"
 #include "server/services/services.hpp"
 #include "server/settings.hpp"
 #include "server/sources/frame_source.hpp"
@@ -44,7 +45,6 @@
 #include "server/web/feed.hpp"
 #include "server/web/page.hpp"
 #include "server/web/recent_log.hpp"
-#include "server/worker.hpp"
 
 #ifndef BPA_VERSION
 #define BPA_VERSION "0"
@@ -65,7 +65,7 @@ int frame_capacity(const ServerOptions& options) {
   return std::max(options.queue.frames, options.detection.fuse_frames);
 }
 
-WorkerOptions search_options(const ServerOptions& options) {
+SearchQueueOptions search_options(const ServerOptions& options) {
   const DetectionOptions& detection = options.detection;
   return {.frame_capacity = static_cast<std::size_t>(frame_capacity(options)),
           .request_capacity = static_cast<std::size_t>(options.queue.requests),
@@ -100,7 +100,7 @@ class Running : public Server {
               [clock = clock_] { return clock->stamp_ns(); }) {}
 
   ~Running() override {
-    if (worker_) worker_->stop();  // answers what waits, while the services can still send it
+    if (queue_) queue_->stop();  // answers what waits, while the services can still send it
     const std::lock_guard<std::shared_mutex> lock(leaving_mutex_);
     ready_ = false;
     open_page_ = nullptr;
@@ -121,8 +121,8 @@ class Running : public Server {
       recognition_->join_group(*participant_, options.group, log_);
     }
     start_tracking(options);
-    worker_ = std::make_unique<Worker>(
-        recognition_, worker_options(options), statistics_,
+    queue_ = std::make_unique<SearchQueue>(
+        recognition_, queue_options(options), statistics_,
         [this](const IncomingFrame& incoming, const Frame* frame,
                const Result<SceneInterpretations>& result) { on_result(incoming, frame, result); },
         log_, steady_clock(), clock_);
@@ -154,11 +154,11 @@ class Running : public Server {
     return {};
   }
 
-  void leave_to_another() override { worker_->leave_to_another(); }
+  void leave_to_another() override { queue_->leave_to_another(); }
 
   void abandon(const Status& why) override {
     log(log_, LogLevel::error, why.message + "; the server ends");
-    worker_->abandon(why);
+    queue_->abandon(why);
     {
       const std::lock_guard<std::shared_mutex> lock(leaving_mutex_);
       ready_ = false;
@@ -177,7 +177,7 @@ class Running : public Server {
  private:
   /// What each thread that must not hang does now. The caller holds leaving_mutex_.
   std::vector<const Busy*> threads() const {
-    std::vector<const Busy*> threads = worker_->threads();
+    std::vector<const Busy*> threads = queue_->threads();
     threads.insert(threads.end(), {&tracking_->busy(), &reporting_});
     if (ready_) threads.insert(threads.end(), {&services_->busy(), &parameters_->busy()});
     if (web::Page* page = open_page_) threads.push_back(&page->busy());
@@ -212,16 +212,16 @@ class Running : public Server {
                         tracking_->transforms());
   }
 
-  WorkerOptions worker_options(const ServerOptions& options) const {
-    WorkerOptions worker = search_options(options);
-    worker.camera = [this](const std::string& frame_id, std::int64_t stamp_ns) {
+  SearchQueueOptions queue_options(const ServerOptions& options) const {
+    SearchQueueOptions queue = search_options(options);
+    queue.camera = [this](const std::string& frame_id, std::int64_t stamp_ns) {
       return camera_at(settings_.get()->tracking.fixed_frame, frame_id, stamp_ns);
     };
-    worker.expected = [this](const std::string& frame_id) { return tracking_->expected(frame_id); };
-    worker.tracked = [this] { return tracking_->active(); };
-    worker.on_round = [this](const SceneInterpretations& found) { tracking_->add(found); };
-    worker.added_nice = options.tracking.search_nice;
-    return worker;
+    queue.expected = [this](const std::string& frame_id) { return tracking_->expected(frame_id); };
+    queue.tracked = [this] { return tracking_->active(); };
+    queue.on_round = [this](const SceneInterpretations& found) { tracking_->add(found); };
+    queue.added_nice = options.tracking.search_nice;
+    return queue;
   }
 
   /// Hands a frame to the search and to the tracker. The search first: what it displaces there may
@@ -241,7 +241,7 @@ class Running : public Server {
       statistics_.add(&Counts::frames_dropped);
       statistics_.add(&Counts::frames_at_rest);
     } else {
-      worker_->push(std::move(incoming));
+      queue_->push(std::move(incoming));
     }
     tracking_->push(std::move(tracked));
   }
@@ -277,7 +277,7 @@ class Running : public Server {
     all.frame_id = settings_.get()->tracking.fixed_frame;
     for (const IncomingFrame& view : *views) all.stamp_ns = std::max(all.stamp_ns, view.stamp_ns);
     all.views = *std::move(views);
-    worker_->push(std::move(all));
+    queue_->push(std::move(all));
   }
 
   void start_sources(const ServerOptions& options) {
@@ -293,7 +293,7 @@ class Running : public Server {
     topics_ = source.get();
     sources_.push_back(std::move(source));
     if (options.capture.source.empty()) return;
-    const auto idle = [this] { return worker_->queue_length() == 0; };
+    const auto idle = [this] { return queue_->length() == 0; };
     sources_.push_back(open_camera_source(*participant_, options.capture, on_frame, idle, log_));
   }
 
@@ -307,7 +307,7 @@ class Running : public Server {
     Status status = clock_->simulate(*participant_, after.node.use_sim_time);
     if (!status.ok()) return status;
     tracking_->set_options(after.tracking);
-    worker_->set_options(worker_options(after));
+    queue_->set_options(queue_options(after));
     topics_->set_options(after.input);
     relay_.set_level(log_level(after.log.level));
     return {};
@@ -316,7 +316,7 @@ class Running : public Server {
   ServiceContext context() {
     return {settings_,
             recognition_,
-            *worker_,
+            *queue_,
             statistics_,
             [this] {
               statistics_.forget_timings();
@@ -426,7 +426,7 @@ class Running : public Server {
             .frames_rejected = counts.frames_rejected,
             .requests_served = counts.requests_served,
             .requests_refused = counts.requests_refused,
-            .queue_length = static_cast<std::uint32_t>(worker_->queue_length()),
+            .queue_length = static_cast<std::uint32_t>(queue_->length()),
             .queue_capacity =
                 static_cast<std::uint32_t>(frame_capacity(*options) + options->queue.requests),
             .model_count = static_cast<std::uint32_t>(recognition_->models().size()),
@@ -559,7 +559,7 @@ class Running : public Server {
   std::unique_ptr<TrackPublisher> track_publisher_;
   std::unique_ptr<Tracking> tracking_;
   std::optional<TransformSource> transforms_;
-  std::unique_ptr<Worker> worker_;
+  std::unique_ptr<SearchQueue> queue_;
   std::map<std::string, Pose> camera_poses_;     ///< By frame_id, in tracking.fixed_frame.
   std::optional<ViewGate<IncomingFrame>> gate_;  ///< Of the cameras of one scene.
   std::vector<std::shared_ptr<FrameSource>> sources_;

@@ -71,7 +71,7 @@ msgs::Detect_Response answer_of(const Recognition& recognition, const DetectJob&
   return response;
 }
 
-/// A change of the library: `change(request, response)`, when its turn comes on the worker.
+/// A change of the library: `change(request, response)`, when its turn comes.
 template <class Service, class Change>
 void change_library(const ServiceContext& context, const Asker& asker, const char* name,
                     Change change, typename Service::Request request,
@@ -96,7 +96,7 @@ void change_library(const ServiceContext& context, const Asker& asker, const cha
     typename Service::Response response;
     finish(status, response);
   };
-  context.worker.run_later(asker.client, {work, refuse});
+  context.queue.run_later(asker.client, {work, refuse});
 }
 
 /// A service that changes the library.
@@ -132,7 +132,7 @@ Result<DetectJob> detect_job(msgs::Detect_Request&& request, const DetectionOpti
 }
 
 Status submit(const ServiceContext& context, Result<DetectJob> job) {
-  Status status = job.ok() ? context.worker.push(std::move(job).value()) : job.status();
+  Status status = job.ok() ? context.queue.push(std::move(job).value()) : job.status();
   if (!status.ok()) context.statistics.add(&Counts::requests_refused);
   return status;
 }

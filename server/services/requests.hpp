@@ -13,9 +13,9 @@
 #include "idl/wire/endpoint.hpp"
 #include "idl/wire/msg/bpa_msgs.hpp"
 #include "server/recognition.hpp"
+#include "server/search_queue.hpp"
 #include "server/settings.hpp"
 #include "server/statistics.hpp"
-#include "server/worker.hpp"
 
 // What requests do, however they come: over DDS (services.hpp) or from the page (server/web).
 
@@ -25,7 +25,7 @@ namespace bpa::server {
 struct ServiceContext {
   const Settings& settings;
   std::shared_ptr<Recognition> recognition;
-  Worker& worker;
+  SearchQueue& queue;
   Statistics& statistics;
   /// To be called after a model came or went.
   std::function<void()> library_changed;
@@ -61,12 +61,12 @@ Result<DetectRequest> search_of(const Request& request, const DetectionOptions& 
 /// and `done` are left to the caller. Fails with invalid_argument.
 Result<DetectJob> detect_job(wire::bpa_msgs::Detect_Request&& request,
                              const DetectionOptions& options);
-/// Hands a job to the worker, or says why not and counts the refusal; `done` is not called then.
+/// Hands a job to the queue, or says why not and counts the refusal; `done` is not called then.
 Status submit(const ServiceContext& context, Result<DetectJob> job);
 
 wire::bpa_msgs::ListModels_Response list_models(const Recognition& recognition,
                                                 const std::vector<std::string>& names);
-/// These two wait for their turn on the worker: loading takes seconds.
+/// These two wait for their turn in the queue: loading takes seconds.
 void load_model(const ServiceContext& context, const Asker& asker,
                 wire::bpa_msgs::LoadModel_Request request,
                 const Answer<wire::bpa_msgs::LoadModel>& answer);

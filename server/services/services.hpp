@@ -163,7 +163,7 @@ void add_detect(const ServiceContext& context, ServiceSet& services);
 using FindCamera = std::function<Result<Pose>(const std::string& fixed_frame,
                                               const std::string& frame_id, std::int64_t stamp_ns)>;
 
-/// Offers `detect_views`, whose searches take turns with changes of the library on the worker.
+/// Offers `detect_views`, whose searches take turns with changes of the library.
 void add_detect_views(const ServiceContext& context, FindCamera camera, ServiceSet& services);
 /// Offers `list_models`, `load_model` and `unload_model`.
 void add_library_services(const ServiceContext& context, ServiceSet& services);

@@ -121,7 +121,7 @@ void add_detect_views(const ServiceContext& context, FindCamera camera, ServiceS
           reply.guard([&] { answer(context, camera, *own, reply); });
         };
         const auto refuse = [reply](const Status& status) { reply.refuse(status); };
-        context.worker.run_later(reply.client(), {work, refuse});
+        context.queue.run_later(reply.client(), {work, refuse});
       },
       kMaxViewsRequest);
 }

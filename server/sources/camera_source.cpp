@@ -15,9 +15,9 @@
 #include "server/convert/results.hpp"
 #include "server/options.hpp"
 #include "server/output.hpp"
+#include "server/search_queue.hpp"
 #include "server/services/services.hpp"
 #include "server/sources/frame_source.hpp"
-#include "server/worker.hpp"
 
 namespace bpa::server {
 namespace {

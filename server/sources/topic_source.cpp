@@ -12,8 +12,8 @@
 #include "idl/wire/messages.hpp"
 #include "idl/wire/subscriber.hpp"
 #include "server/options.hpp"
+#include "server/search_queue.hpp"
 #include "server/sources/frame_source.hpp"
-#include "server/worker.hpp"
 
 namespace bpa::server {
 namespace {
@@ -30,7 +30,7 @@ SynchronizerOptions synchronizer_options(const InputOptions& options) {
           static_cast<std::size_t>(options.sync_queue)};
 }
 
-/// A whole frame; `convert` runs on the worker.
+/// A whole frame; `convert` runs on a search thread.
 IncomingFrame incoming(auto message, auto convert) {
   IncomingFrame frame{{}, to_ns(message.header.stamp), message.header.frame_id};
   frame.decode = [message = std::move(message), convert]() mutable {
@@ -87,7 +87,7 @@ struct Topic {
   }
 };
 
-/// DDS threads only sort messages; decoding them is left to the worker.
+/// DDS threads only sort messages; search threads decode them.
 class Topics : public TopicSource {
  public:
   Topics(const wire::Participant& participant, const ServerOptions& options, OnFrame on_frame,

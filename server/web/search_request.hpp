@@ -8,8 +8,8 @@
 #include "core/base/status.hpp"
 #include "core/cloud/frame.hpp"
 #include "server/options.hpp"
+#include "server/search_queue.hpp"
 #include "server/web/http.hpp"
-#include "server/worker.hpp"
 
 // What a viewer asks to be searched, as the job that a request over DDS makes.
 

@@ -28,15 +28,15 @@
 #include "server/recognition.hpp"
 #include "server/statistics.hpp"
 
-// Between DDS and the detector: DDS threads put frames and requests into bounded queues and go; the
-// worker takes them out, computes with no lock held and hands the results on. It has one thread, or
+// Between DDS and the detector: DDS threads put frames and requests into bounded queues and go. A
+// search thread takes them out, computes with no lock held and hands the results on. There are
 // several where other hosts search (Recognition::searches_at_once()); frames of one camera are
 // searched one after the other. An exception costs the frame or request that caused it: it is
 // counted, answered and logged.
 
 namespace bpa::server {
 
-/// A frame as it came in. Turning it into a Frame is work, so it is left to the worker.
+/// A frame as it came in. Turning it into a Frame is work, so a search thread does it.
 struct IncomingFrame {
   Once<DecodedFrame> decode;
   std::int64_t stamp_ns = 0;
@@ -57,7 +57,7 @@ struct DetectJob {
   DetectRequest request;
   std::chrono::nanoseconds timeout{};  ///< No answer is wanted this long after push().
   wire::Guid client{};                 ///< Who asks; clients take turns.
-  // Set by the worker when it accepts the job.
+  // Set by the queue when it accepts the job.
   std::size_t position = 0;  ///< Searches ahead of it.
   WaitableClock::TimePoint deadline{};
   /// Called once, then empty: with the answer, or with why there is none. `frame` is null when
@@ -67,7 +67,7 @@ struct DetectJob {
       done;
 };
 
-struct WorkerOptions {
+struct SearchQueueOptions {
   std::size_t frame_capacity = QueueOptions().frames;
   std::size_t request_capacity = QueueOptions().requests;
   bool continuous = DetectionOptions().continuous;
@@ -87,21 +87,21 @@ struct WorkerOptions {
   int added_nice = 0;  ///< and this is added to the nice value of the searching threads.
 };
 
-class Worker {
+class SearchQueue {
  public:
-  /// `on_result` runs on the worker for every frame of the stream, for one at a time; `frame` is
-  /// null if illegal.
+  /// `on_result` runs on a search thread for every frame of the stream, for one at a time; `frame`
+  /// is null if illegal.
   using OnResult = std::function<void(const IncomingFrame& incoming, const Frame* frame,
                                       const Result<SceneInterpretations>& result)>;
 
   /// `clock` measures work; `ros_clock` frames' ages and requests' time-outs, null: `clock` does.
-  Worker(std::shared_ptr<const Recognition> recognition, const WorkerOptions& options,
-         Statistics& statistics, OnResult on_result, LogHook log,
-         std::shared_ptr<WaitableClock> clock = steady_clock(),
-         std::shared_ptr<WaitableClock> ros_clock = nullptr);
-  ~Worker();
-  Worker(const Worker&) = delete;
-  Worker& operator=(const Worker&) = delete;
+  SearchQueue(std::shared_ptr<const Recognition> recognition, const SearchQueueOptions& options,
+              Statistics& statistics, OnResult on_result, LogHook log,
+              std::shared_ptr<WaitableClock> clock = steady_clock(),
+              std::shared_ptr<WaitableClock> ros_clock = nullptr);
+  ~SearchQueue();
+  SearchQueue(const SearchQueue&) = delete;
+  SearchQueue& operator=(const SearchQueue&) = delete;
 
   /// Ends after the search that runs now; jobs that wait or come later are answered with
   /// `unavailable`. Not to be called from two threads at once.
@@ -112,7 +112,7 @@ class Worker {
   /// Takes nothing more, and forgets what waits or comes later: another server answers it. stop()
   /// follows.
   void leave_to_another();
-  /// For a worker that hangs: answers what waits or comes later with `why`, and waits for nothing.
+  /// For a search that hangs: answers what waits or comes later with `why`, and waits for nothing.
   void abandon(const Status& why);
 
   /// Never waits; the oldest frame of its camera goes when there are too many.
@@ -123,14 +123,14 @@ class Worker {
   Status push(DetectJob job);
 
   /// For what comes from now on.
-  void set_options(const WorkerOptions& options);
+  void set_options(const SearchQueueOptions& options);
 
   /// Handles an errand (such as loading a model) between two searches, or refuses it as `busy`:
   /// a full queue has room as for jobs. What it throws is logged.
   void run_later(const wire::Guid& client, Errand errand);
 
   /// Frames and requests that wait.
-  std::size_t queue_length() const;
+  std::size_t length() const;
 
  private:
   /// A thread beside the first one.
@@ -159,24 +159,25 @@ class Worker {
   void refuse_failed(DetectJob& job, const Status& status);
   void answer(DetectJob& job, const Frame& frame, const DetectRequest& request);
   void run_one(std::unique_lock<std::mutex>& lock);
-  void search_frames(std::unique_lock<std::mutex>& lock, const WorkerOptions& options, Busy& busy);
+  void search_frames(std::unique_lock<std::mutex>& lock, const SearchQueueOptions& options,
+                     Busy& busy);
   void search_request(std::unique_lock<std::mutex>& lock, Busy& busy);
-  std::vector<IncomingFrame> take_frames(const WorkerOptions& options);
+  std::vector<IncomingFrame> take_frames(const SearchQueueOptions& options);
   bool combines_next(const IncomingFrame& first);
   void publish(const IncomingFrame& incoming, const Frame* frame,
                const Result<SceneInterpretations>& result);
-  Frame fuse(Frame frame, const WorkerOptions& options);
-  void work_on_frames(const WorkerOptions& options, std::vector<IncomingFrame> taken,
+  Frame fuse(Frame frame, const SearchQueueOptions& options);
+  void work_on_frames(const SearchQueueOptions& options, std::vector<IncomingFrame> taken,
                       std::vector<DetectJob>& waiting);
-  void work_on_views(const WorkerOptions& options, IncomingFrame incoming);
-  Result<SceneInterpretations> search_views(const WorkerOptions& options,
+  void work_on_views(const SearchQueueOptions& options, IncomingFrame incoming);
+  Result<SceneInterpretations> search_views(const SearchQueueOptions& options,
                                             std::vector<IncomingFrame>& incoming);
   void keep_waiting(std::vector<DetectJob>& waiting);
   void note_restart(const std::string& reason);
-  std::vector<ExpectedPlacement> expected_in(const WorkerOptions& options, const Frame& frame);
+  std::vector<ExpectedPlacement> expected_in(const SearchQueueOptions& options, const Frame& frame);
   void remember(const Frame& frame, const Result<SceneInterpretations>& result);
   void work_on_request(DetectJob& job);
-  void answer_next_frame(const WorkerOptions& options, const IncomingFrame& incoming,
+  void answer_next_frame(const SearchQueueOptions& options, const IncomingFrame& incoming,
                          const Frame& frame, DetectJob& job,
                          const Result<SceneInterpretations>* shared);
   Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request);
@@ -200,7 +201,7 @@ class Worker {
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  WorkerOptions options_;
+  SearchQueueOptions options_;
   /// At most options_.frame_capacity of each camera, of at most kMaxCameras in all.
   std::deque<IncomingFrame> frames_;
   std::set<std::string> in_search_;  ///< Cameras whose frames are searched now.

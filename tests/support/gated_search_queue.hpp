@@ -16,12 +16,12 @@
 #include <gtest/gtest.h>
 
 #include "server/convert/frames.hpp"
-#include "server/worker.hpp"
+#include "server/search_queue.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/stub_recognition.hpp"
 #include "tests/support/wall_messages.hpp"
 
-// A worker whose searches wait until the test lets them go on.
+// A queue whose searches wait until the test lets them go on.
 
 namespace bpa::server {
 
@@ -139,10 +139,10 @@ class Answers {
   std::vector<std::size_t> positions_;
 };
 
-class WorkerTest : public testing::Test {
+class SearchQueueTest : public testing::Test {
  protected:
-  std::unique_ptr<Worker> make(WorkerOptions options = {}, std::size_t at_once = 1) {
-    return std::make_unique<Worker>(
+  std::unique_ptr<SearchQueue> make(SearchQueueOptions options = {}, std::size_t at_once = 1) {
+    return std::make_unique<SearchQueue>(
         std::make_shared<GatedRecognition>(gate, at_once), options, statistics,
         [collect = streamed.collector()](const IncomingFrame&, const Frame* frame,
                                          const Result<SceneInterpretations>& result) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/worker.hpp"
+#include "server/search_queue.hpp"
 
 #include <atomic>
 #include <optional>
@@ -8,19 +8,19 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/gated_worker.hpp"
+#include "tests/support/gated_search_queue.hpp"
 
 namespace bpa::server {
 namespace {
 
 using std::chrono::milliseconds;
 
-TEST_F(WorkerTest, NewestFrameWinsAndDropsAreCounted) {
-  auto worker = make();
-  worker->push(frame(0));
+TEST_F(SearchQueueTest, NewestFrameWinsAndDropsAreCounted) {
+  auto queue = make();
+  queue->push(frame(0));
   ASSERT_TRUE(gate.wait_for_started(1));
-  for (int stamp = 1; stamp <= 9; ++stamp) worker->push(frame(stamp));
-  EXPECT_EQ(worker->queue_length(), 1U);
+  for (int stamp = 1; stamp <= 9; ++stamp) queue->push(frame(stamp));
+  EXPECT_EQ(queue->length(), 1U);
   gate.open();
   ASSERT_TRUE(streamed.wait_for(2));
   EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 9}));
@@ -30,16 +30,16 @@ TEST_F(WorkerTest, NewestFrameWinsAndDropsAreCounted) {
   EXPECT_EQ(counts.frames_processed, 2U);
 }
 
-TEST_F(WorkerTest, FullQueueOfRequestsIsBusyAndFramesDoNotCount) {
-  WorkerOptions options;
+TEST_F(SearchQueueTest, FullQueueOfRequestsIsBusyAndFramesDoNotCount) {
+  SearchQueueOptions options;
   options.request_capacity = 2;
-  auto worker = make(options);
-  worker->push(frame(0));
+  auto queue = make(options);
+  queue->push(frame(0));
   ASSERT_TRUE(gate.wait_for_started(1));
-  worker->push(frame(1));
-  EXPECT_TRUE(worker->push(job(true)).ok());
-  EXPECT_TRUE(worker->push(job(false)).ok());
-  EXPECT_EQ(worker->push(job(true)).code, StatusCode::busy);
+  queue->push(frame(1));
+  EXPECT_TRUE(queue->push(job(true)).ok());
+  EXPECT_TRUE(queue->push(job(false)).ok());
+  EXPECT_EQ(queue->push(job(true)).code, StatusCode::busy);
   gate.open();
   ASSERT_TRUE(answers.wait_for(2));
   EXPECT_EQ(answers.code(0), StatusCode::ok);
@@ -47,14 +47,14 @@ TEST_F(WorkerTest, FullQueueOfRequestsIsBusyAndFramesDoNotCount) {
   EXPECT_EQ(statistics.counts().requests_served, 2U);
 }
 
-TEST_F(WorkerTest, AGreedyClientMakesRoomForOthers) {
-  WorkerOptions options;
+TEST_F(SearchQueueTest, AGreedyClientMakesRoomForOthers) {
+  SearchQueueOptions options;
   options.request_capacity = 4;
-  auto worker = make(options);
-  worker->push(frame(0));
+  auto queue = make(options);
+  queue->push(frame(0));
   ASSERT_TRUE(gate.wait_for_started(1));
   const auto ask = [&](std::uint8_t client, bool with_frame = true) {
-    return worker->push(job(with_frame, milliseconds(5000), client, client)).code;
+    return queue->push(job(with_frame, milliseconds(5000), client, client)).code;
   };
   EXPECT_EQ(ask(1), StatusCode::ok);
   EXPECT_EQ(ask(1, false), StatusCode::ok);
@@ -71,92 +71,92 @@ TEST_F(WorkerTest, AGreedyClientMakesRoomForOthers) {
   EXPECT_EQ(ask(3), StatusCode::ok);
   EXPECT_EQ(ask(4), StatusCode::ok);  // one each
   EXPECT_EQ(ask(5), StatusCode::busy);
-  EXPECT_EQ(worker->queue_length(), 4U);
+  EXPECT_EQ(queue->length(), 4U);
   EXPECT_EQ(statistics.counts().requests_refused, 4U);  // the callers count the other four
   gate.open();
-  worker->push(frame(1));
+  queue->push(frame(1));
   ASSERT_TRUE(answers.wait_for(8));
   for (std::size_t i = 4; i < 8; ++i) EXPECT_EQ(answers.code(i), StatusCode::ok);
 }
 
-TEST_F(WorkerTest, FramesAndRequestsTakeTurns) {
-  WorkerOptions options;
+TEST_F(SearchQueueTest, FramesAndRequestsTakeTurns) {
+  SearchQueueOptions options;
   options.frame_capacity = 10;
-  auto worker = make(options);
-  worker->push(frame(0));
+  auto queue = make(options);
+  queue->push(frame(0));
   ASSERT_TRUE(gate.wait_for_started(1));
-  for (int i = 1; i <= 3; ++i) worker->push(frame(i));
-  for (int i = 0; i < 3; ++i) ASSERT_TRUE(worker->push(job(true)).ok());
+  for (int i = 1; i <= 3; ++i) queue->push(frame(i));
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(queue->push(job(true)).ok());
   gate.open();
   ASSERT_TRUE(answers.wait_for(3));
   ASSERT_TRUE(streamed.wait_for(4));
   EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 77, 1, 77, 2, 77, 3}));
 }
 
-TEST_F(WorkerTest, ClientsTakeTurnsAndLearnTheirPlace) {
-  auto worker = make();
-  worker->push(frame(0));
+TEST_F(SearchQueueTest, ClientsTakeTurnsAndLearnTheirPlace) {
+  auto queue = make();
+  queue->push(frame(0));
   ASSERT_TRUE(gate.wait_for_started(1));
   for (int i = 0; i < 3; ++i) {  // client 1 asks three times before anybody else
-    ASSERT_TRUE(worker->push(job(true, milliseconds(5000), 1, 10 + i)).ok());
+    ASSERT_TRUE(queue->push(job(true, milliseconds(5000), 1, 10 + i)).ok());
   }
-  ASSERT_TRUE(worker->push(job(true, milliseconds(5000), 2, 20)).ok());
-  ASSERT_TRUE(worker->push(job(true, milliseconds(5000), 3, 30)).ok());
+  ASSERT_TRUE(queue->push(job(true, milliseconds(5000), 2, 20)).ok());
+  ASSERT_TRUE(queue->push(job(true, milliseconds(5000), 3, 30)).ok());
   gate.open();
   ASSERT_TRUE(answers.wait_for(5));
   EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 10, 20, 30, 11, 12}));
   EXPECT_EQ(answers.positions(), (std::vector<std::size_t>{0, 1, 2, 1, 2}));
 }
 
-TEST_F(WorkerTest, ARequestThatCannotBeServedInTimeIsRefusedAtOnce) {
-  WorkerOptions options;
+TEST_F(SearchQueueTest, ARequestThatCannotBeServedInTimeIsRefusedAtOnce) {
+  SearchQueueOptions options;
   options.continuous = false;
-  auto worker = make(options);
+  auto queue = make(options);
   SceneInterpretations second_long;
   second_long.total_milliseconds = 1000;
   statistics.add_timings(second_long);
-  EXPECT_EQ(worker->push(job(true, milliseconds(300))).code, StatusCode::timeout);
-  EXPECT_EQ(worker->push(job(false, milliseconds(300))).code, StatusCode::timeout);
+  EXPECT_EQ(queue->push(job(true, milliseconds(300))).code, StatusCode::timeout);
+  EXPECT_EQ(queue->push(job(false, milliseconds(300))).code, StatusCode::timeout);
   DetectJob quick = job(true, milliseconds(300));  // the best that 100 ms can give
   quick.request.budget_ms = 100;
-  EXPECT_TRUE(worker->push(std::move(quick)).ok());
+  EXPECT_TRUE(queue->push(std::move(quick)).ok());
   ASSERT_TRUE(gate.wait_for_started(1));
   // Behind a search that has just begun and one that waits there is no time for 1.5 s.
-  ASSERT_TRUE(worker->push(job(true, milliseconds(5000))).ok());
+  ASSERT_TRUE(queue->push(job(true, milliseconds(5000))).ok());
   quick = job(true, milliseconds(1500));
   quick.request.budget_ms = 100;
-  EXPECT_EQ(worker->push(std::move(quick)).code, StatusCode::timeout);
-  EXPECT_TRUE(worker->push(job(true, milliseconds(5000))).ok());
+  EXPECT_EQ(queue->push(std::move(quick)).code, StatusCode::timeout);
+  EXPECT_TRUE(queue->push(job(true, milliseconds(5000))).ok());
   gate.open();
   ASSERT_TRUE(answers.wait_for(3));
 }
 
-TEST_F(WorkerTest, OptionsChangeWhileItRuns) {
-  auto worker = make();
+TEST_F(SearchQueueTest, OptionsChangeWhileItRuns) {
+  auto queue = make();
   gate.open();
-  worker->push(frame(1));
+  queue->push(frame(1));
   ASSERT_TRUE(streamed.wait_for(1));
-  WorkerOptions paused;
+  SearchQueueOptions paused;
   paused.continuous = false;
-  worker->set_options(paused);
-  worker->push(frame(2));
-  ASSERT_TRUE(worker->push(job(true)).ok());
+  queue->set_options(paused);
+  queue->push(frame(2));
+  ASSERT_TRUE(queue->push(job(true)).ok());
   ASSERT_TRUE(answers.wait_for(1));
   EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{1, 77}));
-  worker->set_options({});  // the frame that waits is searched now
+  queue->set_options({});  // the frame that waits is searched now
   ASSERT_TRUE(streamed.wait_for(2));
   EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{1, 77, 2}));
 }
 
-TEST_F(WorkerTest, NextFrameRequestsShareTheStreamsSearch) {
-  auto worker = make();
+TEST_F(SearchQueueTest, NextFrameRequestsShareTheStreamsSearch) {
+  auto queue = make();
   gate.open();
-  ASSERT_TRUE(worker->push(job(false)).ok());
-  ASSERT_TRUE(worker->push(job(false)).ok());
-  worker->push(bad_frame());  // they go on waiting
+  ASSERT_TRUE(queue->push(job(false)).ok());
+  ASSERT_TRUE(queue->push(job(false)).ok());
+  queue->push(bad_frame());  // they go on waiting
   ASSERT_TRUE(streamed.wait_for(1));
   EXPECT_EQ(answers.size(), 0U);
-  worker->push(frame(5));
+  queue->push(frame(5));
   ASSERT_TRUE(answers.wait_for(2));
   EXPECT_EQ(gate.stamps(), std::vector<std::int64_t>{5});
   EXPECT_EQ(statistics.counts().frames_rejected, 1U);
@@ -164,27 +164,27 @@ TEST_F(WorkerTest, NextFrameRequestsShareTheStreamsSearch) {
   EXPECT_EQ(statistics.rejections().front(), std::pair(std::string("depth"), std::uint64_t{1}));
 }
 
-TEST_F(WorkerTest, FramesBringTheirPriors) {
-  auto worker = make();
+TEST_F(SearchQueueTest, FramesBringTheirPriors) {
+  auto queue = make();
   gate.open();
   DetectJob own = job(false);
   own.request.priors.resize(1);
   own.request.priors[0].model = "mug";
   own.restrict_frame = [](Frame&) { return Status(); };  // as requests with priors have it
-  ASSERT_TRUE(worker->push(std::move(own)).ok());
+  ASSERT_TRUE(queue->push(std::move(own)).ok());
   IncomingFrame tracked = frame(5);
   tracked.priors.resize(1);
   tracked.priors[0].model = "bowl";
-  worker->push(std::move(tracked));
+  queue->push(std::move(tracked));
   ASSERT_TRUE(answers.wait_for(1));
-  worker->push(frame(6));
+  queue->push(frame(6));
   ASSERT_TRUE(streamed.wait_for(2));
   EXPECT_EQ(gate.priors(), (std::vector<std::string>{"bowl ", "mug bowl ", ""}));
 }
 
-TEST_F(WorkerTest, AFrameIsSearchedForWhatItsCameraShowedBefore) {
+TEST_F(SearchQueueTest, AFrameIsSearchedForWhatItsCameraShowedBefore) {
   gate.open();
-  auto worker = make();
+  auto queue = make();
   const auto of_camera = [](std::int64_t stamp, const std::string& camera) {
     IncomingFrame incoming = frame(stamp);
     incoming.decode = [stamp, camera] {
@@ -196,57 +196,57 @@ TEST_F(WorkerTest, AFrameIsSearchedForWhatItsCameraShowedBefore) {
   };
   int searched = 0;
   const auto search = [&](IncomingFrame incoming) {
-    worker->push(std::move(incoming));
+    queue->push(std::move(incoming));
     ASSERT_TRUE(streamed.wait_for(static_cast<std::size_t>(++searched)));
   };
   search(of_camera(1, "left"));
   search(of_camera(2, "right"));
   search(of_camera(3, "left"));
-  WorkerOptions options;
+  SearchQueueOptions options;
   options.follow = false;
-  worker->set_options(options);
+  queue->set_options(options);
   search(of_camera(4, "left"));
   options.follow = true;
   options.request.seed = 666;  // the search fails
-  worker->set_options(options);
+  queue->set_options(options);
   search(of_camera(5, "left"));
   options.request.seed = 0;
-  worker->set_options(options);
+  queue->set_options(options);
   search(of_camera(6, "left"));
   EXPECT_EQ(gate.expected(),
             (std::vector<std::string>{"", "", "found at 1", "", "found at 4", ""}));
 }
 
-TEST_F(WorkerTest, ASearchBeginsWithWhereTheTracksAre) {
-  WorkerOptions options;
+TEST_F(SearchQueueTest, ASearchBeginsWithWhereTheTracksAre) {
+  SearchQueueOptions options;
   bool tracked = false;
   options.expected = [&](const std::string&) -> std::optional<std::vector<ExpectedPlacement>> {
     if (!tracked) return std::nullopt;
     return std::vector<ExpectedPlacement>{{"a track", {}}};
   };
-  auto worker = make(options);
+  auto queue = make(options);
   gate.open();
   std::vector<std::int64_t> taken;
   for (const int stamp : {1, 2, 3}) {
     IncomingFrame incoming = frame(stamp);
     incoming.taken = [&taken, stamp] { taken.push_back(stamp); };
-    worker->push(std::move(incoming));
+    queue->push(std::move(incoming));
     ASSERT_TRUE(streamed.wait_for(static_cast<std::size_t>(stamp)));
     tracked = stamp == 1;
   }
-  worker.reset();
+  queue.reset();
   EXPECT_EQ(gate.expected(), (std::vector<std::string>{"", "a track", "found at 2"}));
   EXPECT_EQ(taken, (std::vector<std::int64_t>{1, 2, 3}));
 }
 
-TEST_F(WorkerTest, FramesThatWaitAreCombinedAndTheNewestIsSearched) {
-  WorkerOptions options;
+TEST_F(SearchQueueTest, FramesThatWaitAreCombinedAndTheNewestIsSearched) {
+  SearchQueueOptions options;
   options.fuse_frames = options.frame_capacity = 3;
-  auto worker = make(options);
-  worker->push(frame(0));
+  auto queue = make(options);
+  queue->push(frame(0));
   ASSERT_TRUE(gate.wait_for_started(1));
-  for (int stamp = 1; stamp <= 4; ++stamp) worker->push(frame(stamp));
-  ASSERT_TRUE(worker->push(job(false)).ok());
+  for (int stamp = 1; stamp <= 4; ++stamp) queue->push(frame(stamp));
+  ASSERT_TRUE(queue->push(job(false)).ok());
   gate.open();
   ASSERT_TRUE(answers.wait_for(1));
   EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 4}));
@@ -258,7 +258,7 @@ TEST_F(WorkerTest, FramesThatWaitAreCombinedAndTheNewestIsSearched) {
   EXPECT_EQ(counts.frames_processed, 2U);
   EXPECT_EQ(counts.fusion_restarts, 0U);
 
-  ASSERT_TRUE(worker->push(job(true)).ok());  // its own frame is its own affair
+  ASSERT_TRUE(queue->push(job(true)).ok());  // its own frame is its own affair
   ASSERT_TRUE(answers.wait_for(2));
   IncomingFrame other = frame(6);
   other.decode = [] {
@@ -266,21 +266,21 @@ TEST_F(WorkerTest, FramesThatWaitAreCombinedAndTheNewestIsSearched) {
     message.k[0] = 61;
     return frame_from_message(message);
   };
-  worker->push(std::move(other));
+  queue->push(std::move(other));
   ASSERT_TRUE(streamed.wait_for(3));
   EXPECT_EQ(gate.fused(), (std::vector<int>{1, 3, 1, 1}));
   EXPECT_EQ(statistics.counts().fusion_restarts, 1U);
   EXPECT_EQ(statistics.fusion_restart(), "camera.fx changed from 60 to 61");
 }
 
-TEST_F(WorkerTest, ABrokenFrameDoesNotCostThoseItIsCombinedWith) {
-  WorkerOptions options;
+TEST_F(SearchQueueTest, ABrokenFrameDoesNotCostThoseItIsCombinedWith) {
+  SearchQueueOptions options;
   options.fuse_frames = options.frame_capacity = 3;
-  auto worker = make(options);
-  worker->push(frame(0));
+  auto queue = make(options);
+  queue->push(frame(0));
   ASSERT_TRUE(gate.wait_for_started(1));
-  worker->push(frame(1));
-  worker->push(bad_frame());
+  queue->push(frame(1));
+  queue->push(bad_frame());
   gate.open();
   ASSERT_TRUE(streamed.wait_for(3));
   EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 1}));
@@ -288,9 +288,9 @@ TEST_F(WorkerTest, ABrokenFrameDoesNotCostThoseItIsCombinedWith) {
   EXPECT_EQ(statistics.counts().frames_rejected, 1U);
 }
 
-TEST_F(WorkerTest, NextFrameRequestsWithoutAFrameTimeOut) {
-  auto worker = make();
-  ASSERT_TRUE(worker->push(job(false, milliseconds(30))).ok());
+TEST_F(SearchQueueTest, NextFrameRequestsWithoutAFrameTimeOut) {
+  auto queue = make();
+  ASSERT_TRUE(queue->push(job(false, milliseconds(30))).ok());
   ASSERT_TRUE(clock->wait_for_sleeper(milliseconds(30)));
   clock->advance(milliseconds(29));
   ASSERT_TRUE(clock->wait_for_sleeper(milliseconds(1)));
@@ -300,11 +300,11 @@ TEST_F(WorkerTest, NextFrameRequestsWithoutAFrameTimeOut) {
   EXPECT_EQ(answers.code(0), StatusCode::timeout);
 }
 
-TEST_F(WorkerTest, ARequestWhoseTurnComesTooLateIsNotSearched) {
-  auto worker = make();
-  worker->push(frame(0));
+TEST_F(SearchQueueTest, ARequestWhoseTurnComesTooLateIsNotSearched) {
+  auto queue = make();
+  queue->push(frame(0));
   ASSERT_TRUE(gate.wait_for_started(1));
-  ASSERT_TRUE(worker->push(job(true, milliseconds(30))).ok());
+  ASSERT_TRUE(queue->push(job(true, milliseconds(30))).ok());
   clock->advance(milliseconds(30));
   gate.open();
   ASSERT_TRUE(answers.wait_for(1));
@@ -312,74 +312,74 @@ TEST_F(WorkerTest, ARequestWhoseTurnComesTooLateIsNotSearched) {
   EXPECT_EQ(gate.stamps(), std::vector<std::int64_t>{0});
 }
 
-TEST_F(WorkerTest, OnDemandSearchesNothingUnasked) {
-  WorkerOptions options;
+TEST_F(SearchQueueTest, OnDemandSearchesNothingUnasked) {
+  SearchQueueOptions options;
   options.continuous = false;
-  auto worker = make(options);
+  auto queue = make(options);
   gate.open();
-  worker->push(frame(1));
-  ASSERT_TRUE(worker->push(job(true)).ok());
+  queue->push(frame(1));
+  ASSERT_TRUE(queue->push(job(true)).ok());
   ASSERT_TRUE(answers.wait_for(1));
   EXPECT_EQ(gate.stamps(), std::vector<std::int64_t>{77});
-  ASSERT_TRUE(worker->push(job(false)).ok());
+  ASSERT_TRUE(queue->push(job(false)).ok());
   ASSERT_TRUE(answers.wait_for(2));
   EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{77, 1}));
   EXPECT_EQ(streamed.size(), 0U);
 }
 
-TEST_F(WorkerTest, SurvivesADetectorThatThrows) {
-  auto worker = make();
+TEST_F(SearchQueueTest, SurvivesADetectorThatThrows) {
+  auto queue = make();
   gate.open();
   DetectJob bad = job(true);
   bad.request.seed = 666;
-  ASSERT_TRUE(worker->push(std::move(bad)).ok());
-  ASSERT_TRUE(worker->push(job(true)).ok());
+  ASSERT_TRUE(queue->push(std::move(bad)).ok());
+  ASSERT_TRUE(queue->push(job(true)).ok());
   ASSERT_TRUE(answers.wait_for(2));
   EXPECT_EQ(answers.code(0), StatusCode::internal);
   EXPECT_EQ(answers.code(1), StatusCode::ok);
 }
 
-TEST_F(WorkerTest, WhatThrowsCostsItselfAlone) {
-  auto worker = make();
+TEST_F(SearchQueueTest, WhatThrowsCostsItselfAlone) {
+  auto queue = make();
   gate.open();
   IncomingFrame broken = frame(1);
   broken.decode = []() -> DecodedFrame { throw std::bad_alloc(); };
-  worker->push(std::move(broken));
+  queue->push(std::move(broken));
   ASSERT_TRUE(streamed.wait_for(1));
   EXPECT_EQ(streamed.code(0), StatusCode::unavailable);
   EXPECT_EQ(statistics.counts().frames_rejected, 1U);
 
   DetectJob bomb = job(true);
   bomb.decode = []() -> DecodedFrame { throw std::bad_alloc(); };
-  ASSERT_TRUE(worker->push(std::move(bomb)).ok());
+  ASSERT_TRUE(queue->push(std::move(bomb)).ok());
   ASSERT_TRUE(answers.wait_for(1));
   EXPECT_EQ(answers.code(0), StatusCode::unavailable);
 
   DetectJob narrow = job(false);
   narrow.restrict_frame = [](Frame&) -> Status { throw std::length_error("mask"); };
-  ASSERT_TRUE(worker->push(std::move(narrow)).ok());
-  ASSERT_TRUE(worker->push(job(false)).ok());
-  worker->push(frame(2));
+  ASSERT_TRUE(queue->push(std::move(narrow)).ok());
+  ASSERT_TRUE(queue->push(job(false)).ok());
+  queue->push(frame(2));
   ASSERT_TRUE(answers.wait_for(3));
   EXPECT_EQ(answers.code(1), StatusCode::internal);
   EXPECT_EQ(answers.code(2), StatusCode::ok);
 
-  worker->run_later({}, {[] { throw std::runtime_error("no such folder"); }, {}});
+  queue->run_later({}, {[] { throw std::runtime_error("no such folder"); }, {}});
   DetectJob rude = job(true);
   rude.done = [](auto&&...) { throw std::runtime_error("the client is gone"); };
-  ASSERT_TRUE(worker->push(std::move(rude)).ok());
-  ASSERT_TRUE(worker->push(job(true)).ok());
+  ASSERT_TRUE(queue->push(std::move(rude)).ok());
+  ASSERT_TRUE(queue->push(job(true)).ok());
   ASSERT_TRUE(answers.wait_for(4));
   EXPECT_EQ(answers.code(3), StatusCode::ok);
 }
 
-TEST_F(WorkerTest, FramesOfSeveralCamerasDoNotDisplaceEachOther) {
-  auto worker = make();
-  worker->push(frame(0));
+TEST_F(SearchQueueTest, FramesOfSeveralCamerasDoNotDisplaceEachOther) {
+  auto queue = make();
+  queue->push(frame(0));
   ASSERT_TRUE(gate.wait_for_started(1));
   for (int stamp = 1; stamp <= 3; ++stamp) {
-    worker->push(frame(stamp, "a"));
-    worker->push(frame(10 + stamp, "b"));
+    queue->push(frame(stamp, "a"));
+    queue->push(frame(10 + stamp, "b"));
   }
   gate.open();
   ASSERT_TRUE(streamed.wait_for(3));
@@ -388,19 +388,19 @@ TEST_F(WorkerTest, FramesOfSeveralCamerasDoNotDisplaceEachOther) {
 }
 
 // Where others search: several frames at once, but of one camera one after the other.
-TEST_F(WorkerTest, SearchesAsManyFramesAtOnceAsThereMayBe) {
-  auto worker = make({}, 3);
-  worker->push(frame(0, "a"));
+TEST_F(SearchQueueTest, SearchesAsManyFramesAtOnceAsThereMayBe) {
+  auto queue = make({}, 3);
+  queue->push(frame(0, "a"));
   ASSERT_TRUE(gate.wait_for_started(1));
-  worker->push(frame(1, "a"));  // waits for the first of its camera
-  worker->push(frame(2, "b"));
+  queue->push(frame(1, "a"));  // waits for the first of its camera
+  queue->push(frame(2, "b"));
   ASSERT_TRUE(gate.wait_for_started(2));
-  ASSERT_TRUE(worker->push(job(true)).ok());
+  ASSERT_TRUE(queue->push(job(true)).ok());
   ASSERT_TRUE(gate.wait_for_started(3));
-  ASSERT_TRUE(worker->push(job(true, milliseconds(5000), 1, 78)).ok());  // a fourth waits
+  ASSERT_TRUE(queue->push(job(true, milliseconds(5000), 1, 78)).ok());  // a fourth waits
   std::this_thread::sleep_for(milliseconds(50));
   EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 2, 77}));
-  EXPECT_EQ(worker->queue_length(), 2U);
+  EXPECT_EQ(queue->length(), 2U);
   gate.open();
   ASSERT_TRUE(streamed.wait_for(3));
   ASSERT_TRUE(answers.wait_for(2));
@@ -408,19 +408,19 @@ TEST_F(WorkerTest, SearchesAsManyFramesAtOnceAsThereMayBe) {
   EXPECT_EQ(statistics.counts().requests_served, 2U);
 }
 
-TEST_F(WorkerTest, SeveralViewsAreNotCombinedWithFramesThatWait) {
-  WorkerOptions options;
+TEST_F(SearchQueueTest, SeveralViewsAreNotCombinedWithFramesThatWait) {
+  SearchQueueOptions options;
   options.fuse_frames = 3;
   options.camera = [](const std::string&, std::int64_t) { return Pose(); };
-  auto worker = make(options);
-  worker->push(frame(0));
+  auto queue = make(options);
+  queue->push(frame(0));
   ASSERT_TRUE(gate.wait_for_started(1));
   IncomingFrame all;
   all.frame_id = "map";
   all.views.push_back(frame(1, "a"));
   all.views.push_back(frame(2, "b"));
-  worker->push(std::move(all));
-  worker->push(frame(3));
+  queue->push(std::move(all));
+  queue->push(frame(3));
   gate.open();
   ASSERT_TRUE(streamed.wait_for(3));
   EXPECT_EQ(gate.stamps(), (std::vector<std::int64_t>{0, 3}));
@@ -429,34 +429,34 @@ TEST_F(WorkerTest, SeveralViewsAreNotCombinedWithFramesThatWait) {
   EXPECT_EQ(counts.frames_failed, 2U);  // the stub searches no views
 }
 
-TEST_F(WorkerTest, LeavingToAnotherServerAnswersNothingButWhatRuns) {
-  auto worker = make();
-  ASSERT_TRUE(worker->push(job(true)).ok());
+TEST_F(SearchQueueTest, LeavingToAnotherServerAnswersNothingButWhatRuns) {
+  auto queue = make();
+  ASSERT_TRUE(queue->push(job(true)).ok());
   ASSERT_TRUE(gate.wait_for_started(1));
-  ASSERT_TRUE(worker->push(job(true)).ok());
-  ASSERT_TRUE(worker->push(job(false)).ok());
-  worker->leave_to_another();
-  EXPECT_TRUE(worker->push(job(true)).ok());
+  ASSERT_TRUE(queue->push(job(true)).ok());
+  ASSERT_TRUE(queue->push(job(false)).ok());
+  queue->leave_to_another();
+  EXPECT_TRUE(queue->push(job(true)).ok());
   bool told = false;
-  worker->run_later({}, {[&] { told = true; }, [&](const Status&) { told = true; }});
+  queue->run_later({}, {[&] { told = true; }, [&](const Status&) { told = true; }});
   gate.open();
-  worker->stop();
+  queue->stop();
   EXPECT_EQ(answers.size(), 1U);
   EXPECT_EQ(answers.code(0), StatusCode::ok);
   EXPECT_FALSE(told);
 }
 
-TEST_F(WorkerTest, StoppingAnswersWhatWaits) {
-  auto worker = make();
-  worker->push(frame(0));
+TEST_F(SearchQueueTest, StoppingAnswersWhatWaits) {
+  auto queue = make();
+  queue->push(frame(0));
   ASSERT_TRUE(gate.wait_for_started(1));
-  ASSERT_TRUE(worker->push(job(true)).ok());
-  ASSERT_TRUE(worker->push(job(false)).ok());
-  std::thread stopper([&] { worker->stop(); });
+  ASSERT_TRUE(queue->push(job(true)).ok());
+  ASSERT_TRUE(queue->push(job(false)).ok());
+  std::thread stopper([&] { queue->stop(); });
   gate.open();
   stopper.join();
   ASSERT_EQ(answers.size(), 2U);
-  EXPECT_EQ(worker->push(job(true)).code, StatusCode::unavailable);
+  EXPECT_EQ(queue->push(job(true)).code, StatusCode::unavailable);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/worker.hpp"
+#include "server/search_queue.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -32,9 +32,10 @@ DetectRequest with_priors(DetectRequest request, const std::vector<PosePrior>& p
 
 }  // namespace
 
-Worker::Worker(std::shared_ptr<const Recognition> recognition, const WorkerOptions& options,
-               Statistics& statistics, OnResult on_result, LogHook log,
-               std::shared_ptr<WaitableClock> clock, std::shared_ptr<WaitableClock> ros_clock)
+SearchQueue::SearchQueue(std::shared_ptr<const Recognition> recognition,
+                         const SearchQueueOptions& options, Statistics& statistics,
+                         OnResult on_result, LogHook log, std::shared_ptr<WaitableClock> clock,
+                         std::shared_ptr<WaitableClock> ros_clock)
     : recognition_(std::move(recognition)),
       statistics_(statistics),
       on_result_(std::move(on_result)),
@@ -45,9 +46,9 @@ Worker::Worker(std::shared_ptr<const Recognition> recognition, const WorkerOptio
       options_(options),
       thread_([this] { run(); }) {}
 
-Worker::~Worker() { stop(); }
+SearchQueue::~SearchQueue() { stop(); }
 
-void Worker::stop() {
+void SearchQueue::stop() {
   stop_taking(unavailable("the server is stopping"));
   if (thread_.joinable()) thread_.join();
   for (Helper& helper : helpers_) {  // no thread is left that makes more
@@ -56,19 +57,19 @@ void Worker::stop() {
   refuse_waiting();
 }
 
-std::vector<const Busy*> Worker::threads() const {
+std::vector<const Busy*> SearchQueue::threads() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<const Busy*> threads = {&busy_};
   for (const Helper& helper : helpers_) threads.push_back(&helper.busy);
   return threads;
 }
 
-void Worker::abandon(const Status& why) {
+void SearchQueue::abandon(const Status& why) {
   stop_taking(why);
   refuse_waiting();
 }
 
-void Worker::leave_to_another() {
+void SearchQueue::leave_to_another() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     silent_ = true;
@@ -76,14 +77,14 @@ void Worker::leave_to_another() {
   stop_taking(unavailable("another server has taken over"));
 }
 
-void Worker::stop_taking(const Status& why) {
+void SearchQueue::stop_taking(const Status& why) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!stopping_) why_stopping_ = why;
   stopping_ = true;
   wake_.notify_all();
 }
 
-void Worker::refuse_waiting() {
+void SearchQueue::refuse_waiting() {
   std::unique_lock<std::mutex> lock(mutex_);
   const Status why = why_stopping_;
   std::vector<DetectJob> jobs = std::exchange(awaiting_frame_, {});
@@ -97,7 +98,7 @@ void Worker::refuse_waiting() {
   for (const Errand& errand : errands) errand.refuse(why);
 }
 
-void Worker::push(IncomingFrame frame) {
+void SearchQueue::push(IncomingFrame frame) {
   std::optional<IncomingFrame> displaced;  // freed outside the lock
   // Those of several views are counted as they come.
   if (frame.views.empty()) statistics_.add_frame(ros_clock_->stamp_ns() - frame.stamp_ns);
@@ -123,7 +124,7 @@ void Worker::push(IncomingFrame frame) {
   call_helpers();
 }
 
-void Worker::set_options(const WorkerOptions& options) {
+void SearchQueue::set_options(const SearchQueueOptions& options) {
   const std::lock_guard<std::mutex> lock(mutex_);
   options_ = options;
   wake_.notify_all();
@@ -132,7 +133,7 @@ void Worker::set_options(const WorkerOptions& options) {
 /// Until the job's answer could be there: what is left of the search that runs, those ahead of it,
 /// frames of the stream in between, and its own. How long a search for some of the models takes is
 /// not known beforehand, so that such a job is given the benefit of the doubt.
-double Worker::wait_ms(const DetectJob& job) const {
+double SearchQueue::wait_ms(const DetectJob& job) const {
   const double search_ms = statistics_.median_total_ms();
   double wait = 0;
   if (const auto work = busy_.work()) wait += std::max(0.0, search_ms - 1e3 * work->seconds);
@@ -145,7 +146,7 @@ double Worker::wait_ms(const DetectJob& job) const {
 
 /// Takes out the job that must make room for one of `client` in a full queue; nothing when no other
 /// client would still have as many.
-std::optional<DetectJob> Worker::displace_for(const wire::Guid& client) {
+std::optional<DetectJob> SearchQueue::displace_for(const wire::Guid& client) {
   std::map<wire::Guid, std::size_t> held{{client, 0}};
   for (const auto& [other, count] : requests_.counts()) held[other] += count;
   for (const DetectJob& job : awaiting_frame_) ++held[job.client];
@@ -159,7 +160,7 @@ std::optional<DetectJob> Worker::displace_for(const wire::Guid& client) {
   return job;
 }
 
-Status Worker::push(DetectJob job) {
+Status SearchQueue::push(DetectJob job) {
   std::optional<DetectJob> displaced;
   Status status;
   {
@@ -174,7 +175,7 @@ Status Worker::push(DetectJob job) {
   return status;
 }
 
-Status Worker::admit(DetectJob job, std::optional<DetectJob>& displaced) {
+Status SearchQueue::admit(DetectJob job, std::optional<DetectJob>& displaced) {
   if (stopping_) return silent_ ? Status() : why_stopping_;
   const std::size_t waiting = requests_.size() + awaiting_frame_.size();
   if (waiting >= options_.request_capacity) {
@@ -212,7 +213,7 @@ Status Worker::admit(DetectJob job, std::optional<DetectJob>& displaced) {
 
 /// Wakes the threads; makes one more where a search waits that could run beside the others. The
 /// caller holds the mutex.
-void Worker::call_helpers() {
+void SearchQueue::call_helpers() {
   wake_.notify_all();
   const std::size_t at_once = recognition_->searches_at_once();
   const bool room = searching_ + idle_helpers_ < at_once && 1 + helpers_.size() < at_once;
@@ -222,10 +223,10 @@ void Worker::call_helpers() {
 }
 
 /// Searches beside the first thread, as many frames at once as there may be.
-void Worker::help(Busy& busy) {
+void SearchQueue::help(Busy& busy) {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopping_) {
-    const WorkerOptions options = options_;
+    const SearchQueueOptions options = options_;
     // Frames are combined, and taken by requests that wait for one, in the first thread.
     const bool frame = options.continuous && options.fuse_frames == 1 && awaiting_frame_.empty() &&
                        next_frame() != frames_.end();
@@ -243,12 +244,12 @@ void Worker::help(Busy& busy) {
 }
 
 /// The oldest frame whose camera has none in search; the caller holds the mutex.
-std::deque<IncomingFrame>::iterator Worker::next_frame() {
+std::deque<IncomingFrame>::iterator SearchQueue::next_frame() {
   return std::ranges::find_if(
       frames_, [&](const IncomingFrame& frame) { return !in_search_.contains(frame.frame_id); });
 }
 
-void Worker::run_later(const wire::Guid& client, Errand errand) {
+void SearchQueue::run_later(const wire::Guid& client, Errand errand) {
   std::unique_lock<std::mutex> lock(mutex_);
   if (silent_) return;
   const bool stopping = stopping_;
@@ -266,17 +267,17 @@ void Worker::run_later(const wire::Guid& client, Errand errand) {
   if (!taken) errand.refuse(stopping ? why : busy);
 }
 
-std::size_t Worker::queue_length() const {
+std::size_t SearchQueue::length() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return frames_.size() + requests_.size() + awaiting_frame_.size();
 }
 
-bool Worker::has_work() {
+bool SearchQueue::has_work() {
   const bool frame_wanted = options_.continuous || !awaiting_frame_.empty();
   return !errands_.empty() || !requests_.empty() || (frame_wanted && next_frame() != frames_.end());
 }
 
-std::vector<DetectJob> Worker::take_expired() {
+std::vector<DetectJob> SearchQueue::take_expired() {
   const auto end = std::stable_partition(
       awaiting_frame_.begin(), awaiting_frame_.end(),
       [now = ros_clock_->now()](const DetectJob& job) { return job.deadline > now; });
@@ -286,7 +287,7 @@ std::vector<DetectJob> Worker::take_expired() {
   return expired;
 }
 
-void Worker::run() {
+void SearchQueue::run() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopping_) {
     if (std::vector<DetectJob> expired = take_expired(); !expired.empty()) {
@@ -309,8 +310,8 @@ void Worker::run() {
 }
 
 /// Takes one task, frame or request out and works on it with no lock held.
-void Worker::run_one(std::unique_lock<std::mutex>& lock) {
-  const WorkerOptions options = options_;
+void SearchQueue::run_one(std::unique_lock<std::mutex>& lock) {
+  const SearchQueueOptions options = options_;
   const bool tracked = options.tracked && options.tracked();
   if (const int added = tracked ? options.added_nice : 0; added != niceness_) {
     if (set_niceness(niceness() - niceness_ + added)) niceness_ = added;
@@ -332,8 +333,8 @@ void Worker::run_one(std::unique_lock<std::mutex>& lock) {
 }
 
 /// Takes frames out and searches them with no lock held.
-void Worker::search_frames(std::unique_lock<std::mutex>& lock, const WorkerOptions& options,
-                           Busy& busy) {
+void SearchQueue::search_frames(std::unique_lock<std::mutex>& lock,
+                                const SearchQueueOptions& options, Busy& busy) {
   frame_was_last_ = true;
   busy.begin("the search of a frame");
   std::vector<IncomingFrame> taken = take_frames(options);
@@ -353,7 +354,7 @@ void Worker::search_frames(std::unique_lock<std::mutex>& lock, const WorkerOptio
   busy.end();
 }
 
-void Worker::search_request(std::unique_lock<std::mutex>& lock, Busy& busy) {
+void SearchQueue::search_request(std::unique_lock<std::mutex>& lock, Busy& busy) {
   frame_was_last_ = false;
   busy.begin("the search of a request's frame");
   DetectJob job = *requests_.pop();
@@ -368,13 +369,13 @@ void Worker::search_request(std::unique_lock<std::mutex>& lock, Busy& busy) {
 }
 
 /// The failure of work that threw, which is logged.
-Status Worker::guard(const char* about, const std::function<void()>& work) {
+Status SearchQueue::guard(const char* about, const std::function<void()>& work) {
   const Status status = guarded(about, work);
   if (!status.ok()) log(log_, LogLevel::error, status.message);
   return status;
 }
 
-DecodedFrame Worker::decoded(Once<DecodedFrame> decode) {
+DecodedFrame SearchQueue::decoded(Once<DecodedFrame> decode) {
   std::optional<DecodedFrame> frame;
   const Status status =
       guard("a frame cannot be decoded", [&] { frame.emplace(std::move(decode)()); });
@@ -383,30 +384,30 @@ DecodedFrame Worker::decoded(Once<DecodedFrame> decode) {
 }
 
 /// Calls job.done, once.
-void Worker::hand_over(DetectJob& job, const Frame* frame,
-                       const Result<SceneInterpretations>& result) {
+void SearchQueue::hand_over(DetectJob& job, const Frame* frame,
+                            const Result<SceneInterpretations>& result) {
   const auto done = std::exchange(job.done, nullptr);
   (void)guard("a request was not answered", [&] { done(job, frame, result); });
 }
 
-void Worker::refuse(DetectJob& job, const Status& status) {
+void SearchQueue::refuse(DetectJob& job, const Status& status) {
   statistics_.add(&Counts::requests_refused);
   hand_over(job, nullptr, status);
 }
 
 /// Answers a job that was not answered before its work failed.
-void Worker::refuse_failed(DetectJob& job, const Status& status) {
+void SearchQueue::refuse_failed(DetectJob& job, const Status& status) {
   if (!status.ok() && job.done) refuse(job, status);
 }
 
-void Worker::answer(DetectJob& job, const Frame& frame, const DetectRequest& request) {
+void SearchQueue::answer(DetectJob& job, const Frame& frame, const DetectRequest& request) {
   const Result<SceneInterpretations> result = detect(frame, request);
   statistics_.add(result.ok() ? &Counts::requests_served : &Counts::requests_refused);
   hand_over(job, &frame, result);
 }
 
 /// The oldest, or all that wait where they are combined.
-std::vector<IncomingFrame> Worker::take_frames(const WorkerOptions& options) {
+std::vector<IncomingFrame> SearchQueue::take_frames(const SearchQueueOptions& options) {
   std::vector<IncomingFrame> taken;
   do {
     const auto next = next_frame();
@@ -419,19 +420,20 @@ std::vector<IncomingFrame> Worker::take_frames(const WorkerOptions& options) {
 
 /// Whether a further frame can be searched as one with this: neither is several views. The caller
 /// holds the mutex.
-bool Worker::combines_next(const IncomingFrame& first) {
+bool SearchQueue::combines_next(const IncomingFrame& first) {
   const auto next = next_frame();
   return first.views.empty() && next != frames_.end() && next->views.empty();
 }
 
-void Worker::note_restart(const std::string& reason) {
+void SearchQueue::note_restart(const std::string& reason) {
   if (reason.empty()) return;
   statistics_.add_fusion_restart(reason);
   if (last_fused_ > 1) log(log_, LogLevel::info, "frames are combined anew: " + reason);
 }
 
-void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFrame> taken,
-                            std::vector<DetectJob>& waiting) {
+void SearchQueue::work_on_frames(const SearchQueueOptions& options,
+                                 std::vector<IncomingFrame> taken,
+                                 std::vector<DetectJob>& waiting) {
   if (!taken.front().views.empty()) {
     keep_waiting(waiting);
     return work_on_views(options, std::move(taken.front()));
@@ -477,14 +479,14 @@ void Worker::work_on_frames(const WorkerOptions& options, std::vector<IncomingFr
 }
 
 /// The jobs go on waiting for a better frame.
-void Worker::keep_waiting(std::vector<DetectJob>& waiting) {
+void SearchQueue::keep_waiting(std::vector<DetectJob>& waiting) {
   const std::lock_guard<std::mutex> lock(mutex_);
   awaiting_frame_.insert(awaiting_frame_.begin(), std::make_move_iterator(waiting.begin()),
                          std::make_move_iterator(waiting.end()));
   waiting.clear();
 }
 
-void Worker::work_on_views(const WorkerOptions& options, IncomingFrame incoming) {
+void SearchQueue::work_on_views(const SearchQueueOptions& options, IncomingFrame incoming) {
   std::vector<IncomingFrame> views = std::move(incoming.views);
   Result<SceneInterpretations> result = search_views(options, views);
   if (result.ok()) result->frame_id = incoming.frame_id;
@@ -492,8 +494,8 @@ void Worker::work_on_views(const WorkerOptions& options, IncomingFrame incoming)
 }
 
 /// Counts each of the frames.
-Result<SceneInterpretations> Worker::search_views(const WorkerOptions& options,
-                                                  std::vector<IncomingFrame>& incoming) {
+Result<SceneInterpretations> SearchQueue::search_views(const SearchQueueOptions& options,
+                                                       std::vector<IncomingFrame>& incoming) {
   std::vector<View> views;
   Status failed;
   std::size_t rejected = 0;
@@ -523,13 +525,13 @@ Result<SceneInterpretations> Worker::search_views(const WorkerOptions& options,
   return result;
 }
 
-void Worker::publish(const IncomingFrame& incoming, const Frame* frame,
-                     const Result<SceneInterpretations>& result) {
+void SearchQueue::publish(const IncomingFrame& incoming, const Frame* frame,
+                          const Result<SceneInterpretations>& result) {
   const std::lock_guard<std::mutex> lock(publish_mutex_);
   (void)guard("a result was not published", [&] { on_result_(incoming, frame, result); });
 }
 
-Frame Worker::fuse(Frame frame, const WorkerOptions& options) {
+Frame SearchQueue::fuse(Frame frame, const SearchQueueOptions& options) {
   const std::lock_guard<std::mutex> lock(stream_mutex_);
   FusedFrame fused = fusion_.add(std::move(frame), options.request.num_threads);
   note_restart(fused.restart);
@@ -537,8 +539,8 @@ Frame Worker::fuse(Frame frame, const WorkerOptions& options) {
   return std::move(fused.frame);
 }
 
-std::vector<ExpectedPlacement> Worker::expected_in(const WorkerOptions& options,
-                                                   const Frame& frame) {
+std::vector<ExpectedPlacement> SearchQueue::expected_in(const SearchQueueOptions& options,
+                                                        const Frame& frame) {
   if (options.expected) {
     if (auto tracked = options.expected(frame.frame_id)) return *std::move(tracked);
   }
@@ -546,16 +548,16 @@ std::vector<ExpectedPlacement> Worker::expected_in(const WorkerOptions& options,
   return expected_[frame.frame_id];
 }
 
-void Worker::remember(const Frame& frame, const Result<SceneInterpretations>& result) {
+void SearchQueue::remember(const Frame& frame, const Result<SceneInterpretations>& result) {
   const std::lock_guard<std::mutex> lock(stream_mutex_);
   if (expected_.size() > kFollowedCameras) expected_.clear();
   expected_[frame.frame_id] =
       result.ok() ? expected_after(*result) : std::vector<ExpectedPlacement>{};
 }
 
-void Worker::answer_next_frame(const WorkerOptions& options, const IncomingFrame& incoming,
-                               const Frame& frame, DetectJob& job,
-                               const Result<SceneInterpretations>* shared) {
+void SearchQueue::answer_next_frame(const SearchQueueOptions& options,
+                                    const IncomingFrame& incoming, const Frame& frame,
+                                    DetectJob& job, const Result<SceneInterpretations>* shared) {
   if (shared != nullptr && !job.restrict_frame && same_search(job.request, options.request)) {
     statistics_.add(&Counts::requests_served);
     return hand_over(job, &frame, *shared);
@@ -567,7 +569,7 @@ void Worker::answer_next_frame(const WorkerOptions& options, const IncomingFrame
   answer(job, narrowed, with_priors(job.request, incoming.priors));
 }
 
-void Worker::work_on_request(DetectJob& job) {
+void SearchQueue::work_on_request(DetectJob& job) {
   if (ros_clock_->now() >= job.deadline) {
     return refuse(job, Status(StatusCode::timeout, "its turn came after its time-out"));
   }
@@ -576,12 +578,12 @@ void Worker::work_on_request(DetectJob& job) {
   answer(job, *frame, job.request);
 }
 
-Result<SceneInterpretations> Worker::detect(const Frame& frame, const DetectRequest& request) {
-  return searched([&] { return recognition_->detect_beside(frame, request, queue_length()); });
+Result<SceneInterpretations> SearchQueue::detect(const Frame& frame, const DetectRequest& request) {
+  return searched([&] { return recognition_->detect_beside(frame, request, length()); });
 }
 
 /// What a search finds, which may throw; its times are counted.
-Result<SceneInterpretations> Worker::searched(
+Result<SceneInterpretations> SearchQueue::searched(
     const std::function<Result<SceneInterpretations>()>& search) {
   std::optional<Result<SceneInterpretations>> result;
   const Status status = guard("the detector failed", [&] { result.emplace(search()); });
