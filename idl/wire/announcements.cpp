@@ -20,8 +20,8 @@ constexpr std::array<Byte, 4> kAnnouncer{0, 1, 0, 0xc2}, kAnnouncementReader{0, 
 constexpr std::array<Byte, 4> kParticipant{0, 0, 1, 0xc1};
 constexpr std::uint32_t kSentinel = 1, kLease = 2, kGuid = 0x50, kKeyHash = 0x70, kStatus = 0x71;
 
-/// Bytes in one order. What is outside reads as 0.
-struct View {
+/// A packet up to the end of a submessage, in its byte order. What is outside reads as 0.
+struct Submessage {
   const Byte* data = nullptr;
   std::size_t size = 0;
   bool little = true;
@@ -43,7 +43,7 @@ struct View {
 
 /// Calls `found(id, where, size)` for each parameter of the list at `at`; gives back its end.
 template <class Found>
-std::size_t for_each_parameter(const View& view, std::size_t at, Found found) {
+std::size_t for_each_parameter(const Submessage& view, std::size_t at, Found found) {
   while (at + 4 <= view.size) {
     const std::uint32_t id = view.u16(at), size = view.u16(at + 2);
     at += 4;
@@ -56,7 +56,7 @@ std::size_t for_each_parameter(const View& view, std::size_t at, Found found) {
 }
 
 /// The announcement in a DATA submessage that ends at the end of `view`, if there is one.
-std::optional<Announcement> announcement(View view, std::size_t at) {
+std::optional<Announcement> announcement(Submessage view, std::size_t at) {
   const Byte flags = view.data[at + 1];
   view.little = (flags & kLittleEndian) != 0;
   const std::uint32_t to_parameters = view.u16(at + 6);
@@ -97,7 +97,7 @@ std::vector<Announcement> announcements_in(const Byte* data, std::size_t bytes) 
   std::vector<Announcement> result;
   if (bytes < kHeader || std::memcmp(data, "RTPS", 4) != 0) return result;
   for (std::size_t at = kHeader; at + 4 <= bytes;) {
-    View view{data, bytes, (data[at + 1] & kLittleEndian) != 0};
+    Submessage view{data, bytes, (data[at + 1] & kLittleEndian) != 0};
     const std::size_t size = view.u16(at + 2);
     if (size != 0) view.size = std::min(at + 4 + size, bytes);  // 0: to the end
     if (data[at] == kData && view.size - at >= 24) {
