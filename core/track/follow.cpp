@@ -87,28 +87,28 @@ struct Fit {
   double visible_fraction = 0;
 };
 
-Fit judged(const View& view, const FeaturePlaces& places, const Pose& start,
+Fit judged(const ObservedFrame& observed, const FeaturePlaces& places, const Pose& start,
            const RefinementOptions& alignment) {
   const ObjectModel& model = places.model();
   Candidate candidate{
       .model = &model,
-      .refinement = refine_pose(view.scene, model, view.in_camera(start), alignment)};
-  Evidence evidence(view.scene, places, candidate.pose());
+      .refinement = refine_pose(observed.scene, model, observed.in_camera(start), alignment)};
+  Evidence evidence(observed.scene, places, candidate.pose());
   candidate.values = measure(evidence, Round::two);
-  const Placement placement = transformed(view.frame_from_camera, to_placement(candidate));
+  const Placement placement = transformed(observed.frame_from_camera, to_placement(candidate));
   return {sight_of(evidence.surface(), candidate.refinement.num_correspondences),
           {placement.camera_from_object, placement.covariance},
-          view.layers.round_two.log_odds(candidate.values),
+          observed.layers.round_two.log_odds(candidate.values),
           evidence.surface().visibility};
 }
 
 // Aligns the object with the frame from one of several starts in the tracks' frame of reference:
 // the best by round-two score.
-Fit fit(const View& view, const FeaturePlaces& places, const std::vector<Pose>& starts,
+Fit fit(const ObservedFrame& observed, const FeaturePlaces& places, const std::vector<Pose>& starts,
         const RefinementOptions& alignment) {
   Fit best;
   for (std::size_t i = 0; i < starts.size(); ++i) {
-    Fit now = judged(view, places, starts[i], alignment);
+    Fit now = judged(observed, places, starts[i], alignment);
     const bool better = std::pair(now.sight == Sight::seen, now.log_odds) >
                         std::pair(best.sight == Sight::seen, best.log_odds);
     if (i == 0 || better) best = now;
@@ -225,16 +225,16 @@ std::optional<RegionOfInterest> surroundings_of(const Frame& frame, const Pose& 
 }
 
 // Looks where the object is predicted, and further away where it is not there.
-Fit found_at(const View& view, const Pose& predicted, const Body& body) {
-  Fit found = fit(view, *body.places, {predicted}, kAlignment);
+Fit found_at(const ObservedFrame& observed, const Pose& predicted, const Body& body) {
+  Fit found = fit(observed, *body.places, {predicted}, kAlignment);
   if (found.sight == Sight::seen && body.unseen == 0 && !in_doubt(body, found)) return found;
-  const Fit wide = fit(view, *body.places, {predicted, body.last_seen}, kWideAlignment);
+  const Fit wide = fit(observed, *body.places, {predicted, body.last_seen}, kWideAlignment);
   if (wide.sight == Sight::seen && (found.sight != Sight::seen || wide.log_odds > found.log_odds))
     found = wide;
   const bool misled =
       found.sight == Sight::absent || (found.sight == Sight::seen && in_doubt(body, found));
   if (misled && std::max(body.doubts, body.unseen) < kMaxTried) {
-    const Fit other = fit(view, *body.places, starts_about(predicted), kWideAlignment);
+    const Fit other = fit(observed, *body.places, starts_about(predicted), kWideAlignment);
     if (other.sight == Sight::seen && !in_doubt(body, other)) return other;
   }
   return found;
@@ -252,11 +252,11 @@ bool looks_unchanged(const Frame& frame, const SensorNoise& noise, const Pose& f
          changed_share(sampled_depths(frame, *around, kStep_px), body.around, noise) <= kMaxChanged;
 }
 
-void correct(const View& view, Body& body) {
+void correct(const ObservedFrame& observed, Body& body) {
   MotionFilter& motion = body.motion;
   const Pose predicted = motion.pose();
-  const auto around = surroundings_of(view.frame, view.frame_from_camera, body);
-  Fit found = around ? found_at(view, predicted, body) : Fit();
+  const auto around = surroundings_of(observed.frame, observed.frame_from_camera, body);
+  Fit found = around ? found_at(observed, predicted, body) : Fit();
   if (found.sight == Sight::seen) {
     const Vector6d jump = difference(found.measured.pose, predicted);
     const bool near = jump.head<3>().norm() < kMaxJump_m && jump.tail<3>().norm() < kMaxJump_rad;
@@ -276,7 +276,7 @@ void correct(const View& view, Body& body) {
   ++body.seen;
   body.last_seen = motion.pose();
   body.around_region = *around;
-  body.around = sampled_depths(view.frame, *around, kStep_px);
+  body.around = sampled_depths(observed.frame, *around, kStep_px);
 }
 
 void take_back(Body& body) {
@@ -291,19 +291,19 @@ void add_mode(Body& body, const Pose& frame_from_object, double log_weight) {
   if (propose(body, relative, log_weight)) body.compared = 0;
 }
 
-void compare_modes(const View& view, Body& body) {
+void compare_modes(const ObservedFrame& observed, Body& body) {
   ++body.frames_since_compared;
   if (body.sight != Sight::seen || body.visible_fraction < kMinCompared) return;
   const ObjectModel& model = *body.model;
   if (body.modes.empty() && model.index->near_symmetries.empty()) return;
-  const Pose camera_from_object = view.in_camera(body.motion.pose());
+  const Pose camera_from_object = observed.in_camera(body.motion.pose());
   const Pose from = camera_from_object.inverse();
   const bool goes_on = body.to_compare > 0;
   if (!goes_on && body.compared >= kComparedAtLeast && !is_new_view(body, from)) return;
-  const auto around = surroundings_of(view.frame, view.frame_from_camera, body);
+  const auto around = surroundings_of(observed.frame, observed.frame_from_camera, body);
   if (!around) return;
-  const SceneFeatures scene =
-      observe_part_colors(view.frame, *around, view.scene.map.sensor, view.scene.planes);
+  const SceneFeatures scene = observe_part_colors(observed.frame, *around,
+                                                  observed.scene.map.sensor, observed.scene.planes);
   // All are aligned alike, or those that are would seem likelier. A turn that the view leaves open
   // slides to where another mode is; then it stays as it was.
   const auto aligned = [&](const Pose& start) {

@@ -19,8 +19,8 @@
 
 namespace bpa::track {
 
-/// One frame as tracks see it. Keeps references.
-struct View {
+/// A frame and what tracks need of it. Keeps references.
+struct ObservedFrame {
   const Frame& frame;
   const SceneFeatures& scene;  ///< observe() of the frame.
   Pose frame_from_camera;      ///< Of the tracks' frame of reference.
@@ -74,7 +74,7 @@ bool looks_unchanged(const Frame& frame, const SensorNoise& noise, const Pose& f
                      const Body& body);
 
 /// Aligns a predicted body with the frame, judges what is seen there, and corrects its motion.
-void correct(const View& view, Body& body);
+void correct(const ObservedFrame& observed, Body& body);
 
 /// The surface that the last alignment found is of another object: this one is behind it.
 void take_back(Body& body);
@@ -82,7 +82,7 @@ void take_back(Body& body);
 /// Where the modes of a mixture differ in what a frame shows, their weights follow. Near-symmetric
 /// turns of the model are modes too. Drops modes that have become unlikely. One that has become
 /// clearly likelier than the pose becomes the pose.
-void compare_modes(const View& view, Body& body);
+void compare_modes(const ObservedFrame& observed, Body& body);
 
 /// A search takes this pose, in the tracks' frame of reference, for right: its weight rises by
 /// `says`, or those of all modes fall where it is the body's own. It is added with `log_weight` if

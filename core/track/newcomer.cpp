@@ -14,13 +14,14 @@ namespace {
 
 constexpr double kPart_m = 0.15;  // around the object: what is looked at of a frame. By hand.
 
-void follow_to(const View& view, std::int64_t from_ns, Body& body) {
-  predict(seconds(view.frame.stamp_ns - from_ns), body);
-  correct(view, body);
+void follow_to(const ObservedFrame& observed, std::int64_t from_ns, Body& body) {
+  predict(seconds(observed.frame.stamp_ns - from_ns), body);
+  correct(observed, body);
 }
 
-// `newest` is a view of another frame: sensor, background and layers are the same.
-void follow_through(const KeptFrame& kept, const View& newest, std::int64_t from_ns, Body& body) {
+// `newest` is another frame: sensor, background and layers are the same.
+void follow_through(const KeptFrame& kept, const ObservedFrame& newest, std::int64_t from_ns,
+                    Body& body) {
   const Frame& frame = *kept.frame;
   predict(seconds(frame.stamp_ns - from_ns), body);
   const Pose camera_from_newest = kept.frame_from_camera.inverse() * newest.frame_from_camera;
@@ -60,7 +61,7 @@ void Newcomer::begin() {
   at_ns_ = stamp_ns_;
 }
 
-Newcomer::Progress Newcomer::step(std::span<const KeptFrame> since, const View& newest,
+Newcomer::Progress Newcomer::step(std::span<const KeptFrame> since, const ObservedFrame& newest,
                                   std::size_t most) {
   const std::int64_t now = newest.frame.stamp_ns;
   if (!body_) {

@@ -26,7 +26,7 @@ class Newcomer {
            const FrameRecord& then);
 
   /// Goes through at most `most` of the frames since, and on to the newest if these were the last.
-  Progress step(std::span<const KeptFrame> since, const View& newest, std::size_t most);
+  Progress step(std::span<const KeptFrame> since, const ObservedFrame& newest, std::size_t most);
 
   std::uint64_t track() const { return track_; }
   const Placement& found() const { return found_; }

@@ -68,7 +68,7 @@ struct Tracker::State {
   std::map<std::string, int> born_of_model;
 
   // The newest frame. It is observed once, if at all.
-  View view(const Frame& frame) {
+  ObservedFrame observed(const Frame& frame) {
     if (!scene) {
       std::vector<Plane> planes;
       for (const Plane& plane : background.planes()) {
@@ -109,7 +109,7 @@ struct Tracker::State {
     if (!may_rest) rested_s = 0;
     newcomers_wait = false;
     if (all) return;
-    const View now = view(frame);
+    const ObservedFrame now = observed(frame);
     const bool none_new = newcomers.empty() && results.empty();
     newcomers_wait = !none_new && ++newcomers_turns > kNewcomersTurns;
     const bool modes_turn = none_new || newcomers_wait;
@@ -221,10 +221,10 @@ struct Tracker::State {
       }
       return known;
     });
-    if (!newcomers.empty() && !newcomers_wait) bring_on(view(newest));
+    if (!newcomers.empty() && !newcomers_wait) bring_on(observed(newest));
   }
 
-  void bring_on(const View& newest) {
+  void bring_on(const ObservedFrame& newest) {
     const auto some = std::span(newcomers).first(std::min(newcomers.size(), kReceivedAtOnce));
     const auto since = history.kept_after(std::ranges::min(some, {}, &Newcomer::at_ns).at_ns());
     std::vector<Newcomer::Progress> progress(some.size());
