@@ -127,7 +127,7 @@ class LibraryDetector : public Recognition {
     return draw::annotate(frame, interpretation, current()->library()).pixels;
   }
 
-  std::vector<ScorePart> score_parts(const Placement& placement) const override {
+  std::vector<ScoreTerm> score_terms(const Placement& placement) const override {
     ScoreValues values;
     values.fill(kNotKnown);
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -136,14 +136,14 @@ class LibraryDetector : public Recognition {
       if (found != placement.components.end()) values[i] = found->value;
     }
     const ScoreLayer& layer = layers_.last_for(values);
-    std::vector<ScorePart> parts = {{"bias", "log odds", "Of the score layer.", 0, layer.bias}};
+    std::vector<ScoreTerm> terms = {{"bias", "log odds", "Of the score layer.", 0, layer.bias}};
     for (std::size_t i = 0; i < values.size(); ++i) {
       const ComponentType& type = kScoreComponents[i];
       if (std::isnan(values[i])) continue;
-      parts.push_back({std::string(type.name), std::string(type.unit), std::string(type.meaning),
+      terms.push_back({std::string(type.name), std::string(type.unit), std::string(type.meaning),
                        values[i], type.learned ? layer.components[i].at(values[i]) : 0});
     }
-    return parts;
+    return terms;
   }
 
   Status set_options(const DetectorOptions& options) override {

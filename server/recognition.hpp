@@ -32,7 +32,7 @@ struct WorkerState {
 };
 
 /// What one component adds to a placement's score.
-struct ScorePart {
+struct ScoreTerm {
   std::string name, unit, meaning;
   double value = 0;     ///< Of the component.
   double log_odds = 0;  ///< That it adds; the score is their sum.
@@ -76,7 +76,7 @@ class Recognition {
 
   /// What the score of a placement is made of, the bias of the score layer first. Empty where that
   /// is not known.
-  virtual std::vector<ScorePart> score_parts(const Placement&) const { return {}; }
+  virtual std::vector<ScoreTerm> score_terms(const Placement&) const { return {}; }
 
   /// Follows objects of these models; the recognition outlives it.
   virtual std::unique_ptr<ObjectTracker> make_tracker(

@@ -86,7 +86,7 @@ const Api::Endpoint Api::kEndpoints[] = {
     {"GET", "/api/results/*/cloud", 0, &Api::cloud},
     {"GET", "/api/results/*/archive", 0, &Api::archive},
     {"GET", "/api/results/*/outlines", 0, &Api::outlines},
-    {"GET", "/api/results/*/score", 0, &Api::score_parts},
+    {"GET", "/api/results/*/score", 0, &Api::score_terms},
     {"GET", "/api/models", 0, &Api::models},
     {"GET", "/api/models/*/thumbnail", 0, &Api::thumbnail},
     {"GET", "/api/models/*/surface", 0, &Api::surface},
@@ -250,7 +250,7 @@ void Api::outlines(const Call& call) {
       json_response(outlines_json(*one, result->camera, links_.context.recognition->models())));
 }
 
-void Api::score_parts(const Call& call) {
+void Api::score_terms(const Call& call) {
   const auto result = kept(call);
   if (!result) return;
   const Interpretation* one = interpretation(call, *result);
@@ -261,7 +261,7 @@ void Api::score_parts(const Call& call) {
                                           one->placements.size(), " placements, from 0")));
   }
   call.respond(json_response(
-      score_parts_json(links_.context.recognition->score_parts(one->placements[number]))));
+      score_terms_json(links_.context.recognition->score_terms(one->placements[number]))));
 }
 
 void Api::models(const Call& call) {

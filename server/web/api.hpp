@@ -66,7 +66,7 @@ class Api {
   void cloud(const Call& call);
   void archive(const Call& call);
   void outlines(const Call& call);
-  void score_parts(const Call& call);
+  void score_terms(const Call& call);
   void models(const Call& call);
   void thumbnail(const Call& call);
   void surface(const Call& call);

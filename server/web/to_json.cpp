@@ -239,14 +239,14 @@ std::string findings_json(const Findings& findings, bool running) {
   return json_text({{"running", running}, {"findings", list}});
 }
 
-std::string score_parts_json(const std::vector<ScorePart>& parts) {
+std::string score_terms_json(const std::vector<ScoreTerm>& terms) {
   Json json = Json::array();
-  for (const ScorePart& part : parts) {
-    json.push_back({{"name", part.name},
-                    {"value", part.value},
-                    {"unit", part.unit},
-                    {"adds", part.log_odds},
-                    {"meaning", part.meaning}});
+  for (const ScoreTerm& term : terms) {
+    json.push_back({{"name", term.name},
+                    {"value", term.value},
+                    {"unit", term.unit},
+                    {"adds", term.log_odds},
+                    {"meaning", term.meaning}});
   }
   return json_text(json);
 }

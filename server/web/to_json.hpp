@@ -30,7 +30,7 @@ Result<wire::rcl_interfaces::Parameter> parameter_from_json(const std::string& t
 /// The models that are loaded, those of the folder that are not, and those that cannot be read.
 std::string models_json(const Recognition& recognition, const std::vector<std::string>& in_folder);
 std::string findings_json(const Findings& findings, bool running);
-std::string score_parts_json(const std::vector<ScorePart>& parts);
+std::string score_terms_json(const std::vector<ScoreTerm>& terms);
 
 /// A model's surface in binary: u32 number of points; f32 distance of neighbouring ones, metres;
 /// x y z of each as f32, metres; r g b of each as u8; its normal as three i8, 127 for 1.
