@@ -13,8 +13,8 @@
 namespace bpa {
 
 /// What suggested a pose: an FPFH match, the votes of oriented point pairs, the caller's prior, or
-/// a flat region.
-enum class Source : std::uint8_t { feature, pairs, prior, region };
+/// a flat region. `count` is how many there are.
+enum class Source : std::uint8_t { feature, pairs, prior, region, count };
 
 /// One model at one pose, from the first guess to the placement that is returned. Later stages fill
 /// the later fields.

@@ -228,11 +228,13 @@ Result<Candidate> candidate_from(msgs::GroupCandidate message, const ObjectModel
   Candidate candidate{.model = &model};
   const bool in_image = message.explained.empty() || message.explained.back() < pixels;
   if (message.values.size() != candidate.values.size() || !in_image ||
-      !std::ranges::is_sorted(message.explained) ||
-      message.found_by > static_cast<std::uint8_t>(Source::region)) {
+      !std::ranges::is_sorted(message.explained)) {
     return corrupt("a candidate of ", model.name, " has ", message.values.size(),
                    " score components, not ", candidate.values.size(),
                    ", or pixels outside of the image");
+  }
+  if (message.found_by >= static_cast<std::uint8_t>(Source::count)) {
+    return corrupt("a candidate of ", model.name, " has found_by ", int{message.found_by});
   }
   candidate.refinement.camera_from_object = pose_from(message.pose.data());
   if (!is_valid(candidate.pose())) return corrupt("a candidate of ", model.name, " has no pose");

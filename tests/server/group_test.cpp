@@ -269,6 +269,11 @@ TEST_F(GroupLibrary, CandidateComesBackToTheBitOrNotAtAll) {
   broken = to_message(candidate);
   broken.values.pop_back();
   EXPECT_FALSE(candidate_from(broken, *candidate.model, 100).ok());
+  msgs::GroupCandidate found = to_message(candidate);
+  for (found.found_by = 0; found.found_by < static_cast<int>(Source::count); ++found.found_by) {
+    EXPECT_TRUE(candidate_from(found, *candidate.model, 100).ok()) << int{found.found_by};
+  }
+  EXPECT_EQ(candidate_from(found, *candidate.model, 100).status().code, StatusCode::corrupt);
 }
 
 }  // namespace
