@@ -109,7 +109,7 @@ void add_placements(const eval::FrameOutcome& outcome, const std::vector<Placeme
     ++bin.correct.total;
     if (!right) continue;
     const PoseError error =
-        pose_error(placements[e].camera_from_object, truth[estimate.truth].camera_from_object,
+        pose_error(placements[e].frame_from_object, truth[estimate.truth].camera_from_object,
                    objects.at(estimate.obj_id).symmetry);
     row.position_m.push_back(error.position);
     row.angle_deg.push_back(error.angle * kDegrees);

@@ -100,8 +100,7 @@ class ModelExplanation {
     if (!best_ || frame_.result.interpretations.empty()) return false;
     const auto& placements = frame_.result.interpretations.front().placements;
     return std::ranges::any_of(placements, [&](const Placement& p) {
-      return p.model == model_.name &&
-             p.camera_from_object.translation == best_->pose().translation;
+      return p.model == model_.name && p.frame_from_object.translation == best_->pose().translation;
     });
   }
 

@@ -12,8 +12,7 @@ bool holds(const Interpretation& interpretation, const io::BopInstance& instance
            const ObjectModel& model) {
   return std::ranges::any_of(interpretation.placements, [&](const Placement& placement) {
     return placement.model_number == instance.obj_id &&
-           eval::is_right(placement.camera_from_object, instance.camera_from_object,
-                          model.symmetry);
+           eval::is_right(placement.frame_from_object, instance.camera_from_object, model.symmetry);
   });
 }
 
@@ -23,7 +22,7 @@ void RightPlacements::add(const std::vector<io::BopInstance>& truth,
   const Interpretation& best = result.interpretations.front();
   for (const Placement& placement : best.placements) {
     const auto model = library.find(placement.model);
-    reported.hits += eval::is_right_about_any(placement.camera_from_object, *model, truth);
+    reported.hits += eval::is_right_about_any(placement.frame_from_object, *model, truth);
     ++reported.total;
   }
   for (const io::BopInstance& instance : truth) {

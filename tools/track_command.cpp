@@ -65,7 +65,7 @@ class Searches {
     result.interpretations = {newest_->interpretations.front()};
     const Pose now_from_then = now.frame_from_camera.inverse() * newest_camera_;
     for (Placement& placement : result.interpretations.front().placements) {
-      placement.camera_from_object = now_from_then * placement.camera_from_object;
+      placement.frame_from_object = now_from_then * placement.frame_from_object;
     }
     return result;
   }

@@ -49,7 +49,7 @@ Placement to_placement(const Detection& detection) {
   Placement placement;
   placement.model_number = detection.model_number;
   placement.model = detection.model;
-  placement.camera_from_object = to_pose(detection.camera_from_object);
+  placement.frame_from_object = to_pose(detection.camera_from_object);
   placement.covariance = RowMajor6::Map(detection.covariance.data());
   placement.orientation = to_uncertainty(detection.orientation_spread);
   placement.score = detection.score;

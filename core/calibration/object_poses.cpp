@@ -79,7 +79,7 @@ class Solver {
     const Matrix6d turn = turned_axes(scene_from_camera.matrix());
     for (std::size_t m = 0; m < moments_.size(); ++m) {
       for (const Placement& placement : moments_[m][camera]) {
-        known_[m].push_back({&placement, scene_from_camera * placement.camera_from_object,
+        known_[m].push_back({&placement, scene_from_camera * placement.frame_from_object,
                              (turn * covariance_of(placement) * turn.transpose()).inverse()});
       }
     }
@@ -95,8 +95,7 @@ class Solver {
           if (known.placement->model != seen.model) continue;
           const SymmetryGroup& symmetry = symmetries_.at(seen.model);
           for (const Pose& element : sampled_elements(symmetry, kTurns)) {
-            const Pose guess =
-                known.scene_from_object * element * seen.camera_from_object.inverse();
+            const Pose guess = known.scene_from_object * element * seen.frame_from_object.inverse();
             const std::vector<SamePair> pairs = together(camera, guess);
             const std::size_t objects = objects_of(pairs).size();
             const double cost = mean_cost(pairs, guess);
@@ -142,13 +141,13 @@ class Solver {
   }
 
   PoseError error_of(const SamePair& pair, const Pose& scene_from_camera) const {
-    return pose_error(scene_from_camera * pair.seen->camera_from_object,
+    return pose_error(scene_from_camera * pair.seen->frame_from_object,
                       pair.known->scene_from_object, symmetries_.at(pair.seen->model), kTogether_m,
                       kTogether_rad);
   }
   // 1 at the limits of what is together.
   double relative_error(const SamePair& pair, const Pose& scene_from_camera) const {
-    const Eigen::Vector3d offset = scene_from_camera * pair.seen->camera_from_object.translation -
+    const Eigen::Vector3d offset = scene_from_camera * pair.seen->frame_from_object.translation -
                                    pair.known->scene_from_object.translation;
     constexpr double kFar = 0.3;  // metres, whatever the symmetry
     if (offset.norm() > kFar) return 2;
@@ -171,7 +170,7 @@ class Solver {
       const Matrix6d turn = turned_axes(pose.matrix());
       for (const SamePair& pair : together(camera, pose)) {
         const Pose known = pair.known->scene_from_object;
-        const Pose seen = nearest_symmetric_pose(pose * pair.seen->camera_from_object, known,
+        const Pose seen = nearest_symmetric_pose(pose * pair.seen->frame_from_object, known,
                                                  symmetries_.at(pair.seen->model));
         const Matrix6d weight = (turn * covariance_of(*pair.seen) * turn.transpose() +
                                  pair.known->information.inverse())

@@ -28,9 +28,9 @@ Placement to_placement(const Candidate& candidate) {
   Placement out;
   out.model_number = candidate.model->number;
   out.model = candidate.model->name;
-  out.camera_from_object = candidate.pose();
+  out.frame_from_object = candidate.pose();
   out.covariance = pose_covariance(candidate.refinement);
-  out.orientation = orientation_uncertainty(out.camera_from_object.rotation,
+  out.orientation = orientation_uncertainty(out.frame_from_object.rotation,
                                             out.covariance.bottomRightCorner<3, 3>());
   out.score = candidate.score;
   out.probability = candidate.probability;

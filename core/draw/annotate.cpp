@@ -115,7 +115,7 @@ std::vector<int> match(const std::vector<io::BopInstance>& truth,
     for (std::size_t t = 0; t < truth.size(); ++t) {
       const auto model = models.find(truth[t].obj_id);
       if (model == models.end() || truth[t].obj_id != placement.model_number) continue;
-      costs.back()[t] = eval::right_cost(placement.camera_from_object, truth[t].camera_from_object,
+      costs.back()[t] = eval::right_cost(placement.frame_from_object, truth[t].camera_from_object,
                                          model->second->symmetry);
     }
   }
@@ -163,7 +163,7 @@ io::ColorImage objects(const Frame& frame, const std::vector<DrawnObject>& drawn
 }
 
 DrawnObject placed(const Placement& placement, const ObjectModel& model) {
-  return {&model.surface, placement.camera_from_object,
+  return {&model.surface, placement.frame_from_object,
           placement.model + " " + fixed(placement.probability, 2),
           object_color(placement.model_number), false};
 }

@@ -29,9 +29,9 @@ void add_dots(const Camera& camera, const Placement& placement, const ObjectMode
               std::vector<Dot>& dots) {
   const PointCloud& surface = model.surface;
   const Rgb plain = object_color(model.number);
-  const Eigen::Matrix3d rotation = placement.camera_from_object.matrix();
+  const Eigen::Matrix3d rotation = placement.frame_from_object.matrix();
   for (std::size_t i = 0; i < surface.size(); ++i) {
-    const Eigen::Vector3d point = placement.camera_from_object * surface.points[i].cast<double>();
+    const Eigen::Vector3d point = placement.frame_from_object * surface.points[i].cast<double>();
     const double facing = -(rotation * surface.normals[i].cast<double>()).dot(point.normalized());
     if (point.z() < 0.05 || facing <= 0) continue;
     const Eigen::Vector2d pixel = camera.project(point);

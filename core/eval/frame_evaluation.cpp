@@ -77,7 +77,7 @@ std::array<Costs, 10> vsd_costs(const BopCase& bop, const EvalObjects& objects,
   };
   for (std::size_t e = 0; e < bop.estimates.size(); ++e) {
     const Placement& estimate = bop.estimates[e];
-    const auto at_estimate = render(estimate.model_number, estimate.camera_from_object);
+    const auto at_estimate = render(estimate.model_number, estimate.frame_from_object);
     for (std::size_t t = 0; t < bop.truth.size(); ++t) {
       const io::BopInstance& truth = bop.truth[t];
       if (estimate.model_number != truth.obj_id) continue;
@@ -104,20 +104,19 @@ Status add_bop_errors(const io::BopFrame& frame, const EvalObjects& objects,
   const std::vector<double> scores = scores_of(bop.estimates);
   const Costs mssd = pair_costs(bop.estimates, bop.truth, [&](const auto& e, const auto& t) {
     const EvalObject& object = objects.at(t.obj_id);
-    return max_surface_distance(object.mesh.vertices, e.camera_from_object, t.camera_from_object,
+    return max_surface_distance(object.mesh.vertices, e.frame_from_object, t.camera_from_object,
                                 symmetries.at(t.obj_id)) /
            object.diameter;
   });
   const Costs mspd = pair_costs(bop.estimates, bop.truth, [&](const auto& e, const auto& t) {
-    return max_projection_distance(objects.at(t.obj_id).mesh.vertices, e.camera_from_object,
+    return max_projection_distance(objects.at(t.obj_id).mesh.vertices, e.frame_from_object,
                                    t.camera_from_object, symmetries.at(t.obj_id), frame.camera) *
            640 / frame.camera.width / kMspdPixelsPerThreshold;
   });
   const Costs add = pair_costs(bop.estimates, bop.truth, [&](const auto& e, const auto& t) {
     const EvalObject& object = objects.at(t.obj_id);
     const auto error = object.symmetry.trivial() ? average_distance : average_nearest_distance;
-    return error(object.mesh.vertices, e.camera_from_object, t.camera_from_object) /
-           object.diameter;
+    return error(object.mesh.vertices, e.frame_from_object, t.camera_from_object) / object.diameter;
   });
   const std::array<Costs, 10> vsd = vsd_costs(bop, objects, *measured);
   outcome.add_correct = matched(scores, add, kAddDiameters);
@@ -138,8 +137,8 @@ void add_rmse(const io::BopFrame& frame, const EvalObjects& objects, const Estim
     const EvalObject& object = objects.at(t.obj_id);
     // The symmetric truth nearest in orientation: one of the whole group need not be tried.
     const Pose nearest =
-        nearest_symmetric_pose(t.camera_from_object, e.camera_from_object, object.symmetry);
-    return rms_distance(object.mesh.vertices, e.camera_from_object, nearest, {Pose{}});
+        nearest_symmetric_pose(t.camera_from_object, e.frame_from_object, object.symmetry);
+    return rms_distance(object.mesh.vertices, e.frame_from_object, nearest, {Pose{}});
   });
   for (const int t : match_greedily(scores_of(estimates), costs, options.rmse_m)) {
     if (t >= 0 && !outcome.truth[t].counts) continue;
@@ -158,7 +157,7 @@ std::vector<PoseOutcome> open_poses(const io::BopFrame& frame, const EvalObjects
   double least = kSamePlace;
   for (const io::BopInstance& truth : frame.truth) {
     const double distance =
-        (truth.camera_from_object.translation - estimate.camera_from_object.translation).norm();
+        (truth.camera_from_object.translation - estimate.frame_from_object.translation).norm();
     if (truth.obj_id != estimate.model_number || distance > least) continue;
     least = distance;
     nearest = &truth;
@@ -167,9 +166,9 @@ std::vector<PoseOutcome> open_poses(const io::BopFrame& frame, const EvalObjects
   const auto is_right = [&](const Pose& pose) {
     return paper_cost(objects, options, pose, *nearest) < kNoMatch;
   };
-  std::vector<PoseOutcome> out{{own_weight(estimate), is_right(estimate.camera_from_object)}};
+  std::vector<PoseOutcome> out{{own_weight(estimate), is_right(estimate.frame_from_object)}};
   for (const PoseAlternative& other : estimate.alternatives) {
-    out.push_back({other.weight, is_right(other.camera_from_object)});
+    out.push_back({other.weight, is_right(other.frame_from_object)});
   }
   return out;
 }
@@ -184,9 +183,9 @@ std::vector<bool> among_alternatives(const io::BopFrame& frame, const Estimates&
     };
     found.push_back(std::ranges::any_of(estimates, [&](const Placement& estimate) {
       return estimate.model_number == truth.obj_id &&
-             (is_right(estimate.camera_from_object) ||
+             (is_right(estimate.frame_from_object) ||
               std::ranges::any_of(estimate.alternatives, is_right,
-                                  &PoseAlternative::camera_from_object));
+                                  &PoseAlternative::frame_from_object));
     }));
   }
   return found;
@@ -197,7 +196,7 @@ void add_estimates(const io::BopFrame& frame, const EvalObjects& objects,
                    const EvaluationOptions& options, FrameOutcome& outcome) {
   for (std::size_t e = 0; e < estimates.size(); ++e) {
     const Placement& estimate = estimates[e];
-    const Pose& pose = estimate.camera_from_object;
+    const Pose& pose = estimate.frame_from_object;
     EstimateOutcome& result = outcome.estimates.emplace_back();
     result.obj_id = estimate.model_number;
     result.probability = estimate.probability;
@@ -213,8 +212,8 @@ void add_estimates(const io::BopFrame& frame, const EvalObjects& objects,
     found.add = average_distance(object.mesh.vertices, pose, nearest);
     found.adds = average_nearest_distance(object.mesh.vertices, pose, truth);
     result.ignored = !found.counts;
-    result.covariance_error = covariance_error(estimate.camera_from_object, estimate.covariance,
-                                               nearest, object.symmetry);
+    result.covariance_error =
+        covariance_error(estimate.frame_from_object, estimate.covariance, nearest, object.symmetry);
   }
 }
 
@@ -236,7 +235,7 @@ Result<FrameOutcome> evaluate_frame(const io::BopFrame& frame, const EvalObjects
   if (result == nullptr) return outcome;
   outcome.seconds = result->seconds;
   const Cost cost = [&](const auto& e, const auto& t) {
-    return paper_cost(objects, options, e.camera_from_object, t);
+    return paper_cost(objects, options, e.frame_from_object, t);
   };
   for (std::size_t rank = 0; rank < result->interpretations.size(); ++rank) {
     const Estimates& estimates = result->interpretations[rank].placements;

@@ -15,7 +15,7 @@ Track track_of(const Placement& placement) {
   track.model_number = placement.model_number;
   track.state = TrackState::confirmed;
   track.probability = placement.probability;
-  track.frame_from_object = placement.camera_from_object;
+  track.frame_from_object = placement.frame_from_object;
   track.covariance = placement.covariance;
   track.orientation = placement.orientation;
   track.visible_fraction = placement.visible_fraction;
@@ -46,7 +46,7 @@ std::vector<io::TrackResult> linked_detections(const std::vector<io::FrameResult
       std::vector<double>& row = costs.emplace_back(before.size(), kNoMatch);
       for (std::size_t k = 0; k < before.size(); ++k) {
         const double distance =
-            (before[k].frame_from_object.translation - placement.camera_from_object.translation)
+            (before[k].frame_from_object.translation - placement.frame_from_object.translation)
                 .norm();
         if (before[k].model_number == placement.model_number && distance <= reach_m) {
           row[k] = distance;

@@ -62,7 +62,7 @@ using io::kOptional;
 static void fields(auto& visit, io::Is<Placement> auto& placement) {
   visit("obj_id", placement.model_number);
   visit("model", placement.model, kOptional);
-  visit("pose", placement.camera_from_object);
+  visit("pose", placement.frame_from_object);
   visit("covariance", placement.covariance, kOptional);
   visit("bingham", placement.orientation, kOptional);
   visit("score", placement.score, kOptional);
@@ -143,11 +143,10 @@ void write_number(std::ostream& out, double value, char separator) {
 void write_row(std::ostream& out, const FrameResult& frame, const Placement& placement) {
   out << frame.scene_id << ',' << frame.im_id << ',' << placement.model_number << ',';
   write_number(out, placement.probability, ',');
-  const Eigen::Matrix3d r = placement.camera_from_object.matrix();
+  const Eigen::Matrix3d r = placement.frame_from_object.matrix();
   for (int i = 0; i < 9; ++i) write_number(out, r(i / 3, i % 3), i < 8 ? ' ' : ',');
   for (int i = 0; i < 3; ++i) {
-    write_number(out, kMillimetres * placement.camera_from_object.translation[i],
-                 i < 2 ? ' ' : ',');
+    write_number(out, kMillimetres * placement.frame_from_object.translation[i], i < 2 ? ' ' : ',');
   }
   write_number(out, frame.seconds, '\n');
 }
@@ -199,7 +198,7 @@ Placement placement_of(const CsvRow& row) {
   placement.model_number = static_cast<int>(row.object[0]);
   placement.score = placement.probability = row.score[0];
   using Rotation = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  placement.camera_from_object =
+  placement.frame_from_object =
       Pose::from_matrix(Eigen::Map<const Rotation>(row.rotation),
                         Eigen::Map<const Eigen::Vector3d>(row.translation) / kMillimetres);
   return placement;

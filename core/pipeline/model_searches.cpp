@@ -62,9 +62,8 @@ void LocalSearches::score_expected(const Deadline& deadline) {
     for (std::size_t i = 0; i < searches_.size(); ++i) {
       const ObjectModel& model = searches_[i].model;
       if (model.name != expected.model) continue;
-      found_[i].push_back({.model = &model,
-                           .refinement = {expected.camera_from_object},
-                           .found_by = Source::prior});
+      found_[i].push_back(
+          {.model = &model, .refinement = {expected.frame_from_object}, .found_by = Source::prior});
     }
   }
   run(scoring_stages(), deadline, found_);

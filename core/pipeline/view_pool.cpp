@@ -79,6 +79,12 @@ struct ViewPool::Found {
   Pose scene_from_object;
 };
 
+struct ViewPool::Joint {
+  Pose scene_from_object;
+  Matrix6 information = Matrix6::Zero();  // about the fixed frame's axes, as Refinement's
+  int num_correspondences = 0;
+};
+
 ViewPool::ViewPool(const Detector& detector, std::span<const ViewSearch* const> views,
                    std::vector<Pose> scene_from_camera, const DetectRequest& request,
                    const ViewsOptions& options)
@@ -118,7 +124,7 @@ bool ViewPool::same(const Entry& entry, const Found& found) const {
   const double far = entry.model->diameter / 4 + options_.same_position_m;
   const Eigen::Vector3d& centre = entry.model->centre;
   if ((found.scene_from_object * centre - entry.place).norm() > far) return false;
-  const Pose pose = joint(entry).camera_from_object;
+  const Pose pose = joint(entry).scene_from_object;
   const PoseError error = pose_error(found.scene_from_object, pose, entry.model->symmetry);
   return error.position < options_.same_position_m && error.angle < options_.same_angle_rad;
 }
@@ -142,7 +148,7 @@ void ViewPool::add(const Found& found) {
   Candidate candidate = *found.candidate;
   if (!is_new && !entry->model->symmetry.trivial()) {
     const Pose pose = nearest_symmetric_pose(
-        found.scene_from_object, joint(*entry).camera_from_object, entry->model->symmetry);
+        found.scene_from_object, joint(*entry).scene_from_object, entry->model->symmetry);
     candidate.refinement = search_in(found.view, *entry->model)
                                .measured(scene_from_camera_[found.view].inverse() * pose);
   }
@@ -186,7 +192,7 @@ void ViewPool::score_in(int view, const ObjectModel& model, SearchEffort& effort
   near.end_gate_m = std::min(near.end_gate_m, near.start_gate_m);
   for (Entry& entry : entries_) {
     if (entry.model != &model || entry.known[view]) continue;
-    const Pose start = scene_from_camera_[view].inverse() * joint(entry).camera_from_object;
+    const Pose start = scene_from_camera_[view].inverse() * joint(entry).scene_from_object;
     if (!((start * model.centre).z() > 0)) continue;  // behind the camera
     Refinement refinement = search.refine(start, near);
     const PoseError moved = pose_error(refinement.camera_from_object, start);
@@ -219,14 +225,14 @@ void ViewPool::compare_in(int view, const ObjectModel& model) {
 }
 
 // The mean of what the views say, weighted by information.
-Refinement ViewPool::joint(const Entry& entry) const {
+ViewPool::Joint ViewPool::joint(const Entry& entry) const {
   int best = -1;
   for (std::size_t v = 0; v < views_.size(); ++v) {
     const bool better = best < 0 || entry.in_view[v].score > entry.in_view[best].score;
     if (entry.known[v] && better) best = static_cast<int>(v);
   }
   const Pose reference = scene_from_camera_[best] * entry.in_view[best].pose();
-  Refinement out{reference};
+  Joint out{reference};
   Vector6 sum = Vector6::Zero();
   for (std::size_t v = 0; v < views_.size(); ++v) {
     const Candidate& candidate = entry.in_view[v];
@@ -246,8 +252,8 @@ Refinement ViewPool::joint(const Entry& entry) const {
   }
   const Vector6 offset = out.information.ldlt().solve(sum);
   if (!offset.allFinite()) return out;
-  out.camera_from_object.translation += offset.head<3>();
-  out.camera_from_object.rotation =
+  out.scene_from_object.translation += offset.head<3>();
+  out.scene_from_object.rotation =
       (rotation_from_vector(offset.tail<3>()) * reference.rotation).normalized();
   return out;
 }
@@ -255,7 +261,9 @@ Refinement ViewPool::joint(const Entry& entry) const {
 Candidate ViewPool::joined(const Entry& entry) const {
   std::size_t most = 0;
   std::vector<ViewEvidence> evidence;
-  Candidate out{.model = entry.model, .refinement = joint(entry)};
+  const Joint pose = joint(entry);
+  Candidate out{.model = entry.model,
+                .refinement = {pose.scene_from_object, pose.information, pose.num_correspondences}};
   for (std::size_t v = 0; v < views_.size(); ++v) {
     const Candidate& candidate = entry.in_view[v];
     evidence.push_back({candidate.score - candidate.prior, visibility_of(candidate)});

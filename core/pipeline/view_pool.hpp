@@ -22,7 +22,7 @@ class ViewPool {
   void gather();
   /// Compares poses that claim one place, in each view.
   void compare();
-  /// The placements in the fixed frame, with the evidence of all views.
+  /// The placements with the evidence of all views. Their poses are scene_from_object.
   Candidates joined() const;
   /// Which of joined() share pixels or exclude one another in any view.
   Overlaps overlaps(const Candidates& joined) const;
@@ -34,6 +34,7 @@ class ViewPool {
 
  private:
   struct Found;  // a placement of one view, in the fixed frame
+  struct Joint;  // a pose that several views agree on
   /// One placement: what it is in each view, and where all views that know it say it is.
   struct Entry {
     const ObjectModel* model = nullptr;
@@ -45,7 +46,7 @@ class ViewPool {
   std::vector<Found> all_found() const;
   void add(const Found& found);
   bool same(const Entry& entry, const Found& found) const;
-  Refinement joint(const Entry& entry) const;
+  Joint joint(const Entry& entry) const;
   Candidate joined(const Entry& entry) const;
   void score_in(int view, const ObjectModel& model, SearchEffort& effort);
   void compare_in(int view, const ObjectModel& model);

@@ -30,7 +30,7 @@ DetectRequest seen_from(const Pose& scene_from_camera, const DetectRequest& requ
   out.on_round = {};
   for (PosePrior& prior : out.priors) prior = transformed(camera_from_scene, prior);
   for (ExpectedPlacement& expected : out.expected) {
-    expected.camera_from_object = camera_from_scene * expected.camera_from_object;
+    expected.frame_from_object = camera_from_scene * expected.frame_from_object;
   }
   return out;
 }

@@ -33,9 +33,9 @@ struct ViewSearch {
 
 /// What all views show together.
 struct ViewsResult {
-  /// In the fixed frame: each Placement::camera_from_object is scene_from_object. Its
-  /// visible_fraction is that of the view that sees most of it. Covariances hold the expected error
-  /// of the cameras' poses. The stamp is the latest frame's, `frame_id` is empty.
+  /// In the fixed frame: frame_from_object is scene_from_object. A visible_fraction is that of the
+  /// view that sees most of the object. Covariances hold the expected error of the cameras' poses.
+  /// The stamp is the latest frame's, `frame_id` is empty.
   SceneInterpretations scene;
   std::vector<Pose> scene_from_camera;             ///< As used: aligned with align_cameras.
   std::vector<SurfaceDisagreement> disagreements;  ///< Of pairs of views, as given.

@@ -8,7 +8,7 @@ std::vector<ExpectedPlacement> expected_after(const SceneInterpretations& result
   std::vector<ExpectedPlacement> expected;
   if (result.interpretations.empty()) return expected;
   for (const Placement& placement : result.interpretations.front().placements) {
-    expected.push_back({placement.model, placement.camera_from_object});
+    expected.push_back({placement.model, placement.frame_from_object});
   }
   return expected;
 }

@@ -32,7 +32,7 @@ struct StageTiming {
 /// The result of one search.
 struct SceneInterpretations {
   std::int64_t stamp_ns = 0;                    ///< Exposure time of the frame, UTC.
-  std::string frame_id;                         ///< Name of the frame's optical frame.
+  std::string frame_id;                         ///< Of placements; a camera's optical frame.
   std::vector<Interpretation> interpretations;  ///< Ranked; at least one, which may be empty.
   std::vector<StageTiming> timings;             ///< In the order the stages ran.
   double total_milliseconds = 0;                ///< Of the whole search.
@@ -46,10 +46,10 @@ struct SceneInterpretations {
   int fused_frames = 1;         ///< Number of frames combined into the searched depth.
 };
 
-/// A placement of an earlier frame.
+/// A placement of an earlier frame, in the frame of the request's priors.
 struct ExpectedPlacement {
-  std::string model;        ///< The model's name.
-  Pose camera_from_object;  ///< Optical frame of the camera, metres.
+  std::string model;       ///< The model's name.
+  Pose frame_from_object;  ///< Metres.
 };
 
 /// The placements of the best interpretation, for the next frame.

@@ -38,9 +38,9 @@ Placement transformed(const Pose& a_from_b, const Placement& placement) {
                     a_from_b.translation.isZero(0);
   Placement out = placement;
   if (same) return out;
-  out.camera_from_object = a_from_b * placement.camera_from_object;
+  out.frame_from_object = a_from_b * placement.frame_from_object;
   for (PoseAlternative& other : out.alternatives) {
-    other.camera_from_object = a_from_b * other.camera_from_object;
+    other.frame_from_object = a_from_b * other.frame_from_object;
   }
   Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
   turn.topLeftCorner<3, 3>() = a_from_b.matrix();

@@ -18,8 +18,8 @@ struct ScoreComponent {
 
 /// Another pose that explains the view nearly as well.
 struct PoseAlternative {
-  Pose camera_from_object;  ///< Optical frame of the camera, metres.
-  double weight = 0;  ///< In (0, 1]; the weights of a placement and its alternatives sum to 1.
+  Pose frame_from_object;  ///< In the placement's frame, metres.
+  double weight = 0;       ///< In (0, 1]; the weights of a placement and its alternatives sum to 1.
 };
 
 /// Uncertainty of an orientation as a Bingham distribution (paper, appendix): density proportional
@@ -34,12 +34,13 @@ struct OrientationUncertainty {
 OrientationUncertainty orientation_uncertainty(const Eigen::Quaterniond& rotation,
                                                const Eigen::Matrix3d& covariance);
 
-/// One object at one pose in a frame.
+/// One object at one pose, in the frame that SceneInterpretations::frame_id names: the optical
+/// frame of the camera, or the fixed frame of several views (ViewsResult).
 struct Placement {
-  int model_number = 0;     ///< The model's number in its library.
-  std::string model;        ///< The model's name.
-  Pose camera_from_object;  ///< Optical frame of the camera, metres.
-  /// Covariance of (x, y, z, rotation about x, y, z), metres and radians. The axes are the camera
+  int model_number = 0;    ///< The model's number in its library.
+  std::string model;       ///< The model's name.
+  Pose frame_from_object;  ///< Metres.
+  /// Covariance of (x, y, z, rotation about x, y, z), metres and radians. The axes are the
   /// frame's (order and meaning of geometry_msgs/PoseWithCovariance).
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   OrientationUncertainty orientation;

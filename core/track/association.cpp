@@ -47,7 +47,7 @@ std::vector<Placement> found_objects(const SceneInterpretations& result,
       const bool likely =
           placement.probability >= kLeastOfPose && presence(placement) >= min_presence;
       if (!model || !likely) continue;
-      const Place place{placement.camera_from_object * model->centre, kSamePlace * model->diameter};
+      const Place place{placement.frame_from_object * model->centre, kSamePlace * model->diameter};
       const bool free = std::ranges::none_of(taken, [&place](const Place& other) {
         return (place.at - other.at).norm() < std::min(place.reach, other.reach);
       });
@@ -70,7 +70,7 @@ std::vector<int> match_tracks(const std::vector<Placement>& placements,
     for (int t = 0; t < std::ssize(tracks); ++t) {
       const TrackRecord& track = tracks[t];
       if (placements[p].model != track.model->name) continue;
-      const Eigen::Vector3d there = placements[p].camera_from_object * track.model->centre;
+      const Eigen::Vector3d there = placements[p].frame_from_object * track.model->centre;
       const double distance = (there - place(track)).norm();
       if (distance < gate(track)) pairs.push_back({distance, p, t});
     }
@@ -92,7 +92,7 @@ bool in_one_place(const ObjectModel& model, const Pose& a, const Pose& b) {
 
 bool claims_place(const Placement& placement, const TrackRecord& track) {
   if (placement.model == track.model->name) return false;
-  const double distance = (placement.camera_from_object.translation - place(track)).norm();
+  const double distance = (placement.frame_from_object.translation - place(track)).norm();
   return distance < kSamePlace * track.model->diameter;
 }
 

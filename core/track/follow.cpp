@@ -97,7 +97,7 @@ Fit judged(const ObservedFrame& observed, const FeaturePlaces& places, const Pos
   candidate.values = measure(evidence, Round::two);
   const Placement placement = transformed(observed.frame_from_camera, to_placement(candidate));
   return {sight_of(evidence.surface(), candidate.refinement.num_correspondences),
-          {placement.camera_from_object, placement.covariance},
+          {placement.frame_from_object, placement.covariance},
           observed.layers.round_two.log_odds(candidate.values),
           evidence.surface().visibility};
 }

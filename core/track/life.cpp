@@ -46,10 +46,10 @@ void Life::doubt(double log_odds) {
 
 void Life::suggest(const Placement& placement, const Pose& now_from_then) {
   for (const PoseAlternative& other : placement.alternatives) {
-    add_mode(body, now_from_then * other.camera_from_object, kDoubt);
+    add_mode(body, now_from_then * other.frame_from_object, kDoubt);
   }
   const double says = std::clamp(log_odds_of(placement.probability), 0.0, kMostSaid);
-  favour_mode(body, now_from_then * placement.camera_from_object, kDoubt, says);
+  favour_mode(body, now_from_then * placement.frame_from_object, kDoubt, says);
 }
 
 bool Life::confirm(double min_probability) {

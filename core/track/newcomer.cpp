@@ -49,10 +49,10 @@ Newcomer::Newcomer(Placement found, std::shared_ptr<const ObjectModel> model, st
 
 void Newcomer::begin() {
   Placement likeliest = found_;
-  if (tried_ > 0) likeliest.camera_from_object = found_.alternatives[tried_ - 1].camera_from_object;
-  tried_pose_ = likeliest.camera_from_object;
+  if (tried_ > 0) likeliest.frame_from_object = found_.alternatives[tried_ - 1].frame_from_object;
+  tried_pose_ = likeliest.frame_from_object;
   const Placement in_frame = transformed(frame_from_camera_, likeliest);
-  const UncertainPose start{in_frame.camera_from_object, in_frame.covariance};
+  const UncertainPose start{in_frame.frame_from_object, in_frame.covariance};
   body_ = Body{.model = model_,
                .places = std::make_shared<FeaturePlaces>(*model_),
                .motion = MotionFilter(start),
@@ -98,7 +98,7 @@ void add_alternatives(const Placement& found, const Pose& now_from_then, Body& b
   constexpr double kLeastWeight = 0.01;  // of the placement's own pose
   const double own = std::max(kLeastWeight, own_weight(found));
   for (const PoseAlternative& other : found.alternatives) {
-    add_mode(body, now_from_then * other.camera_from_object, std::log(other.weight / own));
+    add_mode(body, now_from_then * other.frame_from_object, std::log(other.weight / own));
   }
 }
 

@@ -36,7 +36,7 @@ class Newcomer {
   /// Of its frame's camera, in the tracks' frame of reference.
   const Pose& frame_from_camera() const { return frame_from_camera_; }
   /// Where it was in its frame, in the tracks' frame of reference.
-  Pose start() const { return frame_from_camera_ * found_.camera_from_object; }
+  Pose start() const { return frame_from_camera_ * found_.frame_from_object; }
   /// What takes poses of its camera then to where the object is now, once it has arrived.
   Pose now_from_then() const { return body_->motion.pose() * tried_pose_.inverse(); }
   /// Where it has arrived, with its alternatives as modes.
@@ -45,7 +45,7 @@ class Newcomer {
  private:
   void begin();
 
-  Placement found_;
+  Placement found_;  ///< In the camera frame.
   std::shared_ptr<const ObjectModel> model_;
   std::uint64_t track_;
   std::int64_t stamp_ns_;

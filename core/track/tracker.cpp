@@ -201,7 +201,7 @@ struct Tracker::State {
     const bool known = std::ranges::any_of(newcomers, [&](const Newcomer& other) {
       return other.stamp_ns() == at.stamp_ns && other.found().model == found.model &&
              in_one_place(other.model(), other.start(),
-                          at.frame_from_camera * found.camera_from_object);
+                          at.frame_from_camera * found.frame_from_object);
     });
     if (known) return;
     if (auto model = library->find(found.model)) {

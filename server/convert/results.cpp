@@ -20,7 +20,7 @@ msgs::Placement placement_message(const Placement& placement, std::uint32_t inst
   msgs::Placement message{.model = placement.model,
                           .model_number = static_cast<std::uint32_t>(placement.model_number),
                           .instance = instance,
-                          .pose = pose_message(placement.camera_from_object, placement.covariance),
+                          .pose = pose_message(placement.frame_from_object, placement.covariance),
                           .orientation = bingham_message(placement.orientation),
                           .score = placement.score,
                           .probability = placement.probability,
@@ -107,8 +107,8 @@ vision::Detection3DArray detections_message(const SceneInterpretations& result,
     message.detections.push_back(
         {message.header,
          {{{placement.model, placement.probability},
-           pose_message(placement.camera_from_object, placement.covariance)}},
-         box_message(placement.camera_from_object, placement.model_number, models),
+           pose_message(placement.frame_from_object, placement.covariance)}},
+         box_message(placement.frame_from_object, placement.model_number, models),
          name});
   });
   return message;
@@ -124,7 +124,7 @@ markers::MarkerArray markers_message(const SceneInterpretations& result, const M
     std::snprintf(percent, sizeof percent, " %.0f %%", 100 * placement.probability);
     const auto id = static_cast<std::int32_t>(message.markers.size() / 2);
     add_markers(header,
-                {id, box_message(placement.camera_from_object, placement.model_number, models),
+                {id, box_message(placement.frame_from_object, placement.model_number, models),
                  placement.model_number, name + percent},
                 lifetime_s, message);
   });
@@ -137,7 +137,7 @@ wire::tf2_msgs::TFMessage transforms_message(const SceneInterpretations& result,
   for_each_best(result, [&](const Placement& placement, const std::string& name) {
     message.transforms.push_back({header_message(result.stamp_ns, result.frame_id),
                                   prefix + "/" + name,
-                                  transform_message(placement.camera_from_object)});
+                                  transform_message(placement.frame_from_object)});
   });
   return message;
 }

@@ -147,7 +147,7 @@ msgs::GroupStep begin_message(const Frame& frame, const DetectRequest& request,
     if (!model) continue;  // unloaded since
     step.expected_models.push_back(model->number);
     step.expected_poses.resize(step.expected_poses.size() + kPoseNumbers);
-    put(expected.camera_from_object, &*step.expected_poses.end() - kPoseNumbers);
+    put(expected.frame_from_object, &*step.expected_poses.end() - kPoseNumbers);
   }
   return step;
 }

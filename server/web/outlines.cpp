@@ -53,10 +53,10 @@ std::string outlines_json(const Interpretation& interpretation, const Camera& ca
     const auto model = std::ranges::find_if(
         models, [&](const auto& candidate) { return candidate->name == placement.model; });
     if (model != models.end()) {
-      one["outline"] = outline(camera, **model, placement.camera_from_object);
+      one["outline"] = outline(camera, **model, placement.frame_from_object);
       const auto& others = placement.alternatives;
       for (std::size_t i = 0; i < std::min(kShownAlternatives, others.size()); ++i) {
-        one["alternatives"].push_back(outline(camera, **model, others[i].camera_from_object));
+        one["alternatives"].push_back(outline(camera, **model, others[i].frame_from_object));
       }
     }
     all.push_back(std::move(one));

@@ -22,7 +22,7 @@ Placement placement() {
   Placement p;
   p.model = "mug";
   p.model_number = 3;
-  p.camera_from_object = {Eigen::Quaterniond(0.5, -0.1, 0.7, 0.3).normalized(), {0.1, -0.2, 0.9}};
+  p.frame_from_object = {Eigen::Quaterniond(0.5, -0.1, 0.7, 0.3).normalized(), {0.1, -0.2, 0.9}};
   for (int i = 0; i < 36; ++i) p.covariance(i / 6, i % 6) = 100 + i;
   for (int i = 0; i < 12; ++i) p.orientation.axes(i / 3, i % 3) = 200 + i;
   p.orientation.concentrations = {-31, -21, -11};
@@ -95,7 +95,7 @@ TEST(ClientResults, HaveTheirKeys) {
   EXPECT_EQ(p.at("obj_id"), 3);
   EXPECT_EQ(p.at("model"), "mug");
   EXPECT_EQ(p.at("pose").at("translation_m"), (std::vector<double>{0.1, -0.2, 0.9}));
-  const Eigen::Quaterniond& q = expected.camera_from_object.rotation;
+  const Eigen::Quaterniond& q = expected.frame_from_object.rotation;
   EXPECT_EQ(p.at("pose").at("rotation_wxyz"), (std::vector<double>{q.w(), q.x(), q.y(), q.z()}));
   for (std::size_t i = 0; i < 36; ++i) EXPECT_EQ(p.at("covariance").at(i), 100 + i);
   for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(p.at("bingham").at("axes").at(i), 200 + i);

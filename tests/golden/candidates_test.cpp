@@ -32,14 +32,14 @@ std::string exact(const Pose& pose) {
 }
 
 void append(const Placement& placement, std::string& out) {
-  out += "  " + placement.model + exact(placement.camera_from_object) + exact(placement.score) +
+  out += "  " + placement.model + exact(placement.frame_from_object) + exact(placement.score) +
          exact(placement.probability) + exact(placement.covariance.trace()) + "\n   ";
   for (const ScoreComponent& component : placement.components) {
     out += " " + component.name + exact(component.value);
   }
   out += "\n";
   for (const PoseAlternative& alternative : placement.alternatives) {
-    out += "    or" + exact(alternative.camera_from_object) + exact(alternative.weight) + "\n";
+    out += "    or" + exact(alternative.frame_from_object) + exact(alternative.weight) + "\n";
   }
 }
 

@@ -219,7 +219,7 @@ TEST_F(GroupLibrary, SearchReachesTheWorkerToTheBit) {
   ASSERT_EQ(task->request.priors.size(), 1U);
   EXPECT_EQ(task->request.priors[0].position->mean, prior.position->mean);
   ASSERT_EQ(task->request.expected.size(), 1U);
-  EXPECT_EQ(task->request.expected[0].camera_from_object.rotation.coeffs(), pose.rotation.coeffs());
+  EXPECT_EQ(task->request.expected[0].frame_from_object.rotation.coeffs(), pose.rotation.coeffs());
   ASSERT_EQ(task->models.size(), 1U);
   EXPECT_EQ(task->models[0]->name, "plate");
   EXPECT_EQ(task->facts.models, 7);

@@ -15,15 +15,15 @@ Placement placement(const std::string& model, int number, double probability) {
   p.model = model;
   p.model_number = number;
   p.probability = probability;
-  p.camera_from_object.translation = {0.1, 0.2, 0.9};
-  p.camera_from_object.rotation = rotation_from_vector({0, 0, 1.5707963267948966});
+  p.frame_from_object.translation = {0.1, 0.2, 0.9};
+  p.frame_from_object.rotation = rotation_from_vector({0, 0, 1.5707963267948966});
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < 6; ++j) p.covariance(i, j) = 10 * i + j;
   }
   p.orientation.axes.col(2) = Eigen::Vector4d(0.5, 0.5, 0.5, 0.5);
   p.orientation.concentrations = {-30, -20, -10};
   p.components = {{"range", -1.5}};
-  p.alternatives = {{p.camera_from_object, 0.25}};
+  p.alternatives = {{p.frame_from_object, 0.25}};
   return p;
 }
 

@@ -35,7 +35,7 @@ SceneInterpretations found_at(std::int64_t stamp_ns, const Eigen::Vector3d& at) 
   Placement placement;
   placement.model = "mug";
   placement.probability = 0.9;
-  placement.camera_from_object.translation = at;
+  placement.frame_from_object.translation = at;
   found.interpretations.push_back({1, 0, 1, {placement}});
   return found;
 }

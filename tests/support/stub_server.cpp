@@ -40,7 +40,7 @@ bpa::Result<bpa::SceneInterpretations> detect(const bpa::Frame& frame,
   bpa::Placement placement;
   placement.model = "stub";
   placement.model_number = 7;
-  placement.camera_from_object.translation.z() = static_cast<double>(frame.depth[middle]);
+  placement.frame_from_object.translation.z() = static_cast<double>(frame.depth[middle]);
   placement.probability = 0.875;
   bpa::SceneInterpretations result;
   result.stamp_ns = frame.stamp_ns;

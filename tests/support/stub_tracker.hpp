@@ -91,7 +91,7 @@ class StubTracker : public server::ObjectTracker {
     if (found.interpretations.empty()) return;
     std::map<std::string, int> seen;
     for (const Placement& placement : found.interpretations.front().placements) {
-      const Pose pose = cameras_.at(found.stamp_ns) * placement.camera_from_object;
+      const Pose pose = cameras_.at(found.stamp_ns) * placement.frame_from_object;
       int nth = seen[placement.model]++;
       const auto known = std::ranges::find_if(tracked.tracks, [&](const Track& track) {
         return track.model == placement.model && nth-- == 0;

@@ -85,7 +85,7 @@ void expect_same_question(const Detector& detector, Frame frame, std::uint64_t s
     for (std::size_t i = 0; i < detections.size(); ++i) {
       EXPECT_EQ(detections[i].probability, placements[i].probability);
       EXPECT_EQ(detections[i].camera_from_object.position[0],
-                placements[i].camera_from_object.translation.x());
+                placements[i].frame_from_object.translation.x());
       EXPECT_EQ(detections[i].score_parts.back().name, "prior");
     }
   }

@@ -64,7 +64,7 @@ class DetectViews : public ::testing::Test {
   }
   static void expect_found(const io::FrameResult& result, const Pose& truth) {
     ASSERT_EQ(result.interpretations.at(0).placements.size(), 1u);
-    const Pose& pose = result.interpretations[0].placements[0].camera_from_object;
+    const Pose& pose = result.interpretations[0].placements[0].frame_from_object;
     EXPECT_LT(pose_error(pose, truth).position, 0.003);
     EXPECT_LT(pose_error(pose, truth).angle, 0.02);
   }

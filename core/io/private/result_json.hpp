@@ -13,7 +13,7 @@
 namespace bpa {
 
 static void fields(auto& visit, io::Is<PoseAlternative> auto& alternative) {
-  visit("pose", alternative.camera_from_object);
+  visit("pose", alternative.frame_from_object);
   visit("weight", alternative.weight);
 }
 

@@ -50,13 +50,13 @@ class ObjectPoses : public ::testing::Test {
   Placement seen(const Object& object, const Pose& world_from_camera) {
     Placement out;
     out.model = object.model;
-    out.camera_from_object = world_from_camera.inverse() * object.world_from_object;
+    out.frame_from_object = world_from_camera.inverse() * object.world_from_object;
     if (object.model == "can") {
-      out.camera_from_object =
-          out.camera_from_object * test::standing_at(0, 0, 0, random_.uniform(-3, 3));
+      out.frame_from_object =
+          out.frame_from_object * test::standing_at(0, 0, 0, random_.uniform(-3, 3));
     }
-    out.camera_from_object.rotation = turn(kDegreeOfTurn) * out.camera_from_object.rotation;
-    out.camera_from_object.translation += draw(0.002);
+    out.frame_from_object.rotation = turn(kDegreeOfTurn) * out.frame_from_object.rotation;
+    out.frame_from_object.translation += draw(0.002);
     return out;
   }
   std::vector<SeenObjects> moment() {

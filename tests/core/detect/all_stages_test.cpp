@@ -268,15 +268,15 @@ TEST_F(SingleObject, UncertaintyIsReportedInBothForms) {
 
   // The Bingham's mode is the pose, and for small turns d about the camera's axes its logarithm
   // falls by d^T C^-1 d / 2.
-  const Eigen::Vector4d mode = to_wxyz(placement.camera_from_object.rotation);
+  const Eigen::Vector4d mode = to_wxyz(placement.frame_from_object.rotation);
   Eigen::Matrix4d frame;
   frame << placement.orientation.axes, mode;
   EXPECT_LT((frame.transpose() * frame - Eigen::Matrix4d::Identity()).norm(), 1e-9);
   const Eigen::Matrix3d precision = covariance.bottomRightCorner<3, 3>().inverse();
   for (int k = 0; k < 20; ++k) {
-    const Pose turned = test::disturbed(placement.camera_from_object, 0, 1e-3, 100u + k);
+    const Pose turned = test::disturbed(placement.frame_from_object, 0, 1e-3, 100u + k);
     const Eigen::Vector3d d =
-        vector_from_rotation(turned.rotation * placement.camera_from_object.rotation.conjugate());
+        vector_from_rotation(turned.rotation * placement.frame_from_object.rotation.conjugate());
     const Eigen::Vector3d along = placement.orientation.axes.transpose() * to_wxyz(turned.rotation);
     const double logarithm = placement.orientation.concentrations.dot(along.cwiseAbs2());
     EXPECT_NEAR(logarithm, -0.5 * d.dot(precision * d), 1e-4 * std::abs(logarithm));

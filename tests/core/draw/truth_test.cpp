@@ -34,7 +34,7 @@ Placement placement(double x, double probability) {
   Placement out;
   out.model = "plate";
   out.model_number = 1;
-  out.camera_from_object = at(x);
+  out.frame_from_object = at(x);
   out.probability = probability;
   return out;
 }

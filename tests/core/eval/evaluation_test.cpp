@@ -57,7 +57,7 @@ io::BopFrame frame(int im_id, std::vector<io::BopInstance> truth) {
 Placement placement(int obj_id, const Pose& pose, double probability) {
   Placement result;
   result.model_number = obj_id;
-  result.camera_from_object = pose;
+  result.frame_from_object = pose;
   result.probability = probability;
   result.covariance = 1e-4 * Eigen::Matrix<double, 6, 6>::Identity();
   return result;

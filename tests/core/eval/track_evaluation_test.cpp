@@ -305,7 +305,7 @@ TEST(LinkedDetections, TakeTheNearestIdOfTheirModelWithinReach) {
     for (const auto& [obj_id, x] : placements) {
       Placement& placement = result.interpretations[0].placements.emplace_back();
       placement.model_number = obj_id;
-      placement.camera_from_object = shifted(x);
+      placement.frame_from_object = shifted(x);
     }
     return result;
   };

@@ -13,8 +13,8 @@ Placement some_placement(int obj_id, double probability) {
   Placement placement;
   placement.model_number = obj_id;
   placement.model = "cup";
-  placement.camera_from_object = {Eigen::Quaterniond(0.5, -0.1, 0.7, 0.3).normalized(),
-                                  {0.1, -0.2, 0.9}};
+  placement.frame_from_object = {Eigen::Quaterniond(0.5, -0.1, 0.7, 0.3).normalized(),
+                                 {0.1, -0.2, 0.9}};
   placement.covariance.setRandom();
   placement.orientation.axes.setRandom();
   placement.orientation.concentrations.setRandom();
@@ -22,7 +22,7 @@ Placement some_placement(int obj_id, double probability) {
   placement.probability = probability;
   placement.visible_fraction = 0.3;
   placement.components = {{"range", 1.0 / 3}};
-  placement.alternatives = {{placement.camera_from_object, 0.25}};
+  placement.alternatives = {{placement.frame_from_object, 0.25}};
   return placement;
 }
 
@@ -92,8 +92,8 @@ TEST(Results, JsonKeepsEverythingToTheLastBit) {
   EXPECT_EQ(a.covariance, b.covariance);
   EXPECT_EQ(a.orientation.axes, b.orientation.axes);
   EXPECT_EQ(a.orientation.concentrations, b.orientation.concentrations);
-  EXPECT_EQ(a.camera_from_object.rotation.coeffs(), b.camera_from_object.rotation.coeffs());
-  EXPECT_EQ(a.camera_from_object.translation, b.camera_from_object.translation);
+  EXPECT_EQ(a.frame_from_object.rotation.coeffs(), b.frame_from_object.rotation.coeffs());
+  EXPECT_EQ(a.frame_from_object.translation, b.frame_from_object.translation);
   EXPECT_EQ(b.components.at(0).value, 1.0 / 3);
   EXPECT_EQ(b.alternatives.at(0).weight, 0.25);
 }
@@ -111,9 +111,9 @@ TEST(Results, CsvHoldsTheBestInterpretation) {
   const Placement& placement = back->front().interpretations[0].placements[0];
   EXPECT_EQ(placement.model_number, 3);
   EXPECT_EQ(placement.probability, 0.9);
-  const Pose pose = some_placement(3, 1).camera_from_object;
-  EXPECT_LT(rotation_angle(placement.camera_from_object.rotation, pose.rotation), 1e-7);
-  EXPECT_LT((placement.camera_from_object.translation - pose.translation).norm(), 1e-12);
+  const Pose pose = some_placement(3, 1).frame_from_object;
+  EXPECT_LT(rotation_angle(placement.frame_from_object.rotation, pose.rotation), 1e-7);
+  EXPECT_LT((placement.frame_from_object.translation - pose.translation).norm(), 1e-12);
 }
 
 TEST(Results, TheBenchmarksOwnCsvFormIsRead) {
@@ -123,7 +123,7 @@ TEST(Results, TheBenchmarksOwnCsvFormIsRead) {
               "1,3,8,0.5,0 -1 0 1 0 0 0 0 1,10 20.5 -30,-1\r\n");
   const auto back = read_results_csv(folder / "r.csv");
   ASSERT_TRUE(back.ok()) << back.status().message;
-  const Pose& pose = back->at(0).interpretations.at(0).placements.at(0).camera_from_object;
+  const Pose& pose = back->at(0).interpretations.at(0).placements.at(0).frame_from_object;
   EXPECT_LT((pose * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(0.01, 1.0205, -0.03)).norm(), 1e-12);
 }
 

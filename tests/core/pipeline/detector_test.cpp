@@ -26,8 +26,8 @@ void expect_same(const SceneInterpretations& a, const SceneInterpretations& b) {
       const Placement& p = x.placements[i];
       const Placement& q = y.placements[i];
       ASSERT_EQ(p.model, q.model);
-      ASSERT_EQ(p.camera_from_object.translation, q.camera_from_object.translation);
-      ASSERT_EQ(p.camera_from_object.rotation.coeffs(), q.camera_from_object.rotation.coeffs());
+      ASSERT_EQ(p.frame_from_object.translation, q.frame_from_object.translation);
+      ASSERT_EQ(p.frame_from_object.rotation.coeffs(), q.frame_from_object.rotation.coeffs());
       ASSERT_EQ(p.covariance, q.covariance);
       ASSERT_EQ(p.orientation.concentrations, q.orientation.concentrations);
       ASSERT_EQ(p.score, q.score);
@@ -98,7 +98,7 @@ TEST_F(DetectorOf, FindsBothObjectsWhereTheyAre) {
   EXPECT_EQ(names(best), (std::vector<std::string>{"brick", "l"}));
   for (const Placement& placement : best.placements) {
     const bool is_l = placement.model == "l";
-    const PoseError error = pose_error(placement.camera_from_object, is_l ? l_truth_ : brick_truth_,
+    const PoseError error = pose_error(placement.frame_from_object, is_l ? l_truth_ : brick_truth_,
                                        (is_l ? l_ : brick_)->symmetry);
     EXPECT_LT(error.position, 0.005);
     EXPECT_LT(error.angle, 0.06);
@@ -147,8 +147,7 @@ TEST_F(DetectorOf, TellsAfterEachRoundWhatIsFoundSoFarAndAnswersTheSame) {
   ASSERT_EQ(names(last), (std::vector<std::string>{"brick", "l"}));
   for (const Placement& placement : last.placements) {
     if (placement.model != "brick") continue;
-    const PoseError error =
-        pose_error(placement.camera_from_object, brick_truth_, brick_->symmetry);
+    const PoseError error = pose_error(placement.frame_from_object, brick_truth_, brick_->symmetry);
     EXPECT_LT(error.position, 0.005);
     EXPECT_LT(error.angle, 0.06);
   }
@@ -168,7 +167,7 @@ TEST_F(DetectorOf, FollowsAStandingSceneWithLessWork) {
             kFraction * static_cast<double>(alone.effort.sampled_poses));
   for (const Placement& placement : followed.interpretations[0].placements) {
     const bool is_l = placement.model == "l";
-    const PoseError error = pose_error(placement.camera_from_object, is_l ? l_truth_ : brick_truth_,
+    const PoseError error = pose_error(placement.frame_from_object, is_l ? l_truth_ : brick_truth_,
                                        (is_l ? l_ : brick_)->symmetry);
     EXPECT_LT(error.position, 0.005);
   }
@@ -181,7 +180,7 @@ TEST_F(DetectorOf, WhatIsExpectedButGoneIsNotReported) {
   const Frame frame = test::render(table_only(), test::kinect_camera(), 1, 8).frame;
   EXPECT_TRUE(found(request, frame).interpretations[0].placements.empty());
   for (ExpectedPlacement& expected : request.expected) {
-    expected.camera_from_object.translation.x() += 0.2;  // where they were before they moved
+    expected.frame_from_object.translation.x() += 0.2;  // where they were before they moved
   }
   EXPECT_EQ(names(found(request).interpretations[0]), (std::vector<std::string>{"brick", "l"}));
 }
@@ -191,7 +190,7 @@ TEST_F(DetectorOf, LooksOnlyForTheModelsNamed) {
   request.models = {"brick"};
   const SceneInterpretations result = found(request);
   ASSERT_FALSE(result.interpretations[0].placements.empty());
-  const Pose& best = result.interpretations[0].placements[0].camera_from_object;
+  const Pose& best = result.interpretations[0].placements[0].frame_from_object;
   EXPECT_LT(pose_error(best, brick_truth_, brick_->symmetry).position, 0.01) << "the likeliest";
   for (const Interpretation& interpretation : result.interpretations) {
     for (const Placement& placement : interpretation.placements) {
@@ -321,7 +320,7 @@ TEST_F(DetectorOf, WithAnyOneThingLeftOutItsAnswerIsValidAndHoldsBothObjects) {
       for (const Placement& placement : interpretation.placements) {
         const bool is_l = placement.model == "l";
         const PoseError error =
-            pose_error(placement.camera_from_object, is_l ? l_truth_ : brick_truth_,
+            pose_error(placement.frame_from_object, is_l ? l_truth_ : brick_truth_,
                        (is_l ? l_ : brick_)->symmetry);
         if (error.position < 0.01 && error.angle < 0.12) right.insert(placement.model);
         EXPECT_TRUE(placement.probability > 0 && placement.probability <= 1);

@@ -71,7 +71,7 @@ TEST(Patterns, TellObjectsOfOneShapeApartAndWhichWayRoundTheyAre) {
       const auto& best = found->interpretations.at(0).placements;
       ASSERT_EQ(best.size(), 1u);
       EXPECT_EQ(best[0].model, name);
-      EXPECT_LT(pose_error(best[0].camera_from_object, truth, about_x).angle, 0.1);
+      EXPECT_LT(pose_error(best[0].frame_from_object, truth, about_x).angle, 0.1);
     }
   }
 }

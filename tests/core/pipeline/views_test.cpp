@@ -87,7 +87,7 @@ TEST_F(ViewsOf, PosesAreInTheFixedFrame) {
     const Placement* placement = placement_of(result, name);
     ASSERT_NE(placement, nullptr) << name;
     const PoseError error =
-        pose_error(placement->camera_from_object, truth, library_->find(name)->symmetry);
+        pose_error(placement->frame_from_object, truth, library_->find(name)->symmetry);
     EXPECT_LT(error.position, 0.004) << name;
     EXPECT_LT(error.angle, 2 * kDegree) << name;
   }
@@ -111,8 +111,8 @@ TEST_F(ViewsOf, OneViewGivesWhatItsFrameGives) {
   const auto& placements = result.scene.interpretations.at(0).placements;
   ASSERT_EQ(placements.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    const Pose pose = views_[1].scene_from_camera * expected[i].camera_from_object;
-    EXPECT_EQ(placements[i].camera_from_object.translation, pose.translation);
+    const Pose pose = views_[1].scene_from_camera * expected[i].frame_from_object;
+    EXPECT_EQ(placements[i].frame_from_object.translation, pose.translation);
     EXPECT_EQ(placements[i].probability, expected[i].probability);
   }
 }
@@ -129,8 +129,8 @@ TEST_F(ViewsOf, TheSameForAnyNumberOfThreads) {
     ASSERT_EQ(x.score, y.score);
     ASSERT_EQ(x.placements.size(), y.placements.size());
     for (std::size_t i = 0; i < x.placements.size(); ++i) {
-      EXPECT_EQ(x.placements[i].camera_from_object.translation,
-                y.placements[i].camera_from_object.translation);
+      EXPECT_EQ(x.placements[i].frame_from_object.translation,
+                y.placements[i].frame_from_object.translation);
       EXPECT_EQ(x.placements[i].covariance, y.placements[i].covariance);
       EXPECT_EQ(x.placements[i].probability, y.placements[i].probability);
     }

@@ -43,7 +43,7 @@ int right_placements(const Interpretation& interpretation, const io::BopFrame& f
     right += std::any_of(interpretation.placements.begin(), interpretation.placements.end(),
                          [&](const Placement& placement) {
                            const PoseError error =
-                               pose_error(placement.camera_from_object, truth.camera_from_object,
+                               pose_error(placement.frame_from_object, truth.camera_from_object,
                                           library.find(placement.model)->symmetry);
                            return placement.model_number == truth.obj_id &&
                                   error.position < 0.025 && error.angle < M_PI / 16;
@@ -82,9 +82,8 @@ TEST(Ycbv, ObjectsOfARealFrameAreFoundWhateverTheThreads) {
     EXPECT_EQ(one->interpretations[k].score, two->interpretations[k].score);
     for (std::size_t i = 0; i < a.size(); ++i) {
       EXPECT_EQ(a[i].model, b[i].model);
-      EXPECT_EQ(a[i].camera_from_object.translation, b[i].camera_from_object.translation);
-      EXPECT_EQ(a[i].camera_from_object.rotation.coeffs(),
-                b[i].camera_from_object.rotation.coeffs());
+      EXPECT_EQ(a[i].frame_from_object.translation, b[i].frame_from_object.translation);
+      EXPECT_EQ(a[i].frame_from_object.rotation.coeffs(), b[i].frame_from_object.rotation.coeffs());
     }
   }
 }
@@ -114,7 +113,7 @@ TEST(Ycbv, ATexturedMeshIsFoundTheRightWayRound) {
     const auto& best = found->interpretations.at(0).placements;
     ASSERT_EQ(best.size(), 1u);
     EXPECT_LT(
-        rotation_angle(best[0].camera_from_object.rotation, truth->camera_from_object.rotation),
+        rotation_angle(best[0].frame_from_object.rotation, truth->camera_from_object.rotation),
         0.1);
   }
   EXPECT_GE(there, 2);

@@ -45,9 +45,9 @@ TEST(Alternatives, AreTheSameModelsOtherPosesByWeight) {
   const auto found = alternatives(all, 0);
   ASSERT_EQ(found.size(), 2u);
   EXPECT_NEAR(found[0].weight, 0.3, 1e-9);
-  EXPECT_NEAR(pose_error(found[0].camera_from_object, all[2].pose()).angle, 0, 1e-9);
+  EXPECT_NEAR(pose_error(found[0].frame_from_object, all[2].pose()).angle, 0, 1e-9);
   EXPECT_NEAR(found[1].weight, 0.2, 1e-9);
-  EXPECT_NEAR(pose_error(found[1].camera_from_object, all[4].pose()).angle, 0, 1e-9);
+  EXPECT_NEAR(pose_error(found[1].frame_from_object, all[4].pose()).angle, 0, 1e-9);
 }
 
 TEST(Alternatives, AreNoneWhereTheViewDecides) {

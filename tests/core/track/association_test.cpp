@@ -20,7 +20,7 @@ const auto kMug = model("mug"), kBox = model("box");
 Placement placed(const std::string& name, double x) {
   Placement out;
   out.model = name;
-  out.camera_from_object.translation = {x, 0, 1};
+  out.frame_from_object.translation = {x, 0, 1};
   return out;
 }
 
@@ -32,7 +32,7 @@ Placement likely(const std::string& name, double x, double probability) {
 
 TrackRecord tracked(const std::shared_ptr<const ObjectModel>& of, double x,
                     Sight sight = Sight::seen, double unseen_s = 0) {
-  return {1, of, placed(of->name, x).camera_from_object, sight, 1, unseen_s};
+  return {1, of, placed(of->name, x).frame_from_object, sight, 1, unseen_s};
 }
 
 TEST(MatchTracks, ByModelAndPlace) {
@@ -84,9 +84,9 @@ TEST(FoundObjects, ThoseOfOtherInterpretationsInPlacesOfTheirOwn) {
   const std::vector<Placement> found = found_objects(result, library, 0.5);
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].model, "box");
-  EXPECT_EQ(found[0].camera_from_object.translation.x(), 0);
+  EXPECT_EQ(found[0].frame_from_object.translation.x(), 0);
   EXPECT_EQ(found[1].model, "mug");
-  EXPECT_EQ(found[1].camera_from_object.translation.x(), 0.5);
+  EXPECT_EQ(found[1].frame_from_object.translation.x(), 0.5);
 }
 
 TEST(ClaimsPlace, OnlyAnotherModelDoes) {
