@@ -69,12 +69,8 @@ class LibraryDetector : public Recognition {
                                              std::size_t waiting) const override {
     const Current now = this->now();
     if (!now.front) return now.detector->detect(frame, request);
-    try {
-      return now.detector->detect_elsewhere(
-          frame, request, now.front->searches_for(now.shared, frame, request, waiting));
-    } catch (const Failure& failure) {
-      return failure.status();
-    }
+    return now.detector->detect_elsewhere(
+        frame, request, now.front->searches_for(now.shared, frame, request, waiting));
   }
 
   std::size_t searches_at_once() const override {
@@ -108,14 +104,10 @@ class LibraryDetector : public Recognition {
                                    const DetectRequest& request) const override {
     const Current now = this->now();
     if (!now.front) return bpa::detect_views(*now.detector, views, request);
-    try {
-      return bpa::detect_views(*now.detector, views, request,
-                               [&](const Frame& frame, const DetectRequest& of_view) {
-                                 return now.front->searches_for(now.shared, frame, of_view, 0);
-                               });
-    } catch (const Failure& failure) {
-      return failure.status();
-    }
+    return bpa::detect_views(*now.detector, views, request,
+                             [&](const Frame& frame, const DetectRequest& of_view) {
+                               return now.front->searches_for(now.shared, frame, of_view, 0);
+                             });
   }
 
   std::unique_ptr<ObjectTracker> make_tracker(const track::TrackerOptions& options) const override {

@@ -142,7 +142,11 @@ Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
   if (!planned.ok()) return planned.status();
   const SearchPlan& plan = *planned;
   std::unique_ptr<ModelSearches> elsewhere;
-  if (searches) elsewhere = searches(*models, options_, facts);
+  if (searches) {
+    auto made = searches(*models, options_, facts);
+    if (!made.ok()) return made.status();
+    elsewhere = std::move(made).value();
+  }
   const Stopwatch total;
   SceneInterpretations out;
   out.stamp_ns = frame.stamp_ns;
@@ -170,6 +174,7 @@ Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
   ModelSearches& used = elsewhere ? *elsewhere : *here;
   used.prepared(scene, total.milliseconds());
   Candidates candidates = search.run(used, out.budget_exhausted, out.effort);
+  if (Status status = used.status(); !status.ok()) return status;
   out.not_searched = used.lost();
   out.timings.push_back({"objects", stage.lap_milliseconds()});
 

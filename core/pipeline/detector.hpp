@@ -53,8 +53,8 @@ class ModelSearches;
 
 /// Makes searches of other hosts (model_searches.hpp) for these models. They make the same plan of
 /// these options and facts (plan_search()). Called before the frame is prepared here, so that they
-/// can prepare it meanwhile. May throw a Failure, as may the searches.
-using MakeSearches = std::function<std::unique_ptr<ModelSearches>(
+/// can prepare it meanwhile. Where it fails, so does the detection.
+using MakeSearches = std::function<Result<std::unique_ptr<ModelSearches>>(
     const std::vector<std::shared_ptr<const ObjectModel>>&, const DetectorOptions&,
     const SearchFacts&)>;
 

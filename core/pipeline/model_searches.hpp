@@ -51,6 +51,8 @@ class ModelSearches {
 
   /// The candidates so far, of each model.
   const std::vector<Candidates>& found() const { return found_; }
+  /// Why the searches can find nothing more, where a host fails: the detection fails so.
+  virtual Status status() const { return {}; }
   /// Whether a stage was cut by its deadline.
   virtual bool late() const = 0;
   /// The work so far, without the number of rounds.

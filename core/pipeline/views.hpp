@@ -65,7 +65,7 @@ ViewsResult combine_views(const Detector& detector, std::span<const ViewSearch* 
 /// Searches all views and joins them. Priors and expected placements are in the fixed frame. The
 /// time budget is that of all views together. Fails as Detector::detect() does, naming the view,
 /// and with invalid_argument without a view, on more than kMostViews or on a pose that is no rigid
-/// motion. `on_round` is not called. With `elsewhere`, other hosts search; it may throw a Failure.
+/// motion. `on_round` is not called. With `elsewhere`, other hosts search.
 Result<ViewsResult> detect_views(const Detector& detector, std::span<const View> views,
                                  const DetectRequest& request = {},
                                  const SearchesFor& elsewhere = {});

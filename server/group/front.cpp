@@ -96,7 +96,7 @@ class RunningFront : public Front {
     return [this, library = std::move(library), &frame, &request, waiting](
                const std::vector<std::shared_ptr<const ObjectModel>>& models,
                const DetectorOptions& options,
-               const SearchFacts& facts) -> std::unique_ptr<ModelSearches> {
+               const SearchFacts& facts) {
       auto begin = begin_message(frame, request, options, facts, *library);
       begin.left_ms = request.budget_ms;
       return make_remote_searches(links_, ++searches_, library, models, std::move(begin), waiting);

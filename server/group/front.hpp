@@ -33,8 +33,8 @@ class Front {
   virtual void set_library(std::shared_ptr<const SharedLibrary> library) = 0;
 
   /// Searches for one frame in a library that was set, for Detector::detect_elsewhere(); frame and
-  /// request outlive them. `waiting` is how many more frames wait. The searches throw a Failure
-  /// where no worker is left.
+  /// request outlive them. `waiting` is how many more frames wait. They fail where no worker
+  /// is left.
   virtual MakeSearches searches_for(std::shared_ptr<const SharedLibrary> library,
                                     const Frame& frame, const DetectRequest& request,
                                     std::size_t waiting) = 0;

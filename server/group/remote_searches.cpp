@@ -8,7 +8,6 @@
 #include <string>
 
 #include "core/base/concat.hpp"
-#include "core/base/failure.hpp"
 #include "server/group/messages.hpp"
 #include "server/group/session.hpp"
 
@@ -29,8 +28,7 @@ class Searches : public ModelSearches {
  public:
   Searches(std::shared_ptr<Links> links, std::uint64_t search,
            std::shared_ptr<const SharedLibrary> library,
-           std::vector<std::shared_ptr<const ObjectModel>> models, msgs::GroupStep&& begin,
-           std::size_t waiting)
+           std::vector<std::shared_ptr<const ObjectModel>> models)
       : links_(std::move(links)),
         search_(search),
         library_(std::move(library)),
@@ -38,12 +36,16 @@ class Searches : public ModelSearches {
         box_(links_->mailboxes.open(search)) {
     found_.resize(models_.size());
     for (std::size_t i = 0; i < models_.size(); ++i) index_of_[models_[i]->number] = i;
+  }
+
+  /// The first step, of begin_message().
+  Status start(msgs::GroupStep&& begin, std::size_t waiting) {
     begin.front = links_->front;
     begin.search = search_;
     steps_.push_back(std::move(begin));
     const std::vector<std::uint64_t> workers =
         links_->members.wait_for_ready(library_->offer.digest);
-    if (workers.empty()) or_throw(no_worker());
+    if (workers.empty()) return no_worker();
     const std::size_t frames = links_->members.searches(workers) + waiting + 1;
     std::size_t count;
     {
@@ -55,6 +57,7 @@ class Searches : public ModelSearches {
     std::vector<std::size_t> all(models_.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
     give(all, {workers.begin(), workers.begin() + static_cast<std::ptrdiff_t>(count)});
+    return {};
   }
 
   ~Searches() override {
@@ -84,7 +87,7 @@ class Searches : public ModelSearches {
     std::vector<msgs::GroupAnswer> answers = run_competing(std::move(step), plan.deadline);
     if (answers.empty() || answers.front().exhausted) return false;
     take_candidates(std::move(answers), false);
-    return true;
+    return status_.ok();
   }
 
   void finish(const FinalPlan& plan) override {
@@ -95,6 +98,7 @@ class Searches : public ModelSearches {
     measure();
   }
 
+  Status status() const override { return status_; }
   bool late() const override { return late_ || !lost_.empty(); }
 
   SearchEffort effort() const override {
@@ -181,6 +185,7 @@ class Searches : public ModelSearches {
 
   /// Sends the step to all shares, and waits for their answers: one of each that is not lost.
   std::vector<msgs::GroupAnswer> run(msgs::GroupStep&& step, const Deadline& deadline) {
+    if (!status_.ok()) return {};
     step.step = static_cast<std::uint32_t>(steps_.size());
     step.left_ms = milliseconds_left(deadline);
     steps_.push_back(std::move(step));
@@ -270,7 +275,7 @@ class Searches : public ModelSearches {
           concat(open.size(), " of ", models_.size(), " models are not searched: their workers ",
                  give_up ? "did not answer in time" : "were lost, and no other is there"));
       if (shares_.empty()) {
-        or_throw(give_up ? Status(StatusCode::timeout, "no worker answered in time") : no_worker());
+        status_ = give_up ? Status(StatusCode::timeout, "no worker answered in time") : no_worker();
       }
       return;
     }
@@ -288,8 +293,12 @@ class Searches : public ModelSearches {
         const auto index = index_of_.find(message.model);
         if (index == index_of_.end()) continue;
         const ObjectModel& model = *models_[index->second];
-        found_[index->second].push_back(
-            or_throw(candidate_from(std::move(message), model, pixels_)));
+        Result<Candidate> candidate = candidate_from(std::move(message), model, pixels_);
+        if (!candidate.ok()) {
+          status_ = candidate.status();
+          return;
+        }
+        found_[index->second].push_back(std::move(candidate).value());
       }
     }
   }
@@ -321,18 +330,21 @@ class Searches : public ModelSearches {
   std::uint32_t next_share_ = 0;
   std::set<std::uint64_t> refused_;  // workers that cannot
   std::vector<std::size_t> lost_;    // models
+  Status status_;                    // why no step is sent any more
   bool late_ = false;
 };
 
 }  // namespace
 
-std::unique_ptr<ModelSearches> make_remote_searches(
+Result<std::unique_ptr<ModelSearches>> make_remote_searches(
     std::shared_ptr<Links> links, std::uint64_t search,
     std::shared_ptr<const SharedLibrary> library,
     std::vector<std::shared_ptr<const ObjectModel>> models, msgs::GroupStep&& begin,
     std::size_t waiting) {
-  return std::make_unique<Searches>(std::move(links), search, std::move(library), std::move(models),
-                                    std::move(begin), waiting);
+  auto searches =
+      std::make_unique<Searches>(std::move(links), search, std::move(library), std::move(models));
+  if (Status status = searches->start(std::move(begin), waiting); !status.ok()) return status;
+  return std::unique_ptr<ModelSearches>(std::move(searches));
 }
 
 }  // namespace bpa::server::group

@@ -64,8 +64,8 @@ struct Links {
 };
 
 /// The searches for one frame's models, on the workers. `begin` is of begin_message(); `waiting` is
-/// how many more frames wait. Throws a Failure where no worker can search, as the searches do.
-std::unique_ptr<ModelSearches> make_remote_searches(
+/// how many more frames wait. Fails where no worker can search, as the searches do.
+Result<std::unique_ptr<ModelSearches>> make_remote_searches(
     std::shared_ptr<Links> links, std::uint64_t search,
     std::shared_ptr<const SharedLibrary> library,
     std::vector<std::shared_ptr<const ObjectModel>> models, wire::bpa_msgs::GroupStep&& begin,

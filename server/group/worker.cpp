@@ -7,6 +7,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -45,9 +46,6 @@ constexpr std::size_t kMaxSteps = 256;
 constexpr std::size_t kMaxShares = 64;  // of all searches at once
 constexpr std::size_t kLibraries = 2;   // kept: searches that run go on with the one before
 
-/// The search has ended, or its front has gone.
-struct Ended {};
-
 /// What the front sends for one share.
 class Steps {
  public:
@@ -63,11 +61,11 @@ class Steps {
     ended_ = true;
     changed_.notify_all();
   }
-  /// Throws Ended.
-  msgs::GroupStep next() {
+  /// Waits for it; none: the search has ended, or its front has gone.
+  std::optional<msgs::GroupStep> next() {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait(lock, [&] { return ended_ || !steps_.empty(); });
-    if (ended_) throw Ended();
+    if (ended_) return {};
     msgs::GroupStep step = std::move(steps_.front());
     steps_.pop_front();
     return step;
@@ -102,14 +100,7 @@ class ShareSearch {
   Steps& steps() { return steps_; }
 
   void run() {
-    const Status status = guarded("the search of a share failed", [&] {
-      try {
-        search();
-      } catch (const Ended&) {
-      } catch (const Failure& failure) {
-        refuse(failure.status());
-      }
-    });
+    const Status status = guarded("the search of a share failed", [&] { return search(); });
     if (!status.ok()) refuse(status);
   }
 
@@ -128,40 +119,52 @@ class ShareSearch {
     return answer;
   }
 
-  msgs::GroupStep next() {
-    msgs::GroupStep step = steps_.next();
-    if (step.step != ++step_) or_throw(corrupt("steps of a search were lost"));
+  /// None: nothing more is to be done, for the reason status_ if that is a failure.
+  std::optional<msgs::GroupStep> next() {
+    if (ended_) return {};
+    std::optional<msgs::GroupStep> step = steps_.next();
+    if (step && step->step != ++step_) return fail(corrupt("steps of a search were lost"));
+    ended_ = !step;
     watch_ = Stopwatch();
     return step;
   }
 
+  std::nullopt_t fail(Status status) {
+    status_ = std::move(status);
+    ended_ = true;
+    return std::nullopt;
+  }
+
   void send(msgs::GroupAnswer&& answer, const LocalSearches& searches) {
-    if (step_ < answer_from_) return;
+    if (ended_ || step_ < answer_from_) return;
     answer.late = searches.late();
     const SearchEffort effort = searches.effort();
     for (const auto& [name, count] : kEffortCounts) answer.effort.push_back(effort.*count);
     send_(answer);
   }
 
+  /// Nothing passes where the search has ended, so that its stages end soon.
   Contest compete(const LocalSearches& searches, const std::vector<Claim>& claims, int most) {
     msgs::GroupAnswer answer = plain_answer();
     answer.competes = true;
     for (const Claim& claim : claims) answer.claims.push_back(to_message(claim));
     answer.most = most;
     send(std::move(answer), searches);
-    const msgs::GroupStep step = next();
-    if (step.kind != msgs::GroupStep::kContest) {
-      or_throw(corrupt("a search got a step of kind ", static_cast<int>(step.kind),
-                       " where candidates compete"));
+    std::optional<msgs::GroupStep> step = next();
+    if (step && step->kind != msgs::GroupStep::kContest) {
+      step = fail(corrupt("a search got a step of kind ", static_cast<int>(step->kind),
+                          " where candidates compete"));
     }
-    Contest contest{step.threshold, {}};
-    std::ranges::transform(step.claims, std::back_inserter(contest.claims), claim_from);
+    if (!step) return {std::numeric_limits<double>::infinity(), {}};
+    Contest contest{step->threshold, {}};
+    std::ranges::transform(step->claims, std::back_inserter(contest.claims), claim_from);
     return contest;
   }
 
   /// What was found since `sent`; after the final stages all.
-  void send_found(const LocalSearches& searches, std::vector<std::size_t>& sent) {
+  void send_found(const LocalSearches& searches, bool any_left, std::vector<std::size_t>& sent) {
     msgs::GroupAnswer answer = plain_answer();
+    answer.exhausted = !any_left;
     for (std::size_t i = 0; i < sent.size(); ++i) {
       const Candidates& found = searches.found()[i];
       for (; sent[i] < found.size(); ++sent[i]) {
@@ -171,54 +174,55 @@ class ShareSearch {
     send(std::move(answer), searches);
   }
 
-  void search() {
+  Status search() {
     const std::shared_ptr<const SharedLibrary> library = find_(begin_.library);
-    if (!library) or_throw(not_found("this worker has no library ", begin_.library));
+    if (!library) return not_found("this worker has no library ", begin_.library);
     const Deadline deadline = Deadline::after(begin_.left_ms);
-    ShareTask task = or_throw(task_of(std::move(begin_), *library));
-    task.request.num_threads = task.facts.threads = threads_;
-    const SearchPlan plan = or_throw(plan_search(task.options, library->layers, task.facts));
+    Result<ShareTask> task = task_of(std::move(begin_), *library);
+    if (!task.ok()) return task.status();
+    task->request.num_threads = task->facts.threads = threads_;
+    const Result<SearchPlan> plan = plan_search(task->options, library->layers, task->facts);
+    if (!plan.ok()) return plan.status();
     std::vector<StageTiming> timings;
-    const SceneFeatures scene = prepare_scene(task.frame, plan, deadline, timings);
-    const SearchInputs inputs{scene, plan, library->layers, task.request, task.models};
+    const SceneFeatures scene = prepare_scene(task->frame, *plan, deadline, timings);
+    const SearchInputs inputs{scene, *plan, library->layers, task->request, task->models};
     LocalSearches* running = nullptr;
     LocalSearches searches(inputs, nullptr, [&](const std::vector<Claim>& claims, int most) {
       return compete(*running, claims, most);
     });
     running = &searches;
-    std::vector<std::size_t> sent(task.models.size(), 0);
+    std::vector<std::size_t> sent(task->models.size(), 0);
     const std::size_t pixels = scene.image.pixels.size();
-    while (true) {
-      msgs::GroupStep step = next();
-      const Deadline until = Deadline::after(step.left_ms);
+    while (std::optional<msgs::GroupStep> step = next()) {
       const bool in_image = std::ranges::all_of(
-          step.newly_certain, [&](std::uint32_t pixel) { return pixel < pixels; });
-      if (!in_image) or_throw(corrupt("a step of a search names pixels outside of the image"));
-      if (step.kind == msgs::GroupStep::kExpected) {
-        searches.score_expected(until);
-      } else if (step.kind == msgs::GroupStep::kRound) {
-        const bool any_left = searches.run_round({.number = static_cast<int>(step.round),
-                                                  .share = step.part,
-                                                  .hurried = step.hurried,
-                                                  .first_sample = step.first_sample,
-                                                  .newly_certain = std::move(step.newly_certain),
-                                                  .deadline = until});
-        if (!any_left) {
-          msgs::GroupAnswer answer = plain_answer();
-          answer.exhausted = true;
-          send(std::move(answer), searches);
-          continue;
-        }
-      } else if (step.kind == msgs::GroupStep::kFinish) {
-        searches.finish({.share = step.part,
-                         .newly_certain = std::move(step.newly_certain),
-                         .deadline = until});
-        std::ranges::fill(sent, 0);
-      } else {
-        or_throw(corrupt("a search got a step of kind ", static_cast<int>(step.kind)));
-      }
-      send_found(searches, sent);
+          step->newly_certain, [&](std::uint32_t pixel) { return pixel < pixels; });
+      if (!in_image) return corrupt("a step of a search names pixels outside of the image");
+      if (Status status = run_step(*std::move(step), searches, sent); !status.ok()) return status;
     }
+    return status_;
+  }
+
+  Status run_step(msgs::GroupStep&& step, LocalSearches& searches, std::vector<std::size_t>& sent) {
+    const Deadline until = Deadline::after(step.left_ms);
+    bool any_left = true;
+    if (step.kind == msgs::GroupStep::kExpected) {
+      searches.score_expected(until);
+    } else if (step.kind == msgs::GroupStep::kRound) {
+      any_left = searches.run_round({.number = static_cast<int>(step.round),
+                                     .share = step.part,
+                                     .hurried = step.hurried,
+                                     .first_sample = step.first_sample,
+                                     .newly_certain = std::move(step.newly_certain),
+                                     .deadline = until});
+    } else if (step.kind == msgs::GroupStep::kFinish) {
+      searches.finish(
+          {.share = step.part, .newly_certain = std::move(step.newly_certain), .deadline = until});
+      std::ranges::fill(sent, 0);
+    } else {
+      return corrupt("a search got a step of kind ", static_cast<int>(step.kind));
+    }
+    send_found(searches, any_left, sent);
+    return {};
   }
 
   const FindLibrary find_;
@@ -228,7 +232,9 @@ class ShareSearch {
   msgs::GroupStep begin_;
   msgs::GroupAnswer answer_;  ///< What all answers have.
   std::uint32_t step_ = 0;
-  Stopwatch watch_;  ///< Since the step came.
+  Stopwatch watch_;     ///< Since the step came.
+  bool ended_ = false;  ///< Nothing more is sent,
+  Status status_;       ///< for this reason if it is a failure.
   Steps steps_;
 };
 

@@ -37,6 +37,16 @@ class ScriptedSearches : public ModelSearches {
   const std::vector<double> gains_;
 };
 
+// Searches whose hosts are lost after the first round.
+class LostSearches : public ScriptedSearches {
+ public:
+  using ScriptedSearches::ScriptedSearches;
+  bool run_round(const RoundPlan& plan) override {
+    return plan.number == 0 && ScriptedSearches::run_round(plan);
+  }
+  Status status() const override { return unavailable("no host is left"); }
+};
+
 class LibrarySearchEnds : public test::LScene {
  protected:
   // The rounds that a search takes whose rounds gain that much.
@@ -71,6 +81,20 @@ TEST_F(LibrarySearchEnds, AfterMaxRoundsWithoutLimits) {
   options.rounds.min_gain = options.rounds.min_gain_of_two = 0;
   options.rounds.max_rounds = 5;
   EXPECT_EQ(after({0.9, 0.001, 0.001, 0.001, 0.001, 0.9}, options), 5);
+}
+
+TEST_F(LibrarySearchEnds, WithTheFailureOfSearchesElsewhere) {
+  auto library = std::make_shared<ModelLibrary>();
+  ASSERT_TRUE(library->add(l_).ok());
+  const Detector detector(library, {});
+  const Frame frame = test::render(everything(), test::kinect_camera(), 1, 8).frame;
+  using Made = Result<std::unique_ptr<ModelSearches>>;
+  const auto none = [](const auto&, const auto&) { return Made(unavailable("no host is there")); };
+  EXPECT_EQ(detector.detect_elsewhere(frame, {}, none).status().message, "no host is there");
+  const auto lost = [](const auto&, const auto&) {
+    return Made(std::make_unique<LostSearches>(*l_, std::vector{0.9}));
+  };
+  EXPECT_EQ(detector.detect_elsewhere(frame, {}, lost).status().message, "no host is left");
 }
 
 }  // namespace
