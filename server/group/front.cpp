@@ -95,8 +95,7 @@ class RunningFront : public Front {
                             const DetectRequest& request, std::size_t waiting) override {
     return [this, library = std::move(library), &frame, &request, waiting](
                const std::vector<std::shared_ptr<const ObjectModel>>& models,
-               const DetectorOptions& options,
-               const SearchFacts& facts) {
+               const DetectorOptions& options, const SearchFacts& facts) {
       auto begin = begin_message(frame, request, options, facts, *library);
       begin.left_ms = request.budget_ms;
       return make_remote_searches(links_, ++searches_, library, models, std::move(begin), waiting);

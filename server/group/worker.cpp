@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/group/worker.hpp"
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -20,15 +18,13 @@
 #include "core/base/guarded.hpp"
 #include "core/base/parallel.hpp"
 #include "core/io/file_bytes.hpp"
-#include "core/pipeline/prepare_scene.hpp"
 #include "idl/wire/publisher.hpp"
 #include "idl/wire/service.hpp"
 #include "idl/wire/status.hpp"
 #include "idl/wire/subscriber.hpp"
 #include "server/busy.hpp"
-#include "server/convert/results.hpp"
-#include "server/group/messages.hpp"
 #include "server/group/session.hpp"
+#include "server/group/share_search.hpp"
 #include "server/group/topics.hpp"
 
 namespace bpa::server::group {
@@ -42,201 +38,8 @@ using std::chrono::milliseconds;
 constexpr auto kFrontGone = std::chrono::seconds(5);
 constexpr auto kFetchTime = std::chrono::seconds(10);  // for one part of a file
 constexpr auto kRetryFetch = std::chrono::seconds(2);
-constexpr std::size_t kMaxSteps = 256;
 constexpr std::size_t kMaxShares = 64;  // of all searches at once
 constexpr std::size_t kLibraries = 2;   // kept: searches that run go on with the one before
-
-/// What the front sends for one share.
-class Steps {
- public:
-  void push(msgs::GroupStep&& step) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (step.kind == msgs::GroupStep::kEnd) ended_ = true;
-    // One that is left out is missed when its turn comes.
-    if (!ended_ && steps_.size() < kMaxSteps) steps_.push_back(std::move(step));
-    changed_.notify_all();
-  }
-  void end() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ended_ = true;
-    changed_.notify_all();
-  }
-  /// Waits for it; none: the search has ended, or its front has gone.
-  std::optional<msgs::GroupStep> next() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [&] { return ended_ || !steps_.empty(); });
-    if (ended_) return {};
-    msgs::GroupStep step = std::move(steps_.front());
-    steps_.pop_front();
-    return step;
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<msgs::GroupStep> steps_;
-  bool ended_ = false;
-};
-
-/// Searches one share, on its own thread.
-class ShareSearch {
- public:
-  using Send = std::function<void(const msgs::GroupAnswer&)>;
-  using FindLibrary = std::function<std::shared_ptr<const SharedLibrary>(const std::string&)>;
-
-  ShareSearch(msgs::GroupStep&& begin, std::uint64_t worker, int threads, FindLibrary find,
-              Send send)
-      : find_(std::move(find)),
-        send_(std::move(send)),
-        threads_(threads),
-        answer_from_(begin.answer_from),
-        begin_(std::move(begin)) {
-    answer_.front = begin_.front;
-    answer_.search = begin_.search;
-    answer_.share = begin_.share;
-    answer_.worker = worker;
-  }
-
-  Steps& steps() { return steps_; }
-
-  void run() {
-    const Status status = guarded("the search of a share failed", [&] { return search(); });
-    if (!status.ok()) refuse(status);
-  }
-
- private:
-  void refuse(const Status& status) {
-    msgs::GroupAnswer answer = plain_answer();
-    answer.step = std::max(step_, answer_from_);
-    answer.status = server::to_message(status);
-    send_(answer);
-  }
-
-  msgs::GroupAnswer plain_answer() const {
-    msgs::GroupAnswer answer = answer_;
-    answer.step = step_;
-    answer.busy_ms = watch_.milliseconds();
-    return answer;
-  }
-
-  /// None: nothing more is to be done, for the reason status_ if that is a failure.
-  std::optional<msgs::GroupStep> next() {
-    if (ended_) return {};
-    std::optional<msgs::GroupStep> step = steps_.next();
-    if (step && step->step != ++step_) return fail(corrupt("steps of a search were lost"));
-    ended_ = !step;
-    watch_ = Stopwatch();
-    return step;
-  }
-
-  std::nullopt_t fail(Status status) {
-    status_ = std::move(status);
-    ended_ = true;
-    return std::nullopt;
-  }
-
-  void send(msgs::GroupAnswer&& answer, const LocalSearches& searches) {
-    if (ended_ || step_ < answer_from_) return;
-    answer.late = searches.late();
-    const SearchEffort effort = searches.effort();
-    for (const auto& [name, count] : kEffortCounts) answer.effort.push_back(effort.*count);
-    send_(answer);
-  }
-
-  /// Nothing passes where the search has ended, so that its stages end soon.
-  Contest compete(const LocalSearches& searches, const std::vector<Claim>& claims, int most) {
-    msgs::GroupAnswer answer = plain_answer();
-    answer.competes = true;
-    for (const Claim& claim : claims) answer.claims.push_back(to_message(claim));
-    answer.most = most;
-    send(std::move(answer), searches);
-    std::optional<msgs::GroupStep> step = next();
-    if (step && step->kind != msgs::GroupStep::kContest) {
-      step = fail(corrupt("a search got a step of kind ", static_cast<int>(step->kind),
-                          " where candidates compete"));
-    }
-    if (!step) return {std::numeric_limits<double>::infinity(), {}};
-    Contest contest{step->threshold, {}};
-    std::ranges::transform(step->claims, std::back_inserter(contest.claims), claim_from);
-    return contest;
-  }
-
-  /// What was found since `sent`; after the final stages all.
-  void send_found(const LocalSearches& searches, bool any_left, std::vector<std::size_t>& sent) {
-    msgs::GroupAnswer answer = plain_answer();
-    answer.exhausted = !any_left;
-    for (std::size_t i = 0; i < sent.size(); ++i) {
-      const Candidates& found = searches.found()[i];
-      for (; sent[i] < found.size(); ++sent[i]) {
-        answer.candidates.push_back(to_message(found[sent[i]]));
-      }
-    }
-    send(std::move(answer), searches);
-  }
-
-  Status search() {
-    const std::shared_ptr<const SharedLibrary> library = find_(begin_.library);
-    if (!library) return not_found("this worker has no library ", begin_.library);
-    const Deadline deadline = Deadline::after(begin_.left_ms);
-    Result<ShareTask> task = task_of(std::move(begin_), *library);
-    if (!task.ok()) return task.status();
-    task->request.num_threads = task->facts.threads = threads_;
-    const Result<SearchPlan> plan = plan_search(task->options, library->layers, task->facts);
-    if (!plan.ok()) return plan.status();
-    std::vector<StageTiming> timings;
-    const SceneFeatures scene = prepare_scene(task->frame, *plan, deadline, timings);
-    const SearchInputs inputs{scene, *plan, library->layers, task->request, task->models};
-    LocalSearches* running = nullptr;
-    LocalSearches searches(inputs, nullptr, [&](const std::vector<Claim>& claims, int most) {
-      return compete(*running, claims, most);
-    });
-    running = &searches;
-    std::vector<std::size_t> sent(task->models.size(), 0);
-    const std::size_t pixels = scene.image.pixels.size();
-    while (std::optional<msgs::GroupStep> step = next()) {
-      const bool in_image = std::ranges::all_of(
-          step->newly_certain, [&](std::uint32_t pixel) { return pixel < pixels; });
-      if (!in_image) return corrupt("a step of a search names pixels outside of the image");
-      if (Status status = run_step(*std::move(step), searches, sent); !status.ok()) return status;
-    }
-    return status_;
-  }
-
-  Status run_step(msgs::GroupStep&& step, LocalSearches& searches, std::vector<std::size_t>& sent) {
-    const Deadline until = Deadline::after(step.left_ms);
-    bool any_left = true;
-    if (step.kind == msgs::GroupStep::kExpected) {
-      searches.score_expected(until);
-    } else if (step.kind == msgs::GroupStep::kRound) {
-      any_left = searches.run_round({.number = static_cast<int>(step.round),
-                                     .share = step.part,
-                                     .hurried = step.hurried,
-                                     .first_sample = step.first_sample,
-                                     .newly_certain = std::move(step.newly_certain),
-                                     .deadline = until});
-    } else if (step.kind == msgs::GroupStep::kFinish) {
-      searches.finish(
-          {.share = step.part, .newly_certain = std::move(step.newly_certain), .deadline = until});
-      std::ranges::fill(sent, 0);
-    } else {
-      return corrupt("a search got a step of kind ", static_cast<int>(step.kind));
-    }
-    send_found(searches, any_left, sent);
-    return {};
-  }
-
-  const FindLibrary find_;
-  const Send send_;
-  const int threads_;
-  const std::uint32_t answer_from_;
-  msgs::GroupStep begin_;
-  msgs::GroupAnswer answer_;  ///< What all answers have.
-  std::uint32_t step_ = 0;
-  Stopwatch watch_;     ///< Since the step came.
-  bool ended_ = false;  ///< Nothing more is sent,
-  Status status_;       ///< for this reason if it is a failure.
-  Steps steps_;
-};
 
 class RunningWorker : public Worker {
  public:
