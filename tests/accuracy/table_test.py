@@ -108,6 +108,15 @@ class Counts(unittest.TestCase):
                 "found_in_twenty": 1, "seconds": 2})
 
 
+class Kept(unittest.TestCase):
+    def test_what_the_same_stamp_made_is_not_made_again(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "in" / "result.json"
+            for stamp, made in (("a", "x"), ("a", "x"), ("b", "xx"), ("a", "xxx")):
+                accuracy.Bench.made(path, stamp, ["sh", "-c", f"printf x >> {path}"])
+                self.assertEqual(path.read_text(), made)
+
+
 class Domains(unittest.TestCase):
     def test_each_has_a_name_of_its_own_and_one_set_of_options_makes_its_frames(self):
         self.assertEqual(len({domain.name for domain in DOMAINS}), len(DOMAINS))
