@@ -89,9 +89,9 @@ TEST_F(LibrarySearchEnds, WithTheFailureOfSearchesElsewhere) {
   const Detector detector(library, {});
   const Frame frame = test::render(everything(), test::kinect_camera(), 1, 8).frame;
   using Made = Result<std::unique_ptr<ModelSearches>>;
-  const auto none = [](const auto&, const auto&) { return Made(unavailable("no host is there")); };
+  const auto none = [](const auto&...) { return Made(unavailable("no host is there")); };
   EXPECT_EQ(detector.detect_elsewhere(frame, {}, none).status().message, "no host is there");
-  const auto lost = [](const auto&, const auto&) {
+  const auto lost = [](const auto&...) {
     return Made(std::make_unique<LostSearches>(*l_, std::vector{0.9}));
   };
   EXPECT_EQ(detector.detect_elsewhere(frame, {}, lost).status().message, "no host is left");
