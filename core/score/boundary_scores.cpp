@@ -38,7 +38,7 @@ double edge_likelihood_score(const CheckImage& image, const Image<float>& edges,
     const int pixel = image.pixel_of(point);
     if (pixel < 0) continue;
     const float observed = image.pixels[static_cast<std::size_t>(pixel)].depth;
-    const double weight = visibility_probability<double>(observed, point.z());
+    const double weight = visibility_probability(double{observed}, double{point.z()});
     const Eigen::Vector3f reach = kEdgeReach * (pose.rotation * view.outward[k]);
     sum += weight * truncated_log(best_edge(image, edges, point, reach), kEdgeFloor);
     weights += weight;

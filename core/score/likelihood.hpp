@@ -40,14 +40,21 @@ inline double truncated_log(double probability, double floor) {
   return -std::min(std::log(std::max(probability, floor)) / std::log(floor), 1.0);
 }
 
-/// The probability that a model point is visible (paper V.5, footnote). 1 in front of the observed
-/// surface or without one, else falling with sigma_vis = 1 cm.
+/// The probability that a model point is visible (paper V.5, footnote), by the observed depth less
+/// the predicted one. 1 in front of the observed surface, else falling with sigma_vis = 1 cm. `exp`
+/// is std::exp or as good.
 template <class Real>
-Real visibility_probability(Real observed_depth, Real predicted_depth) {
-  constexpr Real kSigma = static_cast<Real>(0.01);
-  if (!(observed_depth > 0) || predicted_depth <= observed_depth) return 1;
-  const Real z = (predicted_depth - observed_depth) / kSigma;
-  return std::exp(static_cast<Real>(-0.5) * z * z);
+inline Real visibility_by_difference(Real difference, auto exp) {
+  constexpr auto kSigma = static_cast<Real>(0.01);
+  const Real z = (difference < 0 ? difference : 0) / kSigma;
+  return exp(static_cast<Real>(-0.5) * z * z);
+}
+
+/// The same; 1 without an observed depth.
+inline double visibility_probability(double observed_depth, double predicted_depth) {
+  if (!(observed_depth > 0)) return 1;
+  return visibility_by_difference(observed_depth - predicted_depth,
+                                  [](double x) { return std::exp(x); });
 }
 
 }  // namespace bpa

@@ -18,14 +18,13 @@
 namespace bpa {
 namespace {
 
-constexpr float kNormalSigma = 0.15f;        // radians: what poses and models are off by
-constexpr float kLateralSigma = 0.003f;      // metres, beside a pixel: the same across the view
-constexpr float kTruncation = 4.5f;          // three standard deviations, squared and halved
-constexpr float kModelSigma = 0.0025f;       // metres: what models and their poses are off by
-constexpr float kOnSurface = 0.006f;         // metres, plus noise
-constexpr float kSameDirection = 0.6f;       // cosine of normals on one surface
-constexpr float kVisibilitySigma_m = 0.01f;  // as of visibility_probability()
-constexpr float kMinSlant = 0.3f;            // cosine; the sensor sees little of steeper surface
+constexpr float kNormalSigma = 0.15f;    // radians: what poses and models are off by
+constexpr float kLateralSigma = 0.003f;  // metres, beside a pixel: the same across the view
+constexpr float kTruncation = 4.5f;      // three standard deviations, squared and halved
+constexpr float kModelSigma = 0.0025f;   // metres: what models and their poses are off by
+constexpr float kOnSurface = 0.006f;     // metres, plus noise
+constexpr float kSameDirection = 0.6f;   // cosine of normals on one surface
+constexpr float kMinSlant = 0.3f;        // cosine; the sensor sees little of steeper surface
 // Beside model edges: metres in front that hide, metres beyond the edge that are looked at, metres
 // and cosine up to which surface goes on.
 constexpr float kHiding = 0.015f, kBeyond = 0.012f, kGoesOn = 0.012f, kTurned = 0.8f;
@@ -144,8 +143,8 @@ BPA_DISPATCH void add_block(const CheckImage& image, float usual_noise, const Vi
     const float inside = 1 - exp_negative(-edge * edge);
 
     const float difference = block.depth[k] - z;
-    const float hidden = lesser(difference, 0) / kVisibilitySigma_m;
-    const float visible = seen * exp_negative(-0.5f * hidden * hidden);
+    const float visible =
+        seen * visibility_by_difference(difference, [](float x) { return exp_negative(x); });
     const float in_sight = one_if(visible > 0.5f);
     const float weight = visible * inside;
     sums.visible[k] += in_sight;
