@@ -39,9 +39,6 @@ struct Candidate {
 };
 using Candidates = std::vector<Candidate>;
 
-/// Two placements of one model that are nearer than this, in diameters, claim the same place.
-constexpr double kSamePlace = 0.4;
-
 /// The candidate as it is reported: with covariance, orientation uncertainty and named components.
 Placement to_placement(const Candidate& candidate);
 

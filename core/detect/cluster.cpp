@@ -5,6 +5,7 @@
 #include "core/align/align.hpp"
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa {
 namespace {
@@ -19,13 +20,12 @@ struct Cluster {
 };
 
 std::vector<Cluster> group(const Search& search, const Candidates& candidates) {
-  constexpr double kFar = 3 * kPoseTolerance_m;  // whatever the symmetry
   std::vector<Cluster> clusters;
   for (const Candidate& candidate : candidates) {
     const Pose& pose = candidate.pose();
     const auto found = std::ranges::find_if(clusters, [&](const Cluster& c) {
       const Eigen::Vector3d& centre = search.model.centre;
-      if ((c.pose * centre - pose * centre).norm() > kFar) return false;
+      if ((c.pose * centre - pose * centre).norm() > tolerance::kFarInCluster) return false;
       return within_tolerance(pose, c.pose, search.model.symmetry);
     });
     if (found != clusters.end()) {

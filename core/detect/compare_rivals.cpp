@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
+#include "core/observation/tolerance.hpp"
 #include "core/score/rival_poses.hpp"
 
 namespace bpa {
@@ -14,7 +15,7 @@ std::vector<std::size_t> rivals_of(const Search& search, const Candidates& candi
   std::vector<std::size_t> rivals;
   for (std::size_t i = best; i < candidates.size(); ++i) {
     const double distance = (candidates[i].place() - candidates[best].place()).norm();
-    if (compared[i] || distance > kSamePlace * search.model.diameter) continue;
+    if (compared[i] || distance > tolerance::kSamePlace * search.model.diameter) continue;
     compared[i] = true;
     if (candidates[i].score < candidates[best].score - search.plan.margins.rival) continue;
     rivals.push_back(i);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/detect/search.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa {
 
@@ -25,10 +26,9 @@ Contest contest_of(std::vector<Claim> claims, int most) {
 }
 
 bool is_behind(const Claim& claim, const Contest& contest, double margin) {
-  constexpr float kOnePlace = 0.3f;  // of the smaller diameter; chosen by hand
   for (const Claim& other : contest.claims) {
     if (other.score <= claim.score + margin) return false;
-    const float reach = kOnePlace * std::min(other.diameter, claim.diameter);
+    const float reach = tolerance::kContested * std::min(other.diameter, claim.diameter);
     if ((other.place - claim.place).squaredNorm() < reach * reach) return true;
   }
   return false;

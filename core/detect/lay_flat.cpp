@@ -8,7 +8,7 @@
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
 #include "core/model/model_index.hpp"
-#include "core/score/likelihood.hpp"
+#include "core/observation/tolerance.hpp"
 #include "core/score/predicted_surface.hpp"
 #include "core/score/projected_block.hpp"
 #include "core/score/silhouette_score.hpp"

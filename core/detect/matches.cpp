@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/observation/tolerance.hpp"
+
 namespace bpa {
 namespace {
 
-constexpr float kJump = 0.012f;     // metres between neighbouring pixels of one surface, at most
-constexpr float kOnModel = 0.025f;  // metres between the model and the surface that is followed
-constexpr int kShadow = 8;          // pixels without depth beside an edge, at most
+constexpr int kShadow = 8;  // pixels without depth beside an edge, at most
 
 // A walk over the image, one pixel a step, from (u0, v0).
 struct Walk {
@@ -74,11 +74,11 @@ std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, 
   const Eigen::Vector2f at = image.project(p);
   const Walk walk{image, at.x() + 0.5f, at.y() + 0.5f, du * step, dv * step};
   const int steps = std::max(1, static_cast<int>(reach * pixels_per_metre));
-  const float jump = kJump + 2 * image.noise(p.z());
+  const float jump = tolerance::kGoesOn(image.noise(p.z()));
   int k = -steps;
   const CheckPixel* here = walk.at(k);
   const auto on_model = [&](const CheckPixel* pixel) {
-    return pixel && pixel->searched && std::abs(pixel->depth - p.z()) < kOnModel;
+    return pixel && pixel->searched && std::abs(pixel->depth - p.z()) < tolerance::kFollowed;
   };
   while (k < steps && !on_model(here)) here = walk.at(++k);
   for (; k < steps; ++k) {

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/base/parallel.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa {
 void sort_by_score(Candidates& candidates) {
@@ -13,9 +14,8 @@ void sort_by_score(Candidates& candidates) {
 }
 
 bool duplicates(const Search& search, const Pose& a, const Pose& b) {
-  constexpr double kFar = 0.05;  // metres, whatever the symmetry
   const Eigen::Vector3d& centre = search.model.centre;
-  if ((a * centre - b * centre).norm() > kFar) return false;
+  if ((a * centre - b * centre).norm() > tolerance::kFarDuplicates) return false;
   const PoseError error = pose_error(a, b, search.model.symmetry);
   constexpr double kDuplicate_m = 0.008, kDuplicate_rad = 0.05;
   return error.position < kDuplicate_m && error.angle < kDuplicate_rad;

@@ -12,6 +12,7 @@
 #include "core/base/dispatch.hpp"
 #include "core/detect/matches.hpp"
 #include "core/model/model_index.hpp"
+#include "core/observation/tolerance.hpp"
 #include "core/score/projected_block.hpp"
 
 namespace bpa {
@@ -99,7 +100,6 @@ struct SurfaceSums {
 BPA_DISPATCH void add_block(const ProjectedBlock& model, const ObservedBlock& observed,
                             const SensorNoise& noise, const Eigen::Vector3f& centre, float gate,
                             SurfaceSums& __restrict sums) {
-  constexpr float kModelSigma = 0.001f;  // metres, beside the sensor's noise
   const SensorNoise depth_noise = noise;
   const float cx = centre.x(), cy = centre.y(), cz = centre.z();
   float row[6][kCheckBlock], weighted[6][kCheckBlock], residual[kCheckBlock];
@@ -114,7 +114,7 @@ BPA_DISPATCH void add_block(const ProjectedBlock& model, const ObservedBlock& ob
     const float matched = near & (cosine > kMatchCosine) ? observed.matched[k] : 0;
     sums.matched[k] += matched;
     residual[k] = nx * dx + ny * dy + nz * dz;
-    const float sigma = depth_noise(observed.point[2][k]) + kModelSigma;
+    const float sigma = depth_noise(observed.point[2][k]) + tolerance::kModelSigma;
     const float weight = matched * weight_of(residual[k], gate, sigma);
     const float lx = x - cx, ly = y - cy, lz = z - cz;
     row[0][k] = nx, row[1][k] = ny, row[2][k] = nz;
@@ -167,14 +167,13 @@ struct Problem {
   // tell where the object is across the view.
   void add_edges(const FastPose& pose, const Eigen::Vector3f& centre, float gate,
                  NormalEquations& equations) const {
-    // Of the edges of the nearest of 66 views; a pixel's half width is added.
-    constexpr float kEdgeSigma = 0.004f;
     const std::size_t last = std::min<std::size_t>(view.num_edges, options.max_edges);
     for (std::size_t k = 0; k < last; ++k) {
       const EdgePoint edge = edge_point(view.edge(k), pose);
       const std::optional<float> offset = match_edge(scene.image, edge, gate);
       if (!offset) continue;
-      const float sigma = kEdgeSigma + 0.5f * edge.point.z() / scene.image.fx;
+      const float sigma =
+          tolerance::kEdgeSigma + 0.5f * edge.point.z() / scene.image.fx;  // half a pixel
       const float weight = weight_of(*offset, gate, sigma);
       equations.add(edge.outward, edge.point - centre, -*offset, weight);
     }

@@ -4,15 +4,13 @@
 
 #include "core/detect/candidate.hpp"
 #include "core/geometry/solve_symmetric.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa {
 namespace {
 
-// Depth errors of neighbouring pixels go together, so that the correspondences count for fewer.
-constexpr double kCorrelatedPoints = 12;
-
 Eigen::Matrix<double, 6, 6> pose_covariance(const Refinement& refinement) {
-  Eigen::Matrix<double, 6, 6> information = refinement.information / kCorrelatedPoints;
+  Eigen::Matrix<double, 6, 6> information = refinement.information / tolerance::kCorrelatedPoints;
   constexpr double kPositionSigma = 0.02, kAngleSigma = 0.5;  // m, rad: where nothing is known
   const double position = 1 / (kPositionSigma * kPositionSigma);
   const double angle = 1 / (kAngleSigma * kAngleSigma);

@@ -151,7 +151,7 @@ void add_rmse(const io::BopFrame& frame, const EvalObjects& objects, const Estim
 
 std::vector<PoseOutcome> open_poses(const io::BopFrame& frame, const EvalObjects& objects,
                                     const EvaluationOptions& options, const Placement& estimate) {
-  constexpr double kSamePlace = 0.05;  // metres
+  constexpr double kSamePlace = 2 * kPoseTolerance_m;
   if (estimate.alternatives.empty()) return {};
   const io::BopInstance* nearest = nullptr;
   double least = kSamePlace;

@@ -7,13 +7,13 @@
 #include <cmath>
 
 #include "core/model/flat_rest.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa {
 namespace {
 
 // Chosen by hand on simulated tables, as all constants of this file.
 constexpr float kLow = 0.03f;         // metres above the plane: as high as thin objects are
-constexpr float kOnPlane = 0.015f;    // metres: what is labelled background here is this plane
 constexpr float kLightWeight = 0.5f;  // of lightness: uneven light differs in it
 constexpr int kShadow = 2;            // cells: what is this much darker may be a shadow
 constexpr float kColorCell = 4;       // CIELAB
@@ -25,7 +25,8 @@ constexpr float kMostRising = 0.25f;                  // share of the border tha
 constexpr std::size_t kMostRegions = 40;
 
 bool on_background(const SurfaceMap& map, const Plane& plane, std::size_t i) {
-  return map.depth[i] > 0 && !map.searched[i] && std::abs(plane.height(map.points[i])) < kOnPlane;
+  return map.depth[i] > 0 && !map.searched[i] &&
+         std::abs(plane.height(map.points[i])) < tolerance::kOnBackground;
 }
 
 // How often each colour is seen on a plane.

@@ -15,6 +15,7 @@
 #include "core/cloud/curvature.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/model/model_index.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa {
 namespace {
@@ -61,16 +62,14 @@ Image<Eigen::Vector3f> log_light_of(Image<Eigen::Vector3f> lab, int num_threads)
 // The rims of the observed surface beside `points`: range edges and creases.
 std::vector<RimPoint> scene_rims(const CheckImage& image, const PointCloud& points,
                                  int num_threads) {
-  constexpr float kTolerance = 0.006f;  // metres; chosen by hand
-  constexpr float kDeviations = 3;      // of depth, added to it
   const auto look = [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
     const int pixel = image.pixel_of(at);
     if (pixel < 0) return Beside::hidden;
     const CheckPixel& seen = image.pixels[static_cast<std::size_t>(pixel)];
     if (!(seen.depth > 0)) return Beside::unknown;
-    const float tolerance = kTolerance + kDeviations * image.noise(at.z());
-    if (seen.depth < at.z() - tolerance) return Beside::hidden;
-    if (seen.depth > at.z() + tolerance) return Beside::end;
+    const float near = tolerance::kOnFace(image.noise(at.z()));
+    if (seen.depth < at.z() - near) return Beside::hidden;
+    if (seen.depth > at.z() + near) return Beside::end;
     const Eigen::Vector3f there = seen.direction();
     return there.isZero() || there.dot(normal) > kSameFace ? Beside::surface : Beside::end;
   };

@@ -9,6 +9,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/detect/stages.hpp"
+#include "core/observation/tolerance.hpp"
 #include "core/scene/given_others.hpp"
 #include "core/scene/interpretations.hpp"
 
@@ -23,8 +24,6 @@ constexpr double kNotSeen = std::numeric_limits<double>::lowest();
 // Of the largest part that any view shows of a placement: a view that shows less does not decide
 // whether two placements exclude one another. Chosen by hand.
 constexpr double kDecidingShare = 0.25;
-// As Placement::covariance counts correspondences (core/detect/to_placement.cpp).
-constexpr double kCorrelatedPoints = 12;
 
 double visibility_of(const Candidate& candidate) {
   const double value = candidate.values[component("visibility")];
@@ -44,11 +43,11 @@ Matrix6 with_camera_error(const Matrix6& information, double distance,
   constexpr double kNothingKnown = 1e-6;  // keeps the inverse finite
   const double angle = options.angle_sigma_deg * std::numbers::pi / 180;
   Matrix6 covariance =
-      (information / kCorrelatedPoints + kNothingKnown * Matrix6::Identity()).inverse();
+      (information / tolerance::kCorrelatedPoints + kNothingKnown * Matrix6::Identity()).inverse();
   covariance.diagonal().head<3>().array() +=
       options.position_sigma_m * options.position_sigma_m + angle * angle * distance * distance;
   covariance.diagonal().tail<3>().array() += angle * angle;
-  return kCorrelatedPoints * covariance.inverse();
+  return tolerance::kCorrelatedPoints * covariance.inverse();
 }
 
 int common_pixels(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
@@ -121,7 +120,7 @@ std::vector<ViewPool::Found> ViewPool::all_found() const {
 bool ViewPool::same(const Entry& entry, const Found& found) const {
   if (entry.model != found.candidate->model || entry.known[found.view]) return false;
   // A fast no: symmetries leave the centre about where it is.
-  const double far = entry.model->diameter / 4 + options_.same_position_m;
+  const double far = tolerance::kCentreMoves * entry.model->diameter + options_.same_position_m;
   const Eigen::Vector3d& centre = entry.model->centre;
   if ((found.scene_from_object * centre - entry.place).norm() > far) return false;
   const Pose pose = joint(entry).scene_from_object;

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <span>
 
+#include "core/observation/tolerance.hpp"
+
 namespace bpa {
 namespace {
 
@@ -19,15 +21,14 @@ bool solid(const Candidate& c) { return c.model->complete && c.model->index; }
 bool same_place(const Candidate& a, const Candidate& b) {
   const double distance = (a.place() - b.place()).norm();
   const double smaller = std::min(a.model->diameter, b.model->diameter);
-  if (a.model == b.model) return distance < kSamePlace * smaller;
-  return distance < 0.2 * smaller && !(solid(a) && solid(b));
+  if (a.model == b.model) return distance < tolerance::kSamePlace * smaller;
+  return distance < tolerance::kOthersPlace * smaller && !(solid(a) && solid(b));
 }
 
 // The share of a's surface that lies clearly inside of b. Only a model that was seen from all sides
 // has an inside; a hollow is not one.
 double share_inside(const Candidate& a, const Candidate& b) {
   constexpr std::size_t kPoints = 48;
-  constexpr float kDepth = 0.010f;  // metres: what both poses together may be off by
   const std::vector<Eigen::Vector3f>& points = a.model->index->check.points;
   const FastPose a_in_b = to_fast(b.pose().inverse() * a.pose());
   const PointCloud& surface = b.model->surface;
@@ -37,7 +38,7 @@ double share_inside(const Candidate& a, const Candidate& b) {
     const Eigen::Vector3f point = a_in_b * points[k];
     const int nearest = b.model->index->distances.nearest_to(point);
     if (nearest < 0) continue;
-    inside += (point - surface.points[nearest]).dot(surface.normals[nearest]) < -kDepth;
+    inside += (point - surface.points[nearest]).dot(surface.normals[nearest]) < -tolerance::kInside;
   }
   return count > 0 ? inside / static_cast<double>(count) : 0;
 }
@@ -51,7 +52,7 @@ bool interpenetrate(const Candidate& a, const Candidate& b) {
 }
 
 double same_pose(const Candidate& a, const Candidate& b) {
-  if (a.model != b.model || (a.place() - b.place()).norm() > 0.1) return 0;
+  if (a.model != b.model || (a.place() - b.place()).norm() > tolerance::kFarRivals) return 0;
   const PoseError error = pose_error(a.pose(), b.pose(), a.model->symmetry);
   return std::clamp(
       1.5 - std::max(error.position / kPoseTolerance_m, error.angle / kPoseTolerance_rad), 0.0,

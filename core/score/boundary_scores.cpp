@@ -10,7 +10,6 @@ namespace bpa {
 namespace {
 
 constexpr double kEdgeFloor = 0.05;          // least likelihood of an edge where one is predicted
-constexpr float kEdgeReach = 0.008f;         // metres: how wide the band of edge points is
 constexpr std::size_t kMaxEdgePoints = 300;  // that are looked at
 
 // The largest edge likelihood between a point and the place `reach` from it.
@@ -39,7 +38,7 @@ double edge_likelihood_score(const CheckImage& image, const Image<float>& edges,
     if (pixel < 0) continue;
     const float observed = image.pixels[static_cast<std::size_t>(pixel)].depth;
     const double weight = visibility_probability(double{observed}, double{point.z()});
-    const Eigen::Vector3f reach = kEdgeReach * (pose.rotation * view.outward[k]);
+    const Eigen::Vector3f reach = tolerance::kBesideEdge * (pose.rotation * view.outward[k]);
     sum += weight * truncated_log(best_edge(image, edges, point, reach), kEdgeFloor);
     weights += weight;
   }

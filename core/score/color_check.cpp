@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/observation/tolerance.hpp"
 #include "core/score/projected_block.hpp"
 
 namespace bpa {
@@ -16,9 +17,7 @@ double ColorCheck::log_odds() const {
 
 ColorCheck check_colors(const CheckImage& image, const Image<MatchColor>& colors,
                         const ModelIndex& model, const FastPose& pose) {
-  // Chosen by hand on simulated piles: points, metres.
-  constexpr int kWanted = 20;
-  constexpr float kOnSurface = 0.012f;
+  constexpr int kWanted = 20;  // points; chosen by hand on simulated piles
   ColorCheck check;
   if (colors.empty()) return check;
   const auto size = static_cast<int>(model.check_colors.size());
@@ -29,7 +28,8 @@ ColorCheck check_colors(const CheckImage& image, const Image<MatchColor>& colors
     if (block.pixel[lane] < 0) continue;
     const auto at = static_cast<std::size_t>(block.pixel[lane]);
     const CheckPixel& seen = image.pixels[at];
-    if (!seen.searched || std::abs(seen.depth - block.point[2][lane]) > kOnSurface) continue;
+    if (!seen.searched || std::abs(seen.depth - block.point[2][lane]) > tolerance::kColored)
+      continue;
     ++check.seen;
     check.agreeing += colors_agree(colors[at], model.check_colors[static_cast<std::size_t>(i)]);
   }

@@ -12,7 +12,6 @@
 namespace bpa {
 namespace {
 
-constexpr float kReach = 0.01f;  // metres between observed and model feature
 // Of the distance of two histograms, three parts that sum to 100 each. At right placements in
 // simulated piles and real frames half are nearer than 60 and three quarters than 75; at wrong
 // objects in their place, than 77 and 100.
@@ -30,7 +29,7 @@ double histogram_distance(const Fpfh& a, const Fpfh& b) {
 }  // namespace
 
 FeaturePlaces::FeaturePlaces(const ObjectModel& model)
-    : model_(model), grid_(model.index->features.points, kReach) {}
+    : model_(model), grid_(model.index->features.points, tolerance::kSameFeature) {}
 
 int FeaturePlaces::nearest_to(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const {
   const std::vector<Eigen::Vector3f>& normals = model_.index->features.normals;

@@ -6,26 +6,14 @@
 #include <cmath>
 #include <limits>
 
+#include "core/observation/tolerance.hpp"
+
 // The pieces that score components are made of.
 
 namespace bpa {
 
 /// The value of a score component that is not known.
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
-
-/// A placement explains what is observed so near to its prediction. Metres, chosen by hand.
-constexpr float kExplained_m = 0.01f;
-/// The standard deviation of distances in score components. Metres, chosen by hand.
-constexpr double kDistanceSigma_m = 0.01;
-
-/// What is observed this far in front of a prediction hides it. Metres, chosen by hand.
-constexpr float kHidden_m = 0.02f;
-
-/// Whether what is observed hides what is predicted, being over `by` metres in front of it; 0 is no
-/// observation and hides nothing.
-inline bool hides(float observed_depth, float predicted_depth, float by = kHidden_m) {
-  return observed_depth > 0 && observed_depth < predicted_depth - by;
-}
 
 /// The log-likelihood of an error under a normal distribution, relative to that of no error.
 /// Truncated at three standard deviations, so as not to over-penalise outliers, and scaled to [-1,
@@ -45,7 +33,7 @@ inline double truncated_log(double probability, double floor) {
 /// is std::exp or as good.
 template <class Real>
 inline Real visibility_by_difference(Real difference, auto exp) {
-  constexpr auto kSigma = static_cast<Real>(0.01);
+  constexpr auto kSigma = static_cast<Real>(tolerance::kVisibilitySigma);
   const Real z = (difference < 0 ? difference : 0) / kSigma;
   return exp(static_cast<Real>(-0.5) * z * z);
 }

@@ -27,7 +27,7 @@ std::vector<PixelPlace> explained_pixels(const CheckImage& image,
   std::vector<PixelPlace> places;
   predicted.for_each([&](int u, int v, float z, std::uint32_t) {
     const float depth = image.depth_at(u, v);
-    if (depth > 0 && std::abs(depth - z) < kExplained_m) places.push_back({u, v});
+    if (depth > 0 && std::abs(depth - z) < tolerance::kExplained) places.push_back({u, v});
   });
   return places;
 }
@@ -68,7 +68,8 @@ double random_walk_score(const CheckImage& image, const Image<float>& edges,
       continue;
     }
     const Eigen::Vector3f& surface = model.surface.points[static_cast<std::size_t>(nearest)];
-    sum += truncated_log_normal(static_cast<double>((point - surface).norm()), kDistanceSigma_m);
+    sum += truncated_log_normal(static_cast<double>((point - surface).norm()),
+                                tolerance::kDistanceSigma);
   }
   return sum / options.walks;
 }

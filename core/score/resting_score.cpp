@@ -8,15 +8,12 @@
 
 #include "core/cloud/surface_map.hpp"
 #include "core/model/model_index.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa {
 namespace {
 
 // Chosen by hand on simulated piles, as all constants of this file.
-constexpr float kBelow = 0.008f;                    // metres beneath a plane, plus noise
-constexpr float kOnPlane = 0.02f;                   // metres: what is seen there is the plane
-constexpr float kInContact = 0.004f;                // metres above the lowest point
-constexpr float kRests = 0.015f;                    // metres between the plane and the lowest point
 constexpr float kLowest = -0.05f, kHighest = 0.2f;  // metres: the gap is clamped to them
 // Metres: depth cameras see objects and the plane under them up to this much too near or too far
 // beside one another, all objects of a frame alike (YCB-Video: 0 to 12 mm).
@@ -31,8 +28,8 @@ bool beneath(const CheckImage& image, std::span<const Plane> planes, const Eigen
   if (seen.searched || seen.depth <= 0) return false;
   const Eigen::Vector3f observed = point * (seen.depth / point.z());
   return std::ranges::any_of(planes, [&](const Plane& plane) {
-    return plane.height(point) < -kBelow - 2 * image.noise(point.z()) &&
-           std::abs(plane.height(observed)) < kOnPlane;
+    return plane.height(point) < -tolerance::kBelow(image.noise(point.z())) &&
+           std::abs(plane.height(observed)) < tolerance::kOnTable;
   });
 }
 
@@ -71,9 +68,10 @@ RestingAgreement compare_resting(const CheckImage& image, std::span<const Plane>
   out.below = below / std::max(1.0, static_cast<double>(points.size()));
   const float beyond = lowest - std::clamp(lowest, -kOffset, kOffset);
   out.gap = double{std::clamp(beyond, kLowest, kHighest)};
-  if (std::abs(lowest) > kRests) return out;
-  std::erase_if(points,
-                [&](const Eigen::Vector3f& p) { return table.height(p) > lowest + kInContact; });
+  if (std::abs(lowest) > tolerance::kRests) return out;
+  std::erase_if(points, [&](const Eigen::Vector3f& p) {
+    return table.height(p) > lowest + tolerance::kInContact;
+  });
   const Eigen::Vector3f centre = pose * model.centre.cast<float>();
   out.balance = double{inside_hull(table, points, centre)} / model.diameter;
   return out;

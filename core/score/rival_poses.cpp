@@ -7,14 +7,13 @@
 
 #include "core/base/parallel.hpp"
 #include "core/cloud/surface_map.hpp"
+#include "core/observation/tolerance.hpp"
 #include "core/score/figure_ground.hpp"
 #include "core/score/texture_score.hpp"
 
 namespace bpa {
 namespace {
 
-constexpr float kSameDepth = 0.010f;   // metres: what both predictions may differ by
-constexpr float kRivalSigma = 0.003f;  // metres: what models and their poses are off by
 constexpr float kSeen = 0.7f;          // of the pixels that a right pose covers
 constexpr float kSeenThrough = 0.02f;  // of them: holes in the data, models that are too large
 // What hides a part hides it whole: its pixels are no evidence each, or a pose that puts a handle
@@ -23,16 +22,16 @@ constexpr float kHidden = 0.9f;
 constexpr float kBroad = 1.0f;  // per metre: of what a pose says nothing about
 
 // Pixels by which two good alignments may place the same rim differently.
-int tolerance(const CheckImage& image, float depth) {
-  constexpr float kBeside = 0.006f;  // metres
-  return std::clamp(static_cast<int>(std::lround(kBeside * image.fx / depth)), 1, 3);
+int beside_px(const CheckImage& image, float depth) {
+  const float pixels = tolerance::kBesideRim * image.fx / depth;
+  return std::clamp(static_cast<int>(std::lround(pixels)), 1, 3);
 }
 
 // True where the prediction has surface of about this depth at a pixel or beside it.
 bool agrees(const PredictedSurface& other, int u, int v, float depth, int beside) {
   const auto near = [&](int du, int dv) {
     const float there = other.depth_at(u + du, v + dv);
-    return there > 0 && std::abs(there - depth) < kSameDepth;
+    return there > 0 && std::abs(there - depth) < tolerance::kSameDepth;
   };
   if (near(0, 0)) return true;
   for (int dv = -beside; dv <= beside; ++dv) {
@@ -57,8 +56,7 @@ float log_likelihood(const SensorNoise& sensor, const PredictedSurface& predicte
                      float observed) {
   const float depth = predicted.depth_at(u, v);
   if (!(depth > 0)) return 0;
-  const float noise = sensor(depth);
-  const float sigma = 1.5f * std::sqrt(noise * noise + kRivalSigma * kRivalSigma);
+  const float sigma = 1.5f * tolerance::depth_sigma(sensor(depth), tolerance::kRivalSigma);
   const float z = (observed - depth) / sigma;
   constexpr float kRootTwoPi = 2.5066283f;
   const float on_surface = kSeen * std::exp(-0.5f * z * z) / (kRootTwoPi * sigma);
@@ -71,7 +69,7 @@ float log_likelihood(const SensorNoise& sensor, const PredictedSurface& predicte
 void for_each_difference(const CheckImage& image, const PredictedSurface& first,
                          const PredictedSurface& second, const auto& visit) {
   first.for_each([&](int u, int v, float depth, std::uint32_t) {
-    if (!agrees(second, u, v, depth, tolerance(image, depth))) visit(u, v);
+    if (!agrees(second, u, v, depth, beside_px(image, depth))) visit(u, v);
   });
 }
 
@@ -83,7 +81,7 @@ Pixels disagreement(const CheckImage& image, const PredictedSurface& first,
   for_each_difference(image, first, second, [&](int u, int v) { pixels.emplace_back(u, v); });
   for_each_difference(image, second, first, [&](int u, int v) {
     const float depth = first.depth_at(u, v);
-    if (depth > 0 && !agrees(second, u, v, depth, tolerance(image, depth))) return;  // added above
+    if (depth > 0 && !agrees(second, u, v, depth, beside_px(image, depth))) return;  // added above
     pixels.emplace_back(u, v);
   });
   return pixels;
@@ -106,7 +104,6 @@ namespace {
 
 // The same of colours: does the image show the object or what is around it?
 double color_evidence(const FigureColors& first, const FigureColors& second, const Pixels& pixels) {
-  constexpr double kCorrelated = 4;  // pixels per independent one
   if (!first.known() || !second.known()) return 0;
   double sum = 0;
   for (const Eigen::Vector2i& pixel : pixels) {
@@ -115,7 +112,7 @@ double color_evidence(const FigureColors& first, const FigureColors& second, con
                          second.log_likelihood(u, v, first.predicted());
     if (!std::isnan(ratio)) sum += ratio;
   }
-  return sum / kCorrelated;
+  return sum / tolerance::kCorrelatedColors;
 }
 
 }  // namespace

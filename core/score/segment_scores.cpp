@@ -11,8 +11,6 @@
 namespace bpa {
 namespace {
 
-constexpr float kTouching = 0.03f;  // metres between prediction and observation
-constexpr float kOnModel = 0.01f;   // metres (paper section V: 1 cm)
 constexpr double kAffinityFloor = 0.02;
 
 // What the points of one segment say.
@@ -37,8 +35,8 @@ void judge(const Segment& segment, const SurfaceMap& map, const ObjectModel& mod
     const Eigen::Vector3f normal = object_from_camera.rotation * map.normals[pixel];
     const float cosine =
         std::max(normal.dot(model.surface.normals[i]), normal.dot(model.index->soft_normals[i]));
-    distances += truncated_log_normal(static_cast<double>(distance), kDistanceSigma_m);
-    on_model += distance < kOnModel && cosine > min_cosine;
+    distances += truncated_log_normal(static_cast<double>(distance), tolerance::kDistanceSigma);
+    on_model += distance < tolerance::kOnModel && cosine > min_cosine;
   }
   match.distance = distances / static_cast<double>(count);
   match.probability = static_cast<double>(on_model) / static_cast<double>(count);
@@ -50,7 +48,7 @@ std::vector<int> touched_pixels(const Segmentation& segmentation, const SurfaceM
   std::vector<int> touched(segmentation.segments.size(), 0);
   predicted.for_each([&](int u, int v, float z, std::uint32_t) {
     const std::size_t i = segmentation.labels.index(u, v);
-    if (segmentation.labels[i] < 0 || std::abs(map.depth[i] - z) > kTouching) return;
+    if (segmentation.labels[i] < 0 || std::abs(map.depth[i] - z) > tolerance::kTouched) return;
     ++touched[static_cast<std::size_t>(segmentation.labels[i])];
   });
   return touched;

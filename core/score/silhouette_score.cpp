@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/score/likelihood.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa {
 namespace {
 
 // Chosen by hand on simulated piles, as all constants of this file.
-constexpr float kBehind = 0.03f;    // metres: a step of depth within the object is an outline
 constexpr int kFewestOutline = 12;  // pixels of the reduced image
 // In pixels of the reduced image: where the outline is looked for, and where its surroundings are.
 constexpr float kOutlineReach = 1.5f, kBesideFrom = 2.5f, kBesideTo = 4;
@@ -35,7 +34,7 @@ struct PaddedDepth {
     const float* here = &depth.at(u - u0, v - v0);
     const auto outside = [&](int du, int dv) {
       const float there = here[dv * depth.width + du];
-      return (there <= 0) | (there > z + kBehind);
+      return (there <= 0) | (there > z + tolerance::kOutlineStep);
     };
     if (!(outside(1, 0) | outside(-1, 0) | outside(0, 1) | outside(0, -1))) {
       return Eigen::Vector2f::Zero();

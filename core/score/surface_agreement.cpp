@@ -18,16 +18,11 @@
 namespace bpa {
 namespace {
 
-constexpr float kNormalSigma = 0.15f;    // radians: what poses and models are off by
-constexpr float kLateralSigma = 0.003f;  // metres, beside a pixel: the same across the view
-constexpr float kTruncation = 4.5f;      // three standard deviations, squared and halved
-constexpr float kModelSigma = 0.0025f;   // metres: what models and their poses are off by
-constexpr float kOnSurface = 0.006f;     // metres, plus noise
-constexpr float kSameDirection = 0.6f;   // cosine of normals on one surface
-constexpr float kMinSlant = 0.3f;        // cosine; the sensor sees little of steeper surface
-// Beside model edges: metres in front that hide, metres beyond the edge that are looked at, metres
-// and cosine up to which surface goes on.
-constexpr float kHiding = 0.015f, kBeyond = 0.012f, kGoesOn = 0.012f, kTurned = 0.8f;
+constexpr float kNormalSigma = 0.15f;   // radians: what poses and models are off by
+constexpr float kTruncation = 4.5f;     // three standard deviations, squared and halved
+constexpr float kSameDirection = 0.6f;  // cosine of normals on one surface
+constexpr float kMinSlant = 0.3f;       // cosine; the sensor sees little of steeper surface
+constexpr float kTurned = 0.8f;         // cosine up to which surface goes on beyond an edge
 
 // Functions without branches and library calls, so that loops become vectors.
 inline float lesser(float a, float b) { return a < b ? a : b; }
@@ -131,15 +126,17 @@ BPA_DISPATCH void add_block(const CheckImage& image, float usual_noise, const Vi
 
     // What the noise model says of the differences, standard deviations.
     const float noise = depth_noise(z);
-    const float sensor = block.noise_range[k] * noise / usual_noise, off = kModelSigma / slant;
-    const float sigma_range = std::sqrt(sensor * sensor + off * off);
+    const float sensor = block.noise_range[k] * noise / usual_noise,
+                off = tolerance::kPlacedSigma / slant;
+    const float sigma_range = tolerance::depth_sigma(sensor, off);
     const float by_view = block.noise_normal[k] * block.noise_normal[k];
     const float sigma_normal =
         std::sqrt(greater(by_view, model.normal_variance[k]) + kNormalSigma * kNormalSigma);
     // The probability that the pixel of a point so far from a range edge of the view shows the
     // model and not what is behind it: the pixel is as large as it is, and the pose is a little
     // off.
-    const float edge = lesser(model.edge_distance[k], 1) / (kLateralSigma + z * pixel_size);
+    const float edge =
+        lesser(model.edge_distance[k], 1) / (tolerance::kLateralSigma + z * pixel_size);
     const float inside = 1 - exp_negative(-edge * edge);
 
     const float difference = block.depth[k] - z;
@@ -161,9 +158,10 @@ BPA_DISPATCH void add_block(const CheckImage& image, float usual_noise, const Vi
     const float angle = acos_of(cosine) / sigma_normal;
     const float known = one_if(ox * ox + oy * oy + oz * oz > 0);
     sums.normal[k] -= weight * (known * lesser(0.5f * angle * angle, kTruncation) + 1 - known);
-    sums.free[k] += weight * one_if(difference > kHidden_m);
+    sums.free[k] += weight * one_if(difference > tolerance::kFree);
     // Depth errors along the ray grow with the slant of the surface.
-    const float on_surface = seen * one_if(std::abs(difference) * slant < kOnSurface + 2 * noise) *
+    const float on_surface = seen *
+                             one_if(std::abs(difference) * slant < tolerance::kOnSurface(noise)) *
                              one_if(cosine > kSameDirection);
     sums.agreeing[k] += weight * on_surface;
     sums.normals[0][k] += on_surface * nx * nx;
@@ -207,8 +205,9 @@ BPA_DISPATCH void place_edges(const CheckImage& image, const EdgeBlock& model, c
     const Coordinates n = camera.turned(model.normal[0][k], model.normal[1][k], model.normal[2][k]);
     const Coordinates outward =
         camera.turned(model.outward[0][k], model.outward[1][k], model.outward[2][k]);
-    const Coordinates beyond{p.x + kBeyond * outward.x, p.y + kBeyond * outward.y,
-                             p.z + kBeyond * outward.z};
+    const Coordinates beyond{p.x + tolerance::kBeyondEdge * outward.x,
+                             p.y + tolerance::kBeyondEdge * outward.y,
+                             p.z + tolerance::kBeyondEdge * outward.z};
     out.z[k] = p.z;
     out.normal[0][k] = n.x, out.normal[1][k] = n.y, out.normal[2][k] = n.z;
     out.at[k] = camera.pixel_of(p, true);
@@ -234,13 +233,13 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const ViewSa
     if (seen.at[k] < 0) continue;  // the image border hides it
     const float z = seen.z[k];
     const CheckPixel& inside = image.pixels[static_cast<std::size_t>(seen.at[k])];
-    if (hides(inside.depth, z, kHiding)) continue;
+    if (hides(inside.depth, z, tolerance::kHidesPoint)) continue;
     ++visible;
     if (seen.beyond[k] < 0) continue;
     const CheckPixel& beyond = image.pixels[static_cast<std::size_t>(seen.beyond[k])];
     if (beyond.depth <= 0) continue;  // no depth: an edge shadow, neither for nor against
     // Where the model's tangent plane would be if the surface went on.
-    const bool continues = std::abs(beyond.depth - z) < kGoesOn + 2 * image.noise(z);
+    const bool continues = std::abs(beyond.depth - z) < tolerance::kGoesOn(image.noise(z));
     const Eigen::Vector3f normal(seen.normal[0][k], seen.normal[1][k], seen.normal[2][k]);
     const bool turns = beyond.direction().dot(normal) < kTurned;
     (continues && !turns ? goes_on : ends) += 1;
@@ -375,7 +374,7 @@ HiddenPoints hidden_points(const CheckImage& image, const ObjectModel& model, co
             for (int k = 0; k < ViewBlock::kSize; ++k) {
               if (seen.pixel[k] < 0) continue;
               ++out.facing;
-              if (hides(seen.depth[k], seen.z[k], kHiding)) {
+              if (hides(seen.depth[k], seen.z[k], tolerance::kHidesPoint)) {
                 out.pixels.push_back(static_cast<std::uint32_t>(seen.pixel[k]));
               }
             }

@@ -4,13 +4,12 @@
 
 #include <algorithm>
 
-#include "core/detect/candidate.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa::track {
 namespace {
 
 // Chosen by hand.
-constexpr double kLeastGate_m = 0.03;
 constexpr double kSpeed = 0.5;  // m/s: of what is not seen
 constexpr double kMostGate_m = 0.6;
 
@@ -19,7 +18,8 @@ constexpr double kMostGate_m = 0.6;
 constexpr double kLeastOfPose = 0.2;
 
 double gate(const TrackRecord& track) {
-  const double here = std::max(kLeastGate_m, kSamePlace * track.model->diameter);
+  const double here =
+      std::max(tolerance::kSamePlaceLeast_m, tolerance::kSamePlace * track.model->diameter);
   return track.sight == Sight::seen
              ? here
              : std::min(std::max(here, kMostGate_m), here + kSpeed * track.unseen_s);
@@ -47,7 +47,8 @@ std::vector<Placement> found_objects(const SceneInterpretations& result,
       const bool likely =
           placement.probability >= kLeastOfPose && presence(placement) >= min_presence;
       if (!model || !likely) continue;
-      const Place place{placement.frame_from_object * model->centre, kSamePlace * model->diameter};
+      const Place place{placement.frame_from_object * model->centre,
+                        tolerance::kSamePlace * model->diameter};
       const bool free = std::ranges::none_of(taken, [&place](const Place& other) {
         return (place.at - other.at).norm() < std::min(place.reach, other.reach);
       });
@@ -87,13 +88,13 @@ std::vector<int> match_tracks(const std::vector<Placement>& placements,
 }
 
 bool in_one_place(const ObjectModel& model, const Pose& a, const Pose& b) {
-  return (a * model.centre - b * model.centre).norm() < kSamePlace * model.diameter;
+  return (a * model.centre - b * model.centre).norm() < tolerance::kSamePlace * model.diameter;
 }
 
 bool claims_place(const Placement& placement, const TrackRecord& track) {
   if (placement.model == track.model->name) return false;
   const double distance = (placement.frame_from_object.translation - place(track)).norm();
-  return distance < kSamePlace * track.model->diameter;
+  return distance < tolerance::kSamePlace * track.model->diameter;
 }
 
 }  // namespace bpa::track

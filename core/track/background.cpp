@@ -6,13 +6,13 @@
 #include <string>
 
 #include "core/cloud/surface_map.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa::track {
 namespace {
 
 constexpr int kMapWidth = 160;         // pixels: enough for planes of 0.35 m
 constexpr int kPlaneStep_px = 8;       // between the depths that are compared with a plane
-constexpr float kOnPlane_m = 0.015f;   // coarse: of a plane that has not moved
 constexpr double kLeastShare = 0.15;   // of the depths: smaller ones may pass through objects
 constexpr double kLeastOfShare = 0.6;  // of the share of depths on a plane, of what it was
 
@@ -24,7 +24,7 @@ double share_on(const Plane& plane, const Frame& frame) {
       if (!(z > 0)) continue;
       ++known;
       const Eigen::Vector3f point = frame.camera.unproject(u, v, z).cast<float>();
-      on += std::abs(plane.height(point)) < kOnPlane_m;
+      on += std::abs(plane.height(point)) < tolerance::kOnBackground;
     }
   }
   return known > 0 ? static_cast<double>(on) / known : 0;

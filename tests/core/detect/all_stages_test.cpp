@@ -13,6 +13,7 @@
 #include "core/base/random.hpp"
 #include "core/detect/stages.hpp"
 #include "core/model/model_index.hpp"
+#include "core/observation/tolerance.hpp"
 #include "core/score/rival_poses.hpp"
 #include "tests/support/l_scene.hpp"
 
@@ -231,7 +232,9 @@ TEST_F(SingleObject, OfPosesInOnePlaceTheBestIsBehindNone) {
   int behind = 0;
   for (const Candidate& c : candidates) {
     const double distance = (c.pose().translation - candidates[0].pose().translation).norm();
-    if (distance > kSamePlace * l_->diameter || std::isnan(c.values[component("rivals")])) continue;
+    if (distance > tolerance::kSamePlace * l_->diameter ||
+        std::isnan(c.values[component("rivals")]))
+      continue;
     EXPECT_LE(c.values[component("rivals")], 0);
     const PredictedSurface other = predict_whole_surface(scene.image, *l_, c.pose());
     EXPECT_LE(depth_evidence(scene.image, other, first, disagreement(scene.image, other, first)),
