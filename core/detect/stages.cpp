@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "core/detect/stages.hpp"
+
 #include <algorithm>
 #include <atomic>
 #include <functional>
@@ -11,7 +13,6 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
-#include "core/detect/stages.hpp"
 
 namespace bpa {
 namespace {

@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include "core/base/concat.hpp"
 #include "core/score/score_layer.hpp"
 #include "tests/support/l_scene.hpp"
 
