@@ -45,14 +45,17 @@ inline std::vector<Solid> l_solids(const Pose& camera_from_object) {
 /// A brick of three different edges; half turns about its axes map it onto itself.
 inline const Eigen::Vector3f kBrickHalf(0.060f, 0.040f, 0.025f);
 
-inline std::shared_ptr<const ObjectModel> brick_model(int number = 2) {
+inline SymmetryGroup brick_symmetry() {
   SymmetryGroup half_turns;
   for (int axis = 0; axis < 3; ++axis) {
     Eigen::Quaterniond turn(0, 0, 0, 0);
     turn.vec()[axis] = 1;
     half_turns.discrete.push_back({turn, Eigen::Vector3d::Zero()});
   }
-  return model_of(box_mesh(kBrickHalf), "brick", number, half_turns);
+  return half_turns;
+}
+inline std::shared_ptr<const ObjectModel> brick_model(int number = 2) {
+  return model_of(box_mesh(kBrickHalf), "brick", number, brick_symmetry());
 }
 inline Solid brick_solid(const Pose& camera_from_object) {
   return {Solid::Kind::box, kBrickHalf.cast<double>(), camera_from_object};
