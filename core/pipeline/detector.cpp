@@ -184,6 +184,7 @@ Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
   if (trace) {
     trace->scene = std::move(scene);
     trace->models = *models;
+    trace->plan = plan;
     trace->candidates = std::move(candidates);
   }
   return out;

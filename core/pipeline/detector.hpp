@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct FrameTrace {
   std::vector<std::shared_ptr<const ObjectModel>> models;  ///< Searched for.
   std::vector<ObjectTrace> objects;                        ///< One for each model.
   std::vector<Candidate> candidates;                       ///< Of all models.
+  std::optional<SearchPlan> plan;                          ///< What it ran with.
 };
 
 /// What to look for in one frame.

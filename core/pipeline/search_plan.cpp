@@ -58,9 +58,7 @@ EndRule end_rule(const SearchFacts& facts, const RoundOptions& rounds, PlanReaso
 // Every setting as planned, beside the user's and the default.
 std::vector<PlanEntry> settings_of(const SearchPlan& plan, DetectorOptions given,
                                    const PlanReasons& reasons) {
-  DetectorOptions planned{plan.surface, plan.planes, plan.features, plan.rounds,
-                          plan.detect,  plan.scene,  given.views};
-  DetectorOptions defaults;
+  DetectorOptions planned = plan.settings(), defaults;
   const auto used = options_of(planned), asked = options_of(given), usual = options_of(defaults);
   std::vector<PlanEntry> out;
   for (std::size_t i = 0; i < used.size(); ++i) {
@@ -116,6 +114,7 @@ Result<SearchPlan> plan_search(const DetectorOptions& options, const ScoreLayers
       .rounds = options.rounds,
       .detect = DetectPlan(options.detect, layers, {facts.models, facts.colored}, &reasons),
       .scene = options.scene,
+      .views = options.views,
       .limited = facts.budget_ms > 0};
   plan.surface.num_threads = plan.features.num_threads = facts.threads;
   plan.planes.seed = plan.features.seed = plan.scene.seed = facts.seed;

@@ -49,11 +49,17 @@ struct SearchPlan {
   RoundOptions rounds;
   DetectPlan detect;  ///< Of a whole round.
   InterpretationOptions scene;
+  ViewsOptions views;
   EndRule end = {};
   TimePlan time = {};
   bool limited = false;                 ///< There is a time budget.
   double prepared_share = 1;            ///< Of the work of a whole preparation, (0, 1].
   std::vector<PlanEntry> entries = {};  ///< All of it, with reasons, for people.
+
+  /// The settings as planned.
+  DetectorOptions settings() const {
+    return {surface, planes, features, rounds, detect, scene, views};
+  }
 };
 
 /// Pure: the same input gives the same plan. Fails with invalid_argument where the limits of the

@@ -55,6 +55,13 @@ function showRanks() {
   $('meaning').textContent = kMeaning;
 }
 
+/** The numbers of the search that are not their defaults, and why. */
+function showPlan() {
+  const entries = Object.entries(view.result?.result.plan || {}).filter(([, entry]) => entry.reason !== 'default');
+  $('plan').replaceChildren(...entries.map(([name, {value, reason}]) => make('tr', {}, make('td', {}, name),
+    make('td', {class: 'number'}, String(value)), make('td', {}, reason))));
+}
+
 function bar(value, most) {
   const share = Math.min(1, Math.abs(value) / most) * 50;
   const filled = make('i', {class: value < 0 ? 'minus' : ''});
@@ -138,5 +145,6 @@ choosable($('interpretations'));
 on('figures', showTracks);
 on('view', () => {
   showRanks();
+  showPlan();
   showPlacements();
 });
