@@ -47,7 +47,8 @@ void plan_counts(const DetectFacts& facts, DetectOptions& plan, PlanReasons& rea
     std::string& reason = reasons[entry.name];
     reason = concat(entry.base,
                     facts.colored ? "" : concat(" x ", entry.without_color, " without colours"));
-    if (more > 1) reason += concat(" x cbrt(", facts.models, " models / ", kModels, ")");
+    reason += more > 1 ? concat(" x cbrt(", facts.models, " models / ", kModels, ")")
+                       : concat(" for up to ", kModels, " models");
   }
 }
 

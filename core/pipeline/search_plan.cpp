@@ -121,7 +121,8 @@ Result<SearchPlan> plan_search(const DetectorOptions& options, const ScoreLayers
   if (plan.limited) shorten_preparation(facts, plan, reasons);
   if (plan.rounds.step_without_support == 0) {
     plan.rounds.step_without_support = std::max(1, facts.models / kWholeModels);
-    reasons["rounds.step_without_support"] = concat(facts.models, " models / ", kWholeModels);
+    reasons["rounds.step_without_support"] =
+        concat("one in (", facts.models, " / ", kWholeModels, ") points, 1 or more");
   }
   plan.end = end_rule(facts, options.rounds, reasons);
   plan.entries = entries_of(plan, options, layers.limits, reasons);

@@ -29,9 +29,8 @@ Result<Limits> LearnedLimits::at(double keep_right, bool colored) const {
   if (exact) return *next.*of;
   if (next == levels.begin() || next == levels.end()) {
     return invalid_argument("score.keep_right is ", keep_right,
-                            "; the limits of these score layers are for ",
-                            levels.front().keep_right, " to ", levels.back().keep_right,
-                            ", and 1 is without limits; 'bpa train' measures others");
+                            "; these score layers have limits for ", levels.front().keep_right,
+                            " to ", levels.back().keep_right, "; 1 is without limits");
   }
   const Level& below = *std::prev(next);
   const double along = std::log((1 - below.keep_right) / (1 - keep_right)) /

@@ -13,7 +13,8 @@
 #include "core/score/components.hpp"
 
 // Log odds below which a candidate is given up. They are of the score layers that make the log
-// odds: both lie in one file, and `bpa train` writes both.
+// odds, and lie in one file with them. `bpa train` does not measure them yet: it keeps those of the
+// layers that it starts from.
 
 namespace bpa {
 
@@ -55,8 +56,8 @@ struct Limits {
   double& operator[](Limit limit) { return stages[static_cast<std::size_t>(limit)]; }
 };
 
-/// Limits as they were measured: below the limits of a share q lie 1 - q of the placements that end
-/// right, at each of them.
+/// Limits by the share of right placements that they keep: below each limit of a share q lie 1 - q
+/// of the placements that end right.
 struct LearnedLimits {
   struct Level {
     double keep_right = 1;             ///< q, (0, 1).
