@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kNew = 0.5;  // weight of the newest frame: machines get busy within a few frames
 
-// A whole preparation, of the work of its surface map: the same on any machine, within a third.
+// A whole preparation, of the work of its surface map. A first guess, until a frame is measured.
 constexpr double kPreparation = 6;
 
 // Microseconds for each pixel of a frame, of the surface map of a slanted plane.

@@ -154,13 +154,17 @@ Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
   out.fused_frames = frame.fused;
   out.plan = plan.entries;
   SceneFeatures scene = prepare_scene(frame, plan, deadline, out.timings);
-  Costs measured{.preparation_ms = total.milliseconds() / plan.prepared_share};
+  const double preparation_ms = total.milliseconds() / plan.prepared_share;
+  if (plan.limited) {
+    costs_->add(frame.depth.size(), facts.threads,
+                {.preparation_ms = preparation_ms, .round_share = 0, .final_share = 0});
+  }
   out.sensor = name_of(scene.map.sensor);
 
   Stopwatch stage;
   const Deadline search_end = deadline.part(plan.time.search);
   const SearchInputs inputs{scene, plan, layers_, request, *models};
-  LibrarySearch search{inputs, search_end, facts.costs, measured.preparation_ms};
+  LibrarySearch search{inputs, search_end, facts.costs, preparation_ms};
   if (request.on_round) {
     search.on_round = [&, so_far = out](Candidates found) mutable {
       so_far.partial = true;
