@@ -16,6 +16,7 @@
 #if BPA_FASTDDS_MAJOR < 3
 #include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 #endif
 
 namespace bpa::wire {
@@ -27,6 +28,21 @@ namespace {
 constexpr std::size_t kMaxPeers = 4096;
 constexpr const char* kParticipantProfile = "bpa";
 constexpr const char* kRequestPrefix = "rq/";
+
+/// Participants of one process reach each other by UDP, as those of two do, unless an XML profile
+/// says otherwise. Fast DDS 2 hands data straight to the readers of another participant, even to
+/// deleted ones: eProsima/Fast-DDS#5034.
+void avoid_deleted_readers() {
+#if BPA_FASTDDS_MAJOR < 3
+  static const bool done = [] {
+    eprosima::fastrtps::LibrarySettingsAttributes settings;
+    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+    eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+    return true;
+  }();
+  static_cast<void>(done);
+#endif
+}
 
 // Numbers of this process's participants. A participant's ports follow from its number, and
 // discovery by unicast tries those of the first 32 alone. Fast DDS before 2.11 gives none a second
@@ -147,6 +163,7 @@ ParticipantImpl::ParticipantImpl(ParticipantOptions options, Discovery discovery
       tasks_(options_.log) {}
 
 Status ParticipantImpl::start() {
+  avoid_deleted_readers();
   auto* factory = dds::DomainParticipantFactory::get_instance();
   if (!options_.profiles.empty() &&
       !succeeded(factory->load_XML_profiles_file(options_.profiles))) {
