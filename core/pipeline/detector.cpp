@@ -155,10 +155,6 @@ Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
   out.plan = plan.entries;
   SceneFeatures scene = prepare_scene(frame, plan, deadline, out.timings);
   const double preparation_ms = total.milliseconds() / plan.prepared_share;
-  if (plan.limited) {
-    costs_->add(frame.depth.size(), facts.threads,
-                {.preparation_ms = preparation_ms, .round_share = 0, .final_share = 0});
-  }
   out.sensor = name_of(scene.map.sensor);
 
   Stopwatch stage;
@@ -177,8 +173,12 @@ Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
   if (!elsewhere) here.emplace(inputs, trace ? &trace->objects : nullptr);
   ModelSearches& used = elsewhere ? *elsewhere : *here;
   used.prepared(scene, total.milliseconds());
-  Candidates candidates = search.run(used, out.budget_exhausted, out.effort);
+  SearchOutcome found = search.run(used);
   if (Status status = used.status(); !status.ok()) return status;
+  if (plan.limited) costs_->add(frame.depth.size(), facts.threads, found.measured);
+  Candidates& candidates = found.candidates;
+  out.budget_exhausted = found.cut;
+  out.effort = found.effort;
   out.not_searched = used.lost();
   out.timings.push_back({"objects", stage.lap_milliseconds()});
 

@@ -27,9 +27,11 @@ struct Explained {
 
   explicit Explained(std::size_t pixels) : probability(pixels, 0.0f), certain(pixels, 0) {}
 
-  // Adds placements that compete. Returns the largest gain of one: how much more probable it makes
-  // its surface than what was there, in the mean of its pixels.
-  double add(const Candidates& found, const RoundOptions& options) {
+  // Lets the candidates compete and adds them. Returns the largest gain of one: how much more
+  // probable it makes its surface than what was there, in the mean of its pixels.
+  double add(Candidates found, const SearchPlan& plan) {
+    const RoundOptions& options = plan.rounds;
+    let_compete(found, find_overlaps(found, plan.detect.limits[Limit::competing]));
     std::vector<const Candidate*> probable;
     for (const Candidate& candidate : found) {
       if (candidate.probability < std::min(options.min_gain, options.min_certain)) continue;
@@ -53,76 +55,90 @@ struct Explained {
   }
 };
 
+// Judges each whole round by its gain; small ones are judged together.
+class RoundEnd {
+ public:
+  explicit RoundEnd(const SearchPlan& plan) : rule_(plan.end), most_(plan.rounds.max_rounds) {}
+
+  bool reached() const { return reached_ || searched_ >= most_; }
+  double searched() const { return searched_; }  // in whole rounds
+  void nothing_left() { reached_ = true; }
+  void add(double share, double gain) {
+    const bool may_end = rule_.may_end_at_first, is_first = searched_ == 0;
+    searched_ += share;
+    since_judged_ += share;
+    gain_ = std::max(gain_, gain);
+    if (since_judged_ < 1 && !(may_end && is_first)) return;
+    const double of_two = std::max(gain_, gain_before_);
+    reached_ =
+        (may_end || searched_ >= 2) && (gain_ < rule_.min_gain || of_two < rule_.min_gain_of_two);
+    gain_before_ = std::exchange(gain_, 0);
+    since_judged_ = 0;
+  }
+
+ private:
+  const EndRule rule_;
+  const double most_;
+  double searched_ = 0, since_judged_ = 0, gain_ = 0, gain_before_ = 1;
+  bool reached_ = false;
+};
+
 // The share of a whole round that the next one is; 0 where no other fits.
-double next_share(const SearchPace& pace, const TimePlan& time, int round,
+double next_share(const SearchPace& pace, const SearchPlan& plan, bool is_first,
                   const Deadline& rounds_end) {
-  const double part = round == 0 ? time.first_round : time.next_round;
+  const double wanted = is_first ? plan.end.first_share : 1;
+  if (!plan.limited) return wanted;
+  const TimePlan& time = plan.time;
+  const double part = is_first ? time.first_round : time.next_round;
   const double share =
       pace.share_of_round(part * rounds_end.milliseconds_left(), time.smallest_round);
-  return round == 0 ? std::max(share, time.smallest_round) : share;
+  return std::min(wanted, is_first ? std::max(share, time.smallest_round) : share);
 }
 
 }  // namespace
 
-Candidates LibrarySearch::run(ModelSearches& searches, bool& cut, SearchEffort& effort) const {
+SearchOutcome LibrarySearch::run(ModelSearches& searches) const {
   const SearchPlan& plan = inputs.plan;
   Explained explained(inputs.scene.image.pixels.size());
   const bool follows = !inputs.request.expected.empty();
-  const auto explain = [&] {
-    Candidates all = joined(searches.found());
-    let_compete(all, find_overlaps(all, plan.detect.limits[Limit::competing]));
-    return explained.add(all, plan.rounds);
-  };
-  const bool limited = plan.limited;
   const Deadline rounds_end = deadline.part(plan.time.rounds);
   if (follows) {
     searches.score_expected(rounds_end);
-    explain();
+    explained.add(joined(searches.found()), plan);
   }
+  SearchOutcome out;
   SearchPace pace(costs, preparation_ms, static_cast<int>(inputs.models.size()));
-  double looked_at = 0;                 // of the scene, in whole rounds
-  double gained = 0, looked_since = 0;  // probability, and whole rounds, since that was last judged
-  double gained_before = 1;             // when it was last judged
-  bool ended = false;                   // before time did
-  for (int round = 0; !ended && looked_at < plan.rounds.max_rounds; ++round) {
-    const double wanted = round == 0 ? plan.end.first_share : 1;
-    const double share =
-        limited ? std::min(wanted, next_share(pace, plan.time, round, rounds_end)) : wanted;
+  RoundEnd end(plan);
+  int round = 0;
+  for (; !end.reached(); ++round) {
+    const bool is_first = round == 0;
+    const double share = next_share(pace, plan, is_first, rounds_end);
     if (share == 0) break;
     const Stopwatch watch;
-    const bool any_left =
-        searches.run_round({.number = round,
-                            .share = share,
-                            .hurried = share < wanted,
-                            .first_sample = round == 0 && share == 1 && !limited && !follows,
-                            .newly_certain = std::exchange(explained.newly_certain, {}),
-                            .deadline = rounds_end});
-    if (!any_left) {
-      ended = true;
+    if (!searches.run_round({.number = round,
+                             .share = share,
+                             .hurried = share < (is_first ? plan.end.first_share : 1),
+                             .first_sample = is_first && share == 1 && !plan.limited && !follows,
+                             .newly_certain = std::exchange(explained.newly_certain, {}),
+                             .deadline = rounds_end})) {
+      end.nothing_left();
       break;
     }
-    ++effort.rounds;
     pace.took(share, watch.milliseconds());
-    looked_at += share;
-    looked_since += share;
-    gained = std::max(gained, explain());
+    end.add(share, explained.add(joined(searches.found()), plan));
     if (on_round) on_round(joined(without_duplicates(inputs, searches.found())));
-    const bool may_end = plan.end.may_end_at_first;
-    if (looked_since < 1 && !(may_end && round == 0)) continue;
-    ended =
-        (may_end || looked_at >= 2) &&
-        (gained < plan.end.min_gain || std::max(gained, gained_before) < plan.end.min_gain_of_two);
-    gained_before = gained;
-    gained = looked_since = 0;
   }
-  const double final_share = limited ? pace.share_of_final(deadline.milliseconds_left()) : 1;
+  const double final_share = plan.limited ? pace.share_of_final(deadline.milliseconds_left()) : 1;
+  const Stopwatch watch;
   searches.finish({.share = final_share,
                    .newly_certain = std::exchange(explained.newly_certain, {}),
                    .deadline = deadline});
-  effort += searches.effort();
-  const bool whole = ended || looked_at >= plan.rounds.max_rounds;
-  cut = searches.late() || !whole || final_share < 1;
-  return joined(searches.found());
+  out.measured = pace.measured(final_share, watch.milliseconds());
+  out.effort = searches.effort();
+  out.effort.rounds += round;
+  out.cut = searches.late() || !end.reached() || final_share < 1;
+  out.candidates = joined(searches.found());
+  return out;
 }
 
 }  // namespace bpa

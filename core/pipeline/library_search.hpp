@@ -9,6 +9,13 @@
 
 namespace bpa {
 
+struct SearchOutcome {
+  Candidates candidates;  ///< Of all models.
+  bool cut = false;       ///< Time ran out.
+  SearchEffort effort;    ///< The counts of all models.
+  Costs measured = {};    ///< What it took.
+};
+
 /// The search over a library in rounds: each takes another sample of the scene, and surface that
 /// certain placements explain is searched no more. Models compete in each round. What is expected
 /// of an earlier frame is scored first. With a deadline, rounds are as large as fits
@@ -20,9 +27,8 @@ struct LibrarySearch {
   double preparation_ms = 0;                      ///< Of the whole preparation of this frame.
   std::function<void(Candidates)> on_round = {};  ///< Receives the candidates after each round.
 
-  /// The candidates of all models; `searches` is where they are searched. `cut`: whether time ran
-  /// out. `effort`: the counts of all models.
-  Candidates run(ModelSearches& searches, bool& cut, SearchEffort& effort) const;
+  /// `searches` is where the models are searched.
+  SearchOutcome run(ModelSearches& searches) const;
 };
 
 }  // namespace bpa

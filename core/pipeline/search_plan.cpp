@@ -11,15 +11,15 @@
 namespace bpa {
 namespace {
 
-// What a budget below so many whole preparations leaves of the preparation. The sizes were chosen
-// by hand on real and simulated frames of 640 x 480.
+// What a small budget leaves of the preparation: the first that takes at most this part of it. The
+// sizes were chosen by hand on real and simulated frames of 640 x 480.
+constexpr double kPreparationPart = 1.0 / 3;
 struct Shortened {
-  double preparations;
   int max_width;  // pixels
   double share;   // of the whole preparation's time; measured
 };
 constexpr int kAnyWidth = 1 << 20;
-constexpr Shortened kShortened[] = {{1.2, 160, 0.3}, {2.3, 240, 0.4}, {3.3, kAnyWidth, 0.75}};
+constexpr Shortened kShortened[] = {{kAnyWidth, 0.75}, {240, 0.4}, {160, 0.3}};
 constexpr int kFewKeypoints = 200;          // with any of them
 constexpr double kRestOfPreparation = 5;    // times the surface; measured
 constexpr double kTimeOfPreparation = 0.7;  // of what is left after the surface, at most; by hand
@@ -30,20 +30,21 @@ constexpr double kTimeOfPreparation = 0.7;  // of what is left after the surface
 constexpr int kWholeModels = 60;
 
 void shorten_preparation(const SearchFacts& facts, SearchPlan& plan, PlanReasons& reasons) {
-  for (const Shortened& shortened : kShortened) {
-    if (facts.budget_ms >= shortened.preparations * facts.costs.preparation_ms) continue;
-    plan.surface.max_width = std::min(plan.surface.max_width, shortened.max_width);
-    plan.features.max_keypoints = std::min(plan.features.max_keypoints, kFewKeypoints);
-    leave_out_details(plan.features);
-    plan.prepared_share = shortened.share;
-    const std::string why =
-        concat("a budget of ", facts.budget_ms, " ms is less than ", shortened.preparations,
-               " preparations of ", std::lround(facts.costs.preparation_ms), " ms");
-    for (const char* name : {"surface.max_width", "features.max_keypoints", "features.use_outline",
-                             "features.use_flat_regions"}) {
-      reasons[name] = why;
-    }
-    return;
+  const double fits = kPreparationPart * facts.budget_ms / facts.costs.preparation_ms;
+  if (fits >= 1) return;
+  const auto* shortened =
+      std::ranges::find_if(kShortened, [&](const Shortened& one) { return one.share <= fits; });
+  if (shortened == std::end(kShortened)) --shortened;
+  plan.surface.max_width = std::min(plan.surface.max_width, shortened->max_width);
+  plan.features.max_keypoints = std::min(plan.features.max_keypoints, kFewKeypoints);
+  leave_out_details(plan.features);
+  plan.prepared_share = shortened->share;
+  const std::string why =
+      concat("a whole preparation takes ", std::lround(facts.costs.preparation_ms),
+             " ms, more than a third of a budget of ", facts.budget_ms, " ms");
+  for (const char* name : {"surface.max_width", "features.max_keypoints", "features.use_outline",
+                           "features.use_flat_regions"}) {
+    reasons[name] = why;
   }
 }
 
@@ -145,7 +146,9 @@ void leave_out_details(SceneFeatureOptions& options) {
 }
 
 SearchPace::SearchPace(const Costs& costs, double preparation_ms, int models)
-    : round_ms_(costs.round_share * preparation_ms * models),
+    : preparation_ms_(preparation_ms),
+      unit_ms_(preparation_ms * models),
+      round_ms_(costs.round_share * unit_ms_),
       final_per_round_(costs.final_share / costs.round_share) {}
 
 double SearchPace::share_of_round(double milliseconds, double smallest) const {
@@ -157,6 +160,17 @@ double SearchPace::share_of_final(double milliseconds) const {
   return std::min(1.0, milliseconds / (round_ms_ * final_per_round_));
 }
 
-void SearchPace::took(double share, double milliseconds) { round_ms_ = milliseconds / share; }
+void SearchPace::took(double share, double milliseconds) {
+  round_ms_ = milliseconds / share;
+  rounds_ += share;
+  rounds_ms_ += milliseconds;
+}
+
+Costs SearchPace::measured(double final_share, double final_ms) const {
+  Costs out{.preparation_ms = preparation_ms_, .round_share = 0, .final_share = 0};
+  if (rounds_ > 0) out.round_share = rounds_ms_ / rounds_ / unit_ms_;
+  if (final_share > 0) out.final_share = final_ms / final_share / unit_ms_;
+  return out;
+}
 
 }  // namespace bpa

@@ -89,11 +89,14 @@ class SearchPace {
   double share_of_final(double milliseconds) const;
   /// A round of that share took so long: later guesses are made from this.
   void took(double share, double milliseconds);
-  double round_ms() const { return round_ms_; }
+  /// What the preparation, the rounds, and the final stages of that share took.
+  Costs measured(double final_share, double final_ms) const;
 
  private:
-  double round_ms_;  // of a whole round for all models
+  double preparation_ms_, unit_ms_;  // the unit of shares: preparations of all models
+  double round_ms_;                  // of a whole round for all models
   double final_per_round_;
+  double rounds_ = 0, rounds_ms_ = 0;  // that ran
 };
 
 }  // namespace bpa

@@ -58,12 +58,10 @@ class LibrarySearchEnds : public test::LScene {
     const SearchPlan plan = *plan_search(options, default_score_layers(), {});
     const SearchInputs inputs{scene, plan, default_score_layers(), request, models};
     ScriptedSearches searches(*l_, std::move(gains));
-    bool cut = true;
-    SearchEffort effort;
-    const Candidates found = LibrarySearch{inputs, {}}.run(searches, cut, effort);
-    EXPECT_FALSE(cut);
-    EXPECT_EQ(found.size(), static_cast<std::size_t>(effort.rounds));
-    return effort.rounds;
+    const SearchOutcome out = LibrarySearch{inputs, {}}.run(searches);
+    EXPECT_FALSE(out.cut);
+    EXPECT_EQ(out.candidates.size(), static_cast<std::size_t>(out.effort.rounds));
+    return out.effort.rounds;
   }
 };
 

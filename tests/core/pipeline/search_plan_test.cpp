@@ -95,7 +95,7 @@ TEST(SearchPlan, EveryEntryHasAReason) {
     EXPECT_FALSE(entry.reason.empty()) << entry.name;
   }
   EXPECT_EQ(reason(plan, "surface.max_width"),
-            "a budget of 100 ms is less than 2.3 preparations of 60 ms");
+            "a whole preparation takes 60 ms, more than a third of a budget of 100 ms");
   EXPECT_EQ(reason(plan, "time.rounds"), "share of the time left");
 }
 
@@ -121,7 +121,7 @@ TEST(SearchPlan, NoBudgetShortensNothing) {
 TEST(SearchPlan, SmallerBudgetsPrepareLess) {
   double before = 0;
   int keypoints = 0, width = 0;
-  for (const double budget_ms : {20, 50, 70, 139, 140, 150, 200, 500}) {
+  for (const double budget_ms : {20, 50, 72, 134, 135, 150, 180, 500}) {
     const SearchPlan plan = plan_of(with_budget(budget_ms));
     EXPECT_GT(plan.prepared_share, 0);
     EXPECT_GE(plan.prepared_share, before) << budget_ms;
@@ -194,12 +194,24 @@ TEST(SearchPace, LearnsFromRounds) {
   EXPECT_NEAR(pace.share_of_round(100, kSmallest), 0.4, 1e-9);
 }
 
+TEST(SearchPace, MeasuresInPreparationsOfOneModel) {
+  SearchPace pace({}, 60, 20);
+  EXPECT_EQ(pace.measured(0.5, 30).round_share, 0) << "no round ran";
+  pace.took(0.1, 50);
+  pace.took(0.2, 40);
+  const Costs measured = pace.measured(0.5, 30);
+  EXPECT_EQ(measured.preparation_ms, 60);
+  EXPECT_NEAR(measured.round_share, 90 / 0.3 / (60 * 20), 1e-12);
+  EXPECT_NEAR(measured.final_share, 60.0 / (60 * 20), 1e-12);
+  EXPECT_EQ(pace.measured(0, 1).final_share, 0) << "no final stage ran";
+}
+
 TEST(CostMeter, MeasuresThisProcess) {
   CostMeter meter;
   EXPECT_GT(meter.costs(640 * 480, 1).preparation_ms, 0);
   meter.add(640 * 480, 2, {.preparation_ms = 40, .round_share = 0.2, .final_share = 0});
   EXPECT_NEAR(meter.costs(640 * 480, 2).preparation_ms, 40, 1e-9);
-  EXPECT_NEAR(meter.costs(320 * 240, 2).preparation_ms, 10, 1e-9);
+  EXPECT_GT(meter.costs(320 * 240, 2).preparation_ms, 0);
   EXPECT_GT(meter.costs(640 * 480, 2).round_share, Costs().round_share);
   EXPECT_EQ(meter.costs(640 * 480, 2).final_share, Costs().final_share);
 }
