@@ -82,7 +82,7 @@ DetectorOptions read_detector_options(const std::string& config) {
   return config.empty() ? DetectorOptions() : or_throw(load_detector_options(config));
 }
 
-Detector open_detector(const DetectorArguments& a, int num_threads) {
+std::shared_ptr<const ModelLibrary> open_library(const DetectorArguments& a, int num_threads) {
   std::vector<ModelSource> sources = wanted_models(a, num_threads);
   const auto library = std::make_shared<ModelLibrary>();
   Progress progress("models", static_cast<int>(sources.size()));
@@ -92,10 +92,13 @@ Detector open_detector(const DetectorArguments& a, int num_threads) {
     const auto model = or_throw(make_object_model(std::move(source), num_threads), name);
     or_throw(library->add(model));
   }
-  DetectorOptions options = read_detector_options(a.config);
-  if (!a.for_training) return Detector(library, options, or_throw(library_score_layers(a.library)));
-  options.detect.score.stop_early = false;
-  return Detector(library, options, default_score_layers());
+  return library;
+}
+
+Detector open_detector(const DetectorArguments& a, int num_threads) {
+  const auto library = open_library(a, num_threads);
+  return Detector(library, read_detector_options(a.config),
+                  or_throw(library_score_layers(a.library)));
 }
 
 std::vector<io::BopFrame> list_inputs(const DetectArguments& a) {

@@ -18,8 +18,6 @@ struct DetectorArguments {
   std::string further;              ///< Folder of models that `library` lacks; empty: none.
   std::string config;               ///< YAML file of settings; empty: the defaults.
   std::vector<std::string> models;  ///< Names; empty: all of `library`.
-  /// Ignore score layers that the library has learned, and score every placement in full.
-  bool for_training = false;
 };
 
 /// Adds --library and --config.
@@ -28,7 +26,11 @@ void add_detector_options(CLI::App& command, DetectorArguments& arguments);
 /// The defaults without a file.
 DetectorOptions read_detector_options(const std::string& config);
 
-/// Reads settings, models and the library's score layers, with a progress bar.
+/// Reads models, with a progress bar.
+std::shared_ptr<const ModelLibrary> open_library(const DetectorArguments& arguments,
+                                                 int num_threads);
+
+/// Reads settings, models and the library's score layers.
 Detector open_detector(const DetectorArguments& arguments, int num_threads);
 
 /// The arguments of bpa detect.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/base/concat.hpp"
 #include "core/base/random.hpp"
 #include "core/eval/pose_errors.hpp"
 #include "core/io/file_bytes.hpp"
@@ -234,11 +235,23 @@ Folders together(Folders folders, const Folders& more) {
   return folders;
 }
 
+// The candidate's, with those of full scores.
+LowestLogOdds lowest_of(const Candidate& candidate, const ScoreLayer& layer) {
+  LowestLogOdds out = candidate.lowest;
+  out.note(Limit::competing, candidate.score);
+  double log_odds = layer.bias + candidate.prior;
+  for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
+    log_odds += layer.components[i].at(candidate.values[i]);
+    out.components[i] = static_cast<float>(log_odds);
+  }
+  return out;
+}
+
 ScoreLayers learn_all(const TrainArguments& a, const Detector& detector, const ScoreLayers& start) {
   Samples round_two, round_three;
   collect(a, detector, a.bop, a.models_per_frame, &round_two, &round_three);
   collect(a, detector, a.round_two_bop, a.models_per_frame, &round_two, nullptr);
-  ScoreLayers layers = start;  // its limits are not measured anew
+  ScoreLayers layers = start;
   layers.round_two =
       learn(a, "round two", together(a.bop, a.round_two_bop), start.round_two, round_two);
   layers.without_color =
@@ -247,6 +260,58 @@ ScoreLayers learn_all(const TrainArguments& a, const Detector& detector, const S
   layers.round_three =
       learn(a, "round three", together(a.bop, a.color_bop), start.round_three, round_three);
   return layers;
+}
+
+// The placements that end right in a search without limits: the best of each instance.
+std::vector<LowestLogOdds> right_placements(const TrainArguments& a,
+                                            const std::shared_ptr<const ModelLibrary>& library,
+                                            const ScoreLayers& layers, bool colored) {
+  DetectorOptions options = read_detector_options(a.detector.config);
+  options.detect.score.keep_right = 1;
+  options.detect.score.stop_early = false;
+  options.features.use_color = colored;
+  const Detector detector(library, options, layers);
+  const ScoreLayer& layer = colored ? layers.round_three : layers.without_color;
+  std::vector<LowestLogOdds> out;
+  const auto use = [&](const TrueFrame& frame, const auto&, const FrameTrace& trace) {
+    if (colored && frame.frame.color.empty()) return;
+    for (const io::BopInstance& instance : frame.truth) {
+      const Candidate* best = nullptr;
+      for (const Candidate& candidate : trace.candidates) {
+        const bool is_best = best == nullptr || candidate.score > best->score;
+        if (is_best && eval::is_right_about_any(candidate.pose(), *candidate.model, {instance})) {
+          best = &candidate;
+        }
+      }
+      if (best != nullptr) out.push_back(lowest_of(*best, layer));
+    }
+  };
+  for (const std::string& folder : together(a.bop, a.calibration_bop)) {
+    DatasetOptions dataset = a.dataset;
+    dataset.folder = folder;
+    search_frames(detector, dataset, a.common, use, a.models_per_frame);
+  }
+  return out;
+}
+
+LearnedLimits learn_limits(const TrainArguments& a,
+                           const std::shared_ptr<const ModelLibrary>& library,
+                           const ScoreLayers& layers) {
+  const auto with_color = right_placements(a, library, layers, true);
+  const auto without_color = right_placements(a, library, layers, false);
+  LearnedLimits limits = measure_limits(with_color, without_color, layers.limits);
+  limits.provenance =
+      concat(a.made_by, ": ", with_color.size(), " right placements with colours and ",
+             without_color.size(), " without, seed ", a.common.seed);
+  const double keep_right = ScoreOptions().keep_right;
+  const Limits colored = *limits.at(keep_right, true), plain = *limits.at(keep_right, false);
+  std::printf("limits of log odds that keep %g of the right placements\n", keep_right);
+  std::printf("  %-18s with colours  without\n", "");
+  for (std::size_t i = 0; i < kLimits; ++i) {
+    std::printf("  %-18s %12.2f  %7.2f\n", std::string(kLimitNames[i]).c_str(), colored.stages[i],
+                plain.stages[i]);
+  }
+  return limits;
 }
 
 void check_usage(const TrainArguments& a) {
@@ -262,10 +327,11 @@ void check_usage(const TrainArguments& a) {
 
 void train(const TrainArguments& a) {
   check_usage(a);
-  DetectorArguments built_in = a.detector;
-  built_in.for_training = true;
-  const Detector detector = open_detector(built_in, a.common.threads);
+  const auto library = open_library(a.detector, a.common.threads);
+  DetectorOptions options = read_detector_options(a.detector.config);
+  options.detect.score.stop_early = false;
   ScoreLayers layers = default_score_layers();
+  const Detector detector(library, options, layers);
   if (!a.bop.empty()) layers = learn_all(a, detector, layers);
   if (!a.calibration_bop.empty()) {
     Samples in_use;
@@ -274,6 +340,7 @@ void train(const TrainArguments& a) {
     layers.without_color =
         calibrate(a, "without colours", layers.without_color, without_color(in_use));
   }
+  layers.limits = learn_limits(a, library, layers);
   const std::string path = a.output.empty() ? score_layer_path(a.detector.library) : a.output;
   or_throw(write_score_layers(path, layers));
   std::printf("wrote %s\n", path.c_str());

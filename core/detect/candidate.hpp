@@ -9,6 +9,7 @@
 #include "core/model/object_model.hpp"
 #include "core/result/placement.hpp"
 #include "core/score/components.hpp"
+#include "core/score/limits.hpp"
 
 namespace bpa {
 
@@ -23,6 +24,9 @@ struct Candidate {
   /// The pose (camera_from_object) with the information of the last alignment.
   Refinement refinement = {};
   Source found_by = Source::feature;
+  /// Stays whatever its log odds, beside better ones and beyond counts: what the caller's priors or
+  /// an earlier frame suggest.
+  bool is_protected = false;
   int scene_point = -1;  ///< Of the correspondence: index into SceneFeatures::surface (feature) or
                          ///< ::coarse (pairs), of the region in ::flat; -1 for a prior.
   int model_point = -1;  ///< Index into ModelIndex::features or ::coarse; -1 for a prior.
@@ -31,6 +35,7 @@ struct Candidate {
   double prior = 0;        ///< Log odds that the caller's priors add; 0 without any.
   double score = 0;        ///< Log odds by the learned layer, with `prior`; since check_free_space.
   double probability = 0;  ///< Of that score, without rivals. Since refine.
+  LowestLogOdds lowest = {};                  ///< For measuring limits.
   std::vector<std::uint32_t> explained = {};  ///< Sorted pixels of the reduced image on the model.
 
   const Pose& pose() const { return refinement.camera_from_object; }

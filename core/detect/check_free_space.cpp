@@ -99,7 +99,7 @@ Candidates check_free_space(const Search& search, Candidates sampled) {
     const Verdict verdict = judge(search, candidate.pose());
     if (verdict.reason) {
       search.reject(verdict.reason, candidate.pose());
-    } else if (candidate.found_by == Source::prior) {
+    } else if (candidate.is_protected) {
       of_priors.push_back(i);
     } else {
       passed.push_back(
@@ -123,7 +123,7 @@ Candidates check_free_space(const Search& search, Candidates sampled) {
     rank(sampled[i], kNoLimit);
     suggested.push_back(std::move(sampled[i]));
   }
-  reject_below(search, search.plan.limits[Limit::ranked], kept);
+  reject_below(search, Limit::ranked, kept);
   keep_best(search, kMaxSuggested, suggested);
   keep_best(search, options.max_kept, kept);
   std::ranges::move(suggested, std::back_inserter(kept));

@@ -72,11 +72,12 @@ Candidates climb(const Search& search, Candidates refined) {
   const auto most = std::min<std::size_t>(refined.size(), search.plan.climb.max_climbed);
   parallel_for_spare(static_cast<int>(most), [&](int i) {
     Candidate& candidate = refined[i];
+    candidate.lowest.note(Limit::climbed, candidate.score);
     if (search.late() || candidate.score < search.plan.limits[Limit::climbed]) return;
     Best best{candidate.pose(), search.quick_score(candidate.pose())};
     align_from_beside(search, best);
     step_uphill(search, best);
-    Candidate moved = search.scored(search.measured(best.pose), candidate.found_by);
+    Candidate moved = search.scored(candidate, search.measured(best.pose));
     if (moved.score > candidate.score) candidate = std::move(moved);
   });
   return refined;

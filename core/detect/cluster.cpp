@@ -16,12 +16,12 @@ constexpr double kSuggestedShare = 0.25;            // of max_clusters, kept for
 // Candidates near the first, which is the best.
 struct Cluster {
   Pose pose;
-  std::vector<const Candidate*> members;
+  std::vector<Candidate*> members;
 };
 
-std::vector<Cluster> group(const Search& search, const Candidates& candidates) {
+std::vector<Cluster> group(const Search& search, Candidates& candidates) {
   std::vector<Cluster> clusters;
-  for (const Candidate& candidate : candidates) {
+  for (Candidate& candidate : candidates) {
     const Pose& pose = candidate.pose();
     const auto found = std::ranges::find_if(clusters, [&](const Cluster& c) {
       const Eigen::Vector3d& centre = search.model.centre;
@@ -44,7 +44,7 @@ Pose aligned_pose(const Search& search, const Cluster& cluster) {
   std::vector<align::OrientedPair> pairs;
   for (const Candidate* member : cluster.members) {
     if (std::ssize(pairs) == kMaxCorrespondences) break;
-    if (member->found_by != Source::prior) pairs.push_back(oriented_pair(search, *member));
+    if (member->scene_point >= 0) pairs.push_back(oriented_pair(search, *member));
   }
   if (pairs.empty()) return cluster.members.front()->pose();
   search.add_effort(&SearchEffort::alignments);
@@ -54,10 +54,12 @@ Pose aligned_pose(const Search& search, const Cluster& cluster) {
 // The best member, or the cluster aligned again where that scores better.
 Candidate best_of(const Search& search, const Cluster& cluster) {
   Candidate best = *cluster.members.front();
-  const auto of_prior = [](const Candidate* member) { return member->found_by == Source::prior; };
-  if (std::ranges::any_of(cluster.members, of_prior)) best.found_by = Source::prior;
-  const double least =
-      best.found_by == Source::prior ? kNoLimit : search.plan.limits[Limit::clustered];
+  for (const Candidate* member : cluster.members) {
+    if (!member->is_protected) continue;
+    best.found_by = member->found_by;
+    best.is_protected = true;
+  }
+  const double least = best.is_protected ? kNoLimit : search.plan.limits[Limit::clustered];
   const auto score = [&](const Pose& pose) {
     return search.quick_score(pose, kClusterRankPoints, least);
   };
@@ -78,7 +80,7 @@ void keep_clusters(const Search& search, Candidates& clusters) {
   sort_by_score(clusters);
   Candidates suggested, others;
   for (Candidate& cluster : clusters) {
-    const bool first = cluster.found_by == Source::prior && std::ssize(suggested) < most_suggested;
+    const bool first = cluster.is_protected && std::ssize(suggested) < most_suggested;
     (first ? suggested : others).push_back(std::move(cluster));
   }
   keep_first(search, options.max_clusters - static_cast<int>(suggested.size()), others);
@@ -93,17 +95,17 @@ Candidates cluster(const Search& search, Candidates checked) {
   Candidates out;
   for (const Cluster& group_of_poses : group(search, checked)) {
     if (search.late()) break;
-    const Candidate& first = *group_of_poses.members.front();
+    Candidate& first = *group_of_poses.members.front();
     const bool few = std::ssize(group_of_poses.members) < search.plan.cluster.min_features;
     if (few && first.found_by == Source::feature) {
       search.reject("too few feature matches", first.pose());
-    } else if (rejected_before(search, first.pose())) {
+    } else if (rejected_before(search, first)) {
       search.reject("scored low in an earlier round", first.pose());
     } else {
       out.push_back(best_of(search, group_of_poses));
     }
   }
-  reject_below(search, search.plan.limits[Limit::clustered], out);
+  reject_below(search, Limit::clustered, out);
   keep_clusters(search, out);
   return out;
 }

@@ -10,14 +10,17 @@ namespace {
 
 // The candidates after `best` that claim its place and are not far worse, itself included. Marks
 // all that claim the place as compared.
-std::vector<std::size_t> rivals_of(const Search& search, const Candidates& candidates,
-                                   std::size_t best, std::vector<bool>& compared) {
+std::vector<std::size_t> rivals_of(const Search& search, Candidates& candidates, std::size_t best,
+                                   std::vector<bool>& compared) {
   std::vector<std::size_t> rivals;
   for (std::size_t i = best; i < candidates.size(); ++i) {
     const double distance = (candidates[i].place() - candidates[best].place()).norm();
     if (compared[i] || distance > tolerance::kSamePlace * search.model.diameter) continue;
     compared[i] = true;
-    if (candidates[i].score < candidates[best].score - search.plan.margins.rival) continue;
+    const double behind = candidates[i].score - candidates[best].score;
+    candidates[i].lowest.note(Limit::rival_behind, behind);
+    candidates[i].lowest.note(Limit::contender_behind, behind);
+    if (behind < search.plan.limits[Limit::rival_behind]) continue;
     rivals.push_back(i);
   }
   return rivals;
@@ -43,14 +46,17 @@ Candidates compare_rivals(const Search& search, Candidates candidates) {
   sort_by_score(candidates);
   std::vector<bool> compared(candidates.size(), false);
   for (std::size_t best = 0; best < candidates.size(); ++best) {
-    if (compared[best] || candidates[best].score < search.plan.limits[Limit::compared]) continue;
+    if (compared[best]) continue;
+    candidates[best].lowest.note(Limit::compared, candidates[best].score);
+    if (candidates[best].score < search.plan.limits[Limit::compared]) continue;
     if (search.late()) break;
     const auto rivals = rivals_of(search, candidates, best, compared);
     std::vector<Pose> poses;
     std::size_t contenders = 0;  // scores fall: the first of them
     for (const std::size_t i : rivals) {
       poses.push_back(candidates[i].pose());
-      contenders += candidates[i].score >= candidates[best].score - search.plan.margins.contender;
+      contenders += candidates[i].score - candidates[best].score >=
+                    search.plan.limits[Limit::contender_behind];
     }
     const auto behind = behind_best(search.scene, search.model, poses, contenders);
     for (std::size_t k = 0; k < rivals.size(); ++k) {

@@ -3,6 +3,7 @@
 #include "core/detect/contest.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -25,13 +26,16 @@ Contest contest_of(std::vector<Claim> claims, int most) {
   return out;
 }
 
-bool is_behind(const Claim& claim, const Contest& contest, double margin) {
+double behind_best(const Claim& claim, const Contest& contest, double limit) {
+  const double ahead = std::isfinite(limit) ? claim.score - limit : claim.score;
   for (const Claim& other : contest.claims) {
-    if (other.score <= claim.score + margin) return false;
+    if (other.score <= ahead) return 0;
     const float reach = tolerance::kContested * std::min(other.diameter, claim.diameter);
-    if ((other.place - claim.place).squaredNorm() < reach * reach) return true;
+    if ((other.place - claim.place).squaredNorm() < reach * reach) {
+      return claim.score - other.score;
+    }
   }
-  return false;
+  return 0;
 }
 
 }  // namespace bpa

@@ -30,9 +30,10 @@ struct Contest {
 /// Of the claims of all models, at most `most` exceed the threshold.
 Contest contest_of(std::vector<Claim> claims, int most);
 
-/// Whether a claim in the same place, of any model, is better by more than `margin` log odds. Two
-/// claims are in one place if their distance is below 0.3 of the smaller diameter.
-bool is_behind(const Claim& claim, const Contest& contest, double margin);
+/// Log odds of a claim less those of the best one in its place, of any model; 0 where they are
+/// `limit` or more, unless that is minus infinity. Two claims are in one place if their distance is
+/// below 0.3 of the smaller diameter.
+double behind_best(const Claim& claim, const Contest& contest, double limit);
 
 /// contest_of(), or what decides it for models on several hosts.
 using Compete = std::function<Contest(std::vector<Claim> claims, int most)>;

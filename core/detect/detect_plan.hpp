@@ -21,13 +21,6 @@ struct DetectFacts {
   bool colored = true;  ///< Hypotheses of all models are compared by colour.
 };
 
-/// Log odds by which a candidate may be behind the best one in its place, of any model, to go on.
-struct PlaceMargins {
-  double checked = 5, clustered = 4, aligned = 3, refined = 1;  ///< After these stages.
-  double rival = 6;      ///< To be compared with the best as its rival.
-  double contender = 3;  ///< To make its rivals less probable.
-};
-
 /// The numbers that the stages run with. A setting of 0 that means "as planned" is replaced by the
 /// number; any other setting is as the user gave it.
 struct DetectPlan : DetectOptions {
@@ -37,7 +30,6 @@ struct DetectPlan : DetectOptions {
              const DetectFacts& facts = {}, PlanReasons* reasons = nullptr);
 
   Limits limits;  ///< Of the stages.
-  PlaceMargins margins;
   /// Limits::components for placements without and with colours.
   std::array<Limits, 2> limits_by_color;
 };

@@ -171,15 +171,16 @@ Candidates lay_flat(const Search& whole, Candidates found) {
   Candidates laid = resting_poses(search);
   const DetectPlan& options = search.plan;
   keep_first(search, options.flat.max_laid, laid);
-  std::erase_if(laid, [&](const Candidate& candidate) {
-    const bool low =
-        search.quick_score(candidate.pose(), kClusterRankPoints) < search.plan.limits[Limit::laid];
+  std::erase_if(laid, [&](Candidate& candidate) {
+    const double score = search.quick_score(candidate.pose(), kClusterRankPoints);
+    candidate.lowest.note(Limit::laid, score);
+    const bool low = score < search.plan.limits[Limit::laid];
     if (low) search.reject("score too low", candidate.pose());
     return low;
   });
   change_each(search, laid, [&](Candidate& candidate) {
     slide(search, candidate);
-    candidate = search.scored(search.measured(candidate.pose()), Source::region);
+    candidate = search.scored(candidate, search.measured(candidate.pose()));
   });
   std::ranges::move(laid, std::back_inserter(found));
   whole.effort += search.effort;

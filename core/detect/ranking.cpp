@@ -3,6 +3,7 @@
 #include "core/detect/ranking.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "core/base/parallel.hpp"
@@ -21,11 +22,15 @@ bool duplicates(const Search& search, const Pose& a, const Pose& b) {
   return error.position < kDuplicate_m && error.angle < kDuplicate_rad;
 }
 
-bool rejected_before(const Search& search, const Pose& pose) {
-  return search.before && std::ranges::any_of(*search.before, [&](const Candidate& other) {
-           return other.score < search.plan.limits[Limit::repeated] &&
-                  duplicates(search, pose, other.pose());
-         });
+bool rejected_before(const Search& search, Candidate& candidate) {
+  if (!search.before) return false;
+  const double limit = search.plan.limits[Limit::repeated];
+  return std::ranges::any_of(*search.before, [&](const Candidate& other) {
+    if (std::isfinite(limit) && other.score >= limit) return false;
+    if (!duplicates(search, candidate.pose(), other.pose())) return false;
+    candidate.lowest.note(Limit::repeated, other.score);
+    return other.score < limit;
+  });
 }
 
 void suppress_duplicates(const Search& search, Candidates& candidates) {
@@ -35,7 +40,7 @@ void suppress_duplicates(const Search& search, Candidates& candidates) {
     const bool seen = std::ranges::any_of(kept, [&](const Candidate& other) {
       return duplicates(search, candidate.pose(), other.pose());
     });
-    if (rejected_before(search, candidate.pose())) {
+    if (rejected_before(search, candidate)) {
       search.reject("scored low in an earlier round", candidate.pose());
     } else if (seen) {
       search.reject("duplicate of a better one", candidate.pose());
@@ -46,9 +51,10 @@ void suppress_duplicates(const Search& search, Candidates& candidates) {
   candidates = std::move(kept);
 }
 
-void reject_below(const Search& search, double min_score, Candidates& candidates) {
-  std::erase_if(candidates, [&](const Candidate& candidate) {
-    const bool low = candidate.score < min_score && candidate.found_by != Source::prior;
+void reject_below(const Search& search, Limit limit, Candidates& candidates) {
+  std::erase_if(candidates, [&](Candidate& candidate) {
+    candidate.lowest.note(limit, candidate.score);
+    const bool low = candidate.score < search.plan.limits[limit] && !candidate.is_protected;
     if (low) search.reject("score too low", candidate.pose());
     return low;
   });

@@ -16,16 +16,16 @@ void sort_by_score(Candidates& candidates);
 /// True where two poses of the model are duplicates by SelectOptions, modulo its symmetry.
 bool duplicates(const Search& search, const Pose& a, const Pose& b);
 
-/// True where the pose is a duplicate of one that an earlier round has scored low. One that scored
-/// high is worth another alignment.
-bool rejected_before(const Search& search, const Pose& pose);
+/// True where the candidate is a duplicate of one that an earlier round has scored low. One that
+/// scored high is worth another alignment.
+bool rejected_before(const Search& search, Candidate& candidate);
 
 /// Non-maximum suppression: sorts by score and rejects duplicates of better candidates, and what
 /// an earlier round has scored low.
 void suppress_duplicates(const Search& search, Candidates& candidates);
 
-/// Rejects candidates of lower score, except those that priors suggested.
-void reject_below(const Search& search, double min_score, Candidates& candidates);
+/// Rejects candidates below a limit of their score, except protected ones.
+void reject_below(const Search& search, Limit limit, Candidates& candidates);
 
 /// Sorts by score and rejects all but the best `count`.
 void keep_best(const Search& search, int count, Candidates& candidates);

@@ -8,13 +8,13 @@ namespace bpa {
 
 Candidates refine(const Search& search, Candidates aligned) {
   const RefineOptions& options = search.plan.refine;
-  reject_below(search, search.plan.limits[Limit::aligned], aligned);
+  reject_below(search, Limit::aligned, aligned);
   keep_first(search, options.max_refined, aligned);
   change_each(search, aligned, [&](Candidate& candidate) {
     candidate.refinement = {search.aligned(candidate.pose(), kLastAlignment)};
     candidate.score = search.quick_score(candidate.pose());
   });
-  reject_below(search, search.plan.limits[Limit::refined], aligned);
+  reject_below(search, Limit::refined, aligned);
   suppress_duplicates(search, aligned);
   return aligned;
 }
@@ -31,7 +31,7 @@ Candidates score(const Search& search, Candidates refined) {
       if (pose_error(turned, pose).angle > 0) predicted.reset();
       pose = turned;
     }
-    candidate = search.scored(search.measured(pose), candidate.found_by, std::move(predicted));
+    candidate = search.scored(candidate, search.measured(pose), std::move(predicted));
   });
   sort_by_score(refined);
   return refined;

@@ -91,7 +91,10 @@ void from_priors(const Search& search, Candidates& out) {
        search.priors.draw(search.scene.coarse, options.draws_per_prior, random)) {
     if (search.late()) return;
     for (const Refinement& tried : {Refinement{pose}, search.refine(pose, kPriorAlignment)}) {
-      out.push_back({.model = &search.model, .refinement = tried, .found_by = Source::prior});
+      out.push_back({.model = &search.model,
+                     .refinement = tried,
+                     .found_by = Source::prior,
+                     .is_protected = true});
     }
   }
 }

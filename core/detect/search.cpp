@@ -92,10 +92,14 @@ double Search::quick_score(const Pose& pose, int points, double least) const {
   return most < least ? without_color : without_color + color_evidence(pose);
 }
 
-Candidate Search::scored(Refinement refinement, Source found_by,
+Candidate Search::scored(const Candidate& candidate, Refinement refinement,
                          std::optional<PredictedSurface> predicted) const {
   add_effort(&SearchEffort::full_scores);
-  Candidate out{.model = &model, .refinement = refinement, .found_by = found_by};
+  Candidate out{.model = &model,
+                .refinement = refinement,
+                .found_by = candidate.found_by,
+                .is_protected = candidate.is_protected,
+                .lowest = candidate.lowest};
   Evidence evidence(scene, places, out.pose(), 0, std::move(predicted));
   out.prior = priors.evidence(out.pose());
   if (!plan.score.use_round_three) {

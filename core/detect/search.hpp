@@ -100,9 +100,9 @@ struct Search {
   double quick_score(const Pose& pose, int points, double least = kNoLimit) const;
   /// Log odds by check_colors().
   double color_evidence(const Pose& pose) const;
-  /// Scores a candidate at `refinement` with all components. `predicted` is of its pose, where that
-  /// is known. The score is minus infinity where measure_while_probable() stops.
-  Candidate scored(Refinement refinement, Source found_by,
+  /// `candidate` at another refinement, scored with all components. `predicted` is of its pose,
+  /// where that is known. The score is minus infinity where measure_while_probable() stops.
+  Candidate scored(const Candidate& candidate, Refinement refinement,
                    std::optional<PredictedSurface> predicted = {}) const;
   /// Sets score and probability by the last layer, or by that of round two without round three.
   void apply_layer(Candidate& candidate) const;

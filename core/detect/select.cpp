@@ -7,7 +7,8 @@ namespace bpa {
 
 Candidates select(const Search& search, Candidates compared) {
   const SelectOptions& options = search.plan.select;
-  std::erase_if(compared, [&](const Candidate& candidate) {
+  std::erase_if(compared, [&](Candidate& candidate) {
+    candidate.lowest.note(Limit::selected, candidate.score);
     const bool low = candidate.score < search.plan.limits[Limit::selected];
     if (low) search.reject("low score", candidate.pose());
     return low;

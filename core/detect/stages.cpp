@@ -24,20 +24,20 @@ constexpr Stage kStages[] = {
     {"free_space", check_free_space, 0.4, "Checked against the depth image",
      "Poses with over 20 % of their points in free space are rejected, and poses without surface. "
      "The best of each place by score stay, then the best of all models.",
-     [](const DetectPlan& plan) { return plan.check.max_in_library; }, &PlaceMargins::checked},
+     [](const DetectPlan& plan) { return plan.check.max_in_library; }, Limit::checked_behind},
     {"corrected", correct, 0.4, "Corrected",
      "Two Gauss-Newton steps move each pose onto the surface, where that improves it."},
     {"clusters", cluster, 0.6, "Clustered",
      "Poses within 2.5 cm and pi/16 are a cluster. BPA aligns each one again with the "
      "correspondences of all its poses. The best of all models go on.",
-     [](const DetectPlan& plan) { return plan.cluster.max_in_library; }, &PlaceMargins::clustered},
+     [](const DetectPlan& plan) { return plan.cluster.max_in_library; }, Limit::clustered_behind},
     {"round_two", round_two, 0.5, "Aligned (round two)",
      "BPA and Gauss-Newton steps move each pose onto the surface around it. A step is accepted if "
      "the score improves. After non-maximum suppression the best of all models go on.",
-     [](const DetectPlan& plan) { return plan.refine.max_in_library; }, &PlaceMargins::aligned},
+     [](const DetectPlan& plan) { return plan.refine.max_in_library; }, Limit::aligned_behind},
     {"aligned", refine, 0.5, "Refined",
      "The best are aligned once more by gradients. Non-maximum suppression follows.", nullptr,
-     &PlaceMargins::refined},
+     Limit::refined_behind},
     {"scored", score, 1, "Scored", "Each is scored with all components (round three)."},
     {"climbed", climb, 0.5, "Climbed",
      "The best climb the score by small steps, from where they are and from beside."},
@@ -64,23 +64,25 @@ Candidates timed(const Stage& stage, Search& search, Candidates candidates, Obje
   return candidates;
 }
 
-// Rejects what loses against candidates of all models, except what priors suggested.
+// Rejects what loses against candidates of all models, except protected ones.
 void reject_losers(const Stage& stage, std::span<const Search> searches, const Compete& compete,
                    std::vector<Candidates>& found) {
   const DetectPlan& plan = searches.front().plan;
   const int most =
       stage.most_in_library ? stage.most_in_library(plan) : std::numeric_limits<int>::max();
-  const double margin = stage.place_margin ? plan.margins.*stage.place_margin : -kNoLimit;
+  const double limit = stage.behind ? plan.limits[*stage.behind] : kNoLimit;
   std::vector<Claim> claims;
   for (const Candidates& of_model : found) {
     std::ranges::transform(of_model, std::back_inserter(claims), claim_of);
   }
   const Contest contest = compete(std::move(claims), most);
   for (std::size_t i = 0; i < found.size(); ++i) {
-    std::erase_if(found[i], [&](const Candidate& candidate) {
-      if (candidate.found_by == Source::prior) return false;
+    std::erase_if(found[i], [&](Candidate& candidate) {
+      if (candidate.is_protected) return false;
       const bool low = candidate.score <= contest.threshold;
-      const bool behind = !low && is_behind(claim_of(candidate), contest, margin);
+      const double lead = stage.behind ? behind_best(claim_of(candidate), contest, limit) : 0;
+      if (stage.behind) candidate.lowest.note(*stage.behind, lead);
+      const bool behind = !low && lead < limit;
       if (low) searches[i].reject("better ones of other models are enough", candidate.pose());
       if (behind) searches[i].reject("a better one is in its place", candidate.pose());
       return low || behind;
@@ -119,7 +121,7 @@ void run_stages(std::span<const Stage> stages, std::span<Search> searches, int n
       searches[i].deadline = end.part(std::min(1.0, share));
       found[i] = timed(stage, searches[i], std::move(found[i]), traces ? &(*traces)[i] : nullptr);
     });
-    if (stage.most_in_library || stage.place_margin) {
+    if (stage.most_in_library || stage.behind) {
       reject_losers(stage, searches, compete, found);
     }
     if (!traces) continue;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -76,9 +77,8 @@ struct Stage {
   std::string_view text;
   /// How many candidates of all models together go on, the best by score; null: all.
   int (*most_in_library)(const DetectPlan&) = nullptr;
-  /// Log odds by which a candidate of any model in the same place is better, to reject one; null:
-  /// none is rejected for that.
-  double PlaceMargins::*place_margin = nullptr;
+  /// How far a candidate may be behind the best in its place, of any model; none: however far.
+  std::optional<Limit> behind = {};
 };
 
 /// The stages in their order. The first ones find placements in a sample of the scene, once in each
@@ -90,7 +90,7 @@ std::span<const Stage> final_stages();
 std::span<const Stage> scoring_stages();
 
 /// Runs stages for several models of one scene, each stage for all models before the next. Models
-/// compete where a stage has `most_in_library` or `place_margin`, as `compete` decides. Priors'
+/// compete where a stage has `most_in_library` or `behind`, as `compete` decides. Protected
 /// candidates always go on. `found` holds the candidates of each search, before and after.
 /// Deterministic unless the deadline of the first search passes; all models get an equal share of
 /// the time. `traces`, if given, receives the stages of each search.

@@ -12,17 +12,20 @@ namespace {
 constexpr int kTurnsOfOne = 6;  // near-symmetric poses that are aligned, for each that is turned
 
 // The best candidates in near-symmetric poses, each with its quick score.
-Candidates near_symmetric(const Search& search, const Candidates& candidates) {
+Candidates near_symmetric(const Search& search, Candidates& candidates) {
   const TurnOptions& options = search.plan.turn;
   const auto most = std::min<std::size_t>(candidates.size(), options.max_turned);
   Candidates out;
-  for (std::size_t i = 0; i < most && candidates[i].score > search.plan.limits[Limit::turned];
-       ++i) {
+  for (std::size_t i = 0; i < most; ++i) {
+    candidates[i].lowest.note(Limit::turned, candidates[i].score);
+    if (candidates[i].score <= search.plan.limits[Limit::turned]) break;
     for (const Pose& motion : search.model.index->near_symmetries) {
       const Pose turned = candidates[i].pose() * motion;
       out.push_back({.model = &search.model,
                      .refinement = {.camera_from_object = turned},
-                     .found_by = candidates[i].found_by});
+                     .found_by = candidates[i].found_by,
+                     .is_protected = candidates[i].is_protected,
+                     .lowest = candidates[i].lowest});
     }
   }
   change_each(search, out, [&](Candidate& candidate) {
@@ -36,7 +39,7 @@ Candidates near_symmetric(const Search& search, const Candidates& candidates) {
 Candidates try_turned(const Search& search, Candidates climbed) {
   sort_by_score(climbed);
   Candidates turned = near_symmetric(search, climbed);
-  reject_below(search, search.plan.limits[Limit::aligned], turned);
+  reject_below(search, Limit::aligned, turned);
   suppress_duplicates(search, turned);
   std::erase_if(turned, [&](const Candidate& t) {
     const bool known = std::ranges::any_of(
@@ -46,7 +49,7 @@ Candidates try_turned(const Search& search, Candidates climbed) {
   });
   keep_first(search, kTurnsOfOne * search.plan.turn.max_turned, turned);
   change_each(search, turned, [&](Candidate& candidate) {
-    candidate = search.scored(search.refine(candidate.pose(), kLastAlignment), candidate.found_by);
+    candidate = search.scored(candidate, search.refine(candidate.pose(), kLastAlignment));
   });
   std::ranges::move(turned, std::back_inserter(climbed));
   return climbed;

@@ -62,8 +62,10 @@ void LocalSearches::score_expected(const Deadline& deadline) {
     for (std::size_t i = 0; i < searches_.size(); ++i) {
       const ObjectModel& model = searches_[i].model;
       if (model.name != expected.model) continue;
-      found_[i].push_back(
-          {.model = &model, .refinement = {expected.frame_from_object}, .found_by = Source::prior});
+      found_[i].push_back({.model = &model,
+                           .refinement = {expected.frame_from_object},
+                           .found_by = Source::prior,
+                           .is_protected = true});
     }
   }
   run(scoring_stages(), deadline, found_);
@@ -88,6 +90,7 @@ bool LocalSearches::run_round(const RoundPlan& plan) {
   std::vector<Candidates> now(searches_.size());
   run(round_stages(), plan.deadline, now);
   for (std::size_t i = 0; i < searches_.size(); ++i) {
+    for (Candidate& candidate : now[i]) candidate.lowest.note(Limit::support, candidate.score);
     std::ranges::move(now[i], std::back_inserter(found_[i]));
   }
   return true;

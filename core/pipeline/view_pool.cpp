@@ -199,7 +199,8 @@ void ViewPool::score_in(int view, const ObjectModel& model, SearchEffort& effort
         search.quick_score(refinement.camera_from_object) < search.quick_score(start)) {
       refinement = search.measured(start);
     }
-    entry.in_view[view] = search.scored(refinement, Source::prior);
+    const Candidate candidate{.model = &model, .found_by = Source::prior, .is_protected = true};
+    entry.in_view[view] = search.scored(candidate, refinement);
   }
   effort += search.effort;
 }

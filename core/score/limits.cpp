@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/concat.hpp"
 
@@ -38,6 +39,56 @@ Result<Limits> LearnedLimits::at(double keep_right, bool colored) const {
   Limits out;
   mix((below.*of).stages, (*next.*of).stages, along, out.stages);
   mix((below.*of).components, (*next.*of).components, along, out.components);
+  return out;
+}
+
+namespace {
+
+constexpr std::size_t kFewest = 50;  // placements; the tail has 10 at least
+constexpr double kLevels[] = {0.9, 0.9999};
+
+// The log odds below which `share` of the placements lie; `otherwise` where they are too few.
+double lowest_share(std::vector<double> log_odds, double share, double otherwise) {
+  std::erase_if(log_odds, [](double one) { return !std::isfinite(one); });
+  if (log_odds.size() < kFewest) return otherwise;
+  const std::size_t tail = std::max<std::size_t>(10, log_odds.size() / 10);
+  std::ranges::nth_element(log_odds, log_odds.begin() + static_cast<std::ptrdiff_t>(tail));
+  const double threshold = log_odds[tail];
+  double excess = 0;
+  for (std::size_t i = 0; i < tail; ++i) excess += threshold - log_odds[i];
+  const double tail_share = static_cast<double>(tail) / static_cast<double>(log_odds.size());
+  return threshold + excess / static_cast<double>(tail) * std::log(share / tail_share);
+}
+
+template <std::size_t N>
+void measure(const std::vector<LowestLogOdds>& right, std::array<float, N> LowestLogOdds::*of,
+             double keep_right, const std::array<double, N>& start, std::array<double, N>& out) {
+  for (std::size_t i = 0; i < N; ++i) {
+    std::vector<double> log_odds;
+    if (std::isfinite(start[i])) {
+      for (const LowestLogOdds& one : right) log_odds.push_back(double{(one.*of)[i]});
+    }
+    out[i] = lowest_share(std::move(log_odds), 1 - keep_right, start[i]);
+  }
+}
+
+}  // namespace
+
+LearnedLimits measure_limits(const std::vector<LowestLogOdds>& with_color,
+                             const std::vector<LowestLogOdds>& without_color,
+                             const LearnedLimits& start) {
+  LearnedLimits out;
+  for (const double keep_right : kLevels) {
+    LearnedLimits::Level& level = out.levels.emplace_back(keep_right, Limits{}, Limits{});
+    for (const auto& [right, of] :
+         {std::pair(&with_color, &LearnedLimits::Level::with_color),
+          std::pair(&without_color, &LearnedLimits::Level::without_color)}) {
+      const Limits& before = start.levels.back().*of;
+      Limits& limits = level.*of;
+      measure(*right, &LowestLogOdds::stages, keep_right, before.stages, limits.stages);
+      measure(*right, &LowestLogOdds::components, keep_right, before.components, limits.components);
+    }
+  }
   return out;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -13,8 +14,7 @@
 #include "core/score/components.hpp"
 
 // Log odds below which a candidate is given up. They are of the score layers that make the log
-// odds, and lie in one file with them. `bpa train` does not measure them yet: it keeps those of the
-// layers that it starts from.
+// odds, and lie in one file with them. `bpa train` measures them with these layers.
 
 namespace bpa {
 
@@ -31,11 +31,21 @@ enum class Limit : std::uint8_t {
   laid,       ///< A pose at rest on a flat region is moved and scored in full.
   compared,   ///< The best placement of a place is compared with its rivals.
   selected,   ///< A placement is returned.
-  competing   ///< A placement competes for its pixels with others.
+  competing,  ///< A placement competes for its pixels with others.
+  // Log odds less those of the best candidate in its place, of any model.
+  checked_behind,    ///< A checked pose goes on to clustering.
+  clustered_behind,  ///< A cluster goes on to round two.
+  aligned_behind,    ///< A pose of round two is aligned to the end.
+  refined_behind,    ///< An aligned pose is scored with all components.
+  rival_behind,      ///< A placement is compared with the best as its rival.
+  contender_behind   ///< A rival makes the others less probable.
 };
 inline constexpr std::string_view kLimitNames[] = {
-    "ranked",  "clustered", "aligned", "refined",  "repeated", "support",
-    "climbed", "turned",    "laid",    "compared", "selected", "competing"};
+    "ranked",         "clustered",        "aligned",        "refined",
+    "repeated",       "support",          "climbed",        "turned",
+    "laid",           "compared",         "selected",       "competing",
+    "checked_behind", "clustered_behind", "aligned_behind", "refined_behind",
+    "rival_behind",   "contender_behind"};
 inline constexpr std::size_t kLimits = std::size(kLimitNames);
 
 /// The limits that one search runs with.
@@ -56,6 +66,22 @@ struct Limits {
   double& operator[](Limit limit) { return stages[static_cast<std::size_t>(limit)]; }
 };
 
+/// Least log odds that a placement, and the candidates that it comes from, had where a limit is.
+/// Plus infinity where there was none.
+struct LowestLogOdds {
+  std::array<float, kLimits> stages;
+  std::array<float, kScoreComponents.size()> components;
+
+  LowestLogOdds() {
+    stages.fill(std::numeric_limits<float>::infinity());
+    components.fill(std::numeric_limits<float>::infinity());
+  }
+  void note(Limit limit, double log_odds) {
+    float& lowest = stages[static_cast<std::size_t>(limit)];
+    lowest = std::min(lowest, static_cast<float>(log_odds));
+  }
+};
+
 /// Limits by the share of right placements that they keep: below each limit of a share q lie 1 - q
 /// of the placements that end right.
 struct LearnedLimits {
@@ -70,5 +96,14 @@ struct LearnedLimits {
   /// up. Fails with invalid_argument outside of the levels.
   Result<Limits> at(double keep_right, bool colored) const;
 };
+
+/// The limits for 0.9 and 0.9999, of searches without limits with and without colours. `with_color`
+/// and `without_color` hold one element for each right placement. The tenth of the placements with
+/// the lowest log odds are taken as exponential (peaks over a threshold: Coles, An Introduction to
+/// Statistical Modeling of Extreme Values, 2001, chapter 4, with shape 0). A limit with fewer than
+/// 50 placements, and one that `start` does not have, is that of `start` at its highest level.
+LearnedLimits measure_limits(const std::vector<LowestLogOdds>& with_color,
+                             const std::vector<LowestLogOdds>& without_color,
+                             const LearnedLimits& start);
 
 }  // namespace bpa

@@ -222,7 +222,7 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
 TEST_F(SingleObject, OfPosesInOnePlaceTheBestIsBehindNone) {
   const SceneFeatures scene = features_of(everything(), 1);
   DetectPlan plan;
-  plan.margins.rival = 1000;
+  plan.limits[Limit::rival_behind] = -1000;
   plan.limits[Limit::compared] = -1000;
   const auto candidates = test::run_all_stages(Search(scene, *l_, plan));
   ASSERT_FALSE(candidates.empty());

@@ -231,7 +231,7 @@ TEST_F(PriorsOf, DecideBetweenPosesThatLookTheSame) {
   const Search search(scene, *brick, in_full);
   for (const Candidate& c : candidates) {
     EXPECT_EQ(c.prior, priors.evidence(c.pose()));
-    Candidate alone = search.scored(c.refinement, c.found_by);
+    Candidate alone = search.scored(c, c.refinement);
     alone.values[component("rivals")] = c.values[component("rivals")];
     search.apply_layer(alone);
     EXPECT_NEAR(c.score, alone.score + c.prior, 1e-9);

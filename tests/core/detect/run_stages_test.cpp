@@ -17,7 +17,10 @@ class RunStages : public test::LScene {
   // Candidates in one place do not compete.
   static DetectPlan without_margins() {
     DetectPlan plan;
-    plan.margins = {1000, 1000, 1000, 1000};
+    for (const Limit behind : {Limit::checked_behind, Limit::clustered_behind,
+                               Limit::aligned_behind, Limit::refined_behind}) {
+      plan.limits[behind] = -1000;
+    }
     return plan;
   }
   static std::vector<Search> searches_in(const SceneFeatures& scene, const DetectPlan& options) {
@@ -57,7 +60,7 @@ TEST_F(RunStages, WhatIsFarBehindAnotherModelInItsPlaceIsRejected) {
   const SceneFeatures scene = features_of(everything(), 1);
   const auto found_with = [&](double margin) {
     DetectPlan options = without_margins();
-    options.margins.clustered = margin;
+    options.limits[Limit::clustered_behind] = -margin;
     auto searches = searches_in(scene, options);
     std::vector<Candidates> found(2);
     run_stages(round_stages().first(4), searches, 2, found);
@@ -122,7 +125,7 @@ TEST_F(RunStages, WhatPriorsSuggestGoesOnInAnyCase) {
   searches.emplace_back(scene, *l_, options, default_score_layers(), std::span(&prior, 1));
   std::vector<Candidates> found(1);
   run_stages(round_stages().first(2), searches, 1, found);
-  const auto suggested = std::ranges::count(found[0], Source::prior, &Candidate::found_by);
+  const auto suggested = std::ranges::count(found[0], true, &Candidate::is_protected);
   EXPECT_GT(suggested, 1);
   EXPECT_LE(std::ssize(found[0]) - suggested, 1);
 }

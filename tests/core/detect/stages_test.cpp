@@ -102,7 +102,7 @@ TEST_F(Stages, QuickScoresFromTheLimitOnAreExact) {
   }
 }
 
-TEST_F(Stages, ScoresBelowTheLimitAreRejectedUnlessAPriorSuggestsThem) {
+TEST_F(Stages, ScoresBelowTheLimitAreRejectedUnlessProtected) {
   const SceneFeatures scene = features_of(everything());
   const auto checked = [&](double limit) {
     DetectPlan plan;
@@ -110,13 +110,12 @@ TEST_F(Stages, ScoresBelowTheLimitAreRejectedUnlessAPriorSuggestsThem) {
     plan.limits[Limit::ranked] = limit;
     const Search search(scene, *l_, plan);
     Candidates sampled = sample(search, {});
-    for (std::size_t i = 0; i < sampled.size(); i += 10) sampled[i].found_by = Source::prior;
+    for (std::size_t i = 0; i < sampled.size(); i += 10) sampled[i].is_protected = true;
     return check_free_space(search, std::move(sampled));
   };
   Candidates expected = checked(-1000);
   const double limit = expected[expected.size() / 2].score;
-  std::erase_if(expected,
-                [&](const Candidate& c) { return c.score < limit && c.found_by != Source::prior; });
+  std::erase_if(expected, [&](const Candidate& c) { return c.score < limit && !c.is_protected; });
   EXPECT_LT(expected.back().score, limit);  // of a prior
   expect_same(checked(limit), expected);
 }
