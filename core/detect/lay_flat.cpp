@@ -3,7 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
@@ -83,8 +86,44 @@ double share_on_region(const Search& search, int region, const FastPose& pose) {
   return on / std::max(1.0, static_cast<double>(visible));
 }
 
-// The ways in which the model may rest there; `scene_point` is the region.
-void add_resting(const Search& search, int index, const FlatRest& rest, Candidates& out) {
+// The model at rest on a region.
+struct Resting {
+  int region;
+  Pose pose;
+  double agreement;
+};
+
+void sort_by_agreement(std::vector<Resting>& poses) {
+  std::ranges::stable_sort(poses, std::greater(), &Resting::agreement);
+}
+
+// The best `most` of sorted poses.
+void keep_first(const Search& search, int most, std::vector<Resting>& poses) {
+  if (std::ssize(poses) <= most) return;
+  for (const Resting& one : std::span(poses).subspan(static_cast<std::size_t>(most))) {
+    search.reject("better ones are enough", one.pose);
+  }
+  poses.resize(static_cast<std::size_t>(most));
+}
+
+// Sorts, and rejects duplicates of better poses.
+void suppress_duplicates(const Search& search, std::vector<Resting>& poses) {
+  sort_by_agreement(poses);
+  std::vector<Resting> kept;
+  for (const Resting& one : poses) {
+    const bool seen = std::ranges::any_of(
+        kept, [&](const Resting& other) { return duplicates(search, one.pose, other.pose); });
+    if (seen) {
+      search.reject("duplicate of a better one", one.pose);
+    } else {
+      kept.push_back(one);
+    }
+  }
+  poses = std::move(kept);
+}
+
+// The ways in which the model may rest there.
+void add_resting(const Search& search, int index, const FlatRest& rest, std::vector<Resting>& out) {
   const FlatRegion& region = search.scene.flat.regions[index];
   const bool elongated = rest.length > kElongated * rest.width;
   const int turns = elongated ? 2 : kTurnsOfRound;
@@ -99,22 +138,18 @@ void add_resting(const Search& search, int index, const FlatRest& rest, Candidat
       pose.translation = region.centre + end * hidden * region.axis - pose.rotation * rest.centre;
       if (share_on_region(search, index, pose) < kMinOnRegion) continue;
       const Pose camera_from_object = to_pose(pose);
-      out.push_back({.model = &search.model,
-                     .refinement = {.camera_from_object = camera_from_object},
-                     .found_by = Source::region,
-                     .scene_point = index,
-                     .score = agreement(search, index, camera_from_object)});
+      out.push_back({index, camera_from_object, agreement(search, index, camera_from_object)});
     }
   }
 }
 
 // The best of each region.
-Candidates resting_poses(const Search& search) {
+std::vector<Resting> resting_poses(const Search& search) {
   const FlatRegions& flat = search.scene.flat;
-  Candidates all;
+  std::vector<Resting> all;
   for (int index = 0; index < static_cast<int>(flat.regions.size()); ++index) {
     if (search.late()) break;
-    Candidates here;
+    std::vector<Resting> here;
     for (const FlatRest& rest : search.model.index->flat_rests) {
       if (may_show(flat.regions[index], rest)) add_resting(search, index, rest, here);
     }
@@ -122,44 +157,45 @@ Candidates resting_poses(const Search& search) {
     keep_first(search, search.plan.flat.max_laid, here);
     std::ranges::move(here, std::back_inserter(all));
   }
-  sort_by_score(all);
+  sort_by_agreement(all);
+  keep_first(search, search.plan.flat.max_laid, all);
   return all;
 }
 
 // The three degrees of freedom that contact leaves: two steps along the plane, a turn about its
 // normal; there and back.
-Pose moved(const Search& search, const Candidate& candidate, int move, double step) {
-  const FlatRegion& region = search.scene.flat.regions[candidate.scene_point];
+Pose moved(const Search& search, int region, Pose pose, int move, double step) {
+  const FlatRegion& flat = search.scene.flat.regions[region];
   const double sign = move % 2 ? -1 : 1;
-  const Eigen::Vector3d up = region.up.cast<double>(), axis = region.axis.cast<double>();
-  Pose pose = candidate.pose();
+  const Eigen::Vector3d up = flat.up.cast<double>(), axis = flat.axis.cast<double>();
   if (move < 4) {
     pose.translation += sign * step * (move < 2 ? axis : up.cross(axis));
     return pose;
   }
   const Eigen::Quaterniond turn =
       rotation_from_vector(sign * step / (0.5 * search.model.diameter) * up);
-  const Eigen::Vector3d centre = candidate.place();
+  const Eigen::Vector3d centre = pose * search.model.centre;
   pose.rotation = (turn * pose.rotation).normalized();
   pose.translation = centre - pose.rotation * search.model.centre;
   return pose;
 }
 
 // Small steps on the plane; smaller ones when none improves. Depth would drag the pose off it.
-void slide(const Search& search, Candidate& candidate) {
-  double step = kSlideStep_m;
+Pose slid(const Search& search, int region, Pose best) {
+  double step = kSlideStep_m, best_agreement = agreement(search, region, best);
   for (int round = 0; round < kSlideRounds && !search.late(); ++round) {
     bool improved = false;
     for (int move = 0; move < 6; ++move) {
-      const Pose pose = moved(search, candidate, move, step);
-      const double score = agreement(search, candidate.scene_point, pose);
-      if (score <= candidate.score) continue;
-      candidate.refinement.camera_from_object = pose;
-      candidate.score = score;
+      const Pose pose = moved(search, region, best, move, step);
+      const double here = agreement(search, region, pose);
+      if (here <= best_agreement) continue;
+      best = pose;
+      best_agreement = here;
       improved = true;
     }
     if (!improved) step *= 0.5;
   }
+  return best;
 }
 
 }  // namespace
@@ -168,19 +204,18 @@ Candidates lay_flat(const Search& whole, Candidates found) {
   const bool thin = !whole.model.index->flat_rests.empty();
   if (!thin || !whole.scene.with_flat || whole.plan.flat.max_laid == 0) return found;
   const Search search(*whole.scene.with_flat, whole);
-  Candidates laid = resting_poses(search);
-  const DetectPlan& options = search.plan;
-  keep_first(search, options.flat.max_laid, laid);
-  std::erase_if(laid, [&](Candidate& candidate) {
-    const double score = search.quick_score(candidate.pose(), kClusterRankPoints);
-    candidate.lowest.note(Limit::laid, score);
-    const bool low = score < search.plan.limits[Limit::laid];
-    if (low) search.reject("score too low", candidate.pose());
-    return low;
-  });
+  Candidates laid;
+  for (const Resting& resting : resting_poses(search)) {
+    laid.push_back({.model = &search.model,
+                    .refinement = {resting.pose},
+                    .found_by = Source::region,
+                    .scene_point = resting.region,
+                    .score = search.quick_score(resting.pose, kClusterRankPoints)});
+  }
+  reject_below(search, Limit::laid, laid);
   change_each(search, laid, [&](Candidate& candidate) {
-    slide(search, candidate);
-    candidate = search.scored(candidate, search.measured(candidate.pose()));
+    const Pose pose = slid(search, candidate.scene_point, candidate.pose());
+    candidate = search.scored(candidate, search.measured(pose));
   });
   std::ranges::move(laid, std::back_inserter(found));
   whole.effort += search.effort;
