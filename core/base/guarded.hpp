@@ -7,6 +7,7 @@
 #include <string>
 #include <type_traits>
 
+#include "core/base/failure.hpp"
 #include "core/base/status.hpp"
 
 // Where exceptions end: foreign input may exhaust memory or hit a bug, and may not end a process.
@@ -14,9 +15,12 @@
 
 namespace bpa {
 
-/// The failure that stands for an exception: `unavailable` without memory, else `internal`. The
-/// message begins with `about`, such as "the search failed".
+/// The failure that stands for an exception: that of a Failure, `unavailable` without memory, else
+/// `internal`. The message begins with `about`, such as "the search failed".
 inline Status status_of(const std::string& about, const std::exception& error) {
+  if (const auto* failure = dynamic_cast<const Failure*>(&error)) {
+    return Status(failure->status().code, about + ": " + error.what());
+  }
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
     return Status(StatusCode::unavailable, about + ": no memory is left");
   }

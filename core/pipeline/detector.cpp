@@ -112,6 +112,7 @@ SearchFacts Detector::facts_of(const Frame& frame, const DetectRequest& request,
                                const Models& models) const {
   const int threads = resolve_num_threads(request.num_threads);
   SearchFacts facts{.models = static_cast<int>(models.size()),
+                    .image_width = frame.camera.width,
                     .colored = compares_colors(frame, options_, models),
                     .follows = !request.expected.empty(),
                     .threads = threads,

@@ -74,7 +74,8 @@ std::vector<PlanEntry> settings_of(const SearchPlan& plan, DetectorOptions given
 }
 
 std::vector<PlanEntry> entries_of(const SearchPlan& plan, const DetectorOptions& options,
-                                  const LearnedLimits& limits, const PlanReasons& reasons) {
+                                  const LearnedLimits& limits, int image_width,
+                                  const PlanReasons& reasons) {
   std::vector<PlanEntry> out = settings_of(plan, options, reasons);
   const auto add = [&](const std::string& name, const auto& value, const std::string& reason) {
     const auto found = reasons.find(name);
@@ -85,6 +86,11 @@ std::vector<PlanEntry> entries_of(const SearchPlan& plan, const DetectorOptions&
   add("end.min_gain", plan.end.min_gain, "rounds.min_gain");
   add("end.min_gain_of_two", plan.end.min_gain_of_two, "rounds.min_gain_of_two");
   add("limits.provenance", limits.provenance, "score layers");
+  if (image_width > 0) {
+    const int most = plan.surface.max_width;
+    add("surface.reduction", map_reduction(image_width, most),
+        concat(image_width, " pixels / surface.max_width, rounded up"));
+  }
   const std::string kept = concat("keeps ", plan.detect.score.keep_right, " of the right ones");
   for (std::size_t i = 0; i < kLimits; ++i) {
     add(concat("limits.", kLimitNames[i]), plan.detect.limits.stages[i], kept);
@@ -126,7 +132,7 @@ Result<SearchPlan> plan_search(const DetectorOptions& options, const ScoreLayers
         concat("one in (", facts.models, " / ", kWholeModels, ") points, 1 or more");
   }
   plan.end = end_rule(facts, options.rounds, reasons);
-  plan.entries = entries_of(plan, options, layers.limits, reasons);
+  plan.entries = entries_of(plan, options, layers.limits, facts.image_width, reasons);
   return plan;
 }
 

@@ -16,6 +16,7 @@ namespace bpa {
 /// What a plan depends on, besides options and score layers.
 struct SearchFacts {
   int models = 1;          ///< That are searched for, 1 or more.
+  int image_width = 0;     ///< Of the frame, pixels; 0: not known.
   bool colored = true;     ///< Hypotheses of all models are compared by colour.
   bool follows = false;    ///< An earlier frame says what to expect.
   int threads = 1;         ///< 1 or more.

@@ -24,6 +24,11 @@ TEST(Guarded, ExceptionsAreFailures) {
   const auto memory = guarded("the search failed", []() -> Result<int> { throw std::bad_alloc(); });
   EXPECT_EQ(memory.status().code, StatusCode::unavailable);
   EXPECT_EQ(memory.status().message, "the search failed: no memory is left");
+  const Status failed = guarded("the front cannot start", [] {
+    throw Failure({StatusCode::not_found, "x"});
+  });
+  EXPECT_EQ(failed.code, StatusCode::not_found);
+  EXPECT_EQ(failed.message, "the front cannot start: x");
   EXPECT_EQ(guarded("x", [] { throw 1; }).message, "x: unknown exception");
 }
 

@@ -97,6 +97,8 @@ TEST(SearchPlan, EveryEntryHasAReason) {
   EXPECT_EQ(reason(plan, "surface.max_width"),
             "a whole preparation takes 60 ms, more than a third of a budget of 100 ms");
   EXPECT_EQ(reason(plan, "time.rounds"), "share of the time left");
+  EXPECT_EQ(reason(plan_of({.image_width = 1920}), "surface.reduction"),
+            "1920 pixels / surface.max_width, rounded up");
 }
 
 TEST(SearchPlan, FollowsAnEarlierFrame) {
