@@ -126,8 +126,12 @@ void run_all(const std::string& title, int count, int num_threads,
 /// Calls of operator new so far, by all threads.
 using CountAllocations = std::uint64_t (*)();
 
-/// The program bpa. Returns its exit code: 0, 1 after a failure, 2 after wrong usage. Without
-/// `allocations`, bpa bench speed does not know their number.
+/// Runs the command that the command line chooses. Returns the exit code: 0, 1 after a failure, 2
+/// after wrong usage.
+int run_program(CLI::App& program, int argc, char** argv);
+
+/// The program bpa. Returns as run_program(). Without `allocations`, bpa bench speed does not know
+/// their number.
 int run_bpa(int argc, char** argv, CountAllocations allocations = nullptr);
 
 void add_model_command(CLI::App& program);
@@ -142,9 +146,6 @@ void add_simulate_command(CLI::App& program);
 /// The experiments of `bpa bench`.
 void add_bench_alignment(CLI::App& bench);
 void add_bench_accuracy(CLI::App& bench);
-void add_bench_models(CLI::App& bench);
-void add_bench_sensor(CLI::App& bench);
-void add_bench_views(CLI::App& bench);
 void add_bench_speed(CLI::App& bench, CountAllocations allocations);
 
 }  // namespace bpa::cli

@@ -7,6 +7,18 @@
 
 namespace bpa::cli {
 
+int run_program(CLI::App& program, int argc, char** argv) {
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", program.get_name().c_str(), error.what());
+    return 1;
+  }
+  return 0;
+}
+
 int run_bpa(int argc, char** argv, CountAllocations allocations) {
   CLI::App program{"bpa: known objects in RGB-D frames, by Bingham Procrustean Alignment", "bpa"};
   program.require_subcommand(1);
@@ -23,19 +35,8 @@ int run_bpa(int argc, char** argv, CountAllocations allocations) {
   bench.require_subcommand(1);
   add_bench_alignment(bench);
   add_bench_accuracy(bench);
-  add_bench_models(bench);
-  add_bench_sensor(bench);
-  add_bench_views(bench);
   add_bench_speed(bench, allocations);
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bpa: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+  return run_program(program, argc, argv);
 }
 
 }  // namespace bpa::cli

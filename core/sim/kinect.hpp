@@ -32,7 +32,7 @@
 //     depth at 1 m, growing with z^2. Depth is in millimetres.
 //  6. Registration. Depth is carried over to the colour camera, 2.5 cm beside the infrared one.
 //
-// The widths of waves, gaps and holes were compared with real frames: bpa bench sensor.
+// The widths of waves, gaps and holes were compared with real frames: bpa-experiments sensor.
 
 namespace bpa::sim {
 

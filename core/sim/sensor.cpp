@@ -72,25 +72,6 @@ double infrared_focal(const SensorOptions& options) {
   return options.kinect.infrared_focal;
 }
 
-void set_registered(SensorOptions& options, bool registered) {
-  options.kinect.registered = options.active_stereo.registered = options.time_of_flight.registered =
-      registered;
-}
-
-std::optional<double> published_axial_noise(const SensorOptions& options, double depth,
-                                            double angle) {
-  switch (options.kind) {
-    case SensorKind::active_stereo:
-      if (angle > 0) return std::nullopt;
-      return published_axial_noise(options.active_stereo, depth);
-    case SensorKind::time_of_flight:
-      return published_axial_noise(options.time_of_flight, depth, angle);
-    case SensorKind::structured_light:
-      break;
-  }
-  return published_axial_noise(depth, angle);
-}
-
 SensorImage simulate_sensor(const SensorView& view, const SensorOptions& options,
                             std::uint64_t seed, int shot, int num_threads) {
   const auto render_by = [&](const Camera& camera) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "core/base/options.hpp"
 #include "core/cloud/frame.hpp"
@@ -34,14 +33,6 @@ struct SensorOptions {
 
 /// Of the infrared image that depth is measured in, pixels.
 double infrared_focal(const SensorOptions& options);
-
-/// Whether depth is carried over to the colour camera.
-void set_registered(SensorOptions& options, bool registered);
-
-/// The axial standard deviation of depth that the sensor must meet, metres. For a surface at
-/// `depth` metres seen at `angle` radians from its normal. Nothing where none is published.
-std::optional<double> published_axial_noise(const SensorOptions& options, double depth,
-                                            double angle);
 
 /// A camera's two images, and the truth about them.
 struct SensorImage {

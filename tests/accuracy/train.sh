@@ -8,7 +8,7 @@
 # Real objects are not exactly their models, and real sensors are not exactly calibrated: nor are these.
 # Each scene has one of the three kinds of depth camera. Several kinds of scenes cover what score components
 # depend on. Heaps are seen from afar. Few objects are seen closely by a longer lens: edges are more ragged, depth
-# ends further from them (bpa bench sensor), and exposure and white balance differ from the models' colours. The
+# ends further from them (bpa-experiments sensor), and exposure and white balance differ from the models' colours. The
 # same with large errors of calibration, registration and models. Objects lie apart on tables, or there are
 # none of them. Some sets hold look-alikes. Round two learns to order placements from all of them. Probabilities are
 # learned from a third with look-alikes: from more, right placements in real frames are disbelieved. Two sets hold

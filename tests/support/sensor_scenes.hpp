@@ -46,7 +46,8 @@ inline SensorImage see(const std::vector<Rectangle>& rectangles, SensorOptions o
   const RayScene scene(prepared, posed);
   Shading shading;
   shading.materials.assign(rectangles.size(), material);
-  set_registered(options, false);
+  options.kinect.registered = options.active_stereo.registered = options.time_of_flight.registered =
+      false;
   const double focal = infrared_focal(options);
   return simulate_sensor({scene, shading, {320, 240, focal, focal, 159.5, 119.5}, Pose{}}, options,
                          5, 0, num_threads);

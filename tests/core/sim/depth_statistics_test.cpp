@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Statistics of depth images whose every figure is known.
-#include "core/sim/depth_statistics.hpp"
+#include "tests/core/sim/depth_statistics.hpp"
 
 #include <cmath>
 

@@ -32,8 +32,9 @@ struct Outcome {
   std::string out;  // stdout and stderr
 };
 
-Outcome run(const std::string& arguments) {
-  const std::string command = std::string(BPA_BINARY_DIR) + "/bin/bpa " + arguments + " 2>&1";
+Outcome run(const std::string& arguments, const std::string& program = "bpa") {
+  const std::string command =
+      std::string(BPA_BINARY_DIR) + "/bin/" + program + " " + arguments + " 2>&1";
   Outcome outcome;
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return outcome;
@@ -299,7 +300,7 @@ TEST(Usage, IsExitCodeTwo) {
         "detect --library L --camera c --depth a b --color c", "detect --library L --pcd a --top 0",
         "detect --library L --pcd a --threads x", "model", "model from-mesh a", "evaluate --bop b",
         "evaluate --bop b --csv a --json c", "evaluate --csv a",
-        "evaluate --bop b --nothing-there --csv a", "bench sensor --sheet s.png",
+        "evaluate --bop b --nothing-there --csv a", "bench",
         "model list --library L --colour red"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.out;
@@ -310,7 +311,7 @@ TEST(Usage, IsExitCodeTwo) {
 TEST(Usage, HelpIsExitCodeZeroEverywhere) {
   for (const char* command :
        {"", "model", "model from-mesh", "model from-bop", "model info", "model list",
-        "model remove", "detect", "evaluate", "bench alignment", "bench sensor"}) {
+        "model remove", "detect", "evaluate", "bench alignment"}) {
     const Outcome outcome = run(std::string(command) + " --help");
     EXPECT_EQ(outcome.code, 0) << command;
     if (std::string(command).empty() || std::string(command) == "model") continue;
@@ -369,11 +370,6 @@ TEST(Commands, FromADataSetToFigures) {
   outcome = run("evaluate --nothing-there --json " + (folder / "r.json"));
   EXPECT_EQ(outcome.code, 0) << outcome.out;
   EXPECT_NE(outcome.out.find("1 of them with 1 false positives"), std::string::npos) << outcome.out;
-  outcome = run("bench sensor --bop " + (folder / "set") + " --sheet " + (folder / "sheet.png") +
-                " --json " + (folder / "sensor.json"));
-  EXPECT_EQ(outcome.code, 0) << outcome.out;
-  EXPECT_TRUE(io::read_color_image(folder / "sheet.png").ok());
-  EXPECT_NE(slurp(folder / "sensor.json").find("published_axial_m"), std::string::npos);
   outcome = run("bench alignment --bop " + (folder / "set") + " --library " + (folder / "L") +
                 " --starts 3 --iterations 5 --plots " + (folder / "alignment"));
   EXPECT_EQ(outcome.code, 0) << outcome.out;
@@ -387,6 +383,22 @@ TEST(Commands, FromADataSetToFigures) {
   EXPECT_NE(outcome.out.find(" cells of 3.0 mm"), std::string::npos) << outcome.out;
   outcome = run("model remove box --library " + (folder / "L"));
   EXPECT_EQ(outcome.code, 0) << outcome.out;
+}
+
+TEST(Experiments, SensorBesideAFrame) {
+  EXPECT_EQ(run("sensor --sheet s.png", "bpa-experiments").code, 2);
+  EXPECT_EQ(run("views --help", "bpa-experiments").code, 0);
+  EXPECT_EQ(run("models --help", "bpa-experiments").code, 0);
+  const test::TemporaryFolder folder;
+  io::BopSceneWriter writer(folder / "set", "test", 3);
+  ASSERT_TRUE(writer.add(9, box_frame(box_pose()), {}).ok());
+  ASSERT_TRUE(writer.finish().ok());
+  const Outcome outcome = run("sensor --bop " + (folder / "set") + " --sheet " +
+                                  (folder / "sheet.png") + " --json " + (folder / "sensor.json"),
+                              "bpa-experiments");
+  EXPECT_EQ(outcome.code, 0) << outcome.out;
+  EXPECT_TRUE(io::read_color_image(folder / "sheet.png").ok());
+  EXPECT_NE(slurp(folder / "sensor.json").find("published_axial_m"), std::string::npos);
 }
 
 }  // namespace

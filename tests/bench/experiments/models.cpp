@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// bpa bench models: models made from turntable scans against the true meshes, and the noise that
-// they have learned against views not learned from and the simulator's law.
+// bpa-experiments models: models made from turntable scans against the true meshes, and the noise
+// that they have learned against views not learned from and the simulator's law.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -21,6 +21,7 @@
 #include "core/modeling/model_source.hpp"
 #include "core/modeling/symmetry_search.hpp"
 #include "core/sim/kinect.hpp"
+#include "tests/bench/experiments/experiments.hpp"
 #include "tools/posed_views.hpp"
 
 namespace bpa::cli {
@@ -342,9 +343,9 @@ void bench_models(const ModelsArguments& a) {
 
 }  // namespace
 
-void add_bench_models(CLI::App& bench) {
+void add_models_experiment(CLI::App& program) {
   const auto [command, a] = add_command(
-      bench, "models", "Compare models from simulated scans with the true meshes", bench_models);
+      program, "models", "Compare models from simulated scans with the true meshes", bench_models);
   command.add_option("scans", a.scans, "Folders that `bpa simulate turntable` wrote")->required();
   add_split_option(command, a.split);
   add_option(command, "--step-deg", a.step_deg,

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// bpa bench views: what more views of one scene find, with exact and with wrong camera poses.
+// bpa-experiments views: what more views of one scene find, with exact and with wrong camera poses.
+#include "core/pipeline/views.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,7 +14,7 @@
 #include "core/base/random.hpp"
 #include "core/eval/evaluation.hpp"
 #include "core/io/file_bytes.hpp"
-#include "core/pipeline/views.hpp"
+#include "tests/bench/experiments/experiments.hpp"
 #include "tools/search.hpp"
 
 namespace bpa::cli {
@@ -200,7 +202,7 @@ void print_rows(const std::vector<Row>& rows) {
 }
 
 nlohmann::json to_json(const ViewsArguments& a, const std::vector<Row>& rows) {
-  nlohmann::json out = {{"experiment", "bpa bench views"},
+  nlohmann::json out = {{"experiment", "bpa-experiments views"},
                         {"position_error_m", a.position_error},
                         {"angle_error_deg", a.angle_error_deg},
                         {"min_visible", a.min_visible}};
@@ -305,10 +307,10 @@ void bench_views(const ViewsArguments& a) {
 
 }  // namespace
 
-void add_bench_views(CLI::App& bench) {
+void add_views_experiment(CLI::App& program) {
   const auto [command, a] =
-      add_command(bench, "views", "Precision, recall and pose errors of several views of one scene",
-                  bench_views);
+      add_command(program, "views",
+                  "Precision, recall and pose errors of several views of one scene", bench_views);
   add_dataset_options(command, a.dataset);
   add_detector_options(command, a.detector);
   add_min_visible_option(command, a.min_visible);

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// bpa bench sensor: the simulated depth cameras against published figures and against real frames.
+// bpa-experiments sensor: the simulated depth cameras against published figures and against real
+// frames.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <numbers>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -13,8 +15,9 @@
 #include "core/draw/sheet.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/image_file.hpp"
-#include "core/sim/depth_statistics.hpp"
 #include "core/sim/scenes.hpp"
+#include "tests/bench/experiments/experiments.hpp"
+#include "tests/core/sim/depth_statistics.hpp"
 #include "tools/search.hpp"
 
 namespace bpa::cli {
@@ -70,6 +73,17 @@ Json bench_planes(const SensorArguments& a) {
   return rows;
 }
 
+/// The axial standard deviation of depth that is published of a sensor, metres. For a surface at
+/// `depth` metres seen at `angle` radians from its normal. Nothing where none is published.
+std::optional<double> published_noise(const sim::SensorOptions& options, double depth,
+                                      double angle) {
+  if (options.kind == SensorKind::time_of_flight) {
+    return sim::published_axial_noise(options.time_of_flight, depth, angle);
+  }
+  if (angle > 0) return std::nullopt;
+  return sim::published_axial_noise(options.active_stereo, depth);
+}
+
 /// The other two kinds against what is published of them.
 Json bench_other_planes(const SensorArguments& a, SensorKind kind) {
   sim::SensorOptions options;
@@ -82,7 +96,7 @@ Json bench_other_planes(const SensorArguments& a, SensorKind kind) {
       const double angle = degrees * kRadians;
       const sim::PlaneNoise noise =
           sim::plane_noise(depth, angle, options, a.common.seed, a.common.threads);
-      const std::optional<double> published = sim::published_axial_noise(options, depth, angle);
+      const std::optional<double> published = published_noise(options, depth, angle);
       std::printf("%3.1f m  %3.0f deg %8.2f %10s %12.2f\n", depth, degrees, 1e3 * noise.axial,
                   published ? fixed(1e3 * *published, 2).c_str() : "", noise.lateral);
       rows.push_back({{"depth_m", depth},
@@ -219,9 +233,9 @@ void bench_sensor(const SensorArguments& a) {
 
 }  // namespace
 
-void add_bench_sensor(CLI::App& bench) {
+void add_sensor_experiment(CLI::App& program) {
   const auto [command, a] = add_command(
-      bench, "sensor",
+      program, "sensor",
       "Compare the simulated sensors with published noise, the Kinect with real frames too",
       bench_sensor);
   add_option(command, "--bop", a.dataset.folder, "Real frames: folder of a BOP data set", "DIR");

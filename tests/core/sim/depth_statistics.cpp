@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/sim/depth_statistics.hpp"
+#include "tests/core/sim/depth_statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,8 @@
 namespace bpa::sim {
 namespace {
 
-constexpr double kInfraredFocal = 570.3;  // pixels
-constexpr double kBaseline = 0.075;       // metres
+constexpr double kInfraredFocal = 570.3;   // pixels
+constexpr double kKinectBaseline = 0.075;  // metres
 
 struct Moments {
   double sum = 0, squares = 0;
@@ -111,7 +111,9 @@ Patch fit_patch(const DepthImage& depth, int near_step, int far_step) {
   const int size = depth.rows;
   Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  const auto disparity = [&](int x, int y) { return kInfraredFocal * kBaseline / depth(y, x); };
+  const auto disparity = [&](int x, int y) {
+    return kInfraredFocal * kKinectBaseline / depth(y, x);
+  };
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
       if (depth(y, x) <= 0) return {};
@@ -166,7 +168,8 @@ PlaneNoise plane_noise(double depth, double angle, const SensorOptions& options,
                        int num_threads) {
   constexpr double kBand = 0.03;  // of the depth
   SensorOptions measured = options;
-  set_registered(measured, false);
+  measured.kinect.registered = measured.active_stereo.registered =
+      measured.time_of_flight.registered = false;
   const TriangleMesh wide = plate(-20, 20, 20);
   const SensorImage image = see_plate(wide, depth, angle, measured, seed, num_threads);
   Moments error, missing;
