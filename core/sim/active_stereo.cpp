@@ -141,10 +141,6 @@ float measure(const LeftImage& m, const StereoNoise& noise, const ActiveStereoOp
 
 }  // namespace
 
-double published_axial_noise(const ActiveStereoOptions& options, double depth) {
-  return options.disparity_noise * depth * depth / (options.infrared_focal * options.baseline);
-}
-
 Frame simulate_depth(const SensorView& view, const ActiveStereoOptions& options, std::uint64_t seed,
                      int shot, int num_threads) {
   const InfraredCamera left = infrared_camera(view, options.width, options.height, options);

@@ -56,10 +56,6 @@ struct ActiveStereoOptions {
   BPA_OPTION(double, max_range, 10, (0, 20), "Farthest depth measured, metres.");
 };
 
-/// The standard deviation of depth that the model must meet, metres (step 4), for a surface that
-/// faces the camera from `depth` metres.
-double published_axial_noise(const ActiveStereoOptions& options, double depth);
-
 /// As the Kinect's.
 Frame simulate_depth(const SensorView& view, const ActiveStereoOptions& options, std::uint64_t seed,
                      int shot = 0, int num_threads = 0);

@@ -60,18 +60,6 @@ Frame measure_depth(const SensorView& view, const SensorOptions& options, std::u
 
 }  // namespace
 
-double infrared_focal(const SensorOptions& options) {
-  switch (options.kind) {
-    case SensorKind::active_stereo:
-      return options.active_stereo.infrared_focal;
-    case SensorKind::time_of_flight:
-      return options.time_of_flight.infrared_focal;
-    case SensorKind::structured_light:
-      break;
-  }
-  return options.kinect.infrared_focal;
-}
-
 SensorImage simulate_sensor(const SensorView& view, const SensorOptions& options,
                             std::uint64_t seed, int shot, int num_threads) {
   const auto render_by = [&](const Camera& camera) {

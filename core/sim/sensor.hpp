@@ -31,9 +31,6 @@ struct SensorOptions {
   BPA_INLINE_GROUP(ColorCameraOptions, color);
 };
 
-/// Of the infrared image that depth is measured in, pixels.
-double infrared_focal(const SensorOptions& options);
-
 /// A camera's two images, and the truth about them.
 struct SensorImage {
   Frame frame;          ///< As measured.

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/sim/sensor.hpp"
+#include "tests/support/infrared_camera.hpp"
 
 // Rectangles before a depth camera of 320 x 240 pixels, whose image is not registered.
 
@@ -32,7 +32,7 @@ inline TriangleMesh mesh_of(const Rectangle& r) {
   return mesh;
 }
 
-inline SensorImage see(const std::vector<Rectangle>& rectangles, SensorOptions options,
+inline SensorImage see(const std::vector<Rectangle>& rectangles, const SensorOptions& options,
                        const Material& material = {}, int num_threads = 2) {
   std::vector<TriangleMesh> meshes;
   std::vector<const TriangleMesh*> pointers;
@@ -46,11 +46,9 @@ inline SensorImage see(const std::vector<Rectangle>& rectangles, SensorOptions o
   const RayScene scene(prepared, posed);
   Shading shading;
   shading.materials.assign(rectangles.size(), material);
-  options.kinect.registered = options.active_stereo.registered = options.time_of_flight.registered =
-      false;
   const double focal = infrared_focal(options);
-  return simulate_sensor({scene, shading, {320, 240, focal, focal, 159.5, 119.5}, Pose{}}, options,
-                         5, 0, num_threads);
+  return simulate_sensor({scene, shading, {320, 240, focal, focal, 159.5, 119.5}, Pose{}},
+                         unregistered(options), 5, 0, num_threads);
 }
 
 inline SensorOptions sensor_of(SensorKind kind) {

@@ -81,7 +81,8 @@ std::optional<double> published_noise(const sim::SensorOptions& options, double 
     return sim::published_axial_noise(options.time_of_flight, depth, angle);
   }
   if (angle > 0) return std::nullopt;
-  return sim::published_axial_noise(options.active_stereo, depth);
+  const sim::ActiveStereoOptions& stereo = options.active_stereo;
+  return stereo.disparity_noise * depth * depth / (stereo.infrared_focal * stereo.baseline);
 }
 
 /// The other two kinds against what is published of them.

@@ -10,6 +10,7 @@
 
 #include "core/base/median.hpp"
 #include "core/geometry/solve_symmetric.hpp"
+#include "tests/support/infrared_camera.hpp"
 
 namespace bpa::sim {
 namespace {
@@ -167,9 +168,7 @@ void add_roughness(const DepthImage& depth, double scale, DepthStatistics& stati
 PlaneNoise plane_noise(double depth, double angle, const SensorOptions& options, std::uint64_t seed,
                        int num_threads) {
   constexpr double kBand = 0.03;  // of the depth
-  SensorOptions measured = options;
-  measured.kinect.registered = measured.active_stereo.registered =
-      measured.time_of_flight.registered = false;
+  const SensorOptions measured = unregistered(options);
   const TriangleMesh wide = plate(-20, 20, 20);
   const SensorImage image = see_plate(wide, depth, angle, measured, seed, num_threads);
   Moments error, missing;
