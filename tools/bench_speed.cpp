@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/base/concat.hpp"
+#include "core/base/median.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/io/file_bytes.hpp"
@@ -116,12 +117,6 @@ TrueObjects true_objects(const DatasetOptions& dataset) {
   return truth;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 /// Searches of some frames, and what they cost.
 class Measurement {
  public:
@@ -153,7 +148,8 @@ class Measurement {
     row["found"] = placements_.found.hits;
     row["found_in_twenty"] = placements_.found_in_twenty.hits;
     row["instances"] = placements_.found.total;
-    row["median_ms"] = median(milliseconds_);
+    std::vector<double> times = milliseconds_;
+    row["median_ms"] = median(times);
     row["max_ms"] = std::ranges::max(milliseconds_);
     row["cpu_s"] = cpu_seconds_ / frames();
     row["instructions"] = counted ? SpeedReport(executed_ / frames()) : SpeedReport();
@@ -174,10 +170,6 @@ class Measurement {
   SearchEffort effort_;
   std::vector<PlanEntry> plan_;  // of the last frame
 };
-
-DetectRequest request_of(const CommonOptions& common) {
-  return {.seed = common.seed, .num_threads = common.threads};
-}
 
 /// Searches all frames, for `models` of each; 0: all of the detector.
 void measure(const SpeedArguments& a, const Detector& detector, double budget_s, int models,

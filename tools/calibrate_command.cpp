@@ -75,10 +75,8 @@ struct Moments {
 
 Moments see_objects(const CalibrateArguments& a, const Detector& detector) {
   const std::vector<io::BopFrame> entries = list_inputs(a.frames);
-  DetectRequest request;
+  DetectRequest request = request_of(a.common);
   request.models = a.frames.detector.models;
-  request.seed = a.common.seed;
-  request.num_threads = a.common.threads;
   Moments out;
   if (entries.front().camera_from_world) out.first = entries.front().camera_from_world->inverse();
   Progress progress("frames", static_cast<int>(entries.size()));

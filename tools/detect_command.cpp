@@ -75,12 +75,10 @@ io::FrameResult reported(const SceneInterpretations& scene, const Pose& reported
 }
 
 DetectRequest request_of(const DetectArguments& a) {
-  DetectRequest request;
+  DetectRequest request = request_of(a.common);
   request.models = a.detector.models;
   request.top_k = a.top;
   request.budget_ms = a.budget_ms;
-  request.seed = a.common.seed;
-  request.num_threads = a.common.threads;
   return request;
 }
 

@@ -143,6 +143,10 @@ Input read_input(const DetectArguments& a, const io::BopFrame& entry) {
   return input;
 }
 
+DetectRequest request_of(const CommonOptions& common) {
+  return {.seed = common.seed, .num_threads = common.threads};
+}
+
 void read_true_frames(const DatasetOptions& dataset,
                       const std::function<void(const TrueFrame&)>& use) {
   const auto frames = or_throw(io::read_bop_frames(dataset.folder, dataset.split, dataset.scenes));
@@ -158,9 +162,7 @@ void read_true_frames(const DatasetOptions& dataset,
 
 void search_frames(const Detector& detector, const DatasetOptions& dataset,
                    const CommonOptions& common, const UseSearched& use, int max_models) {
-  DetectRequest request;
-  request.seed = common.seed;
-  request.num_threads = common.threads;
+  DetectRequest request = request_of(common);
   std::vector<std::string> names;
   for (const auto& model : detector.library().models()) names.push_back(model->name);
   read_true_frames(dataset, [&](const TrueFrame& frame) {

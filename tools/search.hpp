@@ -79,6 +79,9 @@ struct TrueFrame {
   const std::vector<io::BopInstance>& truth;
 };
 
+/// A request for all models.
+DetectRequest request_of(const CommonOptions& common);
+
 /// Reads the frames of a split that have truth, with a progress bar, and hands over each.
 void read_true_frames(const DatasetOptions& dataset,
                       const std::function<void(const TrueFrame&)>& use);

@@ -72,10 +72,8 @@ class Searches {
 
  private:
   void search(const Frame& frame, const track::Tracker& tracker) {
-    DetectRequest request;
+    DetectRequest request = request_of(a_.common);
     request.models = a_.detector.models;
-    request.seed = a_.common.seed;
-    request.num_threads = a_.common.threads;
     request.expected = tracker.expected();
     request.on_round = [&](const SceneInterpretations& part) { found_.push_back(part); };
     SceneInterpretations whole = or_throw(detector_.detect(frame, request));

@@ -273,9 +273,7 @@ void bench_views(const ViewsArguments& a) {
   const eval::EvalObjects objects = or_throw(eval::load_eval_objects(a.dataset.folder));
   std::vector<Row> rows = rows_of(a, detector.options());
   const auto library = std::make_shared<ModelLibrary>(detector.library());
-  DetectRequest request;
-  request.seed = a.common.seed;
-  request.num_threads = a.common.threads;
+  const DetectRequest request = request_of(a.common);
   Progress progress("scenes", static_cast<int>(scenes.size()));
   for (std::size_t s = 0; s < scenes.size(); ++s) {
     progress.show(static_cast<int>(s));
