@@ -4,6 +4,7 @@
 
 #include <csignal>
 #include <iostream>
+#include <thread>
 
 namespace bpa::cli {
 namespace {
@@ -40,6 +41,10 @@ void catch_interrupts() {
 }
 
 bool interrupted() { return interrupt_count > 0; }
+
+void wait_until(const std::function<bool()>& done) {
+  while (!interrupted() && !done()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+}
 
 Client Common::connect() const {
   ClientOptions all = options;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+
 #include <CLI/CLI.hpp>
 
 #include <bpa/client.hpp>
@@ -43,5 +45,7 @@ void add_record(CLI::App& program, const Common& common);
 void catch_interrupts();
 /// True after SIGINT or SIGTERM.
 bool interrupted();
+/// Waits until done() or until interrupted().
+void wait_until(const std::function<bool()>& done);
 
 }  // namespace bpa::cli

@@ -60,10 +60,8 @@ void print_recording_to(const std::string& path, const char* more) {
 
 /// Until it is interrupted or so many seconds are over.
 void wait(double seconds) {
-  const auto begun = Clock::now();
-  while (!interrupted() && Seconds(Clock::now() - begun).count() < seconds) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
+  wait_until(
+      [seconds, begun = Clock::now()] { return Seconds(Clock::now() - begun).count() >= seconds; });
 }
 
 void record_there(Client client, const RecordOptions& options) {

@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // tracks, rename, hold, forget: the objects that the server follows.
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <thread>
 
 #include "client/cli/commands.hpp"
 #include "client/cli/convert.hpp"
@@ -61,9 +59,7 @@ void watch_tracks(const Common& common, const TracksOptions& options) {
     std::fflush(stdout);
     ++seen;
   }));
-  while (!interrupted() && (options.count == 0 || seen < options.count)) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
+  wait_until([&] { return options.count > 0 && seen >= options.count; });
 }
 
 }  // namespace

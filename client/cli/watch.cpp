@@ -6,7 +6,6 @@
 #include <deque>
 #include <iostream>
 #include <memory>
-#include <thread>
 
 #include "client/cli/commands.hpp"
 #include "client/cli/convert.hpp"
@@ -61,9 +60,7 @@ void watch(const Common& common, const WatchOptions& options) {
       if (!written.ok()) std::cerr << "bpa-client: " << written.message << '\n';
     }));
   }
-  while (!interrupted() && (options.count == 0 || seen < options.count)) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
+  wait_until([&] { return options.count > 0 && seen >= options.count; });
 }
 
 }  // namespace
