@@ -33,13 +33,6 @@ std::uint8_t type_of(const Option& setting) {
   return kTypes[setting.value.index()];
 }
 
-const char* type_name(std::uint8_t type) {
-  constexpr const char* kNames[] = {"not set",      "bool",        "integer",    "double",
-                                    "string",       "byte array",  "bool array", "integer array",
-                                    "double array", "string array"};
-  return type < std::size(kNames) ? kNames[type] : "unknown";
-}
-
 ParameterValue value_of(const Option& setting) {
   ParameterValue value;
   value.type = type_of(setting);
@@ -105,6 +98,13 @@ std::uint64_t levels(const std::string& name) {
 }
 
 }  // namespace
+
+const char* type_name(std::uint8_t type) {
+  constexpr const char* kNames[] = {"not set",      "bool",        "integer",    "double",
+                                    "string",       "byte array",  "bool array", "integer array",
+                                    "double array", "string array"};
+  return type < std::size(kNames) ? kNames[type] : "unknown";
+}
 
 std::vector<Parameter> all_parameters(const ServerOptions& options) {
   std::vector<Parameter> parameters;

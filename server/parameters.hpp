@@ -18,6 +18,9 @@ namespace bpa::server {
 
 inline constexpr const char* kUseSimTime = "use_sim_time";
 
+/// Of ROS 2's parameter types, such as "string array".
+const char* type_name(std::uint8_t type);
+
 /// Every parameter, in the order of the settings.
 std::vector<wire::rcl_interfaces::Parameter> all_parameters(const ServerOptions& options);
 

@@ -30,38 +30,19 @@ Json values_json(const std::vector<wire::diagnostic_msgs::KeyValue>& values) {
   return json;
 }
 
-Json value_json(const ParameterValue& value) {
-  switch (value.type) {
-    case ParameterType::kBool:
-      return value.bool_value;
-    case ParameterType::kInteger:
-      return value.integer_value;
-    case ParameterType::kDouble:
-      return value.double_value;
-    case ParameterType::kString:
-      return value.string_value;
-    case ParameterType::kStringArray:
-      return value.string_array_value;
-    default:
-      return nullptr;
-  }
+/// Calls visit(value) for the one value that a parameter of this type has.
+void visit_value(std::uint8_t type, auto& value, const auto& visit) {
+  if (type == ParameterType::kBool) visit(value.bool_value);
+  if (type == ParameterType::kInteger) visit(value.integer_value);
+  if (type == ParameterType::kDouble) visit(value.double_value);
+  if (type == ParameterType::kString) visit(value.string_value);
+  if (type == ParameterType::kStringArray) visit(value.string_array_value);
 }
 
-const char* type_text(std::uint8_t type) {
-  switch (type) {
-    case ParameterType::kBool:
-      return "bool";
-    case ParameterType::kInteger:
-      return "integer";
-    case ParameterType::kDouble:
-      return "double";
-    case ParameterType::kString:
-      return "string";
-    case ParameterType::kStringArray:
-      return "string array";
-    default:
-      return "";
-  }
+Json value_json(const ParameterValue& value) {
+  Json json;
+  visit_value(value.type, value, [&json](const auto& one) { json = one; });
+  return json;
 }
 
 Json range_json(const ParameterDescriptor& about) {
@@ -72,29 +53,6 @@ Json range_json(const ParameterDescriptor& about) {
     return {about.floating_point_range[0].from_value, about.floating_point_range[0].to_value};
   }
   return nullptr;
-}
-
-ParameterValue value_from(const Json& json, std::uint8_t type) {
-  ParameterValue value;
-  value.type = type;
-  switch (type) {
-    case ParameterType::kBool:
-      value.bool_value = json.get<bool>();
-      break;
-    case ParameterType::kInteger:
-      value.integer_value = json.get<std::int64_t>();
-      break;
-    case ParameterType::kDouble:
-      value.double_value = json.get<double>();
-      break;
-    case ParameterType::kString:
-      value.string_value = json.get<std::string>();
-      break;
-    default:
-      value.string_array_value = json.get<std::vector<std::string>>();
-      break;
-  }
-  return value;
 }
 
 const char* origin_text(SymmetryOrigin origin) {
@@ -183,7 +141,7 @@ std::string parameters_json(const ServerOptions& options) {
   for (std::size_t i = 0; i < now.size(); ++i) {
     const ParameterDescriptor about = describe_parameter(now[i].name);
     json.push_back({{"name", now[i].name},
-                    {"type", type_text(about.type)},
+                    {"type", type_name(about.type)},
                     {"value", value_json(now[i].value)},
                     {"default", value_json(defaults[i].value)},
                     {"range", range_json(about)},
@@ -205,10 +163,11 @@ Result<Parameter> parameter_from_json(const std::string& text) {
   const std::uint8_t type = describe_parameter(parameter.name).type;
   if (type == ParameterType::kNotSet) return not_found("there is no parameter ", parameter.name);
   try {
-    parameter.value = value_from(json["value"], type);
+    parameter.value.type = type;
+    visit_value(type, parameter.value, [&](auto& value) { json["value"].get_to(value); });
   } catch (const Json::exception&) {
     return invalid_argument(parameter.name, " is of type ", json["value"].type_name(),
-                            "; it must be of type ", type_text(type));
+                            "; it must be of type ", type_name(type));
   }
   return parameter;
 }
