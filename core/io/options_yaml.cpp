@@ -3,6 +3,7 @@
 #include "core/io/options_yaml.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <iomanip>
 
 #include <yaml-cpp/yaml.h>
@@ -137,6 +138,12 @@ struct ValueWriter {
 
   void operator()(std::monostate) const {}
   void operator()(const auto* value) const { out << ' ' << *value; }
+  // With twelve digits, where these say which number it is.
+  void operator()(const double* value) const {
+    const std::string twelve = format("%.12g", *value);
+    const bool exact = std::strtod(twelve.c_str(), nullptr) == *value;
+    out << ' ' << (exact ? twelve : format("%.17g", *value));
+  }
   void operator()(const std::string* value) const { out << " \"" << *value << '"'; }
   void operator()(const std::vector<std::string>* values) const {
     out << " [";

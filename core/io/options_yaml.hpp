@@ -27,7 +27,7 @@ Status read_options(const std::string& path, const OptionsReading& reading);
 /// Sets one field from text such as "queue.requests=4".
 Status set_option(const std::string& assignment, const OptionsReading& reading);
 
-/// The value as YAML; empty of a group.
+/// The value as YAML, exact; empty of a group.
 std::string value_text(const Option& option);
 
 /// The options as a YAML file, with description and rule in comments; # before values if `hidden`.

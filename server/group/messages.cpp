@@ -3,7 +3,6 @@
 #include "server/group/messages.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -18,35 +17,10 @@ namespace {
 
 namespace msgs = wire::bpa_msgs;
 
-template <class T>
-std::string exact(T number) {
-  char text[64];
-  const auto end = std::to_chars(text, text + sizeof text, number).ptr;
-  return {text, end};
-}
-
-std::string value_text(const Option& option) {
-  return std::visit(
-      [](auto value) -> std::string {
-        using Value = decltype(value);
-        if constexpr (std::is_same_v<Value, bool*>) {
-          return *value ? "true" : "false";
-        } else if constexpr (std::is_same_v<Value, std::string*>) {
-          return *value;
-        } else if constexpr (std::is_same_v<Value, int*> || std::is_same_v<Value, double*> ||
-                             std::is_same_v<Value, std::uint64_t*>) {
-          return exact(*value);
-        } else {
-          return "";
-        }
-      },
-      option.value);
-}
-
 std::vector<std::string> option_texts(DetectorOptions options) {
   std::vector<std::string> out;
   for (const Option& option : options_of(options)) {
-    if (!option.is_group()) out.push_back(option.path + '=' + value_text(option));
+    if (!option.is_group()) out.push_back(option.path + '=' + io::value_text(option));
   }
   return out;
 }
