@@ -51,8 +51,14 @@ constexpr Stage kStages[] = {
     {"final", select, 1, "Selected",
      "Distinct placements of sufficient score. Interpretations of the scene choose from these."},
 };
-constexpr std::size_t kRoundStages = 7;    // those that every round runs
-constexpr std::size_t kScoringStages = 2;  // aligned, scored
+
+consteval std::size_t place_of(Candidates (*run)(const Search&, Candidates)) {
+  std::size_t i = 0;
+  while (kStages[i].run != run) ++i;
+  return i;
+}
+constexpr std::size_t kRoundStages = place_of(score) + 1;  // those that every round runs
+constexpr std::size_t kFirstScoring = place_of(refine);
 
 // Runs a stage and records its time and what it rejects.
 Candidates timed(const Stage& stage, Search& search, Candidates candidates, ObjectTrace* trace) {
@@ -94,7 +100,7 @@ void reject_losers(const Stage& stage, std::span<const Search> searches, const C
 
 std::span<const Stage> detection_stages() { return kStages; }
 std::span<const Stage> round_stages() { return detection_stages().first(kRoundStages); }
-std::span<const Stage> scoring_stages() { return round_stages().last(kScoringStages); }
+std::span<const Stage> scoring_stages() { return round_stages().subspan(kFirstScoring); }
 std::span<const Stage> final_stages() { return detection_stages().subspan(kRoundStages); }
 
 void run_stages(std::span<const Stage> stages, std::span<Search> searches, int num_threads,

@@ -81,12 +81,12 @@ struct Stage {
   std::optional<Limit> behind = {};
 };
 
-/// The stages in their order. The first ones find placements in a sample of the scene, once in each
-/// round; the others see what all rounds have found.
+/// The stages in their order. Those up to `score` find placements in a sample of the scene, once in
+/// each round; the others see what all rounds have found.
 std::span<const Stage> detection_stages();
 std::span<const Stage> round_stages();
 std::span<const Stage> final_stages();
-/// The last ones of a round: what aligns and scores a pose that is known well.
+/// Those of a round from `refine` on: what aligns and scores a pose that is known well.
 std::span<const Stage> scoring_stages();
 
 /// Runs stages for several models of one scene, each stage for all models before the next. Models
