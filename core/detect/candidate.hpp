@@ -14,7 +14,7 @@
 namespace bpa {
 
 /// What suggested a pose: an FPFH match, the votes of oriented point pairs, the caller's prior, or
-/// a flat region. `count` is how many there are.
+/// a flat region. `count` is how many there are, and stays last.
 enum class Source : std::uint8_t { feature, pairs, prior, region, count };
 
 /// One model at one pose, from the first guess to the placement that is returned. Later stages fill
@@ -28,8 +28,8 @@ struct Candidate {
   /// an earlier frame suggest.
   bool is_protected = false;
   int scene_point = -1;  ///< Of the correspondence: index into SceneFeatures::surface (feature) or
-                         ///< ::coarse (pairs), of the region in ::flat; -1 for a prior.
-  int model_point = -1;  ///< Index into ModelIndex::features or ::coarse; -1 for a prior.
+                         ///< ::coarse (pairs), of the region in ::flat; -1: it has none.
+  int model_point = -1;  ///< Index into ModelIndex::features or ::coarse; -1: it has none.
 
   ScoreValues values{};    ///< Since refine.
   double prior = 0;        ///< Log odds that the caller's priors add; 0 without any.

@@ -39,7 +39,7 @@ std::vector<Cluster> group(const Search& search, Candidates& candidates) {
 }
 
 // BPA from the cluster's correspondences, those of its best members first. The best member where
-// there are none, since priors suggested all.
+// there are none.
 Pose aligned_pose(const Search& search, const Cluster& cluster) {
   std::vector<align::OrientedPair> pairs;
   for (const Candidate* member : cluster.members) {
