@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/io/options_yaml.hpp"
 #include "idl/wire/cdr.hpp"
 
 namespace bpa::server {
@@ -129,7 +130,7 @@ ParameterDescriptor describe_parameter(const std::string& name) {
   if (!setting) return descriptor;
   const FieldRule& rule = setting->rule;
   descriptor.type = type_of(*setting);
-  descriptor.description = setting->description;
+  descriptor.description = io::description_of(*setting);
   descriptor.read_only = is_read_only(*setting);
   if (!std::isfinite(rule.min) || !std::isfinite(rule.max)) return descriptor;
   if (descriptor.type == ParameterType::kInteger) {

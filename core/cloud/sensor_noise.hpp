@@ -7,25 +7,6 @@
 
 namespace bpa {
 
-/// Standard deviation of depth at distance z, metres: floor + growth * (z - from)^2. The default is
-/// a Kinect's (Nguyen, Izadi and Lovell, "Modeling Kinect Sensor Noise", 3DIMPVT 2012).
-struct SensorNoise {
-  float floor = 0.0012f;   ///< metres
-  float growth = 0.0019f;  ///< per metre
-  float from = 0.4f;       ///< metres
-
-  float operator()(float z) const { return floor + growth * (z - from) * (z - from); }
-};
-
-/// Active stereo has a RealSense D415's: z^2 * 0.08 pixels / (924 pixels * 55 mm) (Grunnet-Jepsen
-/// et al., "Best-known-methods for tuning Intel RealSense D400 depth cameras", Intel 2018) and the
-/// rounding to millimetres. Time of flight has a Kinect's: what is published of it is the noise
-/// alone (Fankhauser et al., ICAR 2015), and multipath adds to that.
-constexpr SensorNoise noise_of(SensorKind kind) {
-  if (kind == SensorKind::active_stereo) return {0.0003f, 0.00157f, 0};
-  return {};
-}
-
 /// What tells the kinds apart in one depth image.
 struct SensorTraits {
   bool measured = false;  ///< Enough depths, in whole tenths of a millimetre as sensors give them.

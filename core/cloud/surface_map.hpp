@@ -42,9 +42,8 @@ struct SurfaceMapOptions {
   double normal_radius_m = 0.010;  ///< Radius of the window a surface normal is fitted in, metres.
   BPA_OPTION(int, max_width, 400, (64, 8192),
              "Wider frames are halved until they are not wider, pixels.");
-  BPA_OPTION(std::string, sensor, "auto", ("auto structured_light active_stereo time_of_flight "),
-             "Kind of depth camera: structured_light, active_stereo or time_of_flight; auto tells "
-             "it from each frame.");
+  BPA_OPTION(std::string, sensor, "auto", (kSensorChoices),
+             "Kind of depth camera; auto tells it from each frame.");
   int num_threads = 0;  ///< 0: one per core. Does not change the result.
 };
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iomanip>
+#include <limits>
+#include <sstream>
 
 #include <yaml-cpp/yaml.h>
 
@@ -186,6 +188,13 @@ std::string value_text(const Option& option) {
   return out.str().erase(0, out.str().empty() ? 0 : 1);
 }
 
+std::string description_of(const Option& option) {
+  std::istringstream choices{std::string(option.rule.choices)};
+  std::string listed, word;
+  while (choices >> word) add_word(word, ", ", listed);
+  return option.description + (listed.empty() ? "" : " One of " + listed + ".");
+}
+
 std::string options_yaml(const std::vector<Option>& options, bool hidden) {
   std::ostringstream out;
   out << std::setprecision(12) << std::boolalpha;
@@ -193,7 +202,7 @@ std::string options_yaml(const std::vector<Option>& options, bool hidden) {
     const auto depth = std::count(option.path.begin(), option.path.end(), '.');
     const std::string indent(2 * depth, ' ');
     if (option.is_group()) out << (depth == 0 ? "\n" : "");
-    out << indent << "# " << option.description;
+    out << indent << "# " << description_of(option);
     const std::size_t kind = option.value.index();
     const bool number = kind >= 2 && kind <= 4;
     if (number) out << ' ' << option.rule.min << " to " << option.rule.max << '.';

@@ -33,4 +33,7 @@ std::string value_text(const Option& option);
 /// The options as a YAML file, with description and rule in comments; # before values if `hidden`.
 std::string options_yaml(const std::vector<Option>& options, bool hidden = false);
 
+/// What it is, and of a text what it may be.
+std::string description_of(const Option& option);
+
 }  // namespace bpa::io
