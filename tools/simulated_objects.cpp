@@ -146,8 +146,7 @@ void add_sensor_option(CLI::App& command, sim::SensorOptions& sensor, bool& mixe
   command
       .add_option_function<std::string>(
           "--sensor", set,
-          "Kind of the depth camera, structured_light if not given; mixed = one of the three for "
-          "each " +
+          "Kind of the depth camera, structured_light if not given; mixed = one of them for each " +
               unit)
       ->check(CLI::IsMember(names));
 }

@@ -140,7 +140,9 @@ Pose aimed_past(const Pose& world_from_camera, const Eigen::Vector3d& object, co
 SensorOptions draw_sensor(const SceneOptions& options, std::uint64_t seed) {
   constexpr std::uint64_t kStream = 1u << 20;  // beyond those of the views
   SensorOptions sensor = options.sensor;
-  if (options.mixed_sensors) sensor.kind = kSensorKinds[RandomStream(seed, kStream).index(3)];
+  if (options.mixed_sensors) {
+    sensor.kind = static_cast<SensorKind>(RandomStream(seed, kStream).index(kSensorKinds.size()));
+  }
   return sensor;
 }
 

@@ -11,7 +11,7 @@
 #include "core/sim/kinect.hpp"
 #include "core/sim/time_of_flight.hpp"
 
-// A depth camera of one of three kinds with the colour camera beside it.
+// A depth camera of one of several kinds with the colour camera beside it.
 
 namespace bpa::sim {
 

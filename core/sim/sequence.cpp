@@ -336,7 +336,8 @@ Result<Sequence> plan_sequence(const Stage& stage, const SequenceOptions& option
   sequence.kind = options.kind;
   sequence.sensor = options.sensor;
   if (options.mixed_sensors) {
-    sequence.sensor.kind = kSensorKinds[RandomStream(seed, kSensorStream).index(3)];
+    sequence.sensor.kind =
+        static_cast<SensorKind>(RandomStream(seed, kSensorStream).index(kSensorKinds.size()));
   }
   sequence.camera = options.camera;
   sequence.seed = RandomStream(seed, kImageStream)();

@@ -80,12 +80,12 @@ std::optional<double> published_noise(const sim::SensorOptions& options, double 
   if (options.kind == SensorKind::time_of_flight) {
     return sim::published_axial_noise(options.time_of_flight, depth, angle);
   }
-  if (angle > 0) return std::nullopt;
+  if (options.kind != SensorKind::active_stereo || angle > 0) return std::nullopt;
   const sim::ActiveStereoOptions& stereo = options.active_stereo;
   return stereo.disparity_noise * depth * depth / (stereo.infrared_focal * stereo.baseline);
 }
 
-/// The other two kinds against what is published of them.
+/// The other kinds against what is published of them.
 Json bench_other_planes(const SensorArguments& a, SensorKind kind) {
   sim::SensorOptions options;
   options.kind = kind;
@@ -225,7 +225,8 @@ void bench_sensor(const SensorArguments& a) {
     throw CLI::ValidationError("--sheet", "needs real frames: --bop or --pcd");
   }
   Json json = {{"format", "bpa sensor bench"}, {"version", 1}, {"planes", bench_planes(a)}};
-  for (const SensorKind kind : {SensorKind::active_stereo, SensorKind::time_of_flight}) {
+  for (const SensorKind kind : kSensorKinds) {
+    if (kind == SensorKind::structured_light) continue;
     json[std::string(name_of(kind))] = bench_other_planes(a, kind);
   }
   if (with_frames) json["frames"] = bench_frames(a);
