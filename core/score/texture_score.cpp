@@ -101,7 +101,7 @@ Eigen::Vector4d light_row(const Eigen::Vector3f& normal) {
 }
 
 // Whether the blur of colours mixes the pixel with none beside the outline.
-bool inside(const PredictedSurface& predicted, int u, int v) {
+bool is_inside(const PredictedSurface& predicted, int u, int v) {
   return predicted.depth_at(u - kMixed, v) > 0 && predicted.depth_at(u + kMixed, v) > 0 &&
          predicted.depth_at(u, v - kMixed) > 0 && predicted.depth_at(u, v + kMixed) > 0;
 }
@@ -124,7 +124,7 @@ TextureAgreement compare_texture(const CheckImage& image, const Image<Eigen::Vec
   PredictedSums sums;
   ObservedSums shifted[3][3];
   for_each_shown(image, predicted, kStep, [&](int u, int v, std::uint32_t point) {
-    if (!inside(predicted, u, v)) return;
+    if (!is_inside(predicted, u, v)) return;
     if (!observed.contains(u - kShift, v - kShift) || !observed.contains(u + kShift, v + kShift)) {
       return;
     }
