@@ -12,9 +12,9 @@
 #include "core/detect/contest.hpp"
 #include "core/detect/search.hpp"
 
-// The stages of the search; README.md says what each does, why, and how to add one. A stage takes
-// the candidates of one model from the stage before and returns its own. A stage is deterministic,
-// for any number of threads, unless the deadline passes.
+// The stages of the search; README.md says what each does and why, CONTRIBUTING.md how to add one.
+// A stage takes the candidates of one model from the stage before and returns its own. A stage is
+// deterministic, for any number of threads, unless the deadline passes.
 
 namespace bpa {
 
