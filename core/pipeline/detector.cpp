@@ -21,24 +21,12 @@ namespace {
 
 using Models = std::vector<std::shared_ptr<const ObjectModel>>;
 
-Status check_request(const DetectRequest& request) {
-  if (request.top_k < 1 || request.top_k > 100) {
-    return invalid_argument("top_k is ", request.top_k, "; it must be between 1 and 100");
-  }
-  if (!(request.budget_ms >= 0)) {
-    return invalid_argument("budget_ms is ", std::to_string(request.budget_ms),
-                            "; it must be 0 (no limit) or more");
-  }
-  return {};
-}
-
-Status check_priors(const ModelLibrary& library, const std::vector<PosePrior>& priors) {
+Status find_priors(const ModelLibrary& library, const std::vector<PosePrior>& priors) {
   for (std::size_t i = 0; i < priors.size(); ++i) {
-    const std::string name = "priors[" + std::to_string(i) + "]";
     if (!library.find(priors[i].model)) {
-      return not_found(name, ": the library holds no model named \"", priors[i].model, "\"");
+      return not_found("priors[", i, "]: the library holds no model named \"", priors[i].model,
+                       "\"");
     }
-    if (Status status = validate(priors[i], name); !status.ok()) return status;
   }
   return {};
 }
@@ -94,6 +82,26 @@ std::vector<Interpretation> interpret_scene(const SceneFeatures& scene, const Sc
 
 }  // namespace
 
+Status validate(const DetectRequest& request) {
+  if (request.top_k < 1 || request.top_k > 100) {
+    return invalid_argument("top_k is ", request.top_k, "; it must be between 1 and 100");
+  }
+  if (!(request.budget_ms >= 0)) {
+    return invalid_argument("budget_ms is ", std::to_string(request.budget_ms),
+                            "; it must be 0 (no limit) or more");
+  }
+  for (const ExpectedPlacement& expected : request.expected) {
+    if (is_valid(expected.frame_from_object)) continue;
+    return invalid_argument("the expected pose of ", expected.model,
+                            " is not finite with a unit quaternion; it must be");
+  }
+  for (std::size_t i = 0; i < request.priors.size(); ++i) {
+    const Status status = validate(request.priors[i], concat("priors[", i, "]"));
+    if (!status.ok()) return status;
+  }
+  return {};
+}
+
 Result<DetectorOptions> load_detector_options(const std::string& path) {
   DetectorOptions options;
   Status status = io::read_options(path, {options_of(options), "", {}});
@@ -132,10 +140,10 @@ Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
                                                         const MakeSearches& searches,
                                                         FrameTrace* trace) const {
   if (Status status = validate(frame); !status.ok()) return status;
-  if (Status status = check_request(request); !status.ok()) return status;
+  if (Status status = validate(request); !status.ok()) return status;
   const Result<Models> models = chosen_models(*library_, request);
   if (!models.ok()) return models.status();
-  if (Status status = check_priors(*library_, request.priors); !status.ok()) return status;
+  if (Status status = find_priors(*library_, request.priors); !status.ok()) return status;
 
   const Deadline deadline = Deadline::after(request.budget_ms);
   const SearchFacts facts = facts_of(frame, request, *models);

@@ -51,6 +51,9 @@ struct DetectRequest {
   std::function<void(const SceneInterpretations&)> on_round = {};
 };
 
+/// Checks all that no library is needed for; the message names the field, its value and the rule.
+Status validate(const DetectRequest& request);
+
 class ModelSearches;
 
 /// Makes searches of other hosts (model_searches.hpp) for these models. They make the same plan of

@@ -113,6 +113,11 @@ Result<SearchPlan> plan_search(const DetectorOptions& options, const ScoreLayers
   if (const auto limits = layers.limits.at(keep_right, facts.colored); !limits.ok()) {
     return limits.status();
   }
+  if (facts.models < 1 || !(facts.budget_ms >= 0) || !(facts.costs.preparation_ms >= 0)) {
+    return invalid_argument("a search is for ", facts.models, " models in ", facts.budget_ms,
+                            " ms with preparations of ", facts.costs.preparation_ms,
+                            " ms; it must be for 1 or more, in no negative times");
+  }
   PlanReasons reasons;
   SearchPlan plan{
       .surface = options.surface,

@@ -64,7 +64,7 @@ struct SearchPlan {
 };
 
 /// Pure: the same input gives the same plan. Fails with invalid_argument where the limits of the
-/// layers do not hold `score.keep_right`.
+/// layers do not hold `score.keep_right`, and on facts of no models or of negative times.
 Result<SearchPlan> plan_search(const DetectorOptions& options, const ScoreLayers& layers,
                                const SearchFacts& facts);
 

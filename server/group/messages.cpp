@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 #include "core/base/concat.hpp"
 #include "core/base/options.hpp"
 #include "core/io/options_yaml.hpp"
-#include "server/convert/frames.hpp"
 
 namespace bpa::server::group {
 namespace {
@@ -43,13 +43,37 @@ msgs::RgbdFrame frame_message(const Frame& frame) {
   message.depth_encoding = "32FC1";
   message.depth = bytes_of(frame.depth);
   message.k = {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
+  message.mask = frame.mask;
   const RegionOfInterest& roi = frame.roi;
+  if (roi.empty()) return message;  // whatever else it says
   message.roi.x_offset = static_cast<std::uint32_t>(roi.x);
   message.roi.y_offset = static_cast<std::uint32_t>(roi.y);
   message.roi.width = static_cast<std::uint32_t>(roi.width);
   message.roi.height = static_cast<std::uint32_t>(roi.height);
-  message.mask = frame.mask;
   return message;
+}
+
+// As it was sent: depth that is none stays as it is. validate(Frame) says what is wrong.
+Frame frame_from(msgs::GroupStep& begin) {
+  msgs::RgbdFrame& message = begin.frame;
+  Frame frame;
+  frame.camera = {.width = static_cast<int>(message.width),
+                  .height = static_cast<int>(message.height),
+                  .fx = message.k[0],
+                  .fy = message.k[4],
+                  .cx = message.k[2],
+                  .cy = message.k[5]};
+  frame.frame_id = std::move(message.header.frame_id);
+  frame.depth.resize(message.depth.size() / sizeof(float));
+  std::copy_n(message.depth.data(), frame.depth.size() * sizeof(float),
+              reinterpret_cast<std::uint8_t*>(frame.depth.data()));
+  frame.color = std::move(message.color);
+  frame.mask = std::move(message.mask);
+  frame.background = std::move(begin.background);
+  frame.roi = {static_cast<int>(message.roi.x_offset), static_cast<int>(message.roi.y_offset),
+               static_cast<int>(message.roi.width), static_cast<int>(message.roi.height)};
+  frame.fused = static_cast<int>(begin.fused_frames);
+  return frame;
 }
 
 template <class Matrix, class Array>
@@ -133,21 +157,13 @@ Result<ShareTask> task_of(msgs::GroupStep begin, const SharedLibrary& library) {
     if (!model) return not_found("the library has no model of number ", number);
     task.models.push_back(std::move(model));
   }
-  DecodedFrame frame = frame_from_message(std::move(begin.frame));
-  if (!frame.ok()) return frame.status();
-  task.frame = *std::move(frame);
-  task.frame.background = std::move(begin.background);
-  task.frame.fused = static_cast<int>(begin.fused_frames);
+  task.frame = frame_from(begin);
   if (Status status = validate(task.frame); !status.ok()) return status;
   const std::vector<Option> known = options_of(task.options);
   for (const std::string& option : begin.options) {
     if (Status status = io::set_option(option, {known, "-", {}}); !status.ok()) return status;
   }
-  for (const msgs::GroupPrior& message : begin.priors) {
-    task.request.priors.push_back(prior_from(message));
-    const std::string name = "priors of " + message.model;
-    if (Status status = validate(task.request.priors.back(), name); !status.ok()) return status;
-  }
+  std::ranges::transform(begin.priors, std::back_inserter(task.request.priors), prior_from);
   task.request.seed = begin.seed;
   task.request.budget_ms = begin.budget_ms;
   task.facts = {.models = static_cast<int>(begin.library_models),
@@ -156,11 +172,6 @@ Result<ShareTask> task_of(msgs::GroupStep begin, const SharedLibrary& library) {
                 .seed = begin.seed,
                 .budget_ms = begin.budget_ms,
                 .costs = {.preparation_ms = begin.preparation_ms}};
-  if (task.facts.models < 1 || !(task.facts.budget_ms >= 0) ||
-      !(task.facts.costs.preparation_ms >= 0)) {
-    return corrupt("a search is for ", task.facts.models, " models in ", task.facts.budget_ms,
-                   " ms with preparations of ", task.facts.costs.preparation_ms, " ms");
-  }
   if (begin.expected_poses.size() != begin.expected_models.size() * kPoseNumbers) {
     return corrupt("a search expects ", begin.expected_models.size(), " models in ",
                    begin.expected_poses.size(), " numbers");
@@ -171,6 +182,7 @@ Result<ShareTask> task_of(msgs::GroupStep begin, const SharedLibrary& library) {
     task.request.expected.push_back(
         {model->name, pose_from(begin.expected_poses.data() + i * kPoseNumbers)});
   }
+  if (Status status = validate(task.request); !status.ok()) return status;
   return task;
 }
 

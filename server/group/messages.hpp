@@ -31,8 +31,8 @@ struct ShareTask {
   std::vector<std::shared_ptr<const ObjectModel>> models;
 };
 
-/// Fails with invalid_argument, as where an option is unknown: then the front is of another
-/// version.
+/// Fails as the detector would, with invalid_argument; also where an option is unknown: then the
+/// front is of another version. plan_search() checks the facts.
 Result<ShareTask> task_of(wire::bpa_msgs::GroupStep begin, const SharedLibrary& library);
 
 wire::bpa_msgs::GroupClaim to_message(const Claim& claim);
