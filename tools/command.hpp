@@ -143,8 +143,7 @@ void add_train_command(CLI::App& program);
 void add_doctor_command(CLI::App& program);
 void add_simulate_command(CLI::App& program);
 
-/// The experiments of `bpa bench`.
-void add_bench_alignment(CLI::App& bench);
+/// The measurements of `bpa bench`.
 void add_bench_accuracy(CLI::App& bench);
 void add_bench_speed(CLI::App& bench, CountAllocations allocations);
 

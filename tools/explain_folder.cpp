@@ -171,7 +171,7 @@ class ModelExplanation {
       groups.push_back({truths, kTrue, DrawnPoses::Style::dashed});
       legend.push_back({kTrue, "truth; right and alive: " + std::to_string(count_right(stage))});
     }
-    page.heading(stage.title);
+    page.heading(std::string(stage.name));
     page.show(
         numbered(index + 3, stage.name),
         std::string(stage.text) + std::string(outlined ? kOutlines : kDots),

@@ -33,7 +33,6 @@ int run_bpa(int argc, char** argv, CountAllocations allocations) {
   add_doctor_command(program);
   CLI::App& bench = *program.add_subcommand("bench", "Run an experiment");
   bench.require_subcommand(1);
-  add_bench_alignment(bench);
   add_bench_accuracy(bench);
   add_bench_speed(bench, allocations);
   return run_program(program, argc, argv);

@@ -31,11 +31,11 @@ struct Candidate {
                          ///< ::coarse (pairs), of the region in ::flat; -1: it has none.
   int model_point = -1;  ///< Index into ModelIndex::features or ::coarse; -1: it has none.
 
-  ScoreValues values{};    ///< Since refine.
-  double prior = 0;        ///< Log odds that the caller's priors add; 0 without any.
-  double score = 0;        ///< Log odds by the learned layer, with `prior`; since check_free_space.
-  double probability = 0;  ///< Of that score, without rivals. Since refine.
-  LowestLogOdds lowest = {};                  ///< For measuring limits.
+  ScoreValues values{};       ///< Since refine.
+  double prior = 0;           ///< Log odds that the caller's priors add; 0 without any.
+  double score = 0;           ///< Log odds by the learned layer, with `prior`; since check.
+  double probability = 0;     ///< Of that score, without rivals. Since refine.
+  LowestLogOdds lowest = {};  ///< For measuring limits.
   std::vector<std::uint32_t> explained = {};  ///< Sorted pixels of the reduced image on the model.
 
   const Pose& pose() const { return refinement.camera_from_object; }

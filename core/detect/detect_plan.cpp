@@ -22,8 +22,8 @@ constexpr LibraryCount kLibraryCounts[] = {
      3},
     {"cluster.max_in_library", [](DetectOptions& o) -> int& { return o.cluster.max_in_library; },
      180, 2},
-    {"refine.max_in_library", [](DetectOptions& o) -> int& { return o.refine.max_in_library; }, 60,
-     2}};
+    {"round_two.max_in_library",
+     [](DetectOptions& o) -> int& { return o.round_two.max_in_library; }, 60, 2}};
 // Twice as many for eight times the models. With 200 models, limits 1.5, 2 and 2.9 times as high
 // find 400/612, 403/612 and 412/612 objects of seed 777 in 2.0, 2.1 and 2.4 times as long.
 constexpr int kModels = 24;
@@ -100,7 +100,7 @@ DetectPlan round_plan(const DetectPlan& whole, double share, bool hurried) {
 DetectPlan final_plan(const DetectPlan& whole, double share) {
   DetectPlan out = whole;
   if (share >= 1) return out;
-  for (int* size : {&out.climb.max_climbed, &out.turn.max_turned, &out.flat.max_laid}) {
+  for (int* size : {&out.climb.max_climbed, &out.turn.max_turned, &out.lay.max_laid}) {
     *size = part_of(*size, share);
   }
   return out;

@@ -68,15 +68,15 @@ struct ClusterOptions {
 
 struct RoundTwoOptions {
   BPA_OPTION(int, bpa_steps, 3, (0, 100), "Alignments by BPA that are proposed (V.6).");
+  BPA_OPTION(int, max_in_library, 0, (0, 1000000),
+             "Placements of all models together that are aligned and scored in full. 0: 60, more "
+             "with over 24 models, and twice as many without colours.");
   int max_pairs = 12;  ///< Surface correspondences of one alignment; half as many of edges.
 };
 
 struct RefineOptions {
   BPA_OPTION(int, max_refined, 30, (1, 10000),
              "Placements of one model that are aligned to the end.");
-  BPA_OPTION(int, max_in_library, 0, (0, 1000000),
-             "Placements of all models together that are aligned and scored in full. 0: 60, more "
-             "with over 24 models, and twice as many without colours.");
 };
 
 struct ClimbOptions {
@@ -88,7 +88,7 @@ struct TurnOptions {
              "Best placements that are tried in near-symmetric poses; 0: none.");
 };
 
-struct FlatOptions {
+struct LayOptions {
   BPA_OPTION(int, max_laid, 4, (0, 10000),
              "Poses at rest on flat regions that are scored in full; 0: none.");
 };
@@ -120,7 +120,7 @@ struct DetectOptions {
   BPA_GROUP(RefineOptions, refine, "Alignment to the end.");
   BPA_GROUP(ClimbOptions, climb, "Hill climbing of the score.");
   BPA_GROUP(TurnOptions, turn, "Near symmetries.");
-  BPA_GROUP(FlatOptions, flat, "Thin objects at rest on a plane.");
+  BPA_GROUP(LayOptions, lay, "Thin objects at rest on a plane.");
   BPA_GROUP(SelectOptions, select, "What is returned.");
 };
 

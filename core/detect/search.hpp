@@ -29,7 +29,6 @@ struct Rejected {
 
 struct TraceStage {
   std::string_view name;
-  std::string_view title;       ///< For people.
   std::string_view text;        ///< What the stage does, for people.
   std::vector<FastPose> poses;  ///< The candidates after the stage.
   double milliseconds = 0;
@@ -42,7 +41,7 @@ struct ObjectTrace {
   std::vector<TraceStage> stages;  ///< In the order of detection_stages(); of all rounds.
 
   /// The stage of that name; a new one unless a round before had it.
-  TraceStage& stage(std::string_view name, std::string_view title, std::string_view text);
+  TraceStage& stage(std::string_view name, std::string_view text);
 };
 
 /// Sets score and probability from values and prior.

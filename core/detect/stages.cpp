@@ -18,37 +18,36 @@ namespace bpa {
 namespace {
 
 constexpr Stage kStages[] = {
-    {"sampled", sample, 0.3, "Sampled",
+    {"sample", sample, 0.3,
      "Poses drawn by BPA from single FPFH matches, voted for by oriented point pairs, and drawn "
      "from priors."},
-    {"free_space", check_free_space, 0.4, "Checked against the depth image",
+    {"check", check, 0.4,
      "Poses with over 20 % of their points in free space are rejected, and poses without surface. "
      "The best of each place by score stay, then the best of all models.",
      [](const DetectPlan& plan) { return plan.check.max_in_library; }, Limit::checked_behind},
-    {"corrected", correct, 0.4, "Corrected",
+    {"correct", correct, 0.4,
      "Two Gauss-Newton steps move each pose onto the surface, where that improves it."},
-    {"clusters", cluster, 0.6, "Clustered",
+    {"cluster", cluster, 0.6,
      "Poses within 2.5 cm and pi/16 are a cluster. BPA aligns each one again with the "
      "correspondences of all its poses. The best of all models go on.",
      [](const DetectPlan& plan) { return plan.cluster.max_in_library; }, Limit::clustered_behind},
-    {"round_two", round_two, 0.5, "Aligned (round two)",
+    {"round_two", round_two, 0.5,
      "BPA and Gauss-Newton steps move each pose onto the surface around it. A step is accepted if "
      "the score improves. After non-maximum suppression the best of all models go on.",
-     [](const DetectPlan& plan) { return plan.refine.max_in_library; }, Limit::aligned_behind},
-    {"aligned", refine, 0.5, "Refined",
+     [](const DetectPlan& plan) { return plan.round_two.max_in_library; }, Limit::aligned_behind},
+    {"refine", refine, 0.5,
      "The best are aligned once more by gradients. Non-maximum suppression follows.", nullptr,
      Limit::refined_behind},
-    {"scored", score, 1, "Scored", "Each is scored with all components (round three)."},
-    {"climbed", climb, 0.5, "Climbed",
+    {"score", score, 1, "Each is scored with all components (round three)."},
+    {"climb", climb, 0.5,
      "The best climb the score by small steps, from where they are and from beside."},
-    {"turned", try_turned, 0.7, "Turned",
+    {"turn", turn, 0.7,
      "The best are tried in near-symmetric poses, those that the view may leave open."},
-    {"laid", lay_flat, 0.7, "Laid flat",
+    {"lay", lay, 0.7,
      "A thin model is laid onto regions that differ from their plane, where its silhouette agrees "
      "best."},
-    {"rivals", compare_rivals, 1, "Compared",
-     "Poses in one place are compared on the pixels where they disagree."},
-    {"final", select, 1, "Selected",
+    {"compare", compare, 1, "Poses in one place are compared on the pixels where they disagree."},
+    {"select", select, 1,
      "Distinct placements of sufficient score. Interpretations of the scene choose from these."},
 };
 
@@ -63,7 +62,7 @@ constexpr std::size_t kFirstScoring = place_of(refine);
 // Runs a stage and records its time and what it rejects.
 Candidates timed(const Stage& stage, Search& search, Candidates candidates, ObjectTrace* trace) {
   if (!trace) return stage.run(search, std::move(candidates));
-  search.tracing = &trace->stage(stage.name, stage.title, stage.text);
+  search.tracing = &trace->stage(stage.name, stage.text);
   const Stopwatch watch;
   candidates = stage.run(search, std::move(candidates));
   search.tracing->milliseconds += watch.milliseconds();
@@ -138,11 +137,10 @@ void run_stages(std::span<const Stage> stages, std::span<Search> searches, int n
   for (Search& search : searches) search.deadline = deadline;
 }
 
-TraceStage& ObjectTrace::stage(std::string_view name, std::string_view title,
-                               std::string_view text) {
+TraceStage& ObjectTrace::stage(std::string_view name, std::string_view text) {
   const auto found = std::ranges::find(stages, name, &TraceStage::name);
   if (found != stages.end()) return *found;
-  stages.push_back({name, title, text, {}, 0, {}});
+  stages.push_back({name, text, {}, 0, {}});
   return stages.back();
 }
 

@@ -27,7 +27,7 @@ align::OrientedPair oriented_pair(const Search& search, const Candidate& candida
 
 /// Rejects poses that hang in free space or find no surface (V.3). Keeps the best of each place by
 /// the round-two score from a few points.
-Candidates check_free_space(const Search& search, Candidates sampled);
+Candidates check(const Search& search, Candidates sampled);
 
 /// Moves each pose by a few Gauss-Newton steps where the check score improves: a sampled pose is
 /// off by as much as the sampling of both surfaces is coarse. Rejects nothing.
@@ -57,24 +57,23 @@ Candidates score(const Search& search, Candidates refined);
 Candidates climb(const Search& search, Candidates refined);
 
 /// Adds the best candidates turned by the model's near symmetries.
-Candidates try_turned(const Search& search, Candidates climbed);
+Candidates turn(const Search& search, Candidates climbed);
 
 /// Adds poses of a thin model at rest on flat regions. Each slides on the plane to where its
 /// silhouette agrees best, and is scored with all components. Changes no other candidate.
-Candidates lay_flat(const Search& search, Candidates turned);
+Candidates lay(const Search& search, Candidates turned);
 
 /// Compares candidates that claim one place on the pixels where they disagree. Rejects nothing.
-Candidates compare_rivals(const Search& search, Candidates turned);
+Candidates compare(const Search& search, Candidates turned);
 
 /// Rejects low scores and duplicates; the best first (V.8).
 Candidates select(const Search& search, Candidates compared);
 
 struct Stage {
-  std::string_view name;
+  std::string_view name;  ///< Of its function, its file and its options.
   Candidates (*run)(const Search&, Candidates);
-  double time_share;       ///< Of the time left at its start, where there is a deadline.
-  std::string_view title;  ///< For people.
-  std::string_view text;
+  double time_share;      ///< Of the time left at its start, where there is a deadline.
+  std::string_view text;  ///< What it does, for people.
   /// How many candidates of all models together go on, the best by score; null: all.
   int (*most_in_library)(const DetectPlan&) = nullptr;
   /// How far a candidate may be behind the best in its place, of any model; none: however far.

@@ -217,7 +217,7 @@ void ViewPool::compare_in(int view, const ObjectModel& model) {
     candidates.push_back(entries_[i].in_view[view]);
     candidates.back().scene_point = static_cast<int>(i);  // the stage sorts them
   }
-  for (Candidate& candidate : compare_rivals(search_in(view, model), std::move(candidates))) {
+  for (Candidate& candidate : bpa::compare(search_in(view, model), std::move(candidates))) {
     const int i = candidate.scene_point;
     candidate.scene_point = -1;
     entries_[i].in_view[view] = std::move(candidate);

@@ -22,7 +22,7 @@ PARTS = {
     "use_segments": ("sampled segments", "align: {use_segments: false}"),
     "use_edges": ("edge correspondences", "align: {use_edges: false}"),
     "climb": ("climbing the score", "climb: {max_climbed: 0}"),
-    "lay_flat": ("thin objects laid flat", "flat: {max_laid: 0}"),
+    "lay": ("thin objects laid flat", "lay: {max_laid: 0}"),
     "rims": ("pairs with rims", "sample: {rim_peaks_per_reference: 0}"),
     "rounds": ("rounds after the first", "rounds: {max_rounds: 1}"),
     "use_round_three": ("components of round three", "score: {use_round_three: false}"),
@@ -89,7 +89,7 @@ def parts_table(folder):
         run = json.loads(path.read_text(encoding="utf-8"))
         alive, ms = run["alive"], run["mean_milliseconds"]["total"]
         all_ms = ms if name == "all" else all_ms
-        shares = [(alive[stage], alive["instances"]) for stage in ("final", "best 20", "best")]
+        shares = [(alive[stage], alive["instances"]) for stage in ("select", "best 20", "best")]
         shares.append((run["right"], run["reported"]))
         rows.append([title,
                      *(table.percent({"hits": hits, "total": total}) for hits, total in shares),

@@ -56,10 +56,10 @@ TEST_F(Toys, StageIsInTheTraceBehindTheOneBefore) {
   const auto& stages = trace_.objects.front().stages;
   const auto toy = std::ranges::find(stages, "toy", &TraceStage::name);
   ASSERT_NE(toy, stages.end());
-  EXPECT_EQ(std::prev(toy)->name, "corrected");
+  EXPECT_EQ(std::prev(toy)->name, "correct");
   EXPECT_FALSE(toy->poses.empty());
-  EXPECT_EQ(scoring_stages().front().name, "aligned");
-  EXPECT_EQ(final_stages().front().name, "climbed");
+  EXPECT_EQ(scoring_stages().front().name, "refine");
+  EXPECT_EQ(final_stages().front().name, "climb");
 }
 
 TEST_F(Toys, SourceSuggestsPosesThatGoThroughAllStages) {

@@ -92,7 +92,7 @@ TEST_F(BenchSpeed, ReportsWhatIsFoundAndWhatItCosts) {
     EXPECT_EQ(row.at("found"), 1) << "the model of the truth is always searched for";
   }
   EXPECT_GT(json.at("models").at(1).at("pose_checks"), json.at("models").at(0).at("pose_checks"));
-  EXPECT_TRUE(json.at("stages_ms").contains("objects: sampled"));
+  EXPECT_TRUE(json.at("stages_ms").contains("objects: sample"));
   EXPECT_EQ(json.at("stages_ms").back(), json.at("stages_ms").at("total"));
   EXPECT_TRUE(io::read_color_image(folder_ / "r.png").ok());
 }

@@ -20,10 +20,9 @@ using cli::ExplainedFrame;
 using cli::ExplainFolder;
 
 constexpr const char* kModelPictures[] = {
-    "03_sampled.png",   "04_free_space.png",   "05_corrected.png", "06_clusters.png",
-    "07_round_two.png", "08_aligned.png",      "09_scored.png",    "10_climbed.png",
-    "11_turned.png",    "12_laid.png",         "13_rivals.png",    "14_final.png",
-    "15_best.png",      "16_best_segments.png"};
+    "03_sample.png",  "04_check.png",  "05_correct.png", "06_cluster.png",      "07_round_two.png",
+    "08_refine.png",  "09_score.png",  "10_climb.png",   "11_turn.png",         "12_lay.png",
+    "13_compare.png", "14_select.png", "15_best.png",    "16_best_segments.png"};
 
 /// An L on a table, and a brick that is not there.
 class Explain : public ::testing::Test {
@@ -126,10 +125,10 @@ TEST_F(Explain, SeveralModelsHaveAFolderEach) {
   folder.add(explained());
   folder.finish();
   expect_picture("out/01_edges.png");
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/03_sampled.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/03_sample.png"));
   const std::string text = page("out/index.html");
   for (const char* name : {"l", "brick"}) {
-    expect_picture(std::string("out/") + name + "/14_final.png");
+    expect_picture(std::string("out/") + name + "/14_select.png");
     EXPECT_NE(text.find("href=\"" + std::string(name) + "/index.html\""), std::string::npos);
     EXPECT_FALSE(page(std::string("out/") + name + "/index.html").empty());
   }
@@ -144,7 +143,7 @@ TEST_F(Explain, SeveralFramesHaveAFolderEach) {
   folder.finish();
   const std::string text = page("out/index.html");
   for (const std::string name : {"000001_000002", "000001_000003"}) {
-    expect_picture("out/" + name + "/03_sampled.png");
+    expect_picture("out/" + name + "/03_sample.png");
     EXPECT_NE(text.find("href=\"" + name + "/index.html\""), std::string::npos);
   }
 }

@@ -8,6 +8,7 @@
 
 namespace bpa::cli {
 
+void add_alignment_experiment(CLI::App& program);
 void add_models_experiment(CLI::App& program);
 void add_sensor_experiment(CLI::App& program);
 void add_views_experiment(CLI::App& program);

@@ -5,6 +5,7 @@
 int main(int argc, char** argv) {
   CLI::App program{"bpa-experiments: the figures that bpa's design rests on", "bpa-experiments"};
   program.require_subcommand(1);
+  bpa::cli::add_alignment_experiment(program);
   bpa::cli::add_models_experiment(program);
   bpa::cli::add_sensor_experiment(program);
   bpa::cli::add_views_experiment(program);

@@ -96,16 +96,16 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
     }
     if (s == 0) continue;
     const std::size_t before = trace.stages[s - 1].poses.size();
-    if (names.back() == "turned") {
+    if (names.back() == "turn") {
       EXPECT_GE(stage.poses.size(), before);
       EXPECT_GT(all, before) << "an L has near symmetries: added, or there already";
     } else {
       EXPECT_EQ(all, before) << stage.name;
     }
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"sampled", "free_space", "corrected", "clusters",
-                                             "round_two", "aligned", "scored", "climbed", "turned",
-                                             "laid", "rivals", "final"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"sample", "check", "correct", "cluster", "round_two",
+                                             "refine", "score", "climb", "turn", "lay", "compare",
+                                             "select"}));
   EXPECT_GT(trace.stages[0].poses.size(), 1000u);
   EXPECT_TRUE(trace.stages[2].rejected.empty()) << "a correction rejects nothing";
   ASSERT_EQ(trace.stages.back().poses.size(), plain.size());

@@ -41,7 +41,7 @@ class RunStages : public test::LScene {
     options.cluster.max_in_library = most_in_library;
     auto searches = searches_in(scene, options);
     std::vector<Candidates> found(2);
-    run_stages(up_to("clusters"), searches, num_threads, found);
+    run_stages(up_to("cluster"), searches, num_threads, found);
     std::vector<double> scores;
     for (const Candidates& of_model : found) {
       for (const Candidate& candidate : of_model) scores.push_back(candidate.score);
@@ -67,7 +67,7 @@ TEST_F(RunStages, WhatIsFarBehindAnotherModelInItsPlaceIsRejected) {
     options.limits[Limit::clustered_behind] = -margin;
     auto searches = searches_in(scene, options);
     std::vector<Candidates> found(2);
-    run_stages(up_to("clusters"), searches, 2, found);
+    run_stages(up_to("cluster"), searches, 2, found);
     return found;
   };
   constexpr double kMargin = 2;
@@ -102,7 +102,7 @@ TEST_F(RunStages, WhatIsFarBehindAnotherModelInItsPlaceIsRejected) {
 TEST_F(RunStages, OneModelAfterAnotherFindsTheSameUnlessTheyCompete) {
   const SceneFeatures scene = features_of(everything(), 1);
   DetectPlan options = without_margins();
-  options.check.max_in_library = options.cluster.max_in_library = options.refine.max_in_library =
+  options.check.max_in_library = options.cluster.max_in_library = options.round_two.max_in_library =
       100000;
   auto searches = searches_in(scene, options);
   std::vector<Candidates> found(2);
@@ -128,7 +128,7 @@ TEST_F(RunStages, WhatPriorsSuggestGoesOnInAnyCase) {
   std::vector<Search> searches;
   searches.emplace_back(scene, *l_, options, default_score_layers(), std::span(&prior, 1));
   std::vector<Candidates> found(1);
-  run_stages(up_to("free_space"), searches, 1, found);
+  run_stages(up_to("check"), searches, 1, found);
   const auto suggested = std::ranges::count(found[0], true, &Candidate::is_protected);
   EXPECT_GT(suggested, 1);
   EXPECT_LE(std::ssize(found[0]) - suggested, 1);

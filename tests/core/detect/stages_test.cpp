@@ -46,7 +46,7 @@ void expect_best_first(const Candidates& hypotheses) {
 Candidates sampled_in(const SceneFeatures& scene, const ObjectModel& model,
                       std::uint64_t seed = 0) {
   const Search search(scene, model, {}, default_score_layers(), {}, seed);
-  return check_free_space(search, sample(search, {}));
+  return check(search, sample(search, {}));
 }
 
 Candidates clusters_of(const SceneFeatures& scene, const ObjectModel& model,
@@ -111,7 +111,7 @@ TEST_F(Stages, ScoresBelowTheLimitAreRejectedUnlessProtected) {
     const Search search(scene, *l_, plan);
     Candidates sampled = sample(search, {});
     for (std::size_t i = 0; i < sampled.size(); i += 10) sampled[i].is_protected = true;
-    return check_free_space(search, std::move(sampled));
+    return check(search, std::move(sampled));
   };
   Candidates expected = checked(-1000);
   const double limit = expected[expected.size() / 2].score;

@@ -58,7 +58,7 @@ TEST_F(DetectorOptionsFile, AFieldMayBeNamedWithoutItsGroupIfOnlyOneHasTheName) 
   EXPECT_FALSE(options->detect.align.use_orientation);
   EXPECT_EQ(refusal("max_in_library: 1\n", 1),
             "unknown key max_in_library; there is check.max_in_library or cluster.max_in_library "
-            "or refine.max_in_library");
+            "or round_two.max_in_library");
 }
 
 TEST_F(DetectorOptionsFile, EmptyFilesChangeNothing) {

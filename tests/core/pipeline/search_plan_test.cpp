@@ -45,8 +45,8 @@ TEST(SearchPlan, WithoutColoursMoreIsTried) {
   EXPECT_EQ(without.check.max_in_library, 2400);
   EXPECT_EQ(with.cluster.max_in_library, 180);
   EXPECT_EQ(without.cluster.max_in_library, 360);
-  EXPECT_EQ(with.refine.max_in_library, 60);
-  EXPECT_EQ(without.refine.max_in_library, 120);
+  EXPECT_EQ(with.round_two.max_in_library, 60);
+  EXPECT_EQ(without.round_two.max_in_library, 120);
   EXPECT_EQ(with.limits[Limit::clustered], -7);
   EXPECT_EQ(without.limits[Limit::clustered], -8);
 }
@@ -152,7 +152,7 @@ TEST(SearchPlan, SmallSharesExamineLessButSomething) {
   const SearchPlan plan = plan_of({});
   EXPECT_EQ(round_sample(plan, 1).max_references, plan.features.max_references);
   EXPECT_EQ(round_sample(plan, 0.5).max_references, (plan.features.max_references + 1) / 2);
-  EXPECT_EQ(round_plan(plan.detect, 0.5, false).refine.max_in_library, 30);
+  EXPECT_EQ(round_plan(plan.detect, 0.5, false).round_two.max_in_library, 30);
   EXPECT_EQ(round_sample(plan, 1e-6).max_references, 1);
   EXPECT_EQ(round_plan(plan.detect, 1e-6, false).check.max_in_library, 1);
   EXPECT_EQ(final_plan(plan.detect, 1e-6).climb.max_climbed, 1);
@@ -161,10 +161,10 @@ TEST(SearchPlan, SmallSharesExamineLessButSomething) {
 TEST(SearchPlan, WhatIsOffStaysOff) {
   DetectorOptions options;
   options.features.max_references = 0;
-  options.detect.flat.max_laid = 0;
+  options.detect.lay.max_laid = 0;
   const SearchPlan plan = plan_of({}, options);
   EXPECT_EQ(round_sample(plan, 0.5).max_references, 0);
-  EXPECT_EQ(final_plan(plan.detect, 0.5).flat.max_laid, 0);
+  EXPECT_EQ(final_plan(plan.detect, 0.5).lay.max_laid, 0);
 }
 
 constexpr double kSmallest = 0.06;

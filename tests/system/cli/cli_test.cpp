@@ -309,9 +309,8 @@ TEST(Usage, IsExitCodeTwo) {
 }
 
 TEST(Usage, HelpIsExitCodeZeroEverywhere) {
-  for (const char* command :
-       {"", "model", "model from-mesh", "model from-bop", "model info", "model list",
-        "model remove", "detect", "evaluate", "bench alignment"}) {
+  for (const char* command : {"", "model", "model from-mesh", "model from-bop", "model info",
+                              "model list", "model remove", "detect", "evaluate", "bench speed"}) {
     const Outcome outcome = run(std::string(command) + " --help");
     EXPECT_EQ(outcome.code, 0) << command;
     if (std::string(command).empty() || std::string(command) == "model") continue;
@@ -355,7 +354,7 @@ TEST(Commands, FromADataSetToFigures) {
   EXPECT_EQ(results->at(0).im_id, 9);
   for (const char* picture :
        {"pictures/000003_000009.png", "pictures/contact_sheet.png", "pictures/worst_frames.png",
-        "why/01_edges.png", "why/02_super_pixels.png", "why/03_sampled.png", "why/14_final.png",
+        "why/01_edges.png", "why/02_super_pixels.png", "why/03_sample.png", "why/14_select.png",
         "why/15_best.png"}) {
     EXPECT_TRUE(io::read_color_image(folder / picture).ok()) << picture;
   }
@@ -370,8 +369,9 @@ TEST(Commands, FromADataSetToFigures) {
   outcome = run("evaluate --nothing-there --json " + (folder / "r.json"));
   EXPECT_EQ(outcome.code, 0) << outcome.out;
   EXPECT_NE(outcome.out.find("1 of them with 1 false positives"), std::string::npos) << outcome.out;
-  outcome = run("bench alignment --bop " + (folder / "set") + " --library " + (folder / "L") +
-                " --starts 3 --iterations 5 --plots " + (folder / "alignment"));
+  outcome = run("alignment --bop " + (folder / "set") + " --library " + (folder / "L") +
+                    " --starts 3 --iterations 5 --plots " + (folder / "alignment"),
+                "bpa-experiments");
   EXPECT_EQ(outcome.code, 0) << outcome.out;
   EXPECT_NE(outcome.out.find("1 placements, 3 trials"), std::string::npos) << outcome.out;
   EXPECT_NE(slurp(folder / "alignment/alignment.json").find("bpa_normals"), std::string::npos);

@@ -89,7 +89,7 @@ void keep_best_of_cells(const Search& search, const Candidates& sampled, int mos
 
 }  // namespace
 
-Candidates check_free_space(const Search& search, Candidates sampled) {
+Candidates check(const Search& search, Candidates sampled) {
   const CheckOptions& options = search.plan.check;
   std::vector<Passed> passed;
   std::vector<std::size_t> of_priors;

@@ -36,7 +36,7 @@ Candidates near_symmetric(const Search& search, Candidates& candidates) {
 
 }  // namespace
 
-Candidates try_turned(const Search& search, Candidates climbed) {
+Candidates turn(const Search& search, Candidates climbed) {
   sort_by_score(climbed);
   Candidates turned = near_symmetric(search, climbed);
   reject_below(search, Limit::aligned, turned);

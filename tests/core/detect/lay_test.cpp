@@ -65,10 +65,10 @@ class LayFlat : public ::testing::Test {
 TEST_F(LayFlat, FindsACardThatDepthDoesNotShow) {
   const SceneFeatures seen = scene(true);
   const Search search(seen, *card_);
-  EXPECT_FALSE(any_right(check_free_space(search, sample(search, {}))));
-  const Candidates laid = lay_flat(search, {});
+  EXPECT_FALSE(any_right(check(search, sample(search, {}))));
+  const Candidates laid = lay(search, {});
   ASSERT_TRUE(any_right(laid));
-  EXPECT_LE(std::ssize(laid), FlatOptions().max_laid);
+  EXPECT_LE(std::ssize(laid), LayOptions().max_laid);
   for (const Candidate& candidate : laid) {
     EXPECT_EQ(candidate.found_by, Source::region);
     const Eigen::Vector3d bottom = test::kCameraFromWorld.inverse() * candidate.place();
@@ -81,7 +81,7 @@ TEST_F(LayFlat, ChangesNoOtherCandidate) {
   const Search search(seen, *card_);
   Candidates others(3, Candidate{.model = card_.get(), .score = 1});
   others[1].refinement.camera_from_object = test::disturbed(truth_, 0.1, 0.2, 5);
-  const Candidates after = lay_flat(search, others);
+  const Candidates after = lay(search, others);
   ASSERT_GT(after.size(), others.size());
   for (std::size_t i = 0; i < others.size(); ++i) {
     EXPECT_EQ(after[i].pose().translation, others[i].pose().translation);
@@ -91,7 +91,7 @@ TEST_F(LayFlat, ChangesNoOtherCandidate) {
 
 TEST_F(LayFlat, GivesTheSameForAnyThreads) {
   const SceneFeatures one = scene(true, 1), many = scene(true, 8);
-  const Candidates a = lay_flat(Search(one, *card_), {}), b = lay_flat(Search(many, *card_), {});
+  const Candidates a = lay(Search(one, *card_), {}), b = lay(Search(many, *card_), {});
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].pose().translation, b[i].pose().translation);
@@ -101,12 +101,12 @@ TEST_F(LayFlat, GivesTheSameForAnyThreads) {
 
 TEST_F(LayFlat, AddsNothingWithoutRegionsForThickModelsOrWhereItIsOff) {
   const SceneFeatures plain = scene(false), seen = scene(true);
-  EXPECT_TRUE(lay_flat(Search(plain, *card_), {}).empty()) << "no colours";
+  EXPECT_TRUE(lay(Search(plain, *card_), {}).empty()) << "no colours";
   const auto cube = test::model_of(test::box_mesh({0.03f, 0.03f, 0.03f}), "cube", 2);
-  EXPECT_TRUE(lay_flat(Search(seen, *cube), {}).empty());
+  EXPECT_TRUE(lay(Search(seen, *cube), {}).empty());
   DetectOptions off;
-  off.flat.max_laid = 0;
-  EXPECT_TRUE(lay_flat(Search(seen, *card_, off), {}).empty());
+  off.lay.max_laid = 0;
+  EXPECT_TRUE(lay(Search(seen, *card_, off), {}).empty());
 }
 
 }  // namespace

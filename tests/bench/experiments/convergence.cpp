@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/convergence.hpp"
+#include "tests/bench/experiments/convergence.hpp"
 
 #include <algorithm>
 #include <cmath>

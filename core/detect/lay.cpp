@@ -154,11 +154,11 @@ std::vector<Resting> resting_poses(const Search& search) {
       if (may_show(flat.regions[index], rest)) add_resting(search, index, rest, here);
     }
     suppress_duplicates(search, here);
-    keep_first(search, search.plan.flat.max_laid, here);
+    keep_first(search, search.plan.lay.max_laid, here);
     std::ranges::move(here, std::back_inserter(all));
   }
   sort_by_agreement(all);
-  keep_first(search, search.plan.flat.max_laid, all);
+  keep_first(search, search.plan.lay.max_laid, all);
   return all;
 }
 
@@ -200,9 +200,9 @@ Pose slid(const Search& search, int region, Pose best) {
 
 }  // namespace
 
-Candidates lay_flat(const Search& whole, Candidates found) {
+Candidates lay(const Search& whole, Candidates found) {
   const bool thin = !whole.model.index->flat_rests.empty();
-  if (!thin || !whole.scene.with_flat || whole.plan.flat.max_laid == 0) return found;
+  if (!thin || !whole.scene.with_flat || whole.plan.lay.max_laid == 0) return found;
   const Search search(*whole.scene.with_flat, whole);
   Candidates laid;
   for (const Resting& resting : resting_poses(search)) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "tools/convergence.hpp"
+#include "tests/bench/experiments/convergence.hpp"
 
 #include <cmath>
 #include <vector>

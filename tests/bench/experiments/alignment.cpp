@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// bpa bench alignment: BPA against ICP from noisy starts, on true placements of a data set.
+// bpa-experiments alignment: BPA against ICP from noisy starts, on true placements of a data set.
 #include <cmath>
 #include <cstdio>
 #include <list>
@@ -15,7 +15,8 @@
 #include "core/io/file_bytes.hpp"
 #include "core/io/model_file.hpp"
 #include "core/model/model_index.hpp"
-#include "tools/convergence.hpp"
+#include "tests/bench/experiments/convergence.hpp"
+#include "tests/bench/experiments/experiments.hpp"
 #include "tools/search.hpp"
 
 namespace bpa::cli {
@@ -97,7 +98,7 @@ std::string report_json(ConvergenceOptions set, const Experiment& experiment,
         },
         option.value);
   }
-  const nlohmann::json report = {{"experiment", "bpa bench alignment"},
+  const nlohmann::json report = {{"experiment", "bpa-experiments alignment"},
                                  {"placements", experiment.placements.size()},
                                  {"trials", result.trials},
                                  {"options", options},
@@ -171,9 +172,9 @@ void bench_alignment(const AlignmentArguments& a) {
 
 }  // namespace
 
-void add_bench_alignment(CLI::App& bench) {
+void add_alignment_experiment(CLI::App& program) {
   const auto [command, a] =
-      add_command(bench, "alignment", "Compare BPA with ICP from noisy starts", bench_alignment);
+      add_command(program, "alignment", "Compare BPA with ICP from noisy starts", bench_alignment);
   add_dataset_options(command, a.dataset);
   add_library_option(command, a.library);
   add_option(command, "--plots", a.plots, "Write plots as PNG and alignment.json", "DIR");

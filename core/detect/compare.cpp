@@ -41,7 +41,7 @@ RivalEvidence best_of_same_pose(const Search& search, const std::vector<Pose>& p
 
 }  // namespace
 
-Candidates compare_rivals(const Search& search, Candidates candidates) {
+Candidates compare(const Search& search, Candidates candidates) {
   if (!search.plan.score.use_round_three) return candidates;
   sort_by_score(candidates);
   std::vector<bool> compared(candidates.size(), false);
