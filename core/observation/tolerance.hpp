@@ -75,7 +75,7 @@ constexpr float kBesideEdge = placed(3.2);  ///< Observed edges: score/boundary_
 constexpr float kBeyondEdge = placed(4.8);  ///< Observed surface: score/surface_agreement.cpp.
 
 // In one place, in diameters of the smaller model.
-constexpr double kSamePlace = 0.4;  ///< Two of one model: scene, detect/compare.cpp, track.
+constexpr double kSamePlace = 0.4;     ///< Two of one model: scene, detect/compare.cpp, track.
 constexpr double kOthersPlace = 0.2;   ///< Of two models that are not solid: scene/overlaps.cpp.
 constexpr float kContested = 0.3f;     ///< Of any two: detect/contest.cpp.
 constexpr double kCentreMoves = 0.25;  ///< By a symmetry, at most: pipeline/view_pool.cpp.
