@@ -262,7 +262,8 @@ ScoreLayers learn_all(const TrainArguments& a, const Detector& detector, const S
   return layers;
 }
 
-// The placements that end right in a search without limits: the best of each instance.
+// The placements that end right in a search without limits of frames as they are in use: the best
+// of each instance.
 std::vector<LowestLogOdds> right_placements(const TrainArguments& a,
                                             const std::shared_ptr<const ModelLibrary>& library,
                                             const ScoreLayers& layers, bool colored) {
@@ -286,10 +287,11 @@ std::vector<LowestLogOdds> right_placements(const TrainArguments& a,
       if (best != nullptr) out.push_back(lowest_of(*best, layer));
     }
   };
-  for (const std::string& folder : together(a.bop, a.calibration_bop)) {
+  const bool in_use = !a.calibration_bop.empty();
+  for (const std::string& folder : in_use ? a.calibration_bop : a.bop) {
     DatasetOptions dataset = a.dataset;
     dataset.folder = folder;
-    search_frames(detector, dataset, a.common, use, a.models_per_frame);
+    search_frames(detector, dataset, a.common, use, in_use ? 0 : a.models_per_frame);
   }
   return out;
 }

@@ -148,7 +148,7 @@ TEST(GoldenScoreLayers, TrainingMakesTheSameLayersAgain) {
                                                   {kGreen}, test::brick_symmetry())})
                   .ok());
   write_frames(folder / "set", 1, 10);
-  write_frames(folder / "in_use", 2, 6);
+  write_frames(folder / "in_use", 2, 14);
   const std::string bpa = BPA_BINARY_DIR "/bin/bpa ";
   const std::string library = " --library " + (folder / "library");
   run(bpa + "model from-bop " + (folder / "set") + library, folder / "log");
