@@ -133,7 +133,9 @@ SearchOutcome LibrarySearch::run(ModelSearches& searches) const {
   searches.finish({.share = final_share,
                    .newly_certain = std::exchange(explained.newly_certain, {}),
                    .deadline = deadline});
-  out.measured = pace.measured(final_share, watch.milliseconds());
+  // What a deadline cut took less than it would.
+  out.measured = searches.late() ? Costs{preparation_ms, 0, 0}
+                                 : pace.measured(final_share, watch.milliseconds());
   out.effort = searches.effort();
   out.effort.rounds += round;
   out.cut = searches.late() || !end.reached() || final_share < 1;
