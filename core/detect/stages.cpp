@@ -85,9 +85,12 @@ void reject_losers(const Stage& stage, std::span<const Search> searches, const C
     std::erase_if(found[i], [&](Candidate& candidate) {
       if (candidate.is_protected) return false;
       const bool low = candidate.score <= contest.threshold;
-      const double lead = stage.behind ? behind_best(claim_of(candidate), contest, limit) : 0;
-      if (stage.behind) candidate.lowest.note(*stage.behind, lead);
-      const bool behind = !low && lead < limit;
+      bool behind = false;
+      if (!low && stage.behind) {
+        const double lead = behind_best(claim_of(candidate), contest, limit);
+        candidate.lowest.note(*stage.behind, lead);
+        behind = lead < limit;
+      }
       if (low) searches[i].reject("better ones of other models are enough", candidate.pose());
       if (behind) searches[i].reject("a better one is in its place", candidate.pose());
       return low || behind;
