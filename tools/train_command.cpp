@@ -235,10 +235,9 @@ Folders together(Folders folders, const Folders& more) {
   return folders;
 }
 
-// The candidate's, with those of full scores.
-LowestLogOdds lowest_of(const Candidate& candidate, const ScoreLayer& layer) {
-  LowestLogOdds out = candidate.lowest;
-  out.note(Limit::competing, candidate.score);
+RightPlacement right_placement(const Candidate& candidate, const ScoreLayer& layer) {
+  RightPlacement out{candidate.lowest};
+  out.lowest.note(Limit::competing, candidate.score);
   double log_odds = layer.bias + candidate.prior;
   for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
     log_odds += layer.components[i].at(candidate.values[i]);
@@ -264,16 +263,16 @@ ScoreLayers learn_all(const TrainArguments& a, const Detector& detector, const S
 
 // The placements that end right in a search without limits of frames as they are in use: the best
 // of each instance.
-std::vector<LowestLogOdds> right_placements(const TrainArguments& a,
-                                            const std::shared_ptr<const ModelLibrary>& library,
-                                            const ScoreLayers& layers, bool colored) {
+std::vector<RightPlacement> right_placements(const TrainArguments& a,
+                                             const std::shared_ptr<const ModelLibrary>& library,
+                                             const ScoreLayers& layers, bool colored) {
   DetectorOptions options = read_detector_options(a.detector.config);
   options.detect.score.keep_right = 1;
   options.detect.score.stop_early = false;
   options.features.use_color = colored;
   const Detector detector(library, options, layers);
   const ScoreLayer& layer = colored ? layers.round_three : layers.without_color;
-  std::vector<LowestLogOdds> out;
+  std::vector<RightPlacement> out;
   const auto use = [&](const TrueFrame& frame, const auto&, const FrameTrace& trace) {
     if (colored && frame.frame.color.empty()) return;
     for (const io::BopInstance& instance : frame.truth) {
@@ -284,7 +283,7 @@ std::vector<LowestLogOdds> right_placements(const TrainArguments& a,
           best = &candidate;
         }
       }
-      if (best != nullptr) out.push_back(lowest_of(*best, layer));
+      if (best != nullptr) out.push_back(right_placement(*best, layer));
     }
   };
   const bool in_use = !a.calibration_bop.empty();

@@ -60,13 +60,14 @@ double lowest_share(std::vector<double> log_odds, double share, double otherwise
   return threshold + excess / static_cast<double>(tail) * std::log(share / tail_share);
 }
 
+// `of` gives a placement's log odds, by limit.
 template <std::size_t N>
-void measure(const std::vector<LowestLogOdds>& right, std::array<float, N> LowestLogOdds::*of,
-             double keep_right, const std::array<double, N>& start, std::array<double, N>& out) {
+void measure(const std::vector<RightPlacement>& right, const auto& of, double keep_right,
+             const std::array<double, N>& start, std::array<double, N>& out) {
   for (std::size_t i = 0; i < N; ++i) {
     std::vector<double> log_odds;
     if (std::isfinite(start[i])) {
-      for (const LowestLogOdds& one : right) log_odds.push_back(double{(one.*of)[i]});
+      for (const RightPlacement& one : right) log_odds.push_back(double{of(one)[i]});
     }
     out[i] = lowest_share(std::move(log_odds), 1 - keep_right, start[i]);
   }
@@ -74,8 +75,8 @@ void measure(const std::vector<LowestLogOdds>& right, std::array<float, N> Lowes
 
 }  // namespace
 
-LearnedLimits measure_limits(const std::vector<LowestLogOdds>& with_color,
-                             const std::vector<LowestLogOdds>& without_color,
+LearnedLimits measure_limits(const std::vector<RightPlacement>& with_color,
+                             const std::vector<RightPlacement>& without_color,
                              const LearnedLimits& start) {
   LearnedLimits out;
   for (const double keep_right : kLevels) {
@@ -85,8 +86,10 @@ LearnedLimits measure_limits(const std::vector<LowestLogOdds>& with_color,
           std::pair(&without_color, &LearnedLimits::Level::without_color)}) {
       const Limits& before = start.levels.back().*of;
       Limits& limits = level.*of;
-      measure(*right, &LowestLogOdds::stages, keep_right, before.stages, limits.stages);
-      measure(*right, &LowestLogOdds::components, keep_right, before.components, limits.components);
+      const auto stages = [](const RightPlacement& one) { return one.lowest.stages; };
+      const auto components = [](const RightPlacement& one) { return one.components; };
+      measure(*right, stages, keep_right, before.stages, limits.stages);
+      measure(*right, components, keep_right, before.components, limits.components);
     }
   }
   return out;

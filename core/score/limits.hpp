@@ -70,16 +70,18 @@ struct Limits {
 /// Plus infinity where there was none.
 struct LowestLogOdds {
   std::array<float, kLimits> stages;
-  std::array<float, kScoreComponents.size()> components;
 
-  LowestLogOdds() {
-    stages.fill(std::numeric_limits<float>::infinity());
-    components.fill(std::numeric_limits<float>::infinity());
-  }
+  LowestLogOdds() { stages.fill(std::numeric_limits<float>::infinity()); }
   void note(Limit limit, double log_odds) {
     float& lowest = stages[static_cast<std::size_t>(limit)];
     lowest = std::min(lowest, static_cast<float>(log_odds));
   }
+};
+
+/// What measure_limits() reads of a placement that ended right.
+struct RightPlacement {
+  LowestLogOdds lowest;
+  std::array<float, kScoreComponents.size()> components{};  ///< As Limits::components.
 };
 
 /// Limits by the share of right placements that they keep: below each limit of a share q lie 1 - q
@@ -97,13 +99,13 @@ struct LearnedLimits {
   Result<Limits> at(double keep_right, bool colored) const;
 };
 
-/// The limits for 0.9 and 0.9999, of searches without limits with and without colours. `with_color`
-/// and `without_color` hold one element for each right placement. The tenth of the placements with
-/// the lowest log odds are taken as exponential (peaks over a threshold: Coles, An Introduction to
-/// Statistical Modeling of Extreme Values, 2001, chapter 4, with shape 0). A limit with fewer than
-/// 50 placements, and one that `start` does not have, is that of `start` at its highest level.
-LearnedLimits measure_limits(const std::vector<LowestLogOdds>& with_color,
-                             const std::vector<LowestLogOdds>& without_color,
+/// The limits for 0.9 and 0.9999, of searches without limits, with and without colours. The tenth
+/// of the placements with the lowest log odds are taken as exponential (peaks over a threshold:
+/// Coles, An Introduction to Statistical Modeling of Extreme Values, 2001, chapter 4, with shape
+/// 0). A limit with fewer than 50 placements, and one that `start` does not have, is that of
+/// `start` at its highest level.
+LearnedLimits measure_limits(const std::vector<RightPlacement>& with_color,
+                             const std::vector<RightPlacement>& without_color,
                              const LearnedLimits& start);
 
 }  // namespace bpa

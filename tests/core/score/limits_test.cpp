@@ -3,6 +3,7 @@
 #include "core/score/limits.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -13,10 +14,13 @@ namespace bpa {
 namespace {
 
 // Placements whose log odds at one limit are 3 less an exponential of that mean.
-std::vector<LowestLogOdds> exponential(int count, double mean) {
+std::vector<RightPlacement> exponential(int count, double mean) {
   RandomStream random(4);
-  std::vector<LowestLogOdds> out(static_cast<std::size_t>(count));
-  for (LowestLogOdds& one : out) one.note(Limit::ranked, 3 + mean * std::log(random.uniform()));
+  std::vector<RightPlacement> out(static_cast<std::size_t>(count));
+  for (RightPlacement& one : out) {
+    one.lowest.note(Limit::ranked, 3 + mean * std::log(random.uniform()));
+    one.components.fill(std::numeric_limits<float>::infinity());
+  }
   return out;
 }
 
