@@ -45,17 +45,17 @@ std::vector<std::uint8_t> photograph(const std::vector<std::uint8_t>& ideal, con
   return image;
 }
 
-// Calls f with the options of the kind.
-auto with_kind(auto& options, const auto& f) {
+Frame measure_depth(const SensorView& view, const SensorOptions& options, std::uint64_t seed,
+                    int shot, int num_threads) {
   switch (options.kind) {
     case SensorKind::active_stereo:
-      return f(options.active_stereo);
+      return simulate_depth(view, options.active_stereo, seed, shot, num_threads);
     case SensorKind::time_of_flight:
-      return f(options.time_of_flight);
+      return simulate_depth(view, options.time_of_flight, seed, shot, num_threads);
     case SensorKind::structured_light:
       break;
   }
-  return f(options.kinect);
+  return simulate_depth(view, options.kinect, seed, shot, num_threads);
 }
 
 }  // namespace
@@ -66,9 +66,7 @@ SensorImage simulate_sensor(const SensorView& view, const SensorOptions& options
     return render(view.scene, camera, view.world_from_camera, view.shading, num_threads);
   };
   SensorImage image;
-  image.frame = with_kind(options, [&](const auto& of_kind) {
-    return simulate_depth(view, of_kind, seed, shot, num_threads);
-  });
+  image.frame = measure_depth(view, options, seed, shot, num_threads);
   image.ideal = render_by(view.camera);
   RandomStream random(seed, 100);
   Camera moved = view.camera;
