@@ -61,7 +61,6 @@ class RoundEnd {
   explicit RoundEnd(const SearchPlan& plan) : rule_(plan.end), most_(plan.rounds.max_rounds) {}
 
   bool reached() const { return reached_ || searched_ >= most_; }
-  double searched() const { return searched_; }  // in whole rounds
   void nothing_left() { reached_ = true; }
   void add(double share, double gain) {
     const bool may_end = rule_.may_end_at_first, is_first = searched_ == 0;
@@ -79,7 +78,8 @@ class RoundEnd {
  private:
   const EndRule rule_;
   const double most_;
-  double searched_ = 0, since_judged_ = 0, gain_ = 0, gain_before_ = 1;
+  double searched_ = 0, since_judged_ = 0;  // in whole rounds
+  double gain_ = 0, gain_before_ = 1;
   bool reached_ = false;
 };
 

@@ -3,7 +3,6 @@
 #include "server/group/messages.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <iterator>
 #include <utility>
