@@ -51,13 +51,13 @@ constexpr Stage kStages[] = {
      "Distinct placements of sufficient score. Interpretations of the scene choose from these."},
 };
 
-consteval std::size_t place_of(Candidates (*run)(const Search&, Candidates)) {
+consteval std::size_t place_of(std::string_view name) {
   std::size_t i = 0;
-  while (kStages[i].run != run) ++i;
+  while (kStages[i].name != name) ++i;
   return i;
 }
-constexpr std::size_t kRoundStages = place_of(score) + 1;  // those that every round runs
-constexpr std::size_t kFirstScoring = place_of(refine);
+constexpr std::size_t kRoundStages = place_of("score") + 1;  // those that every round runs
+constexpr std::size_t kFirstScoring = place_of("refine");
 
 // Runs a stage and records its time and what it rejects.
 Candidates timed(const Stage& stage, Search& search, Candidates candidates, ObjectTrace* trace) {
