@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 
+#include "core/base/concat.hpp"
 #include "core/base/guarded.hpp"
 #include "core/pipeline/prepare_scene.hpp"
 #include "server/convert/results.hpp"
