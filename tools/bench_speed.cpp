@@ -195,21 +195,16 @@ SpeedReport measure_stages(const SpeedArguments& a, const Detector& detector) {
   return stages;
 }
 
-/// The same with the true poses given beforehand, which are aligned and scored as any other, and as
-/// many rounds: what is not found then is lost to look-alikes and scores, the rest to the search.
+/// The same with the true poses given beforehand, which are aligned and scored as any other: what
+/// is not found then is lost to look-alikes and scores, the rest to the search.
 int found_when_given(const SpeedArguments& a, const Detector& detector, int models,
                      const RankedModels& ranked) {
-  DetectorOptions options = detector.options();
-  options.rounds.expected_share = 1;
-  options.rounds.min_gain_expected = options.rounds.min_gain;
-  const Detector patient(std::make_shared<ModelLibrary>(detector.library()), options,
-                         detector.score_layers());
   DetectRequest request = request_of(a.common);
   RightPlacements placements;
   read_true_frames(a.dataset, [&](const TrueFrame& frame) {
     request.models = ranked.of_frame(frame.truth, models);
     request.expected = ranked.placements(frame.truth);
-    placements.add(frame.truth, or_throw(patient.detect(frame.frame, request)), patient.library(),
+    placements.add(frame.truth, or_throw(detector.detect(frame.frame, request)), detector.library(),
                    a.min_visible);
   });
   return placements.found.hits;

@@ -28,6 +28,9 @@ void print_result(const std::string& name, const io::FrameResult& result) {
   if (!result.sensor.empty() && result.sensor != name_of(SensorKind::structured_light))
     std::printf(", %s", result.sensor.c_str());
   if (result.fused_frames > 1) std::printf(", %d frames combined", result.fused_frames);
+  double missed = 0;
+  for (const MissedModel& of_model : result.missed) missed += of_model.expected;
+  if (!result.missed.empty()) std::printf(", %.2f objects missed (expected)", missed);
   std::printf("\n");
   if (result.interpretations.empty() || result.interpretations.front().placements.empty()) {
     std::printf("  nothing known is there\n");

@@ -14,6 +14,7 @@
 #include "core/scene/overlaps.hpp"
 #include "tools/command.hpp"
 #include "tools/search.hpp"
+#include "tools/yield.hpp"
 
 namespace bpa::cli {
 namespace {
@@ -235,6 +236,20 @@ Folders together(Folders folders, const Folders& more) {
   return folders;
 }
 
+// The frames that limits and yields are measured on: those of use, if any are given.
+std::vector<DatasetOptions> frames_in_use(const TrainArguments& a) {
+  std::vector<DatasetOptions> out;
+  for (const std::string& folder : a.calibration_bop.empty() ? a.bop : a.calibration_bop) {
+    out.push_back(a.dataset);
+    out.back().folder = folder;
+  }
+  return out;
+}
+
+int models_in_use(const TrainArguments& a) {
+  return a.calibration_bop.empty() ? a.models_per_frame : 0;
+}
+
 RightPlacement right_placement(const Candidate& candidate, const ScoreLayer& layer) {
   RightPlacement out{candidate.lowest};
   out.lowest.note(Limit::competing, candidate.score);
@@ -286,11 +301,28 @@ std::vector<RightPlacement> right_placements(const TrainArguments& a,
       if (best != nullptr) out.push_back(right_placement(*best, layer));
     }
   };
-  const bool in_use = !a.calibration_bop.empty();
-  for (const std::string& folder : in_use ? a.calibration_bop : a.bop) {
-    DatasetOptions dataset = a.dataset;
-    dataset.folder = folder;
-    search_frames(detector, dataset, a.common, use, in_use ? 0 : a.models_per_frame);
+  for (const DatasetOptions& dataset : frames_in_use(a)) {
+    search_frames(detector, dataset, a.common, use, models_in_use(a));
+  }
+  return out;
+}
+
+LearnedYield learn_yield(const TrainArguments& a,
+                         const std::shared_ptr<const ModelLibrary>& library,
+                         const ScoreLayers& layers) {
+  LearnedYield out = layers.yield;
+  out.provenance = concat(a.made_by, ", seed ", a.common.seed);
+  for (const bool colored : {true, false}) {
+    DetectorOptions options = read_detector_options(a.detector.config);
+    options.features.use_color = colored;
+    SearchYield& yield = colored ? out.with_color : out.without_color;
+    yield =
+        search_yield(library, options, layers, frames_in_use(a), a.common, models_in_use(a), yield);
+    std::printf(
+        "yield %s colours: undiscovered after t tries: (1 + t / %.2f)^-%.2f; %.0f %% of a surface "
+        "in sight; %.1f objects in a scene\n",
+        colored ? "with" : "without", yield.tries, yield.shape, 100 * yield.visible,
+        yield.objects / yield.scenes);
   }
   return out;
 }
@@ -342,6 +374,7 @@ void train(const TrainArguments& a) {
         calibrate(a, "without colours", layers.without_color, without_color(in_use));
   }
   layers.limits = learn_limits(a, library, layers);
+  layers.yield = learn_yield(a, library, layers);
   const std::string path = a.output.empty() ? score_layer_path(a.detector.library) : a.output;
   or_throw(write_score_layers(path, layers));
   std::printf("wrote %s\n", path.c_str());

@@ -83,6 +83,9 @@ io::FrameResult to_frame_result(const DetectionSet& set) {
   result.total_milliseconds = set.total_ms;
   result.budget_exhausted = set.budget_exhausted;
   result.fused_frames = set.fused_frames;
+  for (const MissedObjects& missed : set.missed) {
+    result.missed.push_back({missed.model_name, missed.expected});
+  }
   for (const StageTime& time : set.stage_times) {
     result.timings.push_back({time.stage, time.milliseconds});
   }

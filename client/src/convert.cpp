@@ -162,6 +162,9 @@ DetectionSet to_detections(const msgs::SceneInterpretations& message) {
   set.total_ms = message.total_ms;
   set.budget_exhausted = message.budget_exhausted;
   set.fused_frames = static_cast<int>(message.fused_frames);
+  for (const auto& missed : message.missed) {
+    set.missed.push_back({missed.model_name, missed.expected});
+  }
   set.models_searched = static_cast<int>(message.models_searched);
   set.seed = message.seed;
   return set;

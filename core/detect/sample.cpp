@@ -22,12 +22,8 @@ void from_features(const Search& search, Candidates& out) {
   const SceneFeatures& scene = search.scene;
   RandomStream random(search.seed + search.round, Stream::feature_draws, search.model.number);
   std::vector<Fpfh> fpfh;
-  std::vector<int> keypoints;
-  const auto& [first, step] = search.looked_at;
-  for (std::size_t k = first; k < search.sample->keypoints.size(); k += step) {
-    keypoints.push_back(search.sample->keypoints[k]);
-    fpfh.push_back(scene.fpfh[keypoints.back()]);
-  }
+  const std::vector<int>& keypoints = search.sample->points.keypoints;
+  for (const int keypoint : keypoints) fpfh.push_back(scene.fpfh[keypoint]);
   const auto matches =
       search.model.index->feature_tree.nearest(fpfh, options.matches_per_keypoint, 1);
   for (std::size_t k = 0; k < matches.size(); ++k) {
@@ -75,7 +71,7 @@ void from_pairs(const Search& search, Candidates& out) {
   const auto vote = [&](const ScenePairs& pairs, const PointPairTable& table, int peaks) {
     const auto late = [&] { return search.late(); };
     const auto count = static_cast<int>(index.coarse.size());
-    add_voted(search, vote_poses(pairs, table, count, peaks, colors, late, search.looked_at), out);
+    add_voted(search, vote_poses(pairs, table, count, peaks, colors, late), out);
   };
   vote(search.sample->pairs, index.pairs, options.peaks_per_reference);
   if (options.rim_peaks_per_reference > 0) {

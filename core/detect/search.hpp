@@ -68,7 +68,6 @@ struct Search {
   const SceneFeatures& scene;
   const SceneSample* sample;  ///< What this round looks up; at first that of the scene.
   const CheckImage* image;    ///< What poses are checked with; at first that of the scene.
-  EachOf looked_at;           ///< Of the points of `sample`.
   int round = 0;
   const Candidates* before = nullptr;  ///< What earlier rounds have scored; null in the first.
   const ObjectModel& model;

@@ -375,14 +375,14 @@ ScenePairs scene_rim_pairs(const PointCloud& cloud, std::span<const RimPoint> ri
 
 std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable& table,
                                   int num_model_points, int peaks, const PairColors& colors,
-                                  const std::function<bool()>& late, const EachOf& references) {
+                                  const std::function<bool()>& late) {
   std::vector<VotedPose> out;
   Votes votes(static_cast<std::size_t>(num_model_points));
   Peaks best(peaks);
   const bool colored = !colors.scene.empty() && !colors.model.empty();
   std::vector<std::uint8_t> agree(static_cast<std::size_t>(num_model_points), 1);
   const AgreeingColors second(pairs, colored ? colors : PairColors{});
-  for (std::size_t r = references.first; r < pairs.references.size(); r += references.step) {
+  for (std::size_t r = 0; r < pairs.references.size(); ++r) {
     const bool votes_for_none = pairs.first[r] == pairs.first[r + 1] ||
                                 pairs.partners[pairs.first[r]].distance > table.max_distance();
     if (late && late()) break;

@@ -158,20 +158,13 @@ struct PairColors {
   std::span<const MatchColor> scene, model, palette;
 };
 
-/// One in `step` of a list, from the `first` on.
-struct EachOf {
-  std::size_t first = 0, step = 1;
-};
-
 /// Each reference point's pairs vote for its model point and the turn about its normal (Drost et
 /// al., section 3.4). Returns the `peaks` best model points of each reference point, best first.
 /// With colours, those alone whose colour agrees with the reference point's, and by votes of those
 /// pairs alone whose second points' colours agree (compare Choi and Christensen, IROS 2012).
-/// `num_model_points` is the size of the cloud of `table`. Ends once `late`, if given, says so. Of
-/// the reference points, those of `references` alone are looked at.
+/// `num_model_points` is the size of the cloud of `table`. Ends once `late`, if given, says so.
 std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable& table,
                                   int num_model_points, int peaks, const PairColors& colors = {},
-                                  const std::function<bool()>& late = {},
-                                  const EachOf& references = {});
+                                  const std::function<bool()>& late = {});
 
 }  // namespace bpa

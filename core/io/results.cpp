@@ -84,6 +84,11 @@ static void fields(auto& visit, io::Is<StageTiming> auto& timing) {
   visit("milliseconds", timing.milliseconds);
 }
 
+static void fields(auto& visit, io::Is<MissedModel> auto& missed) {
+  visit("model", missed.model);
+  visit("expected", missed.expected);
+}
+
 static void fields(auto& visit, io::Is<SearchEffort> auto& effort) {
   for (const auto& [name, count] : kEffortCounts) visit(name, effort.*count, kOptional);
 }
@@ -98,6 +103,7 @@ static void fields(auto& visit, Is<FrameResult> auto& frame) {
   visit("seconds", frame.seconds);
   visit("budget_exhausted", frame.budget_exhausted, kOptional);
   visit("fused_frames", frame.fused_frames, kOptional);
+  visit("missed", frame.missed, kOptional);
   visit("timings", frame.timings, kOptional);
   visit("interpretations", frame.interpretations);
   if constexpr (!std::is_const_v<std::remove_reference_t<decltype(frame)>>) {

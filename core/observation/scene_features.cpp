@@ -134,7 +134,15 @@ void add_points(const SceneFeatureOptions& options, SceneFeatures& scene) {
   scene.fpfh = compute_fpfh(scene.surface, scene.keypoints, kFeatureRadius, threads);
   scene.references = spread(scene.coarse.points, options.seed);
   scene.rims = scene_rims(scene.image, scene.coarse, threads);
-  scene.sample = next_sample(scene, {}, {}, options);
+  SampledSoFar passed;
+  scene.sample = scene_sample(scene, next_points(scene, {}, options, passed), {}, options);
+}
+
+// Whether a point is on no pixel that is `explained`.
+bool is_unexplained(const SceneFeatures& scene, std::span<const std::uint8_t> explained,
+                    const Eigen::Vector3f& point) {
+  const int pixel = scene.image.pixel_of(point);
+  return explained.empty() || pixel < 0 || explained[pixel] == 0;
 }
 
 }  // namespace
@@ -147,32 +155,39 @@ void add_colors(const Image<Eigen::Vector3f>& rgb, const Image<Eigen::Vector3f>&
   if (options.use_outline) scene.sharp_light = log_light_of(sharp_lab, threads);
 }
 
-SceneSample next_sample(const SceneFeatures& scene, const SceneSample& before,
-                        std::span<const std::uint8_t> explained,
-                        const SceneFeatureOptions& options) {
-  const auto wanted = [&](const Eigen::Vector3f& point) {
-    const int pixel = scene.image.pixel_of(point);
-    return explained.empty() || pixel < 0 || explained[pixel] == 0;
-  };
-  SceneSample out;
-  std::size_t k = before.keypoints_passed;
+SamplePoints next_points(const SceneFeatures& scene, std::span<const std::uint8_t> explained,
+                         const SceneFeatureOptions& options, SampledSoFar& passed) {
+  SamplePoints out;
+  std::size_t& k = passed.keypoints;
   for (; k < scene.keypoints.size() && std::ssize(out.keypoints) < options.round_keypoints; ++k) {
-    if (wanted(scene.surface.points[scene.keypoints[k]])) out.keypoints.push_back(k);
+    if (is_unexplained(scene, explained, scene.surface.points[scene.keypoints[k]])) {
+      out.keypoints.push_back(static_cast<int>(k));
+    }
   }
-  out.keypoints_passed = k;
+  std::size_t& r = passed.references;
+  for (; r < scene.references.size() && std::ssize(out.references) < options.max_references; ++r) {
+    const int point = scene.references[r];
+    if (is_unexplained(scene, explained, scene.coarse.points[point])) {
+      out.references.push_back(point);
+    }
+  }
+  return out;
+}
+
+SceneSample scene_sample(const SceneFeatures& scene, SamplePoints points,
+                         std::span<const std::uint8_t> explained,
+                         const SceneFeatureOptions& options) {
   std::vector<std::uint8_t> partners;
-  std::ranges::transform(scene.coarse.points, std::back_inserter(partners), wanted);
-  std::vector<int> references;
-  std::size_t r = before.references_passed;
-  for (; r < scene.references.size() && std::ssize(references) < options.max_references; ++r) {
-    if (partners[scene.references[r]]) references.push_back(scene.references[r]);
+  for (const Eigen::Vector3f& point : scene.coarse.points) {
+    partners.push_back(is_unexplained(scene, explained, point));
   }
-  out.references_passed = r;
   const auto reach = static_cast<float>(options.pair_reach_m);
-  out.pairs = scene_pairs(scene.coarse, references, reach, options.pair_step, options.num_threads,
-                          partners);
+  SceneSample out;
+  out.pairs = scene_pairs(scene.coarse, points.references, reach, options.pair_step,
+                          options.num_threads, partners);
   out.rim_pairs =
-      scene_rim_pairs(scene.coarse, scene.rims, std::move(references), reach, options.num_threads);
+      scene_rim_pairs(scene.coarse, scene.rims, points.references, reach, options.num_threads);
+  out.points = std::move(points);
   return out;
 }
 

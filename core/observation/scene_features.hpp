@@ -21,14 +21,24 @@
 namespace bpa {
 
 /// Scene points that one round of the search looks up in the models.
-struct SceneSample {
-  std::vector<int> keypoints;  ///< Indices into SceneFeatures::keypoints.
-  ScenePairs pairs;            ///< Of points of SceneFeatures::coarse.
-  ScenePairs rim_pairs;        ///< Of points of `coarse` and the rims of their faces.
-  /// How many of SceneFeatures::keypoints and ::references this sample and those before it passed.
-  std::size_t keypoints_passed = 0, references_passed = 0;
+struct SamplePoints {
+  std::vector<int> keypoints;   ///< Indices into SceneFeatures::keypoints.
+  std::vector<int> references;  ///< Indices into SceneFeatures::coarse.
 
-  bool empty() const { return keypoints.empty() && pairs.references.empty(); }
+  bool empty() const { return keypoints.empty() && references.empty(); }
+  bool operator==(const SamplePoints&) const = default;
+};
+
+/// How many of SceneFeatures::keypoints and ::references earlier rounds have passed.
+struct SampledSoFar {
+  std::size_t keypoints = 0, references = 0;
+};
+
+/// The points of a round, and what is looked up of them.
+struct SceneSample {
+  SamplePoints points;
+  ScenePairs pairs;      ///< Of the references, with points of SceneFeatures::coarse.
+  ScenePairs rim_pairs;  ///< Of the references, with the rims of their faces.
 };
 
 /// What detection reads of a frame; made once, shared by all models. Camera frame, metres.
@@ -88,11 +98,15 @@ struct ColorImages {
   Image<Eigen::Vector2f> gradients;  ///< color_gradients()
 };
 
-/// The sample after `before`: the next points in random order, without those on pixels that are
-/// `explained` (a flag for each pixel of the map; none given: no pixel is).
-SceneSample next_sample(const SceneFeatures& scene, const SceneSample& before,
-                        std::span<const std::uint8_t> explained,
-                        const SceneFeatureOptions& options);
+/// The next points in random order, without those on pixels that are `explained` (a flag for each
+/// pixel of the map; none given: no pixel is). Counts the points that it passes in `passed`.
+SamplePoints next_points(const SceneFeatures& scene, std::span<const std::uint8_t> explained,
+                         const SceneFeatureOptions& options, SampledSoFar& passed);
+
+/// What is looked up of some points; partners of pairs are not on pixels that are `explained`.
+SceneSample scene_sample(const SceneFeatures& scene, SamplePoints points,
+                         std::span<const std::uint8_t> explained,
+                         const SceneFeatureOptions& options);
 
 /// Sets what scores read of colours: `cielab`, and with the options' patterns and outlines
 /// `log_light` and `sharp_light`. `rgb` has the map's size; `sharp_lab` is cielab(rgb).

@@ -122,7 +122,6 @@ SearchFacts Detector::facts_of(const Frame& frame, const DetectRequest& request,
   SearchFacts facts{.models = static_cast<int>(models.size()),
                     .image_width = frame.camera.width,
                     .colored = compares_colors(frame, options_, models),
-                    .follows = !request.expected.empty(),
                     .threads = threads,
                     .seed = request.seed,
                     .budget_ms = request.budget_ms};
@@ -189,6 +188,9 @@ Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
   out.budget_exhausted = found.cut;
   out.effort = found.effort;
   out.not_searched = used.lost();
+  for (std::size_t i = 0; i < models->size(); ++i) {
+    out.missed.push_back({(*models)[i]->name, found.missed[i]});
+  }
   out.timings.push_back({"objects", stage.lap_milliseconds()});
 
   out.interpretations = interpret_scene(scene, layers_, candidates, plan, request.top_k);

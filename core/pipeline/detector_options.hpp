@@ -16,25 +16,14 @@ namespace bpa {
 
 /// How often the search looks at the scene.
 struct RoundOptions {
-  BPA_OPTION(int, max_rounds, 12, (1, 100),
-             "Rounds of the search, each with another sample of the scene.");
+  BPA_OPTION(double, max_missed, 0.15, (0, 1000),
+             "The search ends when it expects to have missed fewer objects in sight than this. 0: "
+             "it goes on until all surface is searched.");
+  BPA_OPTION(int, max_rounds, 20, (1, 1000),
+             "Rounds of the search at most, each with another sample of the scene.");
   BPA_OPTION(double, min_certain, 0.85, (0, 1),
              "Surface that a placement of at least this probability explains is not searched in "
              "later rounds.");
-  BPA_OPTION(double, min_gain, 0.04, (0, 1),
-             "The search ends after a round, but not the first, that makes the surface of no "
-             "placement more probable by this, in the mean of its pixels.");
-  BPA_OPTION(double, min_gain_of_two, 0.15, (0, 1),
-             "It ends, too, after two rounds in a row neither of which gains this. With both 0, it "
-             "ends after max_rounds.");
-  BPA_OPTION(double, expected_share, 0.6, (0.01, 1),
-             "Of a round's sample, what the first round takes where an earlier frame says what to "
-             "expect. The search may end after it.");
-  BPA_OPTION(double, min_gain_expected, 0.3, (0, 1),
-             "min_gain where an earlier frame says what to expect.");
-  BPA_OPTION(int, step_without_support, 0, (0, 1000),
-             "From the second round on, models without support search one in so many points of the "
-             "sample. 0: one in (models / 60).");
 };
 
 /// Every setting of the detector, a group for each stage. The defaults are meant for a Kinect-class

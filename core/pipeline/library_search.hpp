@@ -10,10 +10,11 @@
 namespace bpa {
 
 struct SearchOutcome {
-  Candidates candidates;  ///< Of all models.
-  bool cut = false;       ///< Time ran out.
-  SearchEffort effort;    ///< The counts of all models.
-  Costs measured = {};    ///< What it took.
+  Candidates candidates;            ///< Of all models.
+  bool cut = false;                 ///< Time ran out.
+  SearchEffort effort;              ///< The counts of all models.
+  Costs measured = {};              ///< What it took.
+  std::vector<double> missed = {};  ///< Objects in sight that are expected undiscovered, by model.
 };
 
 /// The search over a library in rounds: each takes another sample of the scene, and surface that

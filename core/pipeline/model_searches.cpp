@@ -15,17 +15,6 @@ Search search_for(const SearchInputs& inputs, const ObjectModel& model) {
                 inputs.request.seed);
 }
 
-// What a model looks at of a round's sample: less where no earlier round found support for it.
-EachOf looked_at_in(int round, const ObjectModel& model, const Candidates& found,
-                    const SearchPlan& plan) {
-  const bool has_support = std::ranges::any_of(found, [&](const Candidate& candidate) {
-    return candidate.score >= plan.detect.limits[Limit::support];
-  });
-  const int step = plan.rounds.step_without_support;
-  if (round == 0 || has_support || step <= 1) return {};
-  return {static_cast<std::size_t>((round + model.number) % step), static_cast<std::size_t>(step)};
-}
-
 }  // namespace
 
 LocalSearches::LocalSearches(const SearchInputs& inputs, std::vector<ObjectTrace>* traces,
@@ -71,29 +60,27 @@ void LocalSearches::score_expected(const Deadline& deadline) {
   run(scoring_stages(), deadline, found_);
 }
 
-bool LocalSearches::run_round(const RoundPlan& plan) {
+void LocalSearches::run_round(const RoundPlan& plan) {
   explain(plan.newly_certain);
-  sample_ = plan.first_sample ? inputs_.scene.sample
-                              : next_sample(inputs_.scene, sample_, certain_,
-                                            round_sample(inputs_.plan, plan.share));
-  if (plan.number > 0 && sample_.empty()) return false;
+  const SceneSample none;
+  const bool is_prepared = plan.points == inputs_.scene.sample.points;
+  sample_ = is_prepared ? inputs_.scene.sample
+                        : scene_sample(inputs_.scene, plan.points, certain_, inputs_.plan.features);
   const DetectPlan of_round = round_plan(inputs_.plan.detect, plan.share, plan.hurried);
   for (std::size_t i = 0; i < searches_.size(); ++i) {
     Search& search = searches_[i];
     search.round = plan.number;
     search.before = &found_[i];
-    search.sample = &sample_;
-    search.looked_at = looked_at_in(plan.number, search.model, found_[i], inputs_.plan);
+    search.sample = plan.left_out[i] ? &none : &sample_;
     search.image = &image_;
     search.plan = of_round;
   }
   std::vector<Candidates> now(searches_.size());
   run(round_stages(), plan.deadline, now);
   for (std::size_t i = 0; i < searches_.size(); ++i) {
-    for (Candidate& candidate : now[i]) candidate.lowest.note(Limit::support, candidate.score);
+    searches_[i].sample = &sample_;
     std::ranges::move(now[i], std::back_inserter(found_[i]));
   }
-  return true;
 }
 
 void LocalSearches::finish(const FinalPlan& plan) {

@@ -19,9 +19,10 @@ namespace bpa {
 /// What one round of the search does. All hosts that take part must get the same plan.
 struct RoundPlan {
   int number = 0;
-  double share = 1;           ///< Of what a whole round looks at, (0, 1].
-  bool hurried = false;       ///< Fewer candidates go on (round_plan()).
-  bool first_sample = false;  ///< The sample that the scene came with, else the next one.
+  double share = 1;          ///< Of the candidates of a whole round, what may go on, (0, 1].
+  bool hurried = false;      ///< Fewer candidates go on (round_plan()).
+  SamplePoints points = {};  ///< That are looked up in the models.
+  std::vector<std::uint8_t> left_out = {};  ///< Flags of models that are not searched for.
   /// Pixels of the reduced image that are searched no more, from this round on.
   std::vector<std::uint32_t> newly_certain = {};
   Deadline deadline = {};  ///< Of the rounds.
@@ -44,8 +45,8 @@ class ModelSearches {
   virtual void prepared(const SceneFeatures&, double) {}
   /// Scores the placements that an earlier frame showed (DetectRequest::expected).
   virtual void score_expected(const Deadline& deadline) = 0;
-  /// Adds what a round finds. False: its sample is empty, and nothing is left to search.
-  virtual bool run_round(const RoundPlan& plan) = 0;
+  /// Adds what a round finds.
+  virtual void run_round(const RoundPlan& plan) = 0;
   /// Runs the final stages.
   virtual void finish(const FinalPlan& plan) = 0;
 
@@ -81,7 +82,7 @@ class LocalSearches : public ModelSearches {
                          Compete compete = contest_of);
 
   void score_expected(const Deadline& deadline) override;
-  bool run_round(const RoundPlan& plan) override;
+  void run_round(const RoundPlan& plan) override;
   void finish(const FinalPlan& plan) override;
   bool late() const override;
   SearchEffort effort() const override;

@@ -25,11 +25,6 @@ constexpr int kFewKeypoints = 200;          // with any of them
 constexpr double kRestOfPreparation = 5;    // times the surface; measured
 constexpr double kTimeOfPreparation = 0.7;  // of what is left after the surface, at most; by hand
 
-// For how many models whole samples are searched. With 200 models and one in 2, 3 and 8 points for
-// models without support, three seeds find 420/612, 412/612 and 388/612 objects of seed 777, in
-// 2.5, 2.4 and 1.9 times as long as 20 models take.
-constexpr int kWholeModels = 60;
-
 void shorten_preparation(const SearchFacts& facts, SearchPlan& plan, PlanReasons& reasons) {
   const double fits = kPreparationPart * facts.budget_ms / facts.costs.preparation_ms;
   if (fits >= 1) return;
@@ -47,14 +42,6 @@ void shorten_preparation(const SearchFacts& facts, SearchPlan& plan, PlanReasons
                            "features.use_flat_regions"}) {
     reasons[name] = why;
   }
-}
-
-EndRule end_rule(const SearchFacts& facts, const RoundOptions& rounds, PlanReasons& reasons) {
-  if (!facts.follows) return {1, false, rounds.min_gain, rounds.min_gain_of_two};
-  for (const char* name : {"end.first_share", "end.may_end_at_first", "end.min_gain"}) {
-    reasons[name] = "an earlier frame says what to expect";
-  }
-  return {rounds.expected_share, true, rounds.min_gain_expected, 0};
 }
 
 // Every setting as planned, beside the user's and the default.
@@ -75,23 +62,26 @@ std::vector<PlanEntry> settings_of(const SearchPlan& plan, DetectorOptions given
 }
 
 std::vector<PlanEntry> entries_of(const SearchPlan& plan, const DetectorOptions& options,
-                                  const LearnedLimits& limits, int image_width,
+                                  const ScoreLayers& layers, int image_width,
                                   const PlanReasons& reasons) {
   std::vector<PlanEntry> out = settings_of(plan, options, reasons);
   const auto add = [&](const std::string& name, const auto& value, const std::string& reason) {
     const auto found = reasons.find(name);
     out.push_back({name, concat(value), found == reasons.end() ? reason : found->second});
   };
-  add("end.first_share", plan.end.first_share, "a whole round");
-  add("end.may_end_at_first", plan.end.may_end_at_first ? "true" : "false", "no earlier frame");
-  add("end.min_gain", plan.end.min_gain, "rounds.min_gain");
-  add("end.min_gain_of_two", plan.end.min_gain_of_two, "rounds.min_gain_of_two");
-  add("limits.provenance", limits.provenance, "score layers");
+  add("limits.provenance", layers.limits.provenance, "score layers");
   if (image_width > 0) {
     const int most = plan.surface.max_width;
     add("surface.reduction", map_reduction(image_width, most),
         concat(image_width, " pixels / surface.max_width, rounded up"));
   }
+  const SearchYield& yield = plan.yield;
+  const std::string& measured = layers.yield.provenance;
+  add("yield.shape", yield.shape, measured);
+  add("yield.tries", yield.tries, measured);
+  add("yield.visible", yield.visible, measured);
+  add("yield.objects", yield.objects, measured);
+  add("yield.scenes", yield.scenes, measured);
   const std::string kept = concat("keeps ", plan.detect.score.keep_right, " of the right ones");
   for (std::size_t i = 0; i < kLimits; ++i) {
     add(concat("limits.", kLimitNames[i]), plan.detect.limits.stages[i], kept);
@@ -128,17 +118,12 @@ Result<SearchPlan> plan_search(const DetectorOptions& options, const ScoreLayers
       .detect = DetectPlan(options.detect, layers, {facts.models, facts.colored}, &reasons),
       .scene = options.scene,
       .views = options.views,
+      .yield = facts.colored ? layers.yield.with_color : layers.yield.without_color,
       .limited = facts.budget_ms > 0};
   plan.surface.num_threads = plan.features.num_threads = facts.threads;
   plan.planes.seed = plan.features.seed = plan.scene.seed = facts.seed;
   if (plan.limited) shorten_preparation(facts, plan, reasons);
-  if (plan.rounds.step_without_support == 0) {
-    plan.rounds.step_without_support = std::max(1, facts.models / kWholeModels);
-    reasons["rounds.step_without_support"] =
-        concat("one in (", facts.models, " / ", kWholeModels, ") points, 1 or more");
-  }
-  plan.end = end_rule(facts, options.rounds, reasons);
-  plan.entries = entries_of(plan, options, layers.limits, facts.image_width, reasons);
+  plan.entries = entries_of(plan, options, layers, facts.image_width, reasons);
   return plan;
 }
 

@@ -8,6 +8,7 @@
 #include "core/pipeline/costs.hpp"
 #include "core/pipeline/detector_options.hpp"
 #include "core/result/plan_entry.hpp"
+#include "core/score/search_yield.hpp"
 
 // What a search runs with: one value, made of options and facts. Nothing else changes a setting.
 
@@ -18,18 +19,10 @@ struct SearchFacts {
   int models = 1;          ///< That are searched for, 1 or more.
   int image_width = 0;     ///< Of the frame, pixels; 0: not known.
   bool colored = true;     ///< Hypotheses of all models are compared by colour.
-  bool follows = false;    ///< An earlier frame says what to expect.
   int threads = 1;         ///< 1 or more.
   std::uint64_t seed = 0;  ///< Of the request.
   double budget_ms = 0;    ///< 0: no limit.
   Costs costs = {};        ///< What parts of a search cost here, for a budget.
-};
-
-/// When rounds end.
-struct EndRule {
-  double first_share = 1;  ///< Of a whole round, what the first one examines.
-  bool may_end_at_first = false;
-  double min_gain = 0, min_gain_of_two = 0;  ///< See RoundOptions.
 };
 
 /// Shares of the time that a budget leaves. Chosen by hand: with 0.7 and with 0.82 for the rounds,
@@ -51,7 +44,7 @@ struct SearchPlan {
   DetectPlan detect;  ///< Of a whole round.
   InterpretationOptions scene;
   ViewsOptions views;
-  EndRule end = {};
+  SearchYield yield;  ///< With or without colours, as the frame is.
   TimePlan time = {};
   bool limited = false;                 ///< There is a time budget.
   double prepared_share = 1;            ///< Of the work of a whole preparation, (0, 1].

@@ -29,6 +29,12 @@ struct StageTiming {
   double milliseconds = 0;
 };
 
+/// How many objects of a model a search expects to have missed.
+struct MissedModel {
+  std::string model;    ///< The model's name.
+  double expected = 0;  ///< Objects in sight that are undiscovered; 0 or more.
+};
+
 /// The result of one search.
 struct SceneInterpretations {
   std::int64_t stamp_ns = 0;                    ///< Exposure time of the frame, UTC.
@@ -39,6 +45,9 @@ struct SceneInterpretations {
   bool budget_exhausted = false;  ///< True: without the time budget, more is searched.
   /// Models whose search was lost with a host that searched for them; empty on one host.
   std::vector<std::string> not_searched;
+  /// Of each model that was searched for; empty from several views. With a small sum, what is not
+  /// reported was searched for and not found.
+  std::vector<MissedModel> missed;
   bool partial = false;         ///< The search goes on (DetectRequest::on_round).
   SearchEffort effort;          ///< The work that the search did.
   std::vector<PlanEntry> plan;  ///< What it ran with. Empty where it came over the wire.

@@ -25,7 +25,6 @@ enum class Limit : std::uint8_t {
   aligned,    ///< A pose is aligned to the end.
   refined,    ///< An aligned pose is scored with all components.
   repeated,   ///< A pose that an earlier round scored may be scored again.
-  support,    ///< A model that was found with this searches the whole sample of later rounds.
   climbed,    ///< A placement climbs the score.
   turned,     ///< A placement is tried in near-symmetric poses.
   laid,       ///< A pose at rest on a flat region is moved and scored in full.
@@ -41,11 +40,11 @@ enum class Limit : std::uint8_t {
   contender_behind   ///< A rival makes the others less probable.
 };
 inline constexpr std::string_view kLimitNames[] = {
-    "ranked",         "clustered",        "aligned",        "refined",
-    "repeated",       "support",          "climbed",        "turned",
-    "laid",           "compared",         "selected",       "competing",
-    "checked_behind", "clustered_behind", "aligned_behind", "refined_behind",
-    "rival_behind",   "contender_behind"};
+    "ranked",           "clustered",      "aligned",        "refined",
+    "repeated",         "climbed",        "turned",         "laid",
+    "compared",         "selected",       "competing",      "checked_behind",
+    "clustered_behind", "aligned_behind", "refined_behind", "rival_behind",
+    "contender_behind"};
 inline constexpr std::size_t kLimits = std::size(kLimitNames);
 
 /// The limits that one search runs with.

@@ -14,6 +14,7 @@
 #include "core/score/competition.hpp"
 #include "core/score/components.hpp"
 #include "core/score/limits.hpp"
+#include "core/score/search_yield.hpp"
 
 namespace bpa {
 
@@ -51,6 +52,7 @@ struct ScoreLayers {
   ScoreLayer without_color;
   /// Of the log odds that these layers give.
   LearnedLimits limits;
+  LearnedYield yield;
 
   const ScoreLayer& last_for(const ScoreValues& values) const {
     return std::isnan(values[component("color")]) ? without_color : round_three;

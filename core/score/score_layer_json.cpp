@@ -15,7 +15,7 @@ extern const char* const kBuiltInLayers;
 
 namespace {
 
-constexpr int kVersion = 5;
+constexpr int kVersion = 6;
 
 Status corrupt(const std::string& path, const std::string& what) {
   return Status(StatusCode::corrupt, path + ": " + what);
@@ -102,6 +102,26 @@ LearnedLimits limits_from_json(const nlohmann::json& json) {
   return learned;
 }
 
+constexpr std::pair<const char*, double SearchYield::*> kYieldNumbers[] = {
+    {"shape", &SearchYield::shape},
+    {"tries", &SearchYield::tries},
+    {"visible", &SearchYield::visible},
+    {"objects", &SearchYield::objects},
+    {"scenes", &SearchYield::scenes}};
+
+nlohmann::ordered_json to_json(const SearchYield& yield) {
+  nlohmann::ordered_json out;
+  for (const auto& [name, number] : kYieldNumbers) out[name] = yield.*number;
+  return out;
+}
+
+SearchYield yield_from_json(const nlohmann::json& json) {
+  SearchYield out;
+  for (const auto& [name, number] : kYieldNumbers) json.at(name).get_to(out.*number);
+  if (!out.is_valid()) throw std::runtime_error("the yield's numbers must be over 0");
+  return out;
+}
+
 }  // namespace
 
 std::string to_json(const ScoreLayers& layers) {
@@ -109,7 +129,11 @@ std::string to_json(const ScoreLayers& layers) {
                                        {"round_two", to_json(layers.round_two)},
                                        {"round_three", to_json(layers.round_three)},
                                        {"without_color", to_json(layers.without_color)},
-                                       {"limits", to_json(layers.limits)}};
+                                       {"limits", to_json(layers.limits)},
+                                       {"yield",
+                                        {{"provenance", layers.yield.provenance},
+                                         {"with_color", to_json(layers.yield.with_color)},
+                                         {"without_color", to_json(layers.yield.without_color)}}}};
   return json.dump(1) + "\n";
 }
 
@@ -123,8 +147,13 @@ Result<ScoreLayers> score_layers_from_json(const std::string& text, const std::s
                                 "; this program reads version " + std::to_string(kVersion) +
                                 ": run 'bpa train' again");
     }
-    return ScoreLayers{from_json(json.at("round_two")), from_json(json.at("round_three")),
-                       from_json(json.at("without_color")), limits_from_json(json.at("limits"))};
+    return ScoreLayers{from_json(json.at("round_two")),
+                       from_json(json.at("round_three")),
+                       from_json(json.at("without_color")),
+                       limits_from_json(json.at("limits")),
+                       {yield_from_json(json.at("yield").at("with_color")),
+                        yield_from_json(json.at("yield").at("without_color")),
+                        json.at("yield").at("provenance").get<std::string>()}};
   } catch (const std::exception& error) {
     return corrupt(where, std::string("does not have the expected content: ") + error.what());
   }

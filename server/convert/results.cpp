@@ -95,6 +95,9 @@ msgs::SceneInterpretations interpretations_message(const Result<SceneInterpretat
       message.status.message += std::exchange(separator, ", ") + name;
     }
   }
+  for (const MissedModel& missed : result->missed) {
+    message.missed.push_back({missed.model, missed.expected});
+  }
   message.fused_frames = static_cast<std::uint32_t>(result->fused_frames);
   return message;
 }

@@ -137,7 +137,6 @@ msgs::GroupStep begin_message(const Frame& frame, const DetectRequest& request,
   step.budget_ms = request.budget_ms;
   step.library_models = static_cast<std::uint32_t>(facts.models);
   step.colored = facts.colored;
-  step.follows = facts.follows;
   step.preparation_ms = facts.costs.preparation_ms;
   for (const ExpectedPlacement& expected : request.expected) {
     const auto model = library.models.find(expected.model);
@@ -167,7 +166,6 @@ Result<ShareTask> task_of(msgs::GroupStep begin, const SharedLibrary& library) {
   task.request.budget_ms = begin.budget_ms;
   task.facts = {.models = static_cast<int>(begin.library_models),
                 .colored = begin.colored,
-                .follows = begin.follows,
                 .seed = begin.seed,
                 .budget_ms = begin.budget_ms,
                 .costs = {.preparation_ms = begin.preparation_ms}};

@@ -77,17 +77,18 @@ class Searches : public ModelSearches {
     take_candidates(run_competing(step_of(msgs::GroupStep::kExpected), deadline), false);
   }
 
-  bool run_round(const RoundPlan& plan) override {
+  void run_round(const RoundPlan& plan) override {
     msgs::GroupStep step = step_of(msgs::GroupStep::kRound);
     step.round = static_cast<std::uint32_t>(plan.number);
     step.part = plan.share;
     step.hurried = plan.hurried;
-    step.first_sample = plan.first_sample;
+    step.keypoints.assign(plan.points.keypoints.begin(), plan.points.keypoints.end());
+    step.references.assign(plan.points.references.begin(), plan.points.references.end());
+    for (std::size_t i = 0; i < models_.size(); ++i) {
+      if (plan.left_out[i]) step.left_out.push_back(models_[i]->number);
+    }
     step.newly_certain = plan.newly_certain;
-    std::vector<msgs::GroupAnswer> answers = run_competing(std::move(step), plan.deadline);
-    if (answers.empty() || answers.front().exhausted) return false;
-    take_candidates(std::move(answers), false);
-    return status_.ok();
+    take_candidates(run_competing(std::move(step), plan.deadline), false);
   }
 
   void finish(const FinalPlan& plan) override {

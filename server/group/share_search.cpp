@@ -9,7 +9,6 @@
 #include "core/base/concat.hpp"
 #include "core/base/guarded.hpp"
 #include "core/pipeline/prepare_scene.hpp"
-#include "server/convert/results.hpp"
 #include "server/group/messages.hpp"
 
 namespace bpa::server::group {
@@ -93,11 +92,24 @@ Contest ShareSearch::compete(const LocalSearches& searches, const std::vector<Cl
   return contest;
 }
 
+namespace {
+
+bool all_below(std::size_t limit, const std::vector<std::uint32_t>& numbers) {
+  return std::ranges::all_of(numbers, [&](std::uint32_t one) { return one < limit; });
+}
+
+// Flags of the models whose numbers are given.
+std::vector<std::uint8_t> left_out(const Models& models, const std::vector<std::int32_t>& numbers) {
+  std::vector<std::uint8_t> flags;
+  for (const auto& model : models) flags.push_back(std::ranges::count(numbers, model->number) > 0);
+  return flags;
+}
+
+}  // namespace
+
 // What was found since `sent`; after the final stages all.
-void ShareSearch::send_found(const LocalSearches& searches, bool any_left,
-                             std::vector<std::size_t>& sent) {
+void ShareSearch::send_found(const LocalSearches& searches, std::vector<std::size_t>& sent) {
   msgs::GroupAnswer answer = plain_answer();
-  answer.exhausted = !any_left;
   for (std::size_t i = 0; i < sent.size(); ++i) {
     const Candidates& found = searches.found()[i];
     for (; sent[i] < found.size(); ++sent[i]) {
@@ -125,29 +137,33 @@ Status ShareSearch::search() {
   });
   running = &searches;
   std::vector<std::size_t> sent(task->models.size(), 0);
-  const std::size_t pixels = scene.image.pixels.size();
   while (std::optional<msgs::GroupStep> step = next()) {
-    const bool in_image = std::ranges::all_of(step->newly_certain,
-                                              [&](std::uint32_t pixel) { return pixel < pixels; });
-    if (!in_image) return corrupt("a step of a search names pixels outside of the image");
-    if (Status status = run_step(*std::move(step), searches, sent); !status.ok()) return status;
+    if (!all_below(scene.image.pixels.size(), step->newly_certain) ||
+        !all_below(scene.keypoints.size(), step->keypoints) ||
+        !all_below(scene.coarse.size(), step->references)) {
+      return corrupt("a step of a search names pixels or points outside of the scene");
+    }
+    if (Status status = run_step(*std::move(step), task->models, searches, sent); !status.ok()) {
+      return status;
+    }
   }
   return status_;
 }
 
-Status ShareSearch::run_step(msgs::GroupStep&& step, LocalSearches& searches,
+Status ShareSearch::run_step(msgs::GroupStep&& step, const Models& models, LocalSearches& searches,
                              std::vector<std::size_t>& sent) {
   const Deadline until = Deadline::after(step.left_ms);
-  bool any_left = true;
   if (step.kind == msgs::GroupStep::kExpected) {
     searches.score_expected(until);
   } else if (step.kind == msgs::GroupStep::kRound) {
-    any_left = searches.run_round({.number = static_cast<int>(step.round),
-                                   .share = step.part,
-                                   .hurried = step.hurried,
-                                   .first_sample = step.first_sample,
-                                   .newly_certain = std::move(step.newly_certain),
-                                   .deadline = until});
+    searches.run_round({.number = static_cast<int>(step.round),
+                        .share = step.part,
+                        .hurried = step.hurried,
+                        .points = {{step.keypoints.begin(), step.keypoints.end()},
+                                   {step.references.begin(), step.references.end()}},
+                        .left_out = left_out(models, step.left_out),
+                        .newly_certain = std::move(step.newly_certain),
+                        .deadline = until});
   } else if (step.kind == msgs::GroupStep::kFinish) {
     searches.finish(
         {.share = step.part, .newly_certain = std::move(step.newly_certain), .deadline = until});
@@ -155,7 +171,7 @@ Status ShareSearch::run_step(msgs::GroupStep&& step, LocalSearches& searches,
   } else {
     return corrupt("a search got a step of kind ", static_cast<int>(step.kind));
   }
-  send_found(searches, any_left, sent);
+  send_found(searches, sent);
   return {};
 }
 

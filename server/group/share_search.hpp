@@ -17,6 +17,7 @@
 #include "core/base/stopwatch.hpp"
 #include "core/pipeline/model_searches.hpp"
 #include "idl/wire/msg/bpa_msgs.hpp"
+#include "server/convert/results.hpp"
 #include "server/group/library.hpp"
 
 namespace bpa::server::group {
@@ -75,9 +76,9 @@ class ShareSearch {
   std::nullopt_t fail(Status status);
   void send(wire::bpa_msgs::GroupAnswer&& answer, const LocalSearches& searches);
   Contest compete(const LocalSearches& searches, const std::vector<Claim>& claims, int most);
-  void send_found(const LocalSearches& searches, bool any_left, std::vector<std::size_t>& sent);
+  void send_found(const LocalSearches& searches, std::vector<std::size_t>& sent);
   Status search();
-  Status run_step(wire::bpa_msgs::GroupStep&& step, LocalSearches& searches,
+  Status run_step(wire::bpa_msgs::GroupStep&& step, const Models& models, LocalSearches& searches,
                   std::vector<std::size_t>& sent);
 
   const FindLibrary find_;

@@ -242,8 +242,8 @@ def options():
 EPILOG = """default effort: the detector's defaults. exhaustive effort: rounds go on until no
 surface is left.
 
-All domains and five seeds take about an hour on two idle cores: seven minutes of it at default
-effort, ten for frames and models.
+All domains and five seeds take up to an hour at default effort on two cores, frames and models
+included.
 
 Frames, models and results are kept in OUTPUT. Another detector makes models and results again.
 

@@ -25,7 +25,7 @@ class Domain:
 # Searched until a round has nothing left to look at.
 EFFORTS = {
     "default": "",
-    "exhaustive": "max_rounds: 100\nmin_gain: 0\nmin_gain_of_two: 0\n",
+    "exhaustive": "max_rounds: 1000\nmax_missed: 0\n",
 }
 NO_COLOURS = "use_color: false\n"
 WORKSHOP = ("pen,screwdriver,wrench,scissors,clamp,spatula,tin,battery,phone,remote,book,soap,"

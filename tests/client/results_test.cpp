@@ -45,6 +45,7 @@ io::FrameResult result() {
   frame.seconds = 0.02;
   frame.budget_exhausted = true;
   frame.fused_frames = 4;
+  frame.missed = {{"mug", 0.25}, {"can", 0}};
   frame.interpretations = {{1, 5.5, 0.75, {placement(), placement()}}, {2, 4.5, 0.25, {}}};
   frame.server.emplace();
   return frame;
@@ -86,6 +87,8 @@ TEST(ClientResults, HaveTheirKeys) {
   EXPECT_EQ(json.at("queue_position"), 0);
   EXPECT_EQ(json.at("budget_exhausted"), true);
   EXPECT_EQ(json.at("fused_frames"), 4);
+  EXPECT_EQ(json.at("missed").at(0).at("model"), "mug");
+  EXPECT_EQ(json.at("missed").at(0).at("expected"), 0.25);
   EXPECT_EQ(json.at("timings"), Json::parse(R"([{"stage": "cloud", "milliseconds": 12.5},
                                                 {"stage": "edges", "milliseconds": 3.25}])"));
   EXPECT_EQ(json.at("interpretations").at(1),

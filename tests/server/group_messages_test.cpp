@@ -230,7 +230,6 @@ TEST_F(GroupMessages, SearchThatTheCoreAcceptsArrivesAsItIs) {
     options.detect.score.keep_right = draw.chance(0.5) ? 1 : 0.999;  // any other has no limits
     const SearchFacts facts{.models = draw.count(1, 1 << 30),
                             .colored = draw.chance(0.5),
-                            .follows = draw.chance(0.5),
                             .seed = request.seed,
                             .budget_ms = request.budget_ms,
                             .costs = {.preparation_ms = std::exp(draw.number(-700, 700))}};
@@ -263,7 +262,6 @@ TEST_F(GroupMessages, SearchThatTheCoreAcceptsArrivesAsItIs) {
     }
     EXPECT_EQ(task->facts.models, facts.models);
     EXPECT_EQ(task->facts.colored, facts.colored);
-    EXPECT_EQ(task->facts.follows, facts.follows);
     EXPECT_EQ(task->facts.seed, facts.seed);
     EXPECT_EQ(task->facts.budget_ms, facts.budget_ms);
     EXPECT_EQ(task->facts.costs.preparation_ms, facts.costs.preparation_ms);

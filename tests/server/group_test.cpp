@@ -201,7 +201,6 @@ TEST_F(GroupLibrary, SearchReachesTheWorkerToTheBit) {
   options.scene.judge_given_others = false;
   const SearchFacts facts{.models = 7,
                           .colored = false,
-                          .follows = true,
                           .seed = request.seed,
                           .budget_ms = request.budget_ms,
                           .costs = {.preparation_ms = 31}};
@@ -224,7 +223,6 @@ TEST_F(GroupLibrary, SearchReachesTheWorkerToTheBit) {
   EXPECT_EQ(task->models[0]->name, "plate");
   EXPECT_EQ(task->facts.models, 7);
   EXPECT_FALSE(task->facts.colored);
-  EXPECT_TRUE(task->facts.follows);
   EXPECT_EQ(task->facts.costs.preparation_ms, 31);
   auto sent = options_of(options), got = options_of(const_cast<DetectorOptions&>(task->options));
   ASSERT_EQ(sent.size(), got.size());

@@ -73,6 +73,12 @@ struct StageTime {
   double milliseconds = 0;
 };
 
+/// How many objects of a model the search expects to have missed.
+struct MissedObjects {
+  std::string model_name;
+  double expected = 0;  ///< Objects in sight that are undiscovered; 0 or more.
+};
+
 /// What was found in one frame. An empty scene is an answer, not an error.
 struct DetectionSet {
   std::int64_t stamp_ns = 0;  ///< Exposure time of the frame that was searched, UTC.
@@ -88,6 +94,9 @@ struct DetectionSet {
   /// detection.fuse_frames); 1: of this one alone.
   int fused_frames = 1;
   int models_searched = 0;
+  /// Of each model that was searched for; empty from several views. With a small sum, what is not
+  /// reported was searched for and not found.
+  std::vector<MissedObjects> missed;
   std::uint64_t seed = 0;  ///< Gives the same answer again for the same frame and options.
   /// How many frames and requests waited before this one when the server accepted it; 0 for frames
   /// of the stream.

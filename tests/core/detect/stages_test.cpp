@@ -150,13 +150,13 @@ TEST_F(Stages, EachSourceAloneFindsTheL) {
   EXPECT_LT(first_right(by_features, l_truth_, l_->symmetry), by_features.size());
   SceneFeatures without_keypoints = scene;
   without_keypoints.sample.rim_pairs = {};
-  without_keypoints.sample.keypoints.clear();
+  without_keypoints.sample.points.keypoints.clear();
   const auto by_pairs = sampled_in(without_keypoints, *l_);
   for (const Candidate& hypothesis : by_pairs) {
     ASSERT_EQ(hypothesis.found_by, Source::pairs);
   }
   EXPECT_LT(first_right(by_pairs, l_truth_, l_->symmetry), by_pairs.size());
-  rims_alone.sample.keypoints.clear();
+  rims_alone.sample.points.keypoints.clear();
   const auto by_rims = sampled_in(rims_alone, *l_);
   EXPECT_LT(first_right(by_rims, l_truth_, l_->symmetry), by_rims.size());
 }

@@ -356,23 +356,6 @@ TEST(PairVoting, OfThePairsOfLargeCellsSomeVote) {
   }
 }
 
-TEST(PairVoting, SomeReferencePointsMayBeLookedAtAlone) {
-  const PointCloud model = random_oriented_points(60, 9);
-  const ScenePairs pairs =
-      scene_pairs(moved(model, random_pose(10)), {3, 7, 12, 20, 31, 40, 55}, 0.3f, 1, 1);
-  const PointPairTable table(model, kDistanceStep);
-  const auto references = [&](const EachOf& looked_at) {
-    std::vector<int> out;
-    for (const VotedPose& pose : vote_poses(pairs, table, 60, 1, {}, {}, looked_at)) {
-      out.push_back(pose.reference);
-    }
-    return out;
-  };
-  EXPECT_EQ(references({}), pairs.references);
-  EXPECT_EQ(references({1, 3}), (std::vector<int>{7, 31}));
-  EXPECT_TRUE(references({7, 3}).empty());
-}
-
 // A flat plate, 12 x 8 cm, without one corner: no turn maps it onto itself.
 bool on_plate(const Eigen::Vector3f& p) {
   return std::abs(p.x()) < 0.06f && std::abs(p.y()) < 0.04f && (p.x() < 0.02f || p.y() < 0.01f);

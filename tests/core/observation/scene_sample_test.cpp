@@ -26,18 +26,21 @@ TEST_F(SceneSamples, NoPointIsInTwo) {
   const SceneFeatures scene = features_of(everything());
   std::set<int> keypoints, references;
   std::size_t taken_keypoints = 0, taken_references = 0;
-  SceneSample sample;
+  SampledSoFar passed;
   for (int rounds = 0;; ++rounds) {
     ASSERT_LT(rounds, 1000);
-    sample = next_sample(scene, sample, {}, few());
-    if (sample.empty()) break;
-    EXPECT_LE(sample.keypoints.size(), 50u);
-    EXPECT_LE(sample.pairs.references.size(), 80u);
-    EXPECT_EQ(sample.pairs.references, sample.rim_pairs.references);
-    keypoints.insert(sample.keypoints.begin(), sample.keypoints.end());
-    references.insert(sample.pairs.references.begin(), sample.pairs.references.end());
-    taken_keypoints += sample.keypoints.size();
-    taken_references += sample.pairs.references.size();
+    const SamplePoints points = next_points(scene, {}, few(), passed);
+    if (points.empty()) break;
+    EXPECT_LE(points.keypoints.size(), 50u);
+    EXPECT_LE(points.references.size(), 80u);
+    const SceneSample sample = scene_sample(scene, points, {}, few());
+    EXPECT_EQ(sample.points, points);
+    EXPECT_EQ(sample.pairs.references, points.references);
+    EXPECT_EQ(sample.rim_pairs.references, points.references);
+    keypoints.insert(points.keypoints.begin(), points.keypoints.end());
+    references.insert(points.references.begin(), points.references.end());
+    taken_keypoints += points.keypoints.size();
+    taken_references += points.references.size();
   }
   EXPECT_EQ(keypoints.size(), taken_keypoints);
   EXPECT_EQ(references.size(), taken_references);
@@ -68,14 +71,15 @@ TEST_F(SceneSamples, ExplainedSurfaceIsLeftOut) {
   for (std::size_t i = 0; i < left_half.size(); ++i) {
     left_half[i] = static_cast<int>(i) % scene.image.width < middle;
   }
-  const SceneSample sample = next_sample(scene, {}, left_half, few());
-  ASSERT_FALSE(sample.keypoints.empty());
-  ASSERT_FALSE(sample.pairs.references.empty());
-  for (const int k : sample.keypoints) {
+  SampledSoFar passed;
+  const SamplePoints points = next_points(scene, left_half, few(), passed);
+  ASSERT_FALSE(points.keypoints.empty());
+  ASSERT_FALSE(points.references.empty());
+  for (const int k : points.keypoints) {
     const int pixel = scene.image.pixel_of(scene.surface.points[scene.keypoints[k]]);
     EXPECT_GE(pixel % scene.image.width, middle);
   }
-  for (const int r : sample.pairs.references) {
+  for (const int r : points.references) {
     EXPECT_GE(scene.image.pixel_of(scene.coarse.points[r]) % scene.image.width, middle);
   }
 }

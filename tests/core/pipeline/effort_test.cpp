@@ -19,13 +19,10 @@ constexpr SearchEffort kMost{.rounds = 3,
                              .quick_scores = 1420,
                              .full_scores = 20};
 
-constexpr double kSupport = -5;  // log odds, of the built-in layers
-
 class EffortOf : public test::LScene {
  protected:
   static SearchEffort searched(const std::vector<test::Solid>& solids, int num_threads = 0,
-                               double budget_ms = 0, const RoundOptions& rounds = {},
-                               double support = kSupport) {
+                               double budget_ms = 0, const RoundOptions& rounds = {}) {
     const auto library = std::make_shared<ModelLibrary>();
     EXPECT_TRUE(library->add(l_).ok());
     EXPECT_TRUE(library->add(brick_).ok());
@@ -35,11 +32,7 @@ class EffortOf : public test::LScene {
     request.budget_ms = budget_ms;
     DetectorOptions options;
     options.rounds = rounds;
-    ScoreLayers layers = default_score_layers();
-    for (auto& level : layers.limits.levels) {
-      level.with_color[Limit::support] = level.without_color[Limit::support] = support;
-    }
-    const auto found = Detector(library, options, layers).detect(frame, request);
+    const auto found = Detector(library, options).detect(frame, request);
     EXPECT_TRUE(found.ok()) << found.status().message;
     return found.ok() ? found->effort : SearchEffort{};
   }
@@ -60,19 +53,12 @@ TEST_F(EffortOf, IsTheSameForAnyThreads) {
   for (const int threads : {2, 8}) EXPECT_EQ(searched(everything(), threads), one) << threads;
 }
 
-// No placement is support for its model, or each is.
-TEST_F(EffortOf, IsLessForModelsWithoutSupport) {
-  const SearchEffort whole = searched(everything());
+TEST_F(EffortOf, IsLessWhereMoreMayBeMissed) {
   RoundOptions options;
-  options.step_without_support = 8;
-  EXPECT_LT(searched(everything(), 0, 0, options, 1000).sampled_poses, 0.8 * whole.sampled_poses);
-  options.max_rounds = 1;
-  const SearchEffort first = searched(everything(), 0, 0, options, 1000);
-  options.step_without_support = 1;
-  EXPECT_EQ(searched(everything(), 0, 0, options), first);
-  options = {};
-  options.step_without_support = 8;
-  EXPECT_EQ(searched(everything(), 0, 0, options, -1000), whole);
+  options.max_missed = 0.01;
+  const SearchEffort patient = searched(everything(), 0, 0, options);
+  options.max_missed = 1;
+  EXPECT_LT(searched(everything(), 0, 0, options).sampled_poses, patient.sampled_poses);
 }
 
 TEST_F(EffortOf, IsLessWhereNothingIsThereOrTimeIsShort) {

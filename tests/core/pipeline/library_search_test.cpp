@@ -2,84 +2,106 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/pipeline/library_search.hpp"
 
-#include <numeric>
+#include <set>
 
 #include "core/base/concat.hpp"
+#include "core/model/model_index.hpp"
 #include "core/score/score_layer.hpp"
 #include "tests/support/l_scene.hpp"
 
 namespace bpa {
 namespace {
 
-// Each round finds one placement, of surface that no other explains: its probability is the gain.
-class ScriptedSearches : public ModelSearches {
+// Finds nothing, and keeps what it was told.
+class FruitlessSearches : public ModelSearches {
  public:
-  ScriptedSearches(const ObjectModel& model, std::vector<double> gains)
-      : model_(model), gains_(std::move(gains)) {
-    found_.resize(1);
-  }
+  explicit FruitlessSearches(std::size_t models) { found_.resize(models); }
 
   void score_expected(const Deadline&) override {}
-  bool run_round(const RoundPlan& plan) override {
-    Candidate candidate{.model = &model_};
-    candidate.refinement.camera_from_object.translation.x() = plan.number;
-    candidate.score = log_odds_of(gains_.at(static_cast<std::size_t>(plan.number)));
-    candidate.explained.resize(100);
-    std::iota(candidate.explained.begin(), candidate.explained.end(), 100U * plan.number);
-    found_[0].push_back(candidate);
-    return true;
-  }
+  void run_round(const RoundPlan& plan) override { rounds.push_back(plan); }
   void finish(const FinalPlan&) override {}
   bool late() const override { return false; }
   SearchEffort effort() const override { return {}; }
 
- private:
-  const ObjectModel& model_;
-  const std::vector<double> gains_;
+  std::vector<RoundPlan> rounds;
 };
 
 // Searches whose hosts are lost after the first round.
-class LostSearches : public ScriptedSearches {
+class LostSearches : public FruitlessSearches {
  public:
-  using ScriptedSearches::ScriptedSearches;
-  bool run_round(const RoundPlan& plan) override {
-    return plan.number == 0 && ScriptedSearches::run_round(plan);
+  using FruitlessSearches::FruitlessSearches;
+  Status status() const override {
+    return rounds.empty() ? Status() : unavailable("no host is left");
   }
-  Status status() const override { return unavailable("no host is left"); }
 };
 
 class LibrarySearchEnds : public test::LScene {
  protected:
-  // The rounds that a search takes whose rounds gain that much.
-  static std::int64_t after(std::vector<double> gains, const DetectorOptions& options = {}) {
+  struct Ran {
+    std::vector<RoundPlan> rounds;
+    SearchOutcome outcome;
+    std::size_t points = 0;  // of the scene
+  };
+
+  static Ran run(const DetectorOptions& options) {
     const SceneFeatures scene = features_of(everything());
     const DetectRequest request;
-    const std::vector<std::shared_ptr<const ObjectModel>> models = {l_};
-    const SearchPlan plan = *plan_search(options, default_score_layers(), {});
+    const std::vector<std::shared_ptr<const ObjectModel>> models = {l_, brick_};
+    const SearchPlan plan = *plan_search(options, default_score_layers(), {.models = 2});
     const SearchInputs inputs{scene, plan, default_score_layers(), request, models};
-    ScriptedSearches searches(*l_, std::move(gains));
-    const SearchOutcome out = LibrarySearch{inputs, {}}.run(searches);
-    EXPECT_FALSE(out.cut);
-    EXPECT_EQ(out.candidates.size(), static_cast<std::size_t>(out.effort.rounds));
-    return out.effort.rounds;
+    FruitlessSearches searches(models.size());
+    SearchOutcome outcome = LibrarySearch{inputs, {}}.run(searches);
+    EXPECT_FALSE(outcome.cut);
+    EXPECT_EQ(outcome.effort.rounds, std::ssize(searches.rounds));
+    return {std::move(searches.rounds), std::move(outcome), scene.coarse.size()};
+  }
+  static DetectorOptions with(double max_missed, int max_rounds) {
+    DetectorOptions options;
+    options.rounds.max_missed = max_missed;
+    options.rounds.max_rounds = max_rounds;
+    options.features.max_references = 20;
+    return options;
   }
 };
 
-TEST_F(LibrarySearchEnds, AfterARoundThatGainsNearlyNothing) {
-  EXPECT_EQ(after({0.9, 0.5, 0.9, 0.01, 0.9}), 4);
-  EXPECT_EQ(after({0.01, 0.5, 0.01, 0.9}), 3) << "but not after the first";
+TEST_F(LibrarySearchEnds, WhenFewObjectsAreExpectedMissed) {
+  std::size_t before = 0;
+  for (const double max_missed : {1.0, 0.3, 0.1}) {
+    const Ran ran = run(with(max_missed, 1000));
+    const double missed = ran.outcome.missed[0] + ran.outcome.missed[1];
+    EXPECT_LT(missed, max_missed);
+    EXPECT_GT(missed, 0);
+    EXPECT_GT(ran.rounds.size(), before);
+    before = ran.rounds.size();
+  }
+  EXPECT_TRUE(run(with(1000, 1000)).rounds.empty()) << "so many are never expected";
 }
 
-TEST_F(LibrarySearchEnds, AfterTwoRoundsInARowThatGainLittle) {
-  EXPECT_EQ(after({0.9, 0.1, 0.5, 0.1, 0.14, 0.9}), 5);
-  EXPECT_EQ(after({0.1, 0.1, 0.9}), 2);
+TEST_F(LibrarySearchEnds, WhenAllPointsAreSearchedWithoutALimit) {
+  const Ran ran = run(with(0, 1000));
+  std::set<int> references;
+  for (const RoundPlan& round : ran.rounds) {
+    references.insert(round.points.references.begin(), round.points.references.end());
+    EXPECT_EQ(round.left_out, (std::vector<std::uint8_t>{0, 0}));
+  }
+  EXPECT_EQ(references.size(), ran.points);
 }
 
-TEST_F(LibrarySearchEnds, AfterMaxRoundsWithoutLimits) {
-  DetectorOptions options;
-  options.rounds.min_gain = options.rounds.min_gain_of_two = 0;
-  options.rounds.max_rounds = 5;
-  EXPECT_EQ(after({0.9, 0.001, 0.001, 0.001, 0.001, 0.9}, options), 5);
+TEST_F(LibrarySearchEnds, AfterMaxRounds) { EXPECT_EQ(run(with(0, 5)).rounds.size(), 5u); }
+
+TEST_F(LibrarySearchEnds, SoonerForTheModelThatShowsMore) {
+  DetectorOptions options = with(0.2, 1000);
+  options.features.max_references = 2;
+  const Ran ran = run(options);
+  const auto l_area = l_->index->point_area * static_cast<double>(l_->surface.size());
+  const auto brick_area = brick_->index->point_area * static_cast<double>(brick_->surface.size());
+  const std::size_t larger = l_area > brick_area ? 0 : 1;
+  const RoundPlan &first = ran.rounds.front(), &last = ran.rounds.back();
+  EXPECT_EQ(first.left_out, (std::vector<std::uint8_t>{0, 0}));
+  EXPECT_EQ(first.share, 1);
+  EXPECT_EQ(last.left_out[larger], 1);
+  EXPECT_EQ(last.left_out[1 - larger], 0);
+  EXPECT_EQ(last.share, 0.5);
 }
 
 TEST_F(LibrarySearchEnds, WithTheFailureOfSearchesElsewhere) {
@@ -90,9 +112,7 @@ TEST_F(LibrarySearchEnds, WithTheFailureOfSearchesElsewhere) {
   using Made = Result<std::unique_ptr<ModelSearches>>;
   const auto none = [](const auto&...) { return Made(unavailable("no host is there")); };
   EXPECT_EQ(detector.detect_elsewhere(frame, {}, none).status().message, "no host is there");
-  const auto lost = [](const auto&...) {
-    return Made(std::make_unique<LostSearches>(*l_, std::vector{0.9}));
-  };
+  const auto lost = [](const auto&...) { return Made(std::make_unique<LostSearches>(1)); };
   EXPECT_EQ(detector.detect_elsewhere(frame, {}, lost).status().message, "no host is left");
 }
 

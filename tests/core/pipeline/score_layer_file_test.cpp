@@ -54,7 +54,7 @@ TEST_F(ScoreLayerFile, DamageIsRefusedWithAReason) {
   test::spill(path_, good.substr(0, good.size() / 2));
   EXPECT_NE(refusal().find("truncated or not JSON"), std::string::npos);
   std::string other = good;
-  other.replace(other.find("_version\": 5"), 12, "_version\": 9");
+  other.replace(other.find("_version\": 6"), 12, "_version\": 9");
   test::spill(path_, other);
   EXPECT_NE(refusal().find("version 9"), std::string::npos);
   other = good;

@@ -56,12 +56,10 @@ TEST(SearchPlan, WhatTheUserSetsIsUsed) {
   options.detect.sample.peaks_per_reference = 1;
   options.detect.sample.rim_peaks_per_reference = 0;
   options.detect.check.max_in_library = 500;
-  options.rounds.step_without_support = 7;
   const SearchPlan plan = plan_of({.models = 648, .colored = false}, options);
   EXPECT_EQ(plan.detect.sample.peaks_per_reference, 1);
   EXPECT_EQ(plan.detect.sample.rim_peaks_per_reference, 0);
   EXPECT_EQ(plan.detect.check.max_in_library, 500);
-  EXPECT_EQ(plan.rounds.step_without_support, 7);
   EXPECT_EQ(reason(plan, "check.max_in_library"), "setting");
   EXPECT_EQ(reason(plan, "climb.max_climbed"), "default");
 }
@@ -69,9 +67,6 @@ TEST(SearchPlan, WhatTheUserSetsIsUsed) {
 TEST(SearchPlan, GrowsWithTheCubeRootOfTheModels) {
   for (const auto& [models, most] : {std::pair{1, 800}, {24, 800}, {192, 1600}, {648, 2400}}) {
     EXPECT_EQ(plan_of({.models = models}).detect.check.max_in_library, most);
-  }
-  for (const auto& [models, step] : {std::pair{1, 1}, {21, 1}, {119, 1}, {120, 2}, {200, 3}}) {
-    EXPECT_EQ(plan_of({.models = models}).rounds.step_without_support, step);
   }
   EXPECT_EQ(reason(plan_of({.models = 192, .colored = false}), "check.max_in_library"),
             "800 x 3 without colours x cbrt(192 models / 24)");
@@ -101,13 +96,12 @@ TEST(SearchPlan, EveryEntryHasAReason) {
             "1920 pixels / surface.max_width, rounded up");
 }
 
-TEST(SearchPlan, FollowsAnEarlierFrame) {
-  const EndRule alone = plan_of({}).end, follows = plan_of({.follows = true}).end;
-  EXPECT_EQ(alone.first_share, 1);
-  EXPECT_FALSE(alone.may_end_at_first);
-  EXPECT_LT(follows.first_share, 1);
-  EXPECT_TRUE(follows.may_end_at_first);
-  EXPECT_GT(follows.min_gain, alone.min_gain);
+TEST(SearchPlan, TakesTheYieldOfTheColours) {
+  ScoreLayers layers = default_score_layers();
+  layers.yield.with_color.tries = 3;
+  layers.yield.without_color.tries = 7;
+  EXPECT_EQ(plan_search({}, layers, {.colored = true})->yield.tries, 3);
+  EXPECT_EQ(plan_search({}, layers, {.colored = false})->yield.tries, 7);
 }
 
 TEST(SearchPlan, NoBudgetShortensNothing) {
