@@ -69,14 +69,12 @@ SearchYield search_yield(const std::shared_ptr<const ModelLibrary>& library,
           if (found == nullptr) continue;
           const auto points =
               visible_points(trace.scene, *found, first, rounds == 1 ? 0 : first / 2);
-          const double area =
-              found->model->index->point_area * static_cast<double>(found->model->surface.size());
           if (points.all == 0) continue;
           ++in_frame;
           // Keypoints, and pairs of others' reference points, find some without a try of their own.
           discoveries[instance] = {.after = static_cast<double>(points.before),
-                                   .at_most = std::max(points.first, points.before + 1) + 0.0,
-                                   .visible = points.all * cell / area};
+                                   .at_most = std::max<double>(points.first, points.before + 1),
+                                   .visible = points.all * cell / surface_area(*found->model)};
         }
       };
       search_frames(detector, dataset, common, use, models_per_frame);

@@ -59,6 +59,11 @@ struct ModelIndex {
   double point_area = 0;  ///< Surface that each surface point stands for, square metres.
 };
 
+/// Of a model with an index, square metres.
+inline double surface_area(const ObjectModel& model) {
+  return model.index->point_area * static_cast<double>(model.surface.size());
+}
+
 /// Counts up whenever build_index() gives another index for the same surface, so that stored ones
 /// are told from current ones.
 constexpr int kIndexVersion = 4;

@@ -11,12 +11,13 @@
 
 namespace bpa {
 
-Coverage::Coverage(const SceneFeatures& scene, const Models& models, const SearchYield& yield,
-                   double spacing)
+Coverage::Coverage(const SceneFeatures& scene,
+                   const std::vector<std::shared_ptr<const ObjectModel>>& models,
+                   const SearchYield& yield, double spacing)
     : yield_(yield) {
   for (const auto& model : models) {
-    const double area = model->index->point_area * static_cast<double>(model->surface.size());
-    visible_.push_back(std::max(1.0, yield.visible * area / (spacing * spacing)));
+    const double points = surface_area(*model) / (spacing * spacing);
+    visible_.push_back(std::max(1.0, yield.visible * points));
   }
   const auto edge = static_cast<float>(spacing * std::sqrt(std::ranges::min(visible_)));
   std::map<std::array<int, 3>, int> numbers;
@@ -31,12 +32,18 @@ Coverage::Coverage(const SceneFeatures& scene, const Models& models, const Searc
     patches_[patch].unexplained += 1;
   }
   tries_.assign(models.size() * patches_.size(), 0);
+  undiscovered_.assign(tries_.size(), 1);
 }
 
 void Coverage::add_tries(std::span<const int> references, std::span<const std::uint8_t> left_out) {
   for (std::size_t m = 0; m < visible_.size(); ++m) {
     if (left_out[m]) continue;
-    for (const int point : references) ++tries_[m * patches_.size() + patch_of_[point]];
+    for (const int point : references) {
+      const int patch = patch_of_[point];
+      const std::size_t k = m * patches_.size() + patch;
+      const double tried = visible_[m] * ++tries_[k] / patches_[patch].points;
+      undiscovered_[k] = yield_.undiscovered(tried);
+    }
   }
 }
 
@@ -59,8 +66,7 @@ std::vector<double> Coverage::missed(double discovered) const {
   for (std::size_t m = 0; m < visible_.size(); ++m) {
     for (std::size_t p = 0; p < patches; ++p) {
       const Patch& patch = patches_[p];
-      const double tried = visible_[m] * tries_[m * patches + p] / patch.points;
-      const double undiscovered = yield_.undiscovered(tried) / surface;
+      const double undiscovered = undiscovered_[m * patches + p] / surface;
       any += patch.points * undiscovered / models;
       out[m] += patch.unexplained * undiscovered;
     }

@@ -19,10 +19,9 @@ namespace bpa {
 /// Optimal Search, 1975, chapter 1).
 class Coverage {
  public:
-  using Models = std::vector<std::shared_ptr<const ObjectModel>>;
-
   /// `spacing`: of SceneFeatures::coarse, metres.
-  Coverage(const SceneFeatures& scene, const Models& models, const SearchYield& yield,
+  Coverage(const SceneFeatures& scene,
+           const std::vector<std::shared_ptr<const ObjectModel>>& models, const SearchYield& yield,
            double spacing);
 
   /// The reference points `references` were looked up in the models that `left_out` does not flag.
@@ -45,6 +44,7 @@ class Coverage {
   std::vector<Patch> patches_;
   std::vector<double> visible_;       // points that each model shows
   std::vector<std::uint16_t> tries_;  // of each model, in each patch
+  std::vector<double> undiscovered_;  // the probability after these tries, likewise
 };
 
 }  // namespace bpa

@@ -62,7 +62,7 @@ void LocalSearches::score_expected(const Deadline& deadline) {
 
 void LocalSearches::run_round(const RoundPlan& plan) {
   explain(plan.newly_certain);
-  const SceneSample none;
+  static const SceneSample none;
   const bool is_prepared = plan.points == inputs_.scene.sample.points;
   sample_ = is_prepared ? inputs_.scene.sample
                         : scene_sample(inputs_.scene, plan.points, certain_, inputs_.plan.features);
@@ -78,7 +78,6 @@ void LocalSearches::run_round(const RoundPlan& plan) {
   std::vector<Candidates> now(searches_.size());
   run(round_stages(), plan.deadline, now);
   for (std::size_t i = 0; i < searches_.size(); ++i) {
-    searches_[i].sample = &sample_;
     std::ranges::move(now[i], std::back_inserter(found_[i]));
   }
 }

@@ -25,8 +25,7 @@ class CoverageOf : public test::LScene {
   }
   // Tries on an object where all points are tried.
   static double most_tries(const ObjectModel& model) {
-    const double area = model.index->point_area * static_cast<double>(model.surface.size());
-    return kYield.visible * area / (kSpacing * kSpacing);
+    return kYield.visible * surface_area(model) / (kSpacing * kSpacing);
   }
 };
 

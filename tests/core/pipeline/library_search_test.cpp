@@ -93,9 +93,7 @@ TEST_F(LibrarySearchEnds, SoonerForTheModelThatShowsMore) {
   DetectorOptions options = with(0.2, 1000);
   options.features.max_references = 2;
   const Ran ran = run(options);
-  const auto l_area = l_->index->point_area * static_cast<double>(l_->surface.size());
-  const auto brick_area = brick_->index->point_area * static_cast<double>(brick_->surface.size());
-  const std::size_t larger = l_area > brick_area ? 0 : 1;
+  const std::size_t larger = surface_area(*l_) > surface_area(*brick_) ? 0 : 1;
   const RoundPlan &first = ran.rounds.front(), &last = ran.rounds.back();
   EXPECT_EQ(first.left_out, (std::vector<std::uint8_t>{0, 0}));
   EXPECT_EQ(first.share, 1);
