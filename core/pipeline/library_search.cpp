@@ -102,7 +102,10 @@ SearchOutcome LibrarySearch::run(ModelSearches& searches) const {
   bool is_complete = false;
   for (;; ++round) {
     out.missed = coverage.missed(std::max(0.0, explained.objects - expected));
-    is_complete = sum_of(out.missed) < plan.rounds.max_missed || round >= plan.rounds.max_rounds;
+    // The first round tries what the caller's priors suggest, whatever is expected.
+    const bool may_end = round > 0 || inputs.request.priors.empty();
+    is_complete =
+        may_end && (sum_of(out.missed) < plan.rounds.max_missed || round >= plan.rounds.max_rounds);
     if (is_complete) break;
     const double share = next_share(pace, plan, round == 0, rounds_end);
     if (share == 0) break;

@@ -43,9 +43,9 @@ class LibrarySearchEnds : public test::LScene {
     std::size_t points = 0;  // of the scene
   };
 
-  static Ran run(const DetectorOptions& options) {
+  static Ran run(const DetectorOptions& options, const std::vector<PosePrior>& priors = {}) {
     const SceneFeatures scene = features_of(everything());
-    const DetectRequest request;
+    const DetectRequest request{.priors = priors};
     const std::vector<std::shared_ptr<const ObjectModel>> models = {l_, brick_};
     const SearchPlan plan = *plan_search(options, default_score_layers(), {.models = 2});
     const SearchInputs inputs{scene, plan, default_score_layers(), request, models};
@@ -75,6 +75,7 @@ TEST_F(LibrarySearchEnds, WhenFewObjectsAreExpectedMissed) {
     before = ran.rounds.size();
   }
   EXPECT_TRUE(run(with(1000, 1000)).rounds.empty()) << "so many are never expected";
+  EXPECT_EQ(run(with(1000, 1000), {PosePrior{}}).rounds.size(), 1u) << "of the priors";
 }
 
 TEST_F(LibrarySearchEnds, WhenAllPointsAreSearchedWithoutALimit) {
