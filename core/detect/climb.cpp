@@ -4,14 +4,16 @@
 
 #include "core/base/parallel.hpp"
 #include "core/detect/stages.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa {
 namespace {
 
-constexpr double kBeside_rad = 0.17;    // turn of the six poses beside the start
-constexpr double kFirstStep_m = 0.006;  // at the object's rim
-constexpr int kStepRounds = 4;          // of twelve steps each
-constexpr RefinementOptions kFromBeside{6, 200, 60, 0.020, 0.008};
+constexpr double kBeside_rad = 0.17;                       // turn of the six poses beside the start
+constexpr double kFirstStep_m = tolerance::placed_m(2.4);  // at the object's rim
+constexpr int kStepRounds = 4;                             // of twelve steps each
+constexpr RefinementOptions kFromBeside{6, 200, 60, tolerance::placed_m(8),
+                                        tolerance::placed_m(3.2)};
 
 // The best pose so far and its score.
 struct Best {

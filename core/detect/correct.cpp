@@ -3,12 +3,14 @@
 #include "core/base/parallel.hpp"
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa {
 namespace {
 
 constexpr int kRecheckPoints = 256;  // model points of the check after the correction
-constexpr RefinementOptions kCorrection{2, 64, 24, 0.020, 0.012};
+constexpr RefinementOptions kCorrection{2, 64, 24, tolerance::placed_m(8),
+                                        tolerance::placed_m(4.8)};
 
 }  // namespace
 

@@ -20,8 +20,8 @@ namespace bpa {
 namespace {
 
 // Chosen by hand on simulated tables, as all constants of this file.
-constexpr double kSlideStep_m = 0.008;  // first step at the object's rim
-constexpr int kSlideRounds = 5;         // of six steps each, on the plane
+constexpr double kSlideStep_m = tolerance::placed_m(3.2);  // first step at the object's rim
+constexpr int kSlideRounds = 5;                            // of six steps each, on the plane
 constexpr float kElongated = 1.4f;    // length over width; below, the longest direction says little
 constexpr int kTurnsOfRound = 8;      // 45 degrees apart, where it says little
 constexpr float kNearlyWhole = 0.8f;  // share of the length in sight
@@ -37,7 +37,8 @@ Eigen::Matrix3f basis_along(const Eigen::Vector3f& axis, const Eigen::Vector3f& 
 
 // True where a region may show the whole object at rest, or what something leaves of it.
 bool may_show(const FlatRegion& region, const FlatRest& rest) {
-  constexpr float kMoreLong = 1.2f, kMoreWide = 1.4f, kMore = 0.01f;  // shadows, rims; metres
+  constexpr float kMoreLong = 1.2f, kMoreWide = 1.4f,
+                  kMore = tolerance::placed(4);  // shadows, rims; metres
   constexpr float kLessLong = 0.4f, kLessWide = 0.3f;
   return region.length < kMoreLong * rest.length + kMore &&
          region.length > kLessLong * rest.length && region.width < kMoreWide * rest.width + kMore &&

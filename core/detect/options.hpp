@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/base/options.hpp"
+#include "core/observation/tolerance.hpp"
 
 // The settings of the search for one object, a group for each stage. "V.3" is the third paragraph
 // of the paper's section V; README.md lists the paragraphs. Constants stand beside their use. A
@@ -12,11 +13,12 @@ namespace bpa {
 
 /// Gauss-Newton alignment of surface and edges; see refine_pose().
 struct RefinementOptions {
-  int iterations = 6;           ///< Gauss-Newton steps.
-  int max_points = 200;         ///< Surface points of the model used, 1 or more.
-  int max_edges = 60;           ///< Edge points of the model used; 0: surface alone.
-  double start_gate_m = 0.030;  ///< Largest distance of correspondences in the first step, metres.
-  double end_gate_m = 0.010;    ///< The same in the last step.
+  int iterations = 6;    ///< Gauss-Newton steps.
+  int max_points = 200;  ///< Surface points of the model used, 1 or more.
+  int max_edges = 60;    ///< Edge points of the model used; 0: surface alone.
+  double start_gate_m =
+      tolerance::placed_m(12);  ///< Largest distance of correspondences in the first step, metres.
+  double end_gate_m = tolerance::placed_m(4);  ///< The same in the last step.
 };
 
 /// What alignments use, in all stages.

@@ -18,7 +18,7 @@ bool duplicates(const Search& search, const Pose& a, const Pose& b) {
   const Eigen::Vector3d& centre = search.model.centre;
   if ((a * centre - b * centre).norm() > tolerance::kFarDuplicates) return false;
   const PoseError error = pose_error(a, b, search.model.symmetry);
-  constexpr double kDuplicate_m = 0.008, kDuplicate_rad = 0.05;
+  constexpr double kDuplicate_m = tolerance::placed_m(3.2), kDuplicate_rad = 0.05;
   return error.position < kDuplicate_m && error.angle < kDuplicate_rad;
 }
 

@@ -183,7 +183,7 @@ struct Problem {
 // Keeps directions that no correspondence sees where they were.
 Matrix6f damping(double diameter) {
   Matrix6f out = Matrix6f::Zero();
-  constexpr float kPositionSigma = 0.01f;  // metres; of a turn, at half the diameter
+  constexpr float kPositionSigma = tolerance::placed(4);  // metres; of a turn, at half the diameter
   const float position = 1 / (kPositionSigma * kPositionSigma);
   const float angle = position * static_cast<float>(0.25 * diameter * diameter);
   out.diagonal() << position, position, position, angle, angle, angle;

@@ -8,16 +8,19 @@
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
 #include "core/model/model_index.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa {
 namespace {
 
 constexpr std::ptrdiff_t kMinPairs = 4;  // with fewer the pose stays
 constexpr double kSegmentShare = 0.7;    // of the super-pixels that one alignment uses
-constexpr float kFirstGate_m = 0.030f, kGateDecay = 0.8f;  // of correspondences, step by step
-constexpr int kCheckPoints = 300;                          // that proposals are compared with
-constexpr CheckTolerance kTolerance{0.008, 0.020, 0.8};
-constexpr RefinementOptions kLastProposal{4, 160, 60, 0.025, 0.012};
+constexpr float kFirstGate_m = tolerance::placed(12),
+                kGateDecay = 0.8f;  // of correspondences, step by step
+constexpr int kCheckPoints = 300;   // that proposals are compared with
+constexpr CheckTolerance kTolerance{tolerance::placed_m(3.2), tolerance::placed_m(8), 0.8};
+constexpr RefinementOptions kLastProposal{4, 160, 60, tolerance::placed_m(10),
+                                          tolerance::placed_m(4.8)};
 
 constexpr double kSigmaOfGate = 0.5;  // a correspondence's standard deviation, of the gate
 constexpr int kSurfaceTries = 8, kEdgeTries = 3;  // random points for each correspondence wanted

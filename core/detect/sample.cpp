@@ -7,14 +7,17 @@
 #include "core/detect/stages.hpp"
 #include "core/features/pair_voting.hpp"
 #include "core/model/model_index.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa {
 namespace {
 
 // Position errors of correspondences: about the spacing of the features, and of the coarse surface.
 // Depth noise is added.
-constexpr double kFeatureSigma_m = 0.004, kPairSigma_m = 0.008;
-constexpr RefinementOptions kPriorAlignment{4, 100, 30, 0.050, 0.015};
+constexpr double kFeatureSigma_m = tolerance::placed_m(1.6),
+                 kPairSigma_m = tolerance::placed_m(3.2);
+constexpr RefinementOptions kPriorAlignment{4, 100, 30, tolerance::placed_m(20),
+                                            tolerance::placed_m(6)};
 
 // One-correspondence poses by BPA from FPFH matches.
 void from_features(const Search& search, Candidates& out) {

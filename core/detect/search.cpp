@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "core/model/model_index.hpp"
+#include "core/observation/tolerance.hpp"
 #include "core/score/color_check.hpp"
 
 namespace bpa {
@@ -13,7 +14,8 @@ namespace {
 
 constexpr double kColorPoints = 2;  // independent points that colours count as in quick scores
 // The depth tolerance of checks, by the model's diameter.
-constexpr double kDepthShare = 0.05, kMinDepth_m = 0.006, kMaxDepth_m = 0.015;
+constexpr double kDepthShare = 0.05, kMinDepth_m = tolerance::placed_m(2.4),
+                 kMaxDepth_m = tolerance::placed_m(6);
 constexpr double kNormalCosine = 0.7;  // of the normals of model and surface
 
 }  // namespace

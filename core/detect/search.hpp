@@ -13,6 +13,7 @@
 #include "core/detect/detect_plan.hpp"
 #include "core/detect/pose_prior.hpp"
 #include "core/observation/scene_features.hpp"
+#include "core/observation/tolerance.hpp"
 #include "core/result/search_effort.hpp"
 #include "core/score/feature_score.hpp"
 #include "core/score/score_layer.hpp"
@@ -51,7 +52,8 @@ constexpr int kQuickPoints = 200;  ///< Surface points that round two scores a p
 /// The same for the ranks of poses after the check and of clusters.
 constexpr int kCheckRankPoints = 24, kClusterRankPoints = 64;
 /// Gradient-based alignment to the end (V.7).
-constexpr RefinementOptions kLastAlignment{8, 500, 60, 0.015, 0.008};
+constexpr RefinementOptions kLastAlignment{8, 500, 60, tolerance::placed_m(6),
+                                           tolerance::placed_m(3.2)};
 
 constexpr double kNoLimit = -std::numeric_limits<double>::infinity();  ///< Of scores.
 

@@ -11,7 +11,8 @@ namespace {
 
 Eigen::Matrix<double, 6, 6> pose_covariance(const Refinement& refinement) {
   Eigen::Matrix<double, 6, 6> information = refinement.information / tolerance::kCorrelatedPoints;
-  constexpr double kPositionSigma = 0.02, kAngleSigma = 0.5;  // m, rad: where nothing is known
+  constexpr double kPositionSigma = tolerance::placed_m(8),
+                   kAngleSigma = 0.5;  // m, rad: where nothing is known
   const double position = 1 / (kPositionSigma * kPositionSigma);
   const double angle = 1 / (kAngleSigma * kAngleSigma);
   information.diagonal().head<3>().array() += position;

@@ -42,7 +42,7 @@ std::vector<int> shuffled(std::size_t count, std::uint64_t seed) {
 
 // A random order of all points in which each cube of this edge gives one before any gives two.
 std::vector<int> spread(std::span<const Eigen::Vector3f> points, std::uint64_t seed) {
-  constexpr float kCube = 0.025f;  // metres; chosen by hand
+  constexpr float kCube = tolerance::placed(10);  // chosen by hand
   std::vector<int> order = shuffled(points.size(), seed);
   std::map<std::array<int, 3>, int> given;  // by each cube
   std::vector<int> number(points.size());   // of a point in its cube

@@ -18,7 +18,8 @@ constexpr float kModelSigma = 0.001f;      ///< Of the model alone: detect/refin
 constexpr double kPlacedSigma_m = 0.0025;  ///< Of the model and its pose together.
 
 /// So many standard deviations of a placed model, metres.
-constexpr float placed(double sigmas) { return static_cast<float>(sigmas * kPlacedSigma_m); }
+constexpr double placed_m(double sigmas) { return sigmas * kPlacedSigma_m; }
+constexpr float placed(double sigmas) { return static_cast<float>(placed_m(sigmas)); }
 
 /// Standard deviation of what the sensor and, independently, a placed model are off by, metres.
 inline float depth_sigma(float sensor, float model) {

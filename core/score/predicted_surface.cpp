@@ -7,13 +7,15 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/observation/tolerance.hpp"
+
 namespace bpa {
 namespace {
 
 constexpr float kMinCosine = 0.05f;      // between normal and line of sight
 constexpr float kPointRadius = 0.0019f;  // metres; 0.75 of the usual spacing of surface points
 constexpr float kMaxRadius = 4;          // pixels
-constexpr float kPlaneReach = 0.01f;     // metres in depth
+constexpr float kPlaneReach = tolerance::placed(4);  // metres in depth
 
 struct Span {
   int first, last;  // both included

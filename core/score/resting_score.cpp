@@ -17,7 +17,7 @@ namespace {
 constexpr float kLowest = -0.05f, kHighest = 0.2f;  // metres: the gap is clamped to them
 // Metres: depth cameras see objects and the plane under them up to this much too near or too far
 // beside one another, all objects of a frame alike (YCB-Video: 0 to 12 mm).
-constexpr float kOffset = 0.010f;
+constexpr float kOffset = tolerance::placed(4);
 constexpr int kHullDirections = 64;
 
 // True where the plane is seen in front of the point.

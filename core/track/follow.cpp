@@ -12,6 +12,7 @@
 #include "core/detect/candidate.hpp"
 #include "core/detect/refinement.hpp"
 #include "core/model/model_index.hpp"
+#include "core/observation/tolerance.hpp"
 #include "core/result/placement.hpp"
 #include "core/score/rival_poses.hpp"
 #include "core/score/surface_agreement.hpp"
@@ -39,9 +40,10 @@ constexpr int kMaxDoubts = 5;        // frames in a row; then a hand or another 
 constexpr double kUsualRate = 0.03;  // share of a frame in the running mean of the log odds
 
 // A pose that is known well is aligned in fewer steps than a hypothesis of the search.
-constexpr RefinementOptions kAlignment{4, 200, 60, 0.030, 0.010};
-constexpr RefinementOptions kWideAlignment{8, 200, 60, 0.060, 0.010};
-constexpr double kMargin_m = 0.03;  // around the object
+constexpr RefinementOptions kAlignment{4, 200, 60, tolerance::placed_m(12), tolerance::placed_m(4)};
+constexpr RefinementOptions kWideAlignment{8, 200, 60, tolerance::placed_m(24),
+                                           tolerance::placed_m(4)};
+constexpr double kMargin_m = tolerance::placed_m(12);  // around the object
 // Starts about the predicted pose, for an object that a hand has seized: its motion is sudden, and
 // the alignment slides on to the hand.
 constexpr double kOffset_m = 0.02, kOffset_rad = 0.3;

@@ -12,6 +12,7 @@
 
 #include "core/cloud/cielab.hpp"
 #include "core/model/model_index.hpp"
+#include "core/observation/tolerance.hpp"
 
 namespace bpa::track {
 namespace {
@@ -106,13 +107,13 @@ std::vector<float> sampled_depths(const Frame& frame, RegionOfInterest region, i
 
 double changed_share(const std::vector<float>& now, const std::vector<float>& then,
                      const SensorNoise& noise) {
-  constexpr float kChanged_m = 0.004f, kDeviations = 3;  // metres; times the noise. By hand.
+  constexpr tolerance::WithNoise kChanged{tolerance::placed(1.6), 3};  // by hand
   if (now.size() != then.size()) return 1;
   int changed = 0, known = 0;
   for (std::size_t i = 0; i < now.size(); ++i) {
     if (!(now[i] > 0) || !(then[i] > 0)) continue;  // depth comes and goes at rims
     ++known;
-    changed += std::abs(now[i] - then[i]) > kChanged_m + kDeviations * noise(now[i]);
+    changed += std::abs(now[i] - then[i]) > kChanged(noise(now[i]));
   }
   return known > 0 ? static_cast<double>(changed) / known : 1;
 }
