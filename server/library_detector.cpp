@@ -38,7 +38,7 @@ Status check_name(const std::string& field, const std::string& name) {
 class LibraryDetector : public Recognition {
  public:
   LibraryDetector(const DetectionOptions& detection, const DetectorOptions& options,
-                  ScoreLayers layers)
+                  score::ScoreLayers layers)
       : folder_(detection.library),
         model_folder_(detection.model_folder),
         max_models_(detection.max_models),
@@ -120,17 +120,17 @@ class LibraryDetector : public Recognition {
   }
 
   std::vector<ScoreTerm> score_terms(const Placement& placement) const override {
-    ScoreValues values;
-    values.fill(kNotKnown);
+    score::ScoreValues values;
+    values.fill(score::kNotKnown);
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto found =
-          std::ranges::find(placement.components, kScoreComponents[i].name, &ScoreComponent::name);
+      const auto found = std::ranges::find(placement.components, score::kScoreComponents[i].name,
+                                           &ScoreComponent::name);
       if (found != placement.components.end()) values[i] = found->value;
     }
-    const ScoreLayer& layer = layers_.last_for(values);
+    const score::ScoreLayer& layer = layers_.last_for(values);
     std::vector<ScoreTerm> terms = {{"bias", "log odds", "Of the score layer.", 0, layer.bias}};
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const ComponentType& type = kScoreComponents[i];
+      const score::ComponentType& type = score::kScoreComponents[i];
       if (std::isnan(values[i])) continue;
       terms.push_back({std::string(type.name), std::string(type.unit), std::string(type.meaning),
                        values[i], type.learned ? layer.components[i].at(values[i]) : 0});
@@ -268,9 +268,9 @@ class LibraryDetector : public Recognition {
   const std::string model_folder_;
   const int max_models_;
   const int num_threads_;
-  const ScoreLayers layers_;  ///< The library's own, or the built-in ones.
-  std::mutex change_mutex_;   ///< Held while a change is being made.
-  mutable std::mutex mutex_;  ///< Guards what follows, never held for long.
+  const score::ScoreLayers layers_;  ///< The library's own, or the built-in ones.
+  std::mutex change_mutex_;          ///< Held while a change is being made.
+  mutable std::mutex mutex_;         ///< Guards what follows, never held for long.
   Current current_;
   std::vector<io::BrokenModel> broken_;  ///< Of the folder.
   int version_ = 1;
@@ -288,7 +288,7 @@ Result<std::shared_ptr<Recognition>> open_library(const DetectionOptions& detect
   std::error_code error;
   const std::filesystem::directory_iterator entries(folder, error);
   if (error) return unavailable("library ", folder, " cannot be read: ", error.message());
-  Result<ScoreLayers> layers = library_score_layers(folder);
+  Result<score::ScoreLayers> layers = library_score_layers(folder);
   if (!layers.ok()) return layers.status();
   const auto self =
       std::make_shared<LibraryDetector>(detection, options, std::move(layers).value());

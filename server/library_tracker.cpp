@@ -14,8 +14,8 @@ std::shared_ptr<const ModelLibrary> library_of(std::shared_ptr<const Detector> d
 
 class LibraryTracker : public ObjectTracker {
  public:
-  LibraryTracker(std::function<std::shared_ptr<const Detector>()> current, ScoreLayers layers,
-                 const track::TrackerOptions& options)
+  LibraryTracker(std::function<std::shared_ptr<const Detector>()> current,
+                 score::ScoreLayers layers, const track::TrackerOptions& options)
       : current_(std::move(current)),
         layers_(std::move(layers)),
         detector_(current_()),
@@ -45,7 +45,7 @@ class LibraryTracker : public ObjectTracker {
 
  private:
   const std::function<std::shared_ptr<const Detector>()> current_;
-  const ScoreLayers layers_;
+  const score::ScoreLayers layers_;
   std::shared_ptr<const Detector> detector_;
   track::Tracker tracker_;
 };
@@ -53,7 +53,7 @@ class LibraryTracker : public ObjectTracker {
 }  // namespace
 
 std::unique_ptr<ObjectTracker> make_library_tracker(
-    std::function<std::shared_ptr<const Detector>()> current, ScoreLayers layers,
+    std::function<std::shared_ptr<const Detector>()> current, score::ScoreLayers layers,
     const track::TrackerOptions& options) {
   return std::make_unique<LibraryTracker>(std::move(current), std::move(layers), options);
 }

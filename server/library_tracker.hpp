@@ -12,7 +12,7 @@ namespace bpa::server {
 
 /// A tracker of the models of a detector, which `current` gives and may replace at any time.
 std::unique_ptr<ObjectTracker> make_library_tracker(
-    std::function<std::shared_ptr<const Detector>()> current, ScoreLayers layers,
+    std::function<std::shared_ptr<const Detector>()> current, score::ScoreLayers layers,
     const track::TrackerOptions& options);
 
 }  // namespace bpa::server

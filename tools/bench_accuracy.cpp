@@ -62,7 +62,7 @@ void add_instance(const io::BopInstance& truth, const FrameTrace& trace,
   };
   tally.stages.clear();
   std::vector<bool> alive;
-  for (const TraceStage& stage : trace.objects[m].stages) {
+  for (const detect::TraceStage& stage : trace.objects[m].stages) {
     tally.stages.emplace_back(stage.name);
     alive.push_back(std::ranges::any_of(stage.poses, is_right, to_pose));
   }

@@ -43,7 +43,7 @@ void calibrate_by_board(const CalibrateArguments& a) {
     throw CLI::ValidationError("--camera", "needs one file, or one for each image");
   }
   check_names(a, a.images.size());
-  const Board board{a.corners[0], a.corners[1], a.square_mm / 1000};
+  const calibration::Board board{a.corners[0], a.corners[1], a.square_mm / 1000};
   or_throw(validate(board));
   std::vector<io::CameraPose> found;
   for (std::size_t i = 0; i < a.images.size(); ++i) {
@@ -54,8 +54,8 @@ void calibrate_by_board(const CalibrateArguments& a) {
       file.camera.width = image.width;
       file.camera.height = image.height;
     }
-    const BoardPose pose =
-        or_throw(find_board(image.pixels, file.camera, file.distortion, board), path);
+    const calibration::BoardPose pose =
+        or_throw(calibration::find_board(image.pixels, file.camera, file.distortion, board), path);
     found.push_back(
         {camera_name(a, i, fs::path(path).stem().string()), pose.camera_from_board.inverse()});
     const Eigen::Vector3d& t = found.back().scene_from_camera.translation;
@@ -67,7 +67,7 @@ void calibrate_by_board(const CalibrateArguments& a) {
 
 /// What all cameras see, and the surfaces of the first moment.
 struct Moments {
-  std::vector<std::vector<SeenObjects>> seen;
+  std::vector<std::vector<calibration::SeenObjects>> seen;
   std::vector<SurfaceMap> surfaces;
   std::vector<std::string> names;  ///< Of the cameras.
   Pose first;                      ///< The pose of the first camera; identity if not known.
@@ -87,7 +87,7 @@ Moments see_objects(const CalibrateArguments& a, const Detector& detector) {
     FrameTrace trace;
     const SceneInterpretations result =
         or_throw(detector.detect(input.frame, request, &trace), input.name);
-    SeenObjects& seen = out.seen.back().emplace_back();
+    calibration::SeenObjects& seen = out.seen.back().emplace_back();
     for (const Placement& placement : result.interpretations.front().placements) {
       if (placement.probability >= a.min_probability) seen.push_back(placement);
     }
@@ -105,11 +105,12 @@ void calibrate_by_objects(const CalibrateArguments& a) {
   const Detector detector = open_detector(a.frames.detector, a.common.threads);
   const Moments moments = see_objects(a, detector);
   check_names(a, moments.names.size());
-  const std::vector<CameraByObjects> cameras = or_throw(cameras_from_objects(
-      moments.seen,
-      [&](const std::string& model) { return detector.library().find(model)->symmetry; },
-      moments.first));
-  std::vector<PosedSurface> surfaces;
+  const std::vector<calibration::CameraByObjects> cameras =
+      or_throw(calibration::cameras_from_objects(
+          moments.seen,
+          [&](const std::string& model) { return detector.library().find(model)->symmetry; },
+          moments.first));
+  std::vector<calibration::PosedSurface> surfaces;
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     surfaces.push_back({&moments.surfaces[c], cameras[c].scene_from_camera});
     if (c == 0) continue;
@@ -117,9 +118,9 @@ void calibrate_by_objects(const CalibrateArguments& a) {
                 cameras[c].objects, 1000 * cameras[c].position_m, kDegrees * cameras[c].angle_rad);
   }
   std::vector<io::CameraPose> found;
-  SurfaceAlignmentOptions options;
+  calibration::SurfaceAlignmentOptions options;
   if (a.no_surfaces) options.iterations = 1;
-  const SurfaceAlignment aligned = align_surfaces(surfaces, options);
+  const calibration::SurfaceAlignment aligned = calibration::align_surfaces(surfaces, options);
   // The first camera stays where it is.
   const Pose back = moments.first * aligned.scene_from_camera[0].inverse();
   for (std::size_t c = 0; c < cameras.size(); ++c) {
@@ -128,7 +129,7 @@ void calibrate_by_objects(const CalibrateArguments& a) {
     surfaces[c].scene_from_camera = found[c].scene_from_camera;
   }
   std::vector<bool> compared(found.size(), false);
-  for (const SurfaceDisagreement& pair : align_surfaces(surfaces).pairs) {
+  for (const calibration::SurfaceDisagreement& pair : calibration::align_surfaces(surfaces).pairs) {
     compared[pair.first] = compared[pair.second] = true;
     std::printf(
         "%s and %s: median distance of their surfaces %.1f mm; %.1f mm and %.2f degrees "

@@ -145,7 +145,7 @@ class DetectRun {
     input.frame.mask = given_.mask;
     request_.priors.clear();
     for (const PosePrior& prior : given_.priors) {
-      request_.priors.push_back(transformed(input.reported_from_camera.inverse(), prior));
+      request_.priors.push_back(detect::transformed(input.reported_from_camera.inverse(), prior));
     }
     if (std::exchange(scene_id_, entry.scene_id) != entry.scene_id) request_.expected.clear();
     const Stopwatch watch;

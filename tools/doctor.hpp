@@ -14,11 +14,11 @@
 namespace bpa::cli {
 
 /// What is wrong with a server, from two of its statuses some seconds apart.
-Findings check_server(const ServerStatus& before, const ServerStatus& after);
+doctor::Findings check_server(const ServerStatus& before, const ServerStatus& after);
 
 struct RunningFindings {
-  Findings server;
-  Findings machine;
+  doctor::Findings server;
+  doctor::Findings machine;
 };
 
 /// The same of the server that answers within `options.timeout`, or that there is none, and what is

@@ -29,14 +29,16 @@ struct DoctorArguments {
   ClientOptions client;
 };
 
-const char* name_of(Severity severity) { return severity == Severity::error ? "error" : "warning"; }
+const char* name_of(doctor::Severity severity) {
+  return severity == doctor::Severity::error ? "error" : "warning";
+}
 
 /// What was found, and of what.
 class Report {
  public:
   /// The same trouble of several subjects is one entry.
-  void add(const std::string& subject, const Findings& findings) {
-    for (const Finding& finding : findings) {
+  void add(const std::string& subject, const doctor::Findings& findings) {
+    for (const doctor::Finding& finding : findings) {
       const auto same = std::ranges::find_if(entries_, [&](const Entry& entry) {
         return entry.finding.what == finding.what && entry.finding.severity == finding.severity;
       });
@@ -76,7 +78,7 @@ class Report {
  private:
   struct Entry {
     std::string subject;
-    Finding finding;
+    doctor::Finding finding;
     int more = 0;  ///< Other subjects with it.
   };
   std::vector<Entry> entries_;
@@ -90,7 +92,7 @@ std::vector<Input> read_frames(const DoctorArguments& a, Report& report) {
     try {
       read();
     } catch (const Failure& failure) {
-      report.add(name, {{Severity::error, "the frame cannot be read", failure.what(),
+      report.add(name, {{doctor::Severity::error, "the frame cannot be read", failure.what(),
                          "Give depth, colour and camera file of one camera and one image size. Of "
                          "a sensor, bpa-server --list-devices says what is wrong with it."}});
     }
@@ -116,16 +118,16 @@ std::vector<ModelSource> read_models(const DoctorArguments& a, Report& report) {
   const std::string subject = "library " + a.library;
   auto contents = io::read_library(a.library, a.common.threads);
   if (!contents.ok()) {
-    report.add(subject, {{Severity::error, "it cannot be read", contents.status().message,
+    report.add(subject, {{doctor::Severity::error, "it cannot be read", contents.status().message,
                           "Correct --library."}});
     return {};
   }
   for (const io::BrokenModel& broken : contents->broken) {
-    report.add(subject, {{Severity::error, "the model " + broken.name + " cannot be read",
+    report.add(subject, {{doctor::Severity::error, "the model " + broken.name + " cannot be read",
                           broken.reason.message, "Make it again (`bpa model`) or remove it."}});
   }
   if (contents->models.empty() && contents->broken.empty()) {
-    report.add(subject, {{Severity::error, "it is empty", "nothing can be found",
+    report.add(subject, {{doctor::Severity::error, "it is empty", "nothing can be found",
                           "Make models: `bpa model from-mesh`, `from-bop` or `from-scans`."}});
   }
   return std::move(contents->models);
@@ -135,17 +137,18 @@ void check_library(const DoctorArguments& a, const DetectorOptions& options,
                    const std::vector<Input>& frames, Report& report) {
   const std::vector<ModelSource> models = read_models(a, report);
   report.looked_at(concat(models.size(), " models"));
-  const DetectorLimits limits{options.surface.max_range_m, options.surface.max_width,
-                              options.detect.check.points};
+  const doctor::DetectorLimits limits{options.surface.max_range_m, options.surface.max_width,
+                                      options.detect.check.points};
   bool with_color = true;
   for (const Input& input : frames) {
     with_color = with_color && !input.frame.color.empty();
     Frame clean = input.frame;
     clean_depth(clean);
     if (!validate(clean).ok()) continue;
-    report.add(input.name, check_models_in_frame(models, clean, limits));
+    report.add(input.name, doctor::check_models_in_frame(models, clean, limits));
   }
-  report.add("library " + a.library, check_look_alikes(models, with_color, a.common.threads));
+  report.add("library " + a.library,
+             doctor::check_look_alikes(models, with_color, a.common.threads));
 }
 
 void run_doctor(const DoctorArguments& a) {
@@ -158,7 +161,8 @@ void run_doctor(const DoctorArguments& a) {
   const std::vector<Input> frames = read_frames(a, report);
   if (inputs > 0) report.looked_at(concat(frames.size(), " frames"));
   for (const Input& input : frames) {
-    report.add(input.name, check_frame(input.frame, options.surface.max_range_m, a.common.threads));
+    report.add(input.name,
+               doctor::check_frame(input.frame, options.surface.max_range_m, a.common.threads));
   }
   if (!a.library.empty()) check_library(a, options, frames, report);
   if (a.server || (inputs == 0 && a.library.empty())) {

@@ -54,16 +54,16 @@ double sum_of(const Values& values, const std::string& start) {
 }
 
 /// Why no frame has come.
-Finding explain_silence(const Details& details) {
+doctor::Finding explain_silence(const Details& details) {
   const double weak = sum_of(details.now, "publishers with too weak QoS of ");
   if (weak > 0) {
-    return {Severity::error, "publishers and the server do not match in QoS",
+    return {doctor::Severity::error, "publishers and the server do not match in QoS",
             concat(weak, " publishers offer less than the server asks for (reliable)"),
             "Publish reliable, or set input.reliable (camera topics) or input.frames_reliable to "
             "false."};
   }
   if (details.now.contains("capture: sets of images")) {
-    return {Severity::error, "the server's camera gives no frames",
+    return {doctor::Severity::error, "the server's camera gives no frames",
             "it cannot be opened, or is open and silent",
             "Plug the sensor in and end other programs that use it; bpa-server --list-devices says "
             "what is wrong with it."};
@@ -76,25 +76,26 @@ Finding explain_silence(const Details& details) {
   }
   if (sum_of(details.now, "publishers of ") == 0) {
     return {
-        Severity::warning, "the server gets no frames", "nobody publishes them (" + missing + ")",
+        doctor::Severity::warning, "the server gets no frames",
+        "nobody publishes them (" + missing + ")",
         "Start the camera's driver in the server's domain, and set input.color, input.depth and "
         "input.camera_info to its topics (`ros2 topic list`)."};
   }
-  return {Severity::warning, "the server gets no frames",
+  return {doctor::Severity::warning, "the server gets no frames",
           missing.empty() ? "there are publishers, but nothing comes"
                           : "there are publishers, but none of " + missing,
           "Check that the camera is not paused (`ros2 topic hz`) and that the server's inputs name "
           "all of its topics."};
 }
 
-void check_stamps(const Details& details, Findings& findings) {
+void check_stamps(const Details& details, doctor::Findings& findings) {
   const double sets = sum_of(details.grown, "camera sets with ");
   for (const std::string partner : {"colour image", "camera info"}) {
     const double lost = value_of(details.grown, "depth images without a " + partner);
     if (lost < kMinLost || lost < kMaxLost * (lost + sets)) continue;
     const double apart_ms = value_of(details.now, "ms to the nearest image that was too far");
     findings.push_back(
-        {Severity::error, "depth images come without a " + partner + " of their time",
+        {doctor::Severity::error, "depth images come without a " + partner + " of their time",
          concat(lost, " of ", lost + sets, " depth images",
                 apart_ms > 0 ? concat("; the nearest stamps are ", apart_ms, " ms apart") : ""),
          "Switch on the driver's synchronisation of its images, run both at one rate, or raise "
@@ -102,45 +103,45 @@ void check_stamps(const Details& details, Findings& findings) {
   }
 }
 
-void check_drops(const Details& details, Findings& findings) {
+void check_drops(const Details& details, doctor::Findings& findings) {
   for (const auto& [key, count] : details.grown) {
     if (!key.starts_with("rejected: ") || count <= 0) continue;
     findings.push_back(
-        {Severity::error,
+        {doctor::Severity::error,
          "the server refuses frames: " + key.substr(std::string("rejected: ").size()),
          concat(count, " in ", kWatch.count() / 1000, " s"),
          "The server's log says which rule they break; depth must be registered to "
          "colour, of its size, 16UC1 or 32FC1."});
   }
   if (const double failed = value_of(details.grown, "frames failed in the search"); failed > 0) {
-    findings.push_back({Severity::error, "the server's search fails",
+    findings.push_back({doctor::Severity::error, "the server's search fails",
                         concat(failed, " frames in ", kWatch.count() / 1000, " s"),
                         "The server's log says why."});
   }
   const double lost = sum_of(details.grown, "messages lost by DDS of ");
   const double messages = sum_of(details.grown, "messages of ");
   if (lost >= kMinLost && lost > kMaxLost * (lost + messages)) {
-    findings.push_back({Severity::warning, "messages to the server are lost on the way",
+    findings.push_back({doctor::Severity::warning, "messages to the server are lost on the way",
                         concat(lost, " of ", lost + messages),
                         "Raise net.core.rmem_max to 8388608 on the server, use a wired network, or "
                         "compressed images (input.color_transport, input.depth_transport)."});
   }
   if (const double bad = sum_of(details.grown, "messages malformed of "); bad > 0) {
-    findings.push_back({Severity::error, "messages to the server cannot be decoded",
+    findings.push_back({doctor::Severity::error, "messages to the server cannot be decoded",
                         concat(bad, " in ", kWatch.count() / 1000, " s"),
                         "Build the publisher with the same message definitions (idl/bpa_msgs)."});
   }
 }
 
-void check_clock(const Details& details, Findings& findings) {
+void check_clock(const Details& details, doctor::Findings& findings) {
   const double age_ms = value_of(details.now, "ms from the last frame's stamp until it came");
   if (age_ms < -kFuture_ms) {
-    findings.push_back({Severity::warning, "frames are stamped in the future",
+    findings.push_back({doctor::Severity::warning, "frames are stamped in the future",
                         concat("the last one by ", fixed(-0.001 * age_ms, 1), " s"),
                         "Synchronise the clocks of camera and server (chrony, PTP)."});
   }
   if (age_ms > kPast_ms) {
-    findings.push_back({Severity::warning, "frames are stamped long before they come",
+    findings.push_back({doctor::Severity::warning, "frames are stamped long before they come",
                         concat("the last one by ", fixed(0.001 * age_ms, 1), " s"),
                         "Synchronise the clocks of camera and server (chrony, PTP), and have the "
                         "driver stamp in Unix time. A bag that is played is stamped like this."});
@@ -157,9 +158,9 @@ std::string environment() {
   return text;
 }
 
-Finding explain_absence(const Status& status) {
+doctor::Finding explain_absence(const Status& status) {
   if (status.code == StatusCode::invalid_argument) {
-    return {Severity::error, "DDS cannot start", status.message, "Correct this setting."};
+    return {doctor::Severity::error, "DDS cannot start", status.message, "Correct this setting."};
   }
   std::string remedy =
       "Start `bpa-server --library DIR`. Give both the same ROS_DOMAIN_ID (--domain), namespace "
@@ -168,11 +169,11 @@ Finding explain_absence(const Status& status) {
     remedy +=
         " Check that the discovery server of ROS_DISCOVERY_SERVER runs, or unset it for both.";
   }
-  return {Severity::error, "no server answers", status.message + environment(), remedy};
+  return {doctor::Severity::error, "no server answers", status.message + environment(), remedy};
 }
 
-MachineNeeds machine_needs(const ClientOptions& options, bool found) {
-  MachineNeeds needs;
+doctor::MachineNeeds machine_needs(const ClientOptions& options, bool found) {
+  doctor::MachineNeeds needs;
   const auto discovery = wire::discovery_from_environment();
   const wire::Discovery given = discovery.ok() ? *discovery : wire::Discovery();
   needs.domain = options.domain >= 0 ? options.domain : given.domain_id;
@@ -184,7 +185,7 @@ MachineNeeds machine_needs(const ClientOptions& options, bool found) {
 }
 
 /// Two statuses some time apart.
-Result<Findings> watch(Client& client, milliseconds time) {
+Result<doctor::Findings> watch(Client& client, milliseconds time) {
   const auto before = client.status();
   if (!before.ok()) return before.status();
   std::this_thread::sleep_for(time);
@@ -195,11 +196,11 @@ Result<Findings> watch(Client& client, milliseconds time) {
 
 }  // namespace
 
-Findings check_server(const ServerStatus& before, const ServerStatus& after) {
-  Findings findings;
+doctor::Findings check_server(const ServerStatus& before, const ServerStatus& after) {
+  doctor::Findings findings;
   const Details details(before, after);
   if (after.model_count == 0) {
-    findings.push_back({Severity::error, "the server has no models",
+    findings.push_back({doctor::Severity::error, "the server has no models",
                         "its library is " + after.library,
                         "Make models (`bpa model from-mesh`) and load them (`bpa-client load`)."});
   }
@@ -213,10 +214,10 @@ Findings check_server(const ServerStatus& before, const ServerStatus& after) {
 
 RunningFindings check_running_server(ClientOptions options) {
   std::mutex mutex;
-  Findings complaints;
+  doctor::Findings complaints;
   options.log = [&](const std::string& text) {
     const std::lock_guard lock(mutex);
-    complaints.push_back({Severity::warning, "DDS complains", text,
+    complaints.push_back({doctor::Severity::warning, "DDS complains", text,
                           "Run server and client of one release with the default QoS."});
   };
   RunningFindings found;
@@ -224,12 +225,12 @@ RunningFindings check_running_server(ClientOptions options) {
   {
     auto client = Client::connect(options);
     answered = client.ok();
-    const Result<Findings> watched =
+    const Result<doctor::Findings> watched =
         answered ? watch(*client, std::min(kWatch, options.timeout)) : client.status();
-    found.server = watched.ok() ? *watched : Findings{explain_absence(watched.status())};
+    found.server = watched.ok() ? *watched : doctor::Findings{explain_absence(watched.status())};
   }  // the hook is not called any more
   found.server.insert(found.server.end(), complaints.begin(), complaints.end());
-  found.machine = check_machine(machine_needs(options, answered));
+  found.machine = doctor::check_machine(machine_needs(options, answered));
   return found;
 }
 

@@ -67,7 +67,7 @@ class ModelExplanation {
     for (const io::BopInstance& instance : frame.truth) {
       if (instance.obj_id == model_.number) truths_.push_back(instance.camera_from_object);
     }
-    for (const Candidate& candidate : frame.trace.candidates) {
+    for (const detect::Candidate& candidate : frame.trace.candidates) {
       if (candidate.model != &model_) continue;
       if (!best_ || candidate.score > best_->score) best_ = &candidate;
     }
@@ -89,7 +89,7 @@ class ModelExplanation {
   Row summary() const {
     Row row = {HtmlPage::link(model_.name + "/index.html", model_.name)};
     for (const auto& stage : trace_.stages) row.push_back(std::to_string(stage.poses.size()));
-    row.resize(1 + detection_stages().size());
+    row.resize(1 + detect::detection_stages().size());
     row.push_back(best_ ? fixed(best_->probability, 2) : "");
     row.push_back(is_reported() ? "yes" : "");
     return row;
@@ -124,7 +124,7 @@ class ModelExplanation {
     return text;
   }
 
-  std::size_t count_right(const TraceStage& stage) const {
+  std::size_t count_right(const detect::TraceStage& stage) const {
     return std::ranges::count_if(stage.poses, [&](const FastPose& pose) {
       return eval::is_right_about_any(to_pose(pose), model_, frame_.truth);
     });
@@ -136,7 +136,7 @@ class ModelExplanation {
     std::vector<Row> rows;
     for (const auto& stage : trace_.stages) {
       std::string rejected;
-      for (const Rejected& r : stage.rejected) {
+      for (const detect::Rejected& r : stage.rejected) {
         rejected += (rejected.empty() ? "" : "<br>") + std::to_string(r.poses.size()) + " " +
                     HtmlPage::escape(std::string(r.reason));
       }
@@ -148,17 +148,17 @@ class ModelExplanation {
   }
 
   void write_stage(std::size_t index, Page& page) const {
-    const TraceStage& stage = trace_.stages[index];
+    const detect::TraceStage& stage = trace_.stages[index];
     const auto style = [](bool outlined) {
       return outlined ? DrawnPoses::Style::outlines : DrawnPoses::Style::dots;
     };
     std::size_t all = stage.poses.size();
-    for (const Rejected& rejected : stage.rejected) all += rejected.poses.size();
+    for (const detect::Rejected& rejected : stage.rejected) all += rejected.poses.size();
     const bool outlined = stage.poses.size() <= kMaxOutlinedAlive;
     std::vector<DrawnPoses> groups;
     std::vector<LegendEntry> legend = {{kAlive, std::to_string(stage.poses.size()) + " alive"}};
     for (std::size_t i = 0; i < stage.rejected.size(); ++i) {
-      const Rejected& rejected = stage.rejected[i];
+      const detect::Rejected& rejected = stage.rejected[i];
       const Rgb color = kRejected[std::min(i, std::size(kRejected) - 1)];
       groups.push_back({rejected.poses, color, style(all <= kMaxOutlined)});
       legend.push_back(
@@ -190,8 +190,9 @@ class ModelExplanation {
               model_.name + ": best placement, probability " + fixed(best_->probability, 3));
     write_layer(page);
     const SceneFeatures& scene = frame_.trace.scene;
-    const auto matches = match_segments(scene.segmentation, scene.map, model_, best_->pose(),
-                                        predict_surface(scene.image, model_, best_->pose()));
+    const auto matches =
+        score::match_segments(scene.segmentation, scene.map, model_, best_->pose(),
+                              score::predict_surface(scene.image, model_, best_->pose()));
     page.heading("Its super-pixels");
     page.show(numbered(number + 1, "best_segments"),
               "Those that the placement touches, from green (belongs to the model) to red (does "
@@ -200,11 +201,11 @@ class ModelExplanation {
   }
 
   void write_layer(Page& page) const {
-    const ScoreLayer& layer = frame_.layers.last_for(best_->values);
+    const score::ScoreLayer& layer = frame_.layers.last_for(best_->values);
     std::vector<Row> rows;
-    for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
-      const ComponentType& type = kScoreComponents[i];
-      const ScoreLayer::Component& c = layer.components[i];
+    for (std::size_t i = 0; i < score::kScoreComponents.size(); ++i) {
+      const score::ComponentType& type = score::kScoreComponents[i];
+      const score::ScoreLayer::Component& c = layer.components[i];
       const double value = best_->values[i], part = c.at(value);
       rows.push_back(
           {std::string(type.name), fixed(value, 4), std::string(type.unit),
@@ -226,9 +227,9 @@ class ModelExplanation {
 
   const ExplainedFrame& frame_;
   const ObjectModel& model_;
-  const ObjectTrace& trace_;
+  const detect::ObjectTrace& trace_;
   std::vector<Pose> truths_;
-  const Candidate* best_ = nullptr;  ///< Null: no placement was good enough.
+  const detect::Candidate* best_ = nullptr;  ///< Null: no placement was good enough.
 };
 
 void write_frame_pictures(const ExplainedFrame& frame, Page& page) {
@@ -283,7 +284,7 @@ void write_models(const ExplainedFrame& frame, const std::string& folder, Page& 
     rows.push_back(explanation.summary());
   }
   Row head = {"model"};
-  for (const Stage& stage : detection_stages()) head.emplace_back(stage.name);
+  for (const detect::Stage& stage : detect::detection_stages()) head.emplace_back(stage.name);
   head.insert(head.end(), {"probability of the best", "in the best interpretation"});
   page.heading("Models and hypotheses alive after each stage");
   page.table(head, rows);

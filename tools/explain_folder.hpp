@@ -20,7 +20,7 @@ struct ExplainedFrame {
   const Frame& frame;
   const FrameTrace& trace;
   const SceneInterpretations& result;
-  const ScoreLayers& layers;  ///< That the frame was searched with.
+  const score::ScoreLayers& layers;  ///< That the frame was searched with.
   const std::vector<io::BopInstance>& truth;
 };
 

@@ -37,10 +37,10 @@ struct ModelArguments {
   std::string split = "test";  // of scans
   double step_deg = 10;
   int known_object = 0;  // obj_id when the poses are known
-  ModelOptions options;
+  modeling::ModelOptions options;
 
-  ModelOptions options_with_threads() const {
-    ModelOptions out = options;
+  modeling::ModelOptions options_with_threads() const {
+    modeling::ModelOptions out = options;
     out.num_threads = common.threads;
     return out;
   }
@@ -48,8 +48,8 @@ struct ModelArguments {
 
 ModelSource source_from_mesh(const io::MeshFile& file, const std::string& path,
                              const ModelArguments& a, const std::string& name, int number) {
-  ModelSource source =
-      or_throw(model_source_from_mesh(file.mesh, name, number, a.options_with_threads()), path);
+  ModelSource source = or_throw(
+      modeling::model_source_from_mesh(file.mesh, name, number, a.options_with_threads()), path);
   look_at(file.mesh, a.views, a.common, source);
   source.warnings.insert(source.warnings.end(), file.warnings.begin(), file.warnings.end());
   return source;
@@ -61,11 +61,12 @@ void add_symmetries(ModelSource& source, const ModelArguments& a) {
     source.symmetry_origin = SymmetryOrigin::declared;
     return;
   }
-  source.symmetry = find_symmetries(source.surface, source.diameter, a.common.threads);
+  source.symmetry = modeling::find_symmetries(source.surface, source.diameter, a.common.threads);
   source.symmetry_origin =
       a.symmetry == "confirm" ? SymmetryOrigin::declared : SymmetryOrigin::found;
   if (source.symmetry.trivial()) return;
-  std::printf("%s: found symmetries: %s\n", source.name.c_str(), describe(source.symmetry).c_str());
+  std::printf("%s: found symmetries: %s\n", source.name.c_str(),
+              modeling::describe(source.symmetry).c_str());
   if (a.symmetry == "confirm") return;
   std::printf(
       "Is that right, colours aside? `bpa model symmetry %s --library %s --confirm` keeps them, "
@@ -78,16 +79,17 @@ void warn_of_twins(ModelSource& source, const ModelArguments& a) {
   for (const std::string& name : io::list_models(a.library)) {
     // Its description alone first: that is quick to read.
     const Result<ModelSource> described = io::describe_model(a.library, name);
-    if (name == source.name || !described.ok() || !same_size(source, *described)) continue;
+    if (name == source.name || !described.ok() || !modeling::same_size(source, *described))
+      continue;
     const Result<ModelSource> other = io::load_model(a.library, name);
-    if (!other.ok() || !same_shape(source, *other, a.common.threads)) continue;
+    if (!other.ok() || !modeling::same_shape(source, *other, a.common.threads)) continue;
     source.warnings.push_back("has nearly the same shape as " + name +
                               ": one may be taken for the other");
   }
 }
 
 std::string symmetry_text(const ModelSource& model) {
-  return describe(model.symmetry) +
+  return modeling::describe(model.symmetry) +
          (model.symmetry_origin == SymmetryOrigin::found ? " (found, not confirmed)" : "");
 }
 
@@ -141,29 +143,29 @@ ModelSource source_from_file(const ModelArguments& a, int number) {
     }
   }
   const PointCloud cloud = or_throw(io::read_point_cloud(a.input, scale > 0 ? scale : 1.0));
-  ModelSource source =
-      or_throw(model_source_from_points(cloud, a.name, number, a.options_with_threads()), a.input);
+  ModelSource source = or_throw(
+      modeling::model_source_from_points(cloud, a.name, number, a.options_with_threads()), a.input);
   if (source.complete) look_at(squares_of(source.surface), a.views, a.common, source);
   return source;
 }
 
 ModelSource source_from_scans(const ModelArguments& a, int number) {
-  AlignedScan scan;
+  modeling::AlignedScan scan;
   if (a.known_object > 0) {
     scan.views = read_posed_views(a.input, a.split, a.known_object, a.common.threads);
   } else {
     scan = align_scan_of(a.input, a.split, a.step_deg, a.common);
-    center_object(scan.views);
+    modeling::center_object(scan.views);
   }
-  for (const RestingPosition& p : scan.positions) {
+  for (const modeling::RestingPosition& p : scan.positions) {
     std::printf(
         "resting position: turntable %.0f mm away, axis at (%.1f, %.1f, %.1f) mm, step %.2f "
         "degrees\n",
         1000 * p.centre.norm(), 1000 * p.centre.x(), 1000 * p.centre.y(), 1000 * p.centre.z(),
         p.step_deg);
   }
-  ModelSource source = or_throw(
-      model_source_from_views(std::move(scan.views), a.name, number, a.options_with_threads()));
+  ModelSource source = or_throw(modeling::model_source_from_views(
+      std::move(scan.views), a.name, number, a.options_with_threads()));
   source.warnings.insert(source.warnings.begin(), scan.warnings.begin(), scan.warnings.end());
   return source;
 }

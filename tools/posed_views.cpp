@@ -119,29 +119,30 @@ Pose look_from(const Eigen::Vector3d& direction, double distance, const Eigen::V
 
 }  // namespace
 
-AlignedScan align_scan_of(const std::string& dataset, const std::string& split, double step_deg,
-                          const CommonOptions& common) {
+modeling::AlignedScan align_scan_of(const std::string& dataset, const std::string& split,
+                                    double step_deg, const CommonOptions& common) {
   const std::vector<io::BopFrame> frames = or_throw(io::read_bop_frames(dataset, split));
-  std::vector<ScanView> views(frames.size());
+  std::vector<modeling::ScanView> views(frames.size());
   run_all("images", static_cast<int>(frames.size()), common.threads, [&](int i) {
-    views[i].view = make_posed_view(or_throw(io::load_bop_frame(frames[i])), {}, Pose{});
+    views[i].view = modeling::make_posed_view(or_throw(io::load_bop_frame(frames[i])), {}, Pose{});
     views[i].view.id = i;
     views[i].step = frames[i].im_id;
   });
-  std::vector<std::vector<ScanView>> positions;
+  std::vector<std::vector<modeling::ScanView>> positions;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (i == 0 || frames[i].scene_id != frames[i - 1].scene_id) positions.emplace_back();
     positions.back().push_back(std::move(views[i]));
   }
-  const ScanOptions options{
+  const modeling::ScanOptions options{
       .step_deg = step_deg, .seed = common.seed, .num_threads = common.threads};
   Progress progress("scan", 2);
   progress.show(0, "centres of rotation");
-  return or_throw(align_scan(std::move(positions), options), dataset);
+  return or_throw(modeling::align_scan(std::move(positions), options), dataset);
 }
 
-std::vector<PosedView> read_posed_views(const std::string& dataset, const std::string& split,
-                                        int obj_id, int num_threads) {
+std::vector<modeling::PosedView> read_posed_views(const std::string& dataset,
+                                                  const std::string& split, int obj_id,
+                                                  int num_threads) {
   const std::vector<io::BopFrame> frames = or_throw(io::read_bop_frames(dataset, split));
   struct Wanted {
     const io::BopFrame* frame;
@@ -157,7 +158,7 @@ std::vector<PosedView> read_posed_views(const std::string& dataset, const std::s
     throw Failure({StatusCode::not_found, dataset + "/" + split + " shows no object " +
                                               std::to_string(obj_id) + " with its pose"});
   }
-  std::vector<PosedView> views(wanted.size());
+  std::vector<modeling::PosedView> views(wanted.size());
   run_all("images", static_cast<int>(wanted.size()), num_threads, [&](int k) {
     const auto& [entry, instance] = wanted[k];
     const Frame frame = or_throw(io::load_bop_frame(*entry));
@@ -170,8 +171,8 @@ std::vector<PosedView> read_posed_views(const std::string& dataset, const std::s
       }
       for (const auto value : image.pixels) mask.push_back(value != 0);
     }
-    PosedView& view = views[k];
-    view = make_posed_view(frame, mask, entry->truth[instance].camera_from_object);
+    modeling::PosedView& view = views[k];
+    view = modeling::make_posed_view(frame, mask, entry->truth[instance].camera_from_object);
     view.id = k;
   });
   return views;
@@ -187,8 +188,9 @@ TriangleMesh squares_of(const PointCloud& cloud) {
   return mesh;
 }
 
-std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::uint64_t seed,
-                                      int num_threads, const std::string& title) {
+std::vector<modeling::PosedView> simulate_views(const TriangleMesh& mesh, int count,
+                                                std::uint64_t seed, int num_threads,
+                                                const std::string& title) {
   constexpr double kFocal = 570.3;  // of a Kinect's depth camera
   constexpr double kDistance = 0.8, kMargin = 24;
   Eigen::AlignedBox3f box;
@@ -211,15 +213,15 @@ std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::
   constexpr double kScatter = 0.015;  // metres
   const int reach = sim::kLookAround + static_cast<int>(std::ceil(kScatter * kFocal / nearest));
 
-  std::vector<PosedView> views(static_cast<std::size_t>(count));
+  std::vector<modeling::PosedView> views(static_cast<std::size_t>(count));
   run_all(title, count, num_threads, [&](int k) {
     const Pose object_from_camera =
         look_from(sphere_direction(k, count), distance, box.center().cast<double>());
     const auto wanted = outline(mesh, object_from_camera.inverse(), camera, reach);
     const Frame frame = sim::simulate_depth({scene, shading, camera, object_from_camera, wanted},
                                             kinect, RandomStream(seed, k)(), 0, 1);
-    views[k] = make_posed_view(frame, near(frame, object_from_camera, box),
-                               object_from_camera.inverse(), "structured_light");
+    views[k] = modeling::make_posed_view(frame, near(frame, object_from_camera, box),
+                                         object_from_camera.inverse(), "structured_light");
   });
   return views;
 }
@@ -228,8 +230,8 @@ void look_at(const TriangleMesh& mesh, int count, const CommonOptions& common,
              ModelSource& source) {
   if (count == 0) return;
   const std::string title = source.name + ", simulated views";
-  keep_measured(source, simulate_views(mesh, count, common.seed, common.threads, title),
-                common.threads);
+  modeling::keep_measured(source, simulate_views(mesh, count, common.seed, common.threads, title),
+                          common.threads);
 }
 
 }  // namespace bpa::cli

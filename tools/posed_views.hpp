@@ -16,19 +16,21 @@ namespace bpa::cli {
 
 /// Reads a split of a BOP data set as a turntable scan and finds the poses of its views. A scene is
 /// a resting position; image numbers count the table's steps. Truth and masks are not read.
-AlignedScan align_scan_of(const std::string& dataset, const std::string& split, double step_deg,
-                          const CommonOptions& common);
+modeling::AlignedScan align_scan_of(const std::string& dataset, const std::string& split,
+                                    double step_deg, const CommonOptions& common);
 
 /// The views of a BOP split that show object `obj_id`, with the poses of scene_gt.json; where there
 /// is mask_visib, only its pixels belong to the object.
-std::vector<PosedView> read_posed_views(const std::string& dataset, const std::string& split,
-                                        int obj_id, int num_threads);
+std::vector<modeling::PosedView> read_posed_views(const std::string& dataset,
+                                                  const std::string& split, int obj_id,
+                                                  int num_threads);
 
 /// What a Kinect-class camera measures of a mesh from `count` directions over the sphere. The mesh
 /// is in the middle of an empty room, at 0.8 m, more for large objects. `title` is a progress
 /// bar's. The same input and seed give the same views for any number of threads.
-std::vector<PosedView> simulate_views(const TriangleMesh& mesh, int count, std::uint64_t seed,
-                                      int num_threads, const std::string& title);
+std::vector<modeling::PosedView> simulate_views(const TriangleMesh& mesh, int count,
+                                                std::uint64_t seed, int num_threads,
+                                                const std::string& title);
 
 constexpr int kSimulatedViews = 120;  ///< Of a mesh that becomes a model, unless told otherwise.
 

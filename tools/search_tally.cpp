@@ -47,8 +47,8 @@ void StageTimes::add(const SceneInterpretations& result, const FrameTrace& trace
   ++frames_;
   for (const StageTiming& timing : result.timings) {
     if (timing.stage == "objects") {
-      for (const ObjectTrace& object : trace.objects) {
-        for (const TraceStage& stage : object.stages) {
+      for (const detect::ObjectTrace& object : trace.objects) {
+        for (const detect::TraceStage& stage : object.stages) {
           add("objects: " + std::string(stage.name), stage.milliseconds);
         }
       }

@@ -33,10 +33,10 @@ std::map<int, std::string> complete_shape_library(const std::string& folder, int
     const sim::SimulatedObject& object = objects[i];
     if (!shapes.emplace(kFirstNumber + i, object.name).second) continue;
     progress.show(i, object.name);
-    ModelSource source = or_throw(model_source_from_mesh(object.mesh, object.name, kFirstNumber + i,
-                                                         {.num_threads = common.threads}));
+    ModelSource source = or_throw(modeling::model_source_from_mesh(
+        object.mesh, object.name, kFirstNumber + i, {.num_threads = common.threads}));
     look_at(object.mesh, kSimulatedViews, common, source);
-    source.symmetry = find_symmetries(source.surface, source.diameter, common.threads);
+    source.symmetry = modeling::find_symmetries(source.surface, source.diameter, common.threads);
     or_throw(io::save_model(folder, source, common.threads));
   }
   return shapes;

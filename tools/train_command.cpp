@@ -32,24 +32,25 @@ struct TrainArguments {
 };
 
 struct Samples {
-  std::vector<ScoreFrame> training, held_out;
+  std::vector<score::ScoreFrame> training, held_out;
 };
 
 // What round two has to order: right poses, and every fifth wrong one, none of which competes.
-ScoreFrame round_two_samples(const FrameTrace& trace, const std::vector<io::BopInstance>& truth) {
-  ScoreFrame out;
+score::ScoreFrame round_two_samples(const FrameTrace& trace,
+                                    const std::vector<io::BopInstance>& truth) {
+  score::ScoreFrame out;
   int wrong = 0;
   for (std::size_t m = 0; m < trace.objects.size(); ++m) {
     const ObjectModel& model = *trace.models[m];
-    const FeaturePlaces places(model);
-    for (const TraceStage& stage : trace.objects[m].stages) {
+    const score::FeaturePlaces places(model);
+    for (const detect::TraceStage& stage : trace.objects[m].stages) {
       if (stage.name != "round_two") continue;
       for (const FastPose& fast : stage.poses) {
         const Pose pose = to_pose(fast);
         const bool right = eval::is_right_about_any(pose, model, truth);
         if (!right && wrong++ % 5 != 0) continue;
-        Evidence evidence(trace.scene, places, pose, kQuickPoints);
-        out.samples.push_back({measure(evidence, Round::two), right});
+        score::Evidence evidence(trace.scene, places, pose, detect::kQuickPoints);
+        out.samples.push_back({measure(evidence, score::Round::two), right});
       }
     }
   }
@@ -58,26 +59,27 @@ ScoreFrame round_two_samples(const FrameTrace& trace, const std::vector<io::BopI
 }
 
 double exposure_of(const SceneFeatures& scene, const ObjectModel& model, const Pose& pose) {
-  const FeaturePlaces places(model);
-  return Evidence(scene, places, pose).colors().exposure;
+  const score::FeaturePlaces places(model);
+  return score::Evidence(scene, places, pose).colors().exposure;
 }
 
 // The objects of the frame that a first interpretation would hold: most of those in sight.
-Candidates others_of(const Detector& detector, const FrameTrace& trace, const TrueFrame& frame) {
+detect::Candidates others_of(const Detector& detector, const FrameTrace& trace,
+                             const TrueFrame& frame) {
   constexpr double kFound = 0.75;       // of the objects in sight: about the recall in unseen piles
   constexpr std::size_t kInSight = 50;  // explained pixels, chosen by hand
   const auto& models = detector.library().models();
   RandomStream random(frame.index);
-  Candidates out;
+  detect::Candidates out;
   for (const io::BopInstance& instance : frame.truth) {
     const auto model =
         std::ranges::find(models, instance.obj_id, [](const auto& m) { return m->number; });
     const bool found = random.uniform() < kFound;
     if (model == models.end() || !found) continue;
-    Candidate other{.model = model->get()};
+    detect::Candidate other{.model = model->get()};
     other.refinement.camera_from_object = instance.camera_from_object;
-    other.explained = explained_pixels(trace.scene.image, **model, other.pose());
-    other.values[component("exposure")] = exposure_of(trace.scene, **model, other.pose());
+    other.explained = score::explained_pixels(trace.scene.image, **model, other.pose());
+    other.values[score::component("exposure")] = exposure_of(trace.scene, **model, other.pose());
     if (other.explained.size() >= kInSight) out.push_back(std::move(other));
   }
   return out;
@@ -85,21 +87,21 @@ Candidates others_of(const Detector& detector, const FrameTrace& trace, const Tr
 
 // What interpretations choose from. A frame is searched for some models alone, so what others
 // explain is taken from the truth.
-ScoreFrame round_three_samples(const Detector& detector, const FrameTrace& trace,
-                               const TrueFrame& frame, int num_threads) {
+score::ScoreFrame round_three_samples(const Detector& detector, const FrameTrace& trace,
+                                      const TrueFrame& frame, int num_threads) {
   const double competing = (*detector.score_layers().limits.at(
-      detector.options().detect.score.keep_right, true))[Limit::competing];
-  Candidates all = trace.candidates;
+      detector.options().detect.score.keep_right, true))[score::Limit::competing];
+  detect::Candidates all = trace.candidates;
   const std::size_t count = all.size();
   std::ranges::move(others_of(detector, trace, frame), std::back_inserter(all));
   std::vector<bool> present(count, false);
   present.resize(all.size(), true);
-  measure_given_others(trace.scene, find_overlaps(all, competing), present, all, competing,
-                       num_threads);
+  scene::measure_given_others(trace.scene, scene::find_overlaps(all, competing), present, all,
+                              competing, num_threads);
   all.resize(count);
-  ScoreFrame out;
-  out.competition = competition_of(all, find_overlaps(all, competing));
-  for (const Candidate& candidate : all) {
+  score::ScoreFrame out;
+  out.competition = scene::competition_of(all, scene::find_overlaps(all, competing));
+  for (const detect::Candidate& candidate : all) {
     out.samples.push_back({candidate.values, eval::is_right_about_any(
                                                  candidate.pose(), *candidate.model, frame.truth)});
   }
@@ -136,14 +138,14 @@ std::string provenance(const TrainArguments& a, const Folders& folders, std::siz
          " frames, seed " + std::to_string(a.common.seed);
 }
 
-void print_reliability(const char* name, const ScoreLayer& layer,
-                       const std::vector<ScoreFrame>& frames) {
+void print_reliability(const char* name, const score::ScoreLayer& layer,
+                       const std::vector<score::ScoreFrame>& frames) {
   if (frames.empty()) return;
-  const Reliability r = reliability(layer, frames);
+  const score::Reliability r = reliability(layer, frames);
   std::printf("%s: %d placements, %d right; expected calibration error %.4f, Brier score %.4f\n",
               name, r.samples, r.right, r.expected_calibration_error, r.brier_score);
   std::printf("  predicted  right  placements\n");
-  for (const Reliability::Bin& bin : r.bins) {
+  for (const score::Reliability::Bin& bin : r.bins) {
     if (bin.count > 0) {
       std::printf("  %9.2f  %5.2f  %10d\n", bin.predicted, bin.right, bin.count);
     }
@@ -153,10 +155,10 @@ void print_reliability(const char* name, const ScoreLayer& layer,
 // The same samples of frames or models that have no colour.
 Samples without_color(Samples samples) {
   for (auto* frames : {&samples.training, &samples.held_out}) {
-    for (ScoreFrame& frame : *frames) {
+    for (score::ScoreFrame& frame : *frames) {
       for (auto& sample : frame.samples) {
-        for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
-          if (kScoreComponents[i].needs_color) sample.values[i] = kNotKnown;
+        for (std::size_t i = 0; i < score::kScoreComponents.size(); ++i) {
+          if (score::kScoreComponents[i].needs_color) sample.values[i] = score::kNotKnown;
         }
       }
     }
@@ -169,8 +171,8 @@ struct Judged {
   double log_loss = 0;
   int reported = 0, right = 0;  // of the probabilities from 0.5, the default threshold
 
-  void add(const ScoreLayer& layer, const std::vector<ScoreFrame>& frames) {
-    const Reliability r = reliability(layer, frames);
+  void add(const score::ScoreLayer& layer, const std::vector<score::ScoreFrame>& frames) {
+    const score::Reliability r = reliability(layer, frames);
     log_loss += r.log_loss * r.samples;
     for (std::size_t b = 5; b < r.bins.size(); ++b) {
       reported += r.bins[b].count;
@@ -181,17 +183,17 @@ struct Judged {
 
 // The built-in layer adjusted to the frames, where that helps: each fifth of the frames is judged
 // by what the others teach.
-ScoreLayer adapt(const char* name, const ScoreLayer& built_in, const std::string& made_of,
-                 const std::vector<ScoreFrame>& frames) {
+score::ScoreLayer adapt(const char* name, const score::ScoreLayer& built_in,
+                        const std::string& made_of, const std::vector<score::ScoreFrame>& frames) {
   constexpr std::size_t kParts = 5;
   Judged before, after;
   for (std::size_t part = 0; part < kParts; ++part) {
-    std::vector<ScoreFrame> others, left_out;
+    std::vector<score::ScoreFrame> others, left_out;
     for (std::size_t i = 0; i < frames.size(); ++i) {
       (i % kParts == part ? left_out : others).push_back(frames[i]);
     }
     before.add(built_in, left_out);
-    after.add(or_throw(adapt_score_layer(built_in, others)), left_out);
+    after.add(or_throw(score::adapt_score_layer(built_in, others)), left_out);
   }
   std::printf(
       "%s, on frames left out: log loss %.1f built in, %.1f adapted; right of those over 0.5: "
@@ -202,16 +204,16 @@ ScoreLayer adapt(const char* name, const ScoreLayer& built_in, const std::string
     std::printf("%s: these frames do not improve the built-in layer; it is kept\n", name);
     return built_in;
   }
-  ScoreLayer layer = or_throw(adapt_score_layer(built_in, frames));
+  score::ScoreLayer layer = or_throw(score::adapt_score_layer(built_in, frames));
   layer.provenance = built_in.provenance + "; adapted by " + made_of;
   return layer;
 }
 
-ScoreLayer learn(const TrainArguments& a, const char* name, const Folders& folders,
-                 const ScoreLayer& built_in, const Samples& samples) {
+score::ScoreLayer learn(const TrainArguments& a, const char* name, const Folders& folders,
+                        const score::ScoreLayer& built_in, const Samples& samples) {
   const std::string made_of = provenance(a, folders, samples.training.size());
   if (a.adapt) return adapt(name, built_in, made_of, samples.training);
-  ScoreLayer layer = or_throw(train_score_layer(samples.training));
+  score::ScoreLayer layer = or_throw(score::train_score_layer(samples.training));
   layer.provenance = made_of;
   std::printf("%s\n", name);
   print_reliability("training", layer, samples.training);
@@ -220,9 +222,9 @@ ScoreLayer learn(const TrainArguments& a, const char* name, const Folders& folde
 }
 
 // What the layer says of frames as they are in use, as often as it says.
-ScoreLayer calibrate(const TrainArguments& a, const char* name, const ScoreLayer& layer,
-                     const Samples& samples) {
-  ScoreLayer out = or_throw(calibrate_score_layer(layer, samples.training));
+score::ScoreLayer calibrate(const TrainArguments& a, const char* name,
+                            const score::ScoreLayer& layer, const Samples& samples) {
+  score::ScoreLayer out = or_throw(score::calibrate_score_layer(layer, samples.training));
   out.provenance += "; calibrated by " + provenance(a, a.calibration_bop, samples.training.size());
   std::printf("%s, calibrated\n", name);
   print_reliability("before", layer, samples.training);
@@ -250,22 +252,24 @@ int models_in_use(const TrainArguments& a) {
   return a.calibration_bop.empty() ? a.models_per_frame : 0;
 }
 
-RightPlacement right_placement(const Candidate& candidate, const ScoreLayer& layer) {
-  RightPlacement out{candidate.lowest};
-  out.lowest.note(Limit::competing, candidate.score);
+score::RightPlacement right_placement(const detect::Candidate& candidate,
+                                      const score::ScoreLayer& layer) {
+  score::RightPlacement out{candidate.lowest};
+  out.lowest.note(score::Limit::competing, candidate.score);
   double log_odds = layer.bias + candidate.prior;
-  for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
+  for (std::size_t i = 0; i < score::kScoreComponents.size(); ++i) {
     log_odds += layer.components[i].at(candidate.values[i]);
     out.components[i] = static_cast<float>(log_odds);
   }
   return out;
 }
 
-ScoreLayers learn_all(const TrainArguments& a, const Detector& detector, const ScoreLayers& start) {
+score::ScoreLayers learn_all(const TrainArguments& a, const Detector& detector,
+                             const score::ScoreLayers& start) {
   Samples round_two, round_three;
   collect(a, detector, a.bop, a.models_per_frame, &round_two, &round_three);
   collect(a, detector, a.round_two_bop, a.models_per_frame, &round_two, nullptr);
-  ScoreLayers layers = start;
+  score::ScoreLayers layers = start;
   layers.round_two =
       learn(a, "round two", together(a.bop, a.round_two_bop), start.round_two, round_two);
   layers.without_color =
@@ -278,21 +282,21 @@ ScoreLayers learn_all(const TrainArguments& a, const Detector& detector, const S
 
 // The placements that end right in a search without limits of frames as they are in use: the best
 // of each instance.
-std::vector<RightPlacement> right_placements(const TrainArguments& a,
-                                             const std::shared_ptr<const ModelLibrary>& library,
-                                             const ScoreLayers& layers, bool colored) {
+std::vector<score::RightPlacement> right_placements(
+    const TrainArguments& a, const std::shared_ptr<const ModelLibrary>& library,
+    const score::ScoreLayers& layers, bool colored) {
   DetectorOptions options = read_detector_options(a.detector.config);
   options.detect.score.keep_right = 1;
   options.detect.score.stop_early = false;
   options.features.use_color = colored;
   const Detector detector(library, options, layers);
-  const ScoreLayer& layer = colored ? layers.round_three : layers.without_color;
-  std::vector<RightPlacement> out;
+  const score::ScoreLayer& layer = colored ? layers.round_three : layers.without_color;
+  std::vector<score::RightPlacement> out;
   const auto use = [&](const TrueFrame& frame, const auto&, const FrameTrace& trace) {
     if (colored && frame.frame.color.empty()) return;
     for (const io::BopInstance& instance : frame.truth) {
-      const Candidate* best = nullptr;
-      for (const Candidate& candidate : trace.candidates) {
+      const detect::Candidate* best = nullptr;
+      for (const detect::Candidate& candidate : trace.candidates) {
         const bool is_best = best == nullptr || candidate.score > best->score;
         if (is_best && eval::is_right_about_any(candidate.pose(), *candidate.model, {instance})) {
           best = &candidate;
@@ -307,15 +311,15 @@ std::vector<RightPlacement> right_placements(const TrainArguments& a,
   return out;
 }
 
-LearnedYield learn_yield(const TrainArguments& a,
-                         const std::shared_ptr<const ModelLibrary>& library,
-                         const ScoreLayers& layers) {
-  LearnedYield out = layers.yield;
+score::LearnedYield learn_yield(const TrainArguments& a,
+                                const std::shared_ptr<const ModelLibrary>& library,
+                                const score::ScoreLayers& layers) {
+  score::LearnedYield out = layers.yield;
   out.provenance = concat(a.made_by, ", seed ", a.common.seed);
   for (const bool colored : {true, false}) {
     DetectorOptions options = read_detector_options(a.detector.config);
     options.features.use_color = colored;
-    SearchYield& yield = colored ? out.with_color : out.without_color;
+    score::SearchYield& yield = colored ? out.with_color : out.without_color;
     yield =
         search_yield(library, options, layers, frames_in_use(a), a.common, models_in_use(a), yield);
     std::printf(
@@ -327,22 +331,22 @@ LearnedYield learn_yield(const TrainArguments& a,
   return out;
 }
 
-LearnedLimits learn_limits(const TrainArguments& a,
-                           const std::shared_ptr<const ModelLibrary>& library,
-                           const ScoreLayers& layers) {
+score::LearnedLimits learn_limits(const TrainArguments& a,
+                                  const std::shared_ptr<const ModelLibrary>& library,
+                                  const score::ScoreLayers& layers) {
   const auto with_color = right_placements(a, library, layers, true);
   const auto without_color = right_placements(a, library, layers, false);
-  LearnedLimits limits = measure_limits(with_color, without_color, layers.limits);
+  score::LearnedLimits limits = score::measure_limits(with_color, without_color, layers.limits);
   limits.provenance =
       concat(a.made_by, ": ", with_color.size(), " right placements with colours and ",
              without_color.size(), " without, seed ", a.common.seed);
-  const double keep_right = ScoreOptions().keep_right;
-  const Limits colored = *limits.at(keep_right, true), plain = *limits.at(keep_right, false);
+  const double keep_right = detect::ScoreOptions().keep_right;
+  const score::Limits colored = *limits.at(keep_right, true), plain = *limits.at(keep_right, false);
   std::printf("limits of log odds that keep %g of the right placements\n", keep_right);
   std::printf("  %-18s with colours  without\n", "");
-  for (std::size_t i = 0; i < kLimits; ++i) {
-    std::printf("  %-18s %12.2f  %7.2f\n", std::string(kLimitNames[i]).c_str(), colored.stages[i],
-                plain.stages[i]);
+  for (std::size_t i = 0; i < score::kLimits; ++i) {
+    std::printf("  %-18s %12.2f  %7.2f\n", std::string(score::kLimitNames[i]).c_str(),
+                colored.stages[i], plain.stages[i]);
   }
   return limits;
 }
@@ -363,7 +367,7 @@ void train(const TrainArguments& a) {
   const auto library = open_library(a.detector, a.common.threads);
   DetectorOptions options = read_detector_options(a.detector.config);
   options.detect.score.stop_early = false;
-  ScoreLayers layers = default_score_layers();
+  score::ScoreLayers layers = score::default_score_layers();
   const Detector detector(library, options, layers);
   if (!a.bop.empty()) layers = learn_all(a, detector, layers);
   if (!a.calibration_bop.empty()) {

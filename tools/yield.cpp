@@ -16,8 +16,9 @@ constexpr double kFound = 0.5;  // the probability of a right placement that cou
 
 using Instance = std::tuple<std::string, std::size_t, std::size_t>;  // folder, frame, number
 
-const Candidate* found_at(const io::BopInstance& instance, const Candidates& candidates) {
-  const auto right = std::ranges::find_if(candidates, [&](const Candidate& one) {
+const detect::Candidate* found_at(const io::BopInstance& instance,
+                                  const detect::Candidates& candidates) {
+  const auto right = std::ranges::find_if(candidates, [&](const detect::Candidate& one) {
     return one.probability >= kFound &&
            eval::is_right_about_any(one.pose(), *one.model, {instance});
   });
@@ -29,8 +30,8 @@ struct VisiblePoints {
   int all = 0, first = 0, before = 0;
 };
 
-VisiblePoints visible_points(const SceneFeatures& scene, const Candidate& candidate, int first,
-                             int before) {
+VisiblePoints visible_points(const SceneFeatures& scene, const detect::Candidate& candidate,
+                             int first, int before) {
   VisiblePoints out;
   for (int i = 0; i < std::ssize(scene.references); ++i) {
     const int pixel = scene.image.pixel_of(scene.coarse.points[scene.references[i]]);
@@ -46,14 +47,15 @@ VisiblePoints visible_points(const SceneFeatures& scene, const Candidate& candid
 
 }  // namespace
 
-SearchYield search_yield(const std::shared_ptr<const ModelLibrary>& library,
-                         DetectorOptions options, const ScoreLayers& layers,
-                         const std::vector<DatasetOptions>& datasets, const CommonOptions& common,
-                         int models_per_frame, const SearchYield& start) {
+score::SearchYield search_yield(const std::shared_ptr<const ModelLibrary>& library,
+                                DetectorOptions options, const score::ScoreLayers& layers,
+                                const std::vector<DatasetOptions>& datasets,
+                                const CommonOptions& common, int models_per_frame,
+                                const score::SearchYield& start) {
   options.rounds.max_missed = 0;
   options.rounds.min_certain = 1;
   const double cell = options.features.coarse_spacing_m * options.features.coarse_spacing_m;
-  std::map<Instance, Discovery> discoveries;
+  std::map<Instance, score::Discovery> discoveries;
   std::map<std::pair<std::string, std::size_t>, int> objects;
   for (int rounds = 1; rounds <= kMostRounds; rounds *= 2) {
     options.rounds.max_rounds = rounds;
@@ -65,7 +67,7 @@ SearchYield search_yield(const std::shared_ptr<const ModelLibrary>& library,
         for (std::size_t i = 0; i < frame.truth.size(); ++i) {
           const Instance instance(dataset.folder, frame.index, i);
           if (discoveries.contains(instance)) continue;
-          const Candidate* found = found_at(frame.truth[i], trace.candidates);
+          const detect::Candidate* found = found_at(frame.truth[i], trace.candidates);
           if (found == nullptr) continue;
           const auto points =
               visible_points(trace.scene, *found, first, rounds == 1 ? 0 : first / 2);
@@ -80,11 +82,11 @@ SearchYield search_yield(const std::shared_ptr<const ModelLibrary>& library,
       search_frames(detector, dataset, common, use, models_per_frame);
     }
   }
-  std::vector<Discovery> all;
+  std::vector<score::Discovery> all;
   for (const auto& [instance, discovery] : discoveries) all.push_back(discovery);
   std::vector<int> counts;
   for (const auto& [frame, count] : objects) counts.push_back(count);
-  return measure_yield(all, counts, start);
+  return score::measure_yield(all, counts, start);
 }
 
 }  // namespace bpa::cli

@@ -11,7 +11,7 @@
 #include "core/base/concat.hpp"
 #include "core/base/guarded.hpp"
 
-namespace bpa {
+namespace bpa::calibration {
 namespace {
 
 using Corners = std::vector<cv::Point2f>;  // row by row
@@ -149,4 +149,4 @@ Result<BoardPose> find_board(const std::vector<std::uint8_t>& rgb, const Camera&
   return guarded("finding the chessboard", [&] { return find(rgb, camera, distortion, board); });
 }
 
-}  // namespace bpa
+}  // namespace bpa::calibration

@@ -11,7 +11,7 @@
 
 // Where a camera is by a chessboard that it sees.
 
-namespace bpa {
+namespace bpa::calibration {
 
 /// A chessboard, by its inner corners. One of the two numbers is even and the other odd: then a
 /// half turn swaps black and white, and the board has one frame for all cameras.
@@ -38,4 +38,4 @@ struct BoardPose {
 Result<BoardPose> find_board(const std::vector<std::uint8_t>& rgb, const Camera& camera,
                              const std::vector<double>& distortion, const Board& board);
 
-}  // namespace bpa
+}  // namespace bpa::calibration

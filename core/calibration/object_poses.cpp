@@ -12,7 +12,7 @@
 
 #include "core/base/concat.hpp"
 
-namespace bpa {
+namespace bpa::calibration {
 namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -248,4 +248,4 @@ Result<std::vector<CameraByObjects>> cameras_from_objects(
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::calibration

@@ -12,7 +12,7 @@
 
 // Where cameras are by objects that several of them see.
 
-namespace bpa {
+namespace bpa::calibration {
 
 /// What one camera sees at one moment: placements in its own frame.
 using SeenObjects = std::vector<Placement>;
@@ -38,4 +38,4 @@ Result<std::vector<CameraByObjects>> cameras_from_objects(
     const std::function<SymmetryGroup(const std::string& model)>& symmetry_of,
     const Pose& first = {});
 
-}  // namespace bpa
+}  // namespace bpa::calibration

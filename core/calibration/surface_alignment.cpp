@@ -11,7 +11,7 @@
 
 #include "core/base/median.hpp"
 
-namespace bpa {
+namespace bpa::calibration {
 namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -227,4 +227,4 @@ std::string disagreement_text(const SurfaceDisagreement& pair, const std::string
   return "cameras \"" + first + "\" and \"" + second + "\" " + numbers.data();
 }
 
-}  // namespace bpa
+}  // namespace bpa::calibration

@@ -13,7 +13,7 @@
 // Whether several cameras see one scene in the same place: the surfaces of their depth images,
 // compared in the fixed frame.
 
-namespace bpa {
+namespace bpa::calibration {
 
 /// The surface that one camera sees, and where the camera is said to be.
 struct PosedSurface {
@@ -63,4 +63,4 @@ SurfaceAlignment align_surfaces(std::span<const PosedSurface> views,
 std::string disagreement_text(const SurfaceDisagreement& pair, const std::string& first,
                               const std::string& second);
 
-}  // namespace bpa
+}  // namespace bpa::calibration

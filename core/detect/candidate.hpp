@@ -11,7 +11,7 @@
 #include "core/score/components.hpp"
 #include "core/score/limits.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 
 /// What suggested a pose: an FPFH match, the votes of oriented point pairs, the caller's prior, or
 /// a flat region. `count` is how many there are, and stays last.
@@ -31,11 +31,11 @@ struct Candidate {
                          ///< ::coarse (pairs), of the region in ::flat; -1: it has none.
   int model_point = -1;  ///< Index into ModelIndex::features or ::coarse; -1: it has none.
 
-  ScoreValues values{};       ///< Since refine.
-  double prior = 0;           ///< Log odds that the caller's priors add; 0 without any.
-  double score = 0;           ///< Log odds by the learned layer, with `prior`; since check.
-  double probability = 0;     ///< Of that score, without rivals. Since refine.
-  LowestLogOdds lowest = {};  ///< For measuring limits.
+  score::ScoreValues values{};       ///< Since refine.
+  double prior = 0;                  ///< Log odds that the caller's priors add; 0 without any.
+  double score = 0;                  ///< Log odds by the learned layer, with `prior`; since check.
+  double probability = 0;            ///< Of that score, without rivals. Since refine.
+  score::LowestLogOdds lowest = {};  ///< For measuring limits.
   std::vector<std::uint32_t> explained = {};  ///< Sorted pixels of the reduced image on the model.
 
   const Pose& pose() const { return refinement.camera_from_object; }
@@ -47,4 +47,4 @@ using Candidates = std::vector<Candidate>;
 /// The candidate as it is reported: with covariance, orientation uncertainty and named components.
 Placement to_placement(const Candidate& candidate);
 
-}  // namespace bpa
+}  // namespace bpa::detect

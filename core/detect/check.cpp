@@ -6,7 +6,7 @@
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 constexpr int kHiddenPoints = 512;  // model points at most, until kFewSeen are in sight
@@ -24,7 +24,7 @@ struct Verdict {
 Verdict judge(const Search& search, const Pose& pose) {
   const CheckOptions& options = search.plan.check;
   // Where most of the object is hidden, the few points in sight are too few to judge by.
-  const PoseCheck check = search.check(pose, {options.points, kFewSeen, kHiddenPoints});
+  const score::PoseCheck check = search.check(pose, {options.points, kFewSeen, kHiddenPoints});
   const float score = check.score();
   if (check.free_space > 0 &&
       static_cast<double>(check.free_space) / check.seen > options.max_free_space) {
@@ -113,7 +113,7 @@ Candidates check(const Search& search, Candidates sampled) {
                      [](const Passed& pose) { return pose.check_score; });
   for (const Passed& pose : passed) {
     if (search.late()) break;
-    rank(sampled[pose.index], search.plan.limits[Limit::ranked]);
+    rank(sampled[pose.index], search.plan.limits[score::Limit::ranked]);
   }
   keep_best_of_cells(search, sampled, kKeptPerCell, passed,
                      [&](const Passed& pose) { return sampled[pose.index].score; });
@@ -123,7 +123,7 @@ Candidates check(const Search& search, Candidates sampled) {
     rank(sampled[i], kNoLimit);
     suggested.push_back(std::move(sampled[i]));
   }
-  reject_below(search, Limit::ranked, kept);
+  reject_below(search, score::Limit::ranked, kept);
   keep_best(search, kMaxSuggested, suggested);
   keep_best(search, options.max_kept, kept);
   std::ranges::move(suggested, std::back_inserter(kept));
@@ -131,4 +131,4 @@ Candidates check(const Search& search, Candidates sampled) {
   return kept;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -6,7 +6,7 @@
 #include "core/detect/stages.hpp"
 #include "core/observation/tolerance.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 constexpr double kBeside_rad = 0.17;                       // turn of the six poses beside the start
@@ -74,8 +74,8 @@ Candidates climb(const Search& search, Candidates refined) {
   const auto most = std::min<std::size_t>(refined.size(), search.plan.climb.max_climbed);
   parallel_for_spare(static_cast<int>(most), [&](int i) {
     Candidate& candidate = refined[i];
-    candidate.lowest.note(Limit::climbed, candidate.score);
-    if (search.late() || candidate.score < search.plan.limits[Limit::climbed]) return;
+    candidate.lowest.note(score::Limit::climbed, candidate.score);
+    if (search.late() || candidate.score < search.plan.limits[score::Limit::climbed]) return;
     Best best{candidate.pose(), search.quick_score(candidate.pose())};
     align_from_beside(search, best);
     step_uphill(search, best);
@@ -85,4 +85,4 @@ Candidates climb(const Search& search, Candidates refined) {
   return refined;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

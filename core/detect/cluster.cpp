@@ -7,7 +7,7 @@
 #include "core/detect/stages.hpp"
 #include "core/observation/tolerance.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 constexpr std::ptrdiff_t kMaxCorrespondences = 10;  // that a cluster is aligned with
@@ -59,7 +59,7 @@ Candidate best_of(const Search& search, const Cluster& cluster) {
     best.found_by = member->found_by;
     best.is_protected = true;
   }
-  const double least = best.is_protected ? kNoLimit : search.plan.limits[Limit::clustered];
+  const double least = best.is_protected ? kNoLimit : search.plan.limits[score::Limit::clustered];
   const auto score = [&](const Pose& pose) {
     return search.quick_score(pose, kClusterRankPoints, least);
   };
@@ -105,9 +105,9 @@ Candidates cluster(const Search& search, Candidates checked) {
       out.push_back(best_of(search, group_of_poses));
     }
   }
-  reject_below(search, Limit::clustered, out);
+  reject_below(search, score::Limit::clustered, out);
   keep_clusters(search, out);
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -5,7 +5,7 @@
 #include "core/observation/tolerance.hpp"
 #include "core/score/rival_poses.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 // The candidates after `best` that claim its place and are not far worse, itself included. Marks
@@ -18,9 +18,9 @@ std::vector<std::size_t> rivals_of(const Search& search, Candidates& candidates,
     if (compared[i] || distance > tolerance::kSamePlace * search.model.diameter) continue;
     compared[i] = true;
     const double behind = candidates[i].score - candidates[best].score;
-    candidates[i].lowest.note(Limit::rival_behind, behind);
-    candidates[i].lowest.note(Limit::contender_behind, behind);
-    if (behind < search.plan.limits[Limit::rival_behind]) continue;
+    candidates[i].lowest.note(score::Limit::rival_behind, behind);
+    candidates[i].lowest.note(score::Limit::contender_behind, behind);
+    if (behind < search.plan.limits[score::Limit::rival_behind]) continue;
     rivals.push_back(i);
   }
   return rivals;
@@ -28,9 +28,10 @@ std::vector<std::size_t> rivals_of(const Search& search, Candidates& candidates,
 
 // Poses within the tolerance of a right one stand for one answer: what speaks for the best of them
 // speaks for all.
-RivalEvidence best_of_same_pose(const Search& search, const std::vector<Pose>& poses,
-                                const std::vector<RivalEvidence>& behind, std::size_t k) {
-  RivalEvidence best = behind[k];
+score::RivalEvidence best_of_same_pose(const Search& search, const std::vector<Pose>& poses,
+                                       const std::vector<score::RivalEvidence>& behind,
+                                       std::size_t k) {
+  score::RivalEvidence best = behind[k];
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (!within_tolerance(poses[i], poses[k], search.model.symmetry)) continue;
     best.depth = std::max(best.depth, behind[i].depth);
@@ -47,8 +48,8 @@ Candidates compare(const Search& search, Candidates candidates) {
   std::vector<bool> compared(candidates.size(), false);
   for (std::size_t best = 0; best < candidates.size(); ++best) {
     if (compared[best]) continue;
-    candidates[best].lowest.note(Limit::compared, candidates[best].score);
-    if (candidates[best].score < search.plan.limits[Limit::compared]) continue;
+    candidates[best].lowest.note(score::Limit::compared, candidates[best].score);
+    if (candidates[best].score < search.plan.limits[score::Limit::compared]) continue;
     if (search.late()) break;
     const auto rivals = rivals_of(search, candidates, best, compared);
     std::vector<Pose> poses;
@@ -56,18 +57,19 @@ Candidates compare(const Search& search, Candidates candidates) {
     for (const std::size_t i : rivals) {
       poses.push_back(candidates[i].pose());
       contenders += candidates[i].score - candidates[best].score >=
-                    search.plan.limits[Limit::contender_behind];
+                    search.plan.limits[score::Limit::contender_behind];
     }
-    const auto behind = behind_best(search.scene, search.model, poses, contenders);
+    const auto behind = score::behind_best(search.scene, search.model, poses, contenders);
     for (std::size_t k = 0; k < rivals.size(); ++k) {
       Candidate& rival = candidates[rivals[k]];
-      const RivalEvidence evidence = best_of_same_pose(search, poses, behind, k);
-      rival.values[component("rivals")] = evidence.depth;
-      if (!search.scene.cielab.empty()) rival.values[component("rivals_color")] = evidence.color;
+      const score::RivalEvidence evidence = best_of_same_pose(search, poses, behind, k);
+      rival.values[score::component("rivals")] = evidence.depth;
+      if (!search.scene.cielab.empty())
+        rival.values[score::component("rivals_color")] = evidence.color;
       search.apply_layer(rival);
     }
   }
   return candidates;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

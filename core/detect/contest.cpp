@@ -10,7 +10,7 @@
 #include "core/detect/search.hpp"
 #include "core/observation/tolerance.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 
 Claim claim_of(const Candidate& candidate) {
   return {candidate.score, candidate.place().cast<float>(),
@@ -38,4 +38,4 @@ double behind_best(const Claim& claim, const Contest& contest, double limit) {
   return 0;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

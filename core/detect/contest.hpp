@@ -10,7 +10,7 @@
 
 // Candidates of all models compete after a stage. README.md says why, and what it saves.
 
-namespace bpa {
+namespace bpa::detect {
 
 /// What one candidate puts against others.
 struct Claim {
@@ -38,4 +38,4 @@ double behind_best(const Claim& claim, const Contest& contest, double limit);
 /// contest_of(), or what decides it for models on several hosts.
 using Compete = std::function<Contest(std::vector<Claim> claims, int most)>;
 
-}  // namespace bpa
+}  // namespace bpa::detect

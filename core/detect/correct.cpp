@@ -5,7 +5,7 @@
 #include "core/detect/stages.hpp"
 #include "core/observation/tolerance.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 constexpr int kRecheckPoints = 256;  // model points of the check after the correction
@@ -30,4 +30,4 @@ Candidates correct(const Search& search, Candidates checked) {
   return checked;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

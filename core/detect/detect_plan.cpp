@@ -7,7 +7,7 @@
 
 #include "core/base/concat.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 // Candidates of all models that go on, for kModels models; `without_color` times as many where
@@ -34,7 +34,8 @@ constexpr int kPeaks[] = {5, 2}, kRimPeaks[] = {2, 1};
 // The limits that a hurried round raises, by so many log odds, and what it leaves of the poses that
 // are checked. With 0.5 s a frame 141/204 and 99/143 objects of seeds 777 and 100 are found, with 1
 // and all of the poses 141/204 and 98/143.
-constexpr Limit kQuickLimits[] = {Limit::ranked, Limit::clustered, Limit::aligned};
+constexpr score::Limit kQuickLimits[] = {score::Limit::ranked, score::Limit::clustered,
+                                         score::Limit::aligned};
 constexpr double kHigher = 2, kOfChecked = 0.6;
 
 void plan_counts(const DetectFacts& facts, DetectOptions& plan, PlanReasons& reasons) {
@@ -70,7 +71,7 @@ int part_of(int count, double share) {
   return std::min(count, std::max(1, static_cast<int>(std::lround(share * count))));
 }
 
-DetectPlan::DetectPlan(const DetectOptions& options, const ScoreLayers& layers,
+DetectPlan::DetectPlan(const DetectOptions& options, const score::ScoreLayers& layers,
                        const DetectFacts& facts, PlanReasons* reasons)
     : DetectOptions(options),
       limits(*layers.limits.at(score.keep_right, facts.colored)),
@@ -91,7 +92,7 @@ DetectPlan round_plan(const DetectPlan& whole, double share, bool hurried) {
     }
   }
   if (hurried) {
-    for (const Limit limit : kQuickLimits) out.limits[limit] += kHigher;
+    for (const score::Limit limit : kQuickLimits) out.limits[limit] += kHigher;
     out.check.max_in_library = part_of(out.check.max_in_library, kOfChecked);
   }
   return out;
@@ -106,4 +107,4 @@ DetectPlan final_plan(const DetectPlan& whole, double share) {
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

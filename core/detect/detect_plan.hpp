@@ -10,7 +10,7 @@
 #include "core/score/limits.hpp"
 #include "core/score/score_layer.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 
 /// Why an entry of a plan has its value, by the entry's name.
 using PlanReasons = std::map<std::string, std::string>;
@@ -26,12 +26,13 @@ struct DetectFacts {
 struct DetectPlan : DetectOptions {
   /// `reasons`, if given, receives why each planned entry has its value. The limits of `layers`
   /// must hold ScoreOptions::keep_right (LearnedLimits::at()).
-  DetectPlan(const DetectOptions& options = {}, const ScoreLayers& layers = default_score_layers(),
+  DetectPlan(const DetectOptions& options = {},
+             const score::ScoreLayers& layers = score::default_score_layers(),
              const DetectFacts& facts = {}, PlanReasons* reasons = nullptr);
 
-  Limits limits;  ///< Of the stages.
+  score::Limits limits;  ///< Of the stages.
   /// Limits::components for placements without and with colours.
-  std::array<Limits, 2> limits_by_color;
+  std::array<score::Limits, 2> limits_by_color;
 };
 
 /// The plan of a round that examines `share`, (0, 1], of what a whole round examines, at least one
@@ -44,4 +45,4 @@ DetectPlan final_plan(const DetectPlan& whole, double share);
 /// So much of a count, at least 1; 0 stays.
 int part_of(int count, double share);
 
-}  // namespace bpa
+}  // namespace bpa::detect

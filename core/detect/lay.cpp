@@ -16,7 +16,7 @@
 #include "core/score/projected_block.hpp"
 #include "core/score/silhouette_score.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 // Chosen by hand on simulated tables, as all constants of this file.
@@ -46,7 +46,7 @@ bool may_show(const FlatRegion& region, const FlatRest& rest) {
 }
 
 // The share of the model's visible pixels and the region's that both have.
-double overlap(const Search& search, int region, const PredictedSurface& predicted) {
+double overlap(const Search& search, int region, const score::PredictedSurface& predicted) {
   const FlatRegions& flat = search.scene.flat;
   int both = 0, model = 0;
   predicted.for_each([&](int u, int v, float z, std::uint32_t) {
@@ -59,9 +59,10 @@ double overlap(const Search& search, int region, const PredictedSurface& predict
 
 // Larger where the silhouette is the region's and its outline is seen in colour.
 double agreement(const Search& search, int region, const Pose& pose) {
-  const PredictedSurface predicted = predict_surface(search.scene.image, search.model, pose);
+  const score::PredictedSurface predicted =
+      score::predict_surface(search.scene.image, search.model, pose);
   const double contrast =
-      compare_silhouette(search.scene.image, search.scene.gradients, predicted).contrast;
+      score::compare_silhouette(search.scene.image, search.scene.gradients, predicted).contrast;
   return overlap(search, region, predicted) + (std::isnan(contrast) ? 0 : contrast);
 }
 
@@ -73,7 +74,7 @@ double share_on_region(const Search& search, int region, const FastPose& pose) {
   const CheckPoints& points = search.model.index->check;
   const int last = std::min(kPoints, static_cast<int>(points.points.size()));
   int on = 0, visible = 0;
-  ProjectedBlock block;
+  score::ProjectedBlock block;
   for (int first = 0; first < last; first += kCheckBlock) {
     block.project(image, points, pose, first);
     for (int k = 0; k < kCheckBlock; ++k) {
@@ -213,7 +214,7 @@ Candidates lay(const Search& whole, Candidates found) {
                     .scene_point = resting.region,
                     .score = search.quick_score(resting.pose, kClusterRankPoints)});
   }
-  reject_below(search, Limit::laid, laid);
+  reject_below(search, score::Limit::laid, laid);
   change_each(search, laid, [&](Candidate& candidate) {
     const Pose pose = slid(search, candidate.scene_point, candidate.pose());
     candidate = search.scored(candidate, search.measured(pose));
@@ -223,4 +224,4 @@ Candidates lay(const Search& whole, Candidates found) {
   return found;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -7,7 +7,7 @@
 
 #include "core/observation/tolerance.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 constexpr int kShadow = 8;  // pixels without depth beside an edge, at most
@@ -94,4 +94,4 @@ std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, 
   return std::nullopt;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -10,7 +10,7 @@
 
 // Points and edges of a model at a pose, matched with what is observed there.
 
-namespace bpa {
+namespace bpa::detect {
 
 /// A model point and the observed surface at the pixel that it falls on. Camera frame, metres.
 struct SurfaceMatch {
@@ -44,4 +44,4 @@ EdgePoint edge_point(const ViewEdge& edge, const FastPose& pose);
 /// belongs to the labelled background (V.6: edge points align to edge points).
 std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, float reach);
 
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -9,7 +9,7 @@
 // of the paper's section V; README.md lists the paragraphs. Constants stand beside their use. A
 // number without a source was chosen by hand on simulated piles (tests/accuracy).
 
-namespace bpa {
+namespace bpa::detect {
 
 /// Gauss-Newton alignment of surface and edges; see refine_pose().
 struct RefinementOptions {
@@ -126,4 +126,4 @@ struct DetectOptions {
   BPA_GROUP(SelectOptions, select, "What is returned.");
 };
 
-}  // namespace bpa
+}  // namespace bpa::detect

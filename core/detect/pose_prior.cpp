@@ -10,7 +10,7 @@
 #include "core/base/concat.hpp"
 #include "core/model/model_index.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 constexpr double kQuaternionArea = 2 * M_PI * M_PI;  // of S3, which densities refer to
@@ -193,4 +193,4 @@ std::vector<Pose> ModelPriors::draw(const PointCloud& surface, int count,
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

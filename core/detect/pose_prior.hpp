@@ -23,7 +23,7 @@
 //
 //   log((1 - weight) + weight p / u).
 
-namespace bpa {
+namespace bpa::detect {
 
 /// Checks the numbers (finite), the weight (range) and the covariance (symmetric, positive
 /// definite). Concentrations must not be positive; axes are orthonormal unless all concentrations
@@ -84,4 +84,4 @@ class ModelPriors {
   std::vector<Pose> same_;  ///< object_from_object: the motions of the symmetry.
 };
 
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -9,7 +9,7 @@
 #include "core/base/parallel.hpp"
 #include "core/observation/tolerance.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 void sort_by_score(Candidates& candidates) {
   std::ranges::stable_sort(candidates, std::greater(), &Candidate::score);
 }
@@ -24,11 +24,11 @@ bool duplicates(const Search& search, const Pose& a, const Pose& b) {
 
 bool rejected_before(const Search& search, Candidate& candidate) {
   if (!search.before) return false;
-  const double limit = search.plan.limits[Limit::repeated];
+  const double limit = search.plan.limits[score::Limit::repeated];
   return std::ranges::any_of(*search.before, [&](const Candidate& other) {
     if (std::isfinite(limit) && other.score >= limit) return false;
     if (!duplicates(search, candidate.pose(), other.pose())) return false;
-    candidate.lowest.note(Limit::repeated, other.score);
+    candidate.lowest.note(score::Limit::repeated, other.score);
     return other.score < limit;
   });
 }
@@ -51,7 +51,7 @@ void suppress_duplicates(const Search& search, Candidates& candidates) {
   candidates = std::move(kept);
 }
 
-void reject_below(const Search& search, Limit limit, Candidates& candidates) {
+void reject_below(const Search& search, score::Limit limit, Candidates& candidates) {
   std::erase_if(candidates, [&](Candidate& candidate) {
     candidate.lowest.note(limit, candidate.score);
     const bool low = candidate.score < search.plan.limits[limit] && !candidate.is_protected;
@@ -87,4 +87,4 @@ void change_each(const Search& search, Candidates& candidates,
   candidates = std::move(kept);
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

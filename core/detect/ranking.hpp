@@ -8,7 +8,7 @@
 
 // How stages order candidates and cut their number.
 
-namespace bpa {
+namespace bpa::detect {
 
 /// Best score first; equal scores keep their order.
 void sort_by_score(Candidates& candidates);
@@ -25,7 +25,7 @@ bool rejected_before(const Search& search, Candidate& candidate);
 void suppress_duplicates(const Search& search, Candidates& candidates);
 
 /// Rejects candidates below a limit of their score, except protected ones.
-void reject_below(const Search& search, Limit limit, Candidates& candidates);
+void reject_below(const Search& search, score::Limit limit, Candidates& candidates);
 
 /// Sorts by score and rejects all but the best `count`.
 void keep_best(const Search& search, int count, Candidates& candidates);
@@ -38,4 +38,4 @@ void change_each(const Search& search, Candidates& candidates,
 /// Rejects all but the first `count`.
 void keep_first(const Search& search, int count, Candidates& candidates);
 
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -4,17 +4,17 @@
 #include "core/detect/stages.hpp"
 #include "core/score/texture_score.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 
 Candidates refine(const Search& search, Candidates aligned) {
   const RefineOptions& options = search.plan.refine;
-  reject_below(search, Limit::aligned, aligned);
+  reject_below(search, score::Limit::aligned, aligned);
   keep_first(search, options.max_refined, aligned);
   change_each(search, aligned, [&](Candidate& candidate) {
     candidate.refinement = {search.aligned(candidate.pose(), kLastAlignment)};
     candidate.score = search.quick_score(candidate.pose());
   });
-  reject_below(search, Limit::refined, aligned);
+  reject_below(search, score::Limit::refined, aligned);
   suppress_duplicates(search, aligned);
   return aligned;
 }
@@ -23,11 +23,11 @@ Candidates score(const Search& search, Candidates refined) {
   change_each(search, refined, [&](Candidate& candidate) {
     const SceneFeatures& scene = search.scene;
     Pose pose = candidate.pose();
-    std::optional<PredictedSurface> predicted;
+    std::optional<score::PredictedSurface> predicted;
     if (search.plan.score.use_round_three && !search.model.symmetry.trivial()) {
-      predicted = predict_surface(scene.image, search.model, pose);
+      predicted = score::predict_surface(scene.image, search.model, pose);
       const Pose turned =
-          turn_to_pattern(scene.image, scene.log_light, search.model, pose, *predicted);
+          score::turn_to_pattern(scene.image, scene.log_light, search.model, pose, *predicted);
       if (pose_error(turned, pose).angle > 0) predicted.reset();
       pose = turned;
     }
@@ -37,4 +37,4 @@ Candidates score(const Search& search, Candidates refined) {
   return refined;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

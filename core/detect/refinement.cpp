@@ -15,7 +15,7 @@
 #include "core/observation/tolerance.hpp"
 #include "core/score/projected_block.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 using Vector6f = Eigen::Matrix<float, 6, 1>;
@@ -52,7 +52,7 @@ struct ObservedBlock {
 };
 
 // False where no point of the block has surface within the gate.
-bool look_up(const SceneFeatures& scene, const ProjectedBlock& model, float gate,
+bool look_up(const SceneFeatures& scene, const score::ProjectedBlock& model, float gate,
              ObservedBlock& out) {
   bool any = false;
   for (int k = 0; k < kCheckBlock; ++k) {
@@ -97,7 +97,7 @@ struct SurfaceSums {
 
 // Adds the distances of a block's points to the observed tangent planes, as NormalEquations::add
 // does. Straight-line code over arrays, so that the compiler uses the widest vectors there are.
-BPA_DISPATCH void add_block(const ProjectedBlock& model, const ObservedBlock& observed,
+BPA_DISPATCH void add_block(const score::ProjectedBlock& model, const ObservedBlock& observed,
                             const SensorNoise& noise, const Eigen::Vector3f& centre, float gate,
                             SurfaceSums& __restrict sums) {
   const SensorNoise depth_noise = noise;
@@ -152,7 +152,7 @@ struct Problem {
     const CheckPoints& points = model.index->check;
     const int last = std::min(static_cast<int>(points.points.size()), options.max_points);
     SurfaceSums sums;
-    ProjectedBlock block;
+    score::ProjectedBlock block;
     ObservedBlock observed;
     for (int first = 0; first < last; first += kCheckBlock) {
       block.project(scene.image, points, pose, first, kMatchFacing);
@@ -231,4 +231,4 @@ Pose aligned_pose(const SceneFeatures& scene, const ObjectModel& model, const Po
   return gauss_newton(scene, model, start, options, nullptr);
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -9,7 +9,7 @@
 #include "core/model/object_model.hpp"
 #include "core/observation/scene_features.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 
 struct Refinement {
   Pose camera_from_object;
@@ -28,4 +28,4 @@ Refinement refine_pose(const SceneFeatures& scene, const ObjectModel& model, con
 Pose aligned_pose(const SceneFeatures& scene, const ObjectModel& model, const Pose& start,
                   const RefinementOptions& options);
 
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -10,7 +10,7 @@
 #include "core/model/model_index.hpp"
 #include "core/observation/tolerance.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 constexpr std::ptrdiff_t kMinPairs = 4;  // with fewer the pose stays
@@ -18,7 +18,7 @@ constexpr double kSegmentShare = 0.7;    // of the super-pixels that one alignme
 constexpr float kFirstGate_m = tolerance::placed(12),
                 kGateDecay = 0.8f;  // of correspondences, step by step
 constexpr int kCheckPoints = 300;   // that proposals are compared with
-constexpr CheckTolerance kTolerance{tolerance::placed_m(3.2), tolerance::placed_m(8), 0.8};
+constexpr score::CheckTolerance kTolerance{tolerance::placed_m(3.2), tolerance::placed_m(8), 0.8};
 constexpr RefinementOptions kLastProposal{4, 160, 60, tolerance::placed_m(10),
                                           tolerance::placed_m(4.8)};
 
@@ -125,4 +125,4 @@ Candidates round_two(const Search& search, Candidates clusters) {
   return clusters;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

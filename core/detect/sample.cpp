@@ -9,7 +9,7 @@
 #include "core/model/model_index.hpp"
 #include "core/observation/tolerance.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 // Position errors of correspondences: about the spacing of the features, and of the coarse surface.
@@ -24,7 +24,7 @@ void from_features(const Search& search, Candidates& out) {
   const SampleOptions& options = search.plan.sample;
   const SceneFeatures& scene = search.scene;
   RandomStream random(search.seed + search.round, Stream::feature_draws, search.model.number);
-  std::vector<Fpfh> fpfh;
+  std::vector<features::Fpfh> fpfh;
   const std::vector<int>& keypoints = search.sample->points.keypoints;
   for (const int keypoint : keypoints) fpfh.push_back(scene.fpfh[keypoint]);
   const auto matches =
@@ -45,16 +45,16 @@ void from_features(const Search& search, Candidates& out) {
 }
 
 // Adds the poses that lay a reference point on its model point, turned as voted.
-void add_voted(const Search& search, std::span<const VotedPose> poses, Candidates& out) {
+void add_voted(const Search& search, std::span<const features::VotedPose> poses, Candidates& out) {
   const PointCloud& scene = search.scene.coarse;
   const PointCloud& model = search.model.index->coarse;
   out.reserve(out.size() + poses.size());
-  for (const VotedPose& voted : poses) {
+  for (const features::VotedPose& voted : poses) {
     const int s = voted.reference, m = voted.model_point;
     FastPose pose;
-    pose.rotation = basis_of(scene.normals[s]) *
+    pose.rotation = features::basis_of(scene.normals[s]) *
                     Eigen::AngleAxisf(voted.turn, Eigen::Vector3f::UnitZ()) *
-                    basis_of(model.normals[m]).transpose();
+                    features::basis_of(model.normals[m]).transpose();
     pose.translation = scene.points[s] - pose.rotation * model.points[m];
     out.push_back({.model = &search.model,
                    .refinement = {.camera_from_object = to_pose(pose)},
@@ -69,12 +69,13 @@ void add_voted(const Search& search, std::span<const VotedPose> poses, Candidate
 void from_pairs(const Search& search, Candidates& out) {
   const SampleOptions& options = search.plan.sample;
   const ModelIndex& index = *search.model.index;
-  PairColors colors;
+  features::PairColors colors;
   if (options.use_colors) colors = {search.scene.coarse_colors, index.coarse_colors, index.palette};
-  const auto vote = [&](const ScenePairs& pairs, const PointPairTable& table, int peaks) {
+  const auto vote = [&](const features::ScenePairs& pairs, const features::PointPairTable& table,
+                        int peaks) {
     const auto late = [&] { return search.late(); };
     const auto count = static_cast<int>(index.coarse.size());
-    add_voted(search, vote_poses(pairs, table, count, peaks, colors, late), out);
+    add_voted(search, features::vote_poses(pairs, table, count, peaks, colors, late), out);
   };
   vote(search.sample->pairs, index.pairs, options.peaks_per_reference);
   if (options.rim_peaks_per_reference > 0) {
@@ -123,4 +124,4 @@ Candidates sample(const Search& search, Candidates) {
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

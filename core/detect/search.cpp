@@ -9,7 +9,7 @@
 #include "core/observation/tolerance.hpp"
 #include "core/score/color_check.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 constexpr double kColorPoints = 2;  // independent points that colours count as in quick scores
@@ -21,7 +21,8 @@ constexpr double kNormalCosine = 0.7;  // of the normals of model and surface
 }  // namespace
 
 Search::Search(const SceneFeatures& s, const ObjectModel& m, const DetectPlan& p,
-               const ScoreLayers& l, std::span<const PosePrior> known, std::uint64_t random_seed)
+               const score::ScoreLayers& l, std::span<const PosePrior> known,
+               std::uint64_t random_seed)
     : scene(s),
       sample(&s.sample),
       image(&s.image),
@@ -82,37 +83,37 @@ double Search::quick_score(const Pose& pose) const { return quick_score(pose, kQ
 
 double Search::color_evidence(const Pose& pose) const {
   return kColorPoints *
-         check_colors(*image, scene.match_colors, *model.index, to_fast(pose)).log_odds();
+         score::check_colors(*image, scene.match_colors, *model.index, to_fast(pose)).log_odds();
 }
 
 double Search::quick_score(const Pose& pose, int points, double least) const {
   add_effort(&SearchEffort::quick_scores);
-  Evidence evidence(scene, places, pose, points);
+  score::Evidence evidence(scene, places, pose, points);
   const double without_color =
-      layers.round_two.log_odds(measure(evidence, Round::two)) + priors.evidence(pose);
-  const double most = without_color + kColorPoints * ColorCheck::kAgrees;
+      layers.round_two.log_odds(measure(evidence, score::Round::two)) + priors.evidence(pose);
+  const double most = without_color + kColorPoints * score::ColorCheck::kAgrees;
   return most < least ? without_color : without_color + color_evidence(pose);
 }
 
 Candidate Search::scored(const Candidate& candidate, Refinement refinement,
-                         std::optional<PredictedSurface> predicted) const {
+                         std::optional<score::PredictedSurface> predicted) const {
   add_effort(&SearchEffort::full_scores);
   Candidate out{.model = &model,
                 .refinement = refinement,
                 .found_by = candidate.found_by,
                 .is_protected = candidate.is_protected,
                 .lowest = candidate.lowest};
-  Evidence evidence(scene, places, out.pose(), 0, std::move(predicted));
+  score::Evidence evidence(scene, places, out.pose(), 0, std::move(predicted));
   out.prior = priors.evidence(out.pose());
   if (!plan.score.use_round_three) {
-    out.values = measure(evidence, Round::two);
+    out.values = measure(evidence, score::Round::two);
   } else if (!plan.score.stop_early) {
-    out.values = measure(evidence, Round::three);
+    out.values = measure(evidence, score::Round::three);
   } else {
     const bool colored = !scene.cielab.empty() && !model.index->cielab.empty();
     const auto values =
-        measure_while_probable(evidence, colored ? layers.round_three : layers.without_color,
-                               out.prior, plan.limits_by_color[colored]);
+        score::measure_while_probable(evidence, colored ? layers.round_three : layers.without_color,
+                                      out.prior, plan.limits_by_color[colored]);
     if (!values) {
       out.score = kNoLimit;
       return out;
@@ -124,13 +125,13 @@ Candidate Search::scored(const Candidate& candidate, Refinement refinement,
   return out;
 }
 
-void apply_layer(const ScoreLayer& layer, Candidate& candidate) {
+void apply_layer(const score::ScoreLayer& layer, Candidate& candidate) {
   candidate.score = layer.log_odds(candidate.values) + candidate.prior;
-  candidate.probability = probability_of(candidate.score);
+  candidate.probability = score::probability_of(candidate.score);
 }
 
 void Search::apply_layer(Candidate& candidate) const {
-  bpa::apply_layer(
+  bpa::detect::apply_layer(
       plan.score.use_round_three ? layers.last_for(candidate.values) : layers.round_two, candidate);
 }
 
@@ -138,15 +139,15 @@ void Search::reject(std::string_view reason, const Pose& pose) const {
   if (tracing) tracing->reject(reason, to_fast(pose));
 }
 
-PoseCheck Search::check(const Pose& pose, const CheckCount& count,
-                        const CheckTolerance& tolerance) const {
+score::PoseCheck Search::check(const Pose& pose, const score::CheckCount& count,
+                               const score::CheckTolerance& tolerance) const {
   add_effort(&SearchEffort::pose_checks);
-  return check_pose(*image, model.index->check, to_fast(pose), count, tolerance);
+  return score::check_pose(*image, model.index->check, to_fast(pose), count, tolerance);
 }
 
-PoseCheck Search::check(const Pose& pose, const CheckCount& count) const {
+score::PoseCheck Search::check(const Pose& pose, const score::CheckCount& count) const {
   const double depth = std::clamp(kDepthShare * model.diameter, kMinDepth_m, kMaxDepth_m);
   return check(pose, count, {depth, plan.check.free_depth_m, kNormalCosine});
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

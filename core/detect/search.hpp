@@ -18,7 +18,7 @@
 #include "core/score/feature_score.hpp"
 #include "core/score/score_layer.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 
 // The candidates of one model after each stage, for training, experiments and pictures.
 
@@ -46,7 +46,7 @@ struct ObjectTrace {
 };
 
 /// Sets score and probability from values and prior.
-void apply_layer(const ScoreLayer& layer, Candidate& candidate);
+void apply_layer(const score::ScoreLayer& layer, Candidate& candidate);
 
 constexpr int kQuickPoints = 200;  ///< Surface points that round two scores a placement with.
 /// The same for the ranks of poses after the check and of clusters.
@@ -62,8 +62,8 @@ constexpr double kNoLimit = -std::numeric_limits<double>::infinity();  ///< Of s
 struct Search {
   /// Priors of other models are ignored; each must be valid.
   Search(const SceneFeatures& scene, const ObjectModel& model, const DetectPlan& plan = {},
-         const ScoreLayers& layers = default_score_layers(), std::span<const PosePrior> priors = {},
-         std::uint64_t seed = 0);
+         const score::ScoreLayers& layers = score::default_score_layers(),
+         std::span<const PosePrior> priors = {}, std::uint64_t seed = 0);
   /// The same search in another view of the scene.
   Search(const SceneFeatures& scene, const Search& other);
 
@@ -74,10 +74,10 @@ struct Search {
   const Candidates* before = nullptr;  ///< What earlier rounds have scored; null in the first.
   const ObjectModel& model;
   DetectPlan plan;
-  const ScoreLayers& layers;
+  const score::ScoreLayers& layers;
   ModelPriors priors;
   const std::uint64_t seed;
-  FeaturePlaces places;
+  score::FeaturePlaces places;
   Deadline deadline;              ///< Stages return what they have when it has passed.
   std::uint8_t* cut = nullptr;    ///< Set to 1 when a stage stopped for that; may be null.
   TraceStage* tracing = nullptr;  ///< Of the stage that runs; null unless traced.
@@ -103,13 +103,14 @@ struct Search {
   /// `candidate` at another refinement, scored with all components. `predicted` is of its pose,
   /// where that is known. The score is minus infinity where measure_while_probable() stops.
   Candidate scored(const Candidate& candidate, Refinement refinement,
-                   std::optional<PredictedSurface> predicted = {}) const;
+                   std::optional<score::PredictedSurface> predicted = {}) const;
   /// Sets score and probability by the last layer, or by that of round two without round three.
   void apply_layer(Candidate& candidate) const;
   /// Compares `count` of the model's points at a pose with the depth image; without a tolerance,
   /// with that of CheckOptions, whose depth follows the model's size.
-  PoseCheck check(const Pose& pose, const CheckCount& count, const CheckTolerance& tolerance) const;
-  PoseCheck check(const Pose& pose, const CheckCount& count) const;
+  score::PoseCheck check(const Pose& pose, const score::CheckCount& count,
+                         const score::CheckTolerance& tolerance) const;
+  score::PoseCheck check(const Pose& pose, const score::CheckCount& count) const;
   /// Notes a rejected pose in the trace.
   void reject(std::string_view reason, const Pose& pose) const;
 
@@ -118,4 +119,4 @@ struct Search {
   RefinementOptions begin_alignment(RefinementOptions refinement) const;
 };
 
-}  // namespace bpa
+}  // namespace bpa::detect

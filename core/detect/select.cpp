@@ -3,13 +3,13 @@
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 
 Candidates select(const Search& search, Candidates compared) {
   const SelectOptions& options = search.plan.select;
   std::erase_if(compared, [&](Candidate& candidate) {
-    candidate.lowest.note(Limit::selected, candidate.score);
-    const bool low = candidate.score < search.plan.limits[Limit::selected];
+    candidate.lowest.note(score::Limit::selected, candidate.score);
+    const bool low = candidate.score < search.plan.limits[score::Limit::selected];
     if (low) search.reject("low score", candidate.pose());
     return low;
   });
@@ -18,4 +18,4 @@ Candidates select(const Search& search, Candidates compared) {
   return compared;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

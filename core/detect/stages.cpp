@@ -14,7 +14,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/stopwatch.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 constexpr Stage kStages[] = {
@@ -24,20 +24,23 @@ constexpr Stage kStages[] = {
     {"check", check, 0.4,
      "Poses with over 20 % of their points in free space are rejected, and poses without surface. "
      "The best of each place by score stay, then the best of all models.",
-     [](const DetectPlan& plan) { return plan.check.max_in_library; }, Limit::checked_behind},
+     [](const DetectPlan& plan) { return plan.check.max_in_library; },
+     score::Limit::checked_behind},
     {"correct", correct, 0.4,
      "Two Gauss-Newton steps move each pose onto the surface, where that improves it."},
     {"cluster", cluster, 0.6,
      "Poses within 2.5 cm and pi/16 are a cluster. BPA aligns each one again with the "
      "correspondences of all its poses. The best of all models go on.",
-     [](const DetectPlan& plan) { return plan.cluster.max_in_library; }, Limit::clustered_behind},
+     [](const DetectPlan& plan) { return plan.cluster.max_in_library; },
+     score::Limit::clustered_behind},
     {"round_two", round_two, 0.5,
      "BPA and Gauss-Newton steps move each pose onto the surface around it. A step is accepted if "
      "the score improves. After non-maximum suppression the best of all models go on.",
-     [](const DetectPlan& plan) { return plan.round_two.max_in_library; }, Limit::aligned_behind},
+     [](const DetectPlan& plan) { return plan.round_two.max_in_library; },
+     score::Limit::aligned_behind},
     {"refine", refine, 0.5,
      "The best are aligned once more by gradients. Non-maximum suppression follows.", nullptr,
-     Limit::refined_behind},
+     score::Limit::refined_behind},
     {"score", score, 1, "Each is scored with all components (round three)."},
     {"climb", climb, 0.5,
      "The best climb the score by small steps, from where they are and from beside."},
@@ -153,4 +156,4 @@ void TraceStage::reject(std::string_view reason, const FastPose& pose) {
   found->poses.push_back(pose);
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -16,7 +16,7 @@
 // A stage takes the candidates of one model from the stage before and returns its own. A stage is
 // deterministic, for any number of threads, unless the deadline passes.
 
-namespace bpa {
+namespace bpa::detect {
 
 /// Poses drawn by BPA from feature matches (V.3), voted for by point pairs, and drawn from priors.
 /// Ignores its candidates.
@@ -77,7 +77,7 @@ struct Stage {
   /// How many candidates of all models together go on, the best by score; null: all.
   int (*most_in_library)(const DetectPlan&) = nullptr;
   /// How far a candidate may be behind the best in its place, of any model; none: however far.
-  std::optional<Limit> behind = {};
+  std::optional<score::Limit> behind = {};
 };
 
 /// The stages in their order. Those up to `score` find placements in a sample of the scene, once in
@@ -97,4 +97,4 @@ void run_stages(std::span<const Stage> stages, std::span<Search> searches, int n
                 std::vector<Candidates>& found, std::vector<ObjectTrace>* traces = nullptr,
                 const Compete& compete = contest_of);
 
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -6,7 +6,7 @@
 #include "core/geometry/solve_symmetric.hpp"
 #include "core/observation/tolerance.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 Eigen::Matrix<double, 6, 6> pose_covariance(const Refinement& refinement) {
@@ -33,13 +33,13 @@ Placement to_placement(const Candidate& candidate) {
                                             out.covariance.bottomRightCorner<3, 3>());
   out.score = candidate.score;
   out.probability = candidate.probability;
-  out.visible_fraction = candidate.values[component("visibility")];
-  for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
+  out.visible_fraction = candidate.values[score::component("visibility")];
+  for (std::size_t i = 0; i < score::kScoreComponents.size(); ++i) {
     if (std::isnan(candidate.values[i])) continue;
-    out.components.push_back({std::string(kScoreComponents[i].name), candidate.values[i]});
+    out.components.push_back({std::string(score::kScoreComponents[i].name), candidate.values[i]});
   }
   if (candidate.prior != 0) out.components.push_back({"prior", candidate.prior});
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

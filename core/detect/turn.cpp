@@ -6,7 +6,7 @@
 #include "core/detect/stages.hpp"
 #include "core/model/model_index.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 constexpr int kTurnsOfOne = 6;  // near-symmetric poses that are aligned, for each that is turned
@@ -17,8 +17,8 @@ Candidates near_symmetric(const Search& search, Candidates& candidates) {
   const auto most = std::min<std::size_t>(candidates.size(), options.max_turned);
   Candidates out;
   for (std::size_t i = 0; i < most; ++i) {
-    candidates[i].lowest.note(Limit::turned, candidates[i].score);
-    if (candidates[i].score <= search.plan.limits[Limit::turned]) break;
+    candidates[i].lowest.note(score::Limit::turned, candidates[i].score);
+    if (candidates[i].score <= search.plan.limits[score::Limit::turned]) break;
     for (const Pose& motion : search.model.index->near_symmetries) {
       const Pose turned = candidates[i].pose() * motion;
       out.push_back({.model = &search.model,
@@ -39,7 +39,7 @@ Candidates near_symmetric(const Search& search, Candidates& candidates) {
 Candidates turn(const Search& search, Candidates climbed) {
   sort_by_score(climbed);
   Candidates turned = near_symmetric(search, climbed);
-  reject_below(search, Limit::aligned, turned);
+  reject_below(search, score::Limit::aligned, turned);
   suppress_duplicates(search, turned);
   std::erase_if(turned, [&](const Candidate& t) {
     const bool known = std::ranges::any_of(
@@ -55,4 +55,4 @@ Candidates turn(const Search& search, Candidates climbed) {
   return climbed;
 }
 
-}  // namespace bpa
+}  // namespace bpa::detect

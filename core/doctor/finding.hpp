@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace bpa {
+namespace bpa::doctor {
 
 enum class Severity {
   warning,  ///< Detection works, but finds less or is less exact.
@@ -22,4 +22,4 @@ struct Finding {
 
 using Findings = std::vector<Finding>;
 
-}  // namespace bpa
+}  // namespace bpa::doctor

@@ -9,7 +9,7 @@
 #include "core/base/median.hpp"
 #include "core/geometry/camera.hpp"
 
-namespace bpa {
+namespace bpa::doctor {
 namespace {
 
 // Chosen by hand; in brackets what good frames have at most (8 of YCB-Video, 7 of the Object
@@ -182,4 +182,4 @@ Findings check_frame(const Frame& frame, double max_range_m, int num_threads) {
   return findings;
 }
 
-}  // namespace bpa
+}  // namespace bpa::doctor

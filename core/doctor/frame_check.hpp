@@ -10,7 +10,7 @@
 // What is wrong with a frame. The limits let good frames of Kinect-class sensors, real and
 // simulated, pass without a finding (tests/core/doctor).
 
-namespace bpa {
+namespace bpa::doctor {
 
 /// Where the colour edges of depth edges lie: that of the depth edge at pixel p at
 /// c + scale * (p - c) + (right, down), c the centre of the image.
@@ -32,4 +32,4 @@ std::optional<EdgeOffset> find_edge_offset(const Frame& frame, int num_threads =
 /// `max_range_m`: surface farther away is not searched.
 Findings check_frame(const Frame& frame, double max_range_m, int num_threads = 0);
 
-}  // namespace bpa
+}  // namespace bpa::doctor

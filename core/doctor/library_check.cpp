@@ -11,7 +11,7 @@
 #include "core/cloud/cielab.hpp"
 #include "core/modeling/registration.hpp"
 
-namespace bpa {
+namespace bpa::doctor {
 namespace {
 
 /// The share of two models' colours that is the same, 0 to 1: the intersection of their histograms
@@ -74,7 +74,7 @@ Findings check_look_alikes(const std::vector<ModelSource>& models, bool with_col
       const ModelSource &a = models[j], &b = models[i];
       const bool colored = with_color && !a.surface.colors.empty() && !b.surface.colors.empty();
       if (colored && common_colors(a.surface, b.surface) < kSameColors) continue;
-      if (!same_shape(a, b, num_threads)) continue;
+      if (!modeling::same_shape(a, b, num_threads)) continue;
       findings.push_back({Severity::warning, a.name + " and " + b.name + " look alike",
                           colored ? "nearly the same shape and colours"
                                   : "nearly the same shape, and no colours to tell them apart",
@@ -126,4 +126,4 @@ Findings check_models_in_frame(const std::vector<ModelSource>& models, const Fra
   return findings;
 }
 
-}  // namespace bpa
+}  // namespace bpa::doctor

@@ -8,7 +8,7 @@
 #include "core/doctor/finding.hpp"
 #include "core/model/object_model.hpp"
 
-namespace bpa {
+namespace bpa::doctor {
 
 /// What the detector is set to (DetectorOptions).
 struct DetectorLimits {
@@ -27,4 +27,4 @@ Findings check_look_alikes(const std::vector<ModelSource>& models, bool with_col
 Findings check_models_in_frame(const std::vector<ModelSource>& models, const Frame& frame,
                                const DetectorLimits& limits);
 
-}  // namespace bpa
+}  // namespace bpa::doctor

@@ -10,7 +10,7 @@
 
 #include "core/base/concat.hpp"
 
-namespace bpa {
+namespace bpa::doctor {
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +95,4 @@ Findings check_machine(const MachineNeeds& needs) {
   return findings;
 }
 
-}  // namespace bpa
+}  // namespace bpa::doctor

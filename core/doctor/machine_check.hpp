@@ -7,7 +7,7 @@
 
 #include "core/doctor/finding.hpp"
 
-namespace bpa {
+namespace bpa::doctor {
 
 /// What DDS needs of a Linux machine.
 struct MachineNeeds {
@@ -20,4 +20,4 @@ struct MachineNeeds {
 /// What is wrong with the machine. What cannot be read gives no finding.
 Findings check_machine(const MachineNeeds& needs);
 
-}  // namespace bpa
+}  // namespace bpa::doctor

@@ -9,7 +9,7 @@
 #include "core/doctor/frame_check.hpp"
 #include "core/features/edges.hpp"
 
-namespace bpa {
+namespace bpa::doctor {
 namespace {
 
 // What is looked through, in pixels of the surface map. A Kinect's cameras are 25 mm and 10 % of
@@ -31,21 +31,21 @@ Edges edges_of(const Frame& frame, int num_threads) {
   SurfaceMapOptions map_options;
   map_options.num_threads = num_threads;
   const SurfaceMap map = surface_map(frame, map_options);
-  ImageEdgeOptions image_options;
+  features::ImageEdgeOptions image_options;
   image_options.num_threads = num_threads;
   const Image<std::uint8_t> lines =
-      image_edges(reduced_color(frame, map, num_threads), image_options);
+      features::image_edges(reduced_color(frame, map, num_threads), image_options);
   Edges edges{{}, {lines.width, lines.height, 0.0f}};
   const float unit = 1 / blurred_line_peak(kBlur);
   for (std::size_t i = 0; i < lines.size(); ++i) edges.color[i] = unit * lines[i];
   edges.color = blur(edges.color, kBlur, num_threads);
   for (float& value : edges.color.pixels) value = std::min(1.0f, value);
-  RangeEdgeOptions range_options;
+  features::RangeEdgeOptions range_options;
   range_options.num_threads = num_threads;
-  const Image<RangeEdge> range = range_edges(map, range_options);
+  const Image<features::RangeEdge> range = features::range_edges(map, range_options);
   for (int v = 0; v < range.height; ++v) {
     for (int u = 0; u < range.width; ++u) {
-      if (range.at(u, v) != RangeEdge::occluding) continue;
+      if (range.at(u, v) != features::RangeEdge::occluding) continue;
       edges.depth.emplace_back(static_cast<float>(u) - 0.5f * static_cast<float>(range.width - 1),
                                static_cast<float>(v) - 0.5f * static_cast<float>(range.height - 1));
     }
@@ -127,4 +127,4 @@ std::optional<EdgeOffset> find_edge_offset(const Frame& frame, int num_threads) 
   return best;
 }
 
-}  // namespace bpa
+}  // namespace bpa::doctor

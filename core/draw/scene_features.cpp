@@ -59,10 +59,12 @@ Rgb shade(const Eigen::Vector3f& normal) {
 }
 
 // Whether two labels touch with low affinity, or one of them is no segment.
-bool is_boundary(const Segmentation& segmentation, std::int32_t a, std::int32_t b) {
+bool is_boundary(const segment::Segmentation& segmentation, std::int32_t a, std::int32_t b) {
   if (a < 0 || b < 0) return true;
   const auto [first, second] = std::minmax(a, b);
-  const auto key = [](const SegmentPair& pair) { return std::pair(pair.first, pair.second); };
+  const auto key = [](const segment::SegmentPair& pair) {
+    return std::pair(pair.first, pair.second);
+  };
   const std::pair wanted(first, second);
   const auto found = std::ranges::lower_bound(segmentation.pairs, wanted, {}, key);
   return found == segmentation.pairs.end() || key(*found) != wanted || found->affinity < 0.5f;
@@ -70,12 +72,12 @@ bool is_boundary(const Segmentation& segmentation, std::int32_t a, std::int32_t 
 
 }  // namespace
 
-io::ColorImage edges(const Frame& frame, const SceneEdges& found) {
+io::ColorImage edges(const Frame& frame, const features::SceneEdges& found) {
   io::ColorImage picture = dimmed(frame);
   for_each_pixel(picture, found.range, [&](int u, int v, std::size_t i) {
-    if (found.range[i] == RangeEdge::occluding) {
+    if (found.range[i] == features::RangeEdge::occluding) {
       set(picture, u, v, kOccluding);
-    } else if (found.range[i] == RangeEdge::occluded) {
+    } else if (found.range[i] == features::RangeEdge::occluded) {
       set(picture, u, v, kOccluded);
     } else if (found.curvature[i]) {
       set(picture, u, v, kCurvature);
@@ -95,7 +97,7 @@ io::ColorImage edge_image(const Frame& frame, const Image<float>& likelihood) {
   return picture;
 }
 
-io::ColorImage segment_borders(const Frame& frame, const Segmentation& segmentation) {
+io::ColorImage segment_borders(const Frame& frame, const segment::Segmentation& segmentation) {
   io::ColorImage picture = objects(frame, {});
   const Image<std::int32_t>& labels = segmentation.labels;
   if (labels.empty()) return picture;
@@ -115,11 +117,11 @@ io::ColorImage segment_borders(const Frame& frame, const Segmentation& segmentat
   return picture;
 }
 
-io::ColorImage segment_matches(const Frame& frame, const Segmentation& segmentation,
-                               const std::vector<SegmentMatch>& matches) {
+io::ColorImage segment_matches(const Frame& frame, const segment::Segmentation& segmentation,
+                               const std::vector<score::SegmentMatch>& matches) {
   io::ColorImage picture = dimmed(frame);
   std::vector<double> probability(segmentation.segments.size(), -1);
-  for (const SegmentMatch& match : matches) probability[match.segment] = match.probability;
+  for (const score::SegmentMatch& match : matches) probability[match.segment] = match.probability;
   for_each_pixel(picture, segmentation.labels, [&](int u, int v, std::size_t i) {
     const std::int32_t label = segmentation.labels[i];
     const double p = label < 0 ? -1 : probability[label];
@@ -133,10 +135,10 @@ io::ColorImage segment_matches(const Frame& frame, const Segmentation& segmentat
   return picture;
 }
 
-io::ColorImage segment_means(const Frame& frame, const Segmentation& segmentation) {
+io::ColorImage segment_means(const Frame& frame, const segment::Segmentation& segmentation) {
   std::vector<Rgb> colors;
   const bool colored = !frame.color.empty();
-  for (const Segment& segment : segmentation.segments) {
+  for (const segment::Segment& segment : segmentation.segments) {
     colors.push_back(colored ? rgb_of_lab(segment.mean_color) : shade(segment.mean_normal));
   }
   io::ColorImage picture = black(frame);

@@ -11,7 +11,7 @@
 #include "core/cloud/blur.hpp"
 #include "core/cloud/surface_map.hpp"
 
-namespace bpa {
+namespace bpa::features {
 namespace {
 
 bool inside(const SurfaceMap& map, int u, int v) {
@@ -173,4 +173,4 @@ SceneEdges scene_edges(const SurfaceMap& map, const Image<Eigen::Vector3f>& rgb,
   return edges;
 }
 
-}  // namespace bpa
+}  // namespace bpa::features

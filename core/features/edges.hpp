@@ -9,7 +9,7 @@
 #include "core/cloud/image.hpp"
 #include "core/cloud/surface_map.hpp"
 
-namespace bpa {
+namespace bpa::features {
 
 /// What a pixel is at a depth discontinuity.
 enum class RangeEdge : std::uint8_t {
@@ -100,4 +100,4 @@ Image<float> edge_image(const Image<RangeEdge>& range, const Image<std::uint8_t>
 SceneEdges scene_edges(const SurfaceMap& map, const Image<Eigen::Vector3f>& rgb,
                        const EdgeImageOptions& options = {});
 
-}  // namespace bpa
+}  // namespace bpa::features

@@ -18,7 +18,7 @@
 #include <flann/flann.hpp>
 #pragma GCC diagnostic pop
 
-namespace bpa {
+namespace bpa::features {
 namespace {
 
 constexpr int kBins = 11;
@@ -204,4 +204,4 @@ std::vector<FeatureTree::Match> FeatureTree::nearest(std::span<const Fpfh> queri
   return matches;
 }
 
-}  // namespace bpa
+}  // namespace bpa::features

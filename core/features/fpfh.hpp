@@ -9,7 +9,7 @@
 
 #include "core/cloud/point_cloud.hpp"
 
-namespace bpa {
+namespace bpa::features {
 
 /// Fast point feature histogram: three histograms of 11 bins, each summing to 100.
 using Fpfh = std::array<float, 33>;
@@ -40,4 +40,4 @@ class FeatureTree {
   std::shared_ptr<const Index> index_;
 };
 
-}  // namespace bpa
+}  // namespace bpa::features

@@ -10,7 +10,7 @@
 #include "core/base/parallel.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 
-namespace bpa {
+namespace bpa::features {
 namespace {
 
 constexpr float kPi = 3.14159265f;
@@ -410,4 +410,4 @@ std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable&
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::features

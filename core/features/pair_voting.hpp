@@ -13,7 +13,7 @@
 #include "core/cloud/point_cloud.hpp"
 #include "core/features/rim_points.hpp"
 
-namespace bpa {
+namespace bpa::features {
 
 /// The four rigid invariants of two oriented points (Drost et al., "Model Globally, Match Locally",
 /// CVPR 2010).
@@ -167,4 +167,4 @@ std::vector<VotedPose> vote_poses(const ScenePairs& pairs, const PointPairTable&
                                   int num_model_points, int peaks, const PairColors& colors = {},
                                   const std::function<bool()>& late = {});
 
-}  // namespace bpa
+}  // namespace bpa::features

@@ -11,7 +11,7 @@
 #include "core/base/parallel.hpp"
 #include "core/features/pair_voting.hpp"
 
-namespace bpa {
+namespace bpa::features {
 namespace {
 
 using Look = std::function<Beside(const Eigen::Vector3f&, const Eigen::Vector3f&)>;
@@ -90,4 +90,4 @@ std::vector<RimPoint> find_rims(const PointCloud& points, const Look& look, int 
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::features

@@ -8,7 +8,7 @@
 
 #include "core/cloud/point_cloud.hpp"
 
-namespace bpa {
+namespace bpa::features {
 
 /// Where a surface ends: at a range edge or a crease.
 struct RimPoint {
@@ -37,4 +37,4 @@ std::vector<RimPoint> find_rims(
     const std::function<Beside(const Eigen::Vector3f& at, const Eigen::Vector3f& normal)>& look,
     int num_threads = 1);
 
-}  // namespace bpa
+}  // namespace bpa::features

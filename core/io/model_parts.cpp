@@ -92,7 +92,8 @@ namespace {
 
 constexpr std::string_view kIndexMagic = "bpaindex";
 
-using Tables = std::array<PointPairTable::Arrays, 2>;    // `pairs` and `rim_pairs` of an index
+using Tables =
+    std::array<features::PointPairTable::Arrays, 2>;     // `pairs` and `rim_pairs` of an index
 using StoredPoses = std::vector<std::array<double, 7>>;  // rotation x y z w, translation
 
 // Calls visit(number) for every number of the file. `index` is const when writing.
@@ -185,9 +186,10 @@ bool fits_together(const IndexFile& file, const Tables& tables, std::size_t poin
               fits_cloud(index.features, true) && fits_cloud(index.coarse, false) &&
               index.fpfh.size() == index.features.size() && below(index.distances.nearest, points);
   fits = fits && (index.cielab.empty() || index.cielab.size() == points) &&
-         index.log_light.size() == index.cielab.size() && index.palette.size() <= kAnyColor &&
-         finite(index);
-  for (const PointPairTable::Arrays& table : tables) fits = fits && table.fit(index.coarse.size());
+         index.log_light.size() == index.cielab.size() &&
+         index.palette.size() <= features::kAnyColor && finite(index);
+  for (const features::PointPairTable::Arrays& table : tables)
+    fits = fits && table.fit(index.coarse.size());
   for (const ModelView& view : index.views) {
     fits = fits && view.edge_distance.size() == view.visible.size() &&
            view.outward.size() == view.edges.size() && below(view.visible, points) &&
@@ -330,8 +332,8 @@ Result<IndexFile> parse_index(const MappedFile& mapped, std::size_t points,
   for_each_array(index, tables, near_symmetries, read_array);
   index.near_symmetries = restored(near_symmetries);
   if (!reader.finished() || !fits_together(file, tables, points)) return damaged;
-  index.pairs = PointPairTable(std::move(tables[0]));
-  index.rim_pairs = PointPairTable(std::move(tables[1]));
+  index.pairs = features::PointPairTable(std::move(tables[0]));
+  index.rim_pairs = features::PointPairTable(std::move(tables[1]));
   return file;
 }
 

@@ -38,19 +38,19 @@ struct ModelIndex {
   /// Normals of the surface points, averaged over what a fitted normal averages over: what a
   /// sensor reports beside a crease.
   std::vector<Eigen::Vector3f> soft_normals;
-  CheckPoints check;                ///< Up to 1024 surface points.
-  PointCloud features;              ///< With curvature, kFeatureSpacing apart.
-  std::vector<Fpfh> fpfh;           ///< Of `features`.
-  FeatureTree feature_tree{{}};     ///< Over `fpfh`.
-  PointCloud coarse;                ///< What `pairs` and `rim_pairs` are made of.
-  std::vector<MatchColor> palette;  ///< Of the entries of `pairs`; empty without colours.
-  PointPairTable pairs{{}, 1};
-  PointPairTable rim_pairs{{}, {}, 1};     ///< Empty where the model is not complete.
-  std::vector<ModelView> views;            ///< The 66 views, over `surface`.
-  DistanceTransform distances;             ///< Of `surface`.
-  NoiseTable noise;                        ///< Of the model's noise.
-  std::vector<Eigen::Vector3f> cielab;     ///< Of the surface points; empty without colours.
-  std::vector<Eigen::Vector3f> log_light;  ///< log_light() of `cielab`.
+  CheckPoints check;                       ///< Up to 1024 surface points.
+  PointCloud features;                     ///< With curvature, kFeatureSpacing apart.
+  std::vector<features::Fpfh> fpfh;        ///< Of `features`.
+  features::FeatureTree feature_tree{{}};  ///< Over `fpfh`.
+  PointCloud coarse;                       ///< What `pairs` and `rim_pairs` are made of.
+  std::vector<MatchColor> palette;         ///< Of the entries of `pairs`; empty without colours.
+  features::PointPairTable pairs{{}, 1};
+  features::PointPairTable rim_pairs{{}, {}, 1};  ///< Empty where the model is not complete.
+  std::vector<ModelView> views;                   ///< The 66 views, over `surface`.
+  DistanceTransform distances;                    ///< Of `surface`.
+  NoiseTable noise;                               ///< Of the model's noise.
+  std::vector<Eigen::Vector3f> cielab;            ///< Of the surface points; empty without colours.
+  std::vector<Eigen::Vector3f> log_light;         ///< log_light() of `cielab`.
   /// Means of `cielab` about the points of `coarse` and the first of `check`; empty without
   /// colours.
   std::vector<MatchColor> coarse_colors, check_colors;

@@ -160,16 +160,17 @@ std::vector<float> geometric_normal_variance(const PointCloud& surface, int num_
 }
 
 // The rims beside `points`: where the tangent plane leaves the surface.
-std::vector<RimPoint> model_rims(const PointCloud& surface, const DistanceTransform& distances,
-                                 const PointCloud& points) {
+std::vector<features::RimPoint> model_rims(const PointCloud& surface,
+                                           const DistanceTransform& distances,
+                                           const PointCloud& points) {
   // Off the surface by more than this, it has ended; chosen by hand.
   constexpr float kOff = 0.005f, kSpacings = 1.2f;  // metres; mean spacings of the points
   const float off = std::max(kOff, kSpacings * mean_spacing(surface, -2));
-  return find_rims(points, [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
+  return features::find_rims(points, [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
     const int nearest = distances.nearest_to(at);
     const bool goes_on = nearest >= 0 && (surface.points[nearest] - at).norm() < off &&
-                         surface.normals[nearest].dot(normal) > kSameFace;
-    return goes_on ? Beside::surface : Beside::end;
+                         surface.normals[nearest].dot(normal) > features::kSameFace;
+    return goes_on ? features::Beside::surface : features::Beside::end;
   });
 }
 
@@ -177,16 +178,16 @@ std::vector<RimPoint> model_rims(const PointCloud& surface, const DistanceTransf
 void make_pair_tables(const ModelSource& source, ModelIndex& index) {
   constexpr float kDistanceStep = 0.006f;  // metres; chosen by hand
   std::vector<std::uint8_t> colors;
-  index.palette = color_palette(index.coarse_colors, kAnyColor);
+  index.palette = color_palette(index.coarse_colors, features::kAnyColor);
   for (const MatchColor& color : index.coarse_colors) {
     colors.push_back(static_cast<std::uint8_t>(nearest_color(index.palette, color)));
   }
-  index.pairs = PointPairTable(
+  index.pairs = features::PointPairTable(
       index.coarse, std::max(kDistanceStep, 0.05f * static_cast<float>(source.diameter)), colors);
   // An incomplete model ends where its scans do.
   if (!source.complete) return;
   const auto rims = model_rims(source.surface, index.distances, index.coarse);
-  index.rim_pairs = PointPairTable(index.coarse, rims, kDistanceStep);
+  index.rim_pairs = features::PointPairTable(index.coarse, rims, kDistanceStep);
 }
 
 std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threads) {
@@ -197,7 +198,7 @@ std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threa
   estimate_curvature(index->features, kCurvatureRadius, num_threads);
   std::vector<int> all(index->features.size());
   std::iota(all.begin(), all.end(), 0);
-  index->fpfh = compute_fpfh(index->features, all, kFeatureRadius, num_threads);
+  index->fpfh = features::compute_fpfh(index->features, all, kFeatureRadius, num_threads);
   index->coarse = coarse_points(source.surface, source.diameter);
   // A sparse surface is drawn with larger cells, so that it has no holes.
   const float spacing = std::max(0.003f, 1.3f * mean_spacing(source.surface, -2));
@@ -228,7 +229,7 @@ std::shared_ptr<ModelIndex> build_index(const ModelSource& source, int num_threa
 void derive_index(const ModelSource& source, ModelIndex& index) {
   index.check = check_points(source.surface);
   index.noise = NoiseTable(source.noise);
-  index.feature_tree = FeatureTree(index.fpfh);
+  index.feature_tree = features::FeatureTree(index.fpfh);
   add_mean_colors(source.surface, index);
 }
 

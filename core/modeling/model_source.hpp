@@ -10,7 +10,7 @@
 #include "core/cloud/point_cloud.hpp"
 #include "core/model/object_model.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 
 /// Options of making a model from a surface.
 struct ModelOptions {
@@ -33,4 +33,4 @@ Status check_size(const std::string& name, double diameter);
 /// What people should know about a surface of that shape: that it is a single flat face.
 std::vector<std::string> shape_warnings(const PointCloud& surface);
 
-}  // namespace bpa
+}  // namespace bpa::modeling

@@ -9,7 +9,7 @@
 #include "core/geometry/solve_symmetric.hpp"
 #include "core/modeling/posed_view.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 using Parameters = Eigen::Matrix<double, 7, 1>;  // logarithms, so that all stay positive
@@ -104,4 +104,4 @@ NoiseCurve fit_noise_curve(std::span<const NoiseBin> bins, const NoiseCurve& sta
   return to_curve(best);
 }
 
-}  // namespace bpa
+}  // namespace bpa::modeling

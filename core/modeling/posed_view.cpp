@@ -12,7 +12,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/model/view_sphere.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 constexpr float kOtherSurface = 0.02f;  // metres
@@ -227,4 +227,4 @@ void learn_noise(ModelSource& source, const std::vector<PosedView>& views, int n
   }
 }
 
-}  // namespace bpa
+}  // namespace bpa::modeling

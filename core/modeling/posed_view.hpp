@@ -12,7 +12,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/modeling/model_source.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 
 /// One view of an object from a known place: real or simulated.
 struct PosedView {
@@ -78,4 +78,4 @@ Result<ModelSource> model_source_from_views(std::vector<PosedView> views, const 
 /// Moves the origin of the object's frame to the middle of the box about what the views measured.
 void center_object(std::vector<PosedView>& views);
 
-}  // namespace bpa
+}  // namespace bpa::modeling

@@ -16,7 +16,7 @@
 #include "core/geometry/symmetry.hpp"
 #include "core/model/distance_transform.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -152,17 +152,18 @@ class PairSearch {
     const int i = random.index(n);
     const int j = random.index(n);
     const Eigen::Vector3f &p = source_.points[i], &normal = source_.normals[i];
-    const PointPairFeature f = point_pair_feature(p, normal, source_.points[j], source_.normals[j]);
-    if (f.distance < kShortest || !fixes_pose(f)) return;
-    const auto entries = table_.lookup(f.distance, pair_angle_key(f));
-    const Eigen::Matrix3f own = basis_of(normal);
-    const std::uint8_t turn = turn_of(own, source_.points[j] - p);
+    const features::PointPairFeature f =
+        features::point_pair_feature(p, normal, source_.points[j], source_.normals[j]);
+    if (f.distance < kShortest || !features::fixes_pose(f)) return;
+    const auto entries = table_.lookup(f.distance, features::pair_angle_key(f));
+    const Eigen::Matrix3f own = features::basis_of(normal);
+    const std::uint8_t turn = features::turn_of(own, source_.points[j] - p);
     const std::size_t stride = entries.size() / kMostEntries + 1;
     for (std::size_t e = 0; e < entries.size(); e += stride) {
       const std::size_t k = entries[e].point;
-      const float angle = (entries[e].turn - turn) * (2 * 3.14159265f / kTurnSteps);
+      const float angle = (entries[e].turn - turn) * (2 * 3.14159265f / features::kTurnSteps);
       Candidate c;
-      c.motion.rotation = basis_of(target_.normals[k]) *
+      c.motion.rotation = features::basis_of(target_.normals[k]) *
                           Eigen::AngleAxisf(angle, Eigen::Vector3f::UnitZ()).toRotationMatrix() *
                           own.transpose();
       c.motion.translation = target_.points[k] - c.motion.rotation * p;
@@ -197,7 +198,7 @@ class PairSearch {
   float spacing_;
   PointCloud source_;  // thinned
   PointCloud sample_;
-  PointPairTable table_;
+  features::PointPairTable table_;
   float tolerance_;
 };
 
@@ -270,4 +271,4 @@ bool same_shape(const ModelSource& a, const ModelSource& b, int num_threads) {
   return lies_on(a.surface, b.surface) && lies_on(b.surface, a.surface);
 }
 
-}  // namespace bpa
+}  // namespace bpa::modeling

@@ -9,7 +9,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/model/object_model.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 
 /// A way of laying one surface onto another.
 struct Registration {
@@ -39,4 +39,4 @@ bool same_size(const ModelSource& a, const ModelSource& b);
 /// for the other. At once for models of other sizes, else about a second.
 bool same_shape(const ModelSource& a, const ModelSource& b, int num_threads = 0);
 
-}  // namespace bpa
+}  // namespace bpa::modeling

@@ -17,7 +17,7 @@
 #include "core/model/view_sphere.hpp"
 #include "core/modeling/model_source.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 constexpr double kMinDiameter = 0.005;
@@ -363,4 +363,4 @@ Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std:
   return source;
 }
 
-}  // namespace bpa
+}  // namespace bpa::modeling

@@ -11,7 +11,7 @@
 #include "core/modeling/posed_view.hpp"
 #include "core/modeling/trace_occupancy.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 constexpr float kLeastCell = 0.003f;  // metres
@@ -184,4 +184,4 @@ void keep_measured(ModelSource& source, const std::vector<PosedView>& views, int
   learn_noise(source, views, num_threads);
 }
 
-}  // namespace bpa
+}  // namespace bpa::modeling

@@ -18,7 +18,7 @@
 #include "core/model/distance_transform.hpp"
 #include "core/model/object_model.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 constexpr double kTurn = 2 * M_PI;
@@ -336,4 +336,4 @@ std::string describe(const SymmetryGroup& group) {
   return text.substr(2);
 }
 
-}  // namespace bpa
+}  // namespace bpa::modeling

@@ -7,7 +7,7 @@
 #include "core/cloud/point_cloud.hpp"
 #include "core/geometry/symmetry.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 
 /// The rotations that map a surface onto itself: turns of a half to a sixth, and continuous ones.
 /// At least 98 % of the points must fit within max(1.5 mm, 1.2 % of `diameter`). Where turns of
@@ -18,4 +18,4 @@ SymmetryGroup find_symmetries(const PointCloud& surface, double diameter, int nu
 /// One line for people: "any turn about (0, 0, 1) through (0, 0, 12) mm; 3 single turns".
 std::string describe(const SymmetryGroup& group);
 
-}  // namespace bpa
+}  // namespace bpa::modeling

@@ -13,7 +13,7 @@
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/model/view_sphere.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 constexpr float kMinCosine = 0.2f;  // of views that count
@@ -281,4 +281,4 @@ GridSurface surface_of(const OccupancyGrid& grid, float spacing, int num_threads
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::modeling

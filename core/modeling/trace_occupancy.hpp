@@ -8,7 +8,7 @@
 #include "core/model/occupancy_grid.hpp"
 #include "core/modeling/posed_view.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 
 /// Traces the ray of every pixel of the views through the grid. The measured point lies in one
 /// cell. Cells before it are empty on the side that faces the camera, except within the sensor's
@@ -25,4 +25,4 @@ struct GridSurface {
 };
 GridSurface surface_of(const OccupancyGrid& grid, float spacing, int num_threads);
 
-}  // namespace bpa
+}  // namespace bpa::modeling

@@ -13,7 +13,7 @@
 // From the images of an object on a turntable to views with poses (paper section III). Each resting
 // position is a set of views from a fixed camera; all that is known is the step of the table.
 
-namespace bpa {
+namespace bpa::modeling {
 
 /// One image of a scan; the pose of its view is not known yet.
 struct ScanView {
@@ -79,4 +79,4 @@ struct AlignedScan {
 Result<AlignedScan> align_scan(std::vector<std::vector<ScanView>> positions,
                                const ScanOptions& options);
 
-}  // namespace bpa
+}  // namespace bpa::modeling

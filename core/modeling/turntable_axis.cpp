@@ -17,7 +17,7 @@
 #include "core/geometry/solve_symmetric.hpp"
 #include "core/modeling/turntable.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
@@ -342,4 +342,4 @@ Result<RestingPosition> align_resting_position(std::vector<ScanView> views,
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::modeling

@@ -18,7 +18,7 @@
 #include "core/modeling/trace_occupancy.hpp"
 #include "core/modeling/turntable.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 constexpr float kCell = 0.003f;  // metres
@@ -279,4 +279,4 @@ Result<AlignedScan> align_scan(std::vector<std::vector<ScanView>> positions,
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::modeling

@@ -13,7 +13,7 @@
 #include "core/base/random.hpp"
 #include "core/modeling/turntable.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 // The scene without the object, as far as it can be seen, and where the object was seen.
@@ -292,4 +292,4 @@ Result<Plane> segment_object(std::vector<ScanView>& views, const ScanOptions& op
   return *table;
 }
 
-}  // namespace bpa
+}  // namespace bpa::modeling

@@ -60,20 +60,21 @@ Image<Eigen::Vector3f> log_light_of(Image<Eigen::Vector3f> lab, int num_threads)
 }
 
 // The rims of the observed surface beside `points`: range edges and creases.
-std::vector<RimPoint> scene_rims(const CheckImage& image, const PointCloud& points,
-                                 int num_threads) {
+std::vector<features::RimPoint> scene_rims(const CheckImage& image, const PointCloud& points,
+                                           int num_threads) {
   const auto look = [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
     const int pixel = image.pixel_of(at);
-    if (pixel < 0) return Beside::hidden;
+    if (pixel < 0) return features::Beside::hidden;
     const CheckPixel& seen = image.pixels[static_cast<std::size_t>(pixel)];
-    if (!(seen.depth > 0)) return Beside::unknown;
+    if (!(seen.depth > 0)) return features::Beside::unknown;
     const float near = tolerance::kOnFace(image.noise(at.z()));
-    if (seen.depth < at.z() - near) return Beside::hidden;
-    if (seen.depth > at.z() + near) return Beside::end;
+    if (seen.depth < at.z() - near) return features::Beside::hidden;
+    if (seen.depth > at.z() + near) return features::Beside::end;
     const Eigen::Vector3f there = seen.direction();
-    return there.isZero() || there.dot(normal) > kSameFace ? Beside::surface : Beside::end;
+    return there.isZero() || there.dot(normal) > features::kSameFace ? features::Beside::surface
+                                                                     : features::Beside::end;
   };
-  return find_rims(points, look, num_threads);
+  return features::find_rims(points, look, num_threads);
 }
 
 std::shared_ptr<const SceneFeatures> with_flat_regions(const SceneFeatures& scene) {
@@ -95,7 +96,7 @@ SceneFeatureOptions with_threads(SceneFeatureOptions options, int num_threads) {
 void add_images(ColorImages colors, const SceneFeatureOptions& options, SceneFeatures& scene) {
   const Image<Eigen::Vector3f>& rgb = colors.reduced;
   const int threads = options.num_threads;
-  scene.edges = scene_edges(scene.map, rgb, options.edges);
+  scene.edges = features::scene_edges(scene.map, rgb, options.edges);
   Image<Eigen::Vector3f> sharp_lab;  // without blur
   if (!rgb.empty()) {
     sharp_lab = cielab(rgb, threads);
@@ -103,7 +104,7 @@ void add_images(ColorImages colors, const SceneFeatureOptions& options, SceneFea
     if (options.use_outline) scene.gradients = std::move(colors.gradients);
   }
   scene.segmentation =
-      super_pixels(scene.map, scene.cielab, scene.edges.likelihood, options.segments);
+      segment::super_pixels(scene.map, scene.cielab, scene.edges.likelihood, options.segments);
   if (!options.use_flat_regions) return;
   // Pixels, against noise. The blur of `cielab` would smear thin objects.
   constexpr double kLittleBlur = 0.7;
@@ -131,7 +132,7 @@ void add_points(const SceneFeatureOptions& options, SceneFeatures& scene) {
   estimate_curvature(scene.surface, kCurvatureRadius, threads);
   scene.keypoints = shuffled(scene.surface.size(), options.seed);
   scene.keypoints.resize(std::min<std::size_t>(scene.keypoints.size(), options.max_keypoints));
-  scene.fpfh = compute_fpfh(scene.surface, scene.keypoints, kFeatureRadius, threads);
+  scene.fpfh = features::compute_fpfh(scene.surface, scene.keypoints, kFeatureRadius, threads);
   scene.references = spread(scene.coarse.points, options.seed);
   scene.rims = scene_rims(scene.image, scene.coarse, threads);
   SampledSoFar passed;
@@ -183,10 +184,10 @@ SceneSample scene_sample(const SceneFeatures& scene, SamplePoints points,
   }
   const auto reach = static_cast<float>(options.pair_reach_m);
   SceneSample out;
-  out.pairs = scene_pairs(scene.coarse, points.references, reach, options.pair_step,
-                          options.num_threads, partners);
-  out.rim_pairs =
-      scene_rim_pairs(scene.coarse, scene.rims, points.references, reach, options.num_threads);
+  out.pairs = features::scene_pairs(scene.coarse, points.references, reach, options.pair_step,
+                                    options.num_threads, partners);
+  out.rim_pairs = features::scene_rim_pairs(scene.coarse, scene.rims, points.references, reach,
+                                            options.num_threads);
   out.points = std::move(points);
   return out;
 }

@@ -37,8 +37,8 @@ struct SampledSoFar {
 /// The points of a round, and what is looked up of them.
 struct SceneSample {
   SamplePoints points;
-  ScenePairs pairs;      ///< Of the references, with points of SceneFeatures::coarse.
-  ScenePairs rim_pairs;  ///< Of the references, with the rims of their faces.
+  features::ScenePairs pairs;      ///< Of the references, with points of SceneFeatures::coarse.
+  features::ScenePairs rim_pairs;  ///< Of the references, with the rims of their faces.
 };
 
 /// What detection reads of a frame; made once, shared by all models. Camera frame, metres.
@@ -48,21 +48,21 @@ struct SceneFeatures {
   std::vector<Plane> planes;   ///< Labelled background.
   PointCloud surface;          ///< Searched surface, kFeatureSpacing apart, with curvature.
   std::vector<int> keypoints;  ///< Indices into `surface` where FPFH was computed; random order.
-  std::vector<Fpfh> fpfh;      ///< Of the keypoints.
-  PointCloud coarse;           ///< Searched surface, for point pairs.
+  std::vector<features::Fpfh> fpfh;  ///< Of the keypoints.
+  PointCloud coarse;                 ///< Searched surface, for point pairs.
   /// Reference points: indices into `coarse`, in a random order that spreads evenly.
   std::vector<int> references;
-  std::vector<RimPoint> rims;  ///< Of the faces of `coarse`.
-  SceneSample sample;          ///< The first.
-  SceneEdges edges;
+  std::vector<features::RimPoint> rims;  ///< Of the faces of `coarse`.
+  SceneSample sample;                    ///< The first.
+  features::SceneEdges edges;
   Image<Eigen::Vector3f> cielab;          ///< Blurred, of the map's size; empty without colour.
   Image<MatchColor> match_colors;         ///< Of `cielab`.
   std::vector<MatchColor> coarse_colors;  ///< `match_colors` at the points of `coarse`.
   Image<Eigen::Vector3f> log_light;       ///< log_light() of `cielab`; empty without patterns.
   Image<Eigen::Vector3f> sharp_light;     ///< log_light() without blur; empty without outlines.
-  Image<Eigen::Vector2f> gradients;  ///< color_gradients() of the frame; empty without outlines.
-  Segmentation segmentation;         ///< Super-pixels of the whole map.
-  FlatRegions flat;                  ///< Where thin objects may lie.
+  Image<Eigen::Vector2f> gradients;    ///< color_gradients() of the frame; empty without outlines.
+  segment::Segmentation segmentation;  ///< Super-pixels of the whole map.
+  FlatRegions flat;                    ///< Where thin objects may lie.
   /// This scene where the flat regions are searched as well; null where there is none.
   std::shared_ptr<const SceneFeatures> with_flat;
 };
@@ -74,10 +74,10 @@ struct SceneFeatureOptions {
              "Of these, how many one round matches with the models.");
   BPA_OPTION(int, max_references, 150, (0, 100000),
              "Scene points whose pairs with others vote for poses in one round.");
-  double coarse_spacing_m = 0.010;       ///< Spacing of the points that make pairs, metres.
-  double pair_reach_m = kMaxPairLength;  ///< Length of the longest pairs, metres. What is mostly
-                                         ///< hidden has no long ones.
-  int pair_step = 2;                     ///< Of the pairs of a point, one in so many votes.
+  double coarse_spacing_m = 0.010;  ///< Spacing of the points that make pairs, metres.
+  double pair_reach_m = features::kMaxPairLength;  ///< Length of the longest pairs, metres. What is
+                                                   ///< mostly hidden has no long ones.
+  int pair_step = 2;  ///< Of the pairs of a point, one in so many votes.
   BPA_OPTION(bool, use_color, true, (), "Use the frame's colours; false ignores them.");
   BPA_OPTION(bool, use_texture, true, (),
              "Compare the patterns of surfaces in colour; false ignores them.");
@@ -86,8 +86,8 @@ struct SceneFeatureOptions {
   BPA_OPTION(bool, use_flat_regions, true, (),
              "Look for thin objects where a plane's colours or heights differ.");
   double color_blur_px = 1.5;  ///< Standard deviation of the blur of the colours, pixels.
-  EdgeImageOptions edges;
-  SuperPixelOptions segments;
+  features::EdgeImageOptions edges;
+  segment::SuperPixelOptions segments;
   std::uint64_t seed = 0;
   int num_threads = 0;  ///< 0: one per core. Does not change the result.
 };

@@ -13,7 +13,7 @@ namespace bpa {
 
 Coverage::Coverage(const SceneFeatures& scene,
                    const std::vector<std::shared_ptr<const ObjectModel>>& models,
-                   const SearchYield& yield, double spacing)
+                   const score::SearchYield& yield, double spacing)
     : yield_(yield) {
   for (const auto& model : models) {
     const double points = surface_area(*model) / (spacing * spacing);

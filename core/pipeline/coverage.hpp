@@ -21,8 +21,8 @@ class Coverage {
  public:
   /// `spacing`: of SceneFeatures::coarse, metres.
   Coverage(const SceneFeatures& scene,
-           const std::vector<std::shared_ptr<const ObjectModel>>& models, const SearchYield& yield,
-           double spacing);
+           const std::vector<std::shared_ptr<const ObjectModel>>& models,
+           const score::SearchYield& yield, double spacing);
 
   /// The reference points `references` were looked up in the models that `left_out` does not flag.
   void add_tries(std::span<const int> references, std::span<const std::uint8_t> left_out);
@@ -38,7 +38,7 @@ class Coverage {
     double points = 0, unexplained = 0;
   };
 
-  const SearchYield yield_;
+  const score::SearchYield yield_;
   std::vector<int> patch_of_;  // of each point
   std::vector<int> pixel_of_;  // of each point; -1: none
   std::vector<Patch> patches_;

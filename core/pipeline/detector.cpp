@@ -54,29 +54,33 @@ bool compares_colors(const Frame& frame, const DetectorOptions& options, const M
 }
 
 // Judges the candidates again, given the others of a first interpretation.
-void judge_again(const SceneFeatures& scene, const Overlaps& overlaps, const ScoreLayers& layers,
-                 const SearchPlan& plan, Candidates& candidates) {
-  const auto present = first_interpretation(candidates, overlaps);
-  measure_given_others(scene, overlaps, present, candidates, plan.detect.limits[Limit::competing],
-                       plan.features.num_threads);
-  for (Candidate& candidate : candidates) {
+void judge_again(const SceneFeatures& scene, const scene::Overlaps& overlaps,
+                 const score::ScoreLayers& layers, const SearchPlan& plan,
+                 detect::Candidates& candidates) {
+  const auto present = scene::first_interpretation(candidates, overlaps);
+  scene::measure_given_others(scene, overlaps, present, candidates,
+                              plan.detect.limits[score::Limit::competing],
+                              plan.features.num_threads);
+  for (detect::Candidate& candidate : candidates) {
     apply_layer(layers.last_for(candidate.values), candidate);
   }
-  let_compete(candidates, overlaps);
+  scene::let_compete(candidates, overlaps);
 }
 
 // Lets the candidates compete and ranks interpretations of the scene.
-std::vector<Interpretation> interpret_scene(const SceneFeatures& scene, const ScoreLayers& layers,
-                                            Candidates& candidates, const SearchPlan& plan,
+std::vector<Interpretation> interpret_scene(const SceneFeatures& scene,
+                                            const score::ScoreLayers& layers,
+                                            detect::Candidates& candidates, const SearchPlan& plan,
                                             int top_k) {
-  const auto overlaps = find_overlaps(candidates, plan.detect.limits[Limit::competing]);
-  let_compete(candidates, overlaps);
+  const auto overlaps =
+      scene::find_overlaps(candidates, plan.detect.limits[score::Limit::competing]);
+  scene::let_compete(candidates, overlaps);
   if (plan.scene.judge_given_others && plan.detect.score.use_round_three) {
     judge_again(scene, overlaps, layers, plan, candidates);
   }
   const auto observed = static_cast<int>(std::ranges::count(scene.map.searched, 1));
   std::vector<Interpretation> ranked = interpret(candidates, overlaps, observed, plan.scene);
-  keep_best(ranked, top_k);
+  scene::keep_best(ranked, top_k);
   return ranked;
 }
 
@@ -96,7 +100,7 @@ Status validate(const DetectRequest& request) {
                             " is not finite with a unit quaternion; it must be");
   }
   for (std::size_t i = 0; i < request.priors.size(); ++i) {
-    const Status status = validate(request.priors[i], concat("priors[", i, "]"));
+    const Status status = detect::validate(request.priors[i], concat("priors[", i, "]"));
     if (!status.ok()) return status;
   }
   return {};
@@ -110,7 +114,7 @@ Result<DetectorOptions> load_detector_options(const std::string& path) {
 }
 
 Detector::Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions options,
-                   ScoreLayers layers)
+                   score::ScoreLayers layers)
     : library_(std::move(library)),
       options_(std::move(options)),
       layers_(std::move(layers)),
@@ -170,7 +174,7 @@ Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
   const SearchInputs inputs{scene, plan, layers_, request, *models};
   LibrarySearch search{inputs, search_end, facts.costs, preparation_ms};
   if (request.on_round) {
-    search.on_round = [&, so_far = out](Candidates found) mutable {
+    search.on_round = [&, so_far = out](detect::Candidates found) mutable {
       so_far.partial = true;
       so_far.interpretations = interpret_scene(scene, layers_, found, plan, request.top_k);
       so_far.total_milliseconds = total.milliseconds();
@@ -184,7 +188,7 @@ Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
   SearchOutcome found = search.run(used);
   if (Status status = used.status(); !status.ok()) return status;
   if (plan.limited) costs_->add(frame.depth.size(), facts.threads, found.measured);
-  Candidates& candidates = found.candidates;
+  detect::Candidates& candidates = found.candidates;
   out.budget_exhausted = found.cut;
   out.effort = found.effort;
   out.not_searched = used.lost();
@@ -209,19 +213,20 @@ std::string score_layer_path(const std::string& library_folder) {
   return library_folder + "/score_layer.json";
 }
 
-Status write_score_layers(const std::string& path, const ScoreLayers& layers) {
-  return io::write_file(path, to_json(layers));
+Status write_score_layers(const std::string& path, const score::ScoreLayers& layers) {
+  return io::write_file(path, score::to_json(layers));
 }
 
-Result<ScoreLayers> read_score_layers(const std::string& path) {
+Result<score::ScoreLayers> read_score_layers(const std::string& path) {
   const Result<std::string> bytes = io::read_file(path);
   if (!bytes.ok()) return bytes.status();
-  return score_layers_from_json(*bytes, path);
+  return score::score_layers_from_json(*bytes, path);
 }
 
-Result<ScoreLayers> library_score_layers(const std::string& library_folder) {
-  Result<ScoreLayers> layers = read_score_layers(score_layer_path(library_folder));
-  if (!layers.ok() && layers.status().code == StatusCode::not_found) return default_score_layers();
+Result<score::ScoreLayers> library_score_layers(const std::string& library_folder) {
+  Result<score::ScoreLayers> layers = read_score_layers(score_layer_path(library_folder));
+  if (!layers.ok() && layers.status().code == StatusCode::not_found)
+    return score::default_score_layers();
   return layers;
 }
 

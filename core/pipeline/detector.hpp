@@ -24,8 +24,8 @@ namespace bpa {
 struct FrameTrace {
   SceneFeatures scene;
   std::vector<std::shared_ptr<const ObjectModel>> models;  ///< Searched for.
-  std::vector<ObjectTrace> objects;                        ///< One for each model.
-  std::vector<Candidate> candidates;                       ///< Of all models.
+  std::vector<detect::ObjectTrace> objects;                ///< One for each model.
+  std::vector<detect::Candidate> candidates;               ///< Of all models.
   std::optional<SearchPlan> plan;                          ///< What it ran with.
 };
 
@@ -71,7 +71,7 @@ using SearchesFor = std::function<MakeSearches(const Frame&, const DetectRequest
 class Detector {
  public:
   Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions options,
-           ScoreLayers layers = default_score_layers());
+           score::ScoreLayers layers = score::default_score_layers());
 
   /// Ranked interpretations of the frame. Fails with invalid_argument on a frame, request or
   /// library that breaks a rule (an empty library too). Fails with not_found on a model, also of a
@@ -88,7 +88,7 @@ class Detector {
 
   const ModelLibrary& library() const { return *library_; }
   const DetectorOptions& options() const { return options_; }
-  const ScoreLayers& score_layers() const { return layers_; }
+  const score::ScoreLayers& score_layers() const { return layers_; }
 
  private:
   SearchFacts facts_of(const Frame& frame, const DetectRequest& request,
@@ -96,17 +96,17 @@ class Detector {
 
   std::shared_ptr<const ModelLibrary> library_;
   DetectorOptions options_;
-  ScoreLayers layers_;
+  score::ScoreLayers layers_;
   std::shared_ptr<CostMeter> costs_;  ///< Of searches with a budget.
 };
 
 /// The file of a library's own score layers: "FOLDER/score_layer.json".
 std::string score_layer_path(const std::string& library_folder);
 
-Status write_score_layers(const std::string& path, const ScoreLayers& layers);
+Status write_score_layers(const std::string& path, const score::ScoreLayers& layers);
 /// Fails with not_found, or as score_layers_from_json().
-Result<ScoreLayers> read_score_layers(const std::string& path);
+Result<score::ScoreLayers> read_score_layers(const std::string& path);
 /// The layers of the library, or default_score_layers() where the library has none of its own.
-Result<ScoreLayers> library_score_layers(const std::string& library_folder);
+Result<score::ScoreLayers> library_score_layers(const std::string& library_folder);
 
 }  // namespace bpa

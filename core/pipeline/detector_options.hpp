@@ -33,8 +33,9 @@ struct DetectorOptions {
   BPA_GROUP(PlaneOptions, planes, "Background planes.");
   BPA_GROUP(SceneFeatureOptions, features, "What is computed once for all models.");
   BPA_GROUP(RoundOptions, rounds, "Rounds of the search.");
-  BPA_INLINE_GROUP(DetectOptions, detect);
-  BPA_GROUP(InterpretationOptions, scene, "Interpretations of the whole scene (paper section VI).");
+  BPA_INLINE_GROUP(detect::DetectOptions, detect);
+  BPA_GROUP(scene::InterpretationOptions, scene,
+            "Interpretations of the whole scene (paper section VI).");
   BPA_GROUP(ViewsOptions, views, "Several views of one scene.");
 };
 

@@ -15,9 +15,10 @@
 namespace bpa {
 namespace {
 
-Candidates joined(const std::vector<Candidates>& found) {
-  Candidates all;
-  for (const Candidates& of_model : found) all.insert(all.end(), of_model.begin(), of_model.end());
+detect::Candidates joined(const std::vector<detect::Candidates>& found) {
+  detect::Candidates all;
+  for (const detect::Candidates& of_model : found)
+    all.insert(all.end(), of_model.begin(), of_model.end());
   return all;
 }
 
@@ -31,12 +32,13 @@ struct Explained {
   explicit Explained(std::size_t pixels) : probability(pixels, 0.0f), certain(pixels, 0) {}
 
   // Lets the candidates compete and adds them.
-  void add(Candidates found, const SearchPlan& plan) {
-    let_compete(found, find_overlaps(found, plan.detect.limits[Limit::competing]));
-    std::ranges::stable_sort(found, std::greater(), &Candidate::probability);
+  void add(detect::Candidates found, const SearchPlan& plan) {
+    scene::let_compete(found,
+                       scene::find_overlaps(found, plan.detect.limits[score::Limit::competing]));
+    std::ranges::stable_sort(found, std::greater(), &detect::Candidate::probability);
     std::vector<std::uint8_t> claimed(certain.size(), 0);
     objects = 0;
-    for (const Candidate& candidate : found) {
+    for (const detect::Candidate& candidate : found) {
       const auto now = static_cast<float>(candidate.probability);
       const bool is_certain = candidate.probability >= plan.rounds.min_certain;
       std::size_t alone = 0;

@@ -10,7 +10,7 @@
 namespace bpa {
 
 struct SearchOutcome {
-  Candidates candidates;            ///< Of all models.
+  detect::Candidates candidates;    ///< Of all models.
   bool cut = false;                 ///< Time ran out.
   SearchEffort effort;              ///< The counts of all models.
   Costs measured = {};              ///< What it took.
@@ -25,8 +25,9 @@ struct LibrarySearch {
   const SearchInputs& inputs;
   Deadline deadline;
   Costs costs = {};
-  double preparation_ms = 0;                      ///< Of the whole preparation of this frame.
-  std::function<void(Candidates)> on_round = {};  ///< Receives the candidates after each round.
+  double preparation_ms = 0;  ///< Of the whole preparation of this frame.
+  std::function<void(detect::Candidates)> on_round =
+      {};  ///< Receives the candidates after each round.
 
   /// `searches` is where the models are searched.
   SearchOutcome run(ModelSearches& searches) const;

@@ -10,15 +10,15 @@
 namespace bpa {
 namespace {
 
-Search search_for(const SearchInputs& inputs, const ObjectModel& model) {
-  return Search(inputs.scene, model, inputs.plan.detect, inputs.layers, inputs.request.priors,
-                inputs.request.seed);
+detect::Search search_for(const SearchInputs& inputs, const ObjectModel& model) {
+  return detect::Search(inputs.scene, model, inputs.plan.detect, inputs.layers,
+                        inputs.request.priors, inputs.request.seed);
 }
 
 }  // namespace
 
-LocalSearches::LocalSearches(const SearchInputs& inputs, std::vector<ObjectTrace>* traces,
-                             Compete compete)
+LocalSearches::LocalSearches(const SearchInputs& inputs, std::vector<detect::ObjectTrace>* traces,
+                             detect::Compete compete)
     : inputs_(inputs),
       traces_(traces),
       compete_(std::move(compete)),
@@ -33,10 +33,10 @@ LocalSearches::LocalSearches(const SearchInputs& inputs, std::vector<ObjectTrace
   }
 }
 
-void LocalSearches::run(std::span<const Stage> stages, const Deadline& deadline,
-                        std::vector<Candidates>& found) {
-  for (Search& search : searches_) search.deadline = deadline;
-  run_stages(stages, searches_, inputs_.request.num_threads, found, traces_, compete_);
+void LocalSearches::run(std::span<const detect::Stage> stages, const Deadline& deadline,
+                        std::vector<detect::Candidates>& found) {
+  for (detect::Search& search : searches_) search.deadline = deadline;
+  detect::run_stages(stages, searches_, inputs_.request.num_threads, found, traces_, compete_);
 }
 
 void LocalSearches::explain(const std::vector<std::uint32_t>& newly_certain) {
@@ -53,11 +53,11 @@ void LocalSearches::score_expected(const Deadline& deadline) {
       if (model.name != expected.model) continue;
       found_[i].push_back({.model = &model,
                            .refinement = {expected.frame_from_object},
-                           .found_by = Source::prior,
+                           .found_by = detect::Source::prior,
                            .is_protected = true});
     }
   }
-  run(scoring_stages(), deadline, found_);
+  run(detect::scoring_stages(), deadline, found_);
 }
 
 void LocalSearches::run_round(const RoundPlan& plan) {
@@ -66,17 +66,18 @@ void LocalSearches::run_round(const RoundPlan& plan) {
   const bool is_prepared = plan.points == inputs_.scene.sample.points;
   sample_ = is_prepared ? inputs_.scene.sample
                         : scene_sample(inputs_.scene, plan.points, certain_, inputs_.plan.features);
-  const DetectPlan of_round = round_plan(inputs_.plan.detect, plan.share, plan.hurried);
+  const detect::DetectPlan of_round =
+      detect::round_plan(inputs_.plan.detect, plan.share, plan.hurried);
   for (std::size_t i = 0; i < searches_.size(); ++i) {
-    Search& search = searches_[i];
+    detect::Search& search = searches_[i];
     search.round = plan.number;
     search.before = &found_[i];
     search.sample = plan.left_out[i] ? &none : &sample_;
     search.image = &image_;
     search.plan = of_round;
   }
-  std::vector<Candidates> now(searches_.size());
-  run(round_stages(), plan.deadline, now);
+  std::vector<detect::Candidates> now(searches_.size());
+  run(detect::round_stages(), plan.deadline, now);
   for (std::size_t i = 0; i < searches_.size(); ++i) {
     std::ranges::move(now[i], std::back_inserter(found_[i]));
   }
@@ -84,31 +85,31 @@ void LocalSearches::run_round(const RoundPlan& plan) {
 
 void LocalSearches::finish(const FinalPlan& plan) {
   explain(plan.newly_certain);
-  const DetectPlan of_final = final_plan(inputs_.plan.detect, plan.share);
+  const detect::DetectPlan of_final = detect::final_plan(inputs_.plan.detect, plan.share);
   for (std::size_t i = 0; i < searches_.size(); ++i) {
     searches_[i].before = nullptr;
-    suppress_duplicates(searches_[i], found_[i]);
+    detect::suppress_duplicates(searches_[i], found_[i]);
     searches_[i].plan = of_final;
   }
-  run(final_stages(), plan.deadline, found_);
+  run(detect::final_stages(), plan.deadline, found_);
 }
 
 bool LocalSearches::late() const { return std::ranges::count(late_, 1) > 0; }
 
 SearchEffort LocalSearches::effort() const {
   SearchEffort sum;
-  for (const Search& search : searches_) sum += search.effort;
+  for (const detect::Search& search : searches_) sum += search.effort;
   return sum;
 }
 
-std::vector<Candidates> without_duplicates(const SearchInputs& inputs,
-                                           std::vector<Candidates> found) {
+std::vector<detect::Candidates> without_duplicates(const SearchInputs& inputs,
+                                                   std::vector<detect::Candidates> found) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i].empty()) continue;
-    std::erase_if(found[i], [&](const Candidate& candidate) {
-      return candidate.score < inputs.plan.detect.limits[Limit::selected];
+    std::erase_if(found[i], [&](const detect::Candidate& candidate) {
+      return candidate.score < inputs.plan.detect.limits[score::Limit::selected];
     });
-    suppress_duplicates(search_for(inputs, *inputs.models[i]), found[i]);
+    detect::suppress_duplicates(search_for(inputs, *inputs.models[i]), found[i]);
   }
   return found;
 }

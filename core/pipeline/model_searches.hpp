@@ -51,7 +51,7 @@ class ModelSearches {
   virtual void finish(const FinalPlan& plan) = 0;
 
   /// The candidates so far, of each model.
-  const std::vector<Candidates>& found() const { return found_; }
+  const std::vector<detect::Candidates>& found() const { return found_; }
   /// Why the searches can find nothing more, where a host fails: the detection fails so.
   virtual Status status() const { return {}; }
   /// Whether a stage was cut by its deadline.
@@ -62,14 +62,14 @@ class ModelSearches {
   virtual std::vector<std::string> lost() const { return {}; }
 
  protected:
-  std::vector<Candidates> found_;
+  std::vector<detect::Candidates> found_;
 };
 
 /// What the searches for a library's models read; keeps references.
 struct SearchInputs {
   const SceneFeatures& scene;
   const SearchPlan& plan;
-  const ScoreLayers& layers;
+  const score::ScoreLayers& layers;
   const DetectRequest& request;
   const std::vector<std::shared_ptr<const ObjectModel>>& models;
 };
@@ -78,8 +78,9 @@ struct SearchInputs {
 /// decides where models compete; by default the models given here compete among themselves.
 class LocalSearches : public ModelSearches {
  public:
-  explicit LocalSearches(const SearchInputs& inputs, std::vector<ObjectTrace>* traces = nullptr,
-                         Compete compete = contest_of);
+  explicit LocalSearches(const SearchInputs& inputs,
+                         std::vector<detect::ObjectTrace>* traces = nullptr,
+                         detect::Compete compete = detect::contest_of);
 
   void score_expected(const Deadline& deadline) override;
   void run_round(const RoundPlan& plan) override;
@@ -89,20 +90,21 @@ class LocalSearches : public ModelSearches {
 
  private:
   void explain(const std::vector<std::uint32_t>& newly_certain);
-  void run(std::span<const Stage> stages, const Deadline& deadline, std::vector<Candidates>& found);
+  void run(std::span<const detect::Stage> stages, const Deadline& deadline,
+           std::vector<detect::Candidates>& found);
 
   const SearchInputs inputs_;
-  std::vector<ObjectTrace>* const traces_;
-  const Compete compete_;
+  std::vector<detect::ObjectTrace>* const traces_;
+  const detect::Compete compete_;
   std::vector<std::uint8_t> late_;     // flag of each model
   std::vector<std::uint8_t> certain_;  // flag of each pixel: is searched no more
   CheckImage image_;                   // where these are not searched
   SceneSample sample_;                 // of this round
-  std::vector<Search> searches_;
+  std::vector<detect::Search> searches_;
 };
 
 /// Distinct candidates of each model, for those who cannot wait for the final stages.
-std::vector<Candidates> without_duplicates(const SearchInputs& inputs,
-                                           std::vector<Candidates> found);
+std::vector<detect::Candidates> without_duplicates(const SearchInputs& inputs,
+                                                   std::vector<detect::Candidates> found);
 
 }  // namespace bpa

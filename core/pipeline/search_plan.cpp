@@ -25,7 +25,7 @@ constexpr int kFewKeypoints = 200;          // with any of them
 constexpr double kRestOfPreparation = 5;    // times the surface; measured
 constexpr double kTimeOfPreparation = 0.7;  // of what is left after the surface, at most; by hand
 
-void shorten_preparation(const SearchFacts& facts, SearchPlan& plan, PlanReasons& reasons) {
+void shorten_preparation(const SearchFacts& facts, SearchPlan& plan, detect::PlanReasons& reasons) {
   const double fits = kPreparationPart * facts.budget_ms / facts.costs.preparation_ms;
   if (fits >= 1) return;
   const auto* shortened =
@@ -46,7 +46,7 @@ void shorten_preparation(const SearchFacts& facts, SearchPlan& plan, PlanReasons
 
 // Every setting as planned, beside the user's and the default.
 std::vector<PlanEntry> settings_of(const SearchPlan& plan, DetectorOptions given,
-                                   const PlanReasons& reasons) {
+                                   const detect::PlanReasons& reasons) {
   DetectorOptions planned = plan.settings(), defaults;
   const auto used = options_of(planned), asked = options_of(given), usual = options_of(defaults);
   std::vector<PlanEntry> out;
@@ -62,8 +62,8 @@ std::vector<PlanEntry> settings_of(const SearchPlan& plan, DetectorOptions given
 }
 
 std::vector<PlanEntry> entries_of(const SearchPlan& plan, const DetectorOptions& options,
-                                  const ScoreLayers& layers, int image_width,
-                                  const PlanReasons& reasons) {
+                                  const score::ScoreLayers& layers, int image_width,
+                                  const detect::PlanReasons& reasons) {
   std::vector<PlanEntry> out = settings_of(plan, options, reasons);
   const auto add = [&](const std::string& name, const auto& value, const std::string& reason) {
     const auto found = reasons.find(name);
@@ -75,7 +75,7 @@ std::vector<PlanEntry> entries_of(const SearchPlan& plan, const DetectorOptions&
     add("surface.reduction", map_reduction(image_width, most),
         concat(image_width, " pixels / surface.max_width, rounded up"));
   }
-  const SearchYield& yield = plan.yield;
+  const score::SearchYield& yield = plan.yield;
   const std::string& measured = layers.yield.provenance;
   add("yield.shape", yield.shape, measured);
   add("yield.tries", yield.tries, measured);
@@ -83,8 +83,8 @@ std::vector<PlanEntry> entries_of(const SearchPlan& plan, const DetectorOptions&
   add("yield.objects", yield.objects, measured);
   add("yield.scenes", yield.scenes, measured);
   const std::string kept = concat("keeps ", plan.detect.score.keep_right, " of the right ones");
-  for (std::size_t i = 0; i < kLimits; ++i) {
-    add(concat("limits.", kLimitNames[i]), plan.detect.limits.stages[i], kept);
+  for (std::size_t i = 0; i < score::kLimits; ++i) {
+    add(concat("limits.", score::kLimitNames[i]), plan.detect.limits.stages[i], kept);
   }
   if (!plan.limited) return out;
   const std::string why = "share of the time left";
@@ -98,7 +98,7 @@ std::vector<PlanEntry> entries_of(const SearchPlan& plan, const DetectorOptions&
 
 }  // namespace
 
-Result<SearchPlan> plan_search(const DetectorOptions& options, const ScoreLayers& layers,
+Result<SearchPlan> plan_search(const DetectorOptions& options, const score::ScoreLayers& layers,
                                const SearchFacts& facts) {
   const double keep_right = options.detect.score.keep_right;
   if (const auto limits = layers.limits.at(keep_right, facts.colored); !limits.ok()) {
@@ -109,13 +109,13 @@ Result<SearchPlan> plan_search(const DetectorOptions& options, const ScoreLayers
                             " ms with preparations of ", facts.costs.preparation_ms,
                             " ms; it must be for 1 or more, in no negative times");
   }
-  PlanReasons reasons;
+  detect::PlanReasons reasons;
   SearchPlan plan{
       .surface = options.surface,
       .planes = options.planes,
       .features = options.features,
       .rounds = options.rounds,
-      .detect = DetectPlan(options.detect, layers, {facts.models, facts.colored}, &reasons),
+      .detect = detect::DetectPlan(options.detect, layers, {facts.models, facts.colored}, &reasons),
       .scene = options.scene,
       .views = options.views,
       .yield = facts.colored ? layers.yield.with_color : layers.yield.without_color,
@@ -130,7 +130,8 @@ Result<SearchPlan> plan_search(const DetectorOptions& options, const ScoreLayers
 SceneFeatureOptions round_sample(const SearchPlan& plan, double share) {
   SceneFeatureOptions out = plan.features;
   if (share >= 1) return out;
-  for (int* size : {&out.max_references, &out.round_keypoints}) *size = part_of(*size, share);
+  for (int* size : {&out.max_references, &out.round_keypoints})
+    *size = detect::part_of(*size, share);
   return out;
 }
 

@@ -41,10 +41,10 @@ struct SearchPlan {
   PlaneOptions planes;
   SceneFeatureOptions features;  ///< Of a whole round: its numbers of points.
   RoundOptions rounds;
-  DetectPlan detect;  ///< Of a whole round.
-  InterpretationOptions scene;
+  detect::DetectPlan detect;  ///< Of a whole round.
+  scene::InterpretationOptions scene;
   ViewsOptions views;
-  SearchYield yield;  ///< With or without colours, as the frame is.
+  score::SearchYield yield;  ///< With or without colours, as the frame is.
   TimePlan time = {};
   bool limited = false;                 ///< There is a time budget.
   double prepared_share = 1;            ///< Of the work of a whole preparation, (0, 1].
@@ -58,7 +58,7 @@ struct SearchPlan {
 
 /// Pure: the same input gives the same plan. Fails with invalid_argument where the limits of the
 /// layers do not hold `score.keep_right`, and on facts of no models or of negative times.
-Result<SearchPlan> plan_search(const DetectorOptions& options, const ScoreLayers& layers,
+Result<SearchPlan> plan_search(const DetectorOptions& options, const score::ScoreLayers& layers,
                                const SearchFacts& facts);
 
 /// The points of the sample of a round that examines `share`, (0, 1], of a whole one.

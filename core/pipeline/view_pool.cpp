@@ -25,8 +25,8 @@ constexpr double kNotSeen = std::numeric_limits<double>::lowest();
 // whether two placements exclude one another. Chosen by hand.
 constexpr double kDecidingShare = 0.25;
 
-double visibility_of(const Candidate& candidate) {
-  const double value = candidate.values[component("visibility")];
+double visibility_of(const detect::Candidate& candidate) {
+  const double value = candidate.values[score::component("visibility")];
   return std::isnan(value) ? 0 : value;
 }
 
@@ -64,9 +64,10 @@ int common_pixels(const std::vector<std::uint32_t>& a, const std::vector<std::ui
   return common;
 }
 
-std::size_t most_explained(const Candidates& in_view) {
+std::size_t most_explained(const detect::Candidates& in_view) {
   std::size_t most = 0;
-  for (const Candidate& candidate : in_view) most = std::max(most, candidate.explained.size());
+  for (const detect::Candidate& candidate : in_view)
+    most = std::max(most, candidate.explained.size());
   return most;
 }
 
@@ -74,7 +75,7 @@ std::size_t most_explained(const Candidates& in_view) {
 
 struct ViewPool::Found {
   int view;
-  const Candidate* candidate;
+  const detect::Candidate* candidate;
   Pose scene_from_object;
 };
 
@@ -99,7 +100,7 @@ ViewPool::ViewPool(const Detector& detector, std::span<const ViewSearch* const> 
     pixels += static_cast<std::uint32_t>(views_[v]->scene.map.size());
     std::vector<PosePrior>& priors = priors_.emplace_back();
     for (const PosePrior& prior : request_.priors) {
-      priors.push_back(transformed(scene_from_camera_[v].inverse(), prior));
+      priors.push_back(detect::transformed(scene_from_camera_[v].inverse(), prior));
     }
   }
 }
@@ -107,7 +108,7 @@ ViewPool::ViewPool(const Detector& detector, std::span<const ViewSearch* const> 
 std::vector<ViewPool::Found> ViewPool::all_found() const {
   std::vector<Found> out;
   for (std::size_t v = 0; v < views_.size(); ++v) {
-    for (const Candidate& candidate : views_[v]->candidates) {
+    for (const detect::Candidate& candidate : views_[v]->candidates) {
       if (candidate.score < options_.min_pooled_score) continue;
       out.push_back({static_cast<int>(v), &candidate, scene_from_camera_[v] * candidate.pose()});
     }
@@ -141,10 +142,11 @@ void ViewPool::add(const Found& found) {
     entry = &entries_.emplace_back();
     entry->model = found.candidate->model;
     entry->place = found.scene_from_object * entry->model->centre;
-    entry->in_view.assign(views_.size(), Candidate{.model = entry->model, .score = kNotSeen});
+    entry->in_view.assign(views_.size(),
+                          detect::Candidate{.model = entry->model, .score = kNotSeen});
     entry->known.assign(views_.size(), false);
   }
-  Candidate candidate = *found.candidate;
+  detect::Candidate candidate = *found.candidate;
   if (!is_new && !entry->model->symmetry.trivial()) {
     const Pose pose = nearest_symmetric_pose(
         found.scene_from_object, joint(*entry).scene_from_object, entry->model->symmetry);
@@ -163,7 +165,7 @@ void ViewPool::gather() {
   for (Entry& entry : entries_) entry.known.assign(views_.size(), true);
 }
 
-Search ViewPool::search_in(int view, const ObjectModel& model) const {
+detect::Search ViewPool::search_in(int view, const ObjectModel& model) const {
   return {views_[view]->scene,      model,         plan_,
           detector_.score_layers(), priors_[view], request_.seed};
 }
@@ -185,21 +187,22 @@ void ViewPool::for_each_model_and_view(
 // A placement that another view found: near that pose it goes where this view shows it, since the
 // cameras' poses are not exact.
 void ViewPool::score_in(int view, const ObjectModel& model, SearchEffort& effort) {
-  const Search search = search_in(view, model);
-  RefinementOptions near = kLastAlignment;
+  const detect::Search search = search_in(view, model);
+  detect::RefinementOptions near = detect::kLastAlignment;
   near.start_gate_m = std::min(near.start_gate_m, options_.same_position_m);
   near.end_gate_m = std::min(near.end_gate_m, near.start_gate_m);
   for (Entry& entry : entries_) {
     if (entry.model != &model || entry.known[view]) continue;
     const Pose start = scene_from_camera_[view].inverse() * joint(entry).scene_from_object;
     if (!((start * model.centre).z() > 0)) continue;  // behind the camera
-    Refinement refinement = search.refine(start, near);
+    detect::Refinement refinement = search.refine(start, near);
     const PoseError moved = pose_error(refinement.camera_from_object, start);
     if (moved.position > options_.same_position_m || moved.angle > options_.same_angle_rad ||
         search.quick_score(refinement.camera_from_object) < search.quick_score(start)) {
       refinement = search.measured(start);
     }
-    const Candidate candidate{.model = &model, .found_by = Source::prior, .is_protected = true};
+    const detect::Candidate candidate{
+        .model = &model, .found_by = detect::Source::prior, .is_protected = true};
     entry.in_view[view] = search.scored(candidate, refinement);
   }
   effort += search.effort;
@@ -211,13 +214,14 @@ void ViewPool::compare() {
 }
 
 void ViewPool::compare_in(int view, const ObjectModel& model) {
-  Candidates candidates;
+  detect::Candidates candidates;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (entries_[i].model != &model || entries_[i].in_view[view].score == kNotSeen) continue;
     candidates.push_back(entries_[i].in_view[view]);
     candidates.back().scene_point = static_cast<int>(i);  // the stage sorts them
   }
-  for (Candidate& candidate : bpa::compare(search_in(view, model), std::move(candidates))) {
+  for (detect::Candidate& candidate :
+       bpa::detect::compare(search_in(view, model), std::move(candidates))) {
     const int i = candidate.scene_point;
     candidate.scene_point = -1;
     entries_[i].in_view[view] = std::move(candidate);
@@ -235,7 +239,7 @@ ViewPool::Joint ViewPool::joint(const Entry& entry) const {
   Joint out{reference};
   Vector6 sum = Vector6::Zero();
   for (std::size_t v = 0; v < views_.size(); ++v) {
-    const Candidate& candidate = entry.in_view[v];
+    const detect::Candidate& candidate = entry.in_view[v];
     // A view whose evidence says that nothing is there says nothing of where it is.
     const bool says = entry.known[v] && candidate.score >= options_.min_pooled_score;
     if (!says && static_cast<int>(v) != best) continue;
@@ -258,38 +262,39 @@ ViewPool::Joint ViewPool::joint(const Entry& entry) const {
   return out;
 }
 
-Candidate ViewPool::joined(const Entry& entry) const {
+detect::Candidate ViewPool::joined(const Entry& entry) const {
   std::size_t most = 0;
   std::vector<ViewEvidence> evidence;
   const Joint pose = joint(entry);
-  Candidate out{.model = entry.model,
-                .refinement = {pose.scene_from_object, pose.information, pose.num_correspondences}};
+  detect::Candidate out{
+      .model = entry.model,
+      .refinement = {pose.scene_from_object, pose.information, pose.num_correspondences}};
   for (std::size_t v = 0; v < views_.size(); ++v) {
-    const Candidate& candidate = entry.in_view[v];
+    const detect::Candidate& candidate = entry.in_view[v];
     evidence.push_back({candidate.score - candidate.prior, visibility_of(candidate)});
     if (evidence[v].visibility > evidence[most].visibility) most = v;
     for (const std::uint32_t pixel : candidate.explained) {
       out.explained.push_back(first_pixel_[v] + pixel);
     }
   }
-  const Candidate& clearest = entry.in_view[most];
+  const detect::Candidate& clearest = entry.in_view[most];
   out.found_by = clearest.found_by;
   out.values = clearest.values;
   out.prior = clearest.prior;
   out.score = combined_log_odds(evidence, options_) + out.prior;
-  out.probability = probability_of(out.score);
+  out.probability = score::probability_of(out.score);
   return out;
 }
 
-Candidates ViewPool::joined() const {
-  Candidates out(entries_.size());
+detect::Candidates ViewPool::joined() const {
+  detect::Candidates out(entries_.size());
   parallel_for(entries_.size(), request_.num_threads,
                [&](std::size_t i) { out[i] = joined(entries_[i]); });
   return out;
 }
 
-Overlaps ViewPool::overlaps(const Candidates& joined) const {
-  Overlaps out = find_overlaps(joined, plan_.limits[Limit::competing]);
+scene::Overlaps ViewPool::overlaps(const detect::Candidates& joined) const {
+  scene::Overlaps out = scene::find_overlaps(joined, plan_.limits[score::Limit::competing]);
   const auto conflict_in_a_view = [&](const Entry& a, const Entry& b) {
     for (std::size_t v = 0; v < views_.size(); ++v) {
       const auto& first = a.in_view[v].explained;
@@ -298,12 +303,12 @@ Overlaps ViewPool::overlaps(const Candidates& joined) const {
       const auto seen =
           static_cast<double>(std::min(most_explained(a.in_view), most_explained(b.in_view)));
       if (smaller == 0 || smaller < kDecidingShare * seen) continue;
-      if (common_pixels(first, second) > kMaxShared * smaller) return true;
+      if (common_pixels(first, second) > scene::kMaxShared * smaller) return true;
     }
     return false;
   };
   parallel_for(out.size(), request_.num_threads, [&](std::size_t i) {
-    for (Overlap& overlap : out[i]) {
+    for (scene::Overlap& overlap : out[i]) {
       if (overlap.conflicting) continue;
       overlap.conflicting = conflict_in_a_view(entries_[i], entries_[overlap.other]);
     }
@@ -311,14 +316,14 @@ Overlaps ViewPool::overlaps(const Candidates& joined) const {
   return out;
 }
 
-void ViewPool::judge(const std::vector<bool>& present, const Overlaps& overlaps) {
+void ViewPool::judge(const std::vector<bool>& present, const scene::Overlaps& overlaps) {
   for (std::size_t v = 0; v < views_.size(); ++v) {
-    Candidates candidates;
+    detect::Candidates candidates;
     for (Entry& entry : entries_) candidates.push_back(std::move(entry.in_view[v]));
-    measure_given_others(views_[v]->scene, overlaps, present, candidates,
-                         plan_.limits[Limit::competing], request_.num_threads);
+    scene::measure_given_others(views_[v]->scene, overlaps, present, candidates,
+                                plan_.limits[score::Limit::competing], request_.num_threads);
     for (std::size_t i = 0; i < entries_.size(); ++i) {
-      Candidate& candidate = candidates[i];
+      detect::Candidate& candidate = candidates[i];
       if (candidate.score > kNotSeen) {
         apply_layer(detector_.score_layers().last_for(candidate.values), candidate);
       }

@@ -23,11 +23,11 @@ class ViewPool {
   /// Compares poses that claim one place, in each view.
   void compare();
   /// The placements with the evidence of all views. Their poses are scene_from_object.
-  Candidates joined() const;
+  detect::Candidates joined() const;
   /// Which of joined() share pixels or exclude one another in any view.
-  Overlaps overlaps(const Candidates& joined) const;
+  scene::Overlaps overlaps(const detect::Candidates& joined) const;
   /// Judges each placement in each view, given the others that are `present` (joined()).
-  void judge(const std::vector<bool>& present, const Overlaps& overlaps);
+  void judge(const std::vector<bool>& present, const scene::Overlaps& overlaps);
   /// Searched pixels of all views.
   int observed_pixels() const;
   const SearchEffort& effort() const { return effort_; }
@@ -39,7 +39,7 @@ class ViewPool {
   struct Entry {
     const ObjectModel* model = nullptr;
     Eigen::Vector3d place{0, 0, 0};  ///< Of the object's centre, as first found; fixed frame.
-    Candidates in_view;              ///< One for each view, camera frame.
+    detect::Candidates in_view;      ///< One for each view, camera frame.
     std::vector<bool> known;         ///< Whether it is scored there.
   };
 
@@ -47,10 +47,10 @@ class ViewPool {
   void add(const Found& found);
   bool same(const Entry& entry, const Found& found) const;
   Joint joint(const Entry& entry) const;
-  Candidate joined(const Entry& entry) const;
+  detect::Candidate joined(const Entry& entry) const;
   void score_in(int view, const ObjectModel& model, SearchEffort& effort);
   void compare_in(int view, const ObjectModel& model);
-  Search search_in(int view, const ObjectModel& model) const;
+  detect::Search search_in(int view, const ObjectModel& model) const;
   void for_each_model_and_view(
       const std::function<void(int view, const ObjectModel&, SearchEffort&)>& work);
 
@@ -59,7 +59,7 @@ class ViewPool {
   std::vector<Pose> scene_from_camera_;
   const DetectRequest& request_;
   const ViewsOptions options_;
-  const DetectPlan plan_;
+  const detect::DetectPlan plan_;
   std::vector<std::vector<PosePrior>> priors_;  ///< Of each view, camera frame.
   std::vector<std::uint32_t> first_pixel_;      ///< Of each view among the pixels of all.
   std::vector<Entry> entries_;

@@ -28,7 +28,7 @@ DetectRequest seen_from(const Pose& scene_from_camera, const DetectRequest& requ
   const Pose camera_from_scene = scene_from_camera.inverse();
   DetectRequest out = request;
   out.on_round = {};
-  for (PosePrior& prior : out.priors) prior = transformed(camera_from_scene, prior);
+  for (PosePrior& prior : out.priors) prior = detect::transformed(camera_from_scene, prior);
   for (ExpectedPlacement& expected : out.expected) {
     expected.frame_from_object = camera_from_scene * expected.frame_from_object;
   }
@@ -38,17 +38,17 @@ DetectRequest seen_from(const Pose& scene_from_camera, const DetectRequest& requ
 // Surfaces of the views in the fixed frame: how far they are apart, and where the cameras then are.
 void check_cameras(std::span<const ViewSearch* const> views, const ViewsOptions& options,
                    ViewsResult& out) {
-  std::vector<PosedSurface> surfaces;
+  std::vector<calibration::PosedSurface> surfaces;
   for (std::size_t v = 0; v < views.size(); ++v) {
     surfaces.push_back({&views[v]->scene.map, out.scene_from_camera[v]});
   }
-  SurfaceAlignment alignment = align_surfaces(surfaces);
-  for (const SurfaceDisagreement& pair : alignment.pairs) {
+  calibration::SurfaceAlignment alignment = calibration::align_surfaces(surfaces);
+  for (const calibration::SurfaceDisagreement& pair : alignment.pairs) {
     const double degrees = pair.angle_rad * 180 / std::numbers::pi;
     if (pair.position_m < options.warn_position_m && degrees < options.warn_angle_deg) continue;
-    out.warnings.push_back(
-        disagreement_text(pair, name_of_view(pair.first, views[pair.first]->alone.frame_id),
-                          name_of_view(pair.second, views[pair.second]->alone.frame_id)));
+    out.warnings.push_back(calibration::disagreement_text(
+        pair, name_of_view(pair.first, views[pair.first]->alone.frame_id),
+        name_of_view(pair.second, views[pair.second]->alone.frame_id)));
   }
   out.disagreements = std::move(alignment.pairs);
   if (options.align_cameras) out.scene_from_camera = std::move(alignment.scene_from_camera);
@@ -71,7 +71,7 @@ DetectRequest with_priors_of(std::span<const View> views, const DetectRequest& r
   DetectRequest out = request;
   for (const View& view : views) {
     for (const PosePrior& prior : view.priors) {
-      out.priors.push_back(transformed(view.scene_from_camera, prior));
+      out.priors.push_back(detect::transformed(view.scene_from_camera, prior));
     }
   }
   return out;
@@ -160,21 +160,21 @@ ViewsResult combine_views(const Detector& detector, std::span<const ViewSearch* 
   ViewPool pool(detector, views, out.scene_from_camera, request, options);
   pool.gather();
   pool.compare();
-  Candidates joined = pool.joined();
-  const Overlaps overlaps = pool.overlaps(joined);
-  let_compete(joined, overlaps);
+  detect::Candidates joined = pool.joined();
+  const scene::Overlaps overlaps = pool.overlaps(joined);
+  scene::let_compete(joined, overlaps);
   if (detector.options().scene.judge_given_others &&
       detector.options().detect.score.use_round_three) {
-    pool.judge(first_interpretation(joined, overlaps), overlaps);
+    pool.judge(scene::first_interpretation(joined, overlaps), overlaps);
     joined = pool.joined();
-    let_compete(joined, overlaps);
+    scene::let_compete(joined, overlaps);
   }
   out.scene.effort += pool.effort();
   finish_stage("views");
-  InterpretationOptions interpretation = detector.options().scene;
+  scene::InterpretationOptions interpretation = detector.options().scene;
   interpretation.seed = request.seed;
   out.scene.interpretations = interpret(joined, overlaps, pool.observed_pixels(), interpretation);
-  keep_best(out.scene.interpretations, request.top_k);
+  scene::keep_best(out.scene.interpretations, request.top_k);
   finish_stage("interpretations of views");
   return out;
 }

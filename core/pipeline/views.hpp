@@ -26,9 +26,9 @@ struct View {
 
 /// What one view shows by itself.
 struct ViewSearch {
-  SceneFeatures scene;         ///< In the camera frame.
-  Candidates candidates;       ///< Of all models; the detector's library must live as long.
-  SceneInterpretations alone;  ///< Detector::detect() of the frame, in the camera frame.
+  SceneFeatures scene;            ///< In the camera frame.
+  detect::Candidates candidates;  ///< Of all models; the detector's library must live as long.
+  SceneInterpretations alone;     ///< Detector::detect() of the frame, in the camera frame.
 };
 
 /// What all views show together.
@@ -37,8 +37,8 @@ struct ViewsResult {
   /// view that sees most of the object. Covariances hold the expected error of the cameras' poses.
   /// The stamp is the latest frame's, `frame_id` is empty.
   SceneInterpretations scene;
-  std::vector<Pose> scene_from_camera;             ///< As used: aligned with align_cameras.
-  std::vector<SurfaceDisagreement> disagreements;  ///< Of pairs of views, as given.
+  std::vector<Pose> scene_from_camera;  ///< As used: aligned with align_cameras.
+  std::vector<calibration::SurfaceDisagreement> disagreements;  ///< Of pairs of views, as given.
   std::vector<std::string> warnings;  ///< For people: a sentence for each pair that disagrees.
 };
 

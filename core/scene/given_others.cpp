@@ -11,7 +11,7 @@
 #include "core/base/parallel.hpp"
 #include "core/score/surface_agreement.hpp"
 
-namespace bpa {
+namespace bpa::scene {
 namespace {
 
 constexpr int kNobody = -1;
@@ -35,7 +35,7 @@ void for_each_beside(const std::vector<std::uint32_t>& pixels, int width, int he
 
 // Which placement explains a pixel.
 std::vector<int> owners_of(const SceneFeatures& scene, const std::vector<bool>& present,
-                           const Candidates& candidates) {
+                           const detect::Candidates& candidates) {
   std::vector<int> owners(scene.map.size(), kNobody);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (!present[i]) continue;
@@ -54,7 +54,7 @@ std::vector<int> owners_of(const SceneFeatures& scene, const std::vector<bool>& 
 // What one placement looks like given the others.
 class Judge {
  public:
-  Judge(const SceneFeatures& scene, const Candidate& candidate,
+  Judge(const SceneFeatures& scene, const detect::Candidate& candidate,
         const std::vector<Overlap>& overlaps, const std::vector<bool>& present, std::size_t self,
         const std::vector<int>& owners)
       : scene_(scene), candidate_(candidate), owners_(owners), not_others_{static_cast<int>(self)} {
@@ -66,8 +66,8 @@ class Judge {
 
   // The share of the facing model points that are hidden by what no other explains.
   double hidden_by_unknown() const {
-    const HiddenPoints hidden =
-        hidden_points(scene_.image, *candidate_.model, candidate_.pose(), kJudgedPoints);
+    const score::HiddenPoints hidden =
+        score::hidden_points(scene_.image, *candidate_.model, candidate_.pose(), kJudgedPoints);
     const auto unknown = std::ranges::count_if(
         hidden.pixels, [&](std::uint32_t pixel) { return !of_another(pixel); });
     return static_cast<double>(unknown) / std::max(1, hidden.facing);
@@ -76,7 +76,7 @@ class Judge {
   // The share of the super-pixels it explains that neither it nor another does; those that it
   // explains most of count most.
   double left_over() const {
-    const Segmentation& segmentation = scene_.segmentation;
+    const segment::Segmentation& segmentation = scene_.segmentation;
     std::vector<int> explained(segmentation.segments.size(), 0);
     int all = 0;
     for (const std::uint32_t pixel : candidate_.explained) {
@@ -85,7 +85,7 @@ class Judge {
       ++explained[static_cast<std::size_t>(label)];
       ++all;
     }
-    if (all == 0) return kNotKnown;
+    if (all == 0) return score::kNotKnown;
     std::vector<bool> own(scene_.map.size(), false);
     for_each_beside(candidate_.explained, scene_.map.width(), scene_.map.height(),
                     [&](std::size_t pixel) { own[pixel] = true; });
@@ -101,16 +101,17 @@ class Judge {
   }
 
   // How much lighter it is seen than the others are: exposure is the same for all.
-  double relative_exposure(const Candidates& candidates, const std::vector<bool>& present) const {
+  double relative_exposure(const detect::Candidates& candidates,
+                           const std::vector<bool>& present) const {
     std::vector<double> others;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      const double exposure = candidates[i].values[component("exposure")];
+      const double exposure = candidates[i].values[score::component("exposure")];
       if (present[i] && is_other(static_cast<int>(i)) && !std::isnan(exposure)) {
         others.push_back(exposure);
       }
     }
-    if (others.empty()) return kNotKnown;
-    return candidate_.values[component("exposure")] - median(others);
+    if (others.empty()) return score::kNotKnown;
+    return candidate_.values[score::component("exposure")] - median(others);
   }
 
  private:
@@ -123,14 +124,15 @@ class Judge {
   }
 
   const SceneFeatures& scene_;
-  const Candidate& candidate_;
+  const detect::Candidate& candidate_;
   const std::vector<int>& owners_;
   std::vector<int> not_others_;  // itself and what is present and conflicts with it
 };
 
 }  // namespace
 
-std::vector<bool> first_interpretation(const Candidates& candidates, const Overlaps& overlaps) {
+std::vector<bool> first_interpretation(const detect::Candidates& candidates,
+                                       const Overlaps& overlaps) {
   std::vector<std::size_t> order(candidates.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater(),
@@ -146,17 +148,18 @@ std::vector<bool> first_interpretation(const Candidates& candidates, const Overl
 }
 
 void measure_given_others(const SceneFeatures& scene, const Overlaps& overlaps,
-                          const std::vector<bool>& present, Candidates& candidates,
+                          const std::vector<bool>& present, detect::Candidates& candidates,
                           double competing, int num_threads) {
   const std::vector<int> owners = owners_of(scene, present, candidates);
   parallel_for(candidates.size(), num_threads, [&](std::size_t i) {
-    Candidate& candidate = candidates[i];
+    detect::Candidate& candidate = candidates[i];
     if (candidate.score < competing) return;
     const Judge judge(scene, candidate, overlaps[i], present, i, owners);
-    candidate.values[component("hidden_by_unknown")] = judge.hidden_by_unknown();
-    candidate.values[component("left_over")] = judge.left_over();
-    candidate.values[component("relative_exposure")] = judge.relative_exposure(candidates, present);
+    candidate.values[score::component("hidden_by_unknown")] = judge.hidden_by_unknown();
+    candidate.values[score::component("left_over")] = judge.left_over();
+    candidate.values[score::component("relative_exposure")] =
+        judge.relative_exposure(candidates, present);
   });
 }
 
-}  // namespace bpa
+}  // namespace bpa::scene

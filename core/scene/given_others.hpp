@@ -11,17 +11,18 @@
 // What hides what: each placement is judged again given the others of a first interpretation. What
 // they hide is neither for nor against it, and what they explain is not left over.
 
-namespace bpa {
+namespace bpa::scene {
 
 /// The candidates of a first interpretation: by falling probability, those over 0.5 that conflict
 /// with none before.
-std::vector<bool> first_interpretation(const Candidates& candidates, const Overlaps& overlaps);
+std::vector<bool> first_interpretation(const detect::Candidates& candidates,
+                                       const Overlaps& overlaps);
 
 /// Measures the components of Round::others for each candidate of at least
 /// `competing` log odds. The others are
 /// the `present` candidates that it does not conflict with.
 void measure_given_others(const SceneFeatures& scene, const Overlaps& overlaps,
-                          const std::vector<bool>& present, Candidates& candidates,
+                          const std::vector<bool>& present, detect::Candidates& candidates,
                           double competing, int num_threads);
 
-}  // namespace bpa
+}  // namespace bpa::scene

@@ -11,7 +11,7 @@
 #include "core/scene/overlaps.hpp"
 #include "core/score/score_layer.hpp"
 
-namespace bpa {
+namespace bpa::scene {
 namespace {
 
 constexpr double kExplainedWeight = 2;  // of the ratio of explained to observed surface
@@ -21,11 +21,11 @@ constexpr double kMinShown = 0.001;  // less probable placements are in no inter
 
 // What a placement adds to the score by itself: its log odds beyond those asked for, less the
 // penalty (paper section VI, components 1 and 3).
-double single_worth(const Candidate& c, const InterpretationOptions& options) {
+double single_worth(const detect::Candidate& c, const InterpretationOptions& options) {
   if (c.explained.empty()) return -options.object_penalty;
   // Of poses so near to one another that each is right when the others are, the best fit counts.
   constexpr double kFit = 0.1;
-  return log_odds_of(c.probability) - log_odds_of(options.min_probability) -
+  return score::log_odds_of(c.probability) - score::log_odds_of(options.min_probability) -
          options.object_penalty + kFit * std::clamp(c.score, -10.0, 10.0);
 }
 
@@ -33,7 +33,7 @@ double single_worth(const Candidate& c, const InterpretationOptions& options) {
 // placement has overlaps.
 class SubsetScore {
  public:
-  SubsetScore(const Candidates& candidates, const Overlaps& overlaps, int observed_pixels,
+  SubsetScore(const detect::Candidates& candidates, const Overlaps& overlaps, int observed_pixels,
               const InterpretationOptions& options)
       : candidates_(candidates),
         options_(options),
@@ -54,7 +54,7 @@ class SubsetScore {
   }
   /// What adding i would change the score by, or has.
   double worth(std::size_t i) const {
-    const Candidate& c = candidates_[i];
+    const detect::Candidate& c = candidates_[i];
     double sum = single_worth(c, options_) + per_pixel_ * static_cast<double>(c.explained.size());
     for (const Overlap& overlap : overlaps_[i]) {
       if (chosen_[overlap.other]) sum -= lost(i, overlap) + per_pixel_ * overlap.common;
@@ -63,7 +63,7 @@ class SubsetScore {
   }
   // A shared pixel counts half for each of the two.
   double lost(std::size_t i, const Overlap& overlap) const {
-    const auto part = [&](const Candidate& c) {
+    const auto part = [&](const detect::Candidate& c) {
       return overlap.common / std::max(1.0, static_cast<double>(c.explained.size())) *
              std::max(0.0, single_worth(c, options_));
     };
@@ -83,7 +83,7 @@ class SubsetScore {
   }
 
  private:
-  const Candidates& candidates_;
+  const detect::Candidates& candidates_;
   const InterpretationOptions& options_;
   double per_pixel_;
   const Overlaps& overlaps_;
@@ -180,7 +180,7 @@ using Entry = BestSubsets::Entry;
 
 // See interpret(): first what differs, then what is left of the best.
 std::vector<Entry> rank(SubsetScore& state, const std::vector<std::size_t>& among,
-                        const Candidates& candidates, const Competition& competition,
+                        const detect::Candidates& candidates, const score::Competition& competition,
                         BestSubsets& best, const InterpretationOptions& options) {
   // What no interpretation has shown yet, by falling probability. Nearly the same pose of the same
   // model counts as shown as well.
@@ -188,7 +188,7 @@ std::vector<Entry> rank(SubsetScore& state, const std::vector<std::size_t>& amon
   std::ranges::stable_sort(unshown, std::greater(),
                            [&](std::size_t i) { return candidates[i].probability; });
   const auto show = [&](const std::vector<bool>& subset) {
-    const auto shown = [&](const Competition::Rival& rival) {
+    const auto shown = [&](const score::Competition::Rival& rival) {
       return rival.same_pose > 0.5 && subset[rival.other];
     };
     std::erase_if(unshown, [&](std::size_t i) {
@@ -217,16 +217,17 @@ std::vector<Entry> rank(SubsetScore& state, const std::vector<std::size_t>& amon
 
 }  // namespace
 
-void let_compete(Candidates& candidates, const Overlaps& overlaps) {
+void let_compete(detect::Candidates& candidates, const Overlaps& overlaps) {
   std::vector<double> scores;
-  for (const Candidate& candidate : candidates) scores.push_back(candidate.score);
+  for (const detect::Candidate& candidate : candidates) scores.push_back(candidate.score);
   const std::vector<double> probabilities =
-      competing_probabilities(scores, competition_of(candidates, overlaps));
+      score::competing_probabilities(scores, competition_of(candidates, overlaps));
   for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].probability = probabilities[i];
 }
 
-std::vector<Interpretation> interpret(const Candidates& candidates, const Overlaps& overlaps,
-                                      int observed_pixels, const InterpretationOptions& options) {
+std::vector<Interpretation> interpret(const detect::Candidates& candidates,
+                                      const Overlaps& overlaps, int observed_pixels,
+                                      const InterpretationOptions& options) {
   std::vector<std::size_t> among, probable;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const double probability = candidates[i].probability;
@@ -237,7 +238,7 @@ std::vector<Interpretation> interpret(const Candidates& candidates, const Overla
   BestSubsets best(options.max_interpretations);
   greedy(state, probable, best);
   if (!probable.empty()) anneal(state, probable, options, best);
-  const Competition competition = competition_of(candidates, overlaps);
+  const score::Competition competition = competition_of(candidates, overlaps);
   std::vector<Interpretation> out;
   double total = 0, top = 0;
   for (const Entry& entry : rank(state, among, candidates, competition, best, options)) {
@@ -248,7 +249,7 @@ std::vector<Interpretation> interpret(const Candidates& candidates, const Overla
     total += interpretation.probability;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       if (!entry.subset[i]) continue;
-      interpretation.placements.push_back(to_placement(candidates[i]));
+      interpretation.placements.push_back(detect::to_placement(candidates[i]));
       interpretation.placements.back().alternatives = alternatives_of(candidates, competition, i);
     }
     std::ranges::stable_sort(interpretation.placements, std::greater(), &Placement::probability);
@@ -265,4 +266,4 @@ void keep_best(std::vector<Interpretation>& interpretations, std::size_t count) 
   for (Interpretation& interpretation : interpretations) interpretation.probability /= sum;
 }
 
-}  // namespace bpa
+}  // namespace bpa::scene

@@ -11,7 +11,7 @@
 #include "core/result/interpretation.hpp"
 #include "core/scene/overlaps.hpp"
 
-namespace bpa {
+namespace bpa::scene {
 
 struct InterpretationOptions {
   BPA_OPTION(double, min_probability, 0.5, (0, 1),
@@ -31,7 +31,7 @@ struct InterpretationOptions {
 
 /// Replaces the probabilities of single candidates by those under competition with their rivals
 /// (competing_probabilities).
-void let_compete(Candidates& candidates, const Overlaps& overlaps);
+void let_compete(detect::Candidates& candidates, const Overlaps& overlaps);
 
 /// Explains the scene by subsets of the candidates (paper section VI): simulated annealing on the
 /// multi-object-placement score. It adds single scores, each weighted by the share of the pixels
@@ -43,10 +43,11 @@ void let_compete(Candidates& candidates, const Overlaps& overlaps);
 /// placements that no earlier one holds. Then the rest by falling score. Probabilities are relative
 /// to all returned. `overlaps` is find_overlaps() of the candidates; `observed_pixels` counts the
 /// searched pixels of the reduced image.
-std::vector<Interpretation> interpret(const Candidates& candidates, const Overlaps& overlaps,
-                                      int observed_pixels, const InterpretationOptions& options);
+std::vector<Interpretation> interpret(const detect::Candidates& candidates,
+                                      const Overlaps& overlaps, int observed_pixels,
+                                      const InterpretationOptions& options);
 
 /// Keeps the first `count`, at least 1; their probabilities are scaled to sum to 1 again.
 void keep_best(std::vector<Interpretation>& interpretations, std::size_t count);
 
-}  // namespace bpa
+}  // namespace bpa::scene

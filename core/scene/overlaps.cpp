@@ -10,15 +10,15 @@
 
 #include "core/observation/tolerance.hpp"
 
-namespace bpa {
+namespace bpa::scene {
 namespace {
 
 // Of a solid model it is known what is inside of it.
-bool solid(const Candidate& c) { return c.model->complete && c.model->index; }
+bool solid(const detect::Candidate& c) { return c.model->complete && c.model->index; }
 
 // Two instances of one model cannot have nearly the same place. An object may lie on a plate, so
 // complete models of two objects are compared by their surfaces instead.
-bool same_place(const Candidate& a, const Candidate& b) {
+bool same_place(const detect::Candidate& a, const detect::Candidate& b) {
   const double distance = (a.place() - b.place()).norm();
   const double smaller = std::min(a.model->diameter, b.model->diameter);
   if (a.model == b.model) return distance < tolerance::kSamePlace * smaller;
@@ -27,7 +27,7 @@ bool same_place(const Candidate& a, const Candidate& b) {
 
 // The share of a's surface that lies clearly inside of b. Only a model that was seen from all sides
 // has an inside; a hollow is not one.
-double share_inside(const Candidate& a, const Candidate& b) {
+double share_inside(const detect::Candidate& a, const detect::Candidate& b) {
   constexpr std::size_t kPoints = 48;
   const std::vector<Eigen::Vector3f>& points = a.model->index->check.points;
   const FastPose a_in_b = to_fast(b.pose().inverse() * a.pose());
@@ -43,7 +43,7 @@ double share_inside(const Candidate& a, const Candidate& b) {
   return count > 0 ? inside / static_cast<double>(count) : 0;
 }
 
-bool interpenetrate(const Candidate& a, const Candidate& b) {
+bool interpenetrate(const detect::Candidate& a, const detect::Candidate& b) {
   constexpr double kMaxInside = 0.1;
   if (!solid(a) || !solid(b)) return false;
   const double reach = 0.5 * (a.model->diameter + b.model->diameter);
@@ -51,7 +51,7 @@ bool interpenetrate(const Candidate& a, const Candidate& b) {
   return share_inside(a, b) > kMaxInside || share_inside(b, a) > kMaxInside;
 }
 
-double same_pose(const Candidate& a, const Candidate& b) {
+double same_pose(const detect::Candidate& a, const detect::Candidate& b) {
   if (a.model != b.model || (a.place() - b.place()).norm() > tolerance::kFarRivals) return 0;
   const PoseError error = pose_error(a.pose(), b.pose(), a.model->symmetry);
   return std::clamp(
@@ -61,7 +61,7 @@ double same_pose(const Candidate& a, const Candidate& b) {
 
 // How many pixels each two candidates share, row by row; counted through an index from pixels to
 // the candidates that explain them.
-std::vector<int> common_pixels(const Candidates& candidates,
+std::vector<int> common_pixels(const detect::Candidates& candidates,
                                const std::vector<std::uint32_t>& running) {
   std::uint32_t num_pixels = 0;
   for (std::uint32_t i : running) {
@@ -94,15 +94,15 @@ struct PoseGroup {
   double weight = 0;
 };
 
-bool nearly_same_pose(const Competition& competition, std::size_t a, std::size_t b) {
-  return std::ranges::any_of(competition.rivals[a], [b](const Competition::Rival& rival) {
+bool nearly_same_pose(const score::Competition& competition, std::size_t a, std::size_t b) {
+  return std::ranges::any_of(competition.rivals[a], [b](const score::Competition::Rival& rival) {
     return rival.other == b && rival.same_pose >= 0.5;
   });
 }
 
 }  // namespace
 
-Overlaps find_overlaps(const Candidates& candidates, double competing) {
+Overlaps find_overlaps(const detect::Candidates& candidates, double competing) {
   std::vector<std::uint32_t> running;
   for (std::uint32_t i = 0; i < candidates.size(); ++i) {
     if (candidates[i].score >= competing) running.push_back(i);
@@ -111,8 +111,8 @@ Overlaps find_overlaps(const Candidates& candidates, double competing) {
   Overlaps overlaps(candidates.size());
   for (std::size_t a = 0; a < running.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
-      const Candidate& first = candidates[running[a]];
-      const Candidate& second = candidates[running[b]];
+      const detect::Candidate& first = candidates[running[a]];
+      const detect::Candidate& second = candidates[running[b]];
       const int shared = common[a * running.size() + b];
       const auto smaller =
           static_cast<double>(std::min(first.explained.size(), second.explained.size()));
@@ -127,8 +127,8 @@ Overlaps find_overlaps(const Candidates& candidates, double competing) {
   return overlaps;
 }
 
-Competition competition_of(const Candidates& candidates, const Overlaps& overlaps) {
-  Competition out;
+score::Competition competition_of(const detect::Candidates& candidates, const Overlaps& overlaps) {
+  score::Competition out;
   out.rivals.resize(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     for (const Overlap& overlap : overlaps[i]) {
@@ -139,11 +139,11 @@ Competition competition_of(const Candidates& candidates, const Overlaps& overlap
   return out;
 }
 
-std::vector<PoseAlternative> alternatives_of(const Candidates& candidates,
-                                             const Competition& competition, std::size_t chosen,
-                                             double min_weight) {
+std::vector<PoseAlternative> alternatives_of(const detect::Candidates& candidates,
+                                             const score::Competition& competition,
+                                             std::size_t chosen, double min_weight) {
   std::vector<int> rivals;
-  for (const Competition::Rival& rival : competition.rivals[chosen]) {
+  for (const score::Competition::Rival& rival : competition.rivals[chosen]) {
     if (candidates[rival.other].model == candidates[chosen].model) rivals.push_back(rival.other);
   }
   std::ranges::stable_sort(rivals, std::greater(), [&](int i) { return candidates[i].score; });
@@ -178,4 +178,4 @@ std::vector<PoseAlternative> alternatives_of(const Candidates& candidates,
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::scene

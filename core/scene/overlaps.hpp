@@ -8,7 +8,7 @@
 #include "core/detect/candidate.hpp"
 #include "core/score/competition.hpp"
 
-namespace bpa {
+namespace bpa::scene {
 
 /// What two placements have in common.
 struct Overlap {
@@ -22,20 +22,20 @@ using Overlaps = std::vector<std::vector<Overlap>>;  ///< Of each candidate.
 /// share observed pixels or its position, by rising `other`. Two conflict when they share more than
 /// 0.3 of the smaller one's explained pixels. Also when their origins are too near for two solid
 /// objects. Also when more than a tenth of one's surface lies over 1 cm deep inside of the other.
-Overlaps find_overlaps(const Candidates& candidates, double competing);
+Overlaps find_overlaps(const detect::Candidates& candidates, double competing);
 
 /// Share of the smaller one's pixels that two placements may share. Chosen by hand.
 constexpr double kMaxShared = 0.3;
 
 /// The rivals of each candidate: those that it conflicts with.
-Competition competition_of(const Candidates& candidates, const Overlaps& overlaps);
+score::Competition competition_of(const detect::Candidates& candidates, const Overlaps& overlaps);
 
 /// The other poses in which the object of candidate `chosen` explains the same view, by falling
 /// weight: a mug with its handle out of sight, a box with one visible face. They are its rivals of
 /// the same model; nearly equal poses are merged. Their weights and the chosen pose's own sum to 1.
 /// Leaves out weights below `min_weight`. Empty if the view determines the pose.
-std::vector<PoseAlternative> alternatives_of(const Candidates& candidates,
-                                             const Competition& competition, std::size_t chosen,
-                                             double min_weight = 0.02);
+std::vector<PoseAlternative> alternatives_of(const detect::Candidates& candidates,
+                                             const score::Competition& competition,
+                                             std::size_t chosen, double min_weight = 0.02);
 
-}  // namespace bpa
+}  // namespace bpa::scene

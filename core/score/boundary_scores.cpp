@@ -6,7 +6,7 @@
 
 #include "core/score/likelihood.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 constexpr double kEdgeFloor = 0.05;          // least likelihood of an edge where one is predicted
@@ -63,4 +63,4 @@ double occlusion_edge_score(const CheckImage& image, const Image<float>& edges,
   return count > 0 ? sum / count : 0;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -11,7 +11,7 @@
 // How well the boundaries that a placement predicts fit the observed edge image (paper V.5, V.8).
 // `edges` is the edge image, of the size of `image`.
 
-namespace bpa {
+namespace bpa::score {
 
 /// Edge likelihood: the range edges of the closest of the 66 views, projected into the edge image.
 /// The average log-likelihood, weighted by visibility probability, in [-1, 0]. 0: every edge point
@@ -27,4 +27,4 @@ double edge_likelihood_score(const CheckImage& image, const Image<float>& edges,
 double occlusion_edge_score(const CheckImage& image, const Image<float>& edges,
                             const PredictedSurface& predicted);
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -7,7 +7,7 @@
 #include "core/observation/tolerance.hpp"
 #include "core/score/projected_block.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 double ColorCheck::log_odds() const {
   constexpr int kMinSeen = 6;
@@ -36,4 +36,4 @@ ColorCheck check_colors(const CheckImage& image, const Image<MatchColor>& colors
   return check;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

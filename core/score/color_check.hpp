@@ -7,7 +7,7 @@
 #include "core/model/model_index.hpp"
 #include "core/observation/check_image.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 /// Counts over model points on searched surface.
 struct ColorCheck {
@@ -28,4 +28,4 @@ struct ColorCheck {
 ColorCheck check_colors(const CheckImage& image, const Image<MatchColor>& colors,
                         const ModelIndex& model, const FastPose& pose);
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -10,7 +10,7 @@
 #include "core/cloud/cielab.hpp"
 #include "core/score/likelihood.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 constexpr double kColorSigma = 12;  // CIELAB
@@ -99,4 +99,4 @@ ColorAgreement compare_colors(const CheckImage& image, const Image<Eigen::Vector
           .exposure = static_cast<double>(log_gain[1])};
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -10,7 +10,7 @@
 #include "core/score/likelihood.hpp"
 #include "core/score/predicted_surface.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 /// How the colours that a placement predicts agree with the observed ones. kNotKnown where nothing
 /// can be compared.
@@ -35,4 +35,4 @@ ColorAgreement compare_colors(const CheckImage& image, const Image<Eigen::Vector
                               std::span<const Eigen::Vector3f> surface,
                               const PredictedSurface& predicted);
 
-}  // namespace bpa
+}  // namespace bpa::score

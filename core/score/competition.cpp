@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace bpa {
+namespace bpa::score {
 
 std::vector<double> competing_probabilities(std::span<const double> scores,
                                             const Competition& competition) {
@@ -27,4 +27,4 @@ std::vector<double> competing_probabilities(std::span<const double> scores,
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

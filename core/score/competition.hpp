@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace bpa {
+namespace bpa::score {
 
 /// Which placements of a frame exclude one another: at most one of those that claim the same place
 /// or the same observed points can be right.
@@ -27,4 +27,4 @@ struct Competition {
 std::vector<double> competing_probabilities(std::span<const double> scores,
                                             const Competition& competition);
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/score/components.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 ScoreValues measure(Evidence& evidence, Round last) {
   ScoreValues values;
@@ -13,4 +13,4 @@ ScoreValues measure(Evidence& evidence, Round last) {
   return values;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -20,7 +20,7 @@
 // tests read this table: a new component is a function of the evidence and an entry here. Layers
 // that do not know it yet count it as nothing until they are trained again.
 
-namespace bpa {
+namespace bpa::score {
 
 /// When a component becomes known: in round two, in round three, when rivals are compared, or when
 /// a first interpretation says what else is there.
@@ -177,4 +177,4 @@ consteval std::size_t component(std::string_view name) {
 /// The components that are known up to `last`; the others are kNotKnown.
 ScoreValues measure(Evidence& evidence, Round last);
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -18,7 +18,7 @@
 #include "core/score/surface_agreement.hpp"
 #include "core/score/texture_score.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 /// What the score components of one placement are computed from. Each part is computed once, when a
 /// component first asks for it. Keeps references.
@@ -99,4 +99,4 @@ class Evidence {
   std::optional<RestingAgreement> resting_;
 };
 
-}  // namespace bpa
+}  // namespace bpa::score

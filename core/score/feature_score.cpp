@@ -9,7 +9,7 @@
 #include "core/score/likelihood.hpp"
 #include "core/score/pose_check.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 // Of the distance of two histograms, three parts that sum to 100 each. At right placements in
@@ -17,7 +17,7 @@ namespace {
 // objects in their place, than 77 and 100.
 constexpr double kHistogramSigma = 45;
 
-double histogram_distance(const Fpfh& a, const Fpfh& b) {
+double histogram_distance(const features::Fpfh& a, const features::Fpfh& b) {
   double sum = 0;
   for (std::size_t k = 0; k < a.size(); ++k) {
     const auto difference = static_cast<double>(a[k] - b[k]);
@@ -44,7 +44,7 @@ int FeaturePlaces::nearest_to(const Eigen::Vector3f& point, const Eigen::Vector3
 }
 
 double fpfh_score(const PointCloud& surface, std::span<const int> keypoints,
-                  std::span<const Fpfh> fpfh, const FeaturePlaces& places,
+                  std::span<const features::Fpfh> fpfh, const FeaturePlaces& places,
                   const Pose& camera_from_object) {
   const FastPose pose = to_fast(camera_from_object.inverse());
   const DistanceTransform& distances = places.model().index->distances;
@@ -56,11 +56,11 @@ double fpfh_score(const PointCloud& surface, std::span<const int> keypoints,
     if (distances.cell_of(point) < 0) continue;  // far from the model, as most are
     const int match = places.nearest_to(point, pose.rotation * surface.normals[i]);
     if (match < 0) continue;
-    const Fpfh& expected = places.model().index->fpfh[static_cast<std::size_t>(match)];
+    const features::Fpfh& expected = places.model().index->fpfh[static_cast<std::size_t>(match)];
     sum += truncated_log_normal(histogram_distance(fpfh[k], expected), kHistogramSigma);
     ++count;
   }
   return count > 0 ? sum / count : -1;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -10,7 +10,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/model/object_model.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 /// Finds features of a model by place. Make one for each model; keeps a reference to it.
 class FeaturePlaces {
@@ -32,7 +32,7 @@ class FeaturePlaces {
 /// [-1, 0]; -1 when no feature lies on the model. `keypoints` index `surface` (camera frame, with
 /// normals), `fpfh` is theirs.
 double fpfh_score(const PointCloud& surface, std::span<const int> keypoints,
-                  std::span<const Fpfh> fpfh, const FeaturePlaces& places,
+                  std::span<const features::Fpfh> fpfh, const FeaturePlaces& places,
                   const Pose& camera_from_object);
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -9,7 +9,7 @@
 #include "core/model/model_index.hpp"
 #include "core/score/likelihood.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 // Chosen by hand on simulated piles, as all constants of this file.
@@ -88,4 +88,4 @@ double FigureColors::of_surroundings(int u, int v, const PredictedSurface& other
   return std::log(double{sum / count + kUnusual});
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -9,7 +9,7 @@
 #include "core/model/object_model.hpp"
 #include "core/score/predicted_surface.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 /// Whether pixels have the colour of an object or that of what is around it, under one pose. Keeps
 /// references.
@@ -40,4 +40,4 @@ class FigureColors {
   bool known_ = false;
 };
 
-}  // namespace bpa
+}  // namespace bpa::score

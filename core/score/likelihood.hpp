@@ -10,7 +10,7 @@
 
 // The pieces that score components are made of.
 
-namespace bpa {
+namespace bpa::score {
 
 /// The value of a score component that is not known.
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
@@ -45,4 +45,4 @@ inline double visibility_probability(double observed_depth, double predicted_dep
                                   [](double x) { return std::exp(x); });
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

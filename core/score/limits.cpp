@@ -8,7 +8,7 @@
 
 #include "core/base/concat.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 template <std::size_t N>
@@ -95,4 +95,4 @@ LearnedLimits measure_limits(const std::vector<RightPlacement>& with_color,
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -16,7 +16,7 @@
 // Log odds below which a candidate is given up. They are of the score layers that make the log
 // odds, and lie in one file with them. `bpa train` measures them with these layers.
 
-namespace bpa {
+namespace bpa::score {
 
 /// Where the search compares a candidate's log odds with a limit.
 enum class Limit : std::uint8_t {
@@ -107,4 +107,4 @@ LearnedLimits measure_limits(const std::vector<RightPlacement>& with_color,
                              const std::vector<RightPlacement>& without_color,
                              const LearnedLimits& start);
 
-}  // namespace bpa
+}  // namespace bpa::score

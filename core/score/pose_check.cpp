@@ -6,7 +6,7 @@
 
 #include "core/score/projected_block.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 // Facing points after which a hopeless pose is rejected. Most poses are rejected at the first look.
@@ -63,4 +63,4 @@ PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const Fa
   return check;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

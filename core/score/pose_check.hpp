@@ -9,7 +9,7 @@
 #include "core/model/model_index.hpp"
 #include "core/observation/check_image.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 /// Counts over the model points that face the camera.
 struct PoseCheck {
@@ -53,4 +53,4 @@ struct CheckCount {
 PoseCheck check_pose(const CheckImage& image, const CheckPoints& model, const FastPose& pose,
                      const CheckCount& count, const CheckTolerance& tolerance);
 
-}  // namespace bpa
+}  // namespace bpa::score

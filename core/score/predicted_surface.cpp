@@ -9,7 +9,7 @@
 
 #include "core/observation/tolerance.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 constexpr float kMinCosine = 0.05f;      // between normal and line of sight
@@ -131,4 +131,4 @@ PredictedSurface predict_whole_surface(const CheckImage& image, const ObjectMode
   return draw(image, facing_points(image, model, all, to_fast(camera_from_object)));
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

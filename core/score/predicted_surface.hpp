@@ -12,7 +12,7 @@
 #include "core/observation/tolerance.hpp"
 #include "core/score/pose_check.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 /// What a placement predicts for the pixels of the reduced image: the model's surface as the camera
 /// would see it were nothing else there. Only the rectangle that it covers is stored.
@@ -73,4 +73,4 @@ inline Eigen::Vector3f observed_point(const CheckImage& image, int u, int v) {
           (static_cast<float>(v) - image.cy) / image.fy * z, z};
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -5,7 +5,7 @@
 #include "core/base/dispatch.hpp"
 #include "core/score/projection.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 // Straight-line code over arrays, so that the compiler uses the widest vectors there are.
@@ -36,4 +36,4 @@ void ProjectedBlock::project(const CheckImage& image, const CheckPoints& model,
   project_block(image, model, pose, first, min_facing, *this);
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -6,7 +6,7 @@
 #include "core/model/model_index.hpp"
 #include "core/observation/check_image.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 /// Least `min_facing` of pose checks; chosen by hand.
 constexpr float kCheckFacing = 0.15f;
@@ -24,4 +24,4 @@ struct ProjectedBlock {
                float min_facing = kCheckFacing);
 };
 
-}  // namespace bpa
+}  // namespace bpa::score

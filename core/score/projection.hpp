@@ -7,7 +7,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/observation/check_image.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 struct Coordinates {
   float x, y, z;
@@ -62,4 +62,4 @@ class Projection {
   int width_;
 };
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -9,7 +9,7 @@
 #include "core/model/model_index.hpp"
 #include "core/score/likelihood.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 struct PixelPlace {
@@ -74,4 +74,4 @@ double random_walk_score(const CheckImage& image, const Image<float>& edges,
   return sum / options.walks;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

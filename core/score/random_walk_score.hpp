@@ -10,7 +10,7 @@
 #include "core/score/pose_check.hpp"
 #include "core/score/predicted_surface.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 struct RandomWalkOptions {
   int walks = 60;
@@ -28,4 +28,4 @@ double random_walk_score(const CheckImage& image, const Image<float>& edges,
                          const ObjectModel& model, const Pose& camera_from_object,
                          const PredictedSurface& predicted, const RandomWalkOptions& options = {});
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -10,7 +10,7 @@
 #include "core/model/model_index.hpp"
 #include "core/observation/tolerance.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 // Chosen by hand on simulated piles, as all constants of this file.
@@ -77,4 +77,4 @@ RestingAgreement compare_resting(const CheckImage& image, std::span<const Plane>
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

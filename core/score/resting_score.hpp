@@ -10,7 +10,7 @@
 #include "core/observation/check_image.hpp"
 #include "core/score/likelihood.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 /// How a placement relates to the large planes of the scene, on which objects lie.
 struct RestingAgreement {
@@ -28,4 +28,4 @@ struct RestingAgreement {
 RestingAgreement compare_resting(const CheckImage& image, std::span<const Plane> planes,
                                  const ObjectModel& model, const Pose& camera_from_object);
 
-}  // namespace bpa
+}  // namespace bpa::score

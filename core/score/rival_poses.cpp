@@ -11,7 +11,7 @@
 #include "core/score/figure_ground.hpp"
 #include "core/score/texture_score.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 constexpr float kSeen = 0.7f;          // of the pixels that a right pose covers
@@ -146,4 +146,4 @@ std::vector<RivalEvidence> behind_best(const SceneFeatures& scene, const ObjectM
   return evidence;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

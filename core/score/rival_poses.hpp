@@ -11,7 +11,7 @@
 #include "core/score/pose_check.hpp"
 #include "core/score/predicted_surface.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 using Pixels = std::vector<Eigen::Vector2i>;
 
@@ -38,4 +38,4 @@ struct RivalEvidence {
 std::vector<RivalEvidence> behind_best(const SceneFeatures& scene, const ObjectModel& model,
                                        std::span<const Pose> poses, std::size_t contenders);
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 constexpr std::size_t kNumComponents = kScoreComponents.size();
@@ -349,4 +349,4 @@ Reliability reliability(const ScoreLayer& layer, std::span<const ScoreFrame> fra
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

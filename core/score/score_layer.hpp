@@ -16,7 +16,7 @@
 #include "core/score/limits.hpp"
 #include "core/score/search_yield.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 /// The learned score: each score component contributes log odds by a piecewise linear function.
 /// Their sum is the log odds of the placement against an empty place. README.md compares this with
@@ -119,4 +119,4 @@ struct Reliability {
 };
 Reliability reliability(const ScoreLayer& layer, std::span<const ScoreFrame> frames);
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -8,7 +8,7 @@
 
 #include "core/score/score_layer.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 // The text of config/score_layers.json when the library was built; CMakeLists.txt writes it.
 extern const char* const kBuiltInLayers;
@@ -168,4 +168,4 @@ const ScoreLayers& default_score_layers() {
   return layers;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 constexpr std::size_t kFewestDiscoveries = 50;
@@ -62,4 +62,4 @@ SearchYield measure_yield(const std::vector<Discovery>& discoveries,
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

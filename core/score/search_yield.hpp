@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace bpa {
+namespace bpa::score {
 
 /// How soon a search finds what is in sight: measured by `bpa train`, and stored with the score
 /// layers. A try is a reference point of the scene that is looked up in a model.
@@ -46,4 +46,4 @@ struct Discovery {
 SearchYield measure_yield(const std::vector<Discovery>& discoveries,
                           const std::vector<int>& objects_in_frames, const SearchYield& start);
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -8,13 +8,13 @@
 #include "core/model/model_index.hpp"
 #include "core/score/likelihood.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 constexpr double kAffinityFloor = 0.02;
 
 // What the points of one segment say.
-void judge(const Segment& segment, const SurfaceMap& map, const ObjectModel& model,
+void judge(const segment::Segment& segment, const SurfaceMap& map, const ObjectModel& model,
            const FastPose& object_from_camera, const SegmentMatchOptions& options,
            SegmentMatch& match) {
   const auto wanted = static_cast<std::size_t>(std::max(1, options.points));
@@ -43,7 +43,7 @@ void judge(const Segment& segment, const SurfaceMap& map, const ObjectModel& mod
 }
 
 // Of each segment, the number of pixels that are about where they are predicted.
-std::vector<int> touched_pixels(const Segmentation& segmentation, const SurfaceMap& map,
+std::vector<int> touched_pixels(const segment::Segmentation& segmentation, const SurfaceMap& map,
                                 const PredictedSurface& predicted) {
   std::vector<int> touched(segmentation.segments.size(), 0);
   predicted.for_each([&](int u, int v, float z, std::uint32_t) {
@@ -56,8 +56,9 @@ std::vector<int> touched_pixels(const Segmentation& segmentation, const SurfaceM
 
 }  // namespace
 
-std::vector<SegmentMatch> match_segments(const Segmentation& segmentation, const SurfaceMap& map,
-                                         const ObjectModel& model, const Pose& camera_from_object,
+std::vector<SegmentMatch> match_segments(const segment::Segmentation& segmentation,
+                                         const SurfaceMap& map, const ObjectModel& model,
+                                         const Pose& camera_from_object,
                                          const PredictedSurface& predicted,
                                          const SegmentMatchOptions& options) {
   const FastPose object_from_camera = to_fast(camera_from_object.inverse());
@@ -81,14 +82,14 @@ double segment_score(const std::vector<SegmentMatch>& matches) {
   return weights > 0 ? sum / weights : -1;
 }
 
-double segment_affinity_score(const Segmentation& segmentation,
+double segment_affinity_score(const segment::Segmentation& segmentation,
                               const std::vector<SegmentMatch>& matches) {
   std::vector<double> probability(segmentation.segments.size(), 0);
   for (const SegmentMatch& match : matches) {
     probability[static_cast<std::size_t>(match.segment)] = match.probability;
   }
   double sum = 0, weights = 0;
-  for (const SegmentPair& pair : segmentation.pairs) {
+  for (const segment::SegmentPair& pair : segmentation.pairs) {
     const double first = probability[static_cast<std::size_t>(pair.first)];
     const double second = probability[static_cast<std::size_t>(pair.second)];
     if (first + second == 0) continue;
@@ -101,4 +102,4 @@ double segment_affinity_score(const Segmentation& segmentation,
   return weights > 0 ? sum / weights : -1;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

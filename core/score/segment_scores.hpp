@@ -12,7 +12,7 @@
 
 // How a placement fits the super-pixels (paper V.8).
 
-namespace bpa {
+namespace bpa::score {
 
 /// A super-pixel that a placement touches.
 struct SegmentMatch {
@@ -31,8 +31,9 @@ struct SegmentMatchOptions {
 
 /// The super-pixels with a pixel that the placement explains, by index. This is step 1 of the
 /// paper's segment alignment too (V.6).
-std::vector<SegmentMatch> match_segments(const Segmentation& segmentation, const SurfaceMap& map,
-                                         const ObjectModel& model, const Pose& camera_from_object,
+std::vector<SegmentMatch> match_segments(const segment::Segmentation& segmentation,
+                                         const SurfaceMap& map, const ObjectModel& model,
+                                         const Pose& camera_from_object,
                                          const PredictedSurface& predicted,
                                          const SegmentMatchOptions& options = {});
 
@@ -45,7 +46,7 @@ double segment_score(const std::vector<SegmentMatch>& matches);
 /// Two touching segments of the model should have a high affinity; a segment of the model and one
 /// of another object, a low one. The average log-likelihood over the contacts, in [-1, 0]. Each is
 /// weighted by the probability that at least one side belongs to the model. -1 if no segment does.
-double segment_affinity_score(const Segmentation& segmentation,
+double segment_affinity_score(const segment::Segmentation& segmentation,
                               const std::vector<SegmentMatch>& matches);
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -7,7 +7,7 @@
 
 #include "core/observation/tolerance.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 // Chosen by hand on simulated piles, as all constants of this file.
@@ -102,4 +102,4 @@ SilhouetteAgreement compare_silhouette(const CheckImage& image,
   return {on / count, (on - beside) / count};
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -8,7 +8,7 @@
 #include "core/score/likelihood.hpp"
 #include "core/score/predicted_surface.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 /// How well the outline of a placement is seen in colour.
 struct SilhouetteAgreement {
@@ -25,4 +25,4 @@ SilhouetteAgreement compare_silhouette(const CheckImage& image,
                                        const Image<Eigen::Vector2f>& gradients,
                                        const PredictedSurface& predicted);
 
-}  // namespace bpa
+}  // namespace bpa::score

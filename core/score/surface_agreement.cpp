@@ -15,7 +15,7 @@
 #include "core/score/likelihood.hpp"
 #include "core/score/projection.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 constexpr float kNormalSigma = 0.15f;   // radians: what poses and models are off by
@@ -382,4 +382,4 @@ HiddenPoints hidden_points(const CheckImage& image, const ObjectModel& model, co
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -11,7 +11,7 @@
 #include "core/model/object_model.hpp"
 #include "core/observation/check_image.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 /// How the surface and the edges that a placement predicts agree with the depth image (paper V.5,
 /// round two). Log-likelihoods are truncated averages in [-1, 0]; 0 is exact agreement.
@@ -64,4 +64,4 @@ struct HiddenPoints {
 HiddenPoints hidden_points(const CheckImage& image, const ObjectModel& model, const Pose& pose,
                            int max_points);
 
-}  // namespace bpa
+}  // namespace bpa::score

@@ -9,7 +9,7 @@
 #include "core/model/model_index.hpp"
 #include "core/score/likelihood.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 constexpr int kStep = 2;            // pixels; colours are blurred by 1.5
@@ -190,4 +190,4 @@ Pose turn_to_pattern(const CheckImage& image, const Image<Eigen::Vector3f>& obse
   return best;
 }
 
-}  // namespace bpa
+}  // namespace bpa::score

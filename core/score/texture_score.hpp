@@ -10,7 +10,7 @@
 #include "core/score/likelihood.hpp"
 #include "core/score/predicted_surface.hpp"
 
-namespace bpa {
+namespace bpa::score {
 
 /// How well the pattern of a placement's surface is seen in the image, whatever light, exposure and
 /// white balance are: each may multiply a colour channel, and light falls off linearly with the
@@ -37,4 +37,4 @@ Pose turn_to_pattern(const CheckImage& image, const Image<Eigen::Vector3f>& obse
                      const ObjectModel& model, const Pose& camera_from_object,
                      const PredictedSurface& predicted);
 
-}  // namespace bpa
+}  // namespace bpa::score

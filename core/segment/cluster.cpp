@@ -7,7 +7,7 @@
 #include "core/base/parallel.hpp"
 #include "core/segment/pixel_features.hpp"
 
-namespace bpa::detail {
+namespace bpa::segment::detail {
 namespace {
 
 // What half a spacing off the cell's middle costs a first centre, in edge likelihood; by hand.
@@ -160,4 +160,4 @@ Image<std::int32_t> cluster(const SurfaceMap& map, const PixelFeatures& features
   return KMeans{map, features, edges, options}.run();
 }
 
-}  // namespace bpa::detail
+}  // namespace bpa::segment::detail

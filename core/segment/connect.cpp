@@ -9,7 +9,7 @@
 #include "core/cloud/surface_map.hpp"
 #include "core/segment/pixel_features.hpp"
 
-namespace bpa::detail {
+namespace bpa::segment::detail {
 namespace {
 
 using Pixels = std::vector<std::int32_t>;  // indices
@@ -194,4 +194,4 @@ Image<std::int32_t> connect(const SurfaceMap& map, const PixelFeatures& features
   return Connector{map, features, edges, clusters, options}.run();
 }
 
-}  // namespace bpa::detail
+}  // namespace bpa::segment::detail

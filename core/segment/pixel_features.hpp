@@ -9,7 +9,7 @@
 #include "core/cloud/surface_map.hpp"
 #include "core/segment/super_pixels.hpp"
 
-namespace bpa::detail {
+namespace bpa::segment::detail {
 
 /// What k-means compares. Normal and colour are scaled so that 1 is as far as one spacing; fourth
 /// elements are 0, but position[3], which is 1 for a pixel that has a normal.
@@ -46,4 +46,4 @@ Image<std::int32_t> connect(const SurfaceMap& map, const PixelFeatures& features
                             const Image<float>& edges, const Image<std::int32_t>& clusters,
                             const SuperPixelOptions& options);
 
-}  // namespace bpa::detail
+}  // namespace bpa::segment::detail

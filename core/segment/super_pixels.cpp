@@ -9,7 +9,7 @@
 #include "core/cloud/surface_map.hpp"
 #include "core/segment/pixel_features.hpp"
 
-namespace bpa {
+namespace bpa::segment {
 namespace {
 
 // Standard deviations of what two segments of one object differ by; chosen by hand.
@@ -110,4 +110,4 @@ Segmentation super_pixels(const SurfaceMap& map, const Image<Eigen::Vector3f>& l
   return out;
 }
 
-}  // namespace bpa
+}  // namespace bpa::segment

@@ -10,7 +10,7 @@
 #include "core/cloud/image.hpp"
 #include "core/cloud/surface_map.hpp"
 
-namespace bpa {
+namespace bpa::segment {
 
 /// The defaults are chosen by hand; tests/core/segment/boundary_recall_test.cpp measures what share
 /// of the true boundaries they find.
@@ -67,4 +67,4 @@ Segmentation super_pixels(const SurfaceMap& map, const Image<Eigen::Vector3f>& l
 /// the mean positions is than on a smooth surface.
 float segment_affinity(const Segment& first, const Segment& second, const SegmentPair& pair);
 
-}  // namespace bpa
+}  // namespace bpa::segment

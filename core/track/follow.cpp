@@ -40,9 +40,10 @@ constexpr int kMaxDoubts = 5;        // frames in a row; then a hand or another 
 constexpr double kUsualRate = 0.03;  // share of a frame in the running mean of the log odds
 
 // A pose that is known well is aligned in fewer steps than a hypothesis of the search.
-constexpr RefinementOptions kAlignment{4, 200, 60, tolerance::placed_m(12), tolerance::placed_m(4)};
-constexpr RefinementOptions kWideAlignment{8, 200, 60, tolerance::placed_m(24),
-                                           tolerance::placed_m(4)};
+constexpr detect::RefinementOptions kAlignment{4, 200, 60, tolerance::placed_m(12),
+                                               tolerance::placed_m(4)};
+constexpr detect::RefinementOptions kWideAlignment{8, 200, 60, tolerance::placed_m(24),
+                                                   tolerance::placed_m(4)};
 constexpr double kMargin_m = tolerance::placed_m(12);  // around the object
 // Starts about the predicted pose, for an object that a hand has seized: its motion is sudden, and
 // the alignment slides on to the hand.
@@ -72,7 +73,7 @@ constexpr std::size_t kMostModes = 40;
 // Modes that are compared in a frame, so that none takes long: 0.17 us a pixel and mode. By hand.
 constexpr std::size_t kMostCompared = 10, kLeastCompared = 2, kComparedPixels = 50000;
 
-Sight sight_of(const SurfaceAgreement& surface, int correspondences) {
+Sight sight_of(const score::SurfaceAgreement& surface, int correspondences) {
   const bool agrees = surface.agreeing >= kMinAgreeing && surface.free_space <= kMaxFreeSpace &&
                       surface.background <= kMaxBackground;
   if (surface.visibility >= kMinVisible && agrees && correspondences >= kMinCorrespondences) {
@@ -89,15 +90,16 @@ struct Fit {
   double visible_fraction = 0;
 };
 
-Fit judged(const ObservedFrame& observed, const FeaturePlaces& places, const Pose& start,
-           const RefinementOptions& alignment) {
+Fit judged(const ObservedFrame& observed, const score::FeaturePlaces& places, const Pose& start,
+           const detect::RefinementOptions& alignment) {
   const ObjectModel& model = places.model();
-  Candidate candidate{
-      .model = &model,
-      .refinement = refine_pose(observed.scene, model, observed.in_camera(start), alignment)};
-  Evidence evidence(observed.scene, places, candidate.pose());
-  candidate.values = measure(evidence, Round::two);
-  const Placement placement = transformed(observed.frame_from_camera, to_placement(candidate));
+  detect::Candidate candidate{.model = &model,
+                              .refinement = detect::refine_pose(
+                                  observed.scene, model, observed.in_camera(start), alignment)};
+  score::Evidence evidence(observed.scene, places, candidate.pose());
+  candidate.values = measure(evidence, score::Round::two);
+  const Placement placement =
+      transformed(observed.frame_from_camera, detect::to_placement(candidate));
   return {sight_of(evidence.surface(), candidate.refinement.num_correspondences),
           {placement.frame_from_object, placement.covariance},
           observed.layers.round_two.log_odds(candidate.values),
@@ -106,8 +108,8 @@ Fit judged(const ObservedFrame& observed, const FeaturePlaces& places, const Pos
 
 // Aligns the object with the frame from one of several starts in the tracks' frame of reference:
 // the best by round-two score.
-Fit fit(const ObservedFrame& observed, const FeaturePlaces& places, const std::vector<Pose>& starts,
-        const RefinementOptions& alignment) {
+Fit fit(const ObservedFrame& observed, const score::FeaturePlaces& places,
+        const std::vector<Pose>& starts, const detect::RefinementOptions& alignment) {
   Fit best;
   for (std::size_t i = 0; i < starts.size(); ++i) {
     Fit now = judged(observed, places, starts[i], alignment);
@@ -208,7 +210,7 @@ void weigh_modes(const SceneFeatures& scene, const Pose& own, const Pose& camera
                  const ObjectModel& model, std::span<Mode> modes) {
   std::vector<Pose> poses = {own};
   for (const Mode& mode : modes) poses.push_back(camera_from_object * mode.object_from_mode);
-  const auto behind = behind_best(scene, model, poses, poses.size());
+  const auto behind = score::behind_best(scene, model, poses, poses.size());
   // Of a mode against the pose. A little says nothing, as the errors of a model favour one of them.
   const auto evidence = [&](std::size_t k) {
     const double nats = behind[k].depth + behind[k].color - behind[0].depth - behind[0].color;
@@ -309,7 +311,7 @@ void compare_modes(const ObservedFrame& observed, Body& body) {
   // All are aligned alike, or those that are would seem likelier. A turn that the view leaves open
   // slides to where another mode is; then it stays as it was.
   const auto aligned = [&](const Pose& start) {
-    const Pose pose = aligned_pose(scene, model, start, kAlignment);
+    const Pose pose = detect::aligned_pose(scene, model, start, kAlignment);
     return pose_error(pose, start).angle < kMaxSlide_rad ? pose : start;
   };
   const Pose own = aligned(camera_from_object), object_from_own = from * own;

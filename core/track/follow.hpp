@@ -24,7 +24,7 @@ struct ObservedFrame {
   const Frame& frame;
   const SceneFeatures& scene;  ///< observe() of the frame.
   Pose frame_from_camera;      ///< Of the tracks' frame of reference.
-  const ScoreLayers& layers;
+  const score::ScoreLayers& layers;
 
   Pose in_camera(const Pose& frame_from_object) const {
     return frame_from_camera.inverse() * frame_from_object;
@@ -47,7 +47,7 @@ struct Mode {
 /// One object and its motion.
 struct Body {
   std::shared_ptr<const ObjectModel> model;
-  std::shared_ptr<const FeaturePlaces> places;  ///< Of the model; scores ask for it.
+  std::shared_ptr<const score::FeaturePlaces> places;  ///< Of the model; scores ask for it.
   MotionFilter motion;
   std::vector<Mode> modes = {};
   Sight sight = Sight::seen;                  ///< In the last frame.

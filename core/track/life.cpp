@@ -36,7 +36,7 @@ void Life::believe(const Placement& placement, std::int64_t stamp) {
   found_ns = stamp;
   ++found;
   missed = 0;
-  judge(std::clamp(log_odds_of(presence(placement)), kLeastFound, kMostFound));
+  judge(std::clamp(score::log_odds_of(presence(placement)), kLeastFound, kMostFound));
 }
 
 void Life::doubt(double log_odds) {
@@ -48,7 +48,7 @@ void Life::suggest(const Placement& placement, const Pose& now_from_then) {
   for (const PoseAlternative& other : placement.alternatives) {
     add_mode(body, now_from_then * other.frame_from_object, kDoubt);
   }
-  const double says = std::clamp(log_odds_of(placement.probability), 0.0, kMostSaid);
+  const double says = std::clamp(score::log_odds_of(placement.probability), 0.0, kMostSaid);
   favour_mode(body, now_from_then * placement.frame_from_object, kDoubt, says);
 }
 
@@ -56,7 +56,8 @@ bool Life::confirm(double min_probability) {
   const bool was = sure;
   const bool seen = body.sight == Sight::seen;
   sure = was ? evidence >= 0
-             : seen && evidence >= 0 && (found > 1 || probability_of(evidence) >= min_probability);
+             : seen && evidence >= 0 &&
+                   (found > 1 || score::probability_of(evidence) >= min_probability);
   if (seen) state = sure ? TrackState::confirmed : TrackState::tentative;
   if (state == TrackState::occluded && !sure) state = TrackState::tentative;
   return sure && !was;
@@ -69,7 +70,7 @@ Track report(const Life& life, std::int64_t stamp_ns) {
             .model = body.model->name,
             .model_number = body.model->number,
             .state = life.state,
-            .probability = probability_of(life.evidence),
+            .probability = score::probability_of(life.evidence),
             .frame_from_object = body.motion.pose(),
             .covariance = kOfSearch * body.motion.covariance(),
             .velocity = body.motion.velocity(),

@@ -54,7 +54,7 @@ void Newcomer::begin() {
   const Placement in_frame = transformed(frame_from_camera_, likeliest);
   const UncertainPose start{in_frame.frame_from_object, in_frame.covariance};
   body_ = Body{.model = model_,
-               .places = std::make_shared<FeaturePlaces>(*model_),
+               .places = std::make_shared<score::FeaturePlaces>(*model_),
                .motion = MotionFilter(start),
                .last_seen = start.pose};
   body_->visible_fraction = found_.visible_fraction;

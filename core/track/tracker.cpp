@@ -47,7 +47,7 @@ constexpr int kNewcomersTurns = 3;
 struct Tracker::State {
   std::shared_ptr<const ModelLibrary> library;
   TrackerOptions options;
-  ScoreLayers layers;
+  score::ScoreLayers layers;
   TrackerCounts counts;
   std::optional<SensorKind> sensor;
   std::string frame_id;  // of the tracks; the camera's where its pose is not known
@@ -354,7 +354,7 @@ struct Tracker::State {
 };
 
 Tracker::Tracker(std::shared_ptr<const ModelLibrary> library, TrackerOptions options,
-                 ScoreLayers layers)
+                 score::ScoreLayers layers)
     : state_(std::make_unique<State>()) {
   state_->library = std::move(library);
   state_->options = options;
@@ -477,7 +477,7 @@ Status Tracker::forget(std::uint64_t id) {
 const TrackerOptions& Tracker::options() const { return state_->options; }
 void Tracker::set_options(const TrackerOptions& options) { state_->options = options; }
 
-void Tracker::set_library(std::shared_ptr<const ModelLibrary> library, ScoreLayers layers) {
+void Tracker::set_library(std::shared_ptr<const ModelLibrary> library, score::ScoreLayers layers) {
   State& s = *state_;
   s.library = std::move(library);
   s.layers = std::move(layers);

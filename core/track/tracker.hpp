@@ -55,7 +55,7 @@ struct TrackerCounts {
 class Tracker {
  public:
   Tracker(std::shared_ptr<const ModelLibrary> library, TrackerOptions options,
-          ScoreLayers layers = default_score_layers());
+          score::ScoreLayers layers = score::default_score_layers());
   ~Tracker();
 
   /// Moves every track to this frame. Stamps must rise: fails with invalid_argument on a frame that
@@ -91,7 +91,7 @@ class Tracker {
   const TrackerOptions& options() const;
   void set_options(const TrackerOptions& options);
   /// Tracks of models that the new library lacks end with the next frame.
-  void set_library(std::shared_ptr<const ModelLibrary> library, ScoreLayers layers);
+  void set_library(std::shared_ptr<const ModelLibrary> library, score::ScoreLayers layers);
   const TrackerCounts& counts() const;
 
  private:

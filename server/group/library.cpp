@@ -107,10 +107,10 @@ std::shared_ptr<const ObjectModel> SharedLibrary::find(int number) const {
 }
 
 Result<std::shared_ptr<const SharedLibrary>> share_library(
-    ModelLibrary models, ScoreLayers layers, std::map<std::string, std::string> folders) {
+    ModelLibrary models, score::ScoreLayers layers, std::map<std::string, std::string> folders) {
   auto shared = std::make_shared<SharedLibrary>();
   msgs::GroupLibrary& offer = shared->offer;
-  offer.score_layers = to_json(layers);
+  offer.score_layers = score::to_json(layers);
   std::string all = offer.score_layers;
   for (const auto& model : models.models()) {
     const std::string& folder = folders[model->name];
@@ -204,8 +204,8 @@ Result<std::shared_ptr<const SharedLibrary>> load_library(const msgs::GroupLibra
   }
   auto shared = std::make_shared<SharedLibrary>();
   shared->offer = offer;
-  Result<ScoreLayers> layers =
-      score_layers_from_json(offer.score_layers, "the front's score layers");
+  Result<score::ScoreLayers> layers =
+      score::score_layers_from_json(offer.score_layers, "the front's score layers");
   if (!layers.ok()) return layers.status();
   shared->layers = *std::move(layers);
   for (const msgs::GroupModel& wanted : offer.models) {

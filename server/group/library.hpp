@@ -22,7 +22,7 @@ namespace bpa::server::group {
 struct SharedLibrary {
   wire::bpa_msgs::GroupLibrary offer;  ///< Its digest and those of its models.
   ModelLibrary models;
-  ScoreLayers layers;
+  score::ScoreLayers layers;
   std::map<std::string, std::string> folders;  ///< Of each model, by name.
 
   /// nullptr without one of that number.
@@ -31,7 +31,7 @@ struct SharedLibrary {
 
 /// The library as it is offered. `folders` are those that the models were read from, by name.
 Result<std::shared_ptr<const SharedLibrary>> share_library(
-    ModelLibrary models, ScoreLayers layers, std::map<std::string, std::string> folders);
+    ModelLibrary models, score::ScoreLayers layers, std::map<std::string, std::string> folders);
 
 /// Answers a worker that fetches a model.
 wire::bpa_msgs::GetModelFile_Response read_model_file(

@@ -183,15 +183,15 @@ Result<ShareTask> task_of(msgs::GroupStep begin, const SharedLibrary& library) {
   return task;
 }
 
-msgs::GroupClaim to_message(const Claim& claim) {
+msgs::GroupClaim to_message(const detect::Claim& claim) {
   return {claim.score, claim.place.x(), claim.place.y(), claim.place.z(), claim.diameter};
 }
 
-Claim claim_from(const msgs::GroupClaim& message) {
+detect::Claim claim_from(const msgs::GroupClaim& message) {
   return {message.score, {message.x, message.y, message.z}, message.diameter};
 }
 
-msgs::GroupCandidate to_message(const Candidate& candidate) {
+msgs::GroupCandidate to_message(const detect::Candidate& candidate) {
   msgs::GroupCandidate message;
   message.model = candidate.model->number;
   put(candidate.pose(), message.pose.data());
@@ -206,9 +206,9 @@ msgs::GroupCandidate to_message(const Candidate& candidate) {
   return message;
 }
 
-Result<Candidate> candidate_from(msgs::GroupCandidate message, const ObjectModel& model,
-                                 std::size_t pixels) {
-  Candidate candidate{.model = &model};
+Result<detect::Candidate> candidate_from(msgs::GroupCandidate message, const ObjectModel& model,
+                                         std::size_t pixels) {
+  detect::Candidate candidate{.model = &model};
   const bool in_image = message.explained.empty() || message.explained.back() < pixels;
   if (message.values.size() != candidate.values.size() || !in_image ||
       !std::ranges::is_sorted(message.explained)) {
@@ -216,7 +216,7 @@ Result<Candidate> candidate_from(msgs::GroupCandidate message, const ObjectModel
                    " score components, not ", candidate.values.size(),
                    ", or pixels outside of the image");
   }
-  if (message.found_by >= static_cast<std::uint8_t>(Source::count)) {
+  if (message.found_by >= static_cast<std::uint8_t>(detect::Source::count)) {
     return corrupt("a candidate of ", model.name, " has found_by ", int{message.found_by});
   }
   candidate.refinement.camera_from_object = pose_from(message.pose.data());
@@ -224,7 +224,7 @@ Result<Candidate> candidate_from(msgs::GroupCandidate message, const ObjectModel
   candidate.refinement.information =
       Eigen::Map<const Eigen::Matrix<double, 6, 6>>(message.information.data());
   candidate.refinement.num_correspondences = message.correspondences;
-  candidate.found_by = static_cast<Source>(message.found_by);
+  candidate.found_by = static_cast<detect::Source>(message.found_by);
   std::ranges::copy(message.values, candidate.values.begin());
   candidate.prior = message.prior;
   candidate.score = message.score;

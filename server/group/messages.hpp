@@ -35,13 +35,13 @@ struct ShareTask {
 /// front is of another version. plan_search() checks the facts.
 Result<ShareTask> task_of(wire::bpa_msgs::GroupStep begin, const SharedLibrary& library);
 
-wire::bpa_msgs::GroupClaim to_message(const Claim& claim);
-Claim claim_from(const wire::bpa_msgs::GroupClaim& message);
+wire::bpa_msgs::GroupClaim to_message(const detect::Claim& claim);
+detect::Claim claim_from(const wire::bpa_msgs::GroupClaim& message);
 
-wire::bpa_msgs::GroupCandidate to_message(const Candidate& candidate);
+wire::bpa_msgs::GroupCandidate to_message(const detect::Candidate& candidate);
 /// `pixels` is the size of the reduced image. Fails with corrupt.
-Result<Candidate> candidate_from(wire::bpa_msgs::GroupCandidate message, const ObjectModel& model,
-                                 std::size_t pixels);
+Result<detect::Candidate> candidate_from(wire::bpa_msgs::GroupCandidate message,
+                                         const ObjectModel& model, std::size_t pixels);
 
 /// Milliseconds, 0 where the deadline never passes; above 0 where it has passed.
 double milliseconds_left(const Deadline& deadline);

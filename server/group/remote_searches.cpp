@@ -171,14 +171,14 @@ class Searches : public ModelSearches {
   std::vector<msgs::GroupAnswer> run_competing(msgs::GroupStep&& step, const Deadline& deadline) {
     std::vector<msgs::GroupAnswer> answers = run(std::move(step), deadline);
     while (!answers.empty() && answers.front().competes) {
-      std::vector<Claim> claims;
+      std::vector<detect::Claim> claims;
       for (const msgs::GroupAnswer& answer : answers) {
         std::ranges::transform(answer.claims, std::back_inserter(claims), claim_from);
       }
-      const Contest contest = contest_of(std::move(claims), answers.front().most);
+      const detect::Contest contest = detect::contest_of(std::move(claims), answers.front().most);
       msgs::GroupStep next = step_of(msgs::GroupStep::kContest);
       next.threshold = contest.threshold;
-      for (const Claim& claim : contest.claims) next.claims.push_back(to_message(claim));
+      for (const detect::Claim& claim : contest.claims) next.claims.push_back(to_message(claim));
       answers = run(std::move(next), deadline);
     }
     return answers;
@@ -287,14 +287,14 @@ class Searches : public ModelSearches {
 
   void take_candidates(std::vector<msgs::GroupAnswer>&& answers, bool all) {
     if (all) {
-      for (Candidates& of_model : found_) of_model.clear();
+      for (detect::Candidates& of_model : found_) of_model.clear();
     }
     for (msgs::GroupAnswer& answer : answers) {
       for (msgs::GroupCandidate& message : answer.candidates) {
         const auto index = index_of_.find(message.model);
         if (index == index_of_.end()) continue;
         const ObjectModel& model = *models_[index->second];
-        Result<Candidate> candidate = candidate_from(std::move(message), model, pixels_);
+        Result<detect::Candidate> candidate = candidate_from(std::move(message), model, pixels_);
         if (!candidate.ok()) {
           status_ = candidate.status();
           return;

@@ -74,11 +74,11 @@ void ShareSearch::send(msgs::GroupAnswer&& answer, const LocalSearches& searches
 }
 
 // Nothing passes where the search has ended, so that its stages end soon.
-Contest ShareSearch::compete(const LocalSearches& searches, const std::vector<Claim>& claims,
-                             int most) {
+detect::Contest ShareSearch::compete(const LocalSearches& searches,
+                                     const std::vector<detect::Claim>& claims, int most) {
   msgs::GroupAnswer answer = plain_answer();
   answer.competes = true;
-  for (const Claim& claim : claims) answer.claims.push_back(to_message(claim));
+  for (const detect::Claim& claim : claims) answer.claims.push_back(to_message(claim));
   answer.most = most;
   send(std::move(answer), searches);
   std::optional<msgs::GroupStep> step = next();
@@ -87,7 +87,7 @@ Contest ShareSearch::compete(const LocalSearches& searches, const std::vector<Cl
                         " where candidates compete"));
   }
   if (!step) return {std::numeric_limits<double>::infinity(), {}};
-  Contest contest{step->threshold, {}};
+  detect::Contest contest{step->threshold, {}};
   std::ranges::transform(step->claims, std::back_inserter(contest.claims), claim_from);
   return contest;
 }
@@ -111,7 +111,7 @@ std::vector<std::uint8_t> left_out(const Models& models, const std::vector<std::
 void ShareSearch::send_found(const LocalSearches& searches, std::vector<std::size_t>& sent) {
   msgs::GroupAnswer answer = plain_answer();
   for (std::size_t i = 0; i < sent.size(); ++i) {
-    const Candidates& found = searches.found()[i];
+    const detect::Candidates& found = searches.found()[i];
     for (; sent[i] < found.size(); ++sent[i]) {
       answer.candidates.push_back(to_message(found[sent[i]]));
     }
@@ -132,7 +132,7 @@ Status ShareSearch::search() {
   const SceneFeatures scene = prepare_scene(task->frame, *plan, deadline, timings);
   const SearchInputs inputs{scene, *plan, library->layers, task->request, task->models};
   LocalSearches* running = nullptr;
-  LocalSearches searches(inputs, nullptr, [&](const std::vector<Claim>& claims, int most) {
+  LocalSearches searches(inputs, nullptr, [&](const std::vector<detect::Claim>& claims, int most) {
     return compete(*running, claims, most);
   });
   running = &searches;

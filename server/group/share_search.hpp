@@ -75,7 +75,8 @@ class ShareSearch {
   std::optional<wire::bpa_msgs::GroupStep> next();
   std::nullopt_t fail(Status status);
   void send(wire::bpa_msgs::GroupAnswer&& answer, const LocalSearches& searches);
-  Contest compete(const LocalSearches& searches, const std::vector<Claim>& claims, int most);
+  detect::Contest compete(const LocalSearches& searches, const std::vector<detect::Claim>& claims,
+                          int most);
   void send_found(const LocalSearches& searches, std::vector<std::size_t>& sent);
   Status search();
   Status run_step(wire::bpa_msgs::GroupStep&& step, const Models& models, LocalSearches& searches,

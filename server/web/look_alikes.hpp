@@ -25,8 +25,8 @@ class LookAlikes {
 
   struct Answer {
     bool running = false;
-    Status status;      ///< Why the comparison failed.
-    Findings findings;  ///< None while it runs.
+    Status status;              ///< Why the comparison failed.
+    doctor::Findings findings;  ///< None while it runs.
   };
 
   /// Starts a comparison unless there is one of the library as it is now.
@@ -47,7 +47,7 @@ class LookAlikes {
     answer.status = guarded("the models cannot be compared", [&] {
       std::vector<ModelSource> sources;
       for (const auto& model : recognition_->models()) sources.push_back(*model);
-      answer.findings = check_look_alikes(sources, true, 1);
+      answer.findings = doctor::check_look_alikes(sources, true, 1);
     });
     const std::lock_guard<std::mutex> lock(mutex_);
     answer_ = std::move(answer);

@@ -190,9 +190,9 @@ std::string models_json(const Recognition& recognition, const std::vector<std::s
                     {"broken", broken}});
 }
 
-std::string findings_json(const Findings& findings, bool running) {
+std::string findings_json(const doctor::Findings& findings, bool running) {
   Json list = Json::array();
-  for (const Finding& finding : findings) {
+  for (const doctor::Finding& finding : findings) {
     list.push_back({{"what", finding.what}, {"why", finding.why}, {"remedy", finding.remedy}});
   }
   return json_text({{"running", running}, {"findings", list}});

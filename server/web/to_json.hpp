@@ -29,7 +29,7 @@ std::string parameters_json(const ServerOptions& options);
 Result<wire::rcl_interfaces::Parameter> parameter_from_json(const std::string& text);
 /// The models that are loaded, those of the folder that are not, and those that cannot be read.
 std::string models_json(const Recognition& recognition, const std::vector<std::string>& in_folder);
-std::string findings_json(const Findings& findings, bool running);
+std::string findings_json(const doctor::Findings& findings, bool running);
 std::string score_terms_json(const std::vector<ScoreTerm>& terms);
 
 /// A model's surface in binary: u32 number of points; f32 distance of neighbouring ones, metres;

@@ -29,7 +29,8 @@ struct Heap {
   Heap() {
     const auto objects = sim::household_objects({"milk_carton", "mug", "bowl"});
     for (const sim::SimulatedObject& object : objects) {
-      ModelSource source = model_source_from_mesh(object.mesh, object.name, kSeed).value();
+      ModelSource source =
+          modeling::model_source_from_mesh(object.mesh, object.name, kSeed).value();
       model = make_object_model(std::move(source)).value();
       benchmark::DoNotOptimize(library->add(model));
     }
@@ -66,7 +67,7 @@ BENCHMARK(surface)->Name("cloud/surface_map")->UseRealTime()->Unit(benchmark::kM
 void fpfh(benchmark::State& state) {
   const SceneFeatures& s = scene();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(compute_fpfh(s.surface, s.keypoints, kFeatureRadius, 0));
+    benchmark::DoNotOptimize(features::compute_fpfh(s.surface, s.keypoints, kFeatureRadius, 0));
   }
   state.counters["keypoints"] = static_cast<double>(s.keypoints.size());
 }
@@ -75,19 +76,19 @@ BENCHMARK(fpfh)->Name("features/fpfh")->UseRealTime()->Unit(benchmark::kMillisec
 // Votes of one model's point pairs.
 void voting(benchmark::State& state) {
   const ModelIndex& index = *heap().model->index;
-  const ScenePairs& pairs = scene().sample.pairs;
+  const features::ScenePairs& pairs = scene().sample.pairs;
   const auto points = static_cast<int>(index.coarse.size());
   for (auto _ : state) {
-    benchmark::DoNotOptimize(vote_poses(pairs, index.pairs, points, 1));
+    benchmark::DoNotOptimize(features::vote_poses(pairs, index.pairs, points, 1));
   }
 }
 BENCHMARK(voting)->Name("features/vote_poses")->Unit(benchmark::kMillisecond);
 
 // One stage of the search for one model, on what the stages before it return.
-void stage(benchmark::State& state, const Stage* measured) {
-  const Search search(scene(), *heap().model, {}, default_score_layers(), {}, kSeed);
-  Candidates before;
-  for (const Stage* s = detection_stages().data(); s != measured; ++s) {
+void stage(benchmark::State& state, const detect::Stage* measured) {
+  const detect::Search search(scene(), *heap().model, {}, score::default_score_layers(), {}, kSeed);
+  detect::Candidates before;
+  for (const detect::Stage* s = detect::detection_stages().data(); s != measured; ++s) {
     before = s->run(search, std::move(before));
   }
   for (auto _ : state) benchmark::DoNotOptimize(measured->run(search, before));
@@ -104,7 +105,7 @@ BENCHMARK(whole_frame)
     ->Unit(benchmark::kMillisecond);
 
 [[maybe_unused]] const bool registered = [] {
-  for (const Stage& s : detection_stages()) {
+  for (const detect::Stage& s : detect::detection_stages()) {
     const std::string name = "detect/" + std::string(s.name);
     benchmark::RegisterBenchmark(name.c_str(), stage, &s)->Unit(benchmark::kMillisecond);
   }

@@ -37,7 +37,7 @@ Frame box_before_wall() {
 }
 
 std::shared_ptr<const ObjectModel> box_model() {
-  ModelSource source = model_source_from_mesh(test::box_mesh(kHalf), "box", 1).value();
+  ModelSource source = modeling::model_source_from_mesh(test::box_mesh(kHalf), "box", 1).value();
   source.surface.colors.assign(source.surface.size(), {200, 200, 200});
   return make_object_model(std::move(source)).value();
 }
@@ -50,18 +50,18 @@ void round_three(benchmark::State& state) {
   const CheckImage image = make_check_image(map);
   const auto rgb = reduced_color(frame, map, 0);
   const auto lab = cielab(rgb, 0);
-  const Image<float> edges = scene_edges(map, rgb).likelihood;
-  const Segmentation segments = super_pixels(map, lab, edges);
+  const Image<float> edges = features::scene_edges(map, rgb).likelihood;
+  const segment::Segmentation segments = segment::super_pixels(map, lab, edges);
   const auto& model_lab = model->index->cielab;
   const Pose pose{Eigen::Quaterniond::Identity(), {0, 0, 0.9 + static_cast<double>(kHalf.z())}};
   for (auto _ : state) {
-    const PredictedSurface predicted = predict_surface(image, *model, pose);
-    double sum = edge_likelihood_score(image, edges, *model, pose);
-    sum += occlusion_edge_score(image, edges, predicted);
-    sum += random_walk_score(image, edges, *model, pose, predicted);
-    const auto matches = match_segments(segments, map, *model, pose, predicted);
-    sum += segment_score(matches) + segment_affinity_score(segments, matches);
-    sum += compare_colors(image, lab, model_lab, predicted).likelihood;
+    const score::PredictedSurface predicted = score::predict_surface(image, *model, pose);
+    double sum = score::edge_likelihood_score(image, edges, *model, pose);
+    sum += score::occlusion_edge_score(image, edges, predicted);
+    sum += score::random_walk_score(image, edges, *model, pose, predicted);
+    const auto matches = score::match_segments(segments, map, *model, pose, predicted);
+    sum += score::segment_score(matches) + score::segment_affinity_score(segments, matches);
+    sum += score::compare_colors(image, lab, model_lab, predicted).likelihood;
     benchmark::DoNotOptimize(sum);
   }
 }

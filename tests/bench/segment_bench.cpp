@@ -41,11 +41,11 @@ Frame ball_field() {
 void edge_image_640x480(benchmark::State& state) {
   const Frame frame = ball_field();
   const SurfaceMap map = surface_map(frame, {});
-  EdgeImageOptions options;
+  features::EdgeImageOptions options;
   options.num_threads = static_cast<int>(state.range(0));
   for (auto _ : state) {
     const auto rgb = reduced_color(frame, map, options.num_threads);
-    benchmark::DoNotOptimize(scene_edges(map, rgb, options));
+    benchmark::DoNotOptimize(features::scene_edges(map, rgb, options));
   }
 }
 BENCHMARK(edge_image_640x480)
@@ -60,13 +60,13 @@ BENCHMARK(edge_image_640x480)
 void super_pixels_640x480(benchmark::State& state) {
   const Frame frame = ball_field();
   const SurfaceMap map = surface_map(frame, {});
-  SuperPixelOptions options;
+  segment::SuperPixelOptions options;
   options.num_threads = static_cast<int>(state.range(0));
   const auto rgb = reduced_color(frame, map, 0);
-  const SceneEdges edges = scene_edges(map, rgb);
+  const features::SceneEdges edges = features::scene_edges(map, rgb);
   for (auto _ : state) {
     const auto lab = cielab(blur(rgb, 1.5, options.num_threads), options.num_threads);
-    benchmark::DoNotOptimize(super_pixels(map, lab, edges.likelihood, options));
+    benchmark::DoNotOptimize(segment::super_pixels(map, lab, edges.likelihood, options));
   }
 }
 BENCHMARK(super_pixels_640x480)

@@ -82,15 +82,18 @@ std::vector<std::string> occupancy_seeds() {
 }
 
 void run_score_layers(std::string_view bytes) {
-  const auto layers = score_layers_from_json(std::string(bytes), "score_layers.json");
+  const auto layers = score::score_layers_from_json(std::string(bytes), "score_layers.json");
   if (!layers.ok()) return;
-  for (const ScoreLayer& layer : {layers->round_two, layers->round_three, layers->without_color}) {
+  for (const score::ScoreLayer& layer :
+       {layers->round_two, layers->round_three, layers->without_color}) {
     for (const auto& component : layer.components) (void)component.at(0.5);
   }
-  (void)to_json(*layers);
+  (void)score::to_json(*layers);
 }
 
-std::vector<std::string> score_layers_seeds() { return {to_json(default_score_layers())}; }
+std::vector<std::string> score_layers_seeds() {
+  return {score::to_json(score::default_score_layers())};
+}
 
 }  // namespace
 

@@ -45,7 +45,7 @@ void append(const Placement& placement, std::string& out) {
 
 std::string record(const FrameTrace& trace, const SceneInterpretations& result) {
   std::string out = "candidates\n";
-  for (const Candidate& c : trace.candidates) {
+  for (const detect::Candidate& c : trace.candidates) {
     out += "  " + c.model->name + exact(c.pose()) + exact(c.score) + exact(c.probability) + " " +
            std::to_string(c.explained.size()) + "\n";
   }

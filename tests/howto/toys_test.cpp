@@ -54,26 +54,27 @@ class Toys : public test::LScene {
 
 TEST_F(Toys, StageIsInTheTraceBehindTheOneBefore) {
   const auto& stages = trace_.objects.front().stages;
-  const auto toy = std::ranges::find(stages, "toy", &TraceStage::name);
+  const auto toy = std::ranges::find(stages, "toy", &detect::TraceStage::name);
   ASSERT_NE(toy, stages.end());
   EXPECT_EQ(std::prev(toy)->name, "correct");
   EXPECT_FALSE(toy->poses.empty());
-  EXPECT_EQ(scoring_stages().front().name, "refine");
-  EXPECT_EQ(final_stages().front().name, "climb");
+  EXPECT_EQ(detect::scoring_stages().front().name, "refine");
+  EXPECT_EQ(detect::final_stages().front().name, "climb");
 }
 
 TEST_F(Toys, SourceSuggestsPosesThatGoThroughAllStages) {
   const SceneFeatures scene = features_of(everything(), 1);
-  const Search search(scene, *brick_);
-  Candidates toys = sample(search, {});
-  std::erase_if(toys, [](const Candidate& c) { return c.found_by != Source::toy; });
+  const detect::Search search(scene, *brick_);
+  detect::Candidates toys = sample(search, {});
+  std::erase_if(toys, [](const detect::Candidate& c) { return c.found_by != detect::Source::toy; });
   EXPECT_EQ(toys.size(), 20U);
-  toys.push_back({.model = brick_.get(), .refinement = {brick_truth_}, .found_by = Source::toy});
-  std::vector<Search> searches{search};
-  std::vector<Candidates> found{toys};
-  run_stages(detection_stages().subspan(1), searches, 1, found);
+  toys.push_back(
+      {.model = brick_.get(), .refinement = {brick_truth_}, .found_by = detect::Source::toy});
+  std::vector<detect::Search> searches{search};
+  std::vector<detect::Candidates> found{toys};
+  detect::run_stages(detect::detection_stages().subspan(1), searches, 1, found);
   ASSERT_FALSE(found.front().empty());
-  EXPECT_EQ(found.front().front().found_by, Source::toy);
+  EXPECT_EQ(found.front().front().found_by, detect::Source::toy);
 }
 
 TEST_F(Toys, ComponentIsInTheResult) {

@@ -142,12 +142,13 @@ class Draw {
     }
   }
 
-  Candidate candidate(const ObjectModel& model, std::size_t pixels) {
-    Candidate out{.model = &model};
+  detect::Candidate candidate(const ObjectModel& model, std::size_t pixels) {
+    detect::Candidate out{.model = &model};
     out.refinement.camera_from_object = pose();
     for (double& number : out.refinement.information.reshaped()) number = any_double();
     out.refinement.num_correspondences = count(0, 100000);
-    out.found_by = static_cast<Source>(random_.index(static_cast<int>(Source::count)));
+    out.found_by =
+        static_cast<detect::Source>(random_.index(static_cast<int>(detect::Source::count)));
     for (double& value : out.values) value = any_double();
     out.prior = any_double();
     out.score = any_double();
@@ -167,7 +168,8 @@ class GroupMessages : public testing::Test {
   GroupMessages() {
     int number = 0;
     for (const char* name : {"brick", "plate"}) {
-      auto source = model_source_from_mesh(test::box_mesh({0.03f, 0.02f, 0.01f}), name, ++number);
+      auto source =
+          modeling::model_source_from_mesh(test::box_mesh({0.03f, 0.02f, 0.01f}), name, ++number);
       EXPECT_TRUE(source.ok());
       auto model = make_object_model(*std::move(source));
       EXPECT_TRUE(model.ok() && library_.models.add(*model).ok());
@@ -236,7 +238,8 @@ TEST_F(GroupMessages, SearchThatTheCoreAcceptsArrivesAsItIs) {
     Status accepted = validate(frame);
     if (accepted.ok()) accepted = validate(request);
     if (accepted.ok()) accepted = validate(options);
-    if (accepted.ok()) accepted = plan_search(options, default_score_layers(), facts).status();
+    if (accepted.ok())
+      accepted = plan_search(options, score::default_score_layers(), facts).status();
     ASSERT_TRUE(accepted.ok()) << accepted.message;
 
     const auto begin = begin_message(frame, request, options, facts, library_);
@@ -299,7 +302,8 @@ TEST_F(GroupMessages, AnyCandidateAndClaimArrivesAsItIs) {
   Draw draw(5);
   constexpr std::size_t kPixels = 200;
   for (int k = 0; k < 1000; ++k) {
-    const Candidate sent = draw.candidate(*library_.models.models()[draw.count(0, 1)], kPixels);
+    const detect::Candidate sent =
+        draw.candidate(*library_.models.models()[draw.count(0, 1)], kPixels);
     const auto got = candidate_from(over_the_wire(to_message(sent)), *sent.model, kPixels);
     ASSERT_TRUE(got.ok()) << got.status().message;
     EXPECT_EQ(got->pose().rotation.coeffs(), sent.pose().rotation.coeffs());
@@ -312,9 +316,9 @@ TEST_F(GroupMessages, AnyCandidateAndClaimArrivesAsItIs) {
     EXPECT_EQ(bits(got_scores), bits(std::array{sent.prior, sent.score, sent.probability}));
     EXPECT_EQ(got->explained, sent.explained);
 
-    const Claim claim{draw.any_double(), draw.pose().translation.cast<float>(),
-                      static_cast<float>(draw.number(0, 2))};
-    const Claim claimed = claim_from(over_the_wire(to_message(claim)));
+    const detect::Claim claim{draw.any_double(), draw.pose().translation.cast<float>(),
+                              static_cast<float>(draw.number(0, 2))};
+    const detect::Claim claimed = claim_from(over_the_wire(to_message(claim)));
     EXPECT_EQ(bits(std::array{claimed.score}), bits(std::array{claim.score}));
     EXPECT_EQ(claimed.place, claim.place);
     EXPECT_EQ(claimed.diameter, claim.diameter);

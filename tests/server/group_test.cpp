@@ -80,7 +80,7 @@ class GroupLibrary : public testing::Test {
     int number = 0;
     for (const char* name : {"brick", "plate"}) {
       const Eigen::Vector3f half(0.03f, 0.02f + 0.01f * static_cast<float>(number), 0.0125f);
-      auto source = model_source_from_mesh(test::box_mesh(half), name, ++number);
+      auto source = modeling::model_source_from_mesh(test::box_mesh(half), name, ++number);
       EXPECT_TRUE(source.ok()) << source.status().message;
       EXPECT_TRUE(io::save_model(at_front(), *source).ok());
     }
@@ -99,7 +99,8 @@ class GroupLibrary : public testing::Test {
       auto model = make_object_model(std::move(source));
       EXPECT_TRUE(model.ok() && models.add(*model).ok());
     }
-    auto shared = share_library(std::move(models), default_score_layers(), std::move(folders));
+    auto shared =
+        share_library(std::move(models), score::default_score_layers(), std::move(folders));
     EXPECT_TRUE(shared.ok()) << shared.status().message;
     return *shared;
   }
@@ -144,7 +145,7 @@ TEST_F(GroupLibrary, WorkerFetchesEachVersionOnce) {
   EXPECT_EQ(calls_, 0);
 
   // One model changes: the other one is the same object, in memory too.
-  auto source = model_source_from_mesh(test::box_mesh({0.03f, 0.03f, 0.03f}), "plate", 2);
+  auto source = modeling::model_source_from_mesh(test::box_mesh({0.03f, 0.03f, 0.03f}), "plate", 2);
   ASSERT_TRUE(source.ok() && io::save_model(at_front(), *source).ok());
   const auto changed = front_library();
   EXPECT_NE(changed->offer.digest, front->offer.digest);
@@ -241,12 +242,12 @@ TEST_F(GroupLibrary, SearchReachesTheWorkerToTheBit) {
 
 TEST_F(GroupLibrary, CandidateComesBackToTheBitOrNotAtAll) {
   const auto front = front_library();
-  Candidate candidate{.model = front->find(1).get()};
+  detect::Candidate candidate{.model = front->find(1).get()};
   candidate.refinement.camera_from_object = {Eigen::Quaterniond(0.1, 0.7, -0.3, 0.2).normalized(),
                                              {0.1, 1.0 / 3, 0.7}};
   candidate.refinement.information.setRandom();
   candidate.refinement.num_correspondences = 12;
-  candidate.found_by = Source::pairs;
+  candidate.found_by = detect::Source::pairs;
   candidate.values.fill(1.0 / 3);
   candidate.score = 1.0 / 7;
   candidate.explained = {1, 5, 99};
@@ -268,7 +269,8 @@ TEST_F(GroupLibrary, CandidateComesBackToTheBitOrNotAtAll) {
   broken.values.pop_back();
   EXPECT_FALSE(candidate_from(broken, *candidate.model, 100).ok());
   msgs::GroupCandidate found = to_message(candidate);
-  for (found.found_by = 0; found.found_by < static_cast<int>(Source::count); ++found.found_by) {
+  for (found.found_by = 0; found.found_by < static_cast<int>(detect::Source::count);
+       ++found.found_by) {
     EXPECT_TRUE(candidate_from(found, *candidate.model, 100).ok()) << int{found.found_by};
   }
   EXPECT_EQ(candidate_from(found, *candidate.model, 100).status().code, StatusCode::corrupt);

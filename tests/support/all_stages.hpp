@@ -10,10 +10,11 @@
 namespace bpa::test {
 
 /// What all stages find of one model in the scene's first sample, best first.
-inline Candidates run_all_stages(Search search, ObjectTrace* trace = nullptr) {
-  std::vector<Candidates> found(1);
-  std::vector<ObjectTrace> traces;
-  run_stages(detection_stages(), {&search, 1}, 1, found, trace ? &traces : nullptr);
+inline detect::Candidates run_all_stages(detect::Search search,
+                                         detect::ObjectTrace* trace = nullptr) {
+  std::vector<detect::Candidates> found(1);
+  std::vector<detect::ObjectTrace> traces;
+  detect::run_stages(detect::detection_stages(), {&search, 1}, 1, found, trace ? &traces : nullptr);
   if (trace) *trace = std::move(traces.front());
   return std::move(found.front());
 }

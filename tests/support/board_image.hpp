@@ -12,7 +12,7 @@
 
 namespace bpa::test {
 
-inline const Board kBoard{8, 5, 0.03};
+inline const calibration::Board kBoard{8, 5, 0.03};
 inline const Camera kBoardCamera{640, 480, 525, 525, 319.5, 239.5};
 
 /// Light of a point of the board's plane: a white border about squares, of which the one between

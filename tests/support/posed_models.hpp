@@ -22,7 +22,7 @@ namespace bpa::test {
 inline std::shared_ptr<const ObjectModel> model_of(const TriangleMesh& mesh,
                                                    const std::string& name, int number,
                                                    const SymmetryGroup& symmetry = {}) {
-  auto source = model_source_from_mesh(mesh, name, number);
+  auto source = modeling::model_source_from_mesh(mesh, name, number);
   EXPECT_TRUE(source.ok()) << source.status().message;
   source->symmetry = symmetry;
   auto model = make_object_model(std::move(source).value());

@@ -35,7 +35,7 @@ int main(int, char** argv) {
     record(folder + "/" + version + ".oni");
     const float size = version == "1" ? 0.05F : 0.06F;
     auto model = bpa::or_throw(
-        bpa::model_source_from_mesh(bpa::test::box_mesh({size, 0.02F, 0.03F}), "box", 1));
+        bpa::modeling::model_source_from_mesh(bpa::test::box_mesh({size, 0.02F, 0.03F}), "box", 1));
     bpa::or_throw(bpa::io::save_model(folder + "/library", model));
     return 0;
   } catch (const std::exception& error) {

@@ -73,7 +73,7 @@ class Doctor : public test::LScene {
     int number = 0;
     for (const auto& [name, mesh] :
          {std::pair{"brick", test::box_mesh(test::kBrickHalf)}, std::pair{"l", test::l_mesh()}}) {
-      const auto source = model_source_from_mesh(mesh, name, ++number);
+      const auto source = modeling::model_source_from_mesh(mesh, name, ++number);
       ASSERT_TRUE(source.ok()) << source.status().message;
       ASSERT_TRUE(io::save_model(scratch("library"), *source).ok());
     }

@@ -45,7 +45,7 @@ class Group : public testing::Test {
   }
 
   void save(const TriangleMesh& mesh, const std::string& name, int number) {
-    const auto source = model_source_from_mesh(mesh, name, number);
+    const auto source = modeling::model_source_from_mesh(mesh, name, number);
     ASSERT_TRUE(source.ok()) << source.status().message;
     ASSERT_TRUE(io::save_model(library_, *source).ok());
   }

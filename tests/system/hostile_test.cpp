@@ -23,7 +23,8 @@ namespace {
 class Hostile : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    auto model = model_source_from_mesh(test::box_mesh({0.06f, 0.04f, 0.025f}), "brick", 1);
+    auto model =
+        modeling::model_source_from_mesh(test::box_mesh({0.06f, 0.04f, 0.025f}), "brick", 1);
     ASSERT_TRUE(model.ok()) << model.status().message;
     ASSERT_TRUE(io::save_model(library(), *model).ok());
     model->name = "other";

@@ -148,7 +148,7 @@ TEST(Library, OneBrokenModelCostsNoOther) {
   const std::string folder = support::scratch_folder() + "/broken_library";
   int number = 0;
   for (const char* name : {"good", "bad"}) {
-    const auto source = model_source_from_mesh(support::stepped_box(), name, ++number);
+    const auto source = modeling::model_source_from_mesh(support::stepped_box(), name, ++number);
     ASSERT_TRUE(source.ok());
     ASSERT_TRUE(io::save_model(folder, *source).ok());
   }
@@ -192,7 +192,7 @@ TEST(Library, OneBrokenModelCostsNoOther) {
 
 TEST(Identity, OfASyntheticFrame) {
   const std::string folder = support::scratch_folder() + "/library";
-  const auto model = model_source_from_mesh(support::stepped_box(), "step", 4);
+  const auto model = modeling::model_source_from_mesh(support::stepped_box(), "step", 4);
   ASSERT_TRUE(model.ok()) << model.status().message;
   ASSERT_TRUE(io::save_model(folder, *model).ok());
   expect_identity(folder, support::box_frame());
@@ -214,7 +214,7 @@ TEST(Identity, OfARealFrame) {
       if (model.obj_id != frames->front().truth[i].obj_id) continue;
       const auto mesh = io::read_mesh(model.path, 0.001);
       ASSERT_TRUE(mesh.ok()) << mesh.status().message;
-      const auto source = model_source_from_mesh(*mesh, model.name, model.obj_id);
+      const auto source = modeling::model_source_from_mesh(*mesh, model.name, model.obj_id);
       ASSERT_TRUE(source.ok()) << source.status().message;
       ASSERT_TRUE(io::save_model(folder, *source).ok());
     }

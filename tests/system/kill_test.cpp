@@ -41,7 +41,8 @@ Status answers_new_client(milliseconds left) {
 
 TEST(Kill, ServerIsBackForNewAndOldClients) {
   const std::string folder = support::scratch_folder(), log = folder + "/killed.log";
-  const auto model = model_source_from_mesh(test::box_mesh({0.06f, 0.04f, 0.025f}), "brick", 1);
+  const auto model =
+      modeling::model_source_from_mesh(test::box_mesh({0.06f, 0.04f, 0.025f}), "brick", 1);
   ASSERT_TRUE(model.ok()) << model.status().message;
   ASSERT_TRUE(io::save_model(folder + "/library", *model).ok());
   const auto start = [&] {

@@ -42,7 +42,7 @@ class Questions : public test::LScene {
     int number = 0;
     for (const auto& [name, mesh] :
          {std::pair{"brick", test::box_mesh(test::kBrickHalf)}, std::pair{"l", test::l_mesh()}}) {
-      const auto source = model_source_from_mesh(mesh, name, ++number);
+      const auto source = modeling::model_source_from_mesh(mesh, name, ++number);
       ASSERT_TRUE(source.ok()) << source.status().message;
       ASSERT_TRUE(io::save_model(folder, *source).ok());
     }

@@ -30,7 +30,7 @@ class BenchSpeed : public ::testing::Test {
     save(test::box_mesh(test::kBrickHalf), "brick", 2);
   }
   void save(const TriangleMesh& mesh, const std::string& name, int number) const {
-    const auto source = model_source_from_mesh(mesh, name, number);
+    const auto source = modeling::model_source_from_mesh(mesh, name, number);
     ASSERT_TRUE(source.ok()) << source.status().message;
     ASSERT_TRUE(io::save_model(folder_ / "library", *source).ok());
   }

@@ -42,7 +42,7 @@ class CheckServer : public testing::Test {
     received_ = 0;
     after_ = before_;
   }
-  Findings findings() const {
+  doctor::Findings findings() const {
     ServerStatus before, after;
     before.model_count = after.model_count = models_;
     before.frames_received = 110;
@@ -58,7 +58,7 @@ class CheckServer : public testing::Test {
   }
   Whats found() const {
     Whats out;
-    for (const Finding& finding : findings()) {
+    for (const doctor::Finding& finding : findings()) {
       EXPECT_FALSE(finding.why.empty()) << finding.what;
       EXPECT_FALSE(finding.remedy.empty()) << finding.what;
       out.push_back(finding.what);

@@ -52,7 +52,8 @@ class Explain : public ::testing::Test {
     result_ = std::move(*result);
   }
   ExplainedFrame explained(const std::string& name = "000001_000002") const {
-    return {"scene 1 image 2", name, frame_, trace_, result_, default_score_layers(), truth_};
+    return {
+        "scene 1 image 2", name, frame_, trace_, result_, score::default_score_layers(), truth_};
   }
   void expect_picture(const std::string& path) const {
     const auto image = io::read_color_image(folder_ / path);
@@ -83,11 +84,11 @@ TEST_F(Explain, OneModelIsOneFolderWhosePageAgreesWithTheTrace) {
     expect_picture(std::string("out/") + picture);
     EXPECT_NE(text.find(std::string("src=\"") + picture), std::string::npos) << picture;
   }
-  for (const TraceStage& stage : trace_.objects.at(0).stages) {
+  for (const detect::TraceStage& stage : trace_.objects.at(0).stages) {
     EXPECT_NE(text.find(cell(std::string(stage.name)) + cell(std::to_string(stage.poses.size()))),
               std::string::npos)
         << stage.name;
-    for (const Rejected& rejected : stage.rejected) {
+    for (const detect::Rejected& rejected : stage.rejected) {
       EXPECT_NE(
           text.find(std::to_string(rejected.poses.size()) + " " + std::string(rejected.reason)),
           std::string::npos)
@@ -98,20 +99,20 @@ TEST_F(Explain, OneModelIsOneFolderWhosePageAgreesWithTheTrace) {
   EXPECT_NE(text.find("holds it."), std::string::npos);
   // Every number that the score layer adds up is there, and they add up.
   ASSERT_FALSE(trace_.candidates.empty());
-  const Candidate& best = trace_.candidates.front();
-  const ScoreLayer& layer = default_score_layers().last_for(best.values);
+  const detect::Candidate& best = trace_.candidates.front();
+  const score::ScoreLayer& layer = score::default_score_layers().last_for(best.values);
   double sum = layer.bias;
   const std::size_t table = text.find("adds to the log odds</th>");
   ASSERT_NE(table, std::string::npos);
-  for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
-    const std::string name(kScoreComponents[i].name);
+  for (std::size_t i = 0; i < score::kScoreComponents.size(); ++i) {
+    const std::string name(score::kScoreComponents[i].name);
     const double part = layer.components[i].at(best.values[i]);
     sum += part;
     const std::size_t row = text.find("<tr>" + cell(name), table);
     ASSERT_NE(row, std::string::npos) << name;
     const std::string line = text.substr(row, text.find("</tr>", row) - row);
     EXPECT_NE(line.find(cell(fixed(best.values[i], 4))), std::string::npos) << line;
-    if (!kScoreComponents[i].learned) continue;
+    if (!score::kScoreComponents[i].learned) continue;
     EXPECT_NE(line.find(cell(fixed(part, 3))), std::string::npos) << line;
   }
   EXPECT_NEAR(sum, best.score, 1e-9);

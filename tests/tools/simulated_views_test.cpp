@@ -12,14 +12,14 @@ namespace bpa::cli {
 namespace {
 
 ModelSource whole(const TriangleMesh& mesh) {
-  auto source = model_source_from_mesh(mesh, "thing", 1);
+  auto source = modeling::model_source_from_mesh(mesh, "thing", 1);
   EXPECT_TRUE(source.ok()) << source.status().message;
   return *source;
 }
 
 ModelSource measured(const TriangleMesh& mesh, int views, int num_threads = 2) {
   ModelSource source = whole(mesh);
-  keep_measured(source, simulate_views(mesh, views, 1, num_threads, {}), num_threads);
+  modeling::keep_measured(source, simulate_views(mesh, views, 1, num_threads, {}), num_threads);
   return source;
 }
 
@@ -91,16 +91,16 @@ TEST(SimulatedViews, WallOfABeakerKeepsBothSides) {
 // looked down to its inner floor.
 TEST(SimulatedViews, InnerFloorThatNobodySawIsSaid) {
   const TriangleMesh mesh = test::cup_mesh(0.04, 0.004, 0.095);
-  const std::vector<PosedView> all = simulate_views(mesh, 150, 1, 2, {});
-  std::vector<PosedView> halfway;
-  for (const PosedView& view : all) {
+  const std::vector<modeling::PosedView> all = simulate_views(mesh, 150, 1, 2, {});
+  std::vector<modeling::PosedView> halfway;
+  for (const modeling::PosedView& view : all) {
     const Eigen::Vector3d eye = view.camera_from_object.inverse().translation;
     const double up = std::abs((eye - Eigen::Vector3d(0, 0, 0.0475)).normalized().z());
     if (up > 0.35 && up < 0.72) halfway.push_back(view);
   }
   ASSERT_GT(halfway.size(), 40u);
-  const auto warnings = [](const std::vector<PosedView>& views) {
-    const auto model = model_source_from_views(views, "beaker", 1);
+  const auto warnings = [](const std::vector<modeling::PosedView>& views) {
+    const auto model = modeling::model_source_from_views(views, "beaker", 1);
     EXPECT_TRUE(model.ok()) << model.status().message;
     std::string text;
     for (const std::string& warning : model->warnings) text += warning + "\n";
@@ -117,9 +117,9 @@ TEST(SimulatedViews, PointCloudIsSeenWhole) {
   const PointCloud all = source.surface;
   const TriangleMesh squares = squares_of(all);
   ASSERT_EQ(squares.triangles.size(), 2 * all.size());
-  const std::vector<PosedView> views = simulate_views(squares, 40, 1, 2, {});
+  const std::vector<modeling::PosedView> views = simulate_views(squares, 40, 1, 2, {});
   double off = 0, count = 0;
-  for (const PosedView& view : views) {
+  for (const modeling::PosedView& view : views) {
     const Pose sphere_from_camera = view.camera_from_object.inverse();
     for (std::size_t i = 0; i < view.map.size(); ++i) {
       if (!view.object[i] || !(view.map.depth[i] > 0)) continue;
@@ -129,7 +129,7 @@ TEST(SimulatedViews, PointCloudIsSeenWhole) {
   }
   ASSERT_GT(count, 10000);
   EXPECT_NEAR(off / count, 0, 0.001);
-  keep_measured(source, views, 2);
+  modeling::keep_measured(source, views, 2);
   EXPECT_GE(source.surface.size(), all.size() * 99 / 100);
   EXPECT_TRUE(source.noise.fitted);
   EXPECT_LT(source.noise.range(0.05, 0), 0.003);

@@ -114,16 +114,17 @@ Truth read_truth(const std::string& folder, const std::string& split) {
   }
   const io::BopModel model = or_throw(io::read_bop_models(folder)).front();
   truth.name = model.name;
-  ModelOptions fine;
+  modeling::ModelOptions fine;
   fine.spacing_m = 0.001;
   const TriangleMesh mesh = or_throw(io::read_mesh(model.path, 0.001));
-  truth.surface = or_throw(model_source_from_mesh(mesh, "truth", 1, fine), folder).surface;
+  truth.surface =
+      or_throw(modeling::model_source_from_mesh(mesh, "truth", 1, fine), folder).surface;
   return truth;
 }
 
-void print_axes(const AlignedScan& scan, const Truth& truth) {
+void print_axes(const modeling::AlignedScan& scan, const Truth& truth) {
   std::size_t first = 0;
-  for (const RestingPosition& position : scan.positions) {
+  for (const modeling::RestingPosition& position : scan.positions) {
     // The truth of this position: its first frame and one a quarter turn later.
     const std::size_t later = std::min(first + 9, truth.frames.size() - 1);
     std::printf("  axis off by %.2f mm, step %.3f degrees\n",
@@ -136,9 +137,10 @@ void print_axes(const AlignedScan& scan, const Truth& truth) {
 }
 
 /// How far the poses of the views are from the truth.
-void print_poses(const AlignedScan& scan, const Truth& truth, const Pose& mesh_from_model) {
+void print_poses(const modeling::AlignedScan& scan, const Truth& truth,
+                 const Pose& mesh_from_model) {
   double worst = 0, worst_angle = 0;
-  for (const PosedView& view : scan.views) {
+  for (const modeling::PosedView& view : scan.views) {
     const Pose there = truth.camera_from_mesh(view.id);
     const Pose error = there.inverse() * view.camera_from_object * mesh_from_model.inverse();
     worst = std::max(worst, error.translation.norm());
@@ -173,39 +175,41 @@ struct Kind {
   const char* unit_name;
   double unit;
   const NoiseCurve& fitted;
-  std::vector<NoiseBin> held_out;  // those that count
+  std::vector<modeling::NoiseBin> held_out;  // those that count
 
-  double predicted(const NoiseBin& bin) const { return fitted(bin.edge_distance, bin.angle); }
+  double predicted(const modeling::NoiseBin& bin) const {
+    return fitted(bin.edge_distance, bin.angle);
+  }
 };
 
-std::vector<NoiseBin> well_filled(std::vector<NoiseBin> bins) {
-  std::erase_if(bins, [](const NoiseBin& bin) { return bin.count < kMinCount; });
+std::vector<modeling::NoiseBin> well_filled(std::vector<modeling::NoiseBin> bins) {
+  std::erase_if(bins, [](const modeling::NoiseBin& bin) { return bin.count < kMinCount; });
   return bins;
 }
 
 /// The factor by which predictions are off: root mean square of its logarithm over all errors.
 double factor_off(const Kind& kind) {
   double squares = 0, count = 0;
-  for (const NoiseBin& bin : kind.held_out) {
+  for (const modeling::NoiseBin& bin : kind.held_out) {
     squares += bin.count * std::pow(std::log(kind.predicted(bin) / bin.sigma), 2);
     count += bin.count;
   }
   return std::exp(std::sqrt(squares / std::max(1.0, count)));
 }
 
-using Value = std::function<double(const NoiseBin&)>;
+using Value = std::function<double(const modeling::NoiseBin&)>;
 
-std::vector<NoiseBin> sorted(std::vector<NoiseBin> bins, const Value& by) {
+std::vector<modeling::NoiseBin> sorted(std::vector<modeling::NoiseBin> bins, const Value& by) {
   std::ranges::stable_sort(bins, {}, by);
   return bins;
 }
 
 /// Observed over predicted errors: bins by rising prediction, in ten groups of about equal counts.
 draw::Series observed_over_predicted(const Kind& kind) {
-  const auto predicted = [&kind](const NoiseBin& bin) { return kind.predicted(bin); };
-  const std::vector<NoiseBin> bins = sorted(kind.held_out, predicted);
+  const auto predicted = [&kind](const modeling::NoiseBin& bin) { return kind.predicted(bin); };
+  const std::vector<modeling::NoiseBin> bins = sorted(kind.held_out, predicted);
   double all = 0;
-  for (const NoiseBin& bin : bins) all += bin.count;
+  for (const modeling::NoiseBin& bin : bins) all += bin.count;
   draw::Series series{"held-out views", {}, {}};
   double count = 0, expected = 0, squares = 0;
   for (std::size_t i = 0; i < bins.size(); ++i) {
@@ -221,10 +225,10 @@ draw::Series observed_over_predicted(const Kind& kind) {
 }
 
 /// y over x of the bins that are `kept`, by rising x.
-draw::Series series_of(const Kind& kind, const std::string& name, bool (*kept)(const NoiseBin&),
-                       const Value& x, const Value& y) {
+draw::Series series_of(const Kind& kind, const std::string& name,
+                       bool (*kept)(const modeling::NoiseBin&), const Value& x, const Value& y) {
   draw::Series series{name, {}, {}};
-  for (const NoiseBin& bin : sorted(kind.held_out, x)) {
+  for (const modeling::NoiseBin& bin : sorted(kind.held_out, x)) {
     if (!kept(bin)) continue;
     series.x.push_back(x(bin));
     series.y.push_back(kind.unit * y(bin));
@@ -232,20 +236,20 @@ draw::Series series_of(const Kind& kind, const std::string& name, bool (*kept)(c
   return series;
 }
 
-bool far_from_edges(const NoiseBin& bin) {
+bool far_from_edges(const modeling::NoiseBin& bin) {
   return bin.edge_distance >= 0.015 && bin.edge_distance <= 0.025;
 }
-bool somewhat_slanted(const NoiseBin& bin) {
+bool somewhat_slanted(const modeling::NoiseBin& bin) {
   return bin.angle >= 30 / kDegrees && bin.angle < 37.5 / kDegrees;
 }
-double degrees(const NoiseBin& bin) { return kDegrees * bin.angle; }
-double millimetres(const NoiseBin& bin) { return kMillimetres * bin.edge_distance; }
+double degrees(const modeling::NoiseBin& bin) { return kDegrees * bin.angle; }
+double millimetres(const modeling::NoiseBin& bin) { return kMillimetres * bin.edge_distance; }
 
 void save_plots(const Kind& kind, const draw::Series& law, const std::string& start,
                 const std::string& model) {
-  const Value observed = [](const NoiseBin& bin) { return bin.sigma; };
-  const Value fitted = [&kind](const NoiseBin& bin) { return kind.predicted(bin); };
-  const auto curves = [&](bool (*kept)(const NoiseBin&), const Value& x) {
+  const Value observed = [](const modeling::NoiseBin& bin) { return bin.sigma; };
+  const Value fitted = [&kind](const modeling::NoiseBin& bin) { return kind.predicted(bin); };
+  const auto curves = [&](bool (*kept)(const modeling::NoiseBin&), const Value& x) {
     return std::vector<draw::Series>{series_of(kind, "held-out views", kept, x, observed),
                                      series_of(kind, "fitted sigmoids", kept, x, fitted)};
   };
@@ -268,24 +272,26 @@ void save_plots(const Kind& kind, const draw::Series& law, const std::string& st
 
 /// Learns a model's noise from every second view and prints what it predicts beside the errors of
 /// the other views and the simulated sensor's law. Writes six plots to `plots` unless it is empty.
-void measure_noise(const ModelSource& model, const std::vector<PosedView>& views,
+void measure_noise(const ModelSource& model, const std::vector<modeling::PosedView>& views,
                    const std::string& name, const std::string& plots, int num_threads) {
-  std::vector<PosedView> half[2];
+  std::vector<modeling::PosedView> half[2];
   for (std::size_t i = 0; i < views.size(); ++i) half[i % 2].push_back(views[i]);
   ModelSource learned = model;
   learned.normal_variance.clear();
-  learn_noise(learned, half[0], num_threads);
-  const SurfaceObservations seen = observe_surface(model.surface, half[1], num_threads);
+  modeling::learn_noise(learned, half[0], num_threads);
+  const modeling::SurfaceObservations seen =
+      modeling::observe_surface(model.surface, half[1], num_threads);
   const Kind range{"range noise", "mm", kMillimetres, learned.noise.range,
                    well_filled(seen.range_bins)};
   const Kind normals{"noise of normals", "degrees", kDegrees, learned.noise.normal,
                      well_filled(seen.normal_bins)};
-  const draw::Series law = series_of(
-      range, "simulator's law", far_from_edges, degrees,
-      [&seen](const NoiseBin& bin) { return sim::published_axial_noise(seen.depth, bin.angle); });
+  const draw::Series law = series_of(range, "simulator's law", far_from_edges, degrees,
+                                     [&seen](const modeling::NoiseBin& bin) {
+                                       return sim::published_axial_noise(seen.depth, bin.angle);
+                                     });
   std::printf(
       "  range noise 15 to 25 mm from edges, mm: angle, fitted, held-out views, simulator's law\n");
-  for (const NoiseBin& bin : range.held_out) {
+  for (const modeling::NoiseBin& bin : range.held_out) {
     if (!far_from_edges(bin)) continue;
     std::printf("    %4.0f degrees  %.2f  %.2f  %.2f\n", degrees(bin),
                 kMillimetres * range.predicted(bin), kMillimetres * bin.sigma,
@@ -306,20 +312,20 @@ void save(ModelSource model, const PointCloud& surface, const Truth& truth, int 
   model.number = number;
   model.surface.points = surface.points;
   model.surface.normals = surface.normals;
-  model.symmetry = find_symmetries(model.surface, model.diameter, a.common.threads);
+  model.symmetry = modeling::find_symmetries(model.surface, model.diameter, a.common.threads);
   model.symmetry_origin = SymmetryOrigin::found;
-  std::printf("  symmetries: %s\n", describe(model.symmetry).c_str());
+  std::printf("  symmetries: %s\n", modeling::describe(model.symmetry).c_str());
   or_throw(io::save_model(a.library, model, a.common.threads));
 }
 
 void measure(const std::string& folder, int number, const ModelsArguments& a) {
   const Truth truth = read_truth(folder, a.split);
   const Stopwatch watch;
-  const AlignedScan aligned = align_scan_of(folder, a.split, a.step_deg, a.common);
-  ModelSource model = or_throw(model_source_from_views(aligned.views, "scan", 1), folder);
+  const modeling::AlignedScan aligned = align_scan_of(folder, a.split, a.step_deg, a.common);
+  ModelSource model = or_throw(modeling::model_source_from_views(aligned.views, "scan", 1), folder);
   std::printf("%s: %zu views, %.1f s\n", truth.name.c_str(), aligned.views.size(), watch.seconds());
 
-  const PosedView& first = aligned.views.front();
+  const modeling::PosedView& first = aligned.views.front();
   const Pose mesh_from_model =
       truth.camera_from_mesh(first.id).inverse() * first.camera_from_object;
   const PointCloud surface = moved(model.surface, mesh_from_model);

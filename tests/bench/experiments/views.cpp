@@ -146,7 +146,7 @@ void add_scene(const ViewsArguments& a, const Frames& frames, const eval::EvalOb
     row.recall_of_all.total += truth.counts;
     row.recall_of_all.hits += truth.counts && truth.found;
   }
-  for (const SurfaceDisagreement& pair : result.disagreements) {
+  for (const calibration::SurfaceDisagreement& pair : result.disagreements) {
     row.gap_m.push_back(pair.position_m);
     row.gap_deg.push_back(pair.angle_rad * kDegrees);
   }

@@ -11,7 +11,7 @@
 #include "tests/support/board_image.hpp"
 #include "tests/support/solid_scene.hpp"
 
-namespace bpa {
+namespace bpa::calibration {
 namespace {
 
 constexpr double kOneDegree = std::numbers::pi / 180;
@@ -50,4 +50,4 @@ TEST(FindBoard, RefusesBoardsThatLookTheSameUpsideDown) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::calibration

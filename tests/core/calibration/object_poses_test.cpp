@@ -9,7 +9,7 @@
 #include "core/base/random.hpp"
 #include "tests/support/solid_scene.hpp"
 
-namespace bpa {
+namespace bpa::calibration {
 namespace {
 
 constexpr double kDegreeOfTurn = std::numbers::pi / 180;
@@ -128,4 +128,4 @@ TEST_F(ObjectPoses, TooFewObjectsAreNotEnough) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::calibration

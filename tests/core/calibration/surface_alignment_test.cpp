@@ -9,7 +9,7 @@
 #include "core/geometry/symmetry.hpp"
 #include "tests/support/solid_scene.hpp"
 
-namespace bpa {
+namespace bpa::calibration {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -116,4 +116,4 @@ TEST(DisagreementText, NamesBothCamerasAndSaysByHowMuch) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::calibration

@@ -17,7 +17,7 @@
 #include "core/score/rival_poses.hpp"
 #include "tests/support/l_scene.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 class SingleObject : public test::LScene {};
@@ -38,14 +38,14 @@ TEST_F(SingleObject, BestPlacementIsTheTruth) {
 TEST_F(SingleObject, PlacementsAreRankedAndDistinct) {
   const SceneFeatures scene = features_of(everything(), 1);
   DetectPlan plan;
-  plan.limits[Limit::selected] = -20;
+  plan.limits[score::Limit::selected] = -20;
   const auto candidates = test::run_all_stages(Search(scene, *l_, plan));
   ASSERT_GT(candidates.size(), 1u);
   EXPECT_LE(candidates.size(), static_cast<std::size_t>(plan.select.max_placements));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& c = candidates[i];
     EXPECT_EQ(c.model, l_.get());
-    EXPECT_GE(c.score, plan.limits[Limit::selected]);
+    EXPECT_GE(c.score, plan.limits[score::Limit::selected]);
     EXPECT_LE(c.score, candidates[i > 0 ? i - 1 : 0].score);
     EXPECT_NEAR(c.probability, 1 / (1 + std::exp(-c.score)), 1e-9);
     EXPECT_TRUE(std::is_sorted(c.explained.begin(), c.explained.end()));
@@ -56,7 +56,7 @@ TEST_F(SingleObject, PlacementsAreRankedAndDistinct) {
   }
   plan.select.max_placements = 1;
   EXPECT_EQ(test::run_all_stages(Search(scene, *l_, plan)).size(), 1u);
-  plan.limits[Limit::selected] = 1e9;
+  plan.limits[score::Limit::selected] = 1e9;
   EXPECT_TRUE(test::run_all_stages(Search(scene, *l_, plan)).empty());
 }
 
@@ -117,8 +117,9 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
     if (dropped.reason != "too much in free space") continue;
     int hanging = 0;
     for (const FastPose& pose : dropped.poses) {
-      const CheckTolerance tolerance{0.010, CheckOptions().free_depth_m, 0.75};
-      const PoseCheck check = check_pose(scene.image, l_->index->check, pose, {1024}, tolerance);
+      const score::CheckTolerance tolerance{0.010, CheckOptions().free_depth_m, 0.75};
+      const score::PoseCheck check =
+          score::check_pose(scene.image, l_->index->check, pose, {1024}, tolerance);
       hanging += check.free_space > 0;
     }
     EXPECT_GT(hanging, 0.98 * static_cast<double>(dropped.poses.size()));
@@ -127,24 +128,24 @@ TEST_F(SingleObject, TheTraceAccountsForEveryHypothesisAndChangesNothing) {
 
 TEST_F(SingleObject, MeasuresNoFurtherThanTheFirstComponentsAreProbable) {
   const SceneFeatures scene = features_of(everything(), 1);
-  const FeaturePlaces places(*l_);
-  const ScoreLayer& layer = default_score_layers().round_three;
-  const Limits limits = DetectPlan().limits;
+  const score::FeaturePlaces places(*l_);
+  const score::ScoreLayer& layer = score::default_score_layers().round_three;
+  const score::Limits limits = DetectPlan().limits;
   RandomStream random(5);
   int stopped = 0, measured = 0;
   for (int i = 0; i < 200; ++i) {
     Pose pose = l_truth_;
     for (double& x : pose.translation) x += 0.02 * (i % 4) * random.uniform(-1, 1);
-    Evidence whole(scene, places, pose);
-    const ScoreValues values = measure(whole, Round::three);
+    score::Evidence whole(scene, places, pose);
+    const score::ScoreValues values = measure(whole, score::Round::three);
     double log_odds = layer.bias - 1;
     bool probable = true;
     for (std::size_t k = 0; k < values.size(); ++k) {
       log_odds += layer.components[k].at(values[k]);
       probable &= log_odds >= limits.components[k];
     }
-    Evidence again(scene, places, pose);
-    const auto some = measure_while_probable(again, layer, -1, limits);
+    score::Evidence again(scene, places, pose);
+    const auto some = score::measure_while_probable(again, layer, -1, limits);
     ASSERT_EQ(some.has_value(), probable) << i;
     ++(probable ? measured : stopped);
     if (!some) continue;
@@ -157,7 +158,7 @@ TEST_F(SingleObject, MeasuresNoFurtherThanTheFirstComponentsAreProbable) {
 TEST_F(SingleObject, StoppingEarlyLosesNoProbablePlacement) {
   const SceneFeatures scene = features_of(everything(), 1);
   DetectPlan plan;
-  plan.limits[Limit::selected] = -5;
+  plan.limits[score::Limit::selected] = -5;
   for (const auto& model : {l_, brick_}) {
     plan.score.stop_early = true;
     const auto early = test::run_all_stages(Search(scene, *model, plan));
@@ -201,11 +202,11 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
                                        "left_over",
                                        "relative_exposure"};
   for (const Candidate& candidate : candidates) {
-    const ScoreLayer& layer = default_score_layers().round_two;
+    const score::ScoreLayer& layer = score::default_score_layers().round_two;
     double sum = layer.bias;
     std::size_t left_out = 0;
-    for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
-      const std::string name(kScoreComponents[i].name);
+    for (std::size_t i = 0; i < score::kScoreComponents.size(); ++i) {
+      const std::string name(score::kScoreComponents[i].name);
       const bool skip = third.contains(name);
       EXPECT_EQ(std::isnan(candidate.values[i]), skip) << name;
       left_out += skip;
@@ -222,25 +223,27 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
 TEST_F(SingleObject, OfPosesInOnePlaceTheBestIsBehindNone) {
   const SceneFeatures scene = features_of(everything(), 1);
   DetectPlan plan;
-  plan.limits[Limit::rival_behind] = -1000;
-  plan.limits[Limit::compared] = -1000;
+  plan.limits[score::Limit::rival_behind] = -1000;
+  plan.limits[score::Limit::compared] = -1000;
   const auto candidates = test::run_all_stages(Search(scene, *l_, plan));
   ASSERT_FALSE(candidates.empty());
   EXPECT_LT(pose_error(candidates[0].pose(), l_truth_, l_->symmetry).position, 0.01);
-  EXPECT_GT(candidates[0].values[component("rivals")], -10);
-  const PredictedSurface first = predict_whole_surface(scene.image, *l_, candidates[0].pose());
+  EXPECT_GT(candidates[0].values[score::component("rivals")], -10);
+  const score::PredictedSurface first =
+      score::predict_whole_surface(scene.image, *l_, candidates[0].pose());
   int behind = 0;
   for (const Candidate& c : candidates) {
     const double distance = (c.pose().translation - candidates[0].pose().translation).norm();
     if (distance > tolerance::kSamePlace * l_->diameter ||
-        std::isnan(c.values[component("rivals")]))
+        std::isnan(c.values[score::component("rivals")]))
       continue;
-    EXPECT_LE(c.values[component("rivals")], 0);
-    const PredictedSurface other = predict_whole_surface(scene.image, *l_, c.pose());
-    EXPECT_LE(depth_evidence(scene.image, other, first, disagreement(scene.image, other, first)),
-              10)
+    EXPECT_LE(c.values[score::component("rivals")], 0);
+    const score::PredictedSurface other = score::predict_whole_surface(scene.image, *l_, c.pose());
+    EXPECT_LE(
+        score::depth_evidence(scene.image, other, first, disagreement(scene.image, other, first)),
+        10)
         << "better than what is called the best";
-    behind += c.values[component("rivals")] < -30;
+    behind += c.values[score::component("rivals")] < -30;
   }
   EXPECT_GT(behind, 0);
 }
@@ -287,4 +290,4 @@ TEST_F(SingleObject, UncertaintyIsReportedInBothForms) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::detect

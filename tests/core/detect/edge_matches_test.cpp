@@ -9,7 +9,7 @@
 #include "core/model/model_index.hpp"
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 using test::Solid;
@@ -106,4 +106,4 @@ TEST_F(EdgeMatches, AreNotFoundBehindWhatHidesThem) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -9,7 +9,7 @@
 #include "core/model/model_index.hpp"
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 const Eigen::Vector3f kCardHalf(0.060f, 0.025f, 0.002f);
@@ -110,4 +110,4 @@ TEST_F(LayFlat, AddsNothingWithoutRegionsForThickModelsOrWhereItIsOff) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::detect

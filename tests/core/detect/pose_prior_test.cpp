@@ -12,7 +12,7 @@
 #include "tests/support/all_stages.hpp"
 #include "tests/support/l_scene.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 constexpr double kSigma = 0.06;  // metres
@@ -219,7 +219,7 @@ TEST_F(PriorsOf, DecideBetweenPosesThatLookTheSame) {
   const Pose turned_over = brick_truth_ * Pose{Eigen::Quaterniond(0, 0, 0, 1), {0, 0, 0}};
   std::vector<PosePrior> given = {prior_at("brick", turned_over)};
   const auto candidates =
-      test::run_all_stages(Search(scene, *brick, {}, default_score_layers(), given));
+      test::run_all_stages(Search(scene, *brick, {}, score::default_score_layers(), given));
   ASSERT_FALSE(candidates.empty());
   const PoseError error = pose_error(candidates[0].pose(), turned_over);
   EXPECT_LT(error.position, 0.005);
@@ -232,7 +232,7 @@ TEST_F(PriorsOf, DecideBetweenPosesThatLookTheSame) {
   for (const Candidate& c : candidates) {
     EXPECT_EQ(c.prior, priors.evidence(c.pose()));
     Candidate alone = search.scored(c, c.refinement);
-    alone.values[component("rivals")] = c.values[component("rivals")];
+    alone.values[score::component("rivals")] = c.values[score::component("rivals")];
     search.apply_layer(alone);
     EXPECT_NEAR(c.score, alone.score + c.prior, 1e-9);
   }
@@ -250,7 +250,7 @@ TEST_F(PriorsOf, WrongOnesDoNotHideAClearObject) {
   elsewhere.translation.x() += 0.3;
   std::vector<PosePrior> given = {prior_at("l", elsewhere, 0.02, 0.1)};
   const auto candidates =
-      test::run_all_stages(Search(scene, *l_, {}, default_score_layers(), given));
+      test::run_all_stages(Search(scene, *l_, {}, score::default_score_layers(), given));
   ASSERT_FALSE(candidates.empty());
   const PoseError error = pose_error(candidates[0].pose(), l_truth_, l_->symmetry);
   EXPECT_LT(error.position, 0.005);
@@ -267,7 +267,7 @@ TEST_F(PriorsOf, FindWhatFeaturesDoNot) {
   std::vector<PosePrior> given = {
       prior_at("l", test::disturbed(l_truth_, 0.02, 0.2, 5), 0.02, 0.2)};
   const auto candidates =
-      test::run_all_stages(Search(scene, *l_, {}, default_score_layers(), given));
+      test::run_all_stages(Search(scene, *l_, {}, score::default_score_layers(), given));
   ASSERT_FALSE(candidates.empty());
   const PoseError error = pose_error(candidates[0].pose(), l_truth_, l_->symmetry);
   EXPECT_LT(error.position, 0.005);
@@ -282,7 +282,7 @@ TEST_F(PriorsOf, FindWhatFeaturesDoNot) {
     DetectOptions options;
     options.sample.draws_per_prior = 1000;
     const auto found =
-        test::run_all_stages(Search(scene, *l_, options, default_score_layers(), given));
+        test::run_all_stages(Search(scene, *l_, options, score::default_score_layers(), given));
     EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const Candidate& c) {
       return pose_error(c.pose(), l_truth_, l_->symmetry).position < 0.01;
     })) << (prior.position ? "position" : "orientation");
@@ -309,4 +309,4 @@ TEST_F(PriorsOf, DrawsAreOfTheDistribution) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -11,7 +11,7 @@
 #include "core/model/model_index.hpp"
 #include "tests/support/l_scene.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
@@ -141,4 +141,4 @@ TEST_F(RefinementOf, SameStartSameEnd) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::detect

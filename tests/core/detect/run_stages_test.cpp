@@ -9,7 +9,7 @@
 #include "tests/support/all_stages.hpp"
 #include "tests/support/l_scene.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 class RunStages : public test::LScene {
@@ -17,8 +17,8 @@ class RunStages : public test::LScene {
   // Candidates in one place do not compete.
   static DetectPlan without_margins() {
     DetectPlan plan;
-    for (const Limit behind : {Limit::checked_behind, Limit::clustered_behind,
-                               Limit::aligned_behind, Limit::refined_behind}) {
+    for (const score::Limit behind : {score::Limit::checked_behind, score::Limit::clustered_behind,
+                                      score::Limit::aligned_behind, score::Limit::refined_behind}) {
       plan.limits[behind] = -1000;
     }
     return plan;
@@ -64,7 +64,7 @@ TEST_F(RunStages, WhatIsFarBehindAnotherModelInItsPlaceIsRejected) {
   const SceneFeatures scene = features_of(everything(), 1);
   const auto found_with = [&](double margin) {
     DetectPlan options = without_margins();
-    options.limits[Limit::clustered_behind] = -margin;
+    options.limits[score::Limit::clustered_behind] = -margin;
     auto searches = searches_in(scene, options);
     std::vector<Candidates> found(2);
     run_stages(up_to("cluster"), searches, 2, found);
@@ -126,7 +126,7 @@ TEST_F(RunStages, WhatPriorsSuggestGoesOnInAnyCase) {
   DetectOptions options;
   options.check.max_in_library = 1;
   std::vector<Search> searches;
-  searches.emplace_back(scene, *l_, options, default_score_layers(), std::span(&prior, 1));
+  searches.emplace_back(scene, *l_, options, score::default_score_layers(), std::span(&prior, 1));
   std::vector<Candidates> found(1);
   run_stages(up_to("check"), searches, 1, found);
   const auto suggested = std::ranges::count(found[0], true, &Candidate::is_protected);
@@ -135,4 +135,4 @@ TEST_F(RunStages, WhatPriorsSuggestGoesOnInAnyCase) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -11,7 +11,7 @@
 
 #include "tests/support/l_scene.hpp"
 
-namespace bpa {
+namespace bpa::detect {
 namespace {
 
 bool within_tolerance(const Candidate& hypothesis, const Pose& truth,
@@ -45,7 +45,7 @@ void expect_best_first(const Candidates& hypotheses) {
 // Sampled and checked.
 Candidates sampled_in(const SceneFeatures& scene, const ObjectModel& model,
                       std::uint64_t seed = 0) {
-  const Search search(scene, model, {}, default_score_layers(), {}, seed);
+  const Search search(scene, model, {}, score::default_score_layers(), {}, seed);
   return check(search, sample(search, {}));
 }
 
@@ -107,7 +107,7 @@ TEST_F(Stages, ScoresBelowTheLimitAreRejectedUnlessProtected) {
   const auto checked = [&](double limit) {
     DetectPlan plan;
     plan.check.max_kept = 100000;
-    plan.limits[Limit::ranked] = limit;
+    plan.limits[score::Limit::ranked] = limit;
     const Search search(scene, *l_, plan);
     Candidates sampled = sample(search, {});
     for (std::size_t i = 0; i < sampled.size(); i += 10) sampled[i].is_protected = true;
@@ -179,4 +179,4 @@ TEST_F(Stages, OfAnEmptyTableThereAreNone) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::detect

@@ -12,9 +12,9 @@
 namespace bpa::test {
 
 /// What is wrong, for comparison; everything else of a finding must be said too.
-inline std::vector<std::string> whats(const Findings& findings) {
+inline std::vector<std::string> whats(const doctor::Findings& findings) {
   std::vector<std::string> out;
-  for (const Finding& finding : findings) {
+  for (const doctor::Finding& finding : findings) {
     EXPECT_FALSE(finding.why.empty()) << finding.what;
     EXPECT_FALSE(finding.remedy.empty()) << finding.what;
     out.push_back(finding.what);

@@ -12,7 +12,7 @@
 #include "tests/core/doctor/findings.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace bpa {
+namespace bpa::doctor {
 namespace {
 
 using test::Whats;
@@ -174,4 +174,4 @@ TEST(CheckFrame, ImagesOfDifferentSizes) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::doctor

@@ -8,7 +8,7 @@
 #include "tests/core/doctor/findings.hpp"
 #include "tests/support/meshes.hpp"
 
-namespace bpa {
+namespace bpa::doctor {
 namespace {
 
 using test::Whats;
@@ -18,7 +18,7 @@ using Rgb = std::array<std::uint8_t, 3>;
 
 /// A model of one colour; black: of none.
 ModelSource model(const std::string& name, const TriangleMesh& mesh, const Rgb& color = {}) {
-  const auto source = model_source_from_mesh(mesh, name, 1);
+  const auto source = modeling::model_source_from_mesh(mesh, name, 1);
   EXPECT_TRUE(source.ok()) << source.status().message;
   ModelSource out = source.ok() ? *source : ModelSource();
   out.surface.colors.clear();
@@ -93,4 +93,4 @@ TEST(CheckModelsInFrame, ModelsWithoutColour) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::doctor

@@ -8,7 +8,7 @@
 #include "tests/core/doctor/findings.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace bpa {
+namespace bpa::doctor {
 namespace {
 
 using test::spill;
@@ -68,4 +68,4 @@ TEST_F(CheckMachine, NetworkInterfaces) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::doctor

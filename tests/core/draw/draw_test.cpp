@@ -65,10 +65,10 @@ TEST(ModelThumbnail, ShadesASphereWithoutHoles) {
 }
 
 TEST(DrawEdges, EachKindInItsColour) {
-  SceneEdges edges{
-      {kWidth, kHeight, RangeEdge::none}, {kWidth, kHeight, 0}, {kWidth, kHeight, 0}, {}};
-  edges.range.at(1, 1) = RangeEdge::occluding;
-  edges.range.at(2, 1) = RangeEdge::occluded;
+  features::SceneEdges edges{
+      {kWidth, kHeight, features::RangeEdge::none}, {kWidth, kHeight, 0}, {kWidth, kHeight, 0}, {}};
+  edges.range.at(1, 1) = features::RangeEdge::occluding;
+  edges.range.at(2, 1) = features::RangeEdge::occluded;
   edges.curvature.at(3, 1) = 1;
   edges.image.at(4, 1) = 1;
   edges.image.at(1, 1) = 1;  // the range edge comes first
@@ -100,8 +100,8 @@ TEST(DrawEdgeImage, WhiteIsOne) {
 }
 
 // Left, right and (the last two columns) nothing; left is red, right green.
-Segmentation halves(float affinity) {
-  Segmentation out;
+segment::Segmentation halves(float affinity) {
+  segment::Segmentation out;
   out.labels = Image<std::int32_t>(kWidth, kHeight, -1);
   out.segments.resize(2);
   for (int v = 0; v < kHeight; ++v) {

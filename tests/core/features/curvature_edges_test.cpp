@@ -8,7 +8,7 @@
 #include "core/features/edges.hpp"
 #include "tests/support/solid_scene.hpp"
 
-namespace bpa {
+namespace bpa::features {
 namespace {
 
 using test::Solid;
@@ -90,4 +90,4 @@ TEST(CurvatureEdges, TheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::features

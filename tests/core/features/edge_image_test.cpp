@@ -9,7 +9,7 @@
 #include "core/features/edges.hpp"
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::features {
 namespace {
 
 struct Masks {
@@ -109,4 +109,4 @@ TEST(SceneEdges, TheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::features

@@ -8,7 +8,7 @@
 #include "core/base/random.hpp"
 #include "core/features/fpfh.hpp"
 
-namespace bpa {
+namespace bpa::features {
 namespace {
 
 std::vector<Fpfh> random_features(int count, std::uint64_t seed) {
@@ -108,4 +108,4 @@ TEST(FeatureTree, KeepsItsOwnCopy) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::features

@@ -10,7 +10,7 @@
 #include "core/base/random.hpp"
 #include "core/features/fpfh.hpp"
 
-namespace bpa {
+namespace bpa::features {
 namespace {
 
 constexpr float kRadius = 0.025f;
@@ -171,4 +171,4 @@ TEST(Fpfh, PointsInOnePlaceDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::features

@@ -7,7 +7,7 @@
 #include "core/base/random.hpp"
 #include "core/features/edges.hpp"
 
-namespace bpa {
+namespace bpa::features {
 namespace {
 
 // A bright disc on a darker ground, `step` of luminance above it, with noise.
@@ -56,4 +56,4 @@ TEST(ImageEdges, StepsBelowTheThresholdAreNone) {
 TEST(ImageEdges, WithoutColourNone) { EXPECT_TRUE(image_edges({}).empty()); }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::features

@@ -11,7 +11,7 @@
 #include "core/features/pair_voting.hpp"
 #include "core/geometry/pose.hpp"
 
-namespace bpa {
+namespace bpa::features {
 namespace {
 
 Eigen::Vector3f random_vector(RandomStream& random) {
@@ -472,4 +472,4 @@ TEST(PairVoting, ColoursTellPointsOfOneShapeApart) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::features

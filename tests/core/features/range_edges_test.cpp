@@ -5,7 +5,7 @@
 #include "core/features/edges.hpp"
 #include "tests/support/solid_scene.hpp"
 
-namespace bpa {
+namespace bpa::features {
 namespace {
 
 using test::Solid;
@@ -99,4 +99,4 @@ TEST(RangeEdges, NothingSeenNothingFound) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::features

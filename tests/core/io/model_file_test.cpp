@@ -81,7 +81,7 @@ void expect_same(const ModelView& a, const ModelView& b) {
 // What detection reads from the file is what it would compute from the surface.
 TEST(ModelFile, StoredIndexIsTheComputedOne) {
   const test::TemporaryFolder folder;
-  const auto source = model_source_from_mesh(test::l_mesh(), "l", 1);
+  const auto source = modeling::model_source_from_mesh(test::l_mesh(), "l", 1);
   ASSERT_TRUE(source.ok());
   ASSERT_TRUE(save_model(folder.path(), *source).ok());
   const auto stored = load_model(folder.path(), "l");
@@ -118,7 +118,8 @@ void expect_same(const PointCloud& a, const PointCloud& b) {
   EXPECT_EQ(a.principal_directions, b.principal_directions);
 }
 
-void expect_same(const PointPairTable::Arrays& a, const PointPairTable::Arrays& b) {
+void expect_same(const features::PointPairTable::Arrays& a,
+                 const features::PointPairTable::Arrays& b) {
   EXPECT_EQ(a.inverse_step, b.inverse_step);
   EXPECT_EQ(a.max_distance, b.max_distance);
   EXPECT_EQ(a.first, b.first);
@@ -127,7 +128,8 @@ void expect_same(const PointPairTable::Arrays& a, const PointPairTable::Arrays& 
 
 // A model with everything that a file of an index holds: colours, near symmetries and flat rests.
 ModelSource coloured_brick() {
-  ModelSource source = *model_source_from_mesh(test::box_mesh({0.06f, 0.04f, 0.02f}), "brick", 1);
+  ModelSource source =
+      *modeling::model_source_from_mesh(test::box_mesh({0.06f, 0.04f, 0.02f}), "brick", 1);
   for (std::size_t i = 0; i < source.surface.size(); ++i) {
     source.surface.colors.push_back({static_cast<std::uint8_t>(i % 251), 80, 200});
   }
@@ -212,9 +214,9 @@ void expect_inside(const ModelIndex& index, std::size_t points) {
     EXPECT_EQ(view.edge_distance.size(), view.visible.size());
     EXPECT_EQ(view.outward.size(), view.edges.size());
   }
-  for (const PointPairTable* table : {&index.pairs, &index.rim_pairs}) {
+  for (const features::PointPairTable* table : {&index.pairs, &index.rim_pairs}) {
     for (float distance = 0; distance < 0.1f; distance += 0.003f) {
-      for (std::uint16_t key = 0; key < PointPairTable::kAngleKeys; ++key) {
+      for (std::uint16_t key = 0; key < features::PointPairTable::kAngleKeys; ++key) {
         for (const auto& entry : table->lookup(distance, key)) {
           ASSERT_LT(entry.point, index.coarse.size());
         }

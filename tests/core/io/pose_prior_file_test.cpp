@@ -35,12 +35,12 @@ TEST_F(PosePriorFile, HasStandardDeviations) {
   ASSERT_TRUE(priors.ok()) << priors.status().message;
   ASSERT_EQ(priors->size(), 1u);
   const PosePrior& prior = (*priors)[0];
-  EXPECT_TRUE(validate(prior, "prior").ok());
+  EXPECT_TRUE(detect::validate(prior, "prior").ok());
   EXPECT_EQ(prior.model, "mug");
   EXPECT_EQ(prior.weight, 0.5);
   EXPECT_EQ(prior.position->mean, Eigen::Vector3d(0.1, 0.2, 0.7));
   EXPECT_TRUE(prior.position->covariance.isApprox(4e-4 * Eigen::Matrix3d::Identity()));
-  const Bingham orientation = orientation_of(prior);
+  const Bingham orientation = detect::orientation_of(prior);
   EXPECT_NEAR(std::abs(orientation.mode().dot(Eigen::Quaterniond(0.6, 0, 0.8, 0))), 1, 1e-12);
   EXPECT_NEAR(orientation.concentrations()[1], -2 / std::pow(M_PI / 20, 2), 1e-9);
 }

@@ -53,10 +53,10 @@ TEST(TexturedScan, ColorsAgreeWithThoseOfTheVertices) {
     const auto painted = read_mesh(data + "/ycbv/models/" + scan.ply + ".ply", 0.001);
     ASSERT_TRUE(textured.ok() && painted.ok());
     EXPECT_TRUE(textured->warnings.empty());
-    ModelOptions options;
+    modeling::ModelOptions options;
     options.spacing_m = 0.004;
-    const auto of_image = model_source_from_mesh(textured->mesh, "image", 1, options);
-    const auto of_vertices = model_source_from_mesh(*painted, "vertices", 2, options);
+    const auto of_image = modeling::model_source_from_mesh(textured->mesh, "image", 1, options);
+    const auto of_vertices = modeling::model_source_from_mesh(*painted, "vertices", 2, options);
     ASSERT_TRUE(of_image.ok() && of_vertices.ok());
     PointCloud shifted = of_image->surface;
     for (Eigen::Vector3f& point : shifted.points) point += scan.shift;

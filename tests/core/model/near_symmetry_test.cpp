@@ -12,7 +12,7 @@ namespace bpa {
 namespace {
 
 std::shared_ptr<const ObjectModel> model_of(const TriangleMesh& mesh, SymmetryGroup exact = {}) {
-  auto source = model_source_from_mesh(mesh, "thing", 1);
+  auto source = modeling::model_source_from_mesh(mesh, "thing", 1);
   EXPECT_TRUE(source.ok());
   source->symmetry = std::move(exact);
   return make_object_model(std::move(*source)).value();

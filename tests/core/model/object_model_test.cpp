@@ -15,7 +15,7 @@ namespace bpa {
 namespace {
 
 ModelSource l_source() {
-  auto source = model_source_from_mesh(test::l_mesh(), "l", 4);
+  auto source = modeling::model_source_from_mesh(test::l_mesh(), "l", 4);
   EXPECT_TRUE(source.ok());
   return std::move(source).value();
 }
@@ -105,7 +105,8 @@ TEST(ObjectModel, RefusesASourceWithoutSurfaceOrDiameter) {
 }
 
 TEST(ObjectModel, LargeObjectsStayWithinTheLimits) {
-  auto source = model_source_from_mesh(test::box_mesh({0.5f, 0.4f, 0.3f}), "crate", 1, {0.02, 0});
+  auto source =
+      modeling::model_source_from_mesh(test::box_mesh({0.5f, 0.4f, 0.3f}), "crate", 1, {0.02, 0});
   ASSERT_TRUE(source.ok());
   const auto model = make_object_model(std::move(source).value());
   ASSERT_TRUE(model.ok());

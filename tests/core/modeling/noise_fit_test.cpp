@@ -8,7 +8,7 @@
 #include "core/base/random.hpp"
 #include "core/modeling/posed_view.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 // Errors drawn from a known law, binned: the fit finds the law again.
@@ -45,4 +45,4 @@ TEST(NoiseFit, OfTooLittleStaysWhereItStarts) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::modeling

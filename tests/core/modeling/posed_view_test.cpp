@@ -11,7 +11,7 @@
 #include "core/geometry/sphere_directions.hpp"
 #include "core/modeling/trace_occupancy.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 constexpr double kHalf = 0.06;  // of the plate's side, metres
@@ -212,4 +212,4 @@ TEST(OccupancyGrid, OfNothingIsEmpty) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::modeling

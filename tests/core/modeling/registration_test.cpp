@@ -10,7 +10,7 @@
 
 #include "core/geometry/symmetry.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 // The faces of a box about the origin, but for its lower one: what a scan of it shows.
@@ -108,4 +108,4 @@ TEST(SameShape, OfABoxMovedAndNotOfAnotherBox) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::modeling

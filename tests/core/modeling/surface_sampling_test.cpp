@@ -11,7 +11,7 @@
 #include "core/modeling/model_source.hpp"
 #include "tests/support/meshes.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 constexpr float kSpacing = 0.0025f;  // the default
@@ -355,4 +355,4 @@ TEST(SurfaceFromPoints, RefusesTooFewAndWrongUnits) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::modeling

@@ -10,7 +10,7 @@
 #include "core/modeling/model_source.hpp"
 #include "tests/support/meshes.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 SymmetryGroup symmetries_of(const TriangleMesh& mesh) {
@@ -140,4 +140,4 @@ TEST(SymmetrySearch, LHasOneHalfTurnAtMost) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::modeling

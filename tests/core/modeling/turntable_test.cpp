@@ -10,7 +10,7 @@
 
 #include "core/base/random.hpp"
 
-namespace bpa {
+namespace bpa::modeling {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
@@ -268,4 +268,4 @@ TEST(Turntable, MissingRestingPositionIsSaid) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::modeling

@@ -12,7 +12,7 @@ namespace bpa {
 namespace {
 
 constexpr double kSpacing = 0.01;
-constexpr SearchYield kYield{
+constexpr score::SearchYield kYield{
     .shape = 1.5, .tries = 40, .visible = 0.3, .objects = 2, .scenes = 0.5};
 
 class CoverageOf : public test::LScene {

@@ -300,13 +300,13 @@ TEST_F(DetectorOf, SearchesOnlyTheRegionOfInterest) {
 
 TEST_F(DetectorOf, WithAnyOneThingLeftOutItsAnswerIsValidAndHoldsBothObjects) {
   const SceneInterpretations with_all = found({});
-  using Change = void (*)(DetectOptions&);
+  using Change = void (*)(detect::DetectOptions&);
   for (const Change leave_out :
-       {Change([](DetectOptions& o) { o.align.use_orientation = false; }),
-        Change([](DetectOptions& o) { o.align.use_segments = false; }),
-        Change([](DetectOptions& o) { o.align.use_edges = false; }),
-        Change([](DetectOptions& o) { o.climb.max_climbed = 0; }),
-        Change([](DetectOptions& o) { o.score.use_round_three = false; })}) {
+       {Change([](detect::DetectOptions& o) { o.align.use_orientation = false; }),
+        Change([](detect::DetectOptions& o) { o.align.use_segments = false; }),
+        Change([](detect::DetectOptions& o) { o.align.use_edges = false; }),
+        Change([](detect::DetectOptions& o) { o.climb.max_climbed = 0; }),
+        Change([](detect::DetectOptions& o) { o.score.use_round_three = false; })}) {
     DetectorOptions options = quick();
     leave_out(options.detect);
     const auto result = Detector(library_, options).detect(frame_);
@@ -392,7 +392,7 @@ TEST_F(DetectorOf, TakesPriorsIntoAccount) {
   ASSERT_EQ(of_brick(with).model, "brick");
   EXPECT_GT(of_brick(with).probability, of_brick(without).probability);
   EXPECT_EQ(of_brick(with).components.back().name, "prior");
-  EXPECT_EQ(of_brick(with).components.back().value, kMostPriorEvidence);
+  EXPECT_EQ(of_brick(with).components.back().value, detect::kMostPriorEvidence);
   EXPECT_NE(of_brick(without).components.back().name, "prior");
   // The other model has nothing to do with it.
   EXPECT_EQ(names(with.interpretations[0]), (std::vector<std::string>{"brick", "l"}));

@@ -47,8 +47,8 @@ class LibrarySearchEnds : public test::LScene {
     const SceneFeatures scene = features_of(everything());
     const DetectRequest request{.priors = priors};
     const std::vector<std::shared_ptr<const ObjectModel>> models = {l_, brick_};
-    const SearchPlan plan = *plan_search(options, default_score_layers(), {.models = 2});
-    const SearchInputs inputs{scene, plan, default_score_layers(), request, models};
+    const SearchPlan plan = *plan_search(options, score::default_score_layers(), {.models = 2});
+    const SearchInputs inputs{scene, plan, score::default_score_layers(), request, models};
     FruitlessSearches searches(models.size());
     SearchOutcome outcome = LibrarySearch{inputs, {}}.run(searches);
     EXPECT_FALSE(outcome.cut);

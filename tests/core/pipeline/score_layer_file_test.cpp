@@ -22,9 +22,9 @@ class ScoreLayerFile : public ::testing::Test {
 };
 
 TEST_F(ScoreLayerFile, IsReadAsItWasWritten) {
-  ScoreLayers layers = default_score_layers();
+  score::ScoreLayers layers = score::default_score_layers();
   layers.round_two.bias = 7;
-  ScoreLayer& layer = layers.round_three;
+  score::ScoreLayer& layer = layers.round_three;
   layer.bias = -1.0 / 3;
   layer.components[4] = {{0.1, 0.2, 1.0 / 3, 1, 2, 3, 4, 5},
                          {1.0 / 7, -1e-17, 0, 3, 2, 1, -1, 1e9}};
@@ -35,7 +35,7 @@ TEST_F(ScoreLayerFile, IsReadAsItWasWritten) {
   EXPECT_EQ(read->round_two.bias, 7);
   EXPECT_EQ(read->round_three.bias, layer.bias);
   EXPECT_EQ(read->round_three.provenance, layer.provenance);
-  for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
+  for (std::size_t i = 0; i < score::kScoreComponents.size(); ++i) {
     EXPECT_EQ(read->round_two.components[i].value, layers.round_two.components[i].value);
     EXPECT_EQ(read->round_three.components[i].place, layer.components[i].place);
     EXPECT_EQ(read->round_three.components[i].value, layer.components[i].value);
@@ -45,11 +45,11 @@ TEST_F(ScoreLayerFile, IsReadAsItWasWritten) {
 TEST_F(ScoreLayerFile, ALibraryWithoutOneHasTheBuiltInOne) {
   const auto read = library_score_layers(folder_.path());
   ASSERT_TRUE(read.ok());
-  EXPECT_EQ(read->round_three.provenance, default_score_layers().round_three.provenance);
+  EXPECT_EQ(read->round_three.provenance, score::default_score_layers().round_three.provenance);
 }
 
 TEST_F(ScoreLayerFile, DamageIsRefusedWithAReason) {
-  ASSERT_TRUE(write_score_layers(path_, default_score_layers()).ok());
+  ASSERT_TRUE(write_score_layers(path_, score::default_score_layers()).ok());
   const std::string good = test::slurp(path_);
   test::spill(path_, good.substr(0, good.size() / 2));
   EXPECT_NE(refusal().find("truncated or not JSON"), std::string::npos);

@@ -11,7 +11,7 @@ namespace bpa {
 namespace {
 
 SearchPlan plan_of(const SearchFacts& facts, const DetectorOptions& options = {}) {
-  auto plan = plan_search(options, default_score_layers(), facts);
+  auto plan = plan_search(options, score::default_score_layers(), facts);
   EXPECT_TRUE(plan.ok()) << plan.status().message;
   return std::move(plan).value();
 }
@@ -26,17 +26,20 @@ std::string reason(const SearchPlan& plan, const std::string& name) {
 }
 
 TEST(SearchPlan, AHurriedRoundRaisesTheLimits) {
-  const DetectPlan whole = plan_of({}).detect, hurried = round_plan(whole, 0.9, true);
-  for (const Limit limit : {Limit::ranked, Limit::clustered, Limit::aligned}) {
+  const detect::DetectPlan whole = plan_of({}).detect,
+                           hurried = detect::round_plan(whole, 0.9, true);
+  for (const score::Limit limit :
+       {score::Limit::ranked, score::Limit::clustered, score::Limit::aligned}) {
     EXPECT_EQ(hurried.limits[limit], whole.limits[limit] + 2);
   }
-  EXPECT_EQ(hurried.limits[Limit::refined], whole.limits[Limit::refined]);
-  EXPECT_LT(hurried.check.max_in_library, round_plan(whole, 0.9, false).check.max_in_library);
+  EXPECT_EQ(hurried.limits[score::Limit::refined], whole.limits[score::Limit::refined]);
+  EXPECT_LT(hurried.check.max_in_library,
+            detect::round_plan(whole, 0.9, false).check.max_in_library);
 }
 
 // The numbers are those that were chosen on simulated piles.
 TEST(SearchPlan, WithoutColoursMoreIsTried) {
-  const DetectPlan with = plan_of({}).detect, without = plan_of({.colored = false}).detect;
+  const detect::DetectPlan with = plan_of({}).detect, without = plan_of({.colored = false}).detect;
   EXPECT_EQ(with.sample.peaks_per_reference, 2);
   EXPECT_EQ(without.sample.peaks_per_reference, 5);
   EXPECT_EQ(with.sample.rim_peaks_per_reference, 1);
@@ -47,8 +50,8 @@ TEST(SearchPlan, WithoutColoursMoreIsTried) {
   EXPECT_EQ(without.cluster.max_in_library, 360);
   EXPECT_EQ(with.round_two.max_in_library, 60);
   EXPECT_EQ(without.round_two.max_in_library, 120);
-  EXPECT_EQ(with.limits[Limit::clustered], -7);
-  EXPECT_EQ(without.limits[Limit::clustered], -8);
+  EXPECT_EQ(with.limits[score::Limit::clustered], -7);
+  EXPECT_EQ(without.limits[score::Limit::clustered], -8);
 }
 
 TEST(SearchPlan, WhatTheUserSetsIsUsed) {
@@ -75,11 +78,11 @@ TEST(SearchPlan, GrowsWithTheCubeRootOfTheModels) {
 TEST(SearchPlan, RefusesAShareThatItsLayersDoNotKnow) {
   DetectorOptions options;
   options.detect.score.keep_right = 0.5;
-  const auto plan = plan_search(options, default_score_layers(), {});
+  const auto plan = plan_search(options, score::default_score_layers(), {});
   ASSERT_FALSE(plan.ok());
   EXPECT_NE(plan.status().message.find("score.keep_right is 0.5"), std::string::npos);
   options.detect.score.keep_right = 1;
-  EXPECT_EQ(plan_of({}, options).detect.limits[Limit::ranked],
+  EXPECT_EQ(plan_of({}, options).detect.limits[score::Limit::ranked],
             -std::numeric_limits<double>::infinity());
 }
 
@@ -97,7 +100,7 @@ TEST(SearchPlan, EveryEntryHasAReason) {
 }
 
 TEST(SearchPlan, TakesTheYieldOfTheColours) {
-  ScoreLayers layers = default_score_layers();
+  score::ScoreLayers layers = score::default_score_layers();
   layers.yield.with_color.tries = 3;
   layers.yield.without_color.tries = 7;
   EXPECT_EQ(plan_search({}, layers, {.colored = true})->yield.tries, 3);
@@ -146,10 +149,10 @@ TEST(SearchPlan, SmallSharesExamineLessButSomething) {
   const SearchPlan plan = plan_of({});
   EXPECT_EQ(round_sample(plan, 1).max_references, plan.features.max_references);
   EXPECT_EQ(round_sample(plan, 0.5).max_references, (plan.features.max_references + 1) / 2);
-  EXPECT_EQ(round_plan(plan.detect, 0.5, false).round_two.max_in_library, 30);
+  EXPECT_EQ(detect::round_plan(plan.detect, 0.5, false).round_two.max_in_library, 30);
   EXPECT_EQ(round_sample(plan, 1e-6).max_references, 1);
-  EXPECT_EQ(round_plan(plan.detect, 1e-6, false).check.max_in_library, 1);
-  EXPECT_EQ(final_plan(plan.detect, 1e-6).climb.max_climbed, 1);
+  EXPECT_EQ(detect::round_plan(plan.detect, 1e-6, false).check.max_in_library, 1);
+  EXPECT_EQ(detect::final_plan(plan.detect, 1e-6).climb.max_climbed, 1);
 }
 
 TEST(SearchPlan, WhatIsOffStaysOff) {
@@ -158,7 +161,7 @@ TEST(SearchPlan, WhatIsOffStaysOff) {
   options.detect.lay.max_laid = 0;
   const SearchPlan plan = plan_of({}, options);
   EXPECT_EQ(round_sample(plan, 0.5).max_references, 0);
-  EXPECT_EQ(final_plan(plan.detect, 0.5).lay.max_laid, 0);
+  EXPECT_EQ(detect::final_plan(plan.detect, 0.5).lay.max_laid, 0);
 }
 
 constexpr double kSmallest = 0.06;

@@ -26,7 +26,7 @@ std::shared_ptr<const ModelLibrary> library_of(const std::string& dataset,
     if (!there) continue;
     const auto mesh = io::read_mesh(info.path, 0.001);
     EXPECT_TRUE(mesh.ok()) << mesh.status().message;
-    auto source = model_source_from_mesh(*mesh, info.name, info.obj_id);
+    auto source = modeling::model_source_from_mesh(*mesh, info.name, info.obj_id);
     EXPECT_TRUE(source.ok()) << source.status().message;
     EXPECT_NEAR(source->diameter, info.diameter, 0.03 * info.diameter) << info.name;
     source->symmetry = info.symmetry;
@@ -96,7 +96,7 @@ TEST(Ycbv, ATexturedMeshIsFoundTheRightWayRound) {
   const auto mesh = io::read_mesh_file(data + "/textured/cracker_box/textured.obj");
   ASSERT_TRUE(mesh.ok()) << mesh.status().message;
   constexpr int kCrackerBox = 2;
-  auto source = model_source_from_mesh(mesh->mesh, "cracker_box", kCrackerBox);
+  auto source = modeling::model_source_from_mesh(mesh->mesh, "cracker_box", kCrackerBox);
   ASSERT_TRUE(source.ok()) << source.status().message;
   auto library = std::make_shared<ModelLibrary>();
   ASSERT_TRUE(library->add(make_object_model(std::move(source).value()).value()).ok());

@@ -7,7 +7,7 @@
 
 #include "core/scene/overlaps.hpp"
 
-namespace bpa {
+namespace bpa::scene {
 namespace {
 
 std::shared_ptr<const ObjectModel> model(int number) {
@@ -21,8 +21,9 @@ std::shared_ptr<const ObjectModel> model(int number) {
 const std::shared_ptr<const ObjectModel> kMug = model(1), kBox = model(2);
 
 // Turned by `degrees` about its own place.
-Candidate turned(const std::shared_ptr<const ObjectModel>& which, double degrees, double odds) {
-  Candidate out;
+detect::Candidate turned(const std::shared_ptr<const ObjectModel>& which, double degrees,
+                         double odds) {
+  detect::Candidate out;
   out.model = which.get();
   out.refinement.camera_from_object = {
       Eigen::Quaterniond(Eigen::AngleAxisd(degrees * M_PI / 180, Eigen::Vector3d::UnitZ())),
@@ -32,7 +33,7 @@ Candidate turned(const std::shared_ptr<const ObjectModel>& which, double degrees
   return out;
 }
 
-std::vector<PoseAlternative> alternatives(const std::vector<Candidate>& candidates,
+std::vector<PoseAlternative> alternatives(const std::vector<detect::Candidate>& candidates,
                                           std::size_t chosen) {
   return alternatives_of(candidates, competition_of(candidates, find_overlaps(candidates, -8)),
                          chosen);
@@ -40,8 +41,9 @@ std::vector<PoseAlternative> alternatives(const std::vector<Candidate>& candidat
 
 TEST(Alternatives, AreTheSameModelsOtherPosesByWeight) {
   // 0 and 4 degrees are one pose; so are 90 and 95.
-  const std::vector<Candidate> all{turned(kMug, 0, 4),  turned(kMug, 4, 1),   turned(kMug, 90, 2),
-                                   turned(kMug, 95, 1), turned(kMug, 180, 2), turned(kBox, 0, 50)};
+  const std::vector<detect::Candidate> all{turned(kMug, 0, 4),   turned(kMug, 4, 1),
+                                           turned(kMug, 90, 2),  turned(kMug, 95, 1),
+                                           turned(kMug, 180, 2), turned(kBox, 0, 50)};
   const auto found = alternatives(all, 0);
   ASSERT_EQ(found.size(), 2u);
   EXPECT_NEAR(found[0].weight, 0.3, 1e-9);
@@ -57,8 +59,8 @@ TEST(Alternatives, AreNoneWhereTheViewDecides) {
 }
 
 TEST(Alternatives, WeightsSumToOneWithTheChosenOne) {
-  const std::vector<Candidate> all{turned(kMug, 0, 1), turned(kMug, 60, 6), turned(kMug, 120, 3),
-                                   turned(kMug, 240, 0.01)};
+  const std::vector<detect::Candidate> all{turned(kMug, 0, 1), turned(kMug, 60, 6),
+                                           turned(kMug, 120, 3), turned(kMug, 240, 0.01)};
   const auto found = alternatives(all, 0);
   ASSERT_EQ(found.size(), 2u) << "what weighs next to nothing is left out";
   EXPECT_NEAR(found[0].weight, 0.6, 1e-9);
@@ -66,11 +68,11 @@ TEST(Alternatives, WeightsSumToOneWithTheChosenOne) {
 }
 
 TEST(Alternatives, ElsewhereIsAnotherObject) {
-  Candidate other = turned(kMug, 90, 4);
+  detect::Candidate other = turned(kMug, 90, 4);
   other.refinement.camera_from_object.translation.x() = 0.5;
   other.explained = {7, 8, 9};
   EXPECT_TRUE(alternatives({turned(kMug, 0, 4), other}, 0).empty());
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::scene

@@ -9,7 +9,7 @@
 #include "core/score/surface_agreement.hpp"
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::scene {
 namespace {
 
 enum { kBack, kFront };
@@ -30,13 +30,13 @@ class GivenOthers : public ::testing::Test {
     scene_.map = surface_map(both.frame, {});
     scene_.image = make_check_image(scene_.map);
     for (const Pose& place : kPlaces) {
-      Candidate& candidate = candidates_.emplace_back();
+      detect::Candidate& candidate = candidates_.emplace_back();
       candidate.model = brick_.get();
       candidate.refinement.camera_from_object = place;
       candidate.probability = 0.9;
-      candidate.explained = explained_pixels(scene_.image, *brick_, place);
+      candidate.explained = score::explained_pixels(scene_.image, *brick_, place);
     }
-    Segmentation& segmentation = scene_.segmentation;  // all that is nearer than the wall
+    segment::Segmentation& segmentation = scene_.segmentation;  // all that is nearer than the wall
     segmentation.labels = Image<std::int32_t>(scene_.map.width(), scene_.map.height(), -1);
     segmentation.segments.resize(1);
     for (std::size_t i = 0; i < scene_.map.size(); ++i) {
@@ -57,10 +57,10 @@ class GivenOthers : public ::testing::Test {
   double measured(std::string_view name, const std::vector<bool>& present,
                   const Overlaps& overlaps = Overlaps(2)) {
     measure_given_others(scene_, overlaps, present, candidates_, -8, 1);
-    for (std::size_t i = 0; i < kScoreComponents.size(); ++i) {
-      if (kScoreComponents[i].name == name) return candidates_[kBack].values[i];
+    for (std::size_t i = 0; i < score::kScoreComponents.size(); ++i) {
+      if (score::kScoreComponents[i].name == name) return candidates_[kBack].values[i];
     }
-    return kNotKnown;
+    return score::kNotKnown;
   }
   double hidden() const { return static_cast<double>(hidden_) / covered_; }
   // Of the pixels of both, those of the one in front.
@@ -69,7 +69,7 @@ class GivenOthers : public ::testing::Test {
   static inline const Pose kPlaces[2] = {at(0, 0, 1), at(0.04, 0, 0.8)};
   static inline std::shared_ptr<const ObjectModel> brick_;
   SceneFeatures scene_;
-  Candidates candidates_;
+  detect::Candidates candidates_;
   int covered_ = 0, hidden_ = 0, shown_[2] = {};
 };
 
@@ -87,12 +87,12 @@ TEST_F(GivenOthers, WhatAnotherExplainsIsNotLeftOver) {
 }
 
 TEST_F(GivenOthers, ExposureIsRelativeToThatOfOthers) {
-  candidates_[kBack].values[component("exposure")] = -1;
-  candidates_[kFront].values[component("exposure")] = 0.2;
+  candidates_[kBack].values[score::component("exposure")] = -1;
+  candidates_[kFront].values[score::component("exposure")] = 0.2;
   EXPECT_NEAR(measured("relative_exposure", {true, true}), -1.2, 1e-12);
   EXPECT_TRUE(std::isnan(measured("relative_exposure", {true, false})))
       << "nothing to compare with";
-  candidates_[kFront].values[component("exposure")] = kNotKnown;
+  candidates_[kFront].values[score::component("exposure")] = score::kNotKnown;
   EXPECT_TRUE(std::isnan(measured("relative_exposure", {true, true}))) << "a model without colours";
 }
 
@@ -105,13 +105,13 @@ TEST_F(GivenOthers, ARivalIsNoOther) {
 }
 
 TEST_F(GivenOthers, HopelessPlacementsAreNotMeasured) {
-  candidates_[kBack].values.fill(kNotKnown);
+  candidates_[kBack].values.fill(score::kNotKnown);
   candidates_[kBack].score = -9;
   EXPECT_TRUE(std::isnan(measured("left_over", {false, true})));
 }
 
 TEST_F(GivenOthers, TheFirstInterpretationHoldsTheMostProbableThatDoNotConflict) {
-  Candidates three(3);
+  detect::Candidates three(3);
   three[0].probability = 0.6;
   three[1].probability = 0.8;
   three[2].probability = 0.2;
@@ -125,4 +125,4 @@ TEST_F(GivenOthers, TheFirstInterpretationHoldsTheMostProbableThatDoNotConflict)
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::scene

@@ -14,7 +14,7 @@
 
 #include "core/base/random.hpp"
 
-namespace bpa {
+namespace bpa::scene {
 namespace {
 
 using Subset = std::set<int>;  // model numbers: one for each candidate
@@ -26,13 +26,13 @@ std::vector<std::uint32_t> pixels(int first, int count) {
 }
 
 // Candidates stand far apart; what they share is given by their pixels alone.
-Candidate candidate(int number, double probability, std::vector<std::uint32_t> explained) {
+detect::Candidate candidate(int number, double probability, std::vector<std::uint32_t> explained) {
   static std::vector<std::unique_ptr<ObjectModel>> models;  // candidates keep pointers to them
   ObjectModel* model = models.emplace_back(std::make_unique<ObjectModel>()).get();
   model->name = "object" + std::to_string(number);
   model->number = number;
   model->diameter = 0.1;
-  Candidate out;
+  detect::Candidate out;
   out.model = model;
   out.refinement.camera_from_object.translation = {0.3 * number, 0, 1};
   out.probability = probability;
@@ -49,8 +49,8 @@ Subset subset_of(const Interpretation& interpretation) {
   return out;
 }
 
-std::vector<Interpretation> interpret_all(const std::vector<Candidate>& candidates, int observed,
-                                          const InterpretationOptions& options) {
+std::vector<Interpretation> interpret_all(const std::vector<detect::Candidate>& candidates,
+                                          int observed, const InterpretationOptions& options) {
   return interpret(candidates, find_overlaps(candidates, -8), observed, options);
 }
 
@@ -61,7 +61,7 @@ InterpretationOptions by_score() {
   return options;
 }
 
-std::optional<double> score_of(const std::vector<Candidate>& candidates, int observed,
+std::optional<double> score_of(const std::vector<detect::Candidate>& candidates, int observed,
                                const Subset& wanted) {
   InterpretationOptions options;
   options.annealing_steps = 3000;
@@ -75,7 +75,8 @@ std::optional<double> score_of(const std::vector<Candidate>& candidates, int obs
 // no pixel is explained by more than two.
 class Exhaustive {
  public:
-  Exhaustive(const std::vector<Candidate>& candidates, int observed) : count_(candidates.size()) {
+  Exhaustive(const std::vector<detect::Candidate>& candidates, int observed)
+      : count_(candidates.size()) {
     single_.resize(count_);
     pair_.assign(count_ * count_, 0);
     for (std::size_t i = 0; i < count_; ++i) {
@@ -116,9 +117,9 @@ class Exhaustive {
 };
 
 // Neighbours along a row of pixels share nothing up to 42 % of themselves.
-std::vector<Candidate> row_of_candidates(int count, std::uint64_t seed) {
+std::vector<detect::Candidate> row_of_candidates(int count, std::uint64_t seed) {
   RandomStream random(seed);
-  std::vector<Candidate> candidates;
+  std::vector<detect::Candidate> candidates;
   double first = 0;
   for (int i = 0; i < count; ++i) {
     const int length = 800 + random.index(200);
@@ -174,7 +175,7 @@ TEST(Interpretations, AreRankedDistinctAndSumToOne) {
 
 TEST(Interpretations, WhatDiffersComesBeforeNearCopies) {
   // Three places; at each, rivals of falling probability.
-  std::vector<Candidate> candidates;
+  std::vector<detect::Candidate> candidates;
   const double probabilities[3][3] = {{0.6, 0.25, 0.1}, {0.9, 0.06, 0.0}, {0.3, 0.2, 0.1}};
   int number = 0;
   for (int place = 0; place < 3; ++place) {
@@ -228,8 +229,8 @@ TEST(Interpretations, KeepNoMoreThanAsked) {
 }
 
 TEST(Interpretations, OnlyOneOfTwoOnTheSamePixels) {
-  const std::vector<Candidate> rivals{candidate(0, 0.9, pixels(0, 1000)),
-                                      candidate(1, 0.8, pixels(100, 1000))};
+  const std::vector<detect::Candidate> rivals{candidate(0, 0.9, pixels(0, 1000)),
+                                              candidate(1, 0.8, pixels(100, 1000))};
   const auto found = interpret_all(rivals, 3000, {});
   EXPECT_EQ(subset_of(found[0]), Subset{0});
   for (const Interpretation& interpretation : found) {
@@ -238,14 +239,14 @@ TEST(Interpretations, OnlyOneOfTwoOnTheSamePixels) {
 }
 
 TEST(Interpretations, ProbableOnesAreInAndImprobableOnesOut) {
-  const std::vector<Candidate> three{candidate(0, 0.95, pixels(0, 900)),
-                                     candidate(1, 0.05, pixels(2000, 900)),
-                                     candidate(2, 0.9, pixels(4000, 900))};
+  const std::vector<detect::Candidate> three{candidate(0, 0.95, pixels(0, 900)),
+                                             candidate(1, 0.05, pixels(2000, 900)),
+                                             candidate(2, 0.9, pixels(4000, 900))};
   EXPECT_EQ(subset_of(interpret_all(three, kObserved, {})[0]), (Subset{0, 2}));
 }
 
 TEST(Interpretations, WhatIsLessProbableThanAskedIsNotInTheBestHoweverMuchItExplains) {
-  const std::vector<Candidate> one{candidate(0, 0.25, pixels(0, 4000))};
+  const std::vector<detect::Candidate> one{candidate(0, 0.25, pixels(0, 4000))};
   InterpretationOptions options;
   options.min_probability = 0.3;
   const auto found = interpret_all(one, kObserved, options);
@@ -262,7 +263,8 @@ TEST(Interpretations, APenaltyLargeEnoughLeavesNothing) {
 }
 
 TEST(Interpretations, ExplainingNothingIsWorthNothing) {
-  const std::vector<Candidate> two{candidate(0, 0.99, {}), candidate(1, 0.9, pixels(0, 800))};
+  const std::vector<detect::Candidate> two{candidate(0, 0.99, {}),
+                                           candidate(1, 0.9, pixels(0, 800))};
   EXPECT_EQ(subset_of(interpret_all(two, kObserved, {})[0]), Subset{1});
 }
 
@@ -295,4 +297,4 @@ TEST(Interpretations, WithoutAnnealingTheGreedyAnswerRemains) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::scene

@@ -6,7 +6,7 @@
 
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::scene {
 namespace {
 
 class OverlapsOf : public ::testing::Test {
@@ -15,14 +15,14 @@ class OverlapsOf : public ::testing::Test {
   static void TearDownTestSuite() { brick_.reset(); }
 
   // A brick whose centre is at (x, y, 1) metres, explaining pixels of its own.
-  static Candidate brick_at(double x, double y, std::uint32_t first_pixel) {
-    Candidate out;
+  static detect::Candidate brick_at(double x, double y, std::uint32_t first_pixel) {
+    detect::Candidate out;
     out.model = brick_.get();
     out.refinement.camera_from_object.translation = {x, y, 1};
     for (std::uint32_t k = 0; k < 100; ++k) out.explained.push_back(first_pixel + k);
     return out;
   }
-  static bool conflict(const Candidate& a, const Candidate& b) {
+  static bool conflict(const detect::Candidate& a, const detect::Candidate& b) {
     const auto overlaps = find_overlaps({a, b}, -8);
     EXPECT_EQ(overlaps[0].empty(), overlaps[1].empty());
     return !overlaps[0].empty() && overlaps[0][0].conflicting;
@@ -33,7 +33,7 @@ class OverlapsOf : public ::testing::Test {
 
 TEST_F(OverlapsOf, SolidThingsDoNotStandInOneAnother) {
   const double length = 2 * static_cast<double>(test::kBrickHalf.x());
-  const Candidate first = brick_at(0, 0, 0);
+  const detect::Candidate first = brick_at(0, 0, 0);
   EXPECT_FALSE(conflict(first, brick_at(length, 0, 500))) << "end to end";
   EXPECT_FALSE(conflict(first, brick_at(length - 0.008, 0, 500))) << "as exact as poses are";
   EXPECT_TRUE(conflict(first, brick_at(0.6 * length, 0, 500)));
@@ -44,7 +44,7 @@ TEST_F(OverlapsOf, SolidThingsDoNotStandInOneAnother) {
 TEST_F(OverlapsOf, AModelSeenFromOneSideHasNoInside) {
   ModelSource open = *brick_;
   open.complete = false;
-  Candidate first = brick_at(0, 0, 0), second = brick_at(0.072, 0, 500);
+  detect::Candidate first = brick_at(0, 0, 0), second = brick_at(0.072, 0, 500);
   EXPECT_TRUE(conflict(first, second));
   const auto model = make_object_model(std::move(open)).value();
   first.model = model.get();
@@ -58,17 +58,17 @@ TEST_F(OverlapsOf, ThePlaceIsThatOfTheCentreNotOfTheOrigin) {
   for (Eigen::Vector3f& p : source.surface.points) p += shift;
   const auto model = make_object_model(std::move(source)).value();
   EXPECT_LT((model->centre - shift.cast<double>()).norm(), 1e-3);
-  const auto moved = [&](const Candidate& candidate, double turn) {
-    Candidate out = candidate;
+  const auto moved = [&](const detect::Candidate& candidate, double turn) {
+    detect::Candidate out = candidate;
     out.model = model.get();
     const Pose brick_from_model{Eigen::Quaterniond::Identity(), -shift.cast<double>()};
     out.refinement.camera_from_object =
         candidate.pose() * Pose{rotation_from_vector({0, 0, turn}), {0, 0, 0}} * brick_from_model;
     return out;
   };
-  const Candidate at_origin = brick_at(0, 0, 0);
+  const detect::Candidate at_origin = brick_at(0, 0, 0);
   for (const double x : {0.0, 0.03, 0.06, 0.3}) {
-    const Candidate beside = brick_at(x, 0, 500);
+    const detect::Candidate beside = brick_at(x, 0, 500);
     EXPECT_EQ(conflict(moved(at_origin, 0), moved(beside, 0)), conflict(at_origin, beside)) << x;
   }
   EXPECT_TRUE(conflict(moved(at_origin, 0), moved(brick_at(0, 0, 500), 2)));
@@ -76,10 +76,10 @@ TEST_F(OverlapsOf, ThePlaceIsThatOfTheCentreNotOfTheOrigin) {
 
 TEST_F(OverlapsOf, AThingMayLieOnATray) {
   const float thickness = 0.010f;
-  Candidate tray = brick_at(0, 0, 500);
+  detect::Candidate tray = brick_at(0, 0, 500);
   const auto model = test::model_of(test::box_mesh({0.08f, 0.08f, thickness / 2}), "tray", 3);
   tray.model = model.get();
-  Candidate brick = brick_at(0, 0, 0);
+  detect::Candidate brick = brick_at(0, 0, 0);
   EXPECT_TRUE(conflict(tray, brick)) << "through the middle of the brick";
   tray.refinement.camera_from_object.translation.z() +=
       static_cast<double>(test::kBrickHalf.z() + thickness / 2);
@@ -92,7 +92,7 @@ TEST_F(OverlapsOf, AThingMayLieOnATray) {
 }
 
 TEST_F(OverlapsOf, PixelsAreOwnedOnce) {
-  const Candidate first = brick_at(0, 0, 0);
+  const detect::Candidate first = brick_at(0, 0, 0);
   EXPECT_TRUE(conflict(first, brick_at(0.5, 0, 60))) << "40 of 100 pixels shared";
   const auto overlaps = find_overlaps({first, brick_at(0.5, 0, 80)}, -8);
   ASSERT_EQ(overlaps[0].size(), 1u);
@@ -101,10 +101,10 @@ TEST_F(OverlapsOf, PixelsAreOwnedOnce) {
 }
 
 TEST_F(OverlapsOf, TheHopelessTakeNothingFromOthers) {
-  Candidate hopeless = brick_at(0, 0, 0);
+  detect::Candidate hopeless = brick_at(0, 0, 0);
   hopeless.score = -9;
   EXPECT_FALSE(conflict(brick_at(0, 0, 0), hopeless));
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::scene

@@ -11,7 +11,7 @@
 #include "core/score/random_walk_score.hpp"
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 using test::Solid;
@@ -24,7 +24,7 @@ struct Observed {
 Observed observe(const std::vector<Solid>& solids, float noise = 1) {
   const SurfaceMap map =
       surface_map(test::render(solids, test::kinect_camera(), noise, 8).frame, {});
-  return {make_check_image(map), scene_edges(map, {}).likelihood};
+  return {make_check_image(map), features::scene_edges(map, {}).likelihood};
 }
 
 std::vector<Solid> l_on_table() {
@@ -142,4 +142,4 @@ TEST_F(BoundaryScores, WalksDependOnTheSeedAlone) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

@@ -10,7 +10,7 @@
 #include "core/score/color_check.hpp"
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 const Pose kBrickTruth =
@@ -180,4 +180,4 @@ TEST_F(ColorScore, WithoutColourNeitherForNorAgainst) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

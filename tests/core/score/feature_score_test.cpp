@@ -11,7 +11,7 @@
 #include "core/score/pose_check.hpp"
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 class FpfhScore : public ::testing::Test {
@@ -38,7 +38,7 @@ class FpfhScore : public ::testing::Test {
   const Pose pose_{rotation_from_vector({0.4, -0.2, 0.9}), {0.1, 0, 0.8}};
   PointCloud surface_;
   std::vector<int> keypoints_;
-  std::vector<Fpfh> fpfh_;
+  std::vector<features::Fpfh> fpfh_;
 };
 
 TEST_F(FpfhScore, OfTheSameFeaturesIsZero) { EXPECT_NEAR(score(pose_), 0, 1e-6); }
@@ -94,4 +94,4 @@ TEST_F(FpfhScore, PlacesAreTheNearestOnTheSameSide) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

@@ -11,7 +11,7 @@
 #include "core/score/rival_poses.hpp"
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 const Eigen::Vector3f kRed(40, 50, 35), kGreen(55, -30, 30);  // CIELAB
@@ -79,4 +79,4 @@ TEST_F(FigureGround, FewExplainedPixelsAreNotEnough) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

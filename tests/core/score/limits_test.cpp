@@ -10,7 +10,7 @@
 #include "core/base/random.hpp"
 #include "core/score/score_layer.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 // Placements whose log odds at one limit are 3 less an exponential of that mean.
@@ -55,4 +55,4 @@ TEST(LowestLogOdds, KeepsTheLeast) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

@@ -9,7 +9,7 @@
 #include "core/model/model_index.hpp"
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 using test::Solid;
@@ -135,4 +135,4 @@ TEST(CheckImage, PacksTheMap) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

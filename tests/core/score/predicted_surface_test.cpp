@@ -10,7 +10,7 @@
 #include "core/score/likelihood.hpp"
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 // Against exact rays.
@@ -102,4 +102,4 @@ TEST(Likelihood, KnownValues) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

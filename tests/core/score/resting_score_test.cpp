@@ -8,7 +8,7 @@
 
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 // A brick on a table that the camera looks at from above at a slant.
@@ -83,4 +83,4 @@ TEST_F(RestingScore, NothingIsKnownWithoutPlanes) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

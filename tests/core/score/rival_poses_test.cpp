@@ -9,7 +9,7 @@
 #include "core/base/random.hpp"
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 constexpr int kSize = 40;
@@ -168,4 +168,4 @@ TEST_F(BehindBest, EvidenceForTheOneIsEvidenceAgainstTheOther) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

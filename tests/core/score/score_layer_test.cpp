@@ -14,7 +14,7 @@
 
 #include "core/base/random.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 double sigmoid(double x) { return 1 / (1 + std::exp(-x)); }
@@ -297,4 +297,4 @@ TEST(ScoreLayer, TheBuiltInOnesHaveRisingPlacesAndKnowWhatTheirRoundKnows) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

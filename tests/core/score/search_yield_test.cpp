@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 // Objects with a chance of their own at each try, as the standard library draws them: found in the
@@ -56,4 +56,4 @@ TEST(MeasureYield, IsThatOfTheStartWithFewDiscoveries) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

@@ -10,7 +10,7 @@
 #include "core/score/likelihood.hpp"
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 class SegmentScores : public ::testing::Test {
@@ -24,15 +24,15 @@ class SegmentScores : public ::testing::Test {
     map_ = surface_map(rendered_.frame, {});
   }
   bool on_object(std::size_t i) const { return rendered_.solid[rendered_.index_of(map_, i)] >= 1; }
-  std::vector<SegmentMatch> match(const Segmentation& segments, const Pose& pose,
+  std::vector<SegmentMatch> match(const segment::Segmentation& segments, const Pose& pose,
                                   const SegmentMatchOptions& options = {}) const {
     const PredictedSurface predicted = predict_surface(make_check_image(map_), *model_, pose);
     return match_segments(segments, map_, *model_, pose, predicted, options);
   }
   // A segmentation by a rule: the number of the segment of each pixel.
   template <class Rule>
-  Segmentation segments_by(const Rule& rule, int count) const {
-    Segmentation out;
+  segment::Segmentation segments_by(const Rule& rule, int count) const {
+    segment::Segmentation out;
     out.labels = Image<std::int32_t>(map_.width(), map_.height(), -1);
     out.segments.resize(static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < map_.size(); ++i) {
@@ -50,7 +50,8 @@ class SegmentScores : public ::testing::Test {
 };
 
 TEST_F(SegmentScores, TheObjectsOwnSegmentBelongsToIt) {
-  const Segmentation segments = segments_by([&](std::size_t i) { return on_object(i) ? 1 : 0; }, 2);
+  const segment::Segmentation segments =
+      segments_by([&](std::size_t i) { return on_object(i) ? 1 : 0; }, 2);
   const std::vector<SegmentMatch> matches = match(segments, test::kTruth, {.points = 400});
   ASSERT_FALSE(matches.empty());
   const SegmentMatch& own = matches.back();
@@ -79,8 +80,9 @@ TEST_F(SegmentScores, ProbabilityIsTheShareOnTheModel) {
     rule[i] = on_object(i) || far_table;
   }
   ASSERT_EQ(taken, size);
-  const Segmentation own = segments_by([&](std::size_t i) { return on_object(i) ? 1 : 0; }, 2);
-  const Segmentation mixed = segments_by([&](std::size_t i) { return rule[i]; }, 2);
+  const segment::Segmentation own =
+      segments_by([&](std::size_t i) { return on_object(i) ? 1 : 0; }, 2);
+  const segment::Segmentation mixed = segments_by([&](std::size_t i) { return rule[i]; }, 2);
   const SegmentMatch pure = match(own, test::kTruth, {.points = 100000}).back();
   const SegmentMatch half = match(mixed, test::kTruth, {.points = 100000}).back();
   EXPECT_NEAR(half.probability, 0.5 * pure.probability, 0.01);
@@ -89,8 +91,8 @@ TEST_F(SegmentScores, ProbabilityIsTheShareOnTheModel) {
 }
 
 TEST_F(SegmentScores, TruthScoresHigherThanWhatIsBesideIt) {
-  const SceneEdges edges = scene_edges(map_, {});
-  const Segmentation segments = super_pixels(map_, {}, edges.likelihood);
+  const features::SceneEdges edges = features::scene_edges(map_, {});
+  const segment::Segmentation segments = segment::super_pixels(map_, {}, edges.likelihood);
   const std::vector<SegmentMatch> truth = match(segments, test::kTruth);
   EXPECT_GT(segment_score(truth), -0.08);
   EXPECT_GT(segment_affinity_score(segments, truth), -0.35);
@@ -106,7 +108,7 @@ TEST_F(SegmentScores, TruthScoresHigherThanWhatIsBesideIt) {
 }
 
 TEST_F(SegmentScores, NothingTouched) {
-  const Segmentation segments = segments_by([](std::size_t) { return 0; }, 1);
+  const segment::Segmentation segments = segments_by([](std::size_t) { return 0; }, 1);
   const auto none = match(segments, {test::kTruth.rotation, {0, 0, -1}});
   EXPECT_TRUE(none.empty());
   EXPECT_EQ(segment_score(none), -1);
@@ -118,7 +120,7 @@ TEST(SegmentScore, IsTheWeightedMean) {
 }
 
 TEST(SegmentAffinityScore, ClosedForms) {
-  Segmentation two;
+  segment::Segmentation two;
   two.segments.resize(3);
   two.pairs = {{0, 1, 7, 0, 0, 0.3f}};
   const auto score = [&](double first, double second) {
@@ -138,4 +140,4 @@ TEST(SegmentAffinityScore, ClosedForms) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

@@ -8,7 +8,7 @@
 
 #include "core/cloud/color_gradients.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 constexpr int kWidth = 80, kHeight = 60;  // of the reduced image; colours have twice as many
@@ -79,4 +79,4 @@ TEST(SilhouetteScore, IsNotKnownWithoutColours) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

@@ -11,7 +11,7 @@
 #include "core/score/score_layer.hpp"
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 using test::Solid;
@@ -212,4 +212,4 @@ TEST_F(SurfaceAgreementOf, AFewPointsSayNearlyTheSameAsAll) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

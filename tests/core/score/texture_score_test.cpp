@@ -14,7 +14,7 @@
 #include "core/score/rival_poses.hpp"
 #include "tests/support/posed_models.hpp"
 
-namespace bpa {
+namespace bpa::score {
 namespace {
 
 using Colors = std::vector<std::array<std::uint8_t, 3>>;
@@ -233,4 +233,4 @@ TEST(TurnToPattern, ACanIsTurnedToItsLabel) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::score

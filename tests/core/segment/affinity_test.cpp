@@ -6,7 +6,7 @@
 
 #include "core/segment/super_pixels.hpp"
 
-namespace bpa {
+namespace bpa::segment {
 namespace {
 
 // Two pieces of surface in the x-z plane: where they are, and the angle of their normals to z.
@@ -63,4 +63,4 @@ TEST(SegmentAffinity, IsSymmetric) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::segment

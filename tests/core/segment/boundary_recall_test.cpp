@@ -14,7 +14,7 @@
 
 // Super-pixels of simulated piles against the true masks of their instances.
 
-namespace bpa {
+namespace bpa::segment {
 namespace {
 
 // Instance by map pixel, -1 on everything else.
@@ -99,7 +99,7 @@ Quality quality_of(int first_scene, int scenes) {
     clean_depth(frame);
     const SurfaceMap map = surface_map(frame, {});
     const Image<Eigen::Vector3f> rgb = reduced_color(frame, map, 0);
-    const Image<float> edges = scene_edges(map, rgb).likelihood;
+    const Image<float> edges = features::scene_edges(map, rgb).likelihood;
     const Segmentation out = super_pixels(map, cielab(blur(rgb, 1.5, 0), 0), edges);
     const Image<int> truth = true_labels(scene.frames.front(), map);
     add_borders(truth, out.labels, sum);
@@ -126,4 +126,4 @@ TEST(BoundaryRecall, OfSimulatedPiles) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::segment

@@ -15,7 +15,7 @@
 #include "core/features/edges.hpp"
 #include "tests/support/solid_scene.hpp"
 
-namespace bpa {
+namespace bpa::segment {
 namespace {
 
 using test::Solid;
@@ -48,7 +48,7 @@ Scene table_scene(float noise = 1) {
   scene.map = surface_map(image.frame, {});
   const Image<Eigen::Vector3f> rgb = reduced_color(image.frame, scene.map, 1);
   scene.lab = cielab(rgb, 1);
-  scene.edges = scene_edges(scene.map, rgb).likelihood;
+  scene.edges = features::scene_edges(scene.map, rgb).likelihood;
   return scene;
 }
 
@@ -262,4 +262,4 @@ TEST(SuperPixels, EverythingOnAStrongEdge) {
 }
 
 }  // namespace
-}  // namespace bpa
+}  // namespace bpa::segment

@@ -84,7 +84,7 @@ class LiveSensor : public ::testing::Test {
     for (const auto& [mesh, name, number] :
          {std::tuple(test::l_mesh(), "l", 1),
           std::tuple(test::box_mesh(test::kBrickHalf), "brick", 2)}) {
-      const auto model = model_source_from_mesh(mesh, name, number);
+      const auto model = modeling::model_source_from_mesh(mesh, name, number);
       ASSERT_TRUE(model.ok()) << model.status().message;
       ASSERT_TRUE(io::save_model(library(), *model).ok());
     }
