@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "core/detect/exclusion.hpp"
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
 #include "core/observation/tolerance.hpp"
@@ -8,14 +11,22 @@
 namespace bpa::detect {
 namespace {
 
-// The candidates after `best` that claim its place and are not far worse, itself included. Marks
-// all that claim the place as compared.
+// Two poses of one object, not two objects beside one another.
+bool exclude(const Candidate& a, const Candidate& b) {
+  const std::size_t smaller = std::min(a.explained.size(), b.explained.size());
+  return collide(a, b) ||
+         common_pixels(a.explained, b.explained) > kMaxShared * static_cast<double>(smaller);
+}
+
+// The candidates after `best` that exclude it and are not far worse, itself included. Marks all
+// that exclude it as compared.
 std::vector<std::size_t> rivals_of(const Search& search, Candidates& candidates, std::size_t best,
                                    std::vector<bool>& compared) {
   std::vector<std::size_t> rivals;
   for (std::size_t i = best; i < candidates.size(); ++i) {
     const double distance = (candidates[i].place() - candidates[best].place()).norm();
     if (compared[i] || distance > tolerance::kSamePlace * search.model.diameter) continue;
+    if (i != best && !exclude(candidates[i], candidates[best])) continue;
     compared[i] = true;
     const double behind = candidates[i].score - candidates[best].score;
     candidates[i].lowest.note(score::Limit::rival_behind, behind);

@@ -49,7 +49,8 @@ constexpr Stage kStages[] = {
     {"lay", lay, 0.7,
      "A thin model is laid onto regions that differ from their plane, where its silhouette agrees "
      "best."},
-    {"compare", compare, 1, "Poses in one place are compared on the pixels where they disagree."},
+    {"compare", compare, 1,
+     "Poses that exclude one another are compared on the pixels where they disagree."},
     {"select", select, 1,
      "Distinct placements of sufficient score. Interpretations of the scene choose from these."},
 };

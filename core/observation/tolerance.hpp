@@ -61,7 +61,7 @@ constexpr float kOutlineStep = placed(12);    ///< score/silhouette_score.cpp; o
 constexpr float kHides = placed(8);          ///< hides(), unless its caller says another.
 constexpr float kHidesPoint = placed(6);     ///< score/surface_agreement.cpp: points and edges.
 constexpr float kFree = placed(8);           ///< Free space: score/surface_agreement.cpp.
-constexpr float kInside = placed(4);         ///< In another model: scene/overlaps.cpp.
+constexpr float kInside = placed(4);         ///< In another model: detect/exclusion.cpp.
 constexpr WithNoise kBelow{placed(3.2), 2};  ///< A plane: score/resting_score.cpp; on piles.
 
 // On a plane, by hand on simulated piles and tables.
@@ -76,8 +76,8 @@ constexpr float kBesideEdge = placed(3.2);  ///< Observed edges: score/boundary_
 constexpr float kBeyondEdge = placed(4.8);  ///< Observed surface: score/surface_agreement.cpp.
 
 // In one place, in diameters of the smaller model.
-constexpr double kSamePlace = 0.4;     ///< Two of one model: scene, detect/compare.cpp, track.
-constexpr double kOthersPlace = 0.2;   ///< Of two models that are not solid: scene/overlaps.cpp.
+constexpr double kSamePlace = 0.4;     ///< Two of one model: detect, track.
+constexpr double kOthersPlace = 0.2;   ///< Of two models: detect/exclusion.cpp.
 constexpr float kContested = 0.3f;     ///< Of any two: detect/contest.cpp.
 constexpr double kCentreMoves = 0.25;  ///< By a symmetry, at most: pipeline/view_pool.cpp.
 constexpr double kSamePlaceLeast_m = 12 * kPlacedSigma_m;  ///< At least: track/association.cpp.

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/base/parallel.hpp"
+#include "core/detect/exclusion.hpp"
 #include "core/detect/stages.hpp"
 #include "core/observation/tolerance.hpp"
 #include "core/scene/given_others.hpp"
@@ -48,20 +49,6 @@ Matrix6 with_camera_error(const Matrix6& information, double distance,
       options.position_sigma_m * options.position_sigma_m + angle * angle * distance * distance;
   covariance.diagonal().tail<3>().array() += angle * angle;
   return tolerance::kCorrelatedPoints * covariance.inverse();
-}
-
-int common_pixels(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
-  int common = 0;
-  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
-    if (*i < *j) {
-      ++i;
-    } else if (*j < *i) {
-      ++j;
-    } else {
-      ++common, ++i, ++j;
-    }
-  }
-  return common;
 }
 
 std::size_t most_explained(const detect::Candidates& in_view) {
@@ -303,7 +290,7 @@ scene::Overlaps ViewPool::overlaps(const detect::Candidates& joined) const {
       const auto seen =
           static_cast<double>(std::min(most_explained(a.in_view), most_explained(b.in_view)));
       if (smaller == 0 || smaller < kDecidingShare * seen) continue;
-      if (common_pixels(first, second) > scene::kMaxShared * smaller) return true;
+      if (detect::common_pixels(first, second) > detect::kMaxShared * smaller) return true;
     }
     return false;
   };

@@ -8,48 +8,11 @@
 #include <numeric>
 #include <span>
 
+#include "core/detect/exclusion.hpp"
 #include "core/observation/tolerance.hpp"
 
 namespace bpa::scene {
 namespace {
-
-// Of a solid model it is known what is inside of it.
-bool solid(const detect::Candidate& c) { return c.model->complete && c.model->index; }
-
-// Two instances of one model cannot have nearly the same place. An object may lie on a plate, so
-// complete models of two objects are compared by their surfaces instead.
-bool same_place(const detect::Candidate& a, const detect::Candidate& b) {
-  const double distance = (a.place() - b.place()).norm();
-  const double smaller = std::min(a.model->diameter, b.model->diameter);
-  if (a.model == b.model) return distance < tolerance::kSamePlace * smaller;
-  return distance < tolerance::kOthersPlace * smaller && !(solid(a) && solid(b));
-}
-
-// The share of a's surface that lies clearly inside of b. Only a model that was seen from all sides
-// has an inside; a hollow is not one.
-double share_inside(const detect::Candidate& a, const detect::Candidate& b) {
-  constexpr std::size_t kPoints = 48;
-  const std::vector<Eigen::Vector3f>& points = a.model->index->check.points;
-  const FastPose a_in_b = to_fast(b.pose().inverse() * a.pose());
-  const PointCloud& surface = b.model->surface;
-  const std::size_t count = std::min(points.size(), kPoints);
-  int inside = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Eigen::Vector3f point = a_in_b * points[k];
-    const int nearest = b.model->index->distances.nearest_to(point);
-    if (nearest < 0) continue;
-    inside += (point - surface.points[nearest]).dot(surface.normals[nearest]) < -tolerance::kInside;
-  }
-  return count > 0 ? inside / static_cast<double>(count) : 0;
-}
-
-bool interpenetrate(const detect::Candidate& a, const detect::Candidate& b) {
-  constexpr double kMaxInside = 0.1;
-  if (!solid(a) || !solid(b)) return false;
-  const double reach = 0.5 * (a.model->diameter + b.model->diameter);
-  if ((a.place() - b.place()).norm() > reach) return false;
-  return share_inside(a, b) > kMaxInside || share_inside(b, a) > kMaxInside;
-}
 
 double same_pose(const detect::Candidate& a, const detect::Candidate& b) {
   if (a.model != b.model || (a.place() - b.place()).norm() > tolerance::kFarRivals) return 0;
@@ -116,8 +79,8 @@ Overlaps find_overlaps(const detect::Candidates& candidates, double competing) {
       const int shared = common[a * running.size() + b];
       const auto smaller =
           static_cast<double>(std::min(first.explained.size(), second.explained.size()));
-      const bool conflicting = shared > kMaxShared * smaller || same_place(first, second) ||
-                               interpenetrate(first, second);
+      const bool conflicting =
+          shared > detect::kMaxShared * smaller || detect::collide(first, second);
       if (shared == 0 && !conflicting) continue;
       overlaps[running[a]].push_back({running[b], shared, conflicting});
       overlaps[running[b]].push_back({running[a], shared, conflicting});
@@ -144,7 +107,11 @@ std::vector<PoseAlternative> alternatives_of(const detect::Candidates& candidate
                                              std::size_t chosen, double min_weight) {
   std::vector<int> rivals;
   for (const score::Competition::Rival& rival : competition.rivals[chosen]) {
-    if (candidates[rival.other].model == candidates[chosen].model) rivals.push_back(rival.other);
+    const detect::Candidate& other = candidates[rival.other];
+    const double distance = (other.place() - candidates[chosen].place()).norm();
+    const bool is_same_object = other.model == candidates[chosen].model &&
+                                distance < tolerance::kSamePlace * other.model->diameter;
+    if (is_same_object) rivals.push_back(static_cast<int>(rival.other));
   }
   std::ranges::stable_sort(rivals, std::greater(), [&](int i) { return candidates[i].score; });
   double largest = candidates[chosen].score;

@@ -19,13 +19,9 @@ struct Overlap {
 using Overlaps = std::vector<std::vector<Overlap>>;  ///< Of each candidate.
 
 /// For each candidate of at least `competing` log odds (Limit::competing), the others of these that
-/// share observed pixels or its position, by rising `other`. Two conflict when they share more than
-/// 0.3 of the smaller one's explained pixels. Also when their origins are too near for two solid
-/// objects. Also when more than a tenth of one's surface lies over 1 cm deep inside of the other.
+/// share observed pixels or its space, by rising `other`. Two conflict when they share more than
+/// detect::kMaxShared of the smaller one's explained pixels, or collide (detect::collide()).
 Overlaps find_overlaps(const detect::Candidates& candidates, double competing);
-
-/// Share of the smaller one's pixels that two placements may share. Chosen by hand.
-constexpr double kMaxShared = 0.3;
 
 /// The rivals of each candidate: those that it conflicts with.
 score::Competition competition_of(const detect::Candidates& candidates, const Overlaps& overlaps);

@@ -41,6 +41,28 @@ TEST_F(OverlapsOf, SolidThingsDoNotStandInOneAnother) {
   EXPECT_FALSE(conflict(first, brick_at(0.3, 0, 500)));
 }
 
+TEST_F(OverlapsOf, EqualObjectsMayLieNearerThanTheirLength) {
+  const double thickness = 2 * static_cast<double>(test::kBrickHalf.z());
+  ASSERT_LT(thickness, 0.4 * brick_->diameter);
+  detect::Candidate second = brick_at(0, 0, 500);
+  second.refinement.camera_from_object.translation.z() += thickness;
+  EXPECT_FALSE(conflict(brick_at(0, 0, 0), second)) << "stacked";
+  second.refinement.camera_from_object.translation += Eigen::Vector3d(0.02, 0, -0.5 * thickness);
+  EXPECT_TRUE(conflict(brick_at(0, 0, 0), second));
+}
+
+TEST_F(OverlapsOf, AThinModelIsInOnePlaceByItsCentre) {
+  ModelSource card = *brick_;
+  for (Eigen::Vector3f& p : card.surface.points) p.z() *= 0.006f / (2 * test::kBrickHalf.z());
+  card.prepared.reset();
+  const auto model = make_object_model(std::move(card)).value();
+  detect::Candidate first = brick_at(0, 0, 0), second = brick_at(0.02, 0, 500);
+  first.model = second.model = model.get();
+  EXPECT_TRUE(conflict(first, second)) << "6 mm thick";
+  second.refinement.camera_from_object.translation.x() = 0.1;
+  EXPECT_FALSE(conflict(first, second));
+}
+
 TEST_F(OverlapsOf, AModelSeenFromOneSideHasNoInside) {
   ModelSource open = *brick_;
   open.complete = false;
