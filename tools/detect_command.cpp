@@ -36,14 +36,14 @@ void print_result(const std::string& name, const io::FrameResult& result) {
     std::printf("  nothing known is there\n");
     return;
   }
-  std::printf("  %-28s %5s %7s  %23s  %s\n", "model", "prob.", "visible", "x y z [m]",
+  std::printf("  %-28s %5s %5s %7s  %23s  %s\n", "model", "there", "pose", "visible", "x y z [m]",
               "orientation w x y z");
   for (const Placement& p : result.interpretations.front().placements) {
     const Eigen::Vector3d& t = p.frame_from_object.translation;
     const Eigen::Vector4d q = to_wxyz(p.frame_from_object.rotation);
-    std::printf("  %-28s %5.2f %5.0f %%  %7.3f %7.3f %7.3f  %6.3f %6.3f %6.3f %6.3f\n",
-                p.model.c_str(), p.probability, 100 * p.visible_fraction, t.x(), t.y(), t.z(), q[0],
-                q[1], q[2], q[3]);
+    std::printf("  %-28s %5.2f %5.2f %5.0f %%  %7.3f %7.3f %7.3f  %6.3f %6.3f %6.3f %6.3f\n",
+                p.model.c_str(), p.presence, p.probability, 100 * p.visible_fraction, t.x(), t.y(),
+                t.z(), q[0], q[1], q[2], q[3]);
   }
 }
 

@@ -54,6 +54,7 @@ Placement to_placement(const Detection& detection) {
   placement.orientation = to_uncertainty(detection.orientation_spread);
   placement.score = detection.score;
   placement.probability = detection.probability;
+  placement.presence = detection.presence;
   placement.visible_fraction = detection.visible_fraction;
   for (const ScorePart& part : detection.score_parts) {
     placement.components.push_back({part.name, part.value});

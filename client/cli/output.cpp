@@ -29,10 +29,12 @@ void print_detection(const Detection& d) {
   const auto& p = d.camera_from_object.position;
   const auto& q = d.camera_from_object.orientation;
   std::printf("    %-24s %5.1f %%  at (%+.3f %+.3f %+.3f) m  q (%+.3f %+.3f %+.3f %+.3f)",
-              name_of(d).c_str(), 100 * d.probability, p[0], p[1], p[2], q[0], q[1], q[2], q[3]);
+              name_of(d).c_str(), 100 * d.presence, p[0], p[1], p[2], q[0], q[1], q[2], q[3]);
   print_spread(d);
   std::printf("  seen %.0f %%", 100 * d.visible_fraction);
-  if (!d.alternatives.empty()) std::printf("  or %zu other poses", d.alternatives.size());
+  if (!d.alternatives.empty()) {
+    std::printf("  this pose %.0f %%, or %zu others", 100 * d.probability, d.alternatives.size());
+  }
   std::printf("\n");
 }
 
@@ -72,7 +74,7 @@ void print_table(const DetectionSet& set, double frames_per_second) {
   for (const Detection& d : set.best()) {
     const auto& p = d.camera_from_object.position;
     std::printf("%-24s %5.1f %%  %+7.3f %+7.3f %+7.3f  %3.0f %%", name_of(d).c_str(),
-                100 * d.probability, p[0], p[1], p[2], 100 * d.visible_fraction);
+                100 * d.presence, p[0], p[1], p[2], 100 * d.visible_fraction);
     print_spread(d);
     std::printf("\n");
   }

@@ -60,6 +60,7 @@ Detection to_detection(const msgs::Placement& message) {
   detection.orientation_spread = to_spread(message.orientation);
   detection.score = message.score;
   detection.probability = message.probability;
+  detection.presence = message.presence;
   detection.visible_fraction = message.visible_fraction;
   for (const auto& part : message.score_components) {
     detection.score_parts.push_back({part.name, part.value});

@@ -18,11 +18,11 @@ std::span<const Eigen::Vector3f> sample_of(const ObjectModel& model) {
   return std::span(points).first(std::min(points.size(), kPoints));
 }
 
-// Whether surface can be clearly inside of the model.
-bool is_thick(const ObjectModel& model) {
+// The smallest side of the model's box, metres.
+double thickness(const ObjectModel& model) {
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& point : sample_of(model)) box.extend(point);
-  return box.sizes().minCoeff() > 2 * tolerance::kInside;
+  return static_cast<double>(box.sizes().minCoeff());
 }
 
 // The share of a's surface that lies clearly inside of b. A hollow is not inside.
@@ -62,8 +62,10 @@ bool collide(const Candidate& a, const Candidate& b) {
   // A model that was seen from all sides has an inside.
   const auto is_solid = [](const Candidate& c) { return c.model->complete && c.model->index; };
   const bool solid = is_solid(a) && is_solid(b);
-  if (a.model == b.model && !(solid && is_thick(*a.model))) {
-    return distance < tolerance::kSamePlace * smaller;
+  if (a.model == b.model && distance < tolerance::kSamePlace * smaller) {
+    if (!solid) return true;
+    const double thick = thickness(*a.model);
+    if (thick < 2 * tolerance::kInside || distance < 0.5 * thick) return true;
   }
   if (!solid) return distance < tolerance::kOthersPlace * smaller;
   if (distance > 0.5 * (a.model->diameter + b.model->diameter)) return false;

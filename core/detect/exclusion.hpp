@@ -19,8 +19,9 @@ constexpr double kMaxShared = 0.3;
 int common_pixels(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second);
 
 /// Whether two placements fill the same space: more than a tenth of one's surface lies over 1 cm
-/// inside the other. Models that are 2 cm thin, or were seen from one side, have no such inside:
-/// they collide where their centres are too near for two objects.
+/// inside the other. Equal models collide too where their centres are nearer than half their
+/// thickness. Models that are 2 cm thin, or were seen from one side, have no such inside: they
+/// collide where their centres are too near for two objects.
 bool collide(const Candidate& a, const Candidate& b);
 
 }  // namespace bpa::detect

@@ -164,7 +164,8 @@ io::ColorImage objects(const Frame& frame, const std::vector<DrawnObject>& drawn
 
 DrawnObject placed(const Placement& placement, const ObjectModel& model) {
   return {&model.surface, placement.frame_from_object,
-          placement.model + " " + fixed(placement.probability, 2),
+          placement.model + " " + fixed(placement.presence, 2) +
+              (pose_is_open(placement) ? ", pose open" : ""),
           object_color(placement.model_number), false};
 }
 

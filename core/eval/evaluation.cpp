@@ -138,6 +138,7 @@ void add_estimate(const EstimateOutcome& estimate, Draft& draft) {
   const bool right = estimate.truth >= 0;
   const double p = std::clamp(estimate.probability, 0.0, 1.0);
   count(report.precision, right);
+  count(report.present, estimate.present);
   count(draft.by_object[estimate.obj_id].precision, right);
   count(group_of(report.by_distance, kDistanceRows, estimate.distance).precision, right);
   report.brier += (p - right) * (p - right);

@@ -66,6 +66,7 @@ struct EstimateOutcome {
   double distance = 0;   ///< Of the estimate from the camera, metres.
   int truth = -1;        ///< Index of the instance it is right about (of its frame's truth), or -1.
   bool ignored = false;  ///< Right about an instance that does not count.
+  bool present = false;  ///< An instance of the object is at most 5 cm away.
   std::optional<CovarianceError> covariance_error;  ///< Of a right one.
   /// Its own pose and its alternatives, against the nearest instance of the same object, at most 5
   /// cm away; empty without alternatives or without such an instance.
@@ -152,6 +153,7 @@ struct TimeStatistics {
 struct EvaluationReport {
   int frames = 0;
   Ratio precision, recall;            ///< Paper: 2.5 cm, π/16.
+  Ratio present;                      ///< Placements whose object is there, at whatever pose.
   Ratio rmse_precision, rmse_recall;  ///< Paper: RMSE 1 cm.
   std::map<int, Ratio> recall_at;     ///< By number of interpretations: 1, 2, 3, 5, 10, 20.
   /// Instances whose pose is that of a placement or of one of its alternatives, by the same

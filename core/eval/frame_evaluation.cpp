@@ -149,10 +149,9 @@ void add_rmse(const io::BopFrame& frame, const EvalObjects& objects, const Estim
   }
 }
 
-std::vector<PoseOutcome> open_poses(const io::BopFrame& frame, const EvalObjects& objects,
-                                    const EvaluationOptions& options, const Placement& estimate) {
+// The nearest instance of the same object, at most 5 cm away, or null.
+const io::BopInstance* instance_at(const io::BopFrame& frame, const Placement& estimate) {
   constexpr double kSamePlace = 2 * kPoseTolerance_m;
-  if (estimate.alternatives.empty()) return {};
   const io::BopInstance* nearest = nullptr;
   double least = kSamePlace;
   for (const io::BopInstance& truth : frame.truth) {
@@ -162,9 +161,14 @@ std::vector<PoseOutcome> open_poses(const io::BopFrame& frame, const EvalObjects
     least = distance;
     nearest = &truth;
   }
-  if (!nearest) return {};
+  return nearest;
+}
+
+std::vector<PoseOutcome> open_poses(const io::BopInstance* instance, const EvalObjects& objects,
+                                    const EvaluationOptions& options, const Placement& estimate) {
+  if (estimate.alternatives.empty() || !instance) return {};
   const auto is_right = [&](const Pose& pose) {
-    return paper_cost(objects, options, pose, *nearest) < kNoMatch;
+    return paper_cost(objects, options, pose, *instance) < kNoMatch;
   };
   std::vector<PoseOutcome> out{{own_weight(estimate), is_right(estimate.frame_from_object)}};
   for (const PoseAlternative& other : estimate.alternatives) {
@@ -202,7 +206,9 @@ void add_estimates(const io::BopFrame& frame, const EvalObjects& objects,
     result.probability = estimate.probability;
     result.distance = pose.translation.norm();
     result.truth = truth_of[e];
-    result.poses = open_poses(frame, objects, options, estimate);
+    const io::BopInstance* instance = instance_at(frame, estimate);
+    result.present = instance != nullptr;
+    result.poses = open_poses(instance, objects, options, estimate);
     if (result.truth < 0) continue;
     const EvalObject& object = objects.at(estimate.model_number);
     const Pose& truth = frame.truth[result.truth].camera_from_object;

@@ -99,6 +99,7 @@ std::string frames_text(const EvaluationReport& report) {
 std::string accuracy_text(const EvaluationReport& report) {
   std::string text = heading("best interpretation", "2.5 cm, pi/16", "RMSE 1 cm");
   text += row("precision", percent(report.precision), percent(report.rmse_precision));
+  text += row("of them there", percent(report.present));
   text += row("recall", percent(report.recall), percent(report.rmse_recall));
   text += heading("interpretations", "recall", "truth among the alternatives");
   for (const auto& [rank, ratio] : report.recall_at) {
@@ -181,6 +182,7 @@ std::string report_json(const EvaluationReport& report) {
                {"version", 1},
                {"frames", report.frames},
                {"precision", report.precision},
+               {"present", report.present},
                {"recall", report.recall},
                {"recall_at", ranks_json(report.recall_at)},
                {"among_alternatives_at", ranks_json(report.among_alternatives_at)},

@@ -67,6 +67,7 @@ static void fields(auto& visit, io::Is<Placement> auto& placement) {
   visit("bingham", placement.orientation, kOptional);
   visit("score", placement.score, kOptional);
   visit("probability", placement.probability);
+  visit("presence", placement.presence, kOptional);
   visit("visible_fraction", placement.visible_fraction, kOptional);
   visit("components", placement.components, kOptional);
   visit("alternatives", placement.alternatives, kOptional);
@@ -148,7 +149,7 @@ void write_number(std::ostream& out, double value, char separator) {
 
 void write_row(std::ostream& out, const FrameResult& frame, const Placement& placement) {
   out << frame.scene_id << ',' << frame.im_id << ',' << placement.model_number << ',';
-  write_number(out, placement.probability, ',');
+  write_number(out, placement.presence, ',');
   const Eigen::Matrix3d r = placement.frame_from_object.matrix();
   for (int i = 0; i < 9; ++i) write_number(out, r(i / 3, i % 3), i < 8 ? ' ' : ',');
   for (int i = 0; i < 3; ++i) {
@@ -202,7 +203,7 @@ std::string parse_row(const std::string& line, CsvRow& row) {
 Placement placement_of(const CsvRow& row) {
   Placement placement;
   placement.model_number = static_cast<int>(row.object[0]);
-  placement.score = placement.probability = row.score[0];
+  placement.score = placement.probability = placement.presence = row.score[0];
   using Rotation = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   placement.frame_from_object =
       Pose::from_matrix(Eigen::Map<const Rotation>(row.rotation),

@@ -28,10 +28,7 @@ double own_weight(const Placement& placement) {
   return own;
 }
 
-double presence(const Placement& placement) {
-  const double own = own_weight(placement);
-  return own > placement.probability ? placement.probability / own : 1;
-}
+bool pose_is_open(const Placement& placement) { return own_weight(placement) < 0.5; }
 
 Placement transformed(const Pose& a_from_b, const Placement& placement) {
   const bool same = a_from_b.rotation.coeffs() == Eigen::Quaterniond::Identity().coeffs() &&

@@ -46,6 +46,8 @@ struct Placement {
   OrientationUncertainty orientation;
   double score = 0;        ///< Log odds from the components; larger is better.
   double probability = 0;  ///< That the pose is within 2.5 cm and π/16 of the truth; in [0, 1].
+  /// That the object is there, at this pose or at an alternative; in [0, 1].
+  double presence = 0;
   /// Of the model surface that faces the camera, in [0, 1]. What is outside the image is not
   /// visible.
   double visible_fraction = 0;
@@ -56,8 +58,8 @@ struct Placement {
 /// The weight of the placement's own pose beside its alternatives' (PoseAlternative::weight).
 double own_weight(const Placement& placement);
 
-/// The probability that the object is there, at this pose or at an alternative; in [0, 1].
-double presence(const Placement& placement);
+/// Whether no pose of the object has half of the weight.
+bool pose_is_open(const Placement& placement);
 
 /// The placement in frame a, from one in frame b: poses, covariance and orientation. To the last
 /// bit the same where a_from_b is the identity.

@@ -215,30 +215,55 @@ std::vector<Entry> rank(SubsetScore& state, const std::vector<std::size_t>& amon
   return ranked;
 }
 
+std::vector<double> scores_of(const detect::Candidates& candidates) {
+  std::vector<double> scores;
+  for (const detect::Candidate& candidate : candidates) scores.push_back(candidate.score);
+  return scores;
+}
+
+// The same candidates; where an object's pose is open, the most probable pose has the presence of
+// the object as its probability, so that it stands for it.
+detect::Candidates chosen_by_presence(const detect::Candidates& poses,
+                                      const score::Competition& competition,
+                                      const std::vector<double>& presence) {
+  detect::Candidates out = poses;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!(poses[i].probability >= kMinShown)) continue;
+    Placement object;
+    object.alternatives = alternatives_of(poses, competition, i);
+    if (object.alternatives.empty()) continue;
+    const bool is_likeliest = own_weight(object) >= object.alternatives.front().weight;
+    if (is_likeliest) out[i].probability = presence[i];
+  }
+  return out;
+}
+
 }  // namespace
 
 void let_compete(detect::Candidates& candidates, const Overlaps& overlaps) {
-  std::vector<double> scores;
-  for (const detect::Candidate& candidate : candidates) scores.push_back(candidate.score);
   const std::vector<double> probabilities =
-      score::competing_probabilities(scores, competition_of(candidates, overlaps));
+      score::competing_probabilities(scores_of(candidates), competition_of(candidates, overlaps));
   for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].probability = probabilities[i];
 }
 
-std::vector<Interpretation> interpret(const detect::Candidates& candidates,
-                                      const Overlaps& overlaps, int observed_pixels,
-                                      const InterpretationOptions& options) {
+std::vector<Interpretation> interpret(const detect::Candidates& poses, const Overlaps& overlaps,
+                                      int observed_pixels, const InterpretationOptions& options) {
+  const score::Competition competition = competition_of(poses, overlaps);
+  const std::vector<double> presence =
+      score::competing_probabilities(scores_of(poses), of_objects(poses, competition));
+  const detect::Candidates candidates = chosen_by_presence(poses, competition, presence);
   std::vector<std::size_t> among, probable;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const double probability = candidates[i].probability;
-    if (probability >= kMinShown) among.push_back(i);
-    if (probability >= options.min_probability) probable.push_back(i);
+    if (!(poses[i].probability >= kMinShown)) continue;
+    among.push_back(i);
+    const bool is_probable = candidates[i].probability >= options.min_probability &&
+                             poses[i].probability >= options.min_pose_probability;
+    if (is_probable) probable.push_back(i);
   }
   SubsetScore state(candidates, overlaps, observed_pixels, options);
   BestSubsets best(options.max_interpretations);
   greedy(state, probable, best);
   if (!probable.empty()) anneal(state, probable, options, best);
-  const score::Competition competition = competition_of(candidates, overlaps);
   std::vector<Interpretation> out;
   double total = 0, top = 0;
   for (const Entry& entry : rank(state, among, candidates, competition, best, options)) {
@@ -249,10 +274,11 @@ std::vector<Interpretation> interpret(const detect::Candidates& candidates,
     total += interpretation.probability;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       if (!entry.subset[i]) continue;
-      interpretation.placements.push_back(detect::to_placement(candidates[i]));
-      interpretation.placements.back().alternatives = alternatives_of(candidates, competition, i);
+      Placement& placement = interpretation.placements.emplace_back(detect::to_placement(poses[i]));
+      placement.alternatives = alternatives_of(poses, competition, i);
+      placement.presence = std::max(presence[i], placement.probability);
     }
-    std::ranges::stable_sort(interpretation.placements, std::greater(), &Placement::probability);
+    std::ranges::stable_sort(interpretation.placements, std::greater(), &Placement::presence);
   }
   for (Interpretation& interpretation : out) interpretation.probability /= total;
   return out;

@@ -15,7 +15,9 @@ namespace bpa::scene {
 
 struct InterpretationOptions {
   BPA_OPTION(double, min_probability, 0.5, (0, 1),
-             "Placements less probable than this are not part of the best interpretation.");
+             "Objects whose presence is less probable are not part of the best interpretation.");
+  BPA_OPTION(double, min_pose_probability, 0, (0, 1),
+             "The same of poses: 0.5 leaves out objects whose pose is open.");
   BPA_OPTION(double, object_penalty, 0, (0, 100),
              "Log odds that each further object of an interpretation costs, beyond those of "
              "min_probability.");
@@ -34,7 +36,8 @@ struct InterpretationOptions {
 void let_compete(detect::Candidates& candidates, const Overlaps& overlaps);
 
 /// Explains the scene by subsets of the candidates (paper section VI): simulated annealing on the
-/// multi-object-placement score. It adds single scores, each weighted by the share of the pixels
+/// multi-object-placement score. An object is chosen by its presence (Placement::presence), at the
+/// pose of the largest weight. It adds single scores, each weighted by the share of the pixels
 /// that the placement has for itself. It also adds the ratio of explained to observed pixels and a
 /// penalty per object. Returns the best distinct subsets met: at least one, perhaps without
 /// objects.

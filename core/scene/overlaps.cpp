@@ -57,6 +57,11 @@ struct PoseGroup {
   double weight = 0;
 };
 
+bool one_object(const detect::Candidate& a, const detect::Candidate& b) {
+  return a.model == b.model &&
+         (a.place() - b.place()).norm() < tolerance::kSamePlace * a.model->diameter;
+}
+
 bool nearly_same_pose(const score::Competition& competition, std::size_t a, std::size_t b) {
   return std::ranges::any_of(competition.rivals[a], [b](const score::Competition::Rival& rival) {
     return rival.other == b && rival.same_pose >= 0.5;
@@ -102,16 +107,23 @@ score::Competition competition_of(const detect::Candidates& candidates, const Ov
   return out;
 }
 
+score::Competition of_objects(const detect::Candidates& candidates, score::Competition poses) {
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    for (score::Competition::Rival& rival : poses.rivals[i]) {
+      if (one_object(candidates[i], candidates[rival.other])) rival.same_pose = 1;
+    }
+  }
+  return poses;
+}
+
 std::vector<PoseAlternative> alternatives_of(const detect::Candidates& candidates,
                                              const score::Competition& competition,
                                              std::size_t chosen, double min_weight) {
   std::vector<int> rivals;
   for (const score::Competition::Rival& rival : competition.rivals[chosen]) {
-    const detect::Candidate& other = candidates[rival.other];
-    const double distance = (other.place() - candidates[chosen].place()).norm();
-    const bool is_same_object = other.model == candidates[chosen].model &&
-                                distance < tolerance::kSamePlace * other.model->diameter;
-    if (is_same_object) rivals.push_back(static_cast<int>(rival.other));
+    if (one_object(candidates[chosen], candidates[rival.other])) {
+      rivals.push_back(static_cast<int>(rival.other));
+    }
   }
   std::ranges::stable_sort(rivals, std::greater(), [&](int i) { return candidates[i].score; });
   double largest = candidates[chosen].score;

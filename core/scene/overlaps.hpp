@@ -26,6 +26,9 @@ Overlaps find_overlaps(const detect::Candidates& candidates, double competing);
 /// The rivals of each candidate: those that it conflicts with.
 score::Competition competition_of(const detect::Candidates& candidates, const Overlaps& overlaps);
 
+/// The same, where the poses of an object count as one: rivals of the same model in the same place.
+score::Competition of_objects(const detect::Candidates& candidates, score::Competition poses);
+
 /// The other poses in which the object of candidate `chosen` explains the same view, by falling
 /// weight: a mug with its handle out of sight, a box with one visible face. They are its rivals of
 /// the same model; nearly equal poses are merged. Their weights and the chosen pose's own sum to 1.

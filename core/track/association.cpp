@@ -45,7 +45,7 @@ std::vector<Placement> found_objects(const SceneInterpretations& result,
     for (const Placement& placement : interpretation.placements) {
       const auto model = library.find(placement.model);
       const bool likely =
-          placement.probability >= kLeastOfPose && presence(placement) >= min_presence;
+          placement.probability >= kLeastOfPose && placement.presence >= min_presence;
       if (!model || !likely) continue;
       const Place place{placement.frame_from_object * model->centre,
                         tolerance::kSamePlace * model->diameter};

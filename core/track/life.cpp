@@ -36,7 +36,7 @@ void Life::believe(const Placement& placement, std::int64_t stamp) {
   found_ns = stamp;
   ++found;
   missed = 0;
-  judge(std::clamp(score::log_odds_of(presence(placement)), kLeastFound, kMostFound));
+  judge(std::clamp(score::log_odds_of(placement.presence), kLeastFound, kMostFound));
 }
 
 void Life::doubt(double log_odds) {

@@ -24,6 +24,7 @@ msgs::Placement placement_message(const Placement& placement, std::uint32_t inst
                           .orientation = bingham_message(placement.orientation),
                           .score = placement.score,
                           .probability = placement.probability,
+                          .presence = placement.presence,
                           .visible_fraction = placement.visible_fraction,
                           .score_components = {},
                           .alternatives = {}};
@@ -109,7 +110,7 @@ vision::Detection3DArray detections_message(const SceneInterpretations& result,
   for_each_best(result, [&](const Placement& placement, const std::string& name) {
     message.detections.push_back(
         {message.header,
-         {{{placement.model, placement.probability},
+         {{{placement.model, placement.presence},
            pose_message(placement.frame_from_object, placement.covariance)}},
          box_message(placement.frame_from_object, placement.model_number, models),
          name});
@@ -124,7 +125,7 @@ markers::MarkerArray markers_message(const SceneInterpretations& result, const M
   message.markers.push_back(clearing_marker(header));
   for_each_best(result, [&](const Placement& placement, const std::string& name) {
     char percent[16];
-    std::snprintf(percent, sizeof percent, " %.0f %%", 100 * placement.probability);
+    std::snprintf(percent, sizeof percent, " %.0f %%", 100 * placement.presence);
     const auto id = static_cast<std::int32_t>(message.markers.size() / 2);
     add_markers(header,
                 {id, box_message(placement.frame_from_object, placement.model_number, models),

@@ -67,7 +67,7 @@ std::string KeptResult::summary() const {
   Json objects = Json::array();
   if (!found.empty()) {
     for (const Placement& placement : found[0].placements) {
-      objects.push_back({placement.model, placement.probability});
+      objects.push_back({placement.model, placement.presence});
     }
   }
   return json_text({{"id", id},

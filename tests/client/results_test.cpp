@@ -28,6 +28,7 @@ Placement placement() {
   p.orientation.concentrations = {-31, -21, -11};
   p.score = -1.25;
   p.probability = 0.9;
+  p.presence = 0.95;
   p.visible_fraction = 0.3;
   p.components = {{"color", 0.125}, {"range", 1.0 / 3}};
   p.alternatives = {{{Eigen::Quaterniond(0.1, 0.2, 0.3, 0.4).normalized(), {1, 2, 3}}, 0.25}};
@@ -94,7 +95,7 @@ TEST(ClientResults, HaveTheirKeys) {
   EXPECT_EQ(json.at("interpretations").at(1),
             Json::parse(R"({"rank": 2, "score": 4.5, "probability": 0.25, "placements": []})"));
   const Json& p = json.at("interpretations").at(0).at("placements").at(0);
-  EXPECT_EQ(p.size(), 10U);
+  EXPECT_EQ(p.size(), 11U);
   EXPECT_EQ(p.at("obj_id"), 3);
   EXPECT_EQ(p.at("model"), "mug");
   EXPECT_EQ(p.at("pose").at("translation_m"), (std::vector<double>{0.1, -0.2, 0.9}));
@@ -105,6 +106,7 @@ TEST(ClientResults, HaveTheirKeys) {
   EXPECT_EQ(p.at("bingham").at("concentrations"), (std::vector<double>{-31, -21, -11}));
   EXPECT_EQ(p.at("score"), -1.25);
   EXPECT_EQ(p.at("probability"), 0.9);
+  EXPECT_EQ(p.at("presence"), 0.95);
   EXPECT_EQ(p.at("visible_fraction"), 0.3);
   EXPECT_EQ(p.at("components"),
             (std::map<std::string, double>{{"color", 0.125}, {"range", 1.0 / 3}}));

@@ -14,7 +14,8 @@ Placement placement(const std::string& model, int number, double probability) {
   Placement p;
   p.model = model;
   p.model_number = number;
-  p.probability = probability;
+  p.presence = probability;
+  p.probability = 0.5 * probability;
   p.frame_from_object.translation = {0.1, 0.2, 0.9};
   p.frame_from_object.rotation = rotation_from_vector({0, 0, 1.5707963267948966});
   for (int i = 0; i < 6; ++i) {

@@ -41,7 +41,7 @@ bpa::Result<bpa::SceneInterpretations> detect(const bpa::Frame& frame,
   placement.model = "stub";
   placement.model_number = 7;
   placement.frame_from_object.translation.z() = static_cast<double>(frame.depth[middle]);
-  placement.probability = 0.875;
+  placement.probability = placement.presence = 0.875;
   bpa::SceneInterpretations result;
   result.stamp_ns = frame.stamp_ns;
   result.frame_id = frame.frame_id;

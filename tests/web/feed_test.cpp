@@ -22,7 +22,7 @@ Frame frame_of(int width, int height) {
 SceneInterpretations result_of(const std::string& model) {
   Placement placement;
   placement.model = model;
-  placement.probability = 0.75;
+  placement.probability = placement.presence = 0.75;
   SceneInterpretations result;
   result.stamp_ns = 123;
   result.interpretations.push_back({1, 0, 1, {placement}});

@@ -53,8 +53,9 @@ struct Detection {
   /// those of the camera frame.
   std::array<double, 36> covariance{};
   OrientationSpread orientation_spread;
-  double score = 0;             ///< Larger is better; comparable within one model only.
-  double probability = 0;       ///< That it is within 2.5 cm and pi/16 of the truth, in [0, 1].
+  double score = 0;        ///< Larger is better; comparable within one model only.
+  double probability = 0;  ///< That it is within 2.5 cm and pi/16 of the truth, in [0, 1].
+  double presence = 0;     ///< That the object is there, at this pose or an alternative, in [0, 1].
   double visible_fraction = 0;  ///< Of the surface that faces the camera, in [0, 1].
   std::vector<ScorePart> score_parts;
   std::vector<AlternativePose> alternatives;  ///< Empty when the view decides.

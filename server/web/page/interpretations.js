@@ -93,12 +93,13 @@ async function showScore(number, into) {
 
 function alternatives(placement, number) {
   if (!placement.alternatives || !placement.alternatives.length) return make('p', {class: 'soft'}, 'No other pose fits the view.');
-  const own = 1 - placement.alternatives.reduce((sum, one) => sum + one.weight, 0);
   const option = (text, k) => make('button', {'aria-pressed': String(view.alternative === k),
     click: () => choosePlacement(number, k)}, text);
-  return make('p', {}, 'Poses that fit as well: ', option(`this, ${percent(own)}`, -1), ' ',
+  return make('p', {}, 'Poses that fit as well: ', option(`this, ${percent(ownWeight(placement))}`, -1), ' ',
     ...placement.alternatives.slice(0, 6).flatMap((one, k) => [option(`${k + 1}: ${percent(one.weight)}`, k), ' ']));
 }
+
+const ownWeight = ({alternatives}) => 1 - (alternatives || []).reduce((sum, one) => sum + one.weight, 0);
 
 function card(placement, number) {
   const model = view.models.get(placement.model);
@@ -106,8 +107,10 @@ function card(placement, number) {
   if (model) badge.style.background = css(model.color);
   const chosen = view.chosen === number;
   const [x, y, z] = placement.pose.translation_m;
+  const open = ownWeight(placement) < 0.5;  // as pose_is_open()
   const head = make('h3', {}, badge, make('button', {'aria-expanded': String(chosen), 'data-placement': number,
-    click: () => choosePlacement(chosen ? -1 : number)}, placement.model), percent(placement.probability));
+    click: () => choosePlacement(chosen ? -1 : number)}, placement.model),
+    percent(placement.presence), open ? make('small', {}, ', pose open') : '');
   const box = make('div', {class: chosen ? 'placement chosen' : 'placement'}, head,
     make('p', {}, uncertainty(placement, model)));
   if (!chosen) return box;

@@ -104,7 +104,7 @@ function drawPlacements(context, scale) {
     }
     stroke(context, color, kDashes[i % kDashes.length].map((length) => length * scale), (chosen ? 4 : 2.2) * scale);
     const xs = outline[0].filter((_, k) => k % 2 === 0), ys = outline[0].filter((_, k) => k % 2);
-    const text = `${i + 1} ${placement.model}${chosen ? ` ${percent(placement.probability)}` : ''}`;
+    const text = `${i + 1} ${placement.model}${chosen ? ` ${percent(placement.presence)}` : ''}`;
     labels.push([text, (Math.min(...xs) + Math.max(...xs)) / 2, Math.max(...ys) + 8 * scale]);
     if (chosen) {
       const pose = view.alternative >= 0 ? placement.alternatives[view.alternative].pose : placement.pose;

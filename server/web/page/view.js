@@ -30,7 +30,7 @@ export const interpretation = () =>
   (view.result ? view.result.result.interpretations[view.rank - 1] : undefined);
 
 /** Whether a placement passes its model's threshold. */
-export const shown = (placement) => placement.probability >= (view.thresholds[placement.model] || 0);
+export const shown = (placement) => placement.presence >= (view.thresholds[placement.model] || 0);
 
 export function setThreshold(model, value) {
   view.thresholds[model] = value;

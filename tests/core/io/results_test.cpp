@@ -20,6 +20,7 @@ Placement some_placement(int obj_id, double probability) {
   placement.orientation.concentrations.setRandom();
   placement.score = -1.25;
   placement.probability = probability;
+  placement.presence = 0.5 * (1 + probability);
   placement.visible_fraction = 0.3;
   placement.components = {{"range", 1.0 / 3}};
   placement.alternatives = {{placement.frame_from_object, 0.25}};
@@ -110,7 +111,8 @@ TEST(Results, CsvHoldsTheBestInterpretation) {
   ASSERT_EQ(back->front().interpretations.at(0).placements.size(), 2u);
   const Placement& placement = back->front().interpretations[0].placements[0];
   EXPECT_EQ(placement.model_number, 3);
-  EXPECT_EQ(placement.probability, 0.9);
+  EXPECT_EQ(placement.presence, 0.95);
+  EXPECT_EQ(placement.probability, 0.95);
   const Pose pose = some_placement(3, 1).frame_from_object;
   EXPECT_LT(rotation_angle(placement.frame_from_object.rotation, pose.rotation), 1e-7);
   EXPECT_LT((placement.frame_from_object.translation - pose.translation).norm(), 1e-12);

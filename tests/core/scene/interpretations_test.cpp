@@ -168,7 +168,7 @@ TEST(Interpretations, AreRankedDistinctAndSumToOne) {
     EXPECT_TRUE(seen.insert(subset_of(found[k])).second);
     const auto& placements = found[k].placements;
     EXPECT_TRUE(std::is_sorted(placements.begin(), placements.end(),
-                               [](auto& a, auto& b) { return a.probability > b.probability; }));
+                               [](auto& a, auto& b) { return a.presence > b.presence; }));
   }
   EXPECT_NEAR(sum, 1, 1e-9);
 }
@@ -254,6 +254,32 @@ TEST(Interpretations, WhatIsLessProbableThanAskedIsNotInTheBestHoweverMuchItExpl
   EXPECT_EQ(subset_of(found.at(1)), Subset{0}) << "but in a later one";
   options.min_probability = 0.2;
   EXPECT_EQ(subset_of(interpret_all(one, kObserved, options)[0]), Subset{0});
+}
+
+TEST(Interpretations, AnObjectIsChosenByItsPresenceAtItsLikeliestPose) {
+  const detect::Candidate mug = candidate(0, 0.5, pixels(0, 900));
+  std::vector<detect::Candidate> poses;
+  for (const double odds : {3.0, 4.0, 2.5}) {
+    detect::Candidate& pose = poses.emplace_back(mug);
+    pose.refinement.camera_from_object.rotation =
+        Eigen::AngleAxisd(static_cast<double>(poses.size()) * M_PI / 2, Eigen::Vector3d::UnitX());
+    pose.score = std::log(odds);
+  }
+  let_compete(poses, find_overlaps(poses, -8));
+  const auto found = interpret_all(poses, kObserved, {});
+  ASSERT_EQ(found[0].placements.size(), 1u);
+  const Placement& placement = found[0].placements[0];
+  EXPECT_NEAR(placement.presence, 9.5 / 10.5, 1e-9);
+  EXPECT_NEAR(placement.probability, 4 / 10.5, 1e-9);
+  EXPECT_NEAR(pose_error(placement.frame_from_object, poses[1].pose()).angle, 0, 1e-9);
+  EXPECT_EQ(placement.alternatives.size(), 2u);
+  EXPECT_TRUE(pose_is_open(placement));
+  InterpretationOptions options;
+  options.min_pose_probability = 0.4;
+  EXPECT_TRUE(interpret_all(poses, kObserved, options)[0].placements.empty());
+  options = {};
+  options.min_probability = 0.91;
+  EXPECT_TRUE(interpret_all(poses, kObserved, options)[0].placements.empty());
 }
 
 TEST(Interpretations, APenaltyLargeEnoughLeavesNothing) {

@@ -26,7 +26,7 @@ Placement placed(const std::string& name, double x) {
 
 Placement likely(const std::string& name, double x, double probability) {
   Placement out = placed(name, x);
-  out.probability = probability;
+  out.probability = out.presence = probability;
   return out;
 }
 
@@ -58,24 +58,14 @@ TEST(MatchTracks, WhatIsNotSeenMayHaveGoneFurther) {
             std::vector{-1});
 }
 
-TEST(FoundObjects, PosesOfAnObjectShareItsPresence) {
-  EXPECT_EQ(presence(placed("mug", 0)), 0);
-  Placement open = likely("mug", 0, 0.4);
-  EXPECT_DOUBLE_EQ(presence(open), 0.4);
-  open.alternatives = {{Pose(), 0.3}, {Pose(), 0.2}};  // its own weight is 0.5
-  EXPECT_DOUBLE_EQ(presence(open), 0.8);
-  open.alternatives[0].weight = 0.5;
-  EXPECT_DOUBLE_EQ(presence(open), 1);
-}
-
 TEST(FoundObjects, ThoseOfOtherInterpretationsInPlacesOfTheirOwn) {
   ModelLibrary library;
   ASSERT_TRUE(library.add(kMug).ok());
   ASSERT_TRUE(library.add(kBox).ok());
   Placement open = likely("mug", 0.5, 0.3);
-  open.alternatives = {{Pose(), 0.6}};
+  open.presence = 0.75;
   Placement scattered = likely("mug", -0.5, 0.1);
-  scattered.alternatives = {{Pose(), 0.89}};
+  scattered.presence = 0.9;
   SceneInterpretations result;
   result.interpretations = {
       {.placements = {likely("box", 0, 0.9), likely("cup", -0.9, 0.9)}},

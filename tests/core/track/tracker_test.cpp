@@ -66,7 +66,7 @@ class TrackerTest : public test::LScene {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       Placement placement;
       placement.model = model;
-      placement.probability = probability;
+      placement.probability = placement.presence = probability;
       placement.frame_from_object = test::disturbed(poses[i], 0.004, 0.03, i + 1);
       placement.covariance.diagonal() << 9e-6, 9e-6, 9e-6, 4e-4, 4e-4, 4e-4;
       best.placements.push_back(placement);
