@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-
 #include "core/detect/exclusion.hpp"
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
@@ -11,13 +9,6 @@
 namespace bpa::detect {
 namespace {
 
-// Two poses of one object, not two objects beside one another.
-bool exclude(const Candidate& a, const Candidate& b) {
-  const std::size_t smaller = std::min(a.explained.size(), b.explained.size());
-  return collide(a, b) ||
-         common_pixels(a.explained, b.explained) > kMaxShared * static_cast<double>(smaller);
-}
-
 // The candidates after `best` that exclude it and are not far worse, itself included. Marks all
 // that exclude it as compared.
 std::vector<std::size_t> rivals_of(const Search& search, Candidates& candidates, std::size_t best,
@@ -26,7 +17,8 @@ std::vector<std::size_t> rivals_of(const Search& search, Candidates& candidates,
   for (std::size_t i = best; i < candidates.size(); ++i) {
     const double distance = (candidates[i].place() - candidates[best].place()).norm();
     if (compared[i] || distance > tolerance::kSamePlace * search.model.diameter) continue;
-    if (i != best && !exclude(candidates[i], candidates[best])) continue;
+    const int common = common_pixels(candidates[i].explained, candidates[best].explained);
+    if (i != best && !exclude(candidates[i], candidates[best], common)) continue;
     compared[i] = true;
     const double behind = candidates[i].score - candidates[best].score;
     candidates[i].lowest.note(score::Limit::rival_behind, behind);

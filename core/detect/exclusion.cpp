@@ -55,6 +55,11 @@ int common_pixels(std::span<const std::uint32_t> first, std::span<const std::uin
   return common;
 }
 
+bool exclude(const Candidate& a, const Candidate& b, int common) {
+  const auto smaller = static_cast<double>(std::min(a.explained.size(), b.explained.size()));
+  return common > kMaxShared * smaller || collide(a, b);
+}
+
 bool collide(const Candidate& a, const Candidate& b) {
   constexpr double kMaxInside = 0.1;
   const double distance = (a.place() - b.place()).norm();

@@ -16,9 +16,8 @@ struct RefinementOptions {
   int iterations = 6;    ///< Gauss-Newton steps.
   int max_points = 200;  ///< Surface points of the model used, 1 or more.
   int max_edges = 60;    ///< Edge points of the model used; 0: surface alone.
-  double start_gate_m =
-      tolerance::placed_m(12);  ///< Largest distance of correspondences in the first step, metres.
-  double end_gate_m = tolerance::placed_m(4);  ///< The same in the last step.
+  /// Largest distances of correspondences in the first step and in the last, metres.
+  double start_gate_m = tolerance::placed_m(12), end_gate_m = tolerance::placed_m(4);
 };
 
 /// What alignments use, in all stages.

@@ -99,7 +99,7 @@ std::string frames_text(const EvaluationReport& report) {
 std::string accuracy_text(const EvaluationReport& report) {
   std::string text = heading("best interpretation", "2.5 cm, pi/16", "RMSE 1 cm");
   text += row("precision", percent(report.precision), percent(report.rmse_precision));
-  text += row("of them there", percent(report.present));
+  text += row("object present", percent(report.present));
   text += row("recall", percent(report.recall), percent(report.rmse_recall));
   text += heading("interpretations", "recall", "truth among the alternatives");
   for (const auto& [rank, ratio] : report.recall_at) {

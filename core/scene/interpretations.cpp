@@ -19,13 +19,14 @@ constexpr double kExplainedWeight = 2;  // of the ratio of explained to observed
 constexpr double kStartTemperature = 2, kEndTemperature = 0.05;
 constexpr double kMinShown = 0.001;  // less probable placements are in no interpretation
 
-// What a placement adds to the score by itself: its log odds beyond those asked for, less the
-// penalty (paper section VI, components 1 and 3).
-double single_worth(const detect::Candidate& c, const InterpretationOptions& options) {
+// What a candidate that is believed so much adds to the score by itself: its log odds beyond those
+// asked for, less the penalty (paper section VI, components 1 and 3).
+double single_worth(const detect::Candidate& c, double belief,
+                    const InterpretationOptions& options) {
   if (c.explained.empty()) return -options.object_penalty;
   // Of poses so near to one another that each is right when the others are, the best fit counts.
   constexpr double kFit = 0.1;
-  return score::log_odds_of(c.probability) - score::log_odds_of(options.min_probability) -
+  return score::log_odds_of(belief) - score::log_odds_of(options.min_probability) -
          options.object_penalty + kFit * std::clamp(c.score, -10.0, 10.0);
 }
 
@@ -33,13 +34,16 @@ double single_worth(const detect::Candidate& c, const InterpretationOptions& opt
 // placement has overlaps.
 class SubsetScore {
  public:
-  SubsetScore(const detect::Candidates& candidates, const Overlaps& overlaps, int observed_pixels,
-              const InterpretationOptions& options)
-      : candidates_(candidates),
-        options_(options),
-        per_pixel_(kExplainedWeight / std::max(1, observed_pixels)),
+  SubsetScore(const detect::Candidates& candidates, const std::vector<double>& beliefs,
+              const Overlaps& overlaps, int observed_pixels, const InterpretationOptions& options)
+      : per_pixel_(kExplainedWeight / std::max(1, observed_pixels)),
         overlaps_(overlaps),
-        chosen_(candidates.size(), false) {}
+        chosen_(candidates.size(), false) {
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      pixels_.push_back(static_cast<double>(candidates[i].explained.size()));
+      single_.push_back(single_worth(candidates[i], beliefs[i], options));
+    }
+  }
 
   bool chosen(std::size_t i) const { return chosen_[i]; }
   const std::vector<bool>& subset() const { return chosen_; }
@@ -54,8 +58,7 @@ class SubsetScore {
   }
   /// What adding i would change the score by, or has.
   double worth(std::size_t i) const {
-    const detect::Candidate& c = candidates_[i];
-    double sum = single_worth(c, options_) + per_pixel_ * static_cast<double>(c.explained.size());
+    double sum = single_[i] + per_pixel_ * pixels_[i];
     for (const Overlap& overlap : overlaps_[i]) {
       if (chosen_[overlap.other]) sum -= lost(i, overlap) + per_pixel_ * overlap.common;
     }
@@ -63,11 +66,10 @@ class SubsetScore {
   }
   // A shared pixel counts half for each of the two.
   double lost(std::size_t i, const Overlap& overlap) const {
-    const auto part = [&](const detect::Candidate& c) {
-      return overlap.common / std::max(1.0, static_cast<double>(c.explained.size())) *
-             std::max(0.0, single_worth(c, options_));
+    const auto part = [&](std::size_t k) {
+      return overlap.common / std::max(1.0, pixels_[k]) * std::max(0.0, single_[k]);
     };
-    return 0.5 * (part(candidates_[i]) + part(candidates_[overlap.other]));
+    return 0.5 * (part(i) + part(overlap.other));
   }
   void add(std::size_t i) {
     total_ += worth(i);
@@ -83,10 +85,9 @@ class SubsetScore {
   }
 
  private:
-  const detect::Candidates& candidates_;
-  const InterpretationOptions& options_;
   double per_pixel_;
   const Overlaps& overlaps_;
+  std::vector<double> pixels_, single_;  // of each candidate: explained, and single_worth()
   std::vector<bool> chosen_;
   double total_ = 0;
 };
@@ -180,13 +181,12 @@ using Entry = BestSubsets::Entry;
 
 // See interpret(): first what differs, then what is left of the best.
 std::vector<Entry> rank(SubsetScore& state, const std::vector<std::size_t>& among,
-                        const detect::Candidates& candidates, const score::Competition& competition,
+                        const std::vector<double>& beliefs, const score::Competition& competition,
                         BestSubsets& best, const InterpretationOptions& options) {
-  // What no interpretation has shown yet, by falling probability. Nearly the same pose of the same
+  // What no interpretation has shown yet, by falling belief. Nearly the same pose of the same
   // model counts as shown as well.
   std::vector<std::size_t> unshown = among;
-  std::ranges::stable_sort(unshown, std::greater(),
-                           [&](std::size_t i) { return candidates[i].probability; });
+  std::ranges::stable_sort(unshown, std::greater(), [&](std::size_t i) { return beliefs[i]; });
   const auto show = [&](const std::vector<bool>& subset) {
     const auto shown = [&](const score::Competition::Rival& rival) {
       return rival.same_pose > 0.5 && subset[rival.other];
@@ -221,21 +221,26 @@ std::vector<double> scores_of(const detect::Candidates& candidates) {
   return scores;
 }
 
-// The same candidates; where an object's pose is open, the most probable pose has the presence of
-// the object as its probability, so that it stands for it.
-detect::Candidates chosen_by_presence(const detect::Candidates& poses,
-                                      const score::Competition& competition,
-                                      const std::vector<double>& presence) {
-  detect::Candidates out = poses;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (!(poses[i].probability >= kMinShown)) continue;
-    Placement object;
-    object.alternatives = alternatives_of(poses, competition, i);
-    if (object.alternatives.empty()) continue;
-    const bool is_likeliest = own_weight(object) >= object.alternatives.front().weight;
-    if (is_likeliest) out[i].probability = presence[i];
+// The placements of the candidates `among`, by candidate; of the others empty.
+std::vector<Placement> placements_of(const detect::Candidates& candidates,
+                                     const std::vector<std::size_t>& among,
+                                     const score::Competition& competition) {
+  const std::vector<double> presence =
+      score::competing_probabilities(scores_of(candidates), of_objects(candidates, competition));
+  std::vector<Placement> out(candidates.size());
+  for (const std::size_t i : among) {
+    out[i] = detect::to_placement(candidates[i]);
+    out[i].alternatives = alternatives_of(candidates, competition, i);
+    out[i].presence = std::max(presence[i], out[i].probability);
   }
   return out;
+}
+
+// Where a pose is open, the likeliest one stands for the object.
+double belief_in(const Placement& placement) {
+  const auto& others = placement.alternatives;
+  const bool stands_for_object = !others.empty() && own_weight(placement) >= others.front().weight;
+  return stands_for_object ? placement.presence : placement.probability;
 }
 
 }  // namespace
@@ -246,37 +251,36 @@ void let_compete(detect::Candidates& candidates, const Overlaps& overlaps) {
   for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].probability = probabilities[i];
 }
 
-std::vector<Interpretation> interpret(const detect::Candidates& poses, const Overlaps& overlaps,
-                                      int observed_pixels, const InterpretationOptions& options) {
-  const score::Competition competition = competition_of(poses, overlaps);
-  const std::vector<double> presence =
-      score::competing_probabilities(scores_of(poses), of_objects(poses, competition));
-  const detect::Candidates candidates = chosen_by_presence(poses, competition, presence);
+std::vector<Interpretation> interpret(const detect::Candidates& candidates,
+                                      const Overlaps& overlaps, int observed_pixels,
+                                      const InterpretationOptions& options) {
   std::vector<std::size_t> among, probable;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!(poses[i].probability >= kMinShown)) continue;
-    among.push_back(i);
-    const bool is_probable = candidates[i].probability >= options.min_probability &&
-                             poses[i].probability >= options.min_pose_probability;
+    if (candidates[i].probability >= kMinShown) among.push_back(i);
+  }
+  const score::Competition competition = competition_of(candidates, overlaps);
+  const std::vector<Placement> placements = placements_of(candidates, among, competition);
+  std::vector<double> beliefs(candidates.size(), 0);
+  for (const std::size_t i : among) {
+    beliefs[i] = belief_in(placements[i]);
+    const bool is_probable = beliefs[i] >= options.min_probability &&
+                             placements[i].probability >= options.min_pose_probability;
     if (is_probable) probable.push_back(i);
   }
-  SubsetScore state(candidates, overlaps, observed_pixels, options);
+  SubsetScore state(candidates, beliefs, overlaps, observed_pixels, options);
   BestSubsets best(options.max_interpretations);
   greedy(state, probable, best);
   if (!probable.empty()) anneal(state, probable, options, best);
   std::vector<Interpretation> out;
   double total = 0, top = 0;
-  for (const Entry& entry : rank(state, among, candidates, competition, best, options)) {
+  for (const Entry& entry : rank(state, among, beliefs, competition, best, options)) {
     const double score = -entry.negated_score;
     if (out.empty()) top = score;
     Interpretation& interpretation = out.emplace_back(
         Interpretation{static_cast<int>(out.size()) + 1, score, std::exp(score - top), {}});
     total += interpretation.probability;
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      if (!entry.subset[i]) continue;
-      Placement& placement = interpretation.placements.emplace_back(detect::to_placement(poses[i]));
-      placement.alternatives = alternatives_of(poses, competition, i);
-      placement.presence = std::max(presence[i], placement.probability);
+    for (const std::size_t i : among) {
+      if (entry.subset[i]) interpretation.placements.push_back(placements[i]);
     }
     std::ranges::stable_sort(interpretation.placements, std::greater(), &Placement::presence);
   }

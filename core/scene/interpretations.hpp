@@ -17,7 +17,8 @@ struct InterpretationOptions {
   BPA_OPTION(double, min_probability, 0.5, (0, 1),
              "Objects whose presence is less probable are not part of the best interpretation.");
   BPA_OPTION(double, min_pose_probability, 0, (0, 1),
-             "The same of poses: 0.5 leaves out objects whose pose is open.");
+             "Objects whose likeliest pose is less probable are left out of the best "
+             "interpretation. 0.5 leaves out open poses.");
   BPA_OPTION(double, object_penalty, 0, (0, 100),
              "Log odds that each further object of an interpretation costs, beyond those of "
              "min_probability.");

@@ -82,10 +82,7 @@ Overlaps find_overlaps(const detect::Candidates& candidates, double competing) {
       const detect::Candidate& first = candidates[running[a]];
       const detect::Candidate& second = candidates[running[b]];
       const int shared = common[a * running.size() + b];
-      const auto smaller =
-          static_cast<double>(std::min(first.explained.size(), second.explained.size()));
-      const bool conflicting =
-          shared > detect::kMaxShared * smaller || detect::collide(first, second);
+      const bool conflicting = detect::exclude(first, second, shared);
       if (shared == 0 && !conflicting) continue;
       overlaps[running[a]].push_back({running[b], shared, conflicting});
       overlaps[running[b]].push_back({running[a], shared, conflicting});

@@ -19,8 +19,8 @@ struct Overlap {
 using Overlaps = std::vector<std::vector<Overlap>>;  ///< Of each candidate.
 
 /// For each candidate of at least `competing` log odds (Limit::competing), the others of these that
-/// share observed pixels or its space, by rising `other`. Two conflict when they share more than
-/// detect::kMaxShared of the smaller one's explained pixels, or collide (detect::collide()).
+/// share observed pixels or its space, by rising `other`. Two conflict where one excludes the
+/// other (detect::exclude()).
 Overlaps find_overlaps(const detect::Candidates& candidates, double competing);
 
 /// The rivals of each candidate: those that it conflicts with.
