@@ -27,8 +27,8 @@ function describe(one, first) {
 const kMeaning = `A line is a set of objects in their poses. Interpretations whose poses differ by less than
   ${100 * kSamePlace} cm and ${kSameDegrees}° share a line. Its percentage is their sum, among all that are listed. Rank 1
   comes first, the other lines by falling percentage. Ranks are those of results and topics. Rank 1 has the best score. Each next rank holds a pose that no rank before it holds, however
-  improbable. The remaining ranks follow by falling score. The probability of one object stands beside its name
-  below.`;
+  improbable. The remaining ranks follow by falling score. The presence of one object stands beside its name
+  below: the probability that it is there, at whatever pose.`;
 
 function option(one, kind, probability, text, ranks) {
   return make('div', {role: 'option', class: kind, 'data-rank': one.rank,
