@@ -31,13 +31,6 @@ constexpr int kModels = 24;
 // Poses voted for at each reference point, with and without colours. Chosen by hand on piles.
 constexpr int kPeaks[] = {5, 2}, kRimPeaks[] = {2, 1};
 
-// The limits that a hurried round raises, by so many log odds, and what it leaves of the poses that
-// are checked. With 0.5 s a frame 141/204 and 99/143 objects of seeds 777 and 100 are found, with 1
-// and all of the poses 141/204 and 98/143.
-constexpr score::Limit kQuickLimits[] = {score::Limit::ranked, score::Limit::clustered,
-                                         score::Limit::aligned};
-constexpr double kHigher = 2, kOfChecked = 0.6;
-
 void plan_counts(const DetectFacts& facts, DetectOptions& plan, PlanReasons& reasons) {
   const double more = std::cbrt(std::max(1.0, static_cast<double>(facts.models) / kModels));
   for (const LibraryCount& entry : kLibraryCounts) {
@@ -83,17 +76,12 @@ DetectPlan::DetectPlan(const DetectOptions& options, const score::ScoreLayers& l
   plan_peaks(facts, sample, why);
 }
 
-DetectPlan round_plan(const DetectPlan& whole, double share, bool hurried) {
+DetectPlan round_plan(const DetectPlan& whole, double share) {
   DetectPlan out = whole;
-  if (share < 1) {
-    for (const LibraryCount& entry : kLibraryCounts) {
-      int& count = entry.count(out);
-      count = part_of(count, share);
-    }
-  }
-  if (hurried) {
-    for (const score::Limit limit : kQuickLimits) out.limits[limit] += kHigher;
-    out.check.max_in_library = part_of(out.check.max_in_library, kOfChecked);
+  if (share >= 1) return out;
+  for (const LibraryCount& entry : kLibraryCounts) {
+    int& count = entry.count(out);
+    count = part_of(count, share);
   }
   return out;
 }

@@ -36,8 +36,8 @@ struct DetectPlan : DetectOptions {
 };
 
 /// The plan of a round that examines `share`, (0, 1], of what a whole round examines, at least one
-/// candidate at each stage. `hurried`: candidates of low log odds are left out too.
-DetectPlan round_plan(const DetectPlan& whole, double share, bool hurried);
+/// candidate at each stage.
+DetectPlan round_plan(const DetectPlan& whole, double share);
 
 /// The plan of final stages that try `share`, (0, 1], of what they would, at least one of each.
 DetectPlan final_plan(const DetectPlan& whole, double share);

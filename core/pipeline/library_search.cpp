@@ -116,7 +116,6 @@ SearchOutcome LibrarySearch::run(ModelSearches& searches) const {
     RoundPlan next{
         .number = round,
         .share = share * searched / static_cast<double>(left_out.size()),
-        .hurried = share < 1,
         .points = next_points(inputs.scene, explained.certain, round_sample(plan, share), sampled),
         .left_out = left_out,
         .newly_certain = std::exchange(explained.newly_certain, {}),

@@ -66,8 +66,7 @@ void LocalSearches::run_round(const RoundPlan& plan) {
   const bool is_prepared = plan.points == inputs_.scene.sample.points;
   sample_ = is_prepared ? inputs_.scene.sample
                         : scene_sample(inputs_.scene, plan.points, certain_, inputs_.plan.features);
-  const detect::DetectPlan of_round =
-      detect::round_plan(inputs_.plan.detect, plan.share, plan.hurried);
+  const detect::DetectPlan of_round = detect::round_plan(inputs_.plan.detect, plan.share);
   for (std::size_t i = 0; i < searches_.size(); ++i) {
     detect::Search& search = searches_[i];
     search.round = plan.number;

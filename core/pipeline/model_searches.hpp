@@ -20,7 +20,6 @@ namespace bpa {
 struct RoundPlan {
   int number = 0;
   double share = 1;          ///< Of the candidates of a whole round, what may go on, (0, 1].
-  bool hurried = false;      ///< Fewer candidates go on (round_plan()).
   SamplePoints points = {};  ///< That are looked up in the models.
   std::vector<std::uint8_t> left_out = {};  ///< Flags of models that are not searched for.
   /// Pixels of the reduced image that are searched no more, from this round on.

@@ -81,7 +81,6 @@ class Searches : public ModelSearches {
     msgs::GroupStep step = step_of(msgs::GroupStep::kRound);
     step.round = static_cast<std::uint32_t>(plan.number);
     step.part = plan.share;
-    step.hurried = plan.hurried;
     step.keypoints.assign(plan.points.keypoints.begin(), plan.points.keypoints.end());
     step.references.assign(plan.points.references.begin(), plan.points.references.end());
     for (std::size_t i = 0; i < models_.size(); ++i) {

@@ -158,7 +158,6 @@ Status ShareSearch::run_step(msgs::GroupStep&& step, const Models& models, Local
   } else if (step.kind == msgs::GroupStep::kRound) {
     searches.run_round({.number = static_cast<int>(step.round),
                         .share = step.part,
-                        .hurried = step.hurried,
                         .points = {{step.keypoints.begin(), step.keypoints.end()},
                                    {step.references.begin(), step.references.end()}},
                         .left_out = left_out(models, step.left_out),

@@ -25,18 +25,6 @@ std::string reason(const SearchPlan& plan, const std::string& name) {
   return found == plan.entries.end() ? "no entry" : found->reason;
 }
 
-TEST(SearchPlan, AHurriedRoundRaisesTheLimits) {
-  const detect::DetectPlan whole = plan_of({}).detect,
-                           hurried = detect::round_plan(whole, 0.9, true);
-  for (const score::Limit limit :
-       {score::Limit::ranked, score::Limit::clustered, score::Limit::aligned}) {
-    EXPECT_EQ(hurried.limits[limit], whole.limits[limit] + 2);
-  }
-  EXPECT_EQ(hurried.limits[score::Limit::refined], whole.limits[score::Limit::refined]);
-  EXPECT_LT(hurried.check.max_in_library,
-            detect::round_plan(whole, 0.9, false).check.max_in_library);
-}
-
 // The numbers are those that were chosen on simulated piles.
 TEST(SearchPlan, WithoutColoursMoreIsTried) {
   const detect::DetectPlan with = plan_of({}).detect, without = plan_of({.colored = false}).detect;
@@ -149,9 +137,9 @@ TEST(SearchPlan, SmallSharesExamineLessButSomething) {
   const SearchPlan plan = plan_of({});
   EXPECT_EQ(round_sample(plan, 1).max_references, plan.features.max_references);
   EXPECT_EQ(round_sample(plan, 0.5).max_references, (plan.features.max_references + 1) / 2);
-  EXPECT_EQ(detect::round_plan(plan.detect, 0.5, false).round_two.max_in_library, 30);
+  EXPECT_EQ(detect::round_plan(plan.detect, 0.5).round_two.max_in_library, 30);
   EXPECT_EQ(round_sample(plan, 1e-6).max_references, 1);
-  EXPECT_EQ(detect::round_plan(plan.detect, 1e-6, false).check.max_in_library, 1);
+  EXPECT_EQ(detect::round_plan(plan.detect, 1e-6).check.max_in_library, 1);
   EXPECT_EQ(detect::final_plan(plan.detect, 1e-6).climb.max_climbed, 1);
 }
 
