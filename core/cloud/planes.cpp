@@ -15,8 +15,6 @@ namespace {
 // Chosen by hand, as all numbers of this file.
 constexpr float kMinNormalCosine = 0.95f;     // of an inlier
 constexpr float kMinBackgroundCosine = 0.8f;  // of a pixel that is labelled background
-constexpr float kToleranceFloor = 0.004f;     // metres
-constexpr float kToleranceSigmas = 2.5f;      // standard deviations of depth
 constexpr std::size_t kCountedPixels = 1500;  // about as many are tested for each draw
 constexpr std::size_t kMinCandidates = 100;   // pixels; with fewer the search ends
 constexpr int kMinInliers = 10;
@@ -24,12 +22,8 @@ constexpr int kFits = 3;
 
 using Indices = std::vector<std::size_t>;  // of pixels
 
-float plane_tolerance(const SensorNoise& noise, float z) {
-  return kToleranceFloor + kToleranceSigmas * noise(z);
-}
-
 bool on_plane(const SurfaceMap& map, std::size_t i, const Plane& plane) {
-  return std::abs(plane.height(map.points[i])) < plane_tolerance(map.noise, map.depth[i]);
+  return std::abs(plane.height(map.points[i])) < tolerance::kOnSurface(map.noise(map.depth[i]));
 }
 
 struct PlaneFit {
@@ -88,7 +82,7 @@ class Counted {
         point_[axis].push_back(map.points[i][axis]);
         normal_[axis].push_back(map.normals[i][axis]);
       }
-      tolerance_.push_back(plane_tolerance(map.noise, map.depth[i]));
+      tolerance_.push_back(tolerance::kOnSurface(map.noise(map.depth[i])));
     }
   }
   int inliers(const Plane& plane) const {

@@ -14,8 +14,6 @@ namespace bpa {
 namespace {
 
 // Chosen by hand, as all numbers of this file.
-constexpr float kGateFloor = 0.008f;           // metres
-constexpr float kGateSigmas = 4;               // standard deviations of depth
 constexpr float kGatePerPixel = 0.004f;        // what a slope adds to the gate, metres per pixel
 constexpr int kMinWindow = 2, kMaxWindow = 8;  // radius of the normal's window, pixels
 constexpr int kDenseWindow = 4;                // larger windows take every second pixel
@@ -24,9 +22,7 @@ constexpr int kMaxReduction = 8;
 
 // Depths of one surface differ by less than this within a few pixels, unless it is seen at a
 // grazing angle. Metres.
-float same_surface_gate(const SensorNoise& noise, float z) {
-  return kGateFloor + kGateSigmas * noise(z);
-}
+float same_surface_gate(const SensorNoise& noise, float z) { return tolerance::kGoesOn(noise(z)); }
 
 Camera reduced_camera(const Camera& camera, int reduction) {
   const double scale = 1.0 / reduction;

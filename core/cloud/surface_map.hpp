@@ -13,6 +13,7 @@
 #include "core/cloud/frame.hpp"
 #include "core/cloud/sensor_noise.hpp"
 #include "core/geometry/camera.hpp"
+#include "core/geometry/tolerance.hpp"
 
 namespace bpa {
 
@@ -59,11 +60,7 @@ inline float depth_noise(float z) { return SensorNoise{}(z); }
 SurfaceMap surface_map(const Frame& frame, const SurfaceMapOptions& options);
 
 /// The step in depth, at depth z and of a surface seen from the front, that is no noise, metres.
-/// A floor and standard deviations of depth, chosen by hand.
-inline float break_step(const SensorNoise& noise, float z) {
-  constexpr float kFloor = 0.006f, kSigmas = 3;  // metres; times the noise
-  return kFloor + kSigmas * noise(z);
-}
+inline float break_step(const SensorNoise& noise, float z) { return tolerance::kBreaks(noise(z)); }
 
 namespace detail {
 

@@ -4,7 +4,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/detect/stages.hpp"
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 
 namespace bpa::detect {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/align/align.hpp"
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 
 namespace bpa::detect {
 namespace {

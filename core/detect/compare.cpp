@@ -3,7 +3,7 @@
 #include "core/detect/exclusion.hpp"
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "core/score/rival_poses.hpp"
 
 namespace bpa::detect {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/detect/search.hpp"
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 
 namespace bpa::detect {
 

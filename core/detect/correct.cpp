@@ -3,7 +3,7 @@
 #include "core/base/parallel.hpp"
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 
 namespace bpa::detect {
 namespace {

@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "core/geometry/tolerance.hpp"
 #include "core/model/model_index.hpp"
-#include "core/observation/tolerance.hpp"
 
 namespace bpa::detect {
 namespace {

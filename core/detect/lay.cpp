@@ -10,8 +10,8 @@
 
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "core/model/model_index.hpp"
-#include "core/observation/tolerance.hpp"
 #include "core/score/predicted_surface.hpp"
 #include "core/score/projected_block.hpp"
 #include "core/score/silhouette_score.hpp"
@@ -52,7 +52,7 @@ double overlap(const Search& search, int region, const score::PredictedSurface& 
   predicted.for_each([&](int u, int v, float z, std::uint32_t) {
     const bool in_region = flat.label.at(u, v) == region;
     both += in_region;
-    model += in_region || !hides(search.scene.image.depth_at(u, v), z);
+    model += in_region || !search.scene.image.hides(search.scene.image.depth_at(u, v), z);
   });
   return both / std::max(1.0, static_cast<double>(flat.regions[region].pixels + model - both));
 }
@@ -80,7 +80,7 @@ double share_on_region(const Search& search, int region, const FastPose& pose) {
     for (int k = 0; k < kCheckBlock; ++k) {
       if (block.pixel[k] < 0) continue;
       const auto pixel = static_cast<std::size_t>(block.pixel[k]);
-      if (hides(image.pixels[pixel].depth, block.point[2][k])) continue;
+      if (image.hides(image.pixels[pixel].depth, block.point[2][k])) continue;
       ++visible;
       on += search.scene.flat.label[pixel] == region;
     }

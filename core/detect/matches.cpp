@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 
 namespace bpa::detect {
 namespace {
@@ -74,11 +74,12 @@ std::optional<float> match_edge(const CheckImage& image, const EdgePoint& edge, 
   const Eigen::Vector2f at = image.project(p);
   const Walk walk{image, at.x() + 0.5f, at.y() + 0.5f, du * step, dv * step};
   const int steps = std::max(1, static_cast<int>(reach * pixels_per_metre));
-  const float jump = tolerance::kGoesOn(image.noise(p.z()));
+  const float noise = image.noise(p.z());
+  const float jump = tolerance::kGoesOn(noise), near = tolerance::kFollowed(noise);
   int k = -steps;
   const CheckPixel* here = walk.at(k);
   const auto on_model = [&](const CheckPixel* pixel) {
-    return pixel && pixel->searched && std::abs(pixel->depth - p.z()) < tolerance::kFollowed;
+    return pixel && pixel->searched && std::abs(pixel->depth - p.z()) < near;
   };
   while (k < steps && !on_model(here)) here = walk.at(++k);
   for (; k < steps; ++k) {

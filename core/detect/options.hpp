@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/base/options.hpp"
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 
 // The settings of the search for one object, a group for each stage. "V.3" is the third paragraph
 // of the paper's section V; README.md lists the paragraphs. Constants stand beside their use. A

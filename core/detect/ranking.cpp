@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "core/base/parallel.hpp"
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 
 namespace bpa::detect {
 void sort_by_score(Candidates& candidates) {

@@ -11,8 +11,8 @@
 
 #include "core/base/dispatch.hpp"
 #include "core/detect/matches.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "core/model/model_index.hpp"
-#include "core/observation/tolerance.hpp"
 #include "core/score/projected_block.hpp"
 
 namespace bpa::detect {

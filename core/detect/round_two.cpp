@@ -7,8 +7,8 @@
 #include "core/detect/matches.hpp"
 #include "core/detect/ranking.hpp"
 #include "core/detect/stages.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "core/model/model_index.hpp"
-#include "core/observation/tolerance.hpp"
 
 namespace bpa::detect {
 namespace {

@@ -6,8 +6,8 @@
 #include "core/base/random.hpp"
 #include "core/detect/stages.hpp"
 #include "core/features/pair_voting.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "core/model/model_index.hpp"
-#include "core/observation/tolerance.hpp"
 
 namespace bpa::detect {
 namespace {

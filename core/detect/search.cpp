@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "core/geometry/tolerance.hpp"
 #include "core/model/model_index.hpp"
-#include "core/observation/tolerance.hpp"
 #include "core/score/color_check.hpp"
 
 namespace bpa::detect {

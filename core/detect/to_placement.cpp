@@ -4,7 +4,7 @@
 
 #include "core/detect/candidate.hpp"
 #include "core/geometry/solve_symmetric.hpp"
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 
 namespace bpa::detect {
 namespace {

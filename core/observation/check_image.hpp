@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/cloud/surface_map.hpp"
+#include "core/geometry/tolerance.hpp"
 
 namespace bpa {
 
@@ -42,6 +43,11 @@ struct CheckImage {
   /// Of a pixel inside the image, metres; 0 where there is none.
   float depth_at(int u, int v) const {
     return pixels[static_cast<std::size_t>(v * width + u)].depth;
+  }
+  /// Whether what is observed hides a predicted depth, being so much in front of it. No observation
+  /// (0) hides nothing.
+  bool hides(float observed, float predicted, tolerance::Sigmas by = tolerance::kApart) const {
+    return observed > 0 && observed < predicted - by(noise(predicted));
   }
   /// The index of the pixel that shows a point of the camera frame; -1 where none does.
   int pixel_of(const Eigen::Vector3f& point) const {

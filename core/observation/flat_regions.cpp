@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/geometry/tolerance.hpp"
 #include "core/model/flat_rest.hpp"
-#include "core/observation/tolerance.hpp"
 
 namespace bpa {
 namespace {
@@ -26,7 +26,7 @@ constexpr std::size_t kMostRegions = 40;
 
 bool on_background(const SurfaceMap& map, const Plane& plane, std::size_t i) {
   return map.depth[i] > 0 && !map.searched[i] &&
-         std::abs(plane.height(map.points[i])) < tolerance::kOnBackground;
+         std::abs(plane.height(map.points[i])) < tolerance::kGoesOn(map.noise(map.depth[i]));
 }
 
 // How often each colour is seen on a plane.

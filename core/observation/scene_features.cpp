@@ -14,8 +14,8 @@
 #include "core/cloud/cielab.hpp"
 #include "core/cloud/curvature.hpp"
 #include "core/cloud/neighbor_grid.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "core/model/model_index.hpp"
-#include "core/observation/tolerance.hpp"
 
 namespace bpa {
 namespace {
@@ -67,7 +67,7 @@ std::vector<features::RimPoint> scene_rims(const CheckImage& image, const PointC
     if (pixel < 0) return features::Beside::hidden;
     const CheckPixel& seen = image.pixels[static_cast<std::size_t>(pixel)];
     if (!(seen.depth > 0)) return features::Beside::unknown;
-    const float near = tolerance::kOnFace(image.noise(at.z()));
+    const float near = tolerance::kBreaks(image.noise(at.z()));
     if (seen.depth < at.z() - near) return features::Beside::hidden;
     if (seen.depth > at.z() + near) return features::Beside::end;
     const Eigen::Vector3f there = seen.direction();

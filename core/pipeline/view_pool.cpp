@@ -10,7 +10,7 @@
 #include "core/base/parallel.hpp"
 #include "core/detect/exclusion.hpp"
 #include "core/detect/stages.hpp"
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "core/scene/given_others.hpp"
 #include "core/scene/interpretations.hpp"
 

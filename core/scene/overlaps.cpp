@@ -9,7 +9,7 @@
 #include <span>
 
 #include "core/detect/exclusion.hpp"
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 
 namespace bpa::scene {
 namespace {

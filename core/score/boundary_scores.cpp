@@ -47,7 +47,7 @@ double edge_likelihood_score(const CheckImage& image, const Image<float>& edges,
 
 double occlusion_edge_score(const CheckImage& image, const Image<float>& edges,
                             const PredictedSurface& predicted) {
-  const auto occluded = [&](int u, int v, float z) { return hides(image.depth_at(u, v), z); };
+  const auto occluded = [&](int u, int v, float z) { return image.hides(image.depth_at(u, v), z); };
   double sum = 0;
   int count = 0;
   predicted.for_each([&](int u, int v, float z, std::uint32_t) {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "core/score/projected_block.hpp"
 
 namespace bpa::score {
@@ -28,7 +28,8 @@ ColorCheck check_colors(const CheckImage& image, const Image<MatchColor>& colors
     if (block.pixel[lane] < 0) continue;
     const auto at = static_cast<std::size_t>(block.pixel[lane]);
     const CheckPixel& seen = image.pixels[at];
-    if (!seen.searched || std::abs(seen.depth - block.point[2][lane]) > tolerance::kColored)
+    const float z = block.point[2][lane];
+    if (!seen.searched || std::abs(seen.depth - z) > tolerance::kOnSurface(image.noise(z)))
       continue;
     ++check.seen;
     check.agreeing += colors_agree(colors[at], model.check_colors[static_cast<std::size_t>(i)]);

@@ -50,7 +50,7 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
      "Visible points on the observed surface."},
     {"free_space", "share", 0, 1, Round::two, true,
      [](Evidence& e) -> double { return e.surface().free_space; },
-     "Visible points over 2 cm in front of the observed surface."},
+     "Visible points in front of the observed surface, by seven standard deviations of depth."},
     {"visibility", "share", 0, 1, Round::two, true,
      [](Evidence& e) -> double { return e.surface().visibility; },
      "Facing model points that are neither hidden nor outside the image.", false, true},

@@ -55,7 +55,7 @@ FigureColors::FigureColors(const CheckImage& image, const Image<Eigen::Vector3f>
 
 double FigureColors::log_likelihood(int u, int v, const PredictedSurface& other) const {
   const float z = predicted_.depth_at(u, v);
-  const bool hidden = hides(image_.depth_at(u, v), z);
+  const bool hidden = image_.hides(image_.depth_at(u, v), z);
   return z > 0 && !hidden ? of_object(u, v) : of_surroundings(u, v, other);
 }
 

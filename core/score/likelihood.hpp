@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 
 // The pieces that score components are made of.
 

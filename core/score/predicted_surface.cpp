@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 
 namespace bpa::score {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "core/cloud/image.hpp"
 #include "core/geometry/pose.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "core/model/object_model.hpp"
-#include "core/observation/tolerance.hpp"
 #include "core/score/pose_check.hpp"
 
 namespace bpa::score {
@@ -49,7 +49,8 @@ PredictedSurface predict_whole_surface(const CheckImage& image, const ObjectMode
 /// Whether a predicted depth explains what is observed at a pixel of the image.
 inline bool explains(const CheckImage& image, int u, int v, float predicted) {
   const float observed = image.depth_at(u, v);
-  return observed > 0 && std::abs(observed - predicted) <= tolerance::kExplained;
+  return observed > 0 &&
+         std::abs(observed - predicted) <= tolerance::kOnSurface(image.noise(predicted));
 }
 
 /// Whether colours may be those of a surface of this depth: it explains what is observed, or no

@@ -26,8 +26,7 @@ std::vector<PixelPlace> explained_pixels(const CheckImage& image,
                                          const PredictedSurface& predicted) {
   std::vector<PixelPlace> places;
   predicted.for_each([&](int u, int v, float z, std::uint32_t) {
-    const float depth = image.depth_at(u, v);
-    if (depth > 0 && std::abs(depth - z) < tolerance::kExplained) places.push_back({u, v});
+    if (explains(image, u, v, z)) places.push_back({u, v});
   });
   return places;
 }

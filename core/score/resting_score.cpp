@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/cloud/surface_map.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "core/model/model_index.hpp"
-#include "core/observation/tolerance.hpp"
 
 namespace bpa::score {
 namespace {
@@ -27,9 +27,10 @@ bool beneath(const CheckImage& image, std::span<const Plane> planes, const Eigen
   const CheckPixel& seen = image.pixels[static_cast<std::size_t>(pixel)];
   if (seen.searched || seen.depth <= 0) return false;
   const Eigen::Vector3f observed = point * (seen.depth / point.z());
+  const float noise = image.noise(point.z());
   return std::ranges::any_of(planes, [&](const Plane& plane) {
-    return plane.height(point) < -tolerance::kBelow(image.noise(point.z())) &&
-           std::abs(plane.height(observed)) < tolerance::kOnTable;
+    return plane.height(point) < -tolerance::kBreaks(noise) &&
+           std::abs(plane.height(observed)) < tolerance::kApart(noise);
   });
 }
 
@@ -68,7 +69,7 @@ RestingAgreement compare_resting(const CheckImage& image, std::span<const Plane>
   out.below = below / std::max(1.0, static_cast<double>(points.size()));
   const float beyond = lowest - std::clamp(lowest, -kOffset, kOffset);
   out.gap = double{std::clamp(beyond, kLowest, kHighest)};
-  if (std::abs(lowest) > tolerance::kRests) return out;
+  if (std::abs(lowest) > tolerance::kGoesOn(image.noise(pose.translation.z()))) return out;
   std::erase_if(points, [&](const Eigen::Vector3f& p) {
     return table.height(p) > lowest + tolerance::kInContact;
   });

@@ -7,7 +7,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/cloud/surface_map.hpp"
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "core/score/figure_ground.hpp"
 #include "core/score/texture_score.hpp"
 

@@ -36,7 +36,8 @@ void judge(const segment::Segment& segment, const SurfaceMap& map, const ObjectM
     const float cosine =
         std::max(normal.dot(model.surface.normals[i]), normal.dot(model.index->soft_normals[i]));
     distances += truncated_log_normal(static_cast<double>(distance), tolerance::kDistanceSigma);
-    on_model += distance < tolerance::kOnModel && cosine > min_cosine;
+    on_model +=
+        distance < tolerance::kOnSurface(map.noise(map.depth[pixel])) && cosine > min_cosine;
   }
   match.distance = distances / static_cast<double>(count);
   match.probability = static_cast<double>(on_model) / static_cast<double>(count);
@@ -48,7 +49,9 @@ std::vector<int> touched_pixels(const segment::Segmentation& segmentation, const
   std::vector<int> touched(segmentation.segments.size(), 0);
   predicted.for_each([&](int u, int v, float z, std::uint32_t) {
     const std::size_t i = segmentation.labels.index(u, v);
-    if (segmentation.labels[i] < 0 || std::abs(map.depth[i] - z) > tolerance::kTouched) return;
+    if (segmentation.labels[i] < 0 ||
+        std::abs(map.depth[i] - z) > tolerance::kFollowed(map.noise(z)))
+      return;
     ++touched[static_cast<std::size_t>(segmentation.labels[i])];
   });
   return touched;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 
 namespace bpa::score {
 namespace {
@@ -73,7 +73,7 @@ SilhouetteAgreement compare_silhouette(const CheckImage& image,
   const float scale = static_cast<float>(gradients.width / image.width);
   const auto hidden = [&](int u, int v, float z) {
     if (u < 0 || v < 0 || u >= image.width || v >= image.height) return true;
-    return hides(image.depth_at(u, v), z);
+    return image.hides(image.depth_at(u, v), z);
   };
   double on = 0, beside = 0;
   int count = 0;

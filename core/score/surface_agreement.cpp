@@ -158,7 +158,7 @@ BPA_DISPATCH void add_block(const CheckImage& image, float usual_noise, const Vi
     const float angle = acos_of(cosine) / sigma_normal;
     const float known = one_if(ox * ox + oy * oy + oz * oz > 0);
     sums.normal[k] -= weight * (known * lesser(0.5f * angle * angle, kTruncation) + 1 - known);
-    sums.free[k] += weight * one_if(difference > tolerance::kFree);
+    sums.free[k] += weight * one_if(difference > tolerance::kApart(noise));
     // Depth errors along the ray grow with the slant of the surface.
     const float on_surface = seen *
                              one_if(std::abs(difference) * slant < tolerance::kOnSurface(noise)) *
@@ -233,7 +233,7 @@ void score_edges(const CheckImage& image, const ObjectModel& model, const ViewSa
     if (seen.at[k] < 0) continue;  // the image border hides it
     const float z = seen.z[k];
     const CheckPixel& inside = image.pixels[static_cast<std::size_t>(seen.at[k])];
-    if (hides(inside.depth, z, tolerance::kHidesPoint)) continue;
+    if (image.hides(inside.depth, z, tolerance::kGoesOn)) continue;
     ++visible;
     if (seen.beyond[k] < 0) continue;
     const CheckPixel& beyond = image.pixels[static_cast<std::size_t>(seen.beyond[k])];
@@ -374,7 +374,7 @@ HiddenPoints hidden_points(const CheckImage& image, const ObjectModel& model, co
             for (int k = 0; k < ViewBlock::kSize; ++k) {
               if (seen.pixel[k] < 0) continue;
               ++out.facing;
-              if (hides(seen.depth[k], seen.z[k], tolerance::kHidesPoint)) {
+              if (image.hides(seen.depth[k], seen.z[k], tolerance::kGoesOn)) {
                 out.pixels.push_back(static_cast<std::uint32_t>(seen.pixel[k]));
               }
             }

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 
 namespace bpa::track {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/cloud/surface_map.hpp"
-#include "core/observation/tolerance.hpp"
+#include "core/geometry/tolerance.hpp"
 
 namespace bpa::track {
 namespace {
@@ -16,7 +16,7 @@ constexpr int kPlaneStep_px = 8;       // between the depths that are compared w
 constexpr double kLeastShare = 0.15;   // of the depths: smaller ones may pass through objects
 constexpr double kLeastOfShare = 0.6;  // of the share of depths on a plane, of what it was
 
-double share_on(const Plane& plane, const Frame& frame) {
+double share_on(const Plane& plane, const Frame& frame, const SensorNoise& noise) {
   int known = 0, on = 0;
   for (int v = 0; v < frame.camera.height; v += kPlaneStep_px) {
     for (int u = 0; u < frame.camera.width; u += kPlaneStep_px) {
@@ -24,7 +24,7 @@ double share_on(const Plane& plane, const Frame& frame) {
       if (!(z > 0)) continue;
       ++known;
       const Eigen::Vector3f point = frame.camera.unproject(u, v, z).cast<float>();
-      on += std::abs(plane.height(point)) < tolerance::kOnBackground;
+      on += std::abs(plane.height(point)) < tolerance::kGoesOn(noise(z));
     }
   }
   return known > 0 ? static_cast<double>(on) / known : 0;
@@ -36,12 +36,13 @@ void Background::find(const Frame& frame, SensorKind sensor, const Pose& frame_f
   SurfaceMapOptions options;
   options.max_width = kMapWidth;
   options.sensor = std::string(name_of(sensor));
+  noise_ = noise_of(sensor);
   options.num_threads = 1;
   SurfaceMap map = surface_map(frame, options);
   planes_.clear();
   shares_.clear();
   for (const Plane& plane : label_background_planes(map, {})) {
-    const double share = share_on(plane, frame);
+    const double share = share_on(plane, frame, noise_);
     if (share < kLeastShare) continue;
     planes_.push_back(transformed(frame_from_camera, plane));
     shares_.push_back(share);
@@ -51,7 +52,7 @@ void Background::find(const Frame& frame, SensorKind sensor, const Pose& frame_f
 void Background::check(const Frame& frame, const Pose& frame_from_camera) {
   for (std::size_t i = planes_.size(); i-- > 0;) {
     const Plane plane = transformed(frame_from_camera.inverse(), planes_[i]);
-    if (share_on(plane, frame) >= kLeastOfShare * shares_[i]) continue;
+    if (share_on(plane, frame, noise_) >= kLeastOfShare * shares_[i]) continue;
     planes_.erase(planes_.begin() + static_cast<std::ptrdiff_t>(i));
     shares_.erase(shares_.begin() + static_cast<std::ptrdiff_t>(i));
   }

@@ -28,6 +28,7 @@ class Background {
  private:
   std::vector<Plane> planes_;
   std::vector<double> shares_;  ///< Of the depths of the frame where they were found.
+  SensorNoise noise_;
 };
 
 }  // namespace bpa::track

@@ -11,8 +11,8 @@
 
 #include "core/detect/candidate.hpp"
 #include "core/detect/refinement.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "core/model/model_index.hpp"
-#include "core/observation/tolerance.hpp"
 #include "core/result/placement.hpp"
 #include "core/score/rival_poses.hpp"
 #include "core/score/surface_agreement.hpp"

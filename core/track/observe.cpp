@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "core/cloud/cielab.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "core/model/model_index.hpp"
-#include "core/observation/tolerance.hpp"
 
 namespace bpa::track {
 namespace {
@@ -107,13 +107,12 @@ std::vector<float> sampled_depths(const Frame& frame, RegionOfInterest region, i
 
 double changed_share(const std::vector<float>& now, const std::vector<float>& then,
                      const SensorNoise& noise) {
-  constexpr tolerance::WithNoise kChanged{tolerance::placed(1.6), 3};  // by hand
   if (now.size() != then.size()) return 1;
   int changed = 0, known = 0;
   for (std::size_t i = 0; i < now.size(); ++i) {
     if (!(now[i] > 0) || !(then[i] > 0)) continue;  // depth comes and goes at rims
     ++known;
-    changed += std::abs(now[i] - then[i]) > kChanged(noise(now[i]));
+    changed += std::abs(now[i] - then[i]) > tolerance::kOnSurface(noise(now[i]));
   }
   return known > 0 ? static_cast<double>(changed) / known : 1;
 }

@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "core/cloud/surface_map.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "tests/support/solid_scene.hpp"
 
 namespace bpa {
@@ -33,6 +36,20 @@ TEST(SurfaceBreak, AStepHigherThanNoiseIsOne) {
   EXPECT_EQ(breaks_between_columns(stepped_wall(0.03), 158), 0);
   EXPECT_EQ(breaks_between_columns(stepped_wall(0.5), 159), 240);
   EXPECT_EQ(breaks_between_columns(stepped_wall(0.004), 159), 0);
+}
+
+TEST(SurfaceBreak, ANoisierSensorNeedsAHigherStep) {
+  SurfaceMap map = stepped_wall(0.03);
+  map.noise.floor = 0.02f;
+  EXPECT_EQ(breaks_between_columns(map, 159), 0);
+}
+
+TEST(Tolerance, IsOfSensorAndModelTogether) {
+  for (const tolerance::Sigmas& sigmas :
+       {tolerance::kOnSurface, tolerance::kBreaks, tolerance::kGoesOn, tolerance::kApart}) {
+    EXPECT_NEAR(sigmas(0.006f), sigmas.count * std::hypot(0.006, 0.0025), 1e-6);
+    EXPECT_NEAR(sigmas(0), sigmas.count * 0.0025, 1e-6);
+  }
 }
 
 TEST(SurfaceBreak, ASlopeIsNone) {

@@ -12,8 +12,8 @@
 
 #include "core/base/random.hpp"
 #include "core/detect/stages.hpp"
+#include "core/geometry/tolerance.hpp"
 #include "core/model/model_index.hpp"
-#include "core/observation/tolerance.hpp"
 #include "core/score/rival_poses.hpp"
 #include "tests/support/l_scene.hpp"
 

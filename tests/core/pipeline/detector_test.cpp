@@ -118,7 +118,7 @@ TEST_F(DetectorOf, GivesTheSameAnswerForAnyThreads) {
 
 TEST_F(DetectorOf, LaterRoundsFindWhatTheFirstMisses) {
   DetectorOptions options = quick();
-  options.features.max_references = 3;
+  options.features.max_references = 2;
   options.features.round_keypoints = 1;
   const auto found_in = [&](int rounds) {
     options.rounds.max_rounds = rounds;

@@ -20,55 +20,40 @@ constexpr double kPlacedSigma_m = 0.0025;  ///< Of the model and its pose togeth
 /// So many standard deviations of a placed model, metres.
 constexpr double placed_m(double sigmas) { return sigmas * kPlacedSigma_m; }
 constexpr float placed(double sigmas) { return static_cast<float>(placed_m(sigmas)); }
+constexpr float kPlacedSigma = placed(1);
 
 /// Standard deviation of what the sensor and, independently, a placed model are off by, metres.
 inline float depth_sigma(float sensor, float model) {
   return std::sqrt(sensor * sensor + model * model);
 }
 
-/// A tolerance that grows with the sensor's noise.
-struct WithNoise {
-  float metres;         ///< Of a sensor without noise.
-  float sensor_sigmas;  ///< Standard deviations of depth, added.
+/// A tolerance on depth in standard deviations of a sensor and a placed model together.
+struct Sigmas {
+  float count;
 
-  constexpr float operator()(float noise) const { return metres + sensor_sigmas * noise; }
+  /// Metres, at a depth where the sensor's standard deviation is `noise`.
+  float operator()(float noise) const { return count * depth_sigma(noise, kPlacedSigma); }
 };
 
+// Depth. A normal error is larger than three standard deviations in 0.3 % of the pixels. Errors of
+// sensors have longer tails: what must not be claimed wrongly has more.
+constexpr Sigmas kOnSurface{3};  ///< What is observed is what is predicted.
+constexpr Sigmas kBreaks{4};     ///< Two neighbours are of two surfaces; below a plane.
+constexpr Sigmas kGoesOn{5};     ///< What is beside a surface may still be part of it.
+constexpr Sigmas kApart{7};      ///< Hidden; free space; off the table.
+constexpr Sigmas kFollowed{10};  ///< The object is not here, wherever its edge is looked for.
+constexpr float kSameDepth = placed(4);     ///< Of two predictions: score/rival_poses.cpp.
+constexpr float kOutlineStep = placed(12);  ///< Of one prediction: score/silhouette_score.cpp.
+constexpr float kSameFeature = placed(4);   ///< score/feature_score.cpp.
+constexpr float kInside = placed(4);        ///< In another model: detect/exclusion.cpp.
+constexpr float kInContact = placed(1.6);   ///< Above the lowest point: score/resting_score.cpp.
+
 // Standard deviations of single errors.
-constexpr float kPlacedSigma = placed(1);     ///< Along the view: score/surface_agreement.cpp.
 constexpr float kRivalSigma = placed(1.2);    ///< Along the view, rivals: score/rival_poses.cpp.
 constexpr float kLateralSigma = placed(1.2);  ///< Across the view: score/surface_agreement.cpp.
 constexpr float kEdgeSigma = placed(1.6);     ///< Of edges of 66 views: detect/refinement.cpp.
 constexpr double kDistanceSigma = 4 * kPlacedSigma_m;    ///< score/segment_, random_walk_score.
 constexpr double kVisibilitySigma = 4 * kPlacedSigma_m;  ///< 1 cm (paper V.5, footnote).
-
-// On the surface: what is observed and what is predicted are one surface.
-constexpr WithNoise kOnSurface{placed(2.4), 2};  ///< Times the slant: score/surface_agreement.cpp.
-constexpr WithNoise kOnFace{placed(2.4), 3};  ///< Beside a point: observation/scene_features.cpp.
-constexpr float kExplained = placed(4);    ///< score/predicted_surface.hpp, random_walk_score.cpp.
-constexpr float kSameDepth = placed(4);    ///< Of two predictions: score/rival_poses.cpp.
-constexpr float kOnModel = placed(4);      ///< 1 cm (paper V): score/segment_scores.cpp.
-constexpr float kSameFeature = placed(4);  ///< score/feature_score.cpp.
-constexpr float kColored = placed(4.8);    ///< score/color_check.cpp; on simulated piles.
-constexpr float kFollowed = placed(10);    ///< Where an edge is looked for: detect/matches.cpp.
-constexpr float kTouched = placed(12);     ///< Super-pixels: score/segment_scores.cpp.
-
-// The surface goes on from one pixel to another, or breaks off; surface_breaks() is of the map.
-constexpr WithNoise kGoesOn{placed(4.8), 2};  ///< detect/matches.cpp, score/surface_agreement.cpp.
-constexpr float kOutlineStep = placed(12);    ///< score/silhouette_score.cpp; on simulated piles.
-
-// In front and behind.
-constexpr float kHides = placed(8);          ///< hides(), unless its caller says another.
-constexpr float kHidesPoint = placed(6);     ///< score/surface_agreement.cpp: points and edges.
-constexpr float kFree = placed(8);           ///< Free space: score/surface_agreement.cpp.
-constexpr float kInside = placed(4);         ///< In another model: detect/exclusion.cpp.
-constexpr WithNoise kBelow{placed(3.2), 2};  ///< A plane: score/resting_score.cpp; on piles.
-
-// On a plane, by hand on simulated piles and tables.
-constexpr float kOnBackground = placed(6);  ///< observation/flat_regions.cpp, track/background.cpp.
-constexpr float kOnTable = placed(8);       ///< What is seen: score/resting_score.cpp.
-constexpr float kRests = placed(6);         ///< The lowest point of a model: the same.
-constexpr float kInContact = placed(1.6);   ///< Above the lowest point: the same.
 
 // Beside, across the view.
 constexpr float kBesideRim = placed(2.4);   ///< Two alignments' rims: score/rival_poses.cpp.
@@ -92,13 +77,3 @@ constexpr double kCorrelatedPoints = 12;  ///< detect/to_placement.cpp, pipeline
 constexpr double kCorrelatedColors = 4;   ///< Pixels: score/rival_poses.cpp.
 
 }  // namespace bpa::tolerance
-
-namespace bpa {
-
-/// Whether what is observed hides what is predicted, being over `by` metres in front of it; 0 is no
-/// observation and hides nothing.
-inline bool hides(float observed_depth, float predicted_depth, float by = tolerance::kHides) {
-  return observed_depth > 0 && observed_depth < predicted_depth - by;
-}
-
-}  // namespace bpa
