@@ -11,6 +11,7 @@
 #include <bpa/client.hpp>
 
 #include "client/cli/convert.hpp"
+#include "core/geometry/symmetry.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "tests/support/latest.hpp"
 #include "tests/support/process.hpp"
@@ -103,7 +104,7 @@ TEST(TracksOfASequence, AreWhereTheObjectsAreAndKeepTheirIds) {
       ASSERT_NE(truth, entry.truth.end()) << track.name;
       const auto& at = track.frame_from_object.position;
       const Eigen::Vector3d position(at[0], at[1], at[2]);
-      EXPECT_LT((position - truth->camera_from_object.translation).norm(), 0.02)
+      EXPECT_LT((position - truth->camera_from_object.translation).norm(), kPoseTolerance_m)
           << track.name << " in frame " << entry.im_id;
       const auto& first = sequence.frames.front().truth;
       const auto begin = std::ranges::find(first, track.model_number, &io::BopInstance::obj_id);
