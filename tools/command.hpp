@@ -34,7 +34,6 @@ struct CommonOptions {
 struct DatasetOptions {
   std::string folder, split = "test";
   std::vector<int> scenes;  ///< Empty: all.
-  int max_frames = 0;       ///< Evenly spread over the split; 0: all.
 };
 
 /// Adds an option. Its help shows `type`, if given, and the default unless that is 0 or empty.

@@ -150,13 +150,9 @@ DetectRequest request_of(const CommonOptions& common) {
 void read_true_frames(const DatasetOptions& dataset,
                       const std::function<void(const TrueFrame&)>& use) {
   const auto frames = or_throw(io::read_bop_frames(dataset.folder, dataset.split, dataset.scenes));
-  const std::size_t all = frames.size();
-  const std::size_t count =
-      dataset.max_frames > 0 ? std::min<std::size_t>(all, dataset.max_frames) : all;
-  Progress progress("frames", static_cast<int>(count));
-  for (std::size_t k = 0; k < count; ++k) {
-    progress.show(static_cast<int>(k));
-    const std::size_t i = k * all / count;
+  Progress progress("frames", static_cast<int>(frames.size()));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    progress.show(static_cast<int>(i));
     if (!frames[i].has_truth) continue;
     Frame frame = or_throw(io::load_bop_frame(frames[i]));
     clean_depth(frame);

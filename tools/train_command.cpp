@@ -28,7 +28,7 @@ struct TrainArguments {
   Folders bop, round_two_bop, color_bop, calibration_bop;  // see the options
   std::string output, made_by = "bpa train";
   int held_out = 5, models_per_frame = 0;
-  bool adapt = false, keep_search = false;
+  bool adapt = false;
 };
 
 struct Samples {
@@ -240,12 +240,10 @@ Folders together(Folders folders, const Folders& more) {
 
 // The frames that limits and yields are measured on: those of use, if any are given.
 std::vector<DatasetOptions> frames_in_use(const TrainArguments& a) {
-  constexpr int kOfEach = 10;  // with four sets, some two hundred right placements
   std::vector<DatasetOptions> out;
   for (const std::string& folder : a.calibration_bop.empty() ? a.bop : a.calibration_bop) {
     out.push_back(a.dataset);
     out.back().folder = folder;
-    out.back().max_frames = kOfEach;
   }
   return out;
 }
@@ -379,10 +377,8 @@ void train(const TrainArguments& a) {
     layers.without_color =
         calibrate(a, "without colours", layers.without_color, without_color(in_use));
   }
-  if (!a.keep_search) {
-    layers.limits = learn_limits(a, library, layers);
-    layers.yield = learn_yield(a, library, layers);
-  }
+  layers.limits = learn_limits(a, library, layers);
+  layers.yield = learn_yield(a, library, layers);
   const std::string path = a.output.empty() ? score_layer_path(a.detector.library) : a.output;
   or_throw(write_score_layers(path, layers));
   std::printf("wrote %s\n", path.c_str());
@@ -420,10 +416,6 @@ void add_train_command(CLI::App& program) {
       "--adapt", a.adapt,
       "Adjust the built-in layers to these frames, where that helps on frames left out; without "
       "it, learn new layers");
-  command.add_flag(
-      "--keep-search", a.keep_search,
-      "Keep the built-in limits and yields of the search. Without it they are measured "
-      "by searches without limits, which take as long as all else");
   add_option(command, "--output", a.output,
              "Write the layers to this file instead of the library's score_layer.json", "FILE");
   add_option(command, "--made-by", a.made_by, "Command that the file's provenance names", "TEXT");
