@@ -6,10 +6,10 @@
 
 #include "core/geometry/symmetry.hpp"
 
-// How near is near: the depth model, and the tolerances that observation, scores, stages, scenes
-// and tracks share. Depths are in standard deviations of it, places in diameters. A number without
-// a source was chosen by hand. Several numbers for one idea stand side by side until a measurement
-// unifies them; each says where it is used.
+// The depth model, and the tolerances of depth and place that all rooms share. Depths are in
+// standard deviations, places in diameters. The counts of standard deviations are the whole
+// numbers nearest to values that were chosen by hand on simulated piles. So were all numbers
+// without a source; each says where it is used.
 
 namespace bpa::tolerance {
 
@@ -36,12 +36,12 @@ struct Sigmas {
 };
 
 // Depth. A normal error is larger than three standard deviations in 0.3 % of the pixels. Errors of
-// sensors have longer tails: what must not be claimed wrongly has more.
-constexpr Sigmas kOnSurface{3};  ///< What is observed is what is predicted.
-constexpr Sigmas kBreaks{4};     ///< Two neighbours are of two surfaces; below a plane.
-constexpr Sigmas kGoesOn{5};     ///< What is beside a surface may still be part of it.
-constexpr Sigmas kApart{7};      ///< Hidden; free space; off the table.
-constexpr Sigmas kFollowed{10};  ///< The object is not here, wherever its edge is looked for.
+// sensors have longer tails, so stricter claims need more standard deviations.
+constexpr Sigmas kOnSurface{3};  ///< Below: the observed surface is the predicted one.
+constexpr Sigmas kBreaks{4};     ///< Above: neighbouring pixels show two surfaces.
+constexpr Sigmas kGoesOn{5};     ///< Below: the surface may go on from one pixel to the next.
+constexpr Sigmas kApart{7};      ///< Above: one surface occludes the other, or space is free.
+constexpr Sigmas kFollowed{10};  ///< Above: the pixel shows another object.
 constexpr float kSameDepth = placed(4);     ///< Of two predictions: score/rival_poses.cpp.
 constexpr float kOutlineStep = placed(12);  ///< Of one prediction: score/silhouette_score.cpp.
 constexpr float kSameFeature = placed(4);   ///< score/feature_score.cpp.
