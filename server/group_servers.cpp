@@ -56,8 +56,7 @@ class WorkerServer : public Server {
                                              {.group = options_.group.name,
                                               .name = process_name(),
                                               .cache = cache_folder(options_.group),
-                                              .threads = options_.detection.threads,
-                                              .library = nullptr},
+                                              .threads = options_.detection.threads},
                                              log_));
     bpa::log(log_, LogLevel::info,
              concat("worker ", process_name(), " of group ", options_.group.name));

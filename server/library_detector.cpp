@@ -68,22 +68,19 @@ class LibraryDetector : public Recognition {
   Result<SceneInterpretations> detect_beside(const Frame& frame, const DetectRequest& request,
                                              std::size_t waiting) const override {
     const Current now = this->now();
-    if (!now.front) return now.detector->detect(frame, request);
-    return now.detector->detect_elsewhere(
-        frame, request, now.front->searches_for(now.shared, frame, request, waiting));
+    return now.detector->detect(frame, request, nullptr, now.search_for(frame, request, waiting));
   }
 
   std::size_t searches_at_once() const override {
     const auto front = now().front;
-    return front ? front->ready_workers() : 1;
+    return front ? std::max<std::size_t>(1, front->ready_workers()) : 1;
   }
 
   void join_group(const wire::Participant& participant, const GroupOptions& options,
                   LogHook log) override {
     const std::lock_guard<std::mutex> change_lock(change_mutex_);
     Current next = now();
-    next.front = or_throw(group::Front::create(
-        participant, {.group = options.name, .threads = num_threads_}, std::move(log)));
+    next.front = or_throw(group::Front::create(participant, options.name, std::move(log)));
     or_throw(put(std::move(next)));
   }
 
@@ -103,10 +100,9 @@ class LibraryDetector : public Recognition {
   Result<ViewsResult> detect_views(std::span<const View> views,
                                    const DetectRequest& request) const override {
     const Current now = this->now();
-    if (!now.front) return bpa::detect_views(*now.detector, views, request);
     return bpa::detect_views(*now.detector, views, request,
                              [&](const Frame& frame, const DetectRequest& of_view) {
-                               return now.front->searches_for(now.shared, frame, of_view, 0);
+                               return now.search_for(frame, of_view, 0);
                              });
   }
 
@@ -205,6 +201,13 @@ class LibraryDetector : public Recognition {
     std::map<std::string, std::string> folders;          ///< Of models, by name.
     std::shared_ptr<group::Front> front;                 ///< Null for a single server.
     std::shared_ptr<const group::SharedLibrary> shared;  ///< With a front: the detector's library.
+
+    /// On the group's workers; empty where there are none.
+    RemoteSearch search_for(const Frame& frame, const DetectRequest& request,
+                            std::size_t waiting) const {
+      if (!front || front->ready_workers() == 0) return {};
+      return front->search_for(shared, *detector, frame, request, waiting);
+    }
   };
 
   /// Of a model of our folder.

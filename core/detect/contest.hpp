@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <vector>
 
 #include "core/detect/candidate.hpp"
@@ -34,8 +33,5 @@ Contest contest_of(std::vector<Claim> claims, int most);
 /// `limit` or more, unless that is minus infinity. Two claims are in one place if their distance is
 /// below 0.3 of the smaller diameter.
 double behind_best(const Claim& claim, const Contest& contest, double limit);
-
-/// contest_of(), or what decides it for models on several hosts.
-using Compete = std::function<Contest(std::vector<Claim> claims, int most)>;
 
 }  // namespace bpa::detect

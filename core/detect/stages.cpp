@@ -74,7 +74,7 @@ Candidates timed(const Stage& stage, Search& search, Candidates candidates, Obje
 }
 
 // Rejects what loses against candidates of all models, except protected ones.
-void reject_losers(const Stage& stage, std::span<const Search> searches, const Compete& compete,
+void reject_losers(const Stage& stage, std::span<const Search> searches,
                    std::vector<Candidates>& found) {
   const DetectPlan& plan = searches.front().plan;
   const int most =
@@ -84,7 +84,7 @@ void reject_losers(const Stage& stage, std::span<const Search> searches, const C
   for (const Candidates& of_model : found) {
     std::ranges::transform(of_model, std::back_inserter(claims), claim_of);
   }
-  const Contest contest = compete(std::move(claims), most);
+  const Contest contest = contest_of(std::move(claims), most);
   for (std::size_t i = 0; i < found.size(); ++i) {
     std::erase_if(found[i], [&](Candidate& candidate) {
       if (candidate.is_protected) return false;
@@ -110,8 +110,7 @@ std::span<const Stage> scoring_stages() { return round_stages().subspan(kFirstSc
 std::span<const Stage> final_stages() { return detection_stages().subspan(kRoundStages); }
 
 void run_stages(std::span<const Stage> stages, std::span<Search> searches, int num_threads,
-                std::vector<Candidates>& found, std::vector<ObjectTrace>* traces,
-                const Compete& compete) {
+                std::vector<Candidates>& found, std::vector<ObjectTrace>* traces) {
   if (searches.empty()) return;
   if (traces) traces->resize(searches.size());
   const Deadline deadline = searches.front().deadline;
@@ -134,7 +133,7 @@ void run_stages(std::span<const Stage> stages, std::span<Search> searches, int n
       found[i] = timed(stage, searches[i], std::move(found[i]), traces ? &(*traces)[i] : nullptr);
     });
     if (stage.most_in_library || stage.behind) {
-      reject_losers(stage, searches, compete, found);
+      reject_losers(stage, searches, found);
     }
     if (!traces) continue;
     for (std::size_t i = 0; i < searches.size(); ++i) {

@@ -89,12 +89,11 @@ std::span<const Stage> final_stages();
 std::span<const Stage> scoring_stages();
 
 /// Runs stages for several models of one scene, each stage for all models before the next. Models
-/// compete where a stage has `most_in_library` or `behind`, as `compete` decides. Protected
-/// candidates always go on. `found` holds the candidates of each search, before and after.
-/// Deterministic unless the deadline of the first search passes; all models get an equal share of
-/// the time. `traces`, if given, receives the stages of each search.
+/// compete where a stage has `most_in_library` or `behind`. Protected candidates always go on.
+/// `found` holds the candidates of each search, before and after. Deterministic unless the deadline
+/// of the first search passes; all models get an equal share of the time. `traces`, if given,
+/// receives the stages of each search.
 void run_stages(std::span<const Stage> stages, std::span<Search> searches, int num_threads,
-                std::vector<Candidates>& found, std::vector<ObjectTrace>* traces = nullptr,
-                const Compete& compete = contest_of);
+                std::vector<Candidates>& found, std::vector<ObjectTrace>* traces = nullptr);
 
 }  // namespace bpa::detect

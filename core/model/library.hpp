@@ -11,6 +11,8 @@
 
 namespace bpa {
 
+using Models = std::vector<std::shared_ptr<const ObjectModel>>;
+
 /// The objects that can be detected. Models are immutable and shared. So copying a library, or
 /// making one with a model more or fewer, is cheap.
 class ModelLibrary {
@@ -23,14 +25,14 @@ class ModelLibrary {
   /// nullptr when there is none of that name.
   std::shared_ptr<const ObjectModel> find(const std::string& name) const;
   /// By increasing number.
-  const std::vector<std::shared_ptr<const ObjectModel>>& models() const { return models_; }
+  const Models& models() const { return models_; }
   bool empty() const { return models_.empty(); }
   int size() const { return static_cast<int>(models_.size()); }
   /// One more than the largest number in use; 1 for an empty library.
   int next_number() const;
 
  private:
-  std::vector<std::shared_ptr<const ObjectModel>> models_;
+  Models models_;
 };
 
 }  // namespace bpa

@@ -19,8 +19,6 @@
 namespace bpa {
 namespace {
 
-using Models = std::vector<std::shared_ptr<const ObjectModel>>;
-
 Status find_priors(const ModelLibrary& library, const std::vector<PosePrior>& priors) {
   for (std::size_t i = 0; i < priors.size(); ++i) {
     if (!library.find(priors[i].model)) {
@@ -133,78 +131,115 @@ SearchFacts Detector::facts_of(const Frame& frame, const DetectRequest& request,
   return facts;
 }
 
-Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRequest& request,
-                                              FrameTrace* trace) const {
-  return detect_elsewhere(frame, request, {}, trace);
-}
+/// One frame's way through the detector.
+struct Detector::Job {
+  const Frame& frame;
+  const DetectRequest& request;
+  Models models;
+  SearchFacts facts;
+  SearchPlan plan;
+  Deadline deadline;
+  Stopwatch watch = {};
+  SceneFeatures scene = {};
+  std::vector<StageTiming> timings = {};
+  double preparation_ms = 0;
 
-Result<SceneInterpretations> Detector::detect_elsewhere(const Frame& frame,
-                                                        const DetectRequest& request,
-                                                        const MakeSearches& searches,
-                                                        FrameTrace* trace) const {
+  void prepare() {
+    scene = prepare_scene(frame, plan, deadline, timings);
+    preparation_ms = watch.milliseconds();
+  }
+};
+
+Result<Detector::Job> Detector::begin(const Frame& frame, const DetectRequest& request) const {
   if (Status status = validate(frame); !status.ok()) return status;
   if (Status status = validate(request); !status.ok()) return status;
-  const Result<Models> models = chosen_models(*library_, request);
+  Result<Models> models = chosen_models(*library_, request);
   if (!models.ok()) return models.status();
   if (Status status = find_priors(*library_, request.priors); !status.ok()) return status;
-
   const Deadline deadline = Deadline::after(request.budget_ms);
   const SearchFacts facts = facts_of(frame, request, *models);
-  const Result<SearchPlan> planned = plan_search(options_, layers_, facts);
-  if (!planned.ok()) return planned.status();
-  const SearchPlan& plan = *planned;
-  std::unique_ptr<ModelSearches> elsewhere;
-  if (searches) {
-    auto made = searches(*models, options_, facts);
-    if (!made.ok()) return made.status();
-    elsewhere = std::move(made).value();
-  }
-  const Stopwatch total;
-  SceneInterpretations out;
-  out.stamp_ns = frame.stamp_ns;
-  out.frame_id = frame.frame_id;
-  out.fused_frames = frame.fused;
-  out.plan = plan.entries;
-  SceneFeatures scene = prepare_scene(frame, plan, deadline, out.timings);
-  const double preparation_ms = total.milliseconds() / plan.prepared_share;
-  out.sensor = name_of(scene.map.sensor);
+  Result<SearchPlan> plan = plan_search(options_, layers_, facts);
+  if (!plan.ok()) return plan.status();
+  return Job{frame, request, *std::move(models), facts, *std::move(plan), deadline};
+}
 
-  Stopwatch stage;
-  const Deadline search_end = deadline.part(plan.time.search);
-  const SearchInputs inputs{scene, plan, layers_, request, *models};
-  LibrarySearch search{inputs, search_end, facts.costs, preparation_ms};
-  if (request.on_round) {
-    search.on_round = [&, so_far = out](detect::Candidates found) mutable {
-      so_far.partial = true;
-      so_far.interpretations = interpret_scene(scene, layers_, found, plan, request.top_k);
-      so_far.total_milliseconds = total.milliseconds();
-      request.on_round(so_far);
+SearchResult Detector::search_here(const Job& job, FrameTrace* trace) const {
+  const SearchInputs inputs{job.scene, job.plan, layers_, job.request, job.models};
+  LibrarySearch search{inputs, job.deadline.part(job.plan.time.search), job.facts.costs,
+                       job.preparation_ms / job.plan.prepared_share};
+  if (job.request.on_round) {
+    search.on_round = [&](detect::Candidates candidates) {
+      SearchResult so_far{.candidates = std::move(candidates)};
+      SceneInterpretations found = interpreted(job, so_far);
+      found.partial = true;
+      job.request.on_round(found);
     };
   }
-  std::optional<LocalSearches> here;
-  if (!elsewhere) here.emplace(inputs, trace ? &trace->objects : nullptr);
-  ModelSearches& used = elsewhere ? *elsewhere : *here;
-  used.prepared(scene, total.milliseconds());
-  SearchOutcome found = search.run(used);
-  if (Status status = used.status(); !status.ok()) return status;
-  if (plan.limited) costs_->add(frame.depth.size(), facts.threads, found.measured);
-  detect::Candidates& candidates = found.candidates;
-  out.budget_exhausted = found.cut;
-  out.effort = found.effort;
-  out.not_searched = used.lost();
-  for (std::size_t i = 0; i < models->size(); ++i) {
-    out.missed.push_back({(*models)[i]->name, found.missed[i]});
+  LocalSearches searches(inputs, trace ? &trace->objects : nullptr);
+  SearchOutcome outcome = search.run(searches);
+  if (job.plan.limited) {
+    costs_->add(job.frame.depth.size(), job.facts.threads, outcome.measured);
   }
-  out.timings.push_back({"objects", stage.lap_milliseconds()});
+  SearchResult found{.candidates = std::move(outcome.candidates),
+                     .effort = outcome.effort,
+                     .cut = outcome.cut,
+                     .preparation_ms = job.preparation_ms};
+  for (std::size_t i = 0; i < job.models.size(); ++i) {
+    found.missed.push_back({job.models[i]->name, outcome.missed[i]});
+  }
+  return found;
+}
 
-  out.interpretations = interpret_scene(scene, layers_, candidates, plan, request.top_k);
-  out.timings.push_back({"interpretations", stage.lap_milliseconds()});
-  out.total_milliseconds = total.milliseconds();
+SceneInterpretations Detector::interpreted(const Job& job, SearchResult& found) const {
+  const Stopwatch watch;
+  SceneInterpretations out;
+  out.stamp_ns = job.frame.stamp_ns;
+  out.frame_id = job.frame.frame_id;
+  out.timings = job.timings;
+  out.budget_exhausted = found.cut;
+  out.not_searched = found.not_searched;
+  out.missed = found.missed;
+  out.effort = found.effort;
+  out.plan = job.plan.entries;
+  out.sensor = name_of(job.scene.map.sensor);
+  out.fused_frames = job.frame.fused;
+  out.interpretations =
+      interpret_scene(job.scene, layers_, found.candidates, job.plan, job.request.top_k);
+  out.timings.push_back({"interpretations", watch.milliseconds()});
+  out.total_milliseconds = job.watch.milliseconds();
+  return out;
+}
+
+Result<SearchResult> Detector::search(const Frame& frame, const DetectRequest& request) const {
+  Result<Job> job = begin(frame, request);
+  if (!job.ok()) return job.status();
+  job->prepare();
+  return search_here(*job, nullptr);
+}
+
+Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRequest& request,
+                                              FrameTrace* trace,
+                                              const RemoteSearch& elsewhere) const {
+  Result<Job> job = begin(frame, request);
+  if (!job.ok()) return job.status();
+  RemoteResult remote;
+  if (elsewhere) {
+    Result<RemoteResult> started = elsewhere(job->models);
+    if (!started.ok()) return started.status();
+    remote = *std::move(started);
+  }
+  job->prepare();
+  const Stopwatch watch;
+  Result<SearchResult> found =
+      remote ? remote(job->scene.image.pixels.size()) : search_here(*job, trace);
+  if (!found.ok()) return found.status();
+  job->timings.push_back({"objects", watch.milliseconds()});
+  SceneInterpretations out = interpreted(*job, *found);
   if (trace) {
-    trace->scene = std::move(scene);
-    trace->models = *models;
-    trace->plan = plan;
-    trace->candidates = std::move(candidates);
+    trace->scene = std::move(job->scene);
+    trace->models = std::move(job->models);
+    trace->plan = std::move(job->plan);
+    trace->candidates = std::move(found->candidates);
   }
   return out;
 }

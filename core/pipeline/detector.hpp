@@ -23,10 +23,10 @@ namespace bpa {
 /// Intermediate results of the detection in one frame, for training, experiments and pictures.
 struct FrameTrace {
   SceneFeatures scene;
-  std::vector<std::shared_ptr<const ObjectModel>> models;  ///< Searched for.
-  std::vector<detect::ObjectTrace> objects;                ///< One for each model.
-  std::vector<detect::Candidate> candidates;               ///< Of all models.
-  std::optional<SearchPlan> plan;                          ///< What it ran with.
+  Models models;                              ///< Searched for.
+  std::vector<detect::ObjectTrace> objects;   ///< One for each model.
+  std::vector<detect::Candidate> candidates;  ///< Of all models.
+  std::optional<SearchPlan> plan;             ///< What it ran with.
 };
 
 /// What to look for in one frame.
@@ -54,17 +54,23 @@ struct DetectRequest {
 /// Checks all that no library is needed for; the message names the field, its value and the rule.
 Status validate(const DetectRequest& request);
 
-class ModelSearches;
+/// What a search found in a frame. Scene interpretations choose from it.
+struct SearchResult {
+  detect::Candidates candidates = {};          ///< Of all models.
+  std::vector<MissedModel> missed = {};        ///< Of each model, as SceneInterpretations has it.
+  std::vector<std::string> not_searched = {};  ///< Names of models that were lost with their hosts.
+  SearchEffort effort = {};
+  bool cut = false;           ///< Time ran out.
+  double preparation_ms = 0;  ///< What preparing the frame took.
+};
 
-/// Makes searches of other hosts (model_searches.hpp) for these models. They make the same plan of
-/// these options and facts (plan_search()). Called before the frame is prepared here, so that they
-/// can prepare it meanwhile. Where it fails, so does the detection.
-using MakeSearches = std::function<Result<std::unique_ptr<ModelSearches>>(
-    const std::vector<std::shared_ptr<const ObjectModel>>&, const DetectorOptions&,
-    const SearchFacts&)>;
-
+/// Waits for what other hosts find. `pixels`: size of the reduced image of the scene.
+using RemoteResult = std::function<Result<SearchResult>(std::size_t pixels)>;
+/// Lets other hosts search a frame for these models, and returns at once. Called before the frame
+/// is prepared here: they prepare it meanwhile. Where it fails, so does the detection.
+using RemoteSearch = std::function<Result<RemoteResult>(const Models&)>;
 /// The same for each of several frames.
-using SearchesFor = std::function<MakeSearches(const Frame&, const DetectRequest&)>;
+using RemoteSearches = std::function<RemoteSearch(const Frame&, const DetectRequest&)>;
 
 /// Finds the objects of a library in RGB-D frames. Immutable after construction; detect() may be
 /// called from several threads at once.
@@ -76,23 +82,27 @@ class Detector {
   /// Ranked interpretations of the frame. Fails with invalid_argument on a frame, request or
   /// library that breaks a rule (an empty library too). Fails with not_found on a model, also of a
   /// prior, that the library does not hold. An empty scene is a result, not an error. `trace`, if
-  /// given, receives the candidates of each stage.
+  /// given, receives the candidates of each stage. With `elsewhere`, other hosts search: `trace`
+  /// lacks the stages of objects, and `on_round` is not called.
   Result<SceneInterpretations> detect(const Frame& frame, const DetectRequest& request = {},
-                                      FrameTrace* trace = nullptr) const;
-  /// The same, but the models are searched for where `searches` says; here, if it is empty. The
-  /// answer is that of detect(), unless there is a budget or a part of the search was lost.
-  /// `trace`, if given, lacks the stages of objects.
-  Result<SceneInterpretations> detect_elsewhere(const Frame& frame, const DetectRequest& request,
-                                                const MakeSearches& searches,
-                                                FrameTrace* trace = nullptr) const;
+                                      FrameTrace* trace = nullptr,
+                                      const RemoteSearch& elsewhere = {}) const;
+  /// The part of detect() before the interpretation, for a host that searches for another one.
+  /// Fails as detect() does.
+  Result<SearchResult> search(const Frame& frame, const DetectRequest& request) const;
 
   const ModelLibrary& library() const { return *library_; }
   const DetectorOptions& options() const { return options_; }
   const score::ScoreLayers& score_layers() const { return layers_; }
 
  private:
+  struct Job;
+
   SearchFacts facts_of(const Frame& frame, const DetectRequest& request,
-                       const std::vector<std::shared_ptr<const ObjectModel>>& models) const;
+                       const Models& models) const;
+  Result<Job> begin(const Frame& frame, const DetectRequest& request) const;
+  SearchResult search_here(const Job& job, FrameTrace* trace) const;
+  SceneInterpretations interpreted(const Job& job, SearchResult& found) const;
 
   std::shared_ptr<const ModelLibrary> library_;
   DetectorOptions options_;

@@ -124,7 +124,6 @@ SearchOutcome LibrarySearch::run(ModelSearches& searches) const {
     if (is_complete) break;
     const Stopwatch watch;
     searches.run_round(next);
-    if (!searches.status().ok()) return out;
     pace.took(share, watch.milliseconds());
     explained.add(joined(searches.found()), plan);
     coverage.add_tries(next.points.references, next.left_out);

@@ -17,11 +17,9 @@ detect::Search search_for(const SearchInputs& inputs, const ObjectModel& model) 
 
 }  // namespace
 
-LocalSearches::LocalSearches(const SearchInputs& inputs, std::vector<detect::ObjectTrace>* traces,
-                             detect::Compete compete)
+LocalSearches::LocalSearches(const SearchInputs& inputs, std::vector<detect::ObjectTrace>* traces)
     : inputs_(inputs),
       traces_(traces),
-      compete_(std::move(compete)),
       late_(inputs.models.size(), 0),
       certain_(inputs.scene.image.pixels.size(), 0),
       image_(inputs.scene.image) {
@@ -36,7 +34,7 @@ LocalSearches::LocalSearches(const SearchInputs& inputs, std::vector<detect::Obj
 void LocalSearches::run(std::span<const detect::Stage> stages, const Deadline& deadline,
                         std::vector<detect::Candidates>& found) {
   for (detect::Search& search : searches_) search.deadline = deadline;
-  detect::run_stages(stages, searches_, inputs_.request.num_threads, found, traces_, compete_);
+  detect::run_stages(stages, searches_, inputs_.request.num_threads, found, traces_);
 }
 
 void LocalSearches::explain(const std::vector<std::uint32_t>& newly_certain) {

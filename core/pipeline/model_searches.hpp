@@ -16,7 +16,7 @@
 
 namespace bpa {
 
-/// What one round of the search does. All hosts that take part must get the same plan.
+/// What one round of the search does.
 struct RoundPlan {
   int number = 0;
   double share = 1;          ///< Of the candidates of a whole round, what may go on, (0, 1].
@@ -34,14 +34,12 @@ struct FinalPlan {
   Deadline deadline = {};                         ///< Of the search.
 };
 
-/// The searches for some models in one scene, on this host or on others. LibrarySearch plans the
-/// rounds and says what is certain; candidates of all models compete within a round.
+/// The searches for some models in one scene. LibrarySearch plans the rounds and says what is
+/// certain; candidates of all models compete within a round.
 class ModelSearches {
  public:
   virtual ~ModelSearches() = default;
 
-  /// Called once, before all else: the scene is prepared, which took so many milliseconds.
-  virtual void prepared(const SceneFeatures&, double) {}
   /// Scores the placements that an earlier frame showed (DetectRequest::expected).
   virtual void score_expected(const Deadline& deadline) = 0;
   /// Adds what a round finds.
@@ -51,14 +49,10 @@ class ModelSearches {
 
   /// The candidates so far, of each model.
   const std::vector<detect::Candidates>& found() const { return found_; }
-  /// Why the searches can find nothing more, where a host fails: the detection fails so.
-  virtual Status status() const { return {}; }
   /// Whether a stage was cut by its deadline.
   virtual bool late() const = 0;
   /// The work so far, without the number of rounds.
   virtual SearchEffort effort() const = 0;
-  /// Names of the models whose search was lost with a host. None here.
-  virtual std::vector<std::string> lost() const { return {}; }
 
  protected:
   std::vector<detect::Candidates> found_;
@@ -73,13 +67,11 @@ struct SearchInputs {
   const std::vector<std::shared_ptr<const ObjectModel>>& models;
 };
 
-/// Searches on this host. `traces`, if given, receives the stages of each model. `compete`
-/// decides where models compete; by default the models given here compete among themselves.
+/// The stages of the detector. `traces`, if given, receives them for each model.
 class LocalSearches : public ModelSearches {
  public:
   explicit LocalSearches(const SearchInputs& inputs,
-                         std::vector<detect::ObjectTrace>* traces = nullptr,
-                         detect::Compete compete = detect::contest_of);
+                         std::vector<detect::ObjectTrace>* traces = nullptr);
 
   void score_expected(const Deadline& deadline) override;
   void run_round(const RoundPlan& plan) override;
@@ -94,7 +86,6 @@ class LocalSearches : public ModelSearches {
 
   const SearchInputs inputs_;
   std::vector<detect::ObjectTrace>* const traces_;
-  const detect::Compete compete_;
   std::vector<std::uint8_t> late_;     // flag of each model
   std::vector<std::uint8_t> certain_;  // flag of each pixel: is searched no more
   CheckImage image_;                   // where these are not searched

@@ -133,9 +133,9 @@ double combined_log_odds(std::span<const ViewEvidence> views, const ViewsOptions
 }
 
 Result<ViewSearch> search_view(const Detector& detector, const Frame& frame,
-                               const DetectRequest& request, const MakeSearches& elsewhere) {
+                               const DetectRequest& request, const RemoteSearch& elsewhere) {
   FrameTrace trace;
-  Result<SceneInterpretations> alone = detector.detect_elsewhere(frame, request, elsewhere, &trace);
+  Result<SceneInterpretations> alone = detector.detect(frame, request, &trace, elsewhere);
   if (!alone.ok()) return alone.status();
   return ViewSearch{std::move(trace.scene), std::move(trace.candidates), std::move(*alone)};
 }
@@ -180,7 +180,7 @@ ViewsResult combine_views(const Detector& detector, std::span<const ViewSearch* 
 }
 
 Result<ViewsResult> detect_views(const Detector& detector, std::span<const View> views,
-                                 const DetectRequest& asked, const SearchesFor& elsewhere) {
+                                 const DetectRequest& asked, const RemoteSearches& elsewhere) {
   if (Status status = check_views(views); !status.ok()) return status;
   const DetectRequest request = with_priors_of(views, asked);
   std::vector<ViewSearch> searches;

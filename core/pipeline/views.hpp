@@ -55,7 +55,7 @@ double combined_log_odds(std::span<const ViewEvidence> views, const ViewsOptions
 /// Searches one view, here or on other hosts. Priors and expected placements of `request` are in
 /// the camera frame. Errors as of Detector::detect().
 Result<ViewSearch> search_view(const Detector& detector, const Frame& frame,
-                               const DetectRequest& request, const MakeSearches& elsewhere = {});
+                               const DetectRequest& request, const RemoteSearch& elsewhere = {});
 
 /// Joins views that were searched, at least one. `scene_from_camera` has a pose for each view.
 /// Priors of `request` are in the fixed frame. The same answer for any number of threads.
@@ -68,7 +68,7 @@ ViewsResult combine_views(const Detector& detector, std::span<const ViewSearch* 
 /// motion. `on_round` is not called. With `elsewhere`, other hosts search.
 Result<ViewsResult> detect_views(const Detector& detector, std::span<const View> views,
                                  const DetectRequest& request = {},
-                                 const SearchesFor& elsewhere = {});
+                                 const RemoteSearches& elsewhere = {});
 
 constexpr std::size_t kMostViews = 16;  ///< Chosen by hand: memory grows with their number.
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/status.hpp"
-#include "core/model/object_model.hpp"
+#include "core/model/library.hpp"
 #include "core/result/interpretation.hpp"
 #include "idl/wire/msg/bpa_msgs.hpp"
 #include "idl/wire/msg/sensor_msgs.hpp"
@@ -20,9 +20,6 @@
 // What the core found -> messages. Stamp and frame_id are always those of the frame.
 
 namespace bpa::server {
-
-/// The models of a library, for their boxes.
-using Models = std::vector<std::shared_ptr<const ObjectModel>>;
 
 /// What a frame's result is about.
 struct ResultContext {

@@ -15,11 +15,9 @@
 #include "idl/wire/publisher.hpp"
 #include "idl/wire/service.hpp"
 #include "idl/wire/subscriber.hpp"
-#include "server/group/messages.hpp"
-#include "server/group/remote_searches.hpp"
+#include "server/group/remote_search.hpp"
 #include "server/group/session.hpp"
 #include "server/group/topics.hpp"
-#include "server/group/worker.hpp"
 
 namespace bpa::server::group {
 namespace {
@@ -32,15 +30,13 @@ constexpr auto kOfferPeriod = std::chrono::seconds(1);
 
 class RunningFront : public Front {
  public:
-  RunningFront(const wire::Participant& participant, const FrontSettings& settings, LogHook log)
-      : settings_(settings),
-        topics_(settings.group),
-        participant_(participant),
-        log_(log),
+  RunningFront(const wire::Participant& participant, const std::string& group, LogHook log)
+      : topics_(group),
         links_(new Links{.front = new_session(),
-                         .members = {participant, settings.group, std::move(log)},
+                         .members = {participant, group, std::move(log)},
                          .mailboxes = {},
-                         .cost_mutex = {}}) {
+                         .cost_mutex = {},
+                         .cost = {}}) {
     offer_.emplace(or_throw(
         wire::Publisher<msgs::GroupLibrary>::create(participant, topics_.library(), {qos()})));
     files_.emplace(or_throw(wire::ServiceServer<msgs::GetModelFile>::create(
@@ -75,37 +71,21 @@ class RunningFront : public Front {
   void set_library(std::shared_ptr<const SharedLibrary> library) override {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      library_ = library;
-    }
-    if (!beside_) {
-      beside_ = or_throw(Worker::create(participant_,
-                                        {.group = settings_.group,
-                                         .name = "beside the front",
-                                         .cache = {},
-                                         .threads = settings_.threads,
-                                         .library = std::move(library)},
-                                        log_));
-    } else {
-      beside_->set_library(std::move(library));
+      library_ = std::move(library);
     }
     offer();
   }
 
-  MakeSearches searches_for(std::shared_ptr<const SharedLibrary> library, const Frame& frame,
-                            const DetectRequest& request, std::size_t waiting) override {
-    return [this, library = std::move(library), &frame, &request, waiting](
-               const std::vector<std::shared_ptr<const ObjectModel>>& models,
-               const DetectorOptions& options, const SearchFacts& facts) {
-      auto begin = begin_message(frame, request, options, facts, *library);
-      begin.left_ms = request.budget_ms;
-      return make_remote_searches(links_, ++searches_, library, models, std::move(begin), waiting);
-    };
+  RemoteSearch search_for(std::shared_ptr<const SharedLibrary> library, const Detector& detector,
+                          const Frame& frame, const DetectRequest& request,
+                          std::size_t waiting) override {
+    return remote_search(links_,
+                         {++searches_, std::move(library), detector, frame, request, waiting});
   }
 
   std::size_t ready_workers() const override {
     const auto library = this->library();
-    if (!library) return 1;
-    return std::max<std::size_t>(1, links_->members.ready(library->offer.digest).size());
+    return library ? links_->members.ready(library->offer.digest).size() : 0;
   }
 
   std::vector<WorkerState> workers() const override {
@@ -143,10 +123,7 @@ class RunningFront : public Front {
     }
   }
 
-  const FrontSettings settings_;
   const Topics topics_;
-  const wire::Participant& participant_;
-  const LogHook log_;
   const std::shared_ptr<Links> links_;
   std::atomic<std::uint64_t> searches_{0};
   mutable std::mutex mutex_;
@@ -155,17 +132,16 @@ class RunningFront : public Front {
   std::optional<wire::ServiceServer<msgs::GetModelFile>> files_;
   std::optional<wire::Subscriber<msgs::GroupAnswer>> answers_;
   std::optional<wire::Subscriber<msgs::GroupWorker>> workers_;
-  std::unique_ptr<Worker> beside_;
   std::jthread watch_;
 };
 
 }  // namespace
 
 Result<std::unique_ptr<Front>> Front::create(const wire::Participant& participant,
-                                             const FrontSettings& settings, LogHook log) {
+                                             const std::string& group, LogHook log) {
   std::unique_ptr<Front> front;
   const Status status = guarded("the front cannot start", [&] {
-    front = std::make_unique<RunningFront>(participant, settings, std::move(log));
+    front = std::make_unique<RunningFront>(participant, group, std::move(log));
   });
   if (!status.ok()) return status;
   return front;

@@ -16,29 +16,23 @@
 
 namespace bpa::server::group {
 
-struct FrontSettings {
-  std::string group = "bpa";
-  int threads = 0;  ///< Of the worker beside the front, which searches where there is no other.
-};
-
 /// Gives the models of each search to workers, and brings their candidates together.
 class Front {
  public:
   /// `unavailable` when DDS cannot start. The participant outlives it.
   static Result<std::unique_ptr<Front>> create(const wire::Participant& participant,
-                                               const FrontSettings& settings, LogHook log);
+                                               const std::string& group, LogHook log);
   virtual ~Front() = default;
 
   /// What is searched from now on. Workers fetch it; those that have not are not used.
   virtual void set_library(std::shared_ptr<const SharedLibrary> library) = 0;
 
-  /// Searches for one frame in a library that was set, for Detector::detect_elsewhere(); frame and
-  /// request outlive them. `waiting` is how many more frames wait. They fail where no worker
-  /// is left.
-  virtual MakeSearches searches_for(std::shared_ptr<const SharedLibrary> library,
-                                    const Frame& frame, const DetectRequest& request,
-                                    std::size_t waiting) = 0;
-  /// Workers that could search now, 1 or more: so many frames can be searched at once.
+  /// For Detector::detect() of one frame with a library that was set: the detector's own. The
+  /// references outlive the search. `waiting` is how many more frames wait.
+  virtual RemoteSearch search_for(std::shared_ptr<const SharedLibrary> library,
+                                  const Detector& detector, const Frame& frame,
+                                  const DetectRequest& request, std::size_t waiting) = 0;
+  /// Workers that could search now.
   virtual std::size_t ready_workers() const = 0;
   virtual std::vector<WorkerState> workers() const = 0;
 };

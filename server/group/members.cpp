@@ -3,10 +3,10 @@
 #include "server/group/members.hpp"
 
 #include <algorithm>
-#include <thread>
 
 #include "core/base/concat.hpp"
 #include "server/group/session.hpp"
+#include "server/group/split.hpp"
 
 namespace bpa::server::group {
 namespace {
@@ -14,10 +14,9 @@ namespace {
 namespace msgs = wire::bpa_msgs;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kLookForReady(10);
 constexpr std::size_t kMaxWorkers = 1024;
-constexpr auto kForgetAfter = std::chrono::seconds(30);  // of silence
-constexpr double kUsualMsAModel = 150;                   // of a worker that was not measured yet
+constexpr auto kForgetAfter = std::chrono::seconds(30);     // of silence
+constexpr double kUsualMsAModel = SearchCost().ms_a_model;  // of a worker that was not measured
 
 }  // namespace
 
@@ -35,7 +34,7 @@ void Members::heard(msgs::GroupWorker&& said) {
     log(log_, LogLevel::warning, concat("worker ", said.name, ": ", said.problem));
   }
   member.lost = false;
-  if (said.searches > 0 || !member.steps) member.resting = Clock::now();
+  if (said.searches > 0 || !member.tasks) member.resting = Clock::now();
   member.heard = Clock::now();
   member.said = std::move(said);
 }
@@ -45,19 +44,19 @@ void Members::welcome() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     for (const auto& [id, member] : members_) {
-      if (!member.steps) fresh.push_back(id);
+      if (!member.tasks) fresh.push_back(id);
     }
   }
   for (const std::uint64_t id : fresh) {
-    auto made = StepPublisher::create(participant_, topics_.steps(id), {qos()});
+    auto made = TaskPublisher::create(participant_, topics_.tasks(id), {qos()});
     if (!made.ok()) {
       log(log_, LogLevel::error, made.status().message);
       continue;
     }
-    auto steps = std::make_shared<StepPublisher>(std::move(made).value());
+    auto tasks = std::make_shared<TaskPublisher>(std::move(made).value());
     const std::lock_guard<std::mutex> lock(mutex_);
     Member& member = members_[id];
-    member.steps = std::move(steps);
+    member.tasks = std::move(tasks);
     log(log_, LogLevel::info,
         concat("worker ", member.said.name, " joined, ", member.said.threads, " threads"));
   }
@@ -65,7 +64,7 @@ void Members::welcome() {
 
 void Members::look() {
   // Closed after the mutex is free: closing waits for callbacks, which take it.
-  std::vector<std::shared_ptr<StepPublisher>> forgotten;
+  std::vector<std::shared_ptr<TaskPublisher>> forgotten;
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto now = Clock::now();
   for (auto& [id, member] : members_) {
@@ -78,7 +77,7 @@ void Members::look() {
   std::erase_if(members_, [&](const auto& entry) {
     const Member& member = entry.second;
     if (now - member.heard <= kForgetAfter || !member.searches.empty()) return false;
-    forgotten.push_back(member.steps);
+    forgotten.push_back(member.tasks);
     return true;
   });
 }
@@ -96,33 +95,14 @@ bool Members::rests(std::uint64_t worker) const {
 }
 
 std::vector<std::uint64_t> Members::ready(const std::string& library) const {
-  const std::vector<std::uint64_t> out = able(library, false);
-  return out.empty() ? reserve(library) : out;
-}
-
-std::vector<std::uint64_t> Members::reserve(const std::string& library) const {
-  return able(library, true);
-}
-
-std::vector<std::uint64_t> Members::able(const std::string& library, bool reserve) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<std::uint64_t> out;
   for (const auto& [id, member] : members_) {
-    if (member.said.reserve == reserve && can_search(member, library)) out.push_back(id);
+    if (can_search(member, library)) out.push_back(id);
   }
   std::ranges::stable_sort(out, {},
                            [&](std::uint64_t id) { return members_.at(id).searches.size(); });
   return out;
-}
-
-std::vector<std::uint64_t> Members::wait_for_ready(const std::string& library) const {
-  const auto end = Clock::now() + kSilence;
-  std::vector<std::uint64_t> workers = ready(library);
-  while (workers.empty() && Clock::now() < end) {
-    std::this_thread::sleep_for(kLookForReady);
-    workers = ready(library);
-  }
-  return workers;
 }
 
 std::size_t Members::searches(const std::vector<std::uint64_t>& workers) const {
@@ -158,19 +138,24 @@ void Members::measured(std::uint64_t worker, double ms_a_model) {
   mean = mean > 0 ? mean + kOfNew * (ms_a_model - mean) : ms_a_model;
 }
 
-void Members::send(std::uint64_t worker, const msgs::GroupStep& step) {
-  std::shared_ptr<StepPublisher> steps;
+void Members::send(std::uint64_t worker, const msgs::GroupTask& task) {
+  std::shared_ptr<TaskPublisher> tasks;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto found = members_.find(worker);
     if (found == members_.end()) return;
-    if (step.kind == msgs::GroupStep::kBegin) found->second.searches.insert(step.search);
-    if (step.kind == msgs::GroupStep::kEnd) found->second.searches.erase(step.search);
-    steps = found->second.steps;
+    found->second.searches.insert(task.search);
+    tasks = found->second.tasks;
   }
-  if (!steps) return;
-  const Status status = steps->publish(step);
+  if (!tasks) return;
+  const Status status = tasks->publish(task);
   if (!status.ok()) log(log_, LogLevel::warning, status.message);
+}
+
+void Members::done(std::uint64_t worker, std::uint64_t search) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto found = members_.find(worker);
+  if (found != members_.end()) found->second.searches.erase(search);
 }
 
 bool Members::any_lacks(const std::string& library) const {
@@ -206,8 +191,8 @@ std::vector<WorkerState> Members::states(const std::string& library) const {
 
 bool Members::can_search(const Member& member, const std::string& library) {
   return !member.lost && member.said.version == BPA_VERSION &&
-         std::ranges::count(member.said.libraries, library) > 0 && member.steps &&
-         member.steps->matched_count() > 0;
+         std::ranges::count(member.said.libraries, library) > 0 && member.tasks &&
+         member.tasks->matched_count() > 0;
 }
 
 }  // namespace bpa::server::group

@@ -22,13 +22,13 @@
 
 namespace bpa::server::group {
 
-using StepPublisher = wire::Publisher<wire::bpa_msgs::GroupStep>;
+using TaskPublisher = wire::Publisher<wire::bpa_msgs::GroupTask>;
 
 /// What the front knows of one worker.
 struct Member {
   wire::bpa_msgs::GroupWorker said;
   std::chrono::steady_clock::time_point heard{};
-  std::shared_ptr<StepPublisher> steps;
+  std::shared_ptr<TaskPublisher> tasks;
   bool lost = false;  ///< Silent, as was logged.
   /// Since when its heartbeats say that it searches nothing; of no meaning while it does.
   std::chrono::steady_clock::time_point resting{};
@@ -53,18 +53,12 @@ class Members {
 
   /// Whether it is silent, or was never heard.
   bool is_lost(std::uint64_t worker) const;
-  /// Whether it has said for as long as the silence of a lost one that it searches nothing: a step
+  /// Whether it has said for as long as the silence of a lost one that it searches nothing: a task
   /// that was sent before is lost.
   bool rests(std::uint64_t worker) const;
 
-  /// Ids of workers that can search this library, those with the fewest searches first. The one
-  /// beside the front only where there is no other.
+  /// Ids of workers that can search this library, those with the fewest searches first.
   std::vector<std::uint64_t> ready(const std::string& library) const;
-  /// The one beside the front, if it can search this library.
-  std::vector<std::uint64_t> reserve(const std::string& library) const;
-  /// As ready(); waits for one where there is none, as just after a start or a change of the
-  /// library.
-  std::vector<std::uint64_t> wait_for_ready(const std::string& library) const;
 
   /// How many searches these take part in now.
   std::size_t searches(const std::vector<std::uint64_t>& workers) const;
@@ -75,8 +69,10 @@ class Members {
   /// Of one more search.
   void measured(std::uint64_t worker, double ms_a_model);
 
-  /// A step of a search that this worker takes part in.
-  void send(std::uint64_t worker, const wire::bpa_msgs::GroupStep& step);
+  /// Asks it to take part in a search.
+  void send(std::uint64_t worker, const wire::bpa_msgs::GroupTask& task);
+  /// It takes part no more.
+  void done(std::uint64_t worker, std::uint64_t search);
 
   /// Whether a worker that is there has not got this library.
   bool any_lacks(const std::string& library) const;
@@ -89,8 +85,6 @@ class Members {
   const LogHook& hook() const { return log_; }
 
  private:
-  /// Ids of those that can search this library, beside the front or not, by number of searches.
-  std::vector<std::uint64_t> able(const std::string& library, bool reserve) const;
   static bool can_search(const Member& member, const std::string& library);
 
   const wire::Participant& participant_;

@@ -3,13 +3,16 @@
 #include "server/group/messages.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <functional>
 #include <iterator>
 #include <utility>
 
 #include "core/base/concat.hpp"
 #include "core/base/options.hpp"
 #include "core/io/options_yaml.hpp"
+#include "idl/wire/status.hpp"
 
 namespace bpa::server::group {
 namespace {
@@ -53,8 +56,8 @@ msgs::RgbdFrame frame_message(const Frame& frame) {
 }
 
 // As it was sent: depth that is none stays as it is. validate(Frame) says what is wrong.
-Frame frame_from(msgs::GroupStep& begin) {
-  msgs::RgbdFrame& message = begin.frame;
+Frame frame_from(msgs::GroupTask& task) {
+  msgs::RgbdFrame& message = task.frame;
   Frame frame;
   frame.camera = {.width = static_cast<int>(message.width),
                   .height = static_cast<int>(message.height),
@@ -68,10 +71,10 @@ Frame frame_from(msgs::GroupStep& begin) {
               reinterpret_cast<std::uint8_t*>(frame.depth.data()));
   frame.color = std::move(message.color);
   frame.mask = std::move(message.mask);
-  frame.background = std::move(begin.background);
+  frame.background = std::move(task.background);
   frame.roi = {static_cast<int>(message.roi.x_offset), static_cast<int>(message.roi.y_offset),
                static_cast<int>(message.roi.width), static_cast<int>(message.roi.height)};
-  frame.fused = static_cast<int>(begin.fused_frames);
+  frame.fused = static_cast<int>(task.fused_frames);
   return frame;
 }
 
@@ -109,6 +112,7 @@ PosePrior prior_from(const msgs::GroupPrior& message) {
 }
 
 constexpr std::size_t kPoseNumbers = 7;
+constexpr std::size_t kMaxCandidates = 1000;  // of a model
 
 void put(const Pose& pose, double* to) {
   std::copy_n(pose.rotation.coeffs().data(), 4, to);  // x y z w
@@ -122,73 +126,112 @@ Pose pose_from(const double* numbers) {
 
 }  // namespace
 
-msgs::GroupStep begin_message(const Frame& frame, const DetectRequest& request,
-                              const DetectorOptions& options, const SearchFacts& facts,
-                              const SharedLibrary& library) {
-  msgs::GroupStep step;
-  step.kind = msgs::GroupStep::kBegin;
-  step.library = library.offer.digest;
-  step.frame = frame_message(frame);
-  step.background = frame.background;
-  step.fused_frames = static_cast<std::uint32_t>(frame.fused);
-  step.options = option_texts(options);
-  for (const PosePrior& prior : request.priors) step.priors.push_back(prior_message(prior));
-  step.seed = request.seed;
-  step.budget_ms = request.budget_ms;
-  step.library_models = static_cast<std::uint32_t>(facts.models);
-  step.colored = facts.colored;
-  step.preparation_ms = facts.costs.preparation_ms;
+msgs::GroupTask task_message(const Frame& frame, const DetectRequest& request,
+                             const DetectorOptions& options, const SharedLibrary& library) {
+  msgs::GroupTask task;
+  task.library = library.offer.digest;
+  task.frame = frame_message(frame);
+  task.background = frame.background;
+  task.fused_frames = static_cast<std::uint32_t>(frame.fused);
+  task.options = option_texts(options);
+  for (const PosePrior& prior : request.priors) task.priors.push_back(prior_message(prior));
+  task.seed = request.seed;
   for (const ExpectedPlacement& expected : request.expected) {
     const auto model = library.models.find(expected.model);
     if (!model) continue;  // unloaded since
-    step.expected_models.push_back(model->number);
-    step.expected_poses.resize(step.expected_poses.size() + kPoseNumbers);
-    put(expected.frame_from_object, &*step.expected_poses.end() - kPoseNumbers);
+    task.expected_models.push_back(model->number);
+    task.expected_poses.resize(task.expected_poses.size() + kPoseNumbers);
+    put(expected.frame_from_object, &*task.expected_poses.end() - kPoseNumbers);
   }
-  return step;
+  return task;
 }
 
-Result<ShareTask> task_of(msgs::GroupStep begin, const SharedLibrary& library) {
-  ShareTask task;
-  for (const int number : begin.models) {
+Result<DetectorOptions> options_from(const std::vector<std::string>& texts) {
+  DetectorOptions options;
+  const std::vector<Option> known = options_of(options);
+  for (const std::string& text : texts) {
+    if (Status status = io::set_option(text, {known, "-", {}}); !status.ok()) return status;
+  }
+  return options;
+}
+
+Result<Task> task_from(msgs::GroupTask message, const SharedLibrary& library) {
+  Task task;
+  for (const int number : message.models) {
     auto model = library.find(number);
     if (!model) return not_found("the library has no model of number ", number);
+    if (std::ranges::count(task.models, model) > 0) {
+      return corrupt("a task names model ", model->name, " twice");
+    }
+    task.request.models.push_back(model->name);
     task.models.push_back(std::move(model));
   }
-  task.frame = frame_from(begin);
+  if (task.models.empty()) return corrupt("a task names no model");
+  task.frame = frame_from(message);
   if (Status status = validate(task.frame); !status.ok()) return status;
-  const std::vector<Option> known = options_of(task.options);
-  for (const std::string& option : begin.options) {
-    if (Status status = io::set_option(option, {known, "-", {}}); !status.ok()) return status;
+  std::ranges::transform(message.priors, std::back_inserter(task.request.priors), prior_from);
+  task.request.seed = message.seed;
+  task.request.budget_ms = message.budget_ms;
+  if (message.expected_poses.size() != message.expected_models.size() * kPoseNumbers) {
+    return corrupt("a task expects ", message.expected_models.size(), " models in ",
+                   message.expected_poses.size(), " numbers");
   }
-  std::ranges::transform(begin.priors, std::back_inserter(task.request.priors), prior_from);
-  task.request.seed = begin.seed;
-  task.request.budget_ms = begin.budget_ms;
-  task.facts = {.models = static_cast<int>(begin.library_models),
-                .colored = begin.colored,
-                .seed = begin.seed,
-                .budget_ms = begin.budget_ms,
-                .costs = {.preparation_ms = begin.preparation_ms}};
-  if (begin.expected_poses.size() != begin.expected_models.size() * kPoseNumbers) {
-    return corrupt("a search expects ", begin.expected_models.size(), " models in ",
-                   begin.expected_poses.size(), " numbers");
-  }
-  for (std::size_t i = 0; i < begin.expected_models.size(); ++i) {
-    const auto model = library.find(begin.expected_models[i]);
+  for (std::size_t i = 0; i < message.expected_models.size(); ++i) {
+    const auto model = library.find(message.expected_models[i]);
     if (!model) continue;
     task.request.expected.push_back(
-        {model->name, pose_from(begin.expected_poses.data() + i * kPoseNumbers)});
+        {model->name, pose_from(message.expected_poses.data() + i * kPoseNumbers)});
   }
   if (Status status = validate(task.request); !status.ok()) return status;
   return task;
 }
 
-msgs::GroupClaim to_message(const detect::Claim& claim) {
-  return {claim.score, claim.place.x(), claim.place.y(), claim.place.z(), claim.diameter};
+void put_result(const SearchResult& found, msgs::GroupAnswer& answer) {
+  for (const detect::Candidate& candidate : found.candidates) {
+    answer.candidates.push_back(to_message(candidate));
+  }
+  for (const MissedModel& missed : found.missed) answer.missed.push_back(missed.expected);
+  answer.cut = found.cut;
+  for (const auto& [name, count] : kEffortCounts) answer.effort.push_back(found.effort.*count);
+  answer.preparation_ms = found.preparation_ms;
 }
 
-detect::Claim claim_from(const msgs::GroupClaim& message) {
-  return {message.score, {message.x, message.y, message.z}, message.diameter};
+namespace {
+
+bool is_amount(double number) { return std::isfinite(number) && number >= 0; }
+
+}  // namespace
+
+Result<SearchResult> result_from(msgs::GroupAnswer message, const Models& models,
+                                 std::size_t pixels) {
+  if (message.status.code != 0) return wire::to_status(message.status);
+  if (message.missed.size() != models.size() || message.effort.size() != std::size(kEffortCounts) ||
+      message.candidates.size() > kMaxCandidates * models.size()) {
+    return corrupt("an answer has ", message.missed.size(), " models, ", message.effort.size(),
+                   " counts and ", message.candidates.size(), " candidates");
+  }
+  if (!std::ranges::all_of(message.missed, is_amount) ||
+      !std::ranges::all_of(message.effort, is_amount) || !is_amount(message.preparation_ms) ||
+      !is_amount(message.busy_ms)) {
+    return corrupt("an answer has times or counts that are negative or not finite");
+  }
+  SearchResult found{.cut = message.cut, .preparation_ms = message.preparation_ms};
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    found.missed.push_back({models[i]->name, message.missed[i]});
+  }
+  std::size_t next = 0;
+  for (const auto& [name, count] : kEffortCounts) found.effort.*count = message.effort[next++];
+  for (msgs::GroupCandidate& candidate : message.candidates) {
+    const auto model = std::ranges::find(models, candidate.model, &ObjectModel::number);
+    if (model == models.end()) {
+      return corrupt("an answer has a candidate of model ", candidate.model,
+                     ", which is not in its task");
+    }
+    Result<detect::Candidate> read = candidate_from(std::move(candidate), **model, pixels);
+    if (!read.ok()) return read.status();
+    found.candidates.push_back(*std::move(read));
+  }
+  return found;
 }
 
 msgs::GroupCandidate to_message(const detect::Candidate& candidate) {
@@ -210,11 +253,15 @@ Result<detect::Candidate> candidate_from(msgs::GroupCandidate message, const Obj
                                          std::size_t pixels) {
   detect::Candidate candidate{.model = &model};
   const bool in_image = message.explained.empty() || message.explained.back() < pixels;
-  if (message.values.size() != candidate.values.size() || !in_image ||
-      !std::ranges::is_sorted(message.explained)) {
+  const bool increases =
+      std::ranges::is_sorted(message.explained, std::less_equal<std::uint32_t>());
+  const auto is_finite = [](double number) { return std::isfinite(number); };
+  if (message.values.size() != candidate.values.size() || !in_image || !increases ||
+      !std::ranges::all_of(message.information, is_finite) || !is_finite(message.prior) ||
+      !is_finite(message.score) || !(message.probability >= 0 && message.probability <= 1)) {
     return corrupt("a candidate of ", model.name, " has ", message.values.size(),
                    " score components, not ", candidate.values.size(),
-                   ", or pixels outside of the image");
+                   ", numbers that are not finite, or pixels outside of the image");
   }
   if (message.found_by >= static_cast<std::uint8_t>(detect::Source::count)) {
     return corrupt("a candidate of ", model.name, " has found_by ", int{message.found_by});
@@ -231,11 +278,6 @@ Result<detect::Candidate> candidate_from(msgs::GroupCandidate message, const Obj
   candidate.probability = message.probability;
   candidate.explained = std::move(message.explained);
   return candidate;
-}
-
-double milliseconds_left(const Deadline& deadline) {
-  constexpr double kLeast = 1e-3;  // 0 stands for no limit
-  return deadline.never() ? 0 : std::max(kLeast, deadline.milliseconds_left());
 }
 
 }  // namespace bpa::server::group

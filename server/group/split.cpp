@@ -15,18 +15,19 @@ void move_towards(double measured, double& value) { value += kOfNew * (measured 
 
 void SearchCost::add(const SearchCost& measured) {
   move_towards(measured.preparation_ms, preparation_ms);
-  move_towards(measured.search_ms, search_ms);
+  move_towards(measured.ms_a_model, ms_a_model);
   move_towards(measured.exchange_ms, exchange_ms);
 }
 
-std::size_t workers_for_frame(const SearchCost& cost, std::size_t frames, std::size_t workers) {
+std::size_t workers_for_frame(const SearchCost& cost, std::size_t models, std::size_t frames,
+                              std::size_t workers) {
   frames = std::max<std::size_t>(frames, 1);
   std::size_t best = 1;
   double best_ms = 0;
   for (std::size_t some = 1; some <= std::max<std::size_t>(workers, 1); ++some) {
     const std::size_t at_once = std::max<std::size_t>(workers / some, 1);
     const auto turns = static_cast<double>((frames + at_once - 1) / at_once);
-    const double last_ms = turns * cost.milliseconds(some);
+    const double last_ms = turns * cost.milliseconds(models, some);
     if (some > 1 && last_ms >= best_ms) continue;
     best = some;
     best_ms = last_ms;

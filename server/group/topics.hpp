@@ -22,13 +22,12 @@ struct Topics {
   std::string workers() const { return prefix + "workers"; }             ///< GroupWorker
   std::string answers() const { return prefix + "answers"; }             ///< GroupAnswer
   std::string model_files() const { return prefix + "get_model_file"; }  ///< GetModelFile
-  /// GroupStep, of one worker.
-  std::string steps(std::uint64_t worker) const {
-    return prefix + format("worker_%016llx", static_cast<unsigned long long>(worker)) + "/steps";
+  /// GroupTask, of one worker.
+  std::string tasks(std::uint64_t worker) const {
+    return prefix + format("worker_%016llx", static_cast<unsigned long long>(worker)) + "/tasks";
   }
 };
 
-/// A search has some 30 steps; its first one has the frame.
 inline wire::Qos qos() {
   return {wire::Reliability::reliable, wire::Durability::volatile_, 200, 0};
 }

@@ -6,25 +6,27 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
-#include <map>
+#include <iterator>
+#include <list>
 #include <mutex>
 #include <optional>
 #include <thread>
-#include <tuple>
 #include <utility>
 
 #include "core/base/concat.hpp"
 #include "core/base/failure.hpp"
 #include "core/base/guarded.hpp"
 #include "core/base/parallel.hpp"
+#include "core/base/stopwatch.hpp"
 #include "core/io/file_bytes.hpp"
 #include "idl/wire/publisher.hpp"
 #include "idl/wire/service.hpp"
 #include "idl/wire/status.hpp"
 #include "idl/wire/subscriber.hpp"
 #include "server/busy.hpp"
+#include "server/convert/results.hpp"
+#include "server/group/messages.hpp"
 #include "server/group/session.hpp"
-#include "server/group/share_search.hpp"
 #include "server/group/topics.hpp"
 
 namespace bpa::server::group {
@@ -34,8 +36,6 @@ namespace msgs = wire::bpa_msgs;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-// A front that was silent for so long has gone; it says its library once a second.
-constexpr auto kFrontGone = std::chrono::seconds(5);
 constexpr auto kFetchTime = std::chrono::seconds(10);  // for one part of a file
 constexpr auto kRetryFetch = std::chrono::seconds(2);
 constexpr std::size_t kMaxShares = 64;  // of all searches at once
@@ -49,52 +49,38 @@ class RunningWorker : public Worker {
         log_(std::move(log)),
         id_(new_session()),
         cache_(settings.cache) {
-    if (settings.library) libraries_.push_back(settings.library);
-    if (!settings.library) or_throw(io::make_folder(settings.cache), "the workers' cache");
+    or_throw(io::make_folder(settings.cache), "the workers' cache");
     answers_.emplace(or_throw(
         wire::Publisher<msgs::GroupAnswer>::create(participant, topics_.answers(), {qos()})));
     heartbeats_.emplace(or_throw(
         wire::Publisher<msgs::GroupWorker>::create(participant, topics_.workers(), {qos()})));
-    if (!settings.library) {
-      files_.emplace(or_throw(
-          wire::ServiceClient<msgs::GetModelFile>::create(participant, topics_.model_files())));
-      offers_.emplace(or_throw(wire::Subscriber<msgs::GroupLibrary>::create(
-          participant, topics_.library(), {qos()},
-          [this](msgs::GroupLibrary&& offer, const wire::SampleMeta&) {
-            take(std::move(offer));
-          })));
-      loader_ = std::jthread([this](const std::stop_token& stop) { load(stop); });
-    }
-    steps_.emplace(or_throw(wire::Subscriber<msgs::GroupStep>::create(
-        participant, topics_.steps(id_), {qos()},
-        [this](msgs::GroupStep&& step, const wire::SampleMeta&) { take(std::move(step)); })));
+    files_.emplace(or_throw(
+        wire::ServiceClient<msgs::GetModelFile>::create(participant, topics_.model_files())));
+    offers_.emplace(or_throw(wire::Subscriber<msgs::GroupLibrary>::create(
+        participant, topics_.library(), {qos()},
+        [this](msgs::GroupLibrary&& offer, const wire::SampleMeta&) { take(std::move(offer)); })));
+    loader_ = std::jthread([this](const std::stop_token& stop) { load(stop); });
+    tasks_.emplace(or_throw(wire::Subscriber<msgs::GroupTask>::create(
+        participant, topics_.tasks(id_), {qos()},
+        [this](msgs::GroupTask&& task, const wire::SampleMeta&) { take(std::move(task)); })));
     beating_ = std::jthread([this](const std::stop_token& stop) { beat(stop); });
   }
 
   ~RunningWorker() override {
-    steps_.reset();
+    tasks_.reset();
     offers_.reset();
     for (std::jthread* thread : {&beating_, &loader_}) {
       thread->request_stop();
       changed_.notify_all();
-      if (thread->joinable()) thread->join();
+      thread->join();
     }
-    for (const auto& [key, share] : shares_) share->search.steps().end();
-    for (const auto& [key, share] : shares_) share->thread.join();
-  }
-
-  void set_library(std::shared_ptr<const SharedLibrary> library) override {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      keep(std::move(library));
-    }
-    (void)heartbeats_->publish(heartbeat());
+    for (Share& share : shares_) share.thread.join();
   }
 
   Status health(double limit_s) const override {
     const std::lock_guard<std::mutex> lock(mutex_);
-    for (const auto& [key, share] : shares_) {
-      const auto work = share->busy.work();
+    for (const Share& share : shares_) {
+      const auto work = share.busy.work();
       if (!work || work->seconds <= limit_s) continue;
       return Status(StatusCode::internal, concat(work->name, " has not ended for ",
                                                  fixed(work->seconds, 1), " s: it hangs"));
@@ -103,64 +89,78 @@ class RunningWorker : public Worker {
   }
 
  private:
-  using Key = std::tuple<std::uint64_t, std::uint64_t, std::uint32_t>;  // front, search, share
-
   struct Share {
-    template <class... Arguments>
-    explicit Share(Arguments&&... arguments) : search(std::forward<Arguments>(arguments)...) {}
+    explicit Share(msgs::GroupTask&& given) : task(std::move(given)) {}
 
-    ShareSearch search;
+    msgs::GroupTask task;
     Busy busy;
     std::atomic<bool> done{false};
     std::thread thread;
   };
 
-  static Key key_of(const msgs::GroupStep& step) { return {step.front, step.search, step.share}; }
-
   // On a DDS thread.
-  void take(msgs::GroupStep&& step) {
-    std::vector<std::unique_ptr<Share>> ended;
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      heard_[step.front] = Clock::now();
-      const Key key = key_of(step);
-      if (const auto found = shares_.find(key); found != shares_.end()) {
-        found->second->search.steps().push(std::move(step));
-      } else if (step.kind == msgs::GroupStep::kBegin && shares_.size() < kMaxShares) {
-        start(key, std::move(step));
-      }
-      ended = take_ended();
+  void take(msgs::GroupTask&& task) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (shares_.size() >= kMaxShares) {
+      msgs::GroupAnswer refusal = answer_to(task);
+      refusal.status = server::to_message(
+          Status(StatusCode::busy, concat("searches ", kMaxShares, " shares, as many as it may")));
+      (void)answers_->publish(refusal);
+      return;
     }
-    for (const auto& share : ended) share->thread.join();
-  }
-
-  void start(const Key& key, msgs::GroupStep&& begin) {
-    auto share = std::make_unique<Share>(
-        std::move(begin), id_, settings_.threads,
-        [this](const std::string& digest) { return find(digest); },
-        [this](const msgs::GroupAnswer& answer) { (void)answers_->publish(answer); });
-    Share* const raw = share.get();
-    share->thread = std::thread([this, raw] {
-      raw->busy.begin("the search of a share");
-      raw->search.run();
-      raw->busy.end();
-      raw->done = true;
+    Share& share = shares_.emplace_back(std::move(task));
+    share.thread = std::thread([this, &share] {
+      share.busy.begin("the search of a share");
+      (void)answers_->publish(searched(std::move(share.task)));
+      share.busy.end();
+      share.done = true;
     });
-    shares_.emplace(key, std::move(share));
   }
 
-  /// Those whose threads have ended, or will at once. The caller holds the mutex.
-  std::vector<std::unique_ptr<Share>> take_ended() {
-    std::vector<std::unique_ptr<Share>> ended;
-    for (auto share = shares_.begin(); share != shares_.end();) {
-      if (share->second->done) {
-        ended.push_back(std::move(share->second));
-        share = shares_.erase(share);
-      } else {
-        ++share;
-      }
+  /// Without what was found.
+  msgs::GroupAnswer answer_to(const msgs::GroupTask& task) const {
+    msgs::GroupAnswer answer;
+    answer.front = task.front;
+    answer.search = task.search;
+    answer.share = task.share;
+    answer.worker = id_;
+    return answer;
+  }
+
+  msgs::GroupAnswer searched(msgs::GroupTask&& task) {
+    const Stopwatch watch;
+    msgs::GroupAnswer answer = answer_to(task);
+    const Status status = guarded("the search of a share failed",
+                                  [&] { put_result(or_throw(search(std::move(task))), answer); });
+    answer.status = server::to_message(status);
+    answer.busy_ms = watch.milliseconds();
+    return answer;
+  }
+
+  Result<SearchResult> search(msgs::GroupTask&& message) {
+    const std::shared_ptr<const SharedLibrary> library = find(message.library);
+    if (!library) return not_found("this worker has no library ", message.library);
+    auto detector = detector_of(*library, message.options);
+    if (!detector.ok()) return detector.status();
+    Result<Task> task = task_from(std::move(message), *library);
+    if (!task.ok()) return task.status();
+    task->request.num_threads = settings_.threads;
+    return (*detector)->search(task->frame, task->request);
+  }
+
+  /// Kept from task to task: it learns what searches cost here.
+  Result<std::shared_ptr<const Detector>> detector_of(const SharedLibrary& library,
+                                                      const std::vector<std::string>& options) {
+    const std::lock_guard<std::mutex> lock(detector_mutex_);
+    if (!detector_ || detector_library_ != library.offer.digest || detector_options_ != options) {
+      const Result<DetectorOptions> read = options_from(options);
+      if (!read.ok()) return read.status();
+      detector_ = std::make_shared<const Detector>(
+          std::make_shared<const ModelLibrary>(library.models), *read, library.layers);
+      detector_library_ = library.offer.digest;
+      detector_options_ = options;
     }
-    return ended;
+    return detector_;
   }
 
   std::shared_ptr<const SharedLibrary> find(const std::string& digest) const {
@@ -178,7 +178,6 @@ class RunningWorker : public Worker {
 
   void take(msgs::GroupLibrary&& offer) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    heard_[offer.front] = Clock::now();
     if (wanted_ && wanted_->digest == offer.digest) return;
     if (offer.score_layers.empty()) return;  // all of it comes when the front knows that we lack it
     wanted_ = std::move(offer);
@@ -242,24 +241,17 @@ class RunningWorker : public Worker {
   void beat(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
       (void)heartbeats_->publish(heartbeat());
-      std::vector<std::unique_ptr<Share>> ended;
+      std::list<Share> ended;
       {
         std::unique_lock<std::mutex> lock(mutex_);
-        end_orphans();
-        ended = take_ended();
         changed_.wait_for(lock, kHeartbeat, [&] { return stop.stop_requested(); });
+        for (auto share = shares_.begin(); share != shares_.end();) {
+          const auto next = std::next(share);
+          if (share->done) ended.splice(ended.end(), shares_, share);
+          share = next;
+        }
       }
-      for (const auto& share : ended) share->thread.join();
-    }
-  }
-
-  /// Ends searches of fronts that have gone. The caller holds the mutex.
-  void end_orphans() {
-    if (settings_.library) return;  // beside its front
-    std::erase_if(heard_,
-                  [](const auto& entry) { return Clock::now() - entry.second > kFrontGone; });
-    for (const auto& [key, share] : shares_) {
-      if (!heard_.contains(std::get<0>(key))) share->search.steps().end();
+      for (Share& share : ended) share.thread.join();
     }
   }
 
@@ -271,7 +263,6 @@ class RunningWorker : public Worker {
     message.version = BPA_VERSION;
     message.threads = static_cast<std::uint32_t>(resolve_num_threads(settings_.threads));
     message.searches = static_cast<std::uint32_t>(shares_.size());
-    message.reserve = settings_.library != nullptr;
     message.problem = problem_;
     for (const auto& library : libraries_) message.libraries.push_back(library->offer.digest);
     return message;
@@ -289,14 +280,18 @@ class RunningWorker : public Worker {
   Clock::time_point retry_after_{};
   std::string problem_;
   std::deque<std::shared_ptr<const SharedLibrary>> libraries_;  ///< The newest first.
-  std::map<std::uint64_t, Clock::time_point> heard_;            ///< Of fronts.
-  std::map<Key, std::unique_ptr<Share>> shares_;
+  std::list<Share> shares_;
+
+  std::mutex detector_mutex_;  ///< Guards the next three.
+  std::shared_ptr<const Detector> detector_;
+  std::string detector_library_;
+  std::vector<std::string> detector_options_;
 
   std::optional<wire::Publisher<msgs::GroupAnswer>> answers_;
   std::optional<wire::Publisher<msgs::GroupWorker>> heartbeats_;
   std::optional<wire::ServiceClient<msgs::GetModelFile>> files_;
   std::optional<wire::Subscriber<msgs::GroupLibrary>> offers_;
-  std::optional<wire::Subscriber<msgs::GroupStep>> steps_;
+  std::optional<wire::Subscriber<msgs::GroupTask>> tasks_;
   std::jthread loader_, beating_;
 };
 

@@ -8,7 +8,6 @@
 #include "core/base/log.hpp"
 #include "core/base/status.hpp"
 #include "idl/wire/participant.hpp"
-#include "server/group/library.hpp"
 
 namespace bpa::server::group {
 
@@ -17,8 +16,6 @@ struct WorkerSettings {
   std::string name;   ///< For people.
   std::string cache;  ///< Folder of fetched models.
   int threads = 0;    ///< 0: one per core.
-  /// The library to search; null: what the front offers is fetched.
-  std::shared_ptr<const SharedLibrary> library;
 };
 
 /// Takes part in the searches of a group, from create() until it is destroyed: fetches the front's
@@ -31,8 +28,6 @@ class Worker {
                                                 const WorkerSettings& settings, LogHook log);
   virtual ~Worker() = default;
 
-  /// Searches this library from now on; of a worker beside the front.
-  virtual void set_library(std::shared_ptr<const SharedLibrary> library) = 0;
   /// What has not returned for so many seconds; ok where nothing hangs.
   virtual Status health(double limit_s) const = 0;
 };

@@ -47,14 +47,13 @@ TEST(Split, SlowestShareIsAsShortAsAnySplitMakesIt) {
 }
 
 TEST(Split, OneFrameGetsAllWorkersManyFramesOneEach) {
-  const SearchCost cost{.preparation_ms = 50, .search_ms = 2000, .exchange_ms = 20};
-  EXPECT_EQ(workers_for_frame(cost, 1, 4), 4U);
-  EXPECT_EQ(workers_for_frame(cost, 2, 4), 2U);
-  EXPECT_EQ(workers_for_frame(cost, 8, 4), 1U);
-  EXPECT_EQ(workers_for_frame(cost, 1, 0), 1U);
-  // What all must do costs more than what can be split.
-  const SearchCost light{.preparation_ms = 50, .search_ms = 30, .exchange_ms = 40};
-  EXPECT_EQ(workers_for_frame(light, 1, 4), 1U);
+  const SearchCost cost{.preparation_ms = 50, .ms_a_model = 20, .exchange_ms = 20};
+  EXPECT_EQ(workers_for_frame(cost, 100, 1, 4), 4U);
+  EXPECT_EQ(workers_for_frame(cost, 100, 2, 4), 2U);
+  EXPECT_EQ(workers_for_frame(cost, 100, 8, 4), 1U);
+  EXPECT_EQ(workers_for_frame(cost, 100, 1, 0), 1U);
+  // The wire costs more than what can be split.
+  EXPECT_EQ(workers_for_frame({.exchange_ms = 40}, 2, 1, 4), 1U);
 }
 
 TEST(Claims, ExactlyOneOfThoseThatHearOneAnotherServes) {
@@ -182,7 +181,7 @@ TEST_F(GroupLibrary, NamesFromTheWireDoNotLeaveTheCache) {
   EXPECT_EQ(cache.folder_of(model, never).status().code, StatusCode::invalid_argument);
 }
 
-TEST_F(GroupLibrary, SearchReachesTheWorkerToTheBit) {
+TEST_F(GroupLibrary, TaskReachesTheWorkerToTheBitOrIsRefused) {
   const auto front = front_library();
   Frame frame = support::box_frame();
   frame.depth[7] = 0;
@@ -200,14 +199,10 @@ TEST_F(GroupLibrary, SearchReachesTheWorkerToTheBit) {
   DetectorOptions options;
   options.detect.check.free_depth_m *= 1.0 / 3;
   options.scene.judge_given_others = false;
-  const SearchFacts facts{.models = 7,
-                          .colored = false,
-                          .seed = request.seed,
-                          .budget_ms = request.budget_ms,
-                          .costs = {.preparation_ms = 31}};
-  msgs::GroupStep begin = begin_message(frame, request, options, facts, *front);
-  begin.models = {2};
-  const auto task = task_of(begin, *front);
+  msgs::GroupTask message = task_message(frame, request, options, *front);
+  message.models = {2};
+  message.budget_ms = 31;
+  const auto task = task_from(message, *front);
   ASSERT_TRUE(task.ok()) << task.status().message;
   EXPECT_EQ(task->frame.depth, frame.depth);
   EXPECT_EQ(task->frame.color, frame.color);
@@ -222,10 +217,11 @@ TEST_F(GroupLibrary, SearchReachesTheWorkerToTheBit) {
   EXPECT_EQ(task->request.expected[0].frame_from_object.rotation.coeffs(), pose.rotation.coeffs());
   ASSERT_EQ(task->models.size(), 1U);
   EXPECT_EQ(task->models[0]->name, "plate");
-  EXPECT_EQ(task->facts.models, 7);
-  EXPECT_FALSE(task->facts.colored);
-  EXPECT_EQ(task->facts.costs.preparation_ms, 31);
-  auto sent = options_of(options), got = options_of(const_cast<DetectorOptions&>(task->options));
+  EXPECT_EQ(task->request.models, std::vector<std::string>{"plate"});
+  EXPECT_EQ(task->request.budget_ms, 31);
+  auto read = options_from(message.options);
+  ASSERT_TRUE(read.ok()) << read.status().message;
+  const auto sent = options_of(options), got = options_of(*read);
   ASSERT_EQ(sent.size(), got.size());
   for (std::size_t i = 0; i < sent.size(); ++i) {
     if (const auto* value = std::get_if<double*>(&sent[i].value)) {
@@ -236,8 +232,69 @@ TEST_F(GroupLibrary, SearchReachesTheWorkerToTheBit) {
       EXPECT_EQ(**count, *std::get<int*>(got[i].value)) << sent[i].path;
     }
   }
-  begin.options.push_back("check.no_such=1");
-  EXPECT_EQ(task_of(begin, *front).status().code, StatusCode::invalid_argument);
+  message.options.push_back("check.no_such=1");
+  EXPECT_EQ(options_from(message.options).status().code, StatusCode::invalid_argument);
+  const auto code_with = [&](const auto& change) {
+    msgs::GroupTask copy = message;
+    change(copy);
+    return task_from(copy, *front).status().code;
+  };
+  EXPECT_EQ(code_with([](auto& changed) { changed.models = {2, 2}; }), StatusCode::corrupt);
+  EXPECT_EQ(code_with([](auto& changed) { changed.models = {}; }), StatusCode::corrupt);
+  EXPECT_EQ(code_with([](auto& changed) { changed.models = {9}; }), StatusCode::not_found);
+  EXPECT_EQ(code_with([](auto& changed) { changed.expected_poses.pop_back(); }),
+            StatusCode::corrupt);
+  EXPECT_EQ(code_with([](auto& changed) { changed.frame.depth.pop_back(); }),
+            StatusCode::invalid_argument);
+  EXPECT_EQ(code_with([](auto& changed) { changed.budget_ms = -1; }), StatusCode::invalid_argument);
+}
+
+TEST_F(GroupLibrary, AnswerComesBackWholeOrNotAtAll) {
+  const auto front = front_library();
+  const Models& models = front->models.models();
+  SearchResult found;
+  found.candidates.push_back({.model = models[1].get(), .explained = {7}});
+  found.missed = {{"brick", 0.25}, {"plate", 1.5}};
+  found.effort.pose_checks = 1234;
+  found.cut = true;
+  found.preparation_ms = 3.5;
+  msgs::GroupAnswer message;
+  put_result(found, message);
+  const auto back = result_from(message, models, 100);
+  ASSERT_TRUE(back.ok()) << back.status().message;
+  ASSERT_EQ(back->candidates.size(), 1U);
+  EXPECT_EQ(back->candidates[0].model, models[1].get());
+  EXPECT_EQ(back->missed[1].model, "plate");
+  EXPECT_EQ(back->missed[1].expected, 1.5);
+  EXPECT_EQ(back->effort, found.effort);
+  EXPECT_TRUE(back->cut);
+  EXPECT_EQ(back->preparation_ms, 3.5);
+
+  const auto code_with = [&](const auto& change) {
+    msgs::GroupAnswer changed = message;
+    change(changed);
+    return result_from(changed, models, 100).status().code;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(code_with([](auto& answer) { answer.missed.pop_back(); }), StatusCode::corrupt);
+  EXPECT_EQ(code_with([](auto& answer) { answer.missed[0] = -1; }), StatusCode::corrupt);
+  EXPECT_EQ(code_with([](auto& answer) { answer.effort[2] = -2000000000; }), StatusCode::corrupt);
+  EXPECT_EQ(code_with([](auto& answer) { answer.effort.push_back(1); }), StatusCode::corrupt);
+  EXPECT_EQ(code_with([&](auto& answer) { answer.busy_ms = nan; }), StatusCode::corrupt);
+  EXPECT_EQ(code_with([](auto& answer) { answer.candidates[0].model = 3; }), StatusCode::corrupt);
+  EXPECT_EQ(code_with([&](auto& answer) { answer.candidates[0].score = nan; }),
+            StatusCode::corrupt);
+  EXPECT_EQ(code_with([](auto& answer) {
+              answer.candidates[0].explained = {5, 5};
+            }),
+            StatusCode::corrupt);
+  EXPECT_EQ(
+      code_with([](auto& answer) { answer.candidates.resize(10000, answer.candidates.front()); }),
+      StatusCode::corrupt);
+  EXPECT_EQ(code_with([](auto& answer) {
+              answer.status.code = static_cast<std::uint8_t>(StatusCode::busy);
+            }),
+            StatusCode::busy);
 }
 
 TEST_F(GroupLibrary, CandidateComesBackToTheBitOrNotAtAll) {

@@ -22,7 +22,7 @@ class StubRecognition : public server::Recognition {
   }
   std::string library() const override { return "stub"; }
   int version() const override { return 1; }
-  server::Models models() const override { return {}; }
+  Models models() const override { return {}; }
   std::vector<io::BrokenModel> broken() const override { return {}; }
   Result<std::shared_ptr<const ObjectModel>> load(const std::string&, const std::string&) override {
     return fixed();

@@ -18,7 +18,7 @@ namespace {
 
 using bpa::Status;
 
-bpa::server::Models stub_models() {
+bpa::Models stub_models() {
   auto model = std::make_shared<bpa::ObjectModel>();
   model->name = "stub";
   model->number = 7;
@@ -74,7 +74,7 @@ class Stub : public bpa::support::StubRecognition {
     }
     return out;
   }
-  bpa::server::Models models() const override { return stub_models(); }
+  bpa::Models models() const override { return stub_models(); }
   Status set_options(const bpa::DetectorOptions& detector) override {
     std::cerr << "max_keypoints is " << detector.features.max_keypoints << std::endl;
     return {};

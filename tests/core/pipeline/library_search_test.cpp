@@ -26,15 +26,6 @@ class FruitlessSearches : public ModelSearches {
   std::vector<RoundPlan> rounds;
 };
 
-// Searches whose hosts are lost after the first round.
-class LostSearches : public FruitlessSearches {
- public:
-  using FruitlessSearches::FruitlessSearches;
-  Status status() const override {
-    return rounds.empty() ? Status() : unavailable("no host is left");
-  }
-};
-
 class LibrarySearchEnds : public test::LScene {
  protected:
   struct Ran {
@@ -103,16 +94,20 @@ TEST_F(LibrarySearchEnds, SoonerForTheModelThatShowsMore) {
   EXPECT_EQ(last.share, 0.5);
 }
 
-TEST_F(LibrarySearchEnds, WithTheFailureOfSearchesElsewhere) {
+TEST_F(LibrarySearchEnds, WithTheFailureOfOtherHosts) {
   auto library = std::make_shared<ModelLibrary>();
   ASSERT_TRUE(library->add(l_).ok());
   const Detector detector(library, {});
   const Frame frame = test::render(everything(), test::kinect_camera(), 1, 8).frame;
-  using Made = Result<std::unique_ptr<ModelSearches>>;
-  const auto none = [](const auto&...) { return Made(unavailable("no host is there")); };
-  EXPECT_EQ(detector.detect_elsewhere(frame, {}, none).status().message, "no host is there");
-  const auto lost = [](const auto&...) { return Made(std::make_unique<LostSearches>(1)); };
-  EXPECT_EQ(detector.detect_elsewhere(frame, {}, lost).status().message, "no host is left");
+  const auto none = [](const Models&) {
+    return Result<RemoteResult>(unavailable("no host is there"));
+  };
+  EXPECT_EQ(detector.detect(frame, {}, nullptr, none).status().message, "no host is there");
+  const auto lost = [](const Models&) {
+    return Result<RemoteResult>(
+        [](std::size_t) { return Result<SearchResult>(unavailable("no host is left")); });
+  };
+  EXPECT_EQ(detector.detect(frame, {}, nullptr, lost).status().message, "no host is left");
 }
 
 }  // namespace

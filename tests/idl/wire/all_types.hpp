@@ -21,7 +21,7 @@ using AllTypes = std::tuple<
     bpa_msgs::RenameTrack_Response, bpa_msgs::HoldTrack_Request, bpa_msgs::HoldTrack_Response,
     bpa_msgs::ForgetTrack_Request, bpa_msgs::ForgetTrack_Response, bpa_msgs::GroupModel,
     bpa_msgs::GroupLibrary, bpa_msgs::GroupWorker, bpa_msgs::GroupFront, bpa_msgs::GroupPrior,
-    bpa_msgs::GroupCandidate, bpa_msgs::GroupClaim, bpa_msgs::GroupStep, bpa_msgs::GroupAnswer,
+    bpa_msgs::GroupCandidate, bpa_msgs::GroupTask, bpa_msgs::GroupAnswer,
     bpa_msgs::GetModelFile_Request, bpa_msgs::GetModelFile_Response, bpa_msgs::DetectViews_Request,
     bpa_msgs::DetectViews_Response, builtin_interfaces::Time, builtin_interfaces::Duration,
     diagnostic_msgs::KeyValue, diagnostic_msgs::DiagnosticStatus, diagnostic_msgs::DiagnosticArray,

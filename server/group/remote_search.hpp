@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/pipeline/model_searches.hpp"
+#include "core/pipeline/detector.hpp"
 #include "idl/wire/msg/bpa_msgs.hpp"
 #include "server/group/library.hpp"
 #include "server/group/members.hpp"
@@ -60,15 +60,22 @@ struct Links {
   Members members;
   Mailboxes mailboxes;
   std::mutex cost_mutex;
-  SearchCost cost{.search_ms = 150};  ///< search_ms is that of one model.
+  SearchCost cost;
 };
 
-/// The searches for one frame's models, on the workers. `begin` is of begin_message(); `waiting` is
-/// how many more frames wait. Fails where no worker can search, as the searches do.
-Result<std::unique_ptr<ModelSearches>> make_remote_searches(
-    std::shared_ptr<Links> links, std::uint64_t search,
-    std::shared_ptr<const SharedLibrary> library,
-    std::vector<std::shared_ptr<const ObjectModel>> models, wire::bpa_msgs::GroupStep&& begin,
-    std::size_t waiting);
+/// What one search is about. References outlive the search.
+struct RemoteTask {
+  std::uint64_t number;  ///< Counts the searches of this front.
+  std::shared_ptr<const SharedLibrary> library;
+  const Detector& detector;  ///< Of that library: searches what no worker can.
+  const Frame& frame;
+  const DetectRequest& request;
+  std::size_t waiting;  ///< Frames that wait for a search.
+};
+
+/// Splits the models of a frame over the workers, and joins what they find. Models of a worker that
+/// is lost, or that breaks a rule, are given to another. Without a time budget the answer has all
+/// models.
+RemoteSearch remote_search(std::shared_ptr<Links> links, RemoteTask task);
 
 }  // namespace bpa::server::group
