@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/cloud/frame.hpp"
 
+#include <algorithm>
+#include <array>
 #include <tuple>
 
 #include "core/base/concat.hpp"
@@ -50,6 +52,30 @@ Status validate(const Frame& frame) {
   return invalid_argument("frame depth has ", valid, " valid pixels; it must have at least ",
                           kMinValidPixels, " with a depth in (0, ", kMaxDepth,
                           "] m (0 and NaN mean no depth)");
+}
+
+bool has_hues(const Frame& frame) {
+  // Grey photographs have 0, as JPEG files up to 4. Of 12 real colour images, in all over half of
+  // the pixels are farther from grey than 8.
+  constexpr std::ptrdiff_t kNoise = 16;  // between the lowest and the highest of 99 % of pixels
+  constexpr std::size_t kStep = 7;       // pixels
+  std::array<std::array<std::size_t, 511>, 2> counts{};
+  std::size_t total = 0;
+  for (std::size_t i = 0; i + 2 < frame.color.size(); i += 3 * kStep, ++total) {
+    const int green = frame.color[i + 1];
+    ++counts[0][255 + frame.color[i] - green];
+    ++counts[1][255 + frame.color[i + 2] - green];
+  }
+  return std::ranges::any_of(counts, [total](const auto& count) {
+    const auto end_of_tail = [total](auto begin, auto end) {
+      std::size_t sum = 0;
+      return std::find_if(begin, end, [&](std::size_t n) { return 200 * (sum += n) > total; }) -
+             begin;
+    };
+    return end_of_tail(count.begin(), count.end()) + end_of_tail(count.rbegin(), count.rend()) +
+               kNoise <
+           std::ssize(count) - 1;
+  });
 }
 
 void clean_depth(Frame& frame) {

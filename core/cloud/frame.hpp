@@ -44,6 +44,10 @@ Status validate(const Frame& frame);
 /// the frame comes from outside.
 void clean_depth(Frame& frame);
 
+/// Whether hues differ from pixel to pixel by more than the noise of a sensor: false without
+/// colour, for grey images, and for images of one colour.
+bool has_hues(const Frame& frame);
+
 /// Part of a frame, which must lie in it, with the camera that sees it: depth and colour alone.
 Frame crop(const Frame& frame, const RegionOfInterest& part);
 

@@ -44,10 +44,15 @@ Result<Models> chosen_models(const ModelLibrary& library, const DetectRequest& r
   return chosen;
 }
 
+const char* why_colorless(const Frame& frame) {
+  if (frame.color.empty()) return "the frame has no colour image";
+  return has_hues(frame) ? nullptr : "the colour image is grey, or of one colour";
+}
+
 // Whether hypotheses of all models are compared by colour.
-bool compares_colors(const Frame& frame, const DetectorOptions& options, const Models& models) {
+bool compares_colors(const DetectorOptions& options, const Models& models) {
   const auto colored = [](const auto& model) { return !model->index->cielab.empty(); };
-  return !frame.color.empty() && options.features.use_color && options.detect.sample.use_colors &&
+  return options.features.use_color && options.detect.sample.use_colors &&
          std::ranges::all_of(models, colored);
 }
 
@@ -121,9 +126,11 @@ Detector::Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions 
 SearchFacts Detector::facts_of(const Frame& frame, const DetectRequest& request,
                                const Models& models) const {
   const int threads = resolve_num_threads(request.num_threads);
+  const char* const colorless = why_colorless(frame);
   SearchFacts facts{.models = static_cast<int>(models.size()),
                     .image_width = frame.camera.width,
-                    .colored = compares_colors(frame, options_, models),
+                    .colored = !colorless && compares_colors(options_, models),
+                    .colorless = colorless,
                     .threads = threads,
                     .seed = request.seed,
                     .budget_ms = request.budget_ms};

@@ -122,6 +122,10 @@ Result<SearchPlan> plan_search(const DetectorOptions& options, const score::Scor
       .limited = facts.budget_ms > 0};
   plan.surface.num_threads = plan.features.num_threads = facts.threads;
   plan.planes.seed = plan.features.seed = plan.scene.seed = facts.seed;
+  if (plan.features.use_color && facts.colorless) {
+    plan.features.use_color = false;
+    reasons["features.use_color"] = facts.colorless;
+  }
   if (plan.limited) shorten_preparation(facts, plan, reasons);
   plan.entries = entries_of(plan, options, layers, facts.image_width, reasons);
   return plan;

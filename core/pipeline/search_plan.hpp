@@ -16,9 +16,11 @@ namespace bpa {
 
 /// What a plan depends on, besides options and score layers.
 struct SearchFacts {
-  int models = 1;          ///< That are searched for, 1 or more.
-  int image_width = 0;     ///< Of the frame, pixels; 0: not known.
-  bool colored = true;     ///< Hypotheses of all models are compared by colour.
+  int models = 1;       ///< That are searched for, 1 or more.
+  int image_width = 0;  ///< Of the frame, pixels; 0: not known.
+  bool colored = true;  ///< Hypotheses of all models are compared by colour.
+  /// Why the frame's colours are no evidence, for people; null: they are.
+  const char* colorless = nullptr;
   int threads = 1;         ///< 1 or more.
   std::uint64_t seed = 0;  ///< Of the request.
   double budget_ms = 0;    ///< 0: no limit.

@@ -334,19 +334,44 @@ TEST_F(DetectorOf, WithAnyOneThingLeftOutItsAnswerIsValidAndHoldsBothObjects) {
   }
 }
 
-TEST_F(DetectorOf, WithoutColoursItIsAsIfTheFrameHadNone) {
-  Frame painted = frame_;
-  painted.color.resize(3 * painted.depth.size());
-  for (std::size_t i = 0; i < painted.depth.size(); ++i) {  // stripes: edges of the image alone
-    const bool light = i % static_cast<std::size_t>(painted.camera.width) / 16 % 2 == 0;
-    std::fill_n(painted.color.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, light ? 220 : 40);
+class DetectorOfPainted : public DetectorOf {
+ protected:
+  /// Stripes of two colours: edges of the image alone.
+  static Frame painted(const std::array<std::uint8_t, 3>& odd,
+                       const std::array<std::uint8_t, 3>& even) {
+    Frame frame = frame_;
+    for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+      const bool is_odd = i % static_cast<std::size_t>(frame.camera.width) / 16 % 2 == 1;
+      frame.color.insert(frame.color.end(), (is_odd ? odd : even).begin(),
+                         (is_odd ? odd : even).end());
+    }
+    return frame;
   }
+};
+
+TEST_F(DetectorOfPainted, WithoutColoursItIsAsIfTheFrameHadNone) {
+  const Frame frame = painted({220, 40, 60}, {40, 60, 220});
   DetectorOptions options = quick();
   options.features.use_color = false;
-  const auto ignored = Detector(library_, options).detect(painted);
+  const auto ignored = Detector(library_, options).detect(frame);
   ASSERT_TRUE(ignored.ok()) << ignored.status().message;
   expect_same(*ignored, found({}));
-  EXPECT_NE(found({}, painted).interpretations.at(0).score, ignored->interpretations.at(0).score);
+  EXPECT_NE(found({}, frame).interpretations.at(0).score, ignored->interpretations.at(0).score);
+}
+
+TEST_F(DetectorOfPainted, ImagesOfOneHueAreNoEvidence) {
+  const auto why = [](const SceneInterpretations& result) {
+    return std::ranges::find(result.plan, "features.use_color", &PlanEntry::name)->reason;
+  };
+  const SceneInterpretations without = found({});
+  EXPECT_EQ(why(without), "the frame has no colour image");
+  for (const Frame& frame :
+       {painted({220, 220, 220}, {40, 43, 38}), painted({180, 40, 30}, {180, 40, 30})}) {
+    const SceneInterpretations result = found({}, frame);
+    expect_same(result, without);
+    EXPECT_EQ(why(result), "the colour image is grey, or of one colour");
+  }
+  EXPECT_EQ(why(found({}, painted({220, 40, 60}, {40, 60, 220}))), "default");
 }
 
 // Where hypotheses come from: nothing that is looked at outside is found, nor in the picture's rest
