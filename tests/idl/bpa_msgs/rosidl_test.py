@@ -6,6 +6,7 @@ rosidl_test.py OUTPUT_FOLDER COMPILER. Exits 1 when a tool or the compiler has a
 """
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -38,7 +39,8 @@ def generate(folder, output):
 
 def main():
     output, compiler = pathlib.Path(sys.argv[1]), sys.argv[2]
-    output.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(output, ignore_errors=True)  # headers of messages that are gone
+    output.mkdir(parents=True)
     for folder in sorted((IDL / 'ros').iterdir()):
         generate(folder, output)
     headers = generate(IDL / 'bpa_msgs', output)
