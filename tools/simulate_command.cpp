@@ -205,6 +205,7 @@ void add_scenes(CLI::App& simulate) {
                {"--equal", "equal_share"},
                {"--misregistration", "misregistration"},
                {"--exposure-spread", "exposure_spread"},
+               {"--white-balance-spread", "white_balance_spread"},
                {"--lateral-noise", "lateral_noise"},
                {"--edge-gaps", "edge_gaps"},
                {"--calibration-error", "calibration_error"}});

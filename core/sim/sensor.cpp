@@ -23,7 +23,7 @@ std::vector<std::uint8_t> photograph(const std::vector<std::uint8_t>& ideal, con
   const double exposure = 0.9 * std::exp(options.exposure_spread * random.normal());
   Eigen::Array3d gain;
   for (int c = 0; c < 3; ++c) {
-    gain[c] = exposure * std::exp(0.3 * options.exposure_spread * random.normal());
+    gain[c] = exposure * std::exp(options.white_balance_spread * random.normal());
   }
   const auto draw_field = [&] {
     return noise_field(camera.width, camera.height, 1, shot_seed(random(), shot), num_threads);

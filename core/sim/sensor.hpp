@@ -20,6 +20,8 @@ struct ColorCameraOptions {
   BPA_OPTION(double, misregistration, 0, (0, 50), "Shift of colour against depth, pixels.");
   BPA_OPTION(double, color_noise, 1, (0, 10), "Times the usual noise of colours.");
   BPA_OPTION(double, exposure_spread, 0.12, (0, 2), "Standard deviation of the log exposure.");
+  BPA_OPTION(double, white_balance_spread, 0.036, (0, 2),
+             "Standard deviation of the log gain of each colour.");
 };
 
 /// Every effect can be turned down to none. Only the options of `kind` count.

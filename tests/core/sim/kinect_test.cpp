@@ -145,6 +145,7 @@ TEST(Kinect, WithoutErrorsItIsIdeal) {
   options.kinect.disparity_step = 0;
   options.kinect.shadows = false;
   options.color.color_noise = options.color.exposure_spread = 0;
+  options.color.white_balance_spread = 0;
   const SensorImage image = see_plane(1.0, 0.8, {}, options);
   for (std::size_t i = 0; i < image.frame.depth.size(); ++i) {
     EXPECT_NEAR(image.frame.depth[i], image.ideal.depth[i], 1e-5);
