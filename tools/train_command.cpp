@@ -24,8 +24,8 @@ using Folders = std::vector<std::string>;
 struct TrainArguments {
   CommonOptions common;
   DetectorArguments detector;
-  DatasetOptions dataset;                                  // without its folder
-  Folders bop, round_two_bop, color_bop, calibration_bop;  // see the options
+  DatasetOptions dataset;                                                  // without its folder
+  Folders bop, all_models_bop, round_two_bop, color_bop, calibration_bop;  // see the options
   std::string output, made_by = "bpa train";
   int held_out = 5, models_per_frame = 0;
   bool adapt = false;
@@ -267,16 +267,18 @@ score::RightPlacement right_placement(const detect::Candidate& candidate,
 score::ScoreLayers learn_all(const TrainArguments& a, const Detector& detector,
                              const score::ScoreLayers& start) {
   Samples round_two, round_three;
+  const Folders kinds = together(a.bop, a.all_models_bop);
   collect(a, detector, a.bop, a.models_per_frame, &round_two, &round_three);
+  collect(a, detector, a.all_models_bop, 0, &round_two, &round_three);
   collect(a, detector, a.round_two_bop, a.models_per_frame, &round_two, nullptr);
   score::ScoreLayers layers = start;
   layers.round_two =
-      learn(a, "round two", together(a.bop, a.round_two_bop), start.round_two, round_two);
+      learn(a, "round two", together(kinds, a.round_two_bop), start.round_two, round_two);
   layers.without_color =
-      learn(a, "without colours", a.bop, start.without_color, without_color(round_three));
+      learn(a, "without colours", kinds, start.without_color, without_color(round_three));
   collect(a, detector, a.color_bop, a.models_per_frame, nullptr, &round_three);
   layers.round_three =
-      learn(a, "round three", together(a.bop, a.color_bop), start.round_three, round_three);
+      learn(a, "round three", together(kinds, a.color_bop), start.round_three, round_three);
   return layers;
 }
 
@@ -353,7 +355,8 @@ score::LearnedLimits learn_limits(const TrainArguments& a,
 
 void check_usage(const TrainArguments& a) {
   if (!a.bop.empty()) return;
-  const bool learns = a.adapt || !a.round_two_bop.empty() || !a.color_bop.empty();
+  const bool learns =
+      a.adapt || !a.all_models_bop.empty() || !a.round_two_bop.empty() || !a.color_bop.empty();
   if (learns || a.calibration_bop.empty()) {
     throw CLI::ValidationError(
         "--bop",
@@ -392,6 +395,11 @@ void add_train_command(CLI::App& program) {
   add_detector_options(command, a.detector);
   add_option(command, "--bop", a.bop, "Folder of a BOP data set with truth; may be repeated",
              "DIR");
+  add_option(
+      command, "--all-models-bop", a.all_models_bop,
+      "The same, but each frame is searched for all models, whatever --models-per-frame says: "
+      "bins, where wrong models find surface everywhere",
+      "DIR");
   add_option(command, "--round-two-bop", a.round_two_bop,
              "Data sets that only the layer of round two learns from, which orders placements",
              "DIR");
