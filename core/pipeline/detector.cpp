@@ -167,7 +167,7 @@ Result<Detector::Job> Detector::begin(const Frame& frame, const DetectRequest& r
   const SearchFacts facts = facts_of(frame, request, *models);
   Result<SearchPlan> plan = plan_search(options_, layers_, facts);
   if (!plan.ok()) return plan.status();
-  return Job{frame, request, *std::move(models), facts, *std::move(plan), deadline};
+  return Job{frame, request, std::move(models).value(), facts, std::move(plan).value(), deadline};
 }
 
 SearchResult Detector::search_here(const Job& job, FrameTrace* trace) const {
@@ -233,7 +233,7 @@ Result<SceneInterpretations> Detector::detect(const Frame& frame, const DetectRe
   if (elsewhere) {
     Result<RemoteResult> started = elsewhere(job->models);
     if (!started.ok()) return started.status();
-    remote = *std::move(started);
+    remote = std::move(started).value();
   }
   job->prepare();
   const Stopwatch watch;

@@ -229,7 +229,7 @@ Result<SearchResult> result_from(msgs::GroupAnswer message, const Models& models
     }
     Result<detect::Candidate> read = candidate_from(std::move(candidate), **model, pixels);
     if (!read.ok()) return read.status();
-    found.candidates.push_back(*std::move(read));
+    found.candidates.push_back(std::move(read).value());
   }
   return found;
 }

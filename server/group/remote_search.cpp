@@ -137,7 +137,7 @@ class Search {
     Result<SearchResult> found = result_from(std::move(answer), models_of(share->models), pixels);
     if (found.ok()) {
       measure(*share, busy_ms, found->preparation_ms);
-      add(*found, share->models);
+      add(std::move(found).value(), share->models);
     } else {
       log(links_->members.hook(), LogLevel::warning,
           concat("worker ", links_->members.name_of(share->worker), ": ", found.status().message));
@@ -156,12 +156,13 @@ class Search {
         {preparation_ms, ms_a_model, std::max(0.0, share.given.milliseconds() - busy_ms)});
   }
 
-  void add(const SearchResult& found, const std::vector<std::size_t>& models) {
+  void add(SearchResult found, const std::vector<std::size_t>& models) {
     for (std::size_t i = 0; i < models.size(); ++i) {
       result_.missed[models[i]].expected = found.missed[i].expected;
-      const ObjectModel* const model = models_[models[i]].get();
-      std::ranges::copy_if(found.candidates, std::back_inserter(found_[models[i]]),
-                           [&](const detect::Candidate& one) { return one.model == model; });
+    }
+    for (detect::Candidate& candidate : found.candidates) {
+      const auto model = std::ranges::find(models_, candidate.model, &Models::value_type::get);
+      found_[static_cast<std::size_t>(model - models_.begin())].push_back(std::move(candidate));
     }
     result_.effort += found.effort;
     result_.cut = result_.cut || found.cut;
@@ -193,7 +194,7 @@ class Search {
     for (const std::size_t i : open_) request.models.push_back(models_[i]->name);
     Result<SearchResult> found = task_.detector.search(task_.frame, request);
     if (!found.ok()) return found.status();
-    add(*found, std::exchange(open_, {}));
+    add(std::move(found).value(), std::exchange(open_, {}));
     return {};
   }
 
