@@ -152,13 +152,13 @@ void print_reliability(const char* name, const score::ScoreLayer& layer,
   }
 }
 
-// The same samples of frames or models that have no colour.
-Samples without_color(Samples samples) {
+// The same samples of models without colour, in frames that have what is needed, and no more.
+Samples without_color(Samples samples, score::Needs known) {
   for (auto* frames : {&samples.training, &samples.held_out}) {
     for (score::ScoreFrame& frame : *frames) {
       for (auto& sample : frame.samples) {
         for (std::size_t i = 0; i < score::kScoreComponents.size(); ++i) {
-          if (score::kScoreComponents[i].needs_color) sample.values[i] = score::kNotKnown;
+          if (score::kScoreComponents[i].needs > known) sample.values[i] = score::kNotKnown;
         }
       }
     }
@@ -274,8 +274,14 @@ score::ScoreLayers learn_all(const TrainArguments& a, const Detector& detector,
   score::ScoreLayers layers = start;
   layers.round_two =
       learn(a, "round two", together(kinds, a.round_two_bop), start.round_two, round_two);
-  layers.without_color =
-      learn(a, "without colours", kinds, start.without_color, without_color(round_three));
+  layers.without_color = learn(a, "without colours", kinds, start.without_color,
+                               without_color(round_three, score::Needs::depth));
+  if (!a.adapt) {
+    score::ScoreLayer& layer = layers.without_color;
+    layer = or_throw(score::extend_score_layer(
+        layer, score::Needs::outline, without_color(round_three, score::Needs::outline).training));
+    layer.provenance += "; outlines after that, from the same frames";
+  }
   collect(a, detector, a.color_bop, a.models_per_frame, nullptr, &round_three);
   layers.round_three =
       learn(a, "round three", together(kinds, a.color_bop), start.round_three, round_three);
@@ -377,8 +383,8 @@ void train(const TrainArguments& a) {
     Samples in_use;
     collect(a, detector, a.calibration_bop, 0, nullptr, &in_use);
     layers.round_three = calibrate(a, "round three", layers.round_three, in_use);
-    layers.without_color =
-        calibrate(a, "without colours", layers.without_color, without_color(in_use));
+    layers.without_color = calibrate(a, "without colours", layers.without_color,
+                                     without_color(in_use, score::Needs::depth));
   }
   layers.limits = learn_limits(a, library, layers);
   layers.yield = learn_yield(a, library, layers);

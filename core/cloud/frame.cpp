@@ -54,19 +54,20 @@ Status validate(const Frame& frame) {
                           "] m (0 and NaN mean no depth)");
 }
 
-bool has_hues(const Frame& frame) {
+ColorContent color_content(const Frame& frame) {
   // Levels that 99 % of the pixels span: 0 in a grey image. Chosen by hand: in 12 real colour
   // images more than half of the pixels are farther than 8 levels from grey.
   constexpr std::ptrdiff_t kNoise = 16;
-  constexpr std::size_t kStep = 7;  // pixels
-  std::array<std::array<std::size_t, 511>, 2> counts{};
+  constexpr std::size_t kStep = 7;                       // pixels
+  std::array<std::array<std::size_t, 511>, 3> counts{};  // red and blue less green, and green
   std::size_t total = 0;
   for (std::size_t i = 0; i + 2 < frame.color.size(); i += 3 * kStep, ++total) {
     const int green = frame.color[i + 1];
     ++counts[0][255 + frame.color[i] - green];
     ++counts[1][255 + frame.color[i + 2] - green];
+    ++counts[2][green];
   }
-  return std::ranges::any_of(counts, [total](const auto& count) {
+  const auto varies = [total](const auto& count) {
     const auto end_of_tail = [total](auto begin, auto end) {
       std::size_t sum = 0;
       return std::find_if(begin, end, [&](std::size_t n) { return 200 * (sum += n) > total; }) -
@@ -75,7 +76,9 @@ bool has_hues(const Frame& frame) {
     return end_of_tail(count.begin(), count.end()) + end_of_tail(count.rbegin(), count.rend()) +
                kNoise <
            std::ssize(count) - 1;
-  });
+  };
+  if (varies(counts[0]) || varies(counts[1])) return ColorContent::hues;
+  return varies(counts[2]) ? ColorContent::shades : ColorContent::none;
 }
 
 void clean_depth(Frame& frame) {

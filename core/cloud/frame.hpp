@@ -44,9 +44,13 @@ Status validate(const Frame& frame);
 /// the frame comes from outside.
 void clean_depth(Frame& frame);
 
-/// Whether hues differ from pixel to pixel by more than the noise of a sensor: false without
-/// colour, for grey images, and for images of one colour.
-bool has_hues(const Frame& frame);
+/// What differs from pixel to pixel of the colour image by more than the noise of a sensor.
+enum class ColorContent {
+  none,    ///< Nothing: there is no image, or it is of one colour.
+  shades,  ///< Light: the image is grey, or of one hue.
+  hues,
+};
+ColorContent color_content(const Frame& frame);
 
 /// Part of a frame, which must lie in it, with the camera that sees it: depth and colour alone.
 Frame crop(const Frame& frame, const RegionOfInterest& part);

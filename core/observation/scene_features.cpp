@@ -101,8 +101,8 @@ void add_images(ColorImages colors, const SceneFeatureOptions& options, SceneFea
   if (!rgb.empty()) {
     sharp_lab = cielab(rgb, threads);
     add_colors(rgb, sharp_lab, options, scene);
-    if (options.use_outline) scene.gradients = std::move(colors.gradients);
   }
+  scene.gradients = std::move(colors.gradients);
   scene.segmentation =
       segment::super_pixels(scene.map, scene.cielab, scene.edges.likelihood, options.segments);
   if (!options.use_flat_regions) return;

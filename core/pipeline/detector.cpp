@@ -44,9 +44,11 @@ Result<Models> chosen_models(const ModelLibrary& library, const DetectRequest& r
   return chosen;
 }
 
-const char* why_colorless(const Frame& frame) {
+const char* why_colorless(const Frame& frame, ColorContent content) {
   if (frame.color.empty()) return "the frame has no colour image";
-  return has_hues(frame) ? nullptr : "the colour image is grey, or of one colour";
+  if (content == ColorContent::hues) return nullptr;
+  return content == ColorContent::shades ? "the colour image is grey, or of one hue"
+                                         : "the colour image is of one colour";
 }
 
 // Whether hypotheses of all models are compared by colour.
@@ -126,11 +128,13 @@ Detector::Detector(std::shared_ptr<const ModelLibrary> library, DetectorOptions 
 SearchFacts Detector::facts_of(const Frame& frame, const DetectRequest& request,
                                const Models& models) const {
   const int threads = resolve_num_threads(request.num_threads);
-  const char* const colorless = why_colorless(frame);
+  const ColorContent content = color_content(frame);
+  const char* const colorless = why_colorless(frame, content);
   SearchFacts facts{.models = static_cast<int>(models.size()),
                     .image_width = frame.camera.width,
                     .colored = !colorless && compares_colors(options_, models),
                     .colorless = colorless,
+                    .outlines = content != ColorContent::none,
                     .threads = threads,
                     .seed = request.seed,
                     .budget_ms = request.budget_ms};

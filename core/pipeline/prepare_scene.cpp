@@ -29,8 +29,7 @@ SceneFeatures prepare_scene(const Frame& frame, const SearchPlan& plan, const De
   run_both(
       plan.features.num_threads,
       [&](int threads) {
-        if (!features.use_color) return;
-        colors.reduced = reduced_color(frame, map, threads);
+        if (features.use_color) colors.reduced = reduced_color(frame, map, threads);
         if (features.use_outline) colors.gradients = color_gradients(frame, threads);
       },
       [&](int) {

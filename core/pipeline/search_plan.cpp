@@ -122,7 +122,12 @@ Result<SearchPlan> plan_search(const DetectorOptions& options, const score::Scor
       .limited = facts.budget_ms > 0};
   plan.surface.num_threads = plan.features.num_threads = facts.threads;
   plan.planes.seed = plan.features.seed = plan.scene.seed = facts.seed;
-  if (plan.features.use_color && facts.colorless) {
+  if (plan.features.use_outline && !(plan.features.use_color && facts.outlines)) {
+    plan.features.use_outline = false;
+    reasons["features.use_outline"] =
+        facts.outlines ? "features.use_color is false" : facts.colorless;
+  }
+  if (plan.features.use_color && facts.colorless) {  // outlines are seen in grey, too
     plan.features.use_color = false;
     reasons["features.use_color"] = facts.colorless;
   }

@@ -21,6 +21,7 @@ struct SearchFacts {
   bool colored = true;  ///< Hypotheses of all models are compared by colour.
   /// Why the frame's colours are no evidence, for people; null: they are.
   const char* colorless = nullptr;
+  bool outlines = true;    ///< The colour image shows light or colours that differ.
   int threads = 1;         ///< 1 or more.
   std::uint64_t seed = 0;  ///< Of the request.
   double budget_ms = 0;    ///< 0: no limit.

@@ -26,6 +26,13 @@ namespace bpa::score {
 /// a first interpretation says what else is there.
 enum class Round : std::uint8_t { two, three, rivals, others };
 
+/// The images that a component needs. A grey image has outlines and no colours.
+enum class Needs : std::uint8_t {
+  depth,    ///< Nothing beside depth.
+  outline,  ///< A colour image of the frame.
+  colors    ///< Colours of the frame and of the model.
+};
+
 struct ComponentType {
   std::string_view name;
   std::string_view unit;
@@ -34,17 +41,17 @@ struct ComponentType {
   bool learned;                  ///< False: reported, but no part of the score.
   double (*measure)(Evidence&);  ///< kNotKnown where it has no value.
   std::string_view meaning;
-  bool needs_color = false;  ///< Known only where frame and model have colours.
+  Needs needs = Needs::depth;
   bool rises = false;  ///< More never speaks against a placement: training keeps the curve rising.
 };
 
 constexpr auto kScoreComponents = std::to_array<ComponentType>({
     {"range", "log-likelihood", -1, 0, Round::two, true,
      [](Evidence& e) -> double { return e.surface().range; },
-     "Depth differences, weighted by visibility.", false, true},
+     "Depth differences, weighted by visibility.", Needs::depth, true},
     {"normal", "log-likelihood", -1, 0, Round::two, true,
      [](Evidence& e) -> double { return e.surface().normal; },
-     "Differences of normals, weighted by visibility.", false, true},
+     "Differences of normals, weighted by visibility.", Needs::depth, true},
     {"agreeing", "share", 0, 1, Round::two, true,
      [](Evidence& e) -> double { return e.surface().agreeing; },
      "Visible points on the observed surface."},
@@ -53,7 +60,7 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
      "Visible points in front of the observed surface, by seven standard deviations of depth."},
     {"visibility", "share", 0, 1, Round::two, true,
      [](Evidence& e) -> double { return e.surface().visibility; },
-     "Facing model points that are neither hidden nor outside the image.", false, true},
+     "Facing model points that are neither hidden nor outside the image.", Needs::depth, true},
     {"edge", "log-likelihood", -1, 0, Round::two, true,
      [](Evidence& e) -> double { return e.surface().edge; },
      "Observed surface that goes on beyond model edges."},
@@ -74,7 +81,7 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
      "Facing model points where no depth is known."},
     {"explained", "ratio", 0, 10, Round::two, true,
      [](Evidence& e) -> double { return e.surface().explained_pixels / std::max(1.0, e.surface().expected_pixels); },
-     "Explained pixels, of those the whole model would cover.", false, true},
+     "Explained pixels, of those the whole model would cover.", Needs::depth, true},
     {"evidence", "log pixels", 0, 14, Round::two, true,
      [](Evidence& e) -> double { return e.surface().evidence(); },
      "Logarithm of the support."},
@@ -101,25 +108,25 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
      "How far the centre is inside of what rests on the plane; negative: it would fall."},
     {"silhouette", "share", 0, 1, Round::three, true,
      [](Evidence& e) -> double { return e.silhouette().on; },
-     "Strength of the colour gradients across the outline.", true},
+     "Strength of the colour gradients across the outline.", Needs::outline},
     {"silhouette_contrast", "share", -1, 1, Round::three, true,
      [](Evidence& e) -> double { return e.silhouette().contrast; },
-     "The same less that beside the outline.", true},
+     "The same less that beside the outline.", Needs::outline},
     {"color", "log-likelihood", -1, 0, Round::three, true,
      [](Evidence& e) -> double { return e.colors().likelihood; },
-     "Colours of the surface, under the frame's light.", true},
+     "Colours of the surface, under the frame's light.", Needs::colors},
     {"tint", "CIELAB", 0, 200, Round::three, true,
      [](Evidence& e) -> double { return e.colors().tint; },
-     "Colour shift of the whole placement.", true},
+     "Colour shift of the whole placement.", Needs::colors},
     {"exposure", "log of the cube root of light", -2.4, 2.4, Round::three, false,
      [](Evidence& e) -> double { return e.colors().exposure; },
-     "Light of the whole placement, frame to model.", true},
+     "Light of the whole placement, frame to model.", Needs::colors},
     {"texture", "log-likelihood ratio", -5, 10, Round::three, true,
      [](Evidence& e) -> double { return e.texture().log_ratio; },
-     "Mean over pixels: the model's pattern against a surface of one colour.", true},
+     "Mean over pixels: the model's pattern against a surface of one colour.", Needs::colors},
     {"texture_evidence", "log-likelihood ratio", -1e5, 1e5, Round::three, true,
      [](Evidence& e) -> double { return e.texture().total; },
-     "Sum over independent pixels of the same.", true},
+     "Sum over independent pixels of the same.", Needs::colors},
     {"segment", "log-likelihood", -1, 0, Round::three, true,
      [](Evidence& e) -> double { return segment_score(e.segments()); },
      "Distance of the touched super-pixels from the model."},
@@ -143,7 +150,7 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
      "Depth: log-likelihood behind the best pose in the same place; see behind_best()."},
     {"rivals_color", "log-likelihood", -500, 0, Round::rivals, true,
      [](Evidence&) -> double { return kNotKnown; },
-     "The same of colours.", true},
+     "The same of colours.", Needs::colors},
     {"hidden_by_unknown", "share", 0, 1, Round::others, true,
      [](Evidence&) -> double { return kNotKnown; },
      "Facing model points that are hidden by what no other placement explains."},
@@ -152,7 +159,7 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
      "Pixels of its super-pixels that neither it nor another placement explains."},
     {"relative_exposure", "log of the cube root of light", -4.8, 4.8, Round::others, true,
      [](Evidence&) -> double { return kNotKnown; },
-     "Component exposure less the median of the other placements.", true},
+     "Component exposure less the median of the other placements.", Needs::colors},
     {"explained_pixels", "pixels", 0, 77000, Round::two, false,
      [](Evidence& e) -> double { return e.surface().explained_pixels; },
      "Observed pixels on the model, reduced image."},

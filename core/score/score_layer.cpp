@@ -236,24 +236,20 @@ std::optional<ScoreValues> measure_while_probable(Evidence& evidence, const Scor
   return values;
 }
 
-Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames) {
-  std::array<std::vector<std::pair<double, bool>>, kNumComponents> values;
+namespace {
+
+// New places for the component's curve, which is zero.
+void begin_curve(std::size_t f, std::span<const ScoreFrame> frames, ScoreLayer& layer) {
+  std::vector<std::pair<double, bool>> values;
   for (const ScoreFrame& frame : frames) {
-    for (const ScoreFrame::Sample& sample : frame.samples) {
-      for (std::size_t f = 0; f < kNumComponents; ++f) {
-        values[f].push_back({sample.values[f], sample.right});
-      }
-    }
+    for (const auto& sample : frame.samples) values.push_back({sample.values[f], sample.right});
   }
-  ScoreLayer start;
-  for (std::size_t f = 0; f < kNumComponents; ++f) {
-    start.components[f].place = choose_places(std::move(values[f]));
-  }
-  start.bias = -3;  // most placements are wrong
-  return adapt_score_layer(start, frames);
+  layer.components[f] = {.place = choose_places(std::move(values))};
 }
 
-Result<ScoreLayer> adapt_score_layer(const ScoreLayer& start, std::span<const ScoreFrame> frames) {
+// Fits the bias and the curves of `learned` components; the others stay.
+Result<ScoreLayer> fit(const ScoreLayer& start, std::span<const ScoreFrame> frames,
+                       const std::array<bool, kNumComponents>& learned) {
   const Result<std::size_t> samples = count_samples(frames);
   if (!samples.ok()) return samples.status();
   std::array<Places, kNumComponents> places;
@@ -271,22 +267,52 @@ Result<ScoreLayer> adapt_score_layer(const ScoreLayer& start, std::span<const Sc
     Weights gradient = Weights::Zero();
     add_penalty(at - first, gradient);
     for (const FrameLikelihood& frame : likelihoods) frame.add_gradient(at, gradient);
+    for (std::size_t f = 0; f < kNumComponents; ++f) {
+      if (!learned[f]) gradient.segment<kKnots>(weight_of(f, 0)).setZero();
+    }
     return gradient / static_cast<double>(*samples);
   };
   weights = minimise(weights, gradient_at, keep_rising);
-  ScoreLayer layer;
+  ScoreLayer layer = start;
   layer.bias = weights[0];
   for (std::size_t f = 0; f < kNumComponents; ++f) {
-    layer.components[f].place = places[f];
-    for (std::size_t k = 0; k < kKnots; ++k) {
-      layer.components[f].value[k] = weights[weight_of(f, k)];
-    }
-    // A component that is not known says as much as the middle of right and wrong ones.
+    if (!learned[f]) continue;
     auto& value = layer.components[f].value;
+    for (std::size_t k = 0; k < kKnots; ++k) value[k] = weights[weight_of(f, k)];
+    // A component that is not known says as much as the middle of right and wrong ones.
     const double middle = std::accumulate(value.begin(), value.end(), 0.0) / kKnots;
     for (double& v : value) v -= middle;
     layer.bias += middle;
   }
+  return layer;
+}
+
+}  // namespace
+
+Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames) {
+  ScoreLayer start;
+  for (std::size_t f = 0; f < kNumComponents; ++f) begin_curve(f, frames, start);
+  start.bias = -3;  // most placements are wrong
+  return adapt_score_layer(start, frames);
+}
+
+Result<ScoreLayer> adapt_score_layer(const ScoreLayer& start, std::span<const ScoreFrame> frames) {
+  std::array<bool, kNumComponents> all{};
+  all.fill(true);
+  return fit(start, frames, all);
+}
+
+Result<ScoreLayer> extend_score_layer(const ScoreLayer& start, Needs needs,
+                                      std::span<const ScoreFrame> frames) {
+  ScoreLayer extended = start;
+  std::array<bool, kNumComponents> learned{};
+  for (std::size_t f = 0; f < kNumComponents; ++f) {
+    learned[f] = kScoreComponents[f].needs == needs;
+    if (learned[f]) begin_curve(f, frames, extended);
+  }
+  Result<ScoreLayer> layer = fit(extended, frames, learned);
+  // What these frames have more or less right placements of than those of `start` is not kept.
+  if (layer.ok()) layer->bias = start.bias;
   return layer;
 }
 

@@ -48,7 +48,7 @@ struct ScoreLayers {
   ScoreLayer round_two;
   /// Of all components: what probabilities come from.
   ScoreLayer round_three;
-  /// Of all components, for frames or models without colour.
+  /// For frames or models without colour; outlines count where the frame shows them.
   ScoreLayer without_color;
   /// Of the log odds that these layers give.
   LearnedLimits limits;
@@ -98,6 +98,11 @@ Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames);
 /// The layer that changes `start` no more than these frames demand: the same fit, with the penalty
 /// on the difference. A few frames with truth of a user's own camera suffice. Errors as above.
 Result<ScoreLayer> adapt_score_layer(const ScoreLayer& start, std::span<const ScoreFrame> frames);
+
+/// `start` with new curves of the components that need this; the other curves and the bias stay. So
+/// the log odds are the same where these components are not known. Errors as above.
+Result<ScoreLayer> extend_score_layer(const ScoreLayer& start, Needs needs,
+                                      std::span<const ScoreFrame> frames);
 
 /// The layer with its log odds scaled and shifted so that probabilities agree with frequencies on
 /// these frames: Platt scaling (Platt, "Probabilistic Outputs for Support Vector Machines", 1999),

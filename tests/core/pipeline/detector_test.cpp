@@ -359,19 +359,26 @@ TEST_F(DetectorOfPainted, WithoutColoursItIsAsIfTheFrameHadNone) {
   EXPECT_NE(found({}, frame).interpretations.at(0).score, ignored->interpretations.at(0).score);
 }
 
-TEST_F(DetectorOfPainted, ImagesOfOneHueAreNoEvidence) {
-  const auto why = [](const SceneInterpretations& result) {
-    return std::ranges::find(result.plan, "features.use_color", &PlanEntry::name)->reason;
+TEST_F(DetectorOfPainted, ImagesOfOneColourAreNoEvidenceAndGreyOnesShowOutlines) {
+  const auto why = [](const SceneInterpretations& result, const char* setting) {
+    return std::ranges::find(result.plan, setting, &PlanEntry::name)->reason;
+  };
+  const auto shows_outline = [](const SceneInterpretations& result) {
+    const auto& components = result.interpretations.at(0).placements.at(0).components;
+    return std::ranges::count(components, "silhouette", &ScoreComponent::name) > 0;
   };
   const SceneInterpretations without = found({});
-  EXPECT_EQ(why(without), "the frame has no colour image");
-  for (const Frame& frame :
-       {painted({220, 220, 220}, {40, 43, 38}), painted({180, 40, 30}, {180, 40, 30})}) {
-    const SceneInterpretations result = found({}, frame);
-    expect_same(result, without);
-    EXPECT_EQ(why(result), "the colour image is grey, or of one colour");
-  }
-  EXPECT_EQ(why(found({}, painted({220, 40, 60}, {40, 60, 220}))), "default");
+  EXPECT_EQ(why(without, "features.use_color"), "the frame has no colour image");
+  EXPECT_EQ(why(without, "features.use_outline"), "the frame has no colour image");
+  const SceneInterpretations blank = found({}, painted({180, 40, 30}, {180, 40, 30}));
+  expect_same(blank, without);
+  EXPECT_EQ(why(blank, "features.use_outline"), "the colour image is of one colour");
+  const SceneInterpretations grey = found({}, painted({220, 220, 220}, {40, 43, 38}));
+  EXPECT_EQ(why(grey, "features.use_color"), "the colour image is grey, or of one hue");
+  EXPECT_EQ(why(grey, "features.use_outline"), "default");
+  EXPECT_FALSE(shows_outline(without));
+  EXPECT_TRUE(shows_outline(grey));
+  EXPECT_EQ(why(found({}, painted({220, 40, 60}, {40, 60, 220})), "features.use_color"), "default");
 }
 
 // Where hypotheses come from: nothing that is looked at outside is found, nor in the picture's rest

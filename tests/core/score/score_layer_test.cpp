@@ -106,6 +106,38 @@ TEST(ScoreLayer, AFewFramesAdaptALayer) {
   EXPECT_LT(reliability(*adapted, unseen).log_loss, reliability(*anew, unseen).log_loss);
 }
 
+// drawn_frames() where an outline says what component 2 does not: the law is 4 range + 6 silhouette
+// - 4.
+TEST(ScoreLayer, AnExtendedLayerKnowsMoreAndStaysTheSameWhereItDoesNot) {
+  constexpr std::size_t kOutline = component("silhouette");
+  auto frames = drawn_frames(1000, 1);
+  for (ScoreFrame& frame : frames) {
+    for (auto& sample : frame.samples) {
+      sample.values[kOutline] = std::exchange(sample.values[2], kNotKnown);
+      sample.values[component("silhouette_contrast")] = kNotKnown;
+    }
+  }
+  auto without = frames;
+  for (ScoreFrame& frame : without) {
+    for (auto& sample : frame.samples) sample.values[kOutline] = kNotKnown;
+  }
+  const auto start = train_score_layer(without);
+  ASSERT_TRUE(start.ok()) << start.status().message;
+  const auto extended = extend_score_layer(*start, Needs::outline, frames);
+  ASSERT_TRUE(extended.ok()) << extended.status().message;
+  for (const ScoreFrame& frame : without) {
+    for (const auto& sample : frame.samples) {
+      ASSERT_EQ(extended->log_odds(sample.values), start->log_odds(sample.values));
+    }
+  }
+  ScoreValues low = frames[0].samples[0].values, high = low;
+  low[kOutline] = 0.2;
+  high[kOutline] = 0.8;
+  EXPECT_NEAR(extended->log_odds(high) - extended->log_odds(low), 6 * 0.6, 0.5);
+  EXPECT_LT(reliability(*extended, frames).log_loss, 0.9 * reliability(*start, without).log_loss);
+  EXPECT_FALSE(extend_score_layer(*start, Needs::outline, {}).ok());
+}
+
 // The law of drawn_frames(), halved and one log odds bolder.
 TEST(ScoreLayer, CalibrationFindsScaleAndShift) {
   ScoreLayer layer;
@@ -291,7 +323,7 @@ TEST(ScoreLayer, TheBuiltInOnesHaveRisingPlacesAndKnowWhatTheirRoundKnows) {
     if (type.rises) continue;  // may say nothing: what they know, others say too
     EXPECT_EQ(two, type.round == Round::two);
     EXPECT_TRUE(three);
-    EXPECT_EQ(without_color, !type.needs_color);
+    EXPECT_EQ(without_color, type.needs != Needs::colors);
   }
 }
 
