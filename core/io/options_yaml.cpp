@@ -6,7 +6,9 @@
 #include <cstdlib>
 #include <iomanip>
 #include <limits>
+#include <numeric>
 #include <sstream>
+#include <utility>
 
 #include <yaml-cpp/yaml.h>
 
@@ -60,7 +62,37 @@ void add_word(const std::string& word, const char* separator, std::string& list)
   list += word;
 }
 
-// What to say of a key that is none: where it is, or the keys that there are.
+// How many letters are to be added, removed or exchanged to get from one word to the other.
+std::size_t distance(const std::string& from, const std::string& to) {
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    std::size_t before = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < to.size(); ++j) {
+      const std::size_t exchanged = before + (from[i] != to[j]);
+      before = row[j + 1];
+      row[j + 1] = std::min({exchanged, before + 1, row[j] + 1});
+    }
+  }
+  return row.back();
+}
+
+// The path whose last name is like that of `path`, but for a third of its letters; else empty.
+std::string nearest(const OptionsReading& reading, const std::string& path) {
+  const std::string name = last_name(path);
+  std::size_t least = name.size() / 3 + 1;
+  std::string found;
+  for (const Option& option : reading.options) {
+    const std::size_t far = distance(name, last_name(option.path));
+    if (far < least) {
+      least = far;
+      found = option.path;
+    }
+  }
+  return found;
+}
+
+// What to say of a key that is none: where it is, the nearest one, or the keys that there are.
 std::string unknown(const OptionsReading& reading, const std::string& path) {
   const std::string group = path.substr(0, path.rfind('.') + 1);
   std::string beside, elsewhere;
@@ -71,6 +103,8 @@ std::string unknown(const OptionsReading& reading, const std::string& path) {
     if (last_name(option.path) == last_name(path)) add_word(option.path, " or ", elsewhere);
   }
   if (!elsewhere.empty()) return "unknown key " + path + "; there is " + elsewhere;
+  const std::string like = nearest(reading, path);
+  if (!like.empty()) return "unknown key " + path + "; the nearest is " + like;
   if (!beside.empty()) return "unknown key " + path + "; the keys are " + beside;
   return "unknown key " + path;
 }

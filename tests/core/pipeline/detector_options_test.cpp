@@ -70,8 +70,12 @@ TEST_F(DetectorOptionsFile, EmptyFilesChangeNothing) {
 }
 
 TEST_F(DetectorOptionsFile, UnknownKeyIsNamedWithItsPlace) {
-  const std::string said = refusal("max_range_m: 2\n\nmax_rang_m: 3\n", 3);
-  EXPECT_EQ(said.find("unknown key max_rang_m; the keys are surface, planes, features"), 0u);
+  EXPECT_EQ(refusal("max_range_m: 2\n\nmax_rang_m: 3\n", 3),
+            "unknown key max_rang_m; the nearest is surface.max_range_m");
+  EXPECT_EQ(refusal("planes:\n  lable_plane: false\n", 2),
+            "unknown key planes.lable_plane; the nearest is planes.label_planes");
+  const std::string said = refusal("colour: true\n", 1);
+  EXPECT_EQ(said.find("unknown key colour; the keys are surface, planes, features"), 0u) << said;
 }
 
 TEST_F(DetectorOptionsFile, WrongKindIsNamedWithItsPlace) {
