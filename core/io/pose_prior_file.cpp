@@ -54,20 +54,28 @@ PosePrior prior_from(const Json& json) {
   return prior;
 }
 
+// `where` says in which prior a problem is.
+Result<std::vector<PosePrior>> priors_from(const Json& file, std::string& where) {
+  const std::string name = where;
+  std::vector<PosePrior> priors;
+  for (const Json& json : file.at("priors")) {
+    where = concat(name, ": priors[", priors.size(), "]");
+    if (Status status = check_keys(json, where); !status.ok()) return status;
+    priors.push_back(prior_from(json));
+  }
+  return priors;
+}
+
 }  // namespace
 
 Result<std::vector<PosePrior>> read_pose_priors(const std::string& path) {
-  std::vector<PosePrior> priors;
-  if (path.empty()) return priors;
+  if (path.empty()) return std::vector<PosePrior>();
   std::string where = path;
-  return read_json(where, [&](const Json& file) -> Result<std::vector<PosePrior>> {
-    for (const Json& json : file.at("priors")) {
-      where = concat(path, ": priors[", priors.size(), "]");
-      if (Status status = check_keys(json, where); !status.ok()) return status;
-      priors.push_back(prior_from(json));
-    }
-    return priors;
-  });
+  return read_json(where, [&](const Json& file) { return priors_from(file, where); });
+}
+
+Result<std::vector<PosePrior>> parse_pose_priors(const std::string& text, std::string name) {
+  return with_json(name, [&] { return priors_from(Json::parse(text), name); });
 }
 
 }  // namespace bpa::io

@@ -25,4 +25,7 @@ namespace bpa::io {
 /// missing or wrong field. The message names file, prior and problem. validate() checks numbers.
 Result<std::vector<PosePrior>> read_pose_priors(const std::string& path);
 
+/// The priors of such a file's text; `name` stands for the file in messages.
+Result<std::vector<PosePrior>> parse_pose_priors(const std::string& text, std::string name);
+
 }  // namespace bpa::io

@@ -4,9 +4,10 @@
 """usage: tutorial.py TUTORIAL.md BUILD_FOLDER FOLDER BEGIN
 
 Runs the `sh` blocks of a tutorial, in order, as one bash script in FOLDER, which is made anew: a copy of
-the folder BEGIN, or empty where both are the same. The programs of BUILD_FOLDER are on the PATH. A `text`
-block that follows is what the block before prints: each of its lines must appear in the output, in
-order. Numbers may differ, and `...` stands for any text. Prints the transcript.
+the folder BEGIN, or empty where both are the same. The programs of BUILD_FOLDER are on the PATH, its
+Python package is on PYTHONPATH. A `text` block that follows is what the block before prints: each of
+its lines must appear in the output, in order. Numbers may differ, and `...` stands for any text. Prints
+the transcript.
 """
 import os
 import pathlib
@@ -70,7 +71,8 @@ def main():
         folder.mkdir(parents=True)
     else:
         shutil.copytree(begin, folder)
-    environment = dict(os.environ, PATH=f"{build / 'bin'}:{os.environ['PATH']}",
+    path = (str(build / "bin"), os.path.dirname(sys.executable), os.environ["PATH"])
+    environment = dict(os.environ, PATH=":".join(path), PYTHONPATH=str(build / "python"),
                        BPA=str(tutorial.parent.parent))
     run = subprocess.run(["bash", "-c", script_of(pairs)], cwd=folder, env=environment, text=True,
                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Makes the Debian packages of build/release, installs them in a folder that holds nothing but a
 # fresh Debian 12, and uses them there: the settings are printed, a model is made, the server is
-# started, a program is built with the SDK alone and asks it. By hand, not in CI: it loads 400 MB.
+# started, a program is built with the SDK alone and asks it, and Python does. By hand, not in CI: it loads 400 MB.
 #
 # usage, as root: tests/system/packages.sh FOLDER
 #   MIRROR   where Debian is taken from (http://deb.debian.org/debian)
@@ -83,5 +83,9 @@ inside bash -e -c '
   for attempt in 1 2 3 4 5 6; do
     if source/build/consumer | tee answer; then break; fi
   done
-  grep -q "^box, 12[0-9]\." answer'
+  grep -q "^box, 12[0-9]\." answer
+  python3 -c "
+import bpa
+with bpa.Client(localhost_only=True, timeout_s=60) as client:
+    assert [model[\"name\"] for model in client.models()] == bpa.Library(\"library\").names"'
 say "done"
