@@ -57,6 +57,7 @@ install(DIRECTORY idl/wire ${CMAKE_BINARY_DIR}/generated/idl/wire DESTINATION ${
         COMPONENT sdk ${bpa_public_headers} PATTERN "fastdds" EXCLUDE)
 install(DIRECTORY client/include/bpa DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT sdk
         FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY client/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/bpa COMPONENT sdk)
 # In the tree, includes are paths of the tree; installed headers lie below include/bpa.
 foreach(component core sdk)
   install(CODE "set(BPA_HEADERS \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${bpa_header_folder}\")"

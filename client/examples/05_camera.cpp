@@ -10,8 +10,8 @@
 #include <string>
 #include <thread>
 
-#include "idl/wire/messages.hpp"
-#include "idl/wire/publisher.hpp"
+#include <bpa/wire/messages.hpp>
+#include <bpa/wire/publisher.hpp>
 
 namespace wire = bpa::wire;
 using wire::sensor_msgs::CameraInfo;

@@ -40,7 +40,6 @@ say "install"
 rm -rf "$folder/packages"
 mkdir "$folder/packages"
 cp build/release/packages/*.deb "$folder/packages"
-cp -r tests/system/install client/examples "$folder/packages"
 inside apt-get -q -y -o Acquire::Retries=3 update
 inside bash -c 'apt-get -q -y --reinstall --no-install-recommends install /packages/*.deb'
 
@@ -55,7 +54,7 @@ say "a program with the SDK alone"
 inside apt-get -q -y --no-install-recommends install g++ cmake make
 inside bash -e -c '
   mkdir -p /packages/source && cd /packages/source
-  cp /packages/examples/04_models.cpp main.cpp
+  cp /usr/share/bpa/examples/04_models.cpp main.cpp
   cat >CMakeLists.txt <<TEXT
 cmake_minimum_required(VERSION 3.25)
 project(consumer LANGUAGES CXX)
