@@ -11,7 +11,7 @@
 Client asks a running bpa-server instead. What fails raises Error.
 """
 
-from ._bpa import version as __version__  # type: ignore[import]
+from ._bpa import version as __version__  # type: ignore
 from .client import Client, Stream
 from .detector import Detector, draw
 from .error import Error
