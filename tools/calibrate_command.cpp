@@ -160,7 +160,7 @@ void add_board(CLI::App& calibrate) {
   add_option(command, "--images", a.images, "8-bit PNG or JPEG of each camera", "FILE...")
       ->required();
   add_option(command, "--camera", a.cameras,
-             "BOP camera.json or ROS camera_info YAML: one for all images, or one for each",
+             "Camera file as of bpa detect, with distortion: one for all images, or one for each",
              "FILE...")
       ->required();
   add_option(command, "--corners", a.corners,

@@ -29,8 +29,8 @@ std::vector<ModelSource> wanted_models(const DetectorArguments& a, int num_threa
   return models;
 }
 
-void print_note(const std::string& path, const std::string& note) {
-  if (!note.empty()) std::printf("%s: %s\n", path.c_str(), note.c_str());
+void print_notes(const std::string& path, const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) std::printf("%s: %s\n", path.c_str(), note.c_str());
 }
 
 Input read_pcd(const std::string& path, Camera camera) {
@@ -42,7 +42,7 @@ Input read_pcd(const std::string& path, Camera camera) {
   const bool known = camera.fx != 0;
   io::OrganisedFrame organised =
       or_throw(io::frame_from_organised_cloud(cloud, known ? &camera : nullptr), path);
-  for (const std::string& note : organised.notes) print_note(path, note);
+  print_notes(path, organised.notes);
   return {path, std::move(organised.frame), organised.cloud_from_camera};
 }
 
@@ -57,8 +57,11 @@ void add_detector_options(CLI::App& command, DetectorArguments& arguments) {
 void add_input_options(CLI::App& command, DetectArguments& a) {
   add_option(command, "--pcd", a.pcd, "Organised PCD clouds; the camera is estimated from them",
              "FILE...");
-  auto* const camera =
-      add_option(command, "--camera", a.camera, "BOP camera.json or ROS camera_info YAML", "FILE");
+  auto* const camera = add_option(
+      command, "--camera", a.camera,
+      "fx fy cx cy or a 3 x 3 matrix: BOP, ROS camera_info, Open3D, librealsense, OpenCV, "
+      "bare numbers",
+      "FILE");
   auto* const depth =
       add_option(command, "--depth", a.depth, "16-bit depth PNGs, registered to colour", "FILE...");
   depth->needs(camera);
@@ -109,7 +112,7 @@ std::vector<io::BopFrame> list_inputs(const DetectArguments& a) {
   io::BopFrame entry;
   if (!a.camera.empty()) {
     const io::CameraFile file = or_throw(io::read_camera(a.camera));
-    print_note(a.camera, file.note);
+    print_notes(a.camera, io::notes_of(file));
     entry.camera = file.camera;
     entry.depth_scale_mm = file.depth_scale_mm;
   }

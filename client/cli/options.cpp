@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/options.hpp"
 
+#include <iostream>
+
 #include "client/cli/convert.hpp"
 #include "core/base/concat.hpp"
 #include "core/base/failure.hpp"
@@ -18,7 +20,7 @@ void add_frame_options(CLI::App& command, FrameFiles& files) {
   command.add_option("--depth", files.depth, "16-bit PNG registered to the colour image");
   command.add_option("--color", files.color, "PNG of the same size");
   command.add_option("--camera", files.camera,
-                     "BOP camera.json (fx fy cx cy, depth_scale in mm) or camera_info YAML");
+                     "its camera: fx fy cx cy and depth_scale (mm), or any form that bpa reads");
   command.add_option("--roi", files.roi, "part of each frame to search: x y width height")
       ->expected(4)
       ->check(CLI::NonNegativeNumber);
@@ -63,6 +65,9 @@ std::vector<io::BopFrame> list_frames(const FrameFiles& files) {
     return or_throw(io::read_bop_frames(files.bop, files.split, files.scenes));
   }
   const io::CameraFile camera = or_throw(io::read_camera(files.camera));
+  for (const std::string& note : io::notes_of(camera)) {
+    std::cerr << files.camera << ": " << note << '\n';
+  }
   io::BopFrame frame;
   frame.camera = camera.camera;
   frame.depth_scale_mm = camera.depth_scale_mm;

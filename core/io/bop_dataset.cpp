@@ -69,11 +69,13 @@ Status read_truth(const Json& gt, const Json& info, const std::string& key, BopF
 
 Result<BopFrame> read_frame_entry(const fs::path& folder, int scene_id, const std::string& key,
                                   const Json& camera) {
+  const auto known = camera_of(camera, (folder / "scene_camera.json").string() + ": " + key);
+  if (!known.ok()) return known.status();
   BopFrame frame;
   frame.scene_id = scene_id;
   frame.im_id = std::stoi(key);
-  frame.camera = camera_of(camera.at("cam_K").get<std::array<double, 9>>());
-  frame.depth_scale_mm = camera.value("depth_scale", 1.0);
+  frame.camera = known->camera;
+  frame.depth_scale_mm = known->depth_scale_mm;
   frame.stamp_ns = whole_number<std::int64_t>(camera, "stamp_ns", 0);
   if (camera.contains("cam_R_w2c")) {
     frame.camera_from_world = pose_of(camera, "cam_R_w2c", "cam_t_w2c");

@@ -12,17 +12,23 @@ namespace bpa::io {
 
 /// What a camera file says.
 struct CameraFile {
-  Camera camera;              ///< width and height are 0 where the file does not say.
-  double depth_scale_mm = 1;  ///< Millimetres of one unit of a depth image.
-  /// Lens distortion of a ROS camera_info file: k1 k2 p1 p2 k3 ...; empty without.
-  std::vector<double> distortion;
-  std::string note;  ///< Something people should know (distortion ignored); else empty.
+  Camera camera;                    ///< width and height are 0 where the file does not say.
+  double depth_scale_mm = 1;        ///< Millimetres of one unit of a depth image.
+  std::vector<double> distortion;   ///< Lens distortion: k1 k2 p1 p2 k3 ...; empty without.
+  std::vector<std::string> unread;  ///< Keys that nothing here knows.
 };
 
-/// Reads a BOP camera.json (fx fy cx cy width height depth_scale; also cam_K instead of fx...) or a
-/// ROS camera_info YAML (image_width, image_height, camera_matrix), by its extension. Fails with
-/// not_found, corrupt, or invalid_argument naming the field and the rule.
+/// Reads a camera, by its content: fx fy cx cy (also ppx ppy) or a 3 x 3 matrix under one of its
+/// usual names, with width, height and depth_scale where they are, as JSON or YAML. So a BOP
+/// camera.json or scene_camera.json (whose cameras are equal), a ROS camera_info of calibrators and
+/// of `ros2 topic echo`, Open3D, librealsense, OpenCV's FileStorage; and bare numbers: fx fy cx cy,
+/// or the matrix row by row. Fails with not_found, corrupt, or invalid_argument naming field and
+/// rule; the message ends with the form that is accepted, filled with the numbers that were found.
 Result<CameraFile> read_camera(const std::string& path);
+
+/// What people should know of images that are read with it: keys that are not read, distortion that
+/// is not taken out.
+std::vector<std::string> notes_of(const CameraFile& file);
 
 /// The BOP form.
 std::string camera_json(const Camera& camera, double depth_scale_mm);

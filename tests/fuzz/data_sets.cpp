@@ -16,8 +16,7 @@ namespace bpa::fuzz {
 namespace {
 
 void run_camera(std::string_view bytes) {
-  const bool json = bytes.starts_with('{');
-  const auto file = io::read_camera(file_of(bytes, json ? "camera.json" : "camera.yaml"));
+  const auto file = io::read_camera(file_of(bytes, "camera"));
   if (!file.ok()) return;
   require(file->camera.fx > 0 && std::isfinite(file->camera.fy),
           "a camera's focal length is legal");
@@ -27,6 +26,8 @@ std::vector<std::string> camera_seeds() {
   return {R"({"fx": 525, "fy": 526, "cx": 319.5, "cy": 239, "width": 640, "height": 480,
   "depth_scale": 0.1})",
           R"({"cam_K": [525, 0, 319.5, 0, 526, 239.5, 0, 0, 1]})",
+          R"({"a": {"intrinsic_matrix": [[525, 0, 0], [0, 526, 0], [319.5, 239.5, 1]]}})",
+          "525 0 319.5\n0 526 239.5\n0 0 1\n",
           "image_width: 640\nimage_height: 480\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
           "  data: [525, 0, 319.5, 0, 526, 239.5, 0, 0, 1]\ndistortion_coefficients:\n"
           "  data: [0.1, 0, 0, 0, 0]\ndepth_scale: 1\n"};

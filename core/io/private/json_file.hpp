@@ -16,8 +16,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/concat.hpp"
-#include "core/geometry/camera.hpp"
 #include "core/geometry/pose.hpp"
+#include "core/io/camera_file.hpp"
 #include "core/io/file_bytes.hpp"
 
 // JSON without exceptions leaving a function; matrices, poses and cameras as JSON.
@@ -63,21 +63,25 @@ namespace bpa::io {
 
 using Json = nlohmann::json;
 
-/// Fails with not_found, or with corrupt when the file is not JSON or nested deeper than any file
-/// of this project: copies of JSON take stack for each level.
-inline Result<Json> read_json(const std::string& path) {
+/// Fails with corrupt when the bytes of a file are not JSON or nested deeper than any file of this
+/// project: copies of JSON take stack for each level.
+inline Result<Json> parse_json(const std::string& path, const std::string& bytes) {
   constexpr int kDeepest = 64;
-  const Result<std::string> bytes = read_file(path);
-  if (!bytes.ok()) return bytes.status();
   bool shallow = true;
   const auto keep = [&shallow](int depth, Json::parse_event_t, Json&) {
     shallow = shallow && depth <= kDeepest;
     return shallow;
   };
-  Json json = Json::parse(*bytes, keep, false);
+  Json json = Json::parse(bytes, keep, false);
   if (!shallow) return corrupt(path, " is JSON of more than ", kDeepest, " levels");
   if (json.is_discarded()) return corrupt(path, " is truncated or not JSON");
   return json;
+}
+
+/// The same of a file, which may be not_found.
+inline Result<Json> read_json(const std::string& path) {
+  const Result<std::string> bytes = read_file(path);
+  return bytes.ok() ? parse_json(path, *bytes) : bytes.status();
 }
 
 /// A whole number that T holds, also where it is written as 5.0; anything else is an error.
@@ -125,8 +129,8 @@ auto read_json(const std::string& path, const auto& body) -> decltype(body(Json(
   return with_json(path, [&]() { return body(*json); });
 }
 
-/// The camera of a BOP "cam_K", the 3 x 3 matrix of its intrinsics row by row, without a size.
-inline Camera camera_of(const std::array<double, 9>& k) { return {0, 0, k[0], k[4], k[2], k[5]}; }
+/// The one camera that JSON holds, in any of the forms of read_camera(). `name` is for messages.
+Result<CameraFile> camera_of(const Json& json, const std::string& name);
 
 // One list of a struct's keys for both the reader and the writer of JSON. A source file declares
 //

@@ -25,33 +25,132 @@ TEST(CameraFile, BopJson) {
   EXPECT_EQ(file->depth_scale_mm, 0.1);
 }
 
-TEST(CameraFile, RosCameraInfo) {
+/// A camera as one of the forms in use. All but `bare` ones say the size.
+struct Form {
+  const char* name;
+  std::string text;
+  bool sized = true;
+};
+
+class Forms : public testing::TestWithParam<Form> {};
+
+TEST_P(Forms, AreTheSameCameraToTheBit) {
   const test::TemporaryFolder folder;
-  spill(folder / "c.yaml",
-        "image_width: 640\nimage_height: 480\ncamera_name: x\ncamera_matrix:\n  rows: 3\n  cols: "
-        "3\n  data: [525, 0, 319.5, 0, 526, 239.5, 0, 0, 1]\ndistortion_model: plumb_bob\n"
-        "distortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [0.1, 0, 0, 0, 0]\n");
-  const Result<CameraFile> file = read_camera(folder / "c.yaml");
+  spill(folder / "camera", GetParam().text);
+  const Result<CameraFile> file = read_camera(folder / "camera");
   ASSERT_TRUE(file.ok()) << file.status().message;
-  EXPECT_EQ(file->camera.fy, 526);
-  EXPECT_EQ(file->camera.height, 480);
-  EXPECT_FALSE(file->note.empty());
+  EXPECT_EQ(file->camera.fx, 1066.778);
+  EXPECT_EQ(file->camera.fy, 1067.487);
+  EXPECT_EQ(file->camera.cx, 312.9869);
+  EXPECT_EQ(file->camera.cy, 241.3109);
+  EXPECT_EQ(file->camera.width, GetParam().sized ? 640 : 0);
+  EXPECT_EQ(file->camera.height, GetParam().sized ? 480 : 0);
+  EXPECT_TRUE(notes_of(*file).empty()) << notes_of(*file).front();
 }
 
-TEST(CameraFile, NamesTheFieldAndTheRule) {
+const std::string kRows = "[1066.778, 0, 312.9869, 0, 1067.487, 241.3109, 0, 0, 1]";
+const std::string kColumns = "[1066.778, 0, 0, 0, 1067.487, 0, 312.9869, 241.3109, 1]";
+const std::string kNested = "[[1066.778, 0, 312.9869],\n [0, 1067.487, 241.3109],\n [0, 0, 1]]";
+const std::string kInfo =
+    "header:\n  stamp: {sec: 1, nanosec: 2}\n  frame_id: cam\nheight: 480\nwidth: 640\n"
+    "distortion_model: plumb_bob\n";
+const std::string kScene = R"({"cam_K": )" + kRows + R"(, "depth_scale": 0.1})";
+
+const Form kForms[] = {
+    {"Bop", R"({"fx": 1066.778, "fy": 1067.487, "cx": 312.9869, "cy": 241.3109, "width": 640,
+                "height": 480, "depth_scale": 0.1})"},
+    {"BopScene", R"({"0": )" + kScene + R"(, "12": )" + kScene + "}", false},
+    {"Nested", R"({"K": )" + kNested + R"(, "width": 640, "height": 480})"},
+    {"Open3d", R"({"width": 640, "height": 480, "intrinsic_matrix": )" + kColumns + "}"},
+    {"Open3dRowByRow", R"({"width": 640, "height": 480, "intrinsic_matrix": )" + kRows + "}"},
+    {"Open3dParameters", R"({"class_name": "PinholeCameraParameters", "extrinsic": [1, 0],
+        "intrinsic": {"width": 640, "height": 480, "intrinsic_matrix": )" +
+                             kColumns + R"(}, "version_major": 1, "version_minor": 0})"},
+    {"Realsense", R"({"width": 640, "height": 480, "ppx": 312.9869, "ppy": 241.3109,
+        "fx": 1066.778, "fy": 1067.487, "model": "Brown Conrady", "coeffs": [0, 0, 0, 0, 0]})"},
+    {"Calibrator",
+     "image_width: 640\nimage_height: 480\ncamera_name: x\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
+     "  data: " +
+         kRows +
+         "\ndistortion_model: plumb_bob\ndistortion_coefficients:\n  rows: 1\n  cols: 5\n"
+         "  data: [0, 0, 0, 0, 0]\nrectification_matrix:\n  rows: 3\n  cols: 3\n  data: [1]\n"},
+    {"TopicEcho", kInfo + "d:\n- 0.0\n- 0.0\nk:\n- 1066.778\n- 0.0\n- 312.9869\n- 0.0\n- 1067.487\n"
+                          "- 241.3109\n- 0.0\n- 0.0\n- 1.0\nbinning_x: 0\nroi:\n  x_offset: 0\n"
+                          "  width: 0\n  do_rectify: false\n---\n"},
+    {"Ros1Echo", kInfo + "D: [0.0, 0.0, 0.0, 0.0, 0.0]\nK: " + kRows + "\nR: [1]\nP: [2]\n---\n"},
+    {"OpenCv",
+     "%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\n"
+     "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: " +
+         kRows + "\n"},
+    {"Kalibr",
+     "cam0:\n  camera_model: pinhole\n  resolution: [640, 480]\n"
+     "  intrinsics: [1066.778, 1067.487, 312.9869, 241.3109]\n"},
+    {"MatrixInText", "1066.778 0 312.9869\r\n0 1067.487 241.3109\r\n0 0 1.0\r\n", false},
+    {"ListInText", kNested, false},
+    {"ScanNet", "1066.778 0 312.9869 0\n0 1067.487 241.3109 0\n0 0 1 0\n0 0 0 1\n", false},
+    {"Tum", "# fx fy cx cy\n1066.778 1067.487 312.9869 241.3109\n", false},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, Forms, testing::ValuesIn(kForms),
+                         [](const auto& test) { return test.param.name; });
+
+TEST(CameraFile, ReadsTheUnitOfDepth) {
   const test::TemporaryFolder folder;
-  spill(folder / "c.json", R"({"fx": 0, "fy": 500, "cx": 1, "cy": 1})");
-  Status status = read_camera(folder / "c.json").status();
-  EXPECT_EQ(status.code, StatusCode::invalid_argument);
-  EXPECT_NE(status.message.find("fx is 0; it must be positive"), std::string::npos);
-  spill(folder / "c.json", R"({"fx": 500, "cx": 1, "cy": 1})");
-  status = read_camera(folder / "c.json").status();
-  EXPECT_EQ(status.code, StatusCode::corrupt);
-  EXPECT_NE(status.message.find("fy"), std::string::npos);
-  spill(folder / "c.json", R"({"fx": 500, )");
-  EXPECT_EQ(read_camera(folder / "c.json").status().code, StatusCode::corrupt);
-  spill(folder / "c.yaml", "image_width: [1");
-  EXPECT_EQ(read_camera(folder / "c.yaml").status().code, StatusCode::corrupt);
+  spill(folder / "c", R"({"0": )" + kScene + "}");
+  EXPECT_EQ(read_camera(folder / "c")->depth_scale_mm, 0.1);
+  spill(folder / "c", R"({"depth_scale": 0.25, "color": {"K": )" + kRows + "}}");
+  EXPECT_EQ(read_camera(folder / "c")->depth_scale_mm, 0.25);
+}
+
+TEST(CameraFile, SaysWhatIsNotReadAndThatDistortionIsIgnored) {
+  const test::TemporaryFolder folder;
+  spill(folder / "c", R"({"K": )" + kRows + R"(, "factor_depth": 10000, "units": {"m": 1}})");
+  EXPECT_EQ(notes_of(*read_camera(folder / "c")),
+            std::vector<std::string>{"does not read: factor_depth, units"});
+  spill(folder / "c", "1066.778 1067.487 312.9869 241.3109 0.2 -0.1 0 0 0.3\n");
+  const Result<CameraFile> file = read_camera(folder / "c");
+  ASSERT_TRUE(file.ok()) << file.status().message;
+  EXPECT_EQ(file->distortion, (std::vector<double>{0.2, -0.1, 0, 0, 0.3}));
+  EXPECT_EQ(notes_of(*file).size(), 1U);
+}
+
+/// What is refused, with the field, the rule, and the form that would be read.
+TEST(CameraFile, RefusalsShowTheAcceptedFormWithTheNumbersFound) {
+  const test::TemporaryFolder folder;
+  const std::string four = R"("fx": 1066.778, "fy": 1067.487, "cx": 312.9869, "cy": 241.3109)";
+  const struct {
+    std::string text, said, form;
+  } cases[] = {
+      {R"({"fx": 0, "fy": 500, "cx": 1, "cy": 1})", "fx is 0; it must be positive",
+       R"({"fx": 0, "fy": 500,)"},
+      {R"({"fx": 500, "cx": 1, "cy": 1})", "'fy'", R"({"fx": 500, "fy": ..., "cx": 1)"},
+      {R"({"fx": 500, )", "not JSON", R"({"fx": ..., "fy": ...)"},
+      {"image_width: [1", "", R"({"fx": ...)"},
+      {R"({"focal": 500, "centre": [1, 2]})", "it has: centre, focal", R"({"fx": ...)"},
+      {R"({"cam_K": )" + kColumns + R"(, "depth_scale": 0.1})",
+       "third row of its matrix is 312.987 241.311 1; it must be 0 0 1",
+       "{" + four + R"(, "width": ..., "height": ..., "depth_scale": 0.1})"},
+      {R"({"K": [1066.778, 90, 312.9869, 0, 1067.487, 241.3109, 0, 0, 1]})", "skew 90", "{" + four},
+      {R"({"K": [1, 2, 3]})", "3 numbers", "..."},
+      {"1 2 3", "3 numbers", "..."},
+      {R"({"fx": 1, "fy": 1, "cx": 1, "cy": 1, "depth_scale": 0.001})", "not metres of one unit",
+       R"("depth_scale": 1.0})"},
+      {R"({"fx": 1, "fy": 1, "cx": 1, "cy": 1, "depth_scale": 5000})", "not units of one metre",
+       R"("depth_scale": 0.2})"},
+      {R"({"fx": 500, "fy": 500, "cx": 1, "cy": 1, "width": 640})", "height is 0",
+       R"("width": 640, "height": ...)"},
+      {R"({"color": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}, "depth":
+           {"fx": 2, "fy": 1, "cx": 1, "cy": 1}})",
+       "2 cameras that differ (color, depth)", R"({"fx": 1,)"}};
+  for (const auto& one : cases) {
+    spill(folder / "c", one.text);
+    const Status status = read_camera(folder / "c").status();
+    EXPECT_TRUE(status.code == StatusCode::invalid_argument || status.code == StatusCode::corrupt);
+    EXPECT_NE(status.message.find(one.said), std::string::npos) << status.message;
+    EXPECT_NE(status.message.find("Accepted is"), std::string::npos) << status.message;
+    EXPECT_NE(status.message.find(one.form), std::string::npos) << status.message;
+  }
+  EXPECT_EQ(read_camera(folder / "none").status().code, StatusCode::not_found);
 }
 
 }  // namespace
