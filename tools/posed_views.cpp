@@ -192,11 +192,13 @@ std::vector<modeling::PosedView> simulate_views(const TriangleMesh& mesh, int co
                                                 std::uint64_t seed, int num_threads,
                                                 const std::string& title) {
   constexpr double kFocal = 570.3;  // of a Kinect's depth camera
-  constexpr double kDistance = 0.8, kMargin = 24;
+  constexpr double kDistance = 0.8, kNearest = 0.6, kMargin = 24;
+  constexpr double kWidest = 560;  // pixels: large objects are seen from farther away
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& v : mesh.vertices) box.extend(v);
   const double size = box.diagonal().norm();
-  const double distance = std::max(kDistance, 0.5 * size + 0.6);
+  const double whole = kFocal * size / (kWidest - 2 * kMargin);  // as near as all of it is seen
+  const double distance = std::max(kDistance, 0.5 * size + std::max(kNearest, whole));
   // As much of the camera's image as the object covers.
   const double nearest = distance - 0.5 * size;
   const int side = 2 * static_cast<int>(std::ceil(0.5 * kFocal * size / nearest + kMargin));

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/cloud/curvature.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "core/base/parallel.hpp"
@@ -53,29 +52,6 @@ void estimate_curvature(PointCloud& cloud, float radius, int num_threads) {
     Eigen::Vector2f direction;
     decompose(covariance, cloud.curvatures[i], direction);
     cloud.principal_directions[i] = (direction.x() * u + direction.y() * v).normalized();
-  });
-}
-
-void estimate_normals(PointCloud& cloud, float radius, const Eigen::Vector3f& viewpoint,
-                      int num_threads) {
-  const NeighborGrid grid(cloud.points, radius);
-  cloud.normals.assign(cloud.size(), Eigen::Vector3f::Zero());
-  parallel_for(cloud.size(), num_threads, [&](std::size_t i) {
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
-    int count = 0;
-    grid.for_each_neighbor(cloud.points[i], [&](int j, float) {
-      const Eigen::Vector3f d = cloud.points[j] - cloud.points[i];
-      sum += d;
-      squares += d * d.transpose();
-      ++count;
-    });
-    if (count < 3) return;
-    const Eigen::Matrix3f scatter = squares - sum * sum.transpose() / static_cast<float>(count);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver(scatter);
-    Eigen::Vector3f normal = solver.eigenvectors().col(0);
-    if (normal.dot(viewpoint - cloud.points[i]) < 0) normal = -normal;
-    cloud.normals[i] = normal;
   });
 }
 

@@ -12,8 +12,4 @@ namespace bpa {
 /// count.
 void estimate_curvature(PointCloud& cloud, float radius, int num_threads);
 
-/// Fills normals of a cloud by plane fits to the neighbours within `radius`, toward `viewpoint`.
-void estimate_normals(PointCloud& cloud, float radius, const Eigen::Vector3f& viewpoint,
-                      int num_threads);
-
 }  // namespace bpa

@@ -127,11 +127,13 @@ double mean_point_area(const PointCloud& surface) {
 float mean_spacing(const PointCloud& surface, float least_cosine) {
   const std::vector<Eigen::Vector3f>& points = surface.points;
   const std::size_t step = std::max<std::size_t>(1, points.size() / 100);
+  const bool sided = !surface.normals.empty();
   float sum = 0, count = 0;
   for (std::size_t i = 0; i < points.size(); i += step) {
     float nearest = std::numeric_limits<float>::infinity();
     for (std::size_t j = 0; j < points.size(); ++j) {
-      if (j == i || surface.normals[j].dot(surface.normals[i]) < least_cosine) continue;
+      if (j == i) continue;
+      if (sided && surface.normals[j].dot(surface.normals[i]) < least_cosine) continue;
       nearest = std::min(nearest, (points[j] - points[i]).squaredNorm());
     }
     if (!std::isfinite(nearest)) continue;

@@ -22,8 +22,9 @@ struct ModelOptions {
 /// with invalid_argument on no surface, or one under 5 mm or over 3 m (with a hint about units).
 Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::string& name,
                                            int number, const ModelOptions& options = {});
-/// The same for points. Where the cloud has no normals they are estimated, and point to the origin:
-/// such a cloud is one view of the object, in its camera's frame, and the model is not complete.
+/// The same for points. Normals that are missing or cannot be used (mend_normals()) are estimated:
+/// out of a closed surface, else to the origin. Such a cloud is one view of the object, in its
+/// camera's frame, and the model is not complete.
 Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std::string& name,
                                              int number, const ModelOptions& options = {});
 

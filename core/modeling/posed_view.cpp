@@ -10,6 +10,7 @@
 #include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/geometry/pose.hpp"
+#include "core/model/object_model.hpp"
 #include "core/model/view_sphere.hpp"
 
 namespace bpa::modeling {
@@ -158,10 +159,11 @@ PosedView make_posed_view(const Frame& frame, const std::vector<std::uint8_t>& o
 
 SurfaceObservations observe_surface(const PointCloud& surface, const std::vector<PosedView>& views,
                                     int num_threads) {
-  constexpr float kSpacing = 0.003f;  // of the buffers that say what is hidden
+  // Of the buffers that say what is hidden; without holes.
+  const float spacing = std::max(0.003f, 1.1f * mean_spacing(surface, -2));
   std::vector<std::vector<Comparison>> comparisons(views.size());
   parallel_for(views.size(), num_threads,
-               [&](std::size_t i) { comparisons[i] = compare(surface, views[i], kSpacing); });
+               [&](std::size_t i) { comparisons[i] = compare(surface, views[i], spacing); });
   std::vector<PointSums> sums(surface.size());
   Bins range{}, normal{};
   double depth = 0, count = 0;

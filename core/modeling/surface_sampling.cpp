@@ -10,18 +10,19 @@
 #include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
-#include "core/cloud/curvature.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/cloud/texture.hpp"
 #include "core/geometry/sphere_directions.hpp"
 #include "core/model/view_sphere.hpp"
-#include "core/modeling/model_source.hpp"
+#include "core/modeling/private/surface_source.hpp"
 
 namespace bpa::modeling {
 namespace {
 
 constexpr double kMinDiameter = 0.005;
 constexpr double kMaxDiameter = 3.0;
+constexpr double kFewPoints = 2000;
+constexpr std::size_t kMostTriangles = 1'500'000;  // all are drawn for each direction
 
 // Points of the surface of a mesh, and the triangles that they lie on.
 struct Samples {
@@ -288,6 +289,8 @@ std::vector<std::string> mesh_warnings(const VisibleSurface& visible, std::size_
   return warnings;
 }
 
+}  // namespace
+
 ModelSource make_source(PointCloud surface, const std::string& name, int number, int num_threads) {
   ModelSource source;
   source.name = name;
@@ -299,14 +302,15 @@ ModelSource make_source(PointCloud surface, const std::string& name, int number,
   return source;
 }
 
-}  // namespace
+std::string coarse_warning(double spacing) {
+  return concat("is so large that its points are ", fixed(1000 * spacing, 1), " mm apart");
+}
 
 Status check_size(const std::string& name, double diameter) {
   if (diameter >= kMinDiameter && diameter <= kMaxDiameter) return {};
   return invalid_argument(
-      "model ", name, " has a diameter of ", diameter, " m; it must be between 0.005 and 3 m",
-      diameter > kMaxDiameter ? " (a mesh in millimetres? try --scale 0.001)" : "",
-      diameter < kMinDiameter && diameter > 0 ? " (try --scale 1000)" : "");
+      "model ", name, " has a diameter of ", diameter,
+      " m; it must be between 0.005 and 3 m: say its unit (--unit mm, cm, m or in, or --scale)");
 }
 
 std::vector<std::string> shape_warnings(const PointCloud& surface) {
@@ -324,14 +328,20 @@ std::vector<std::string> shape_warnings(const PointCloud& surface) {
 Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::string& name,
                                            int number, const ModelOptions& options) {
   if (Status status = validate(options); !status.ok()) return status;
+  if (mesh.triangles.size() > kMostTriangles) {
+    return invalid_argument("model ", name, " has ", mesh.triangles.size(),
+                            " triangles; it must have at most ", kMostTriangles,
+                            ": simplify the mesh (MeshLab: Quadric Edge Collapse Decimation)");
+  }
   double area = 0;
   for (std::size_t k = 0; k < mesh.triangles.size(); ++k) area += 0.5 * cross_of(mesh, k).norm();
   if (mesh.vertices.empty() || !(area > 0) || !std::isfinite(area)) {
     return invalid_argument("model " + name + " has no surface; the mesh must have triangles");
   }
   if (Status s = check_size(name, largest_distance(mesh.vertices)); !s.ok()) return s;
-  // Small objects are sampled more finely, so that they too have about 2000 points.
-  const double spacing = std::min(options.spacing_m, std::sqrt(area / 2000));
+  // Small objects are sampled more finely, so that they too have some points; large ones coarsely.
+  const double spacing = std::max(std::min(options.spacing_m, std::sqrt(area / kFewPoints)),
+                                  std::sqrt(area / kMostPoints));
   const Samples samples = sample_triangles(mesh, 6 / (spacing * spacing));
   const VisibleSurface visible = visible_surface(mesh, samples, spacing, options.num_threads);
   if (visible.cloud.size() < 100) {
@@ -341,25 +351,7 @@ Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::
       make_source(downsample(visible.cloud, spacing), name, number, options.num_threads);
   std::ranges::move(mesh_warnings(visible, samples.triangles.size()),
                     std::back_inserter(source.warnings));
-  return source;
-}
-
-Result<ModelSource> model_source_from_points(const PointCloud& cloud, const std::string& name,
-                                             int number, const ModelOptions& options) {
-  if (Status status = validate(options); !status.ok()) return status;
-  if (cloud.size() < 100) {
-    return invalid_argument("model ", name, " has ", cloud.size(),
-                            " points; it must have at least 100");
-  }
-  if (Status s = check_size(name, largest_distance(cloud.points)); !s.ok()) return s;
-  const auto spacing = static_cast<float>(options.spacing_m);
-  PointCloud even = downsample(cloud, spacing);
-  if (cloud.normals.empty()) {
-    // One view of an object, in its camera's frame: normals point to the origin.
-    estimate_normals(even, 4 * spacing, Eigen::Vector3f::Zero(), options.num_threads);
-  }
-  ModelSource source = make_source(std::move(even), name, number, options.num_threads);
-  source.complete = !cloud.normals.empty();
+  if (spacing > options.spacing_m) source.warnings.push_back(coarse_warning(spacing));
   return source;
 }
 

@@ -50,6 +50,17 @@ TEST(SimulatedViews, BoxIsSeenWhole) {
   EXPECT_GT(edge / at_edge, 3 * middle / in_middle);
 }
 
+// What time and memory grow with: the pixels of a view.
+TEST(SimulatedViews, LargeObjectsHaveNoLargerImages) {
+  for (const float side : {1.0f, 1.7f}) {
+    const TriangleMesh mesh = test::box_mesh(Eigen::Vector3f::Constant(side / 2));
+    for (const modeling::PosedView& view : simulate_views(mesh, 2, 1, 2, {})) {
+      EXPECT_LE(view.map.size(), 280u * 280u);
+      EXPECT_GT(std::ranges::count(view.object, 1), 10000);
+    }
+  }
+}
+
 // No camera that does not look straight in sees the bottom of a narrow tube; what is inside of
 // another solid is no news.
 TEST(SimulatedViews, BottomOfATubeIsLeftOut) {

@@ -110,7 +110,6 @@ TEST(Curvature, FarSideOfAThinWallDoesNotCount) {
 TEST(Curvature, TakesEmptyAndTinyClouds) {
   PointCloud cloud;
   estimate_curvature(cloud, kRadius, 0);
-  estimate_normals(cloud, kRadius, Eigen::Vector3f::Zero(), 0);
   cloud.points = {{0, 0, 1}};
   cloud.normals = {-Eigen::Vector3f::UnitZ()};
   estimate_curvature(cloud, kRadius, 0);
@@ -131,27 +130,6 @@ TEST(Curvature, NumberOfThreadsDoesNotMatter) {
     EXPECT_EQ(one.principal_directions, many.principal_directions);
     EXPECT_EQ(one.curvatures, many.curvatures);
   }
-}
-
-TEST(Normals, OfASphereSeenFromItsMiddlePointInwards) {
-  PointCloud cloud = sphere(0.08, 20000);
-  const PointCloud truth = cloud;
-  estimate_normals(cloud, 0.01f, Eigen::Vector3f::Zero(), 0);
-  for (std::size_t i = 0; i < cloud.size(); i += 13) {
-    EXPECT_GT(-cloud.normals[i].dot(truth.normals[i]), std::cos(0.03));
-  }
-  const Eigen::Vector3f far(0, 0, 10);
-  estimate_normals(cloud, 0.01f, far, 0);
-  for (std::size_t i = 0; i < cloud.size(); i += 13) {
-    EXPECT_GE(cloud.normals[i].dot(far - cloud.points[i]), 0);
-  }
-}
-
-TEST(Normals, OfTwoPointsAreUnknown) {
-  PointCloud cloud;
-  cloud.points = {{0, 0, 1}, {0.001f, 0, 1}};
-  estimate_normals(cloud, 0.01f, Eigen::Vector3f::Zero(), 0);
-  for (const Eigen::Vector3f& n : cloud.normals) EXPECT_EQ(n.squaredNorm(), 0);
 }
 
 }  // namespace

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <gtest/gtest.h>
 
+#include "core/base/random.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/cloud/texture.hpp"
 #include "core/modeling/model_source.hpp"
@@ -287,9 +289,39 @@ TEST(SurfaceSampling, ColoursOfATextureVaryInsideTriangles) {
 
 TEST(SurfaceSampling, WrongUnitsAreRefusedWithAHint) {
   const TriangleMesh mesh = test::box_mesh(kBoxHalf);
-  EXPECT_NE(refusal(scaled(mesh, 1000)).find("(a mesh in millimetres? try --scale 0.001)"),
+  for (const float factor : {1000.0f, 0.001f}) {
+    EXPECT_NE(refusal(scaled(mesh, factor)).find("--unit mm, cm, m or in"), std::string::npos);
+  }
+}
+
+TEST(SurfaceSampling, TooManyTrianglesAreRefusedBeforeTheWork) {
+  TriangleMesh mesh = test::box_mesh(kBoxHalf);
+  mesh.triangles.resize(1'500'001, mesh.triangles[0]);
+  EXPECT_NE(refusal(mesh).find("1500001 triangles; it must have at most 1500000: simplify"),
             std::string::npos);
-  EXPECT_NE(refusal(scaled(mesh, 0.001f)).find("(try --scale 1000)"), std::string::npos);
+}
+
+// What time and memory grow with.
+TEST(SurfaceSampling, LargeObjectsHaveNoMorePoints) {
+  for (const float side : {1.0f, 1.7f}) {
+    const ModelSource source = source_of(test::box_mesh(Eigen::Vector3f::Constant(side / 2)));
+    EXPECT_LT(source.surface.size(), 45000u);
+    EXPECT_GT(source.surface.size(), 20000u);
+    EXPECT_NE(source.warnings.back().find("points are"), std::string::npos);
+    PointCloud cloud;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int k = 0; k < 500 * 500; ++k) {
+        Eigen::Vector3f p(side, side * static_cast<float>(k % 500) / 500,
+                          side * static_cast<float>(k / 500) / 500);
+        std::rotate(p.data(), p.data() + axis, p.data() + 3);
+        cloud.points.push_back(p);
+      }
+    }
+    const auto points = model_source_from_points(cloud, "cloud", 1);
+    ASSERT_TRUE(points.ok()) << points.status().message;
+    EXPECT_LT(points->surface.size(), 45000u);
+    EXPECT_NE(points->warnings.back().find("points are"), std::string::npos);
+  }
 }
 
 TEST(SurfaceSampling, MeshWithoutSurfaceIsRefused) {
@@ -330,6 +362,37 @@ TEST(SurfaceFromPoints, KeepsGivenNormals) {
   }
 }
 
+// Of a ball about the origin, sampled at random, with the normals that a file may have.
+TEST(SurfaceFromPoints, UnusableNormalsOfAClosedSurfaceAreEstimatedAndPointOutwards) {
+  RandomStream random(3);
+  const auto unit = [&random] {
+    const Eigen::Vector3d v(random.normal(), random.normal(), random.normal());
+    return Eigen::Vector3f(v.normalized().cast<float>());
+  };
+  const float nan = std::nanf("");
+  const std::pair<const char*, std::function<Eigen::Vector3f()>> all[] = {
+      {"zero", [] { return Eigen::Vector3f(0, 0, 0); }},
+      {"nan", [nan] { return Eigen::Vector3f(nan, nan, nan); }},
+      {"constant", [] { return Eigen::Vector3f(1, 0, 0); }},
+      {"random", unit},
+      {"none", nullptr}};
+  for (const auto& [name, normal] : all) {
+    SCOPED_TRACE(name);
+    PointCloud cloud;
+    for (int i = 0; i < 1200; ++i) {
+      cloud.points.emplace_back(0.05f * unit());
+      if (normal) cloud.normals.push_back(normal());
+    }
+    const auto source = model_source_from_points(cloud, "ball", 1);
+    ASSERT_TRUE(source.ok()) << source.status().message;
+    EXPECT_TRUE(source->complete);
+    EXPECT_GT(source->surface.size(), 900u);
+    for (std::size_t i = 0; i < source->surface.size(); ++i) {
+      EXPECT_GT(source->surface.normals[i].dot(source->surface.points[i].normalized()), 0.9f);
+    }
+  }
+}
+
 TEST(SurfaceFromPoints, OneViewGetsNormalsTowardTheCamera) {
   PointCloud view;
   for (int k = 0; k < 100 * 100; ++k) {
@@ -341,6 +404,23 @@ TEST(SurfaceFromPoints, OneViewGetsNormalsTowardTheCamera) {
   ASSERT_TRUE(source.ok());
   const Eigen::Vector3f normal = Eigen::Vector3f(0.5f, 0, -1).normalized();
   for (const Eigen::Vector3f& n : source->surface.normals) EXPECT_GT(n.dot(normal), 0.999f);
+  EXPECT_FALSE(source->complete);
+}
+
+TEST(SurfaceFromPoints, ACornerOfThreeFacesIsOneView) {
+  PointCloud view;
+  for (int k = 0; k < 3 * 40 * 40; ++k) {
+    Eigen::Vector3f p(0, 0.002f * static_cast<float>(k % 40),
+                      0.002f * static_cast<float>(k / 40 % 40));
+    std::rotate(p.data(), p.data() + k / 1600, p.data() + 3);
+    view.points.emplace_back(p + Eigen::Vector3f(0.3f, 0.3f, 0.4f));  // its point nearest
+  }
+  const auto source = model_source_from_points(view, "corner", 1);
+  ASSERT_TRUE(source.ok());
+  EXPECT_FALSE(source->complete);
+  for (std::size_t i = 0; i < source->surface.size(); ++i) {
+    EXPECT_LT(source->surface.normals[i].dot(source->surface.points[i]), 0);
+  }
 }
 
 TEST(SurfaceFromPoints, RefusesTooFewAndWrongUnits) {
@@ -350,7 +430,7 @@ TEST(SurfaceFromPoints, RefusesTooFewAndWrongUnits) {
             "model few has 99 points; it must have at least 100");
   cloud.points.assign(200, Eigen::Vector3f::Zero());
   cloud.points.back() = {500, 0, 0};
-  EXPECT_NE(model_source_from_points(cloud, "big", 1).status().message.find("--scale 0.001"),
+  EXPECT_NE(model_source_from_points(cloud, "big", 1).status().message.find("--unit mm"),
             std::string::npos);
 }
 
