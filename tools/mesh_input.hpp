@@ -15,6 +15,9 @@ namespace bpa::cli {
 /// Adds --scale and --unit, of which one may be given; `scale` is 0 without.
 void add_unit_options(CLI::App& command, double& scale);
 
+/// Adds --unit, which sets metres of one unit.
+CLI::Option* add_unit_option(CLI::App& command, double& metres, const char* text);
+
 /// Metres of one unit of files that do not say theirs. `largest` is the longest side of all their
 /// objects, which are taken to be 2 cm to 3 m long: metres up to 3, centimetres up to 20, else
 /// millimetres.

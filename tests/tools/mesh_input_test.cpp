@@ -29,10 +29,36 @@ TEST(MeshInput, AFolderHasOneUnit) {
   ::testing::internal::CaptureStdout();
   const std::vector<io::MeshFile> files = read_meshes(paths, scale);
   EXPECT_EQ(::testing::internal::GetCapturedStdout(),
-            "box.ply: assuming millimetres: 200 x 100 x 60 mm; --unit or --scale says otherwise\n"
-            "screw.ply: assuming millimetres: 12 x 8 x 8 mm; --unit or --scale says otherwise\n");
+            "box.ply: assuming millimetres: 200 x 100 x 60 mm, like a shoe; --unit or --scale says "
+            "otherwise\n"
+            "screw.ply: assuming millimetres: 12 x 8 x 8 mm, like a coin; --unit or --scale says "
+            "otherwise\n");
   EXPECT_EQ(scale, 0.001);
   EXPECT_NEAR(files[1].mesh.vertices[0].cwiseAbs().x(), 0.006f, 1e-6f);
+}
+
+/// Such as a part of two inches, which is no object of two metres.
+TEST(MeshInput, SizesThatObjectsSeldomHaveNeedAUnit) {
+  const test::TemporaryFolder folder;
+  const auto refusal = [&](float side) -> std::string {
+    or_throw(io::write_ply(folder / "a.ply", test::box_mesh(Eigen::Vector3f::Constant(side / 2))));
+    double scale = 0;
+    try {
+      ::testing::internal::CaptureStdout();
+      (void)read_meshes({folder / "a.ply"}, scale);
+    } catch (const Failure& failure) {
+      ::testing::internal::GetCapturedStdout();
+      return failure.what();
+    }
+    EXPECT_NE(::testing::internal::GetCapturedStdout(), "");
+    return "";
+  };
+  EXPECT_NE(refusal(2).find("its longest side is 2; give one of --unit m (2e+03 mm), --unit cm (20 "
+                            "mm), --unit mm (2 mm), --unit in (50.8 mm)"),
+            std::string::npos)
+      << refusal(2);
+  for (const float side : {0.005f, 1.0f, 2.9f, 900.0f}) EXPECT_NE(refusal(side), "") << side;
+  for (const float side : {0.02f, 0.7f, 4.0f, 30.0f, 700.0f}) EXPECT_EQ(refusal(side), "") << side;
 }
 
 TEST(MeshInput, WhatTheUserSaysIsNotGuessed) {
