@@ -3,9 +3,11 @@
 #include "core/io/mesh_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include "core/base/concat.hpp"
+#include "core/cloud/normals.hpp"
 #include "core/cloud/texture.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/pcd_file.hpp"
@@ -62,13 +64,70 @@ MeshFile with_textures(PlyFile ply, const std::string& path) {
   return file;
 }
 
+/// Leaves one of triangles that have the same corners, in the same order round the triangle: each
+/// copy would count as surface.
+void drop_copies(TriangleMesh& mesh) {
+  using Corners = std::array<std::array<float, 3>, 3>;
+  std::vector<std::pair<Corners, std::size_t>> all;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    Corners corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector3f& v = mesh.vertices[mesh.triangles[t][k]];
+      corners[k] = {v.x(), v.y(), v.z()};
+    }
+    std::ranges::rotate(corners, std::ranges::min_element(corners));
+    all.emplace_back(corners, t);
+  }
+  std::ranges::sort(all);
+  std::vector<std::uint8_t> copy(all.size(), 0);
+  for (std::size_t i = 1; i < all.size(); ++i)
+    copy[all[i].second] = all[i].first == all[i - 1].first;
+  const bool textured = !mesh.texture_of.empty();
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < copy.size(); ++t) {
+    if (copy[t] != 0) continue;
+    mesh.triangles[kept] = mesh.triangles[t];
+    if (textured) mesh.texture_of[kept] = mesh.texture_of[t];
+    ++kept;
+  }
+  mesh.triangles.resize(kept);
+  if (textured) mesh.texture_of.resize(kept);
+}
+
+/// How a file of another format becomes a mesh.
+std::string way_to_a_mesh(const std::string& path, const std::string& extension) {
+  const auto is = [&](std::initializer_list<const char*> all) {
+    return std::ranges::count(all, extension) > 0;
+  };
+  const std::string to = std::filesystem::path(path).stem().string() + ".stl";
+  if (is({"step", "stp", "iges", "igs", "brep"})) {
+    return "; mesh it: freecadcmd -c \"import Part, MeshPart; "
+           "MeshPart.meshFromShape(Shape=Part.read('" +
+           path + "'), LinearDeflection=0.1).write('" + to + "')\"";
+  }
+  if (is({"3mf", "fbx", "3ds", "x3d", "blend"}))
+    return "; convert it: assimp export " + path + ' ' + to;
+  if (is({"usd", "usda", "usdc", "usdz"})) return "; export it from Blender as GLB";
+  if (!is({"sdf", "urdf", "xacro"})) return "";
+  const Result<std::string> text = read_file(path);
+  std::string named;
+  for (const auto& [begin, end] : {std::pair("<mesh filename=\"", '"'), std::pair("<uri>", '<')}) {
+    const std::size_t at = text.ok() ? text->find(begin) : std::string::npos;
+    if (at == std::string::npos || !named.empty()) continue;
+    const std::size_t from = at + std::string_view(begin).size();
+    named = text->substr(from, text->find(end, from) - from);
+  }
+  return "; give the mesh that it names" + (named.empty() ? "" : ": " + named);
+}
+
 Result<MeshFile> read_any(const std::string& path, double scale, bool colored) {
   const std::string extension = lower_extension(path);
   if (std::ranges::count(mesh_extensions(), extension) == 0) {
     return Status(StatusCode::unsupported,
                   path +
                       " is not a mesh that can be read; use .ply, .obj, .stl, .glb, .gltf or "
-                      ".dae");
+                      ".dae" +
+                      way_to_a_mesh(path, extension));
   }
   Result<MeshFile> file = MeshFile{};
   if (extension == "ply") {
@@ -90,6 +149,8 @@ Result<MeshFile> read_any(const std::string& path, double scale, bool colored) {
   if (!std::ranges::all_of(file->mesh.uv, finite)) {
     drop_colors("has texture coordinates that are not finite", *file);
   }
+  drop_copies(file->mesh);
+  mend_normals(file->mesh);
   return file;
 }
 

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <string_view>
 
@@ -96,11 +97,11 @@ Result<Header> parse_header(std::string_view bytes, const std::string& name) {
   Header header;
   std::string key;
   for (bool first = true; key != "end_header"; first = false) {
-    const std::size_t end = bytes.find('\n', header.size);
+    const std::size_t end = bytes.find_first_of("\r\n", header.size);
     if (end == std::string::npos)
       return corrupt(name, " is truncated: its PLY header does not end");
     std::istringstream words(std::string(bytes.substr(header.size, end - header.size)));
-    header.size = end + 1;
+    header.size = end + (bytes.substr(end, 2) == "\r\n" ? 2 : 1);
     key.clear();
     words >> key;
     if (first && key != "ply") return corrupt(name, " is not a PLY file");
@@ -144,6 +145,15 @@ class Values {
 
   bool ok() const { return ok_; }
   std::size_t remaining() const { return bytes_.size(); }
+  /// Whether more stands on the line of a row of text than was read.
+  bool line_goes_on() const {
+    const std::size_t next = bytes_.find_first_not_of(" \t");
+    return ascii_ && next != bytes_.npos && bytes_[next] != '\r' && bytes_[next] != '\n';
+  }
+  /// Whether all is read, but for what may end a file.
+  bool at_end() const {
+    return bytes_.find_first_not_of(std::string_view(" \t\r\n\0", 5)) == bytes_.npos;
+  }
 
   void next_row(const Element& element, Row& row) {
     row.resize(element.properties.size());
@@ -208,6 +218,18 @@ std::uint8_t color_byte(double value, const NumberType& type) {
                     : 0;  // or NaN
 }
 
+/// Nothing where a row has no colour.
+std::optional<std::array<std::uint8_t, 3>> color_of(const Element& element, const Columns& columns,
+                                                    const Row& row) {
+  std::array<std::uint8_t, 3> color{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int p = columns[6 + k];
+    if (p < 0) return std::nullopt;
+    color[k] = color_byte(row[p].front(), *element.properties[p].type);
+  }
+  return color;
+}
+
 void add_vertex(const Element& element, const Columns& columns, const Row& row, double scale,
                 TriangleMesh& mesh) {
   const auto has = [&](std::size_t first, int count = 3) {
@@ -221,24 +243,28 @@ void add_vertex(const Element& element, const Columns& columns, const Row& row, 
     mesh.normals.push_back(normal.stableNormalized().cast<float>());
   }
   if (has(9, 2)) mesh.uv.emplace_back(number(9), number(10));
-  if (!has(6)) return;
-  std::array<std::uint8_t, 3>& color = mesh.colors.emplace_back();
-  for (std::size_t k = 0; k < 3; ++k) {
-    const int p = columns[6 + k];
-    color[k] = color_byte(row[p].front(), *element.properties[p].type);
-  }
+  if (const auto color = color_of(element, columns, row)) mesh.colors.push_back(*color);
 }
 
-/// Texture coordinates of the corners of a triangle.
-using Corners = std::array<Eigen::Vector2f, 3>;
+/// What faces say of triangles beside their vertices; each empty, or one a triangle.
+struct FaceValues {
+  std::vector<std::array<Eigen::Vector2f, 3>> uv;  ///< Texture coordinates of the corners.
+  std::vector<std::array<std::uint8_t, 3>> colors;
+};
 
-/// Adds the triangles of a polygon and, if it has them, texture coordinates for each corner.
-void add_face(const Element& element, const Row& row, TriangleMesh& mesh,
-              std::vector<Corners>& corners) {
-  const auto vertex = [](double index) {
-    constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
-    return index >= 0 && index < kNone ? static_cast<std::uint32_t>(index) : kNone;
-  };
+bool lists_vertices(const Property& property) {
+  return property.count_type &&
+         (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+std::uint32_t vertex_index(double number) {
+  constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
+  return number >= 0 && number < kNone ? static_cast<std::uint32_t>(number) : kNone;
+}
+
+/// Adds the triangles of a polygon.
+void add_face(const Element& element, const Columns& columns, const Row& row, TriangleMesh& mesh,
+              FaceValues& values) {
   const auto index_of = [](double number) {
     constexpr double kMany = 1000;  // textures; more are none
     return number >= 0 && number < kMany ? static_cast<int>(number) : -1;
@@ -248,25 +274,42 @@ void add_face(const Element& element, const Row& row, TriangleMesh& mesh,
   int texture = 0;
   for (std::size_t p = 0; p < row.size(); ++p) {
     const auto& [name, type, count_type] = element.properties[p];
-    if (count_type && (name == "vertex_indices" || name == "vertex_index")) indices = &row[p];
+    if (lists_vertices(element.properties[p])) indices = &row[p];
     if (count_type && name == "texcoord") uv = &row[p];
     if (!count_type && name == "texnumber") texture = index_of(row[p].front());
   }
   const std::vector<double>& of = *indices;
   for (std::size_t k = 2; k < of.size(); ++k) {
-    mesh.triangles.push_back({vertex(of[0]), vertex(of[k - 1]), vertex(of[k])});
+    mesh.triangles.push_back({vertex_index(of[0]), vertex_index(of[k - 1]), vertex_index(of[k])});
     mesh.texture_of.push_back(texture);
+    if (const auto color = color_of(element, columns, row)) values.colors.push_back(*color);
     if (uv->size() != 2 * of.size()) continue;
     const auto at = [&](std::size_t i) {
       return Eigen::Vector2f(static_cast<float>((*uv)[2 * i]),
                              static_cast<float>((*uv)[2 * i + 1]));
     };
-    corners.push_back({at(0), at(k - 1), at(k)});
+    values.uv.push_back({at(0), at(k - 1), at(k)});
   }
 }
 
-/// Gives each corner of a triangle a vertex of its own, with its texture coordinates.
-void split_corners(const std::vector<Corners>& corners, TriangleMesh& mesh) {
+/// Adds the triangles of strips, which end with -1; every second one is turned over.
+void add_strips(const Element& element, const Row& row, TriangleMesh& mesh) {
+  for (std::size_t p = 0; p < row.size(); ++p) {
+    if (!lists_vertices(element.properties[p])) continue;
+    std::size_t begin = 0;
+    for (std::size_t k = 0; k < row[p].size(); ++k) {
+      if (row[p][k] < 0) begin = k + 1;
+      if (k < begin + 2) continue;
+      const bool odd = (k - begin) % 2 != 0;
+      mesh.triangles.push_back({vertex_index(row[p][k - (odd ? 1 : 2)]),
+                                vertex_index(row[p][k - (odd ? 2 : 1)]), vertex_index(row[p][k])});
+      mesh.texture_of.push_back(0);
+    }
+  }
+}
+
+/// Gives each corner of a triangle a vertex of its own, with the values of its face.
+void split_corners(const FaceValues& values, TriangleMesh& mesh) {
   const TriangleMesh from = std::move(mesh);
   mesh = {};
   mesh.texture_of = from.texture_of;
@@ -278,9 +321,32 @@ void split_corners(const std::vector<Corners>& corners, TriangleMesh& mesh) {
       mesh.vertices.push_back(from.vertices[v]);
       if (!from.normals.empty()) mesh.normals.push_back(from.normals[v]);
       if (!from.colors.empty()) mesh.colors.push_back(from.colors[v]);
-      mesh.uv.push_back(corners[t][k]);
+      if (!values.colors.empty()) mesh.colors.push_back(values.colors[t]);
+      if (!values.uv.empty()) mesh.uv.push_back(values.uv[t][k]);
     }
   }
+}
+
+/// What a header promises that cannot be kept.
+Status check_elements(const Header& header, const std::string& name) {
+  for (const Element& element : header.elements) {
+    const auto has = [&](const char* property) {
+      return std::ranges::count(element.properties, property, &Property::name) > 0;
+    };
+    if (has("f_dc_0") && has("rot_0")) {
+      return Status(StatusCode::unsupported,
+                    name + " is a Gaussian splat, which has no surface; export a mesh of it");
+    }
+    if (element.count > 0 && element.properties.empty()) {
+      return corrupt(name, " has PLY element ", element.name, " without a property");
+    }
+    const bool faces = element.name == "face" || element.name == "tristrips";
+    if (faces && element.count > 0 && std::ranges::none_of(element.properties, lists_vertices)) {
+      return corrupt(name, " has PLY element ", element.name,
+                     " without a list vertex_indices or vertex_index");
+    }
+  }
+  return {};
 }
 
 Status check_indices(const TriangleMesh& mesh, const std::string& name) {
@@ -299,15 +365,13 @@ Status check_indices(const TriangleMesh& mesh, const std::string& name) {
 Result<PlyFile> parse_ply_file(std::string_view bytes, const std::string& name, double scale) {
   const Result<Header> header = parse_header(bytes, name);
   if (!header.ok()) return header.status();
+  if (Status status = check_elements(*header, name); !status.ok()) return status;
   Values values(bytes.substr(header->size), header->format);
   PlyFile file{{}, header->textures};
   TriangleMesh& mesh = file.mesh;
-  std::vector<Corners> corners;
+  FaceValues of_faces;
   Row row;
   for (const Element& element : header->elements) {
-    if (element.count > 0 && element.properties.empty()) {
-      return corrupt(name, " has PLY element ", element.name, " without a property");
-    }
     if (element.count > values.remaining() + 1) {
       return corrupt(name, " is truncated: ", element.count, " of PLY element ", element.name,
                      " do not fit");
@@ -318,12 +382,22 @@ Result<PlyFile> parse_ply_file(std::string_view bytes, const std::string& name, 
       if (!values.ok()) {
         return corrupt(name, " is truncated or damaged in PLY element ", element.name);
       }
+      if (values.line_goes_on()) {
+        return corrupt(name, " has more numbers in row ", i + 1, " of PLY element ", element.name,
+                       " than its header says; write it as binary PLY");
+      }
       if (element.name == "vertex") add_vertex(element, columns, row, scale, mesh);
-      if (element.name == "face") add_face(element, row, mesh, corners);
+      if (element.name == "face") add_face(element, columns, row, mesh, of_faces);
+      if (element.name == "tristrips") add_strips(element, row, mesh);
     }
   }
+  if (!values.at_end()) return corrupt(name, " has more bytes than its PLY header says");
   if (Status status = check_indices(mesh, name); !status.ok()) return status;
-  if (!corners.empty() && corners.size() == mesh.triangles.size()) split_corners(corners, mesh);
+  // Of vertices and faces, the vertices' colours are finer.
+  const std::size_t triangles = mesh.triangles.size();
+  if (of_faces.uv.size() != triangles) of_faces.uv.clear();
+  if (of_faces.colors.size() != triangles || !mesh.colors.empty()) of_faces.colors.clear();
+  if (!of_faces.uv.empty() || !of_faces.colors.empty()) split_corners(of_faces, mesh);
   if (mesh.uv.empty()) mesh.texture_of.clear();
   return file;
 }

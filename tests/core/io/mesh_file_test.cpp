@@ -107,6 +107,119 @@ TEST(MeshFile, ColoursThatAreNoNumberAreBlack) {
   EXPECT_EQ(mesh->colors.at(0), (std::array<std::uint8_t, 3>{0, 255, 0}));
 }
 
+/// A triangle pair of four corners, as text.
+std::string ply_text(const std::string& of_vertex, const std::string& of_face,
+                     const std::string& faces, int face_count = 2) {
+  return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+         "property float z\n" +
+         of_vertex + "element face " + std::to_string(face_count) + "\n" + of_face +
+         "end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n" + faces;
+}
+
+constexpr const char* kIndices = "property list uchar int vertex_indices\n";
+
+TEST(PlyFile, ColoursOfFacesAreThoseOfTheirCorners) {
+  const std::string rgb = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const auto mesh = parse_ply(ply_text("", kIndices + rgb, "3 0 1 2 9 8 7\n3 0 2 3 1 2 3\n"), "p");
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  ASSERT_EQ(mesh->triangles.size(), 2u);
+  ASSERT_EQ(mesh->colors.size(), mesh->vertices.size());
+  for (std::size_t t = 0; t < 2; ++t) {
+    const std::array<std::uint8_t, 3> color =
+        t == 0 ? std::array<std::uint8_t, 3>{9, 8, 7} : std::array<std::uint8_t, 3>{1, 2, 3};
+    for (const auto corner : mesh->triangles[t]) EXPECT_EQ(mesh->colors[corner], color);
+  }
+  EXPECT_EQ(mesh->vertices[mesh->triangles[1][2]], Eigen::Vector3f(0, 1, 0));
+}
+
+TEST(PlyFile, StripsAreTrianglesOfOneSide) {
+  const auto mesh = parse_ply(
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+      "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n10 0 1 2 3 4 5 -1 0 1 2\n",
+      "p");
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  ASSERT_EQ(mesh->triangles.size(), 5u);
+  for (const auto& [a, b, c] : mesh->triangles) {
+    const auto& v = mesh->vertices;
+    EXPECT_EQ((v[b] - v[a]).cross(v[c] - v[a]).z(), 1);  // all up, all of area 1/2
+  }
+}
+
+TEST(PlyFile, RowsAndBytesThatDoNotFitTheHeaderAreRefused) {
+  const auto refusal = [](const std::string& bytes) {
+    return parse_ply(bytes, "p.ply").status().message;
+  };
+  const std::string good = "3 0 1 2\n3 0 2 3\n";
+  EXPECT_EQ(refusal(ply_text("", kIndices, good + "\n \n")), "");
+  EXPECT_EQ(refusal(ply_text("", kIndices, "3 0 1 2\n3 0 2 3 6 0 0 1 0 1 1\n")),
+            "p.ply has more numbers in row 2 of PLY element face than its header says; write it as "
+            "binary PLY");
+  EXPECT_EQ(refusal(ply_text("", kIndices, good + "3 0 1 3\n")),
+            "p.ply has more bytes than its PLY header says");
+  EXPECT_EQ(refusal(ply_text("property float nx\n", kIndices, good)).substr(0, 52),
+            "p.ply has more numbers in row 1 of PLY element verte");
+  EXPECT_NE(refusal(ply_text("", "property list uchar int corners\n", good)).find("vertex_index"),
+            std::string::npos);
+  EXPECT_NE(refusal(ply_text("property float f_dc_0\nproperty float rot_0\n", kIndices, good))
+                .find("Gaussian splat"),
+            std::string::npos);
+}
+
+TEST(PlyFile, ReadsAnyLineEnds) {
+  const std::string text = ply_text("", kIndices, "3 0 1 2\n3 0 2 3\n");
+  for (const std::string end : {"\r", "\r\n"}) {
+    std::string other;
+    for (const char c : text) other += c == '\n' ? end : std::string(1, c);
+    const auto mesh = parse_ply(other, "p");
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+    EXPECT_EQ(mesh->triangles, parse_ply(text, "p")->triangles);
+  }
+}
+
+TEST(MeshFile, OtherFormatsAreRefusedWithTheWayOut) {
+  const test::TemporaryFolder folder;
+  spill(folder / "a.urdf",
+        R"(<robot><mesh filename="package://x/cup.dae" scale="1 1 1"/></robot>)");
+  spill(folder / "a.sdf", "<sdf><mesh><uri>model://cup/cup.obj</uri></mesh></sdf>");
+  for (const auto& [name, words] : {std::pair("a.STEP", "freecadcmd"),
+                                    {"a.3mf", "assimp export"},
+                                    {"a.fbx", "assimp export"},
+                                    {"a.usdz", "Blender"},
+                                    {"a.urdf", "names: package://x/cup.dae"},
+                                    {"a.sdf", "names: model://cup/cup.obj"},
+                                    {"a.txt", "use .ply"}}) {
+    const Status status = read_mesh(folder / name).status();
+    EXPECT_EQ(status.code, StatusCode::unsupported);
+    EXPECT_NE(status.message.find(words), std::string::npos) << status.message;
+  }
+}
+
+TEST(MeshFile, CopiesOfATriangleAreOne) {
+  const test::TemporaryFolder folder;
+  std::string faces;
+  for (int k = 0; k < 100; ++k) faces += "3 0 1 2\n3 2 0 1\n3 2 3 0\n";
+  spill(folder / "a.ply", ply_text("", kIndices, faces + "3 2 1 0\n", 301));
+  const Result<TriangleMesh> mesh = read_mesh(folder / "a.ply");
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh->triangles.size(), 3u);  // one of them faces the other way
+}
+
+/// Many exporters write them; the format allows it.
+TEST(MeshFile, NormalsOfZeroAreNone) {
+  const test::TemporaryFolder folder;
+  std::string stl = "solid x\n";
+  for (const char* last : {"0 0 1", "0 1 0"}) {
+    stl += std::string("facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex ") +
+           last + "\nendloop\nendfacet\n";
+  }
+  spill(folder / "a.stl", stl + "endsolid x\n");
+  const Result<TriangleMesh> mesh = read_mesh(folder / "a.stl");
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
+  EXPECT_EQ(mesh->triangles.size(), 2u);
+  EXPECT_TRUE(mesh->normals.empty());
+}
+
 TEST(MeshFile, ObjAndStl) {
   const test::TemporaryFolder folder;
   spill(folder / "a.obj", "v 0 0 0\nv 10 0 0\nv 0 20 0\nv 0 0 30\nf 1 3 2\nf 1 2 4\n");
