@@ -71,7 +71,9 @@ class Report {
                           {"remedy", finding.remedy},
                           {"times", more + 1}});
     }
-    or_throw(io::write_file(path, nlohmann::json{{"findings", findings}}.dump(1) + "\n"));
+    or_throw(io::write_file(path, nlohmann::json{{"findings", findings}}.dump(
+                                      1, ' ', false, nlohmann::json::error_handler_t::replace) +
+                                      "\n"));
   }
   std::size_t size() const { return entries_.size(); }
 

@@ -28,7 +28,7 @@ Status write_camera_poses(const std::string& path, const std::vector<CameraPose>
   for (const CameraPose& camera : cameras) {
     list.push_back({{"name", camera.name}, {"scene_from_camera", camera.scene_from_camera}});
   }
-  return write_file(path, Json{{"cameras", list}}.dump(2) + "\n");
+  return write_file(path, written({{"cameras", list}}, 2) + "\n");
 }
 
 }  // namespace bpa::io

@@ -72,7 +72,7 @@ std::string description_text(const ModelDescription& description) {
   Json json = description;
   json["format"] = kFormat;
   json["version"] = kModelFileVersion;
-  return json.dump(1) + "\n";
+  return written(json, 1) + "\n";
 }
 
 Result<ModelDescription> read_description(const std::string& path) {

@@ -63,6 +63,11 @@ namespace bpa::io {
 
 using Json = nlohmann::json;
 
+/// JSON as text. Names of files are bytes in any encoding: what is no UTF-8 is replaced.
+inline std::string written(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 /// Fails with corrupt when the bytes of a file are not JSON or nested deeper than any file of this
 /// project: copies of JSON take stack for each level.
 inline Result<Json> parse_json(const std::string& path, const std::string& bytes) {

@@ -35,13 +35,13 @@ struct FramesFormat {
 
 template <class FrameType>
 std::string json_line(const FrameType& frame) {
-  return Json(frame).dump(-1, ' ', false, Json::error_handler_t::replace);
+  return written(frame);
 }
 
 template <class FrameType>
 std::string frames_json(const FramesFormat& format, const std::vector<FrameType>& frames) {
   const Json json = {{"format", format.name}, {"version", format.version}, {"frames", frames}};
-  return json.dump(1) + "\n";
+  return written(json, 1) + "\n";
 }
 
 template <class FrameType>

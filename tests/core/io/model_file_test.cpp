@@ -42,6 +42,15 @@ ModelSource some_model(const std::string& name, int number) {
   return model;
 }
 
+/// Such as that of a mesh whose name is Latin-1.
+TEST(ModelFile, SourceInAnyEncoding) {
+  const test::TemporaryFolder folder;
+  ModelSource model = some_model("cup", 1);
+  model.source = "caf\xe9.obj";
+  ASSERT_TRUE(save_model(folder.path(), model, 1).ok());
+  EXPECT_EQ(load_model(folder.path(), "cup")->source, "caf\xef\xbf\xbd.obj");
+}
+
 TEST(ModelFile, SurvivesToTheLastBit) {
   const test::TemporaryFolder folder;
   const ModelSource model = some_model("a-1.b_C", 3);
