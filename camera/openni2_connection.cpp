@@ -135,7 +135,9 @@ Status Openni2Connection::measure_cameras() {
       with_color() ? intrinsics_of(color, options_.calibration, "colour camera") : of_depth;
   if (!of_color.ok()) return of_color.status();
   geometry.color = of_color->camera;
-  geometry.color_distortion = of_color->distortion;
+  const auto distortion = io::plumb_bob_of(*of_color);
+  if (!distortion.ok()) return distortion.status();
+  geometry.color_distortion = *distortion;
   // Needed only when the server registers; a device may not say its depth camera's field of view.
   geometry.depth = of_depth.ok() ? of_depth->camera : of_color->camera;
   const auto format = depth.getVideoMode().getPixelFormat();

@@ -76,6 +76,9 @@ struct InputOptions {
              "Topic of their sensor_msgs/CameraInfo.");
   BPA_OPTION(std::string, cloud, "", (),
              "Topic of organised sensor_msgs/PointCloud2 in an optical frame; empty: none.");
+  BPA_OPTION(double, cloud_unit_m, 0, (0, 1),
+             "Metres of one unit of its points; 0: metres, or millimetres where the median depth "
+             "is over 100.");
   BPA_OPTION(std::string, tf, "/tf", (),
              "Topic of transforms, subscribed to with tracking.fixed_frame; empty: none.");
   BPA_OPTION(std::string, tf_static, "/tf_static", (), "The same of static transforms.");

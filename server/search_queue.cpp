@@ -380,6 +380,9 @@ DecodedFrame SearchQueue::decoded(Once<DecodedFrame> decode) {
   const Status status =
       guard("a frame cannot be decoded", [&] { frame.emplace(std::move(decode)()); });
   if (!status.ok()) return {RejectionCause::frame, status};
+  if (!frame->note().empty() && !noted_.exchange(true)) {
+    log(log_, LogLevel::warning, "frame of " + (*frame)->frame_id + ": " + frame->note());
+  }
   return *std::move(frame);
 }
 

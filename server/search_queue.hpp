@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -193,7 +194,8 @@ class SearchQueue {
   Busy busy_;
   int niceness_ = 0;  ///< What is added now; of the first thread alone.
 
-  std::mutex stream_mutex_;  ///< Guards the next three.
+  std::atomic<bool> noted_{false};  ///< The note of a frame was logged.
+  std::mutex stream_mutex_;         ///< Guards the next three.
   FrameFusion fusion_;
   int last_fused_ = 1;  ///< How many frames the last one was made of.
   std::map<std::string, std::vector<ExpectedPlacement>> expected_;  ///< By frame_id.

@@ -54,8 +54,9 @@ void calibrate_by_board(const CalibrateArguments& a) {
       file.camera.width = image.width;
       file.camera.height = image.height;
     }
-    const calibration::BoardPose pose =
-        or_throw(calibration::find_board(image.pixels, file.camera, file.distortion, board), path);
+    const calibration::BoardPose pose = or_throw(
+        calibration::find_board(image.pixels, file.camera, or_throw(io::plumb_bob_of(file)), board),
+        path);
     found.push_back(
         {camera_name(a, i, fs::path(path).stem().string()), pose.camera_from_board.inverse()});
     const Eigen::Vector3d& t = found.back().scene_from_camera.translation;

@@ -12,6 +12,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "core/geometry/lens.hpp"
 #include "core/io/private/json_file.hpp"
 #include "core/io/yaml_text.hpp"
 
@@ -159,6 +160,9 @@ Result<CameraFile> camera_of_known(Json& known) {
   if (Status status = check_scale(known); !status.ok()) return status;
   file.depth_scale_mm = known.value("depth_scale", 1.0);
   if (known.contains("distortion")) file.distortion = numbers_of(known.at("distortion"));
+  if (known.contains("model") && known.at("model").is_string()) {
+    known.at("model").get_to(file.distortion_model);
+  }
   return file;
 }
 
@@ -231,7 +235,7 @@ std::string accepted_form(const Json& known) {
   for (const char* key : {"fx", "fy", "cx", "cy", "width", "height", "depth_scale"}) {
     const bool scale = std::string_view(key) == "depth_scale";
     text += concat(text.empty() ? "{\"" : ", \"", key, "\": ",
-                   known.contains(key) ? known.at(key).dump()
+                   known.contains(key) ? written(known.at(key))
                    : scale             ? "1"
                                        : "...");
   }
@@ -262,6 +266,15 @@ Result<CameraFile> read_camera(const std::string& path) {
   if (json.ok()) return camera_of(*json, path);
   return Status(json.status().code,
                 json.status().message + ". Accepted is " + accepted_form(Json::object()));
+}
+
+Result<std::vector<double>> plumb_bob_of(const CameraFile& file) {
+  Result<Lens> lens = lens_of(file.distortion_model, file.distortion);
+  if (!lens.ok()) return lens.status();
+  if (!lens->equidistant) return std::move(lens->coefficients);
+  return Status(StatusCode::unsupported,
+                "distortion model is \"" + file.distortion_model +
+                    "\"; it must be plumb_bob or rational_polynomial here");
 }
 
 std::vector<std::string> notes_of(const CameraFile& file) {

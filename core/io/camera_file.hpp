@@ -15,6 +15,7 @@ struct CameraFile {
   Camera camera;                    ///< width and height are 0 where the file does not say.
   double depth_scale_mm = 1;        ///< Millimetres of one unit of a depth image.
   std::vector<double> distortion;   ///< Lens distortion: k1 k2 p1 p2 k3 ...; empty without.
+  std::string distortion_model;     ///< As the file names it; empty where it does not.
   std::vector<std::string> unread;  ///< Keys that nothing here knows.
 };
 
@@ -25,6 +26,9 @@ struct CameraFile {
 /// or the matrix row by row. Fails with not_found, corrupt, or invalid_argument naming field and
 /// rule; the message ends with the form that is accepted, filled with the numbers that were found.
 Result<CameraFile> read_camera(const std::string& path);
+
+/// k1 k2 p1 p2 k3 ... of its lens. Fails as lens_of() does, and with unsupported for equidistant.
+Result<std::vector<double>> plumb_bob_of(const CameraFile& file);
 
 /// What people should know of images that are read with it: keys that are not read, distortion that
 /// is not taken out.

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "core/base/concat.hpp"
+#include "core/cloud/depth_unit.hpp"
 #include "core/io/pcd_file.hpp"
 
 namespace bpa::io {
@@ -11,6 +12,9 @@ namespace {
 
 constexpr std::size_t kMinPoints = 500;
 constexpr double kMaxMeanResidual = 2.0;  // pixels
+constexpr const char* kInCameraFrame =
+    "; it must be what one camera sees, in that camera's optical frame: not turned into another "
+    "frame, such as a robot's base";
 
 /// Least squares of pixel = f * slope + c over points with slope = x / z: one image axis.
 struct AxisFit {
@@ -78,9 +82,7 @@ Result<std::vector<Eigen::Vector3f>> to_optical(const PcdCloud& cloud, bool& tur
                             " finite points; it must have at least ", kMinPoints);
   }
   if (before > 0 && behind > 0 && std::min(before, behind) * 100 > before + behind) {
-    return invalid_argument(
-        "the cloud has points on both sides of z = 0; it must be what one "
-        "camera sees, in that camera's frame");
+    return invalid_argument("the cloud has points on both sides of z = 0", kInCameraFrame);
   }
   turned = behind > before;
   std::vector<Eigen::Vector3f> points = cloud.points;
@@ -104,7 +106,8 @@ std::string camera_note(const Camera& camera, double residual, bool estimated) {
 
 }  // namespace
 
-Result<OrganisedFrame> frame_from_organised_cloud(const PcdCloud& cloud, const Camera* camera) {
+Result<OrganisedFrame> frame_from_organised_cloud(const PcdCloud& cloud, const Camera* camera,
+                                                  double unit) {
   if (!cloud.organised()) {
     return invalid_argument(
         "the cloud is not organised (its height is 1); a frame needs one point "
@@ -119,22 +122,30 @@ Result<OrganisedFrame> frame_from_organised_cloud(const PcdCloud& cloud, const C
     return invalid_argument("camera is ", fitted->width, "x", fitted->height, "; it must be ",
                             cloud.width, "x", cloud.height, " as the cloud");
   }
+  if (!camera && (fitted->fx <= 0 || fitted->fy <= 0)) {
+    return invalid_argument("the cloud runs against its rows or columns", kInCameraFrame);
+  }
   if (Status status = validate(*fitted); !status.ok()) return status;
   const double residual = mean_residual(*fitted, *points);
   if (!(residual <= kMaxMeanResidual)) {
     return invalid_argument("the points are ", residual,
                             " pixels from where the camera sees them; the mean must be at most ",
-                            kMaxMeanResidual);
+                            kMaxMeanResidual, kInCameraFrame);
   }
 
   OrganisedFrame result;
   result.frame.camera = *fitted;
   result.frame.depth.resize(points->size());
-  for (std::size_t i = 0; i < points->size(); ++i) result.frame.depth[i] = (*points)[i].z();
+  const auto metres = static_cast<float>(unit > 0 ? unit : 1);
+  for (std::size_t i = 0; i < points->size(); ++i) {
+    result.frame.depth[i] = metres * (*points)[i].z();
+  }
+  const std::string millimetres = unit > 0 ? "" : to_metres(result.frame.depth);
   for (const auto& color : cloud.colors) {
     result.frame.color.insert(result.frame.color.end(), color.begin(), color.end());
   }
   result.notes.push_back(camera_note(*fitted, residual, camera == nullptr));
+  if (!millimetres.empty()) result.notes.push_back(millimetres);
   if (turned) {
     result.cloud_from_camera.rotation = Eigen::Quaterniond(0, 1, 0, 0);
     result.notes.push_back(

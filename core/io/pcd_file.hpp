@@ -37,15 +37,18 @@ struct OrganisedFrame {
   /// Where the camera's optical frame is in the cloud's own frame: identity, or a half turn about x
   /// for a cloud with y up and z toward the viewer. pose_in_cloud = cloud_from_camera * pose.
   Pose cloud_from_camera;
-  /// What was found out, a sentence each, for people: the camera, and that the cloud was turned.
+  /// What was found out, a sentence each, for people: the camera, the unit where it is not metres,
+  /// and that the cloud was turned.
   std::vector<std::string> notes;
 };
 
 /// Makes a frame of an organised cloud. The camera is `camera` if given. Else it is the best
-/// pinhole: least squares in u z = fx x + cx z, v z = fy y + cy z. Fails with invalid_argument when
-/// the cloud is not organised or has under 500 finite points. Also when it has points on both sides
-/// of the camera, or no pinhole fits (mean residual over 2 pixels).
+/// pinhole: least squares in u z = fx x + cx z, v z = fy y + cy z. `unit` is metres of one unit of
+/// the cloud; 0: metres, or millimetres where the median depth is over 100. Fails with
+/// invalid_argument when the cloud is not organised or has under 500 finite points. Also when it is
+/// not in its camera's frame: points on both sides, or no pinhole that fits (mean residual over 2
+/// pixels).
 Result<OrganisedFrame> frame_from_organised_cloud(const PcdCloud& cloud,
-                                                  const Camera* camera = nullptr);
+                                                  const Camera* camera = nullptr, double unit = 0);
 
 }  // namespace bpa::io

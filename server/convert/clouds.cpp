@@ -90,11 +90,15 @@ Result<io::PcdCloud> points_of(const PointCloud2& cloud) {
 
 }  // namespace
 
-DecodedFrame frame_from_cloud(const PointCloud2& cloud) {
+DecodedFrame frame_from_cloud(const PointCloud2& cloud, double unit) {
   const auto points = points_of(cloud);
   if (!points.ok()) return {RejectionCause::cloud, points.status()};
-  auto organised = io::frame_from_organised_cloud(*points);
-  if (!organised.ok()) return {RejectionCause::cloud, organised.status()};
+  auto organised = io::frame_from_organised_cloud(*points, nullptr, unit);
+  if (!organised.ok()) {
+    Status status = organised.status();
+    status.message += " (frame_id \"" + cloud.header.frame_id + "\")";
+    return {RejectionCause::cloud, status};
+  }
   if (!organised->cloud_from_camera.rotation.isApprox(Eigen::Quaterniond::Identity())) {
     return {RejectionCause::cloud,
             invalid_argument("cloud has y up and z toward the viewer; it must be in an optical "
@@ -105,7 +109,8 @@ DecodedFrame frame_from_cloud(const PointCloud2& cloud) {
   frame.frame_id = cloud.header.frame_id;
   clean_depth(frame);
   if (Status status = validate(frame); !status.ok()) return {RejectionCause::frame, status};
-  return frame;
+  const auto& notes = organised->notes;  // the first is of the camera
+  return {std::move(frame), notes.size() > 1 ? notes.back() : ""};
 }
 
 }  // namespace bpa::server

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "core/base/concat.hpp"
+#include "core/cloud/depth_unit.hpp"
+#include "core/geometry/lens.hpp"
 #include "core/io/image_file.hpp"
 #include "idl/wire/time.hpp"
 #include "server/convert/images.hpp"
@@ -17,19 +19,6 @@ namespace {
 
 namespace msgs = wire::bpa_msgs;
 namespace sensor = wire::sensor_msgs;
-
-Status check_distortion(const std::vector<double>& d) {
-  for (std::size_t i = 0; i < d.size(); ++i) {
-    if (!std::isfinite(d[i])) {
-      return invalid_argument("distortion d[", i, "] is ", d[i], "; it must be finite");
-    }
-  }
-  constexpr std::size_t kMaxDistortion = 8;
-  if (d.size() <= kMaxDistortion) return {};
-  return Status(StatusCode::unsupported,
-                concat("distortion d has ", d.size(), " coefficients; at most ", kMaxDistortion,
-                       " are supported (plumb_bob, rational_polynomial): rectify the images"));
-}
 
 struct Pixels {
   const char* field;
@@ -96,9 +85,9 @@ void remap(const std::vector<std::int32_t>& map, std::vector<Pixel>& pixels) {
   pixels = std::move(out);
 }
 
-void undistort(const std::vector<double>& distortion, Frame& frame) {
-  if (std::ranges::all_of(distortion, [](double c) { return c == 0; })) return;
-  const std::vector<std::int32_t> map = undistortion_map(frame.camera, distortion);
+void undistort(const Lens& lens, Frame& frame) {
+  if (lens.coefficients.empty()) return;
+  const std::vector<std::int32_t> map = undistortion_map(frame.camera, lens);
   remap<float, 1>(map, frame.depth);
   remap<std::uint8_t, 3>(map, frame.color);
 }
@@ -109,24 +98,23 @@ RegionOfInterest roi_of(const sensor::RegionOfInterest& roi) {
 }
 
 /// The frame with its pixels, from which the lens distortion is taken out, once all is legal.
-DecodedFrame completed(Frame frame, const std::vector<double>& distortion, const auto& make_depth,
+DecodedFrame completed(Frame frame, const Result<Lens>& lens, const auto& make_depth,
                        const auto& make_color) {
   if (Status status = validate(frame.camera); !status.ok()) {
     return {RejectionCause::camera, status};
   }
-  if (Status status = check_distortion(distortion); !status.ok()) {
-    return {RejectionCause::distortion, status};
-  }
+  if (!lens.ok()) return {RejectionCause::distortion, lens.status()};
   Result<std::vector<float>> depth = make_depth();
   if (!depth.ok()) return {RejectionCause::depth, depth.status()};
   Result<std::vector<std::uint8_t>> color = make_color();
   if (!color.ok()) return {RejectionCause::color, color.status()};
   frame.depth = std::move(depth).value();
   frame.color = std::move(color).value();
-  undistort(distortion, frame);
+  std::string note = to_metres(frame.depth);
+  undistort(*lens, frame);
   clean_depth(frame);
   if (Status status = validate(frame); !status.ok()) return {RejectionCause::frame, status};
-  return frame;
+  return {std::move(frame), std::move(note)};
 }
 
 ImageView view_of(const char* field, const sensor::Image& image) {
@@ -216,7 +204,7 @@ DecodedFrame frame_from_message(msgs::RgbdFrame message) {
     return depth_from_image({"depth", message.depth_encoding, message.width, message.height, 0,
                              false, message.depth.data(), message.depth.size()});
   };
-  return completed(std::move(frame), message.d, make_depth,
+  return completed(std::move(frame), lens_of("", message.d), make_depth,
                    [&message] { return take_color(message); });
 }
 
@@ -275,8 +263,13 @@ DecodedFrame frame_from_images(const CameraImages& images, bool rectified) {
     return pixels_of<std::vector<std::uint8_t>>("color", *images.color, camera, color_from_image,
                                                 decode_color);
   };
-  return completed(std::move(frame), rectified ? std::vector<double>() : info.d, make_depth,
-                   make_color);
+  return completed(std::move(frame), rectified ? Lens{} : lens_of(info.distortion_model, info.d),
+                   make_depth, make_color);
+}
+
+bool named_rectified(const std::string& topic) {
+  const std::string name = "_" + topic.substr(topic.rfind('/') + 1);
+  return name.find("_rect") != name.npos;
 }
 
 }  // namespace bpa::server

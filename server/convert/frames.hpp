@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -29,13 +30,17 @@ inline constexpr const char* kRejectionCauses[] = {"camera", "distortion", "dept
 class DecodedFrame : public Result<Frame> {
  public:
   DecodedFrame(Frame frame) : Result(std::move(frame)) {}  // NOLINT: implicit on purpose
+  DecodedFrame(Frame frame, std::string note) : Result(std::move(frame)), note_(std::move(note)) {}
   DecodedFrame(RejectionCause cause, Status status) : Result(std::move(status)), cause_(cause) {}
 
   /// Of no meaning when ok().
   RejectionCause cause() const { return cause_; }
+  /// What was assumed of the frame, for people; else empty.
+  const std::string& note() const { return note_; }
 
  private:
   RejectionCause cause_ = RejectionCause::frame;
+  std::string note_;
 };
 
 /// A frame of bpa_msgs/RgbdFrame but for its priors. Lens distortion is taken out
@@ -75,9 +80,14 @@ struct CameraImages {
 /// Stamp and frame_id are the depth image's.
 DecodedFrame frame_from_images(const CameraImages& images, bool rectified);
 
+/// Whether a topic's last name says that its images are rectified, as image_proc names them
+/// (image_rect, image_rect_color): their camera info has the distortion that was taken out.
+bool named_rectified(const std::string& topic);
+
 /// A frame of an organised cloud in its camera's optical frame: float32 fields x, y, z, and rgb or
-/// rgba if there. The camera is the pinhole that fits the points best. `invalid_argument` for a
-/// cloud that no such camera sees, or that is not organised.
-DecodedFrame frame_from_cloud(const wire::sensor_msgs::PointCloud2& cloud);
+/// rgba if there. The camera is the pinhole that fits the points best. `unit` as of
+/// io::frame_from_organised_cloud(). `invalid_argument` for a cloud that no such camera sees, or
+/// that is not organised.
+DecodedFrame frame_from_cloud(const wire::sensor_msgs::PointCloud2& cloud, double unit = 0);
 
 }  // namespace bpa::server

@@ -11,7 +11,6 @@
 
 #include "core/base/concat.hpp"
 #include "core/cloud/frame.hpp"
-#include "core/geometry/camera.hpp"
 #include "core/io/image_file.hpp"
 
 namespace bpa::server {
@@ -71,7 +70,8 @@ constexpr ColorLayout kColorLayouts[] = {{"rgb8", CV_8UC3, -1},
                                          {"bgr8", CV_8UC3, cv::COLOR_BGR2RGB},
                                          {"rgba8", CV_8UC4, cv::COLOR_RGBA2RGB},
                                          {"bgra8", CV_8UC4, cv::COLOR_BGRA2RGB},
-                                         {"mono8", CV_8UC1, cv::COLOR_GRAY2RGB}};
+                                         {"mono8", CV_8UC1, cv::COLOR_GRAY2RGB},
+                                         {"mono16", CV_16UC1, cv::COLOR_GRAY2RGB}};
 
 }  // namespace
 
@@ -100,7 +100,11 @@ Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image) {
     const Result<std::size_t> step = checked_step(image, CV_ELEM_SIZE(layout.type));
     if (!step.ok()) return step.status();
     const cv::Size size(static_cast<int>(image.width), static_cast<int>(image.height));
-    const cv::Mat pixels(size, layout.type, const_cast<std::uint8_t*>(image.data), *step);
+    cv::Mat pixels(size, layout.type, const_cast<std::uint8_t*>(image.data), *step);
+    if (pixels.depth() == CV_16U) {  // its higher bytes
+      cv::extractChannel(cv::Mat(size, CV_8UC2, pixels.data, *step), pixels,
+                         image.big_endian ? 0 : 1);
+    }
     std::vector<std::uint8_t> rgb(std::size_t{3} * image.width * image.height);
     cv::Mat out(size, CV_8UC3, rgb.data());
     if (layout.to_rgb < 0) {
@@ -112,17 +116,16 @@ Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image) {
   }
   return Status(StatusCode::unsupported,
                 concat(image.field, " encoding is \"", image.encoding,
-                       "\"; it must be rgb8, bgr8, rgba8, bgra8 or mono8"));
+                       "\"; it must be rgb8, bgr8, rgba8, bgra8, mono8 or mono16"));
 }
 
-std::vector<std::int32_t> undistortion_map(const Camera& camera,
-                                           const std::vector<double>& distortion) {
+std::vector<std::int32_t> undistortion_map(const Camera& camera, const Lens& lens) {
   std::vector<std::int32_t> map;
   map.reserve(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
       const Eigen::Vector2d bent =
-          distort(distortion, (u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy);
+          distort(lens, (u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy);
       const double ud = std::round(bent.x() * camera.fx + camera.cx);
       const double vd = std::round(bent.y() * camera.fy + camera.cy);
       const bool inside = ud >= 0 && vd >= 0 && ud < camera.width && vd < camera.height;

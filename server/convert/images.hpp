@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/status.hpp"
-#include "core/geometry/camera.hpp"
+#include "core/geometry/lens.hpp"
 #include "idl/wire/msg/sensor_msgs.hpp"
 
 // Pixels as messages carry them -> pixels as the core takes them. Every size is checked before a
@@ -35,13 +35,13 @@ struct ImageView {
 /// infinite, negative and too large depths become 0. `unsupported` for other encodings.
 Result<std::vector<float>> depth_from_image(const ImageView& image);
 
-/// Row-major rgb, 3 bytes a pixel. From rgb8, bgr8, rgba8, bgra8 and mono8, else `unsupported`.
+/// Row-major rgb, 3 bytes a pixel. From rgb8, bgr8, rgba8, bgra8, mono8 and mono16, else
+/// `unsupported`.
 Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image);
 
 /// For every pixel of the undistorted image, the index of the nearest pixel of the distorted one;
-/// -1 outside. The camera matrix stays the same. `distortion` as distort() takes it.
-std::vector<std::int32_t> undistortion_map(const Camera& camera,
-                                           const std::vector<double>& distortion);
+/// -1 outside. The camera matrix stays the same.
+std::vector<std::int32_t> undistortion_map(const Camera& camera, const Lens& lens);
 
 // The same of sensor_msgs/CompressedImage, as ROS 2's image_transport plugins write it. What a file
 // says of its size is checked before anything is decoded.

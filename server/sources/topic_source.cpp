@@ -109,8 +109,10 @@ class Topics : public TopicSource {
     const wire::SubscriberOptions camera{options_.reliable ? wire::qos::reliable_input()
                                                            : wire::qos::sensor_input()};
     if (!options_.cloud.empty()) {
-      const auto take = [this](PointCloud2&& message) {
-        on_frame_(incoming(std::move(message), frame_from_cloud));
+      const auto take = [this, unit = options_.cloud_unit_m](PointCloud2&& message) {
+        on_frame_(incoming(std::move(message), [unit](const PointCloud2& cloud) {
+          return frame_from_cloud(cloud, unit);
+        }));
       };
       subscribe<PointCloud2>(options_.cloud, camera, take, cloud_);
       log(log_, LogLevel::info, "clouds are taken from " + cloud_.name);
@@ -167,9 +169,14 @@ class Topics : public TopicSource {
     (synchronizer_.*add)(std::move(message));
     std::vector<CameraImages> complete;
     while (auto images = synchronizer_.next()) complete.push_back(*std::move(images));
-    const bool rectified = options_.rectified;
+    const bool rectified = options_.rectified || named_rectified(info_owner());
     lock.unlock();
     for (CameraImages& images : complete) on_frame_(incoming(std::move(images), rectified));
+  }
+
+  /// The topic whose images the camera info is of.
+  const std::string& info_owner() const {
+    return options_.color.empty() ? options_.depth : options_.color;
   }
 
   /// Does nothing when the topic is empty.
@@ -195,7 +202,8 @@ class Topics : public TopicSource {
         info_);
     log(log_, LogLevel::info,
         "camera images are taken from " + depth_.name +
-            (color_.open() ? ", " + color_.name : " (without colour)") + " and " + info_.name);
+            (color_.open() ? ", " + color_.name : " (without colour)") + " and " + info_.name +
+            (named_rectified(info_owner()) ? "; rectified, by their name" : ""));
   }
 
   SourceReport whole_report(const std::string& what, const Topic& topic) const {

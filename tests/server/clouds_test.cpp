@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -63,6 +64,53 @@ TEST(FrameFromCloud, EqualsTheFrameMessage) {
   EXPECT_EQ(frame->depth[0], 0);
   for (std::size_t i = 1; i < frame->depth.size(); ++i) {
     EXPECT_EQ(frame->depth[i], expected->depth[i]) << i;
+  }
+}
+
+/// Its points turned by `change`.
+PointCloud2 changed_cloud(const std::function<Eigen::Vector3f(const Eigen::Vector3f&)>& change) {
+  PointCloud2 cloud = wall_cloud();
+  for (std::size_t v = 0; v < kHeight; ++v) {
+    for (std::size_t u = 0; u < kWidth; ++u) {
+      std::uint8_t* at = cloud.data.data() + v * cloud.row_step + u * cloud.point_step;
+      Eigen::Vector3f point;
+      std::memcpy(point.data(), at, 12);
+      point = change(point);
+      std::memcpy(at, point.data(), 12);
+    }
+  }
+  return cloud;
+}
+
+TEST(FrameFromCloud, IsInMetresOfAnyUnit) {
+  const auto metres = frame_from_cloud(wall_cloud());
+  const auto in_unit = [](float unit, double said) {
+    return frame_from_cloud(
+        changed_cloud([unit](const Eigen::Vector3f& p) { return Eigen::Vector3f(p / unit); }),
+        said);
+  };
+  EXPECT_TRUE(metres.note().empty());
+  for (const auto& frame : {in_unit(0.001f, 0), in_unit(0.001f, 0.001), in_unit(0.01f, 0.01)}) {
+    ASSERT_TRUE(frame.ok()) << frame.status().message;
+    EXPECT_NEAR(frame->camera.fx, 60, 1e-3);
+    for (std::size_t i = 0; i < frame->depth.size(); ++i) {
+      ASSERT_NEAR(frame->depth[i], metres->depth[i], 1e-6f);
+    }
+  }
+  EXPECT_NE(in_unit(0.001f, 0).note().find("taken for millimetres"), std::string::npos);
+}
+
+TEST(FrameFromCloud, OfTheRobotsBaseIsRefusedWithTheReason) {
+  // A camera that looks straight down, and one that looks ahead.
+  for (const bool down : {true, false}) {
+    const auto frame = frame_from_cloud(changed_cloud([down](const Eigen::Vector3f& p) {
+      return down ? Eigen::Vector3f(p.x(), -p.y(), 1.5f - p.z())
+                  : Eigen::Vector3f(p.z(), -p.x(), 0.4f - p.y());
+    }));
+    ASSERT_FALSE(frame.ok());
+    EXPECT_NE(frame.status().message.find("robot's base (frame_id \"wall_camera\")"),
+              std::string::npos)
+        << frame.status().message;
   }
 }
 

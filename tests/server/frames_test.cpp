@@ -94,10 +94,7 @@ const BadFrame kBadFrames[] = {
      [](RgbdFrame& f) { f.roi.x_offset = 4000000000U; },
      {"roi.x_offset is 4000000000", "8192"}},
     {"MaskSize", [](RgbdFrame& f) { f.mask.resize(3); }, {"mask", "3"}},
-    {"ManyDistortions",
-     [](RgbdFrame& f) { f.d.resize(14); },
-     {"d has 14", "8"},
-     StatusCode::unsupported},
+    {"ManyDistortions", [](RgbdFrame& f) { f.d.assign(14, 0.1); }, {"has 14", "8"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, BadFrames, testing::ValuesIn(kBadFrames),
@@ -112,7 +109,7 @@ TEST(RejectionCause, NamesThePartOfTheMessage) {
     return frame.cause();
   };
   EXPECT_EQ(cause_of([](RgbdFrame& f) { f.k[0] = 0; }), RejectionCause::camera);
-  EXPECT_EQ(cause_of([](RgbdFrame& f) { f.d.resize(14); }), RejectionCause::distortion);
+  EXPECT_EQ(cause_of([](RgbdFrame& f) { f.d.assign(14, 0.1); }), RejectionCause::distortion);
   EXPECT_EQ(cause_of([](RgbdFrame& f) { f.depth.resize(100); }), RejectionCause::depth);
   EXPECT_EQ(cause_of([](RgbdFrame& f) { f.depth_encoding = ""; }), RejectionCause::depth);
   EXPECT_EQ(cause_of([](RgbdFrame& f) { f.color.resize(7); }), RejectionCause::color);
@@ -142,6 +139,52 @@ TEST(FrameFromImages, RectifiedImagesUseTheProjectionMatrix) {
   ASSERT_TRUE(frame.ok());
   EXPECT_EQ(frame->camera.fx, 58);
   EXPECT_EQ(frame->camera.cy, 23);
+}
+
+TEST(FrameFromImages, TheModelOfDistortionCounts) {
+  const auto depth_of = [](const std::string& model, std::vector<double> d, bool rectified) {
+    CameraImages images = wall_images();
+    auto info = std::make_shared<wire::sensor_msgs::CameraInfo>(*images.info);
+    info->distortion_model = model;
+    info->d = std::move(d);
+    images.info = info;
+    const auto frame = frame_from_images(images, rectified);
+    return frame.ok() ? frame->depth : std::vector<float>();
+  };
+  const auto plain = depth_of("plumb_bob", {}, false);
+  EXPECT_EQ(depth_of("other", {0, 0, 0}, false), plain);
+  EXPECT_EQ(depth_of("other", {0.1}, false), std::vector<float>());
+  EXPECT_NE(depth_of("equidistant", {0.1}, false), plain);
+  EXPECT_NE(depth_of("equidistant", {0.1}, false), depth_of("plumb_bob", {0.1}, false));
+  EXPECT_EQ(depth_of("other", {0.1}, true), plain);  // taken out already
+}
+
+TEST(FrameFromImages, FloatsInMillimetresAreToldAndSaid) {
+  CameraImages images = wall_images();
+  auto depth = std::get<wire::sensor_msgs::Image>(*images.depth);
+  std::vector<float> millimetres;
+  for (const auto mm : support::wall_depth_mm()) millimetres.push_back(mm);
+  depth.encoding = "32FC1";
+  depth.step = 4 * depth.width;
+  depth.data = support::as_bytes(millimetres);
+  images.depth = std::make_shared<AnyImage>(depth);
+  const auto frame = frame_from_images(images, false);
+  ASSERT_TRUE(frame.ok()) << frame.status().message;
+  const auto expected = frame_from_images(wall_images(), false);
+  for (std::size_t i = 0; i < frame->depth.size(); ++i) {
+    ASSERT_NEAR(frame->depth[i], expected->depth[i], 1e-6f);
+  }
+  EXPECT_NE(frame.note().find("taken for millimetres"), std::string::npos);
+  EXPECT_TRUE(expected.note().empty());
+}
+
+TEST(NamedRectified, ByTheLastNameOfATopic) {
+  for (const char* topic : {"/camera/image_rect", "image_rect_color", "rect/image_rectified"}) {
+    EXPECT_TRUE(named_rectified(topic)) << topic;
+  }
+  for (const char* topic : {"/rect/image_raw", "/camera/direct", "image"}) {
+    EXPECT_FALSE(named_rectified(topic)) << topic;
+  }
 }
 
 TEST(FrameFromImages, RefusesPartsOfASensorAndWhatIsNoNumber) {

@@ -94,7 +94,8 @@ INSTANTIATE_TEST_SUITE_P(Encodings, Color,
                                          ColorCase{"bgr8", {3, 2, 1}, {1, 2, 3}},
                                          ColorCase{"rgba8", {1, 2, 3, 9}, {1, 2, 3}},
                                          ColorCase{"bgra8", {3, 2, 1, 9}, {1, 2, 3}},
-                                         ColorCase{"mono8", {7}, {7, 7, 7}}),
+                                         ColorCase{"mono8", {7}, {7, 7, 7}},
+                                         ColorCase{"mono16", {200, 7}, {7, 7, 7}}),
                          [](const auto& test) { return test.param.encoding; });
 
 TEST(ColorErrors, NamesTheEncodingsItKnows) {
@@ -107,7 +108,7 @@ TEST(ColorErrors, NamesTheEncodingsItKnows) {
 TEST(Undistortion, MovesPixelsAlongTheRadius) {
   const Camera camera{101, 101, 100, 100, 50, 50};
   // k1 alone: a point at radius r is seen at r (1 + k1 r^2); here r = 0.4, so 40 -> 43.2 pixels.
-  const auto map = undistortion_map(camera, {0.5});
+  const auto map = undistortion_map(camera, {false, {0.5}});
   EXPECT_EQ(map[50 * 101 + 50], 50 * 101 + 50);
   EXPECT_EQ(map[50 * 101 + 90], 50 * 101 + 93);
   EXPECT_EQ(map[90 * 101 + 50], 93 * 101 + 50);
