@@ -67,9 +67,10 @@ Status read_truth(const Json& gt, const Json& info, const std::string& key, BopF
   return {};
 }
 
-Result<BopFrame> read_frame_entry(const fs::path& folder, int scene_id, const std::string& key,
-                                  const Json& camera) {
-  const auto known = camera_of(camera, (folder / "scene_camera.json").string() + ": " + key);
+Result<BopFrame> read_frame_entry(const fs::path& folder, const std::string& suffix, int scene_id,
+                                  const std::string& key, const Json& camera) {
+  const auto known =
+      camera_of(camera, (folder / ("scene_camera" + suffix + ".json")).string() + ": " + key);
   if (!known.ok()) return known.status();
   BopFrame frame;
   frame.scene_id = scene_id;
@@ -80,8 +81,12 @@ Result<BopFrame> read_frame_entry(const fs::path& folder, int scene_id, const st
   if (camera.contains("cam_R_w2c")) {
     frame.camera_from_world = pose_of(camera, "cam_R_w2c", "cam_t_w2c");
   }
-  frame.depth_path = (folder / "depth" / (bop_number(frame.im_id) + ".png")).string();
-  frame.color_path = find_image(folder / "rgb", frame.im_id);
+  frame.depth_path = (folder / ("depth" + suffix) / (bop_number(frame.im_id) + ".png")).string();
+  for (const char* images : {"rgb", "gray"}) {
+    if (frame.color_path.empty()) {
+      frame.color_path = find_image(folder / (images + suffix), frame.im_id);
+    }
+  }
   const Result<ImageSize> size = read_png_size(frame.depth_path);
   if (!size.ok()) return size.status();
   frame.camera.width = size->width;
@@ -95,14 +100,26 @@ Result<Json> read_optional_json(const std::string& path) {
 }
 
 Status read_scene(const fs::path& folder, int scene_id, std::vector<BopFrame>& frames) {
-  const std::string gt_path = (folder / "scene_gt.json").string();
-  return read_json((folder / "scene_camera.json").string(), [&](const Json& cameras) -> Status {
+  if (is_file((folder / "info.yml").string())) {
+    return Status(StatusCode::unsupported,
+                  folder.string() +
+                      " is in the layout of SIXD and LINEMOD (info.yml, gt.yml); take "
+                      "the data set of the same name in BOP's layout, from "
+                      "bop.felk.cvut.cz/datasets");
+  }
+  // Of several cameras, as data sets of BOP for industry have them: the first.
+  const std::string suffix = is_file((folder / "scene_camera_cam1.json").string()) ? "_cam1" : "";
+  const auto path_of = [&](const std::string& name) {
+    return (folder / (name + suffix + ".json")).string();
+  };
+  const std::string gt_path = path_of("scene_gt");
+  return read_json(path_of("scene_camera"), [&](const Json& cameras) -> Status {
     const Result<Json> gt = read_optional_json(gt_path);
     if (!gt.ok()) return gt.status();
-    const Result<Json> info = read_optional_json((folder / "scene_gt_info.json").string());
+    const Result<Json> info = read_optional_json(path_of("scene_gt_info"));
     if (!info.ok()) return info.status();
     for (const auto& [key, camera] : cameras.items()) {
-      Result<BopFrame> frame = read_frame_entry(folder, scene_id, key, camera);
+      Result<BopFrame> frame = read_frame_entry(folder, suffix, scene_id, key, camera);
       if (!frame.ok()) return frame.status();
       frame->has_truth = is_file(gt_path);
       Status status =
@@ -201,7 +218,12 @@ std::string bop_number(int number) { return format("%06d", number); }
 std::string bop_object_name(int obj_id) { return "obj_" + bop_number(obj_id); }
 
 Result<std::vector<BopModel>> read_bop_models(const std::string& dataset) {
-  return read_bop_models_folder((fs::path(dataset) / "models").string());
+  const fs::path folder(dataset);
+  for (const char* other : {"models_cad", "models_reconst", "models_eval"}) {
+    if (is_folder((folder / "models").string()) || !is_folder((folder / other).string())) continue;
+    return read_bop_models_folder((folder / other).string());
+  }
+  return read_bop_models_folder((folder / "models").string());
 }
 
 Result<std::vector<BopModel>> read_bop_models_folder(const std::string& folder) {
@@ -265,7 +287,7 @@ Status write_bop_models(const std::string& dataset, const std::vector<BopMesh>& 
     if (Status s = write_ply(path, model.mesh, kMillimetres); !s.ok()) return s;
     info[std::to_string(model.obj_id)] = model_json(model);
   }
-  return write_file((folder / "models_info.json").string(), info.dump(1) + "\n");
+  return write_file((folder / "models_info.json").string(), written(info, 1) + "\n");
 }
 
 struct BopSceneWriter::Records {

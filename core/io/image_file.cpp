@@ -352,7 +352,8 @@ Result<GrayImage> decode_depth_png(std::string_view bytes, const std::string& na
     if (size.channels == 1 && size.bit_depth == 16) return {};
     return Status(StatusCode::unsupported,
                   concat(name, " has ", size.channels, " channels of ", size.bit_depth,
-                         " bits; a depth image must have 1 of 16"));
+                         " bits; a depth image must have 1 of 16",
+                         size.bit_depth == 8 ? ": a picture for people holds no depths" : ""));
   };
   return decode_gray(name, bytes, check);
 }
@@ -396,8 +397,8 @@ Status write_mask_png(const std::string& path, int width, int height,
   return write_image(path, encoded_png(path, width, height, PNG_COLOR_TYPE_GRAY, mask));
 }
 
-Result<Frame> frame_of_images(const GrayImage& depth, const ColorImage* color, const Camera& camera,
-                              double depth_scale_mm, const std::string& depth_name) {
+Result<Frame> frame_of_images(DepthImage depth, const ColorImage* color, const Camera& camera,
+                              const std::string& depth_name) {
   Frame frame;
   frame.camera = camera;
   if (camera.width == 0 && camera.height == 0) {
@@ -418,15 +419,13 @@ Result<Frame> frame_of_images(const GrayImage& depth, const ColorImage* color, c
     }
     frame.color = color->pixels;
   }
-  for (const std::uint16_t units : depth.pixels) {
-    frame.depth.push_back(static_cast<float>(units * depth_scale_mm * 0.001));
-  }
+  frame.depth = std::move(depth.metres);
   return frame;
 }
 
 Result<Frame> read_frame(const std::string& depth_path, const std::string& color_path,
                          const Camera& camera, double depth_scale_mm) {
-  const Result<GrayImage> depth = read_gray_png(depth_path);
+  Result<DepthImage> depth = read_depth(depth_path, depth_scale_mm);
   if (!depth.ok()) return depth.status();
   std::optional<ColorImage> color;
   if (!color_path.empty()) {
@@ -434,7 +433,7 @@ Result<Frame> read_frame(const std::string& depth_path, const std::string& color
     if (!read.ok()) return read.status();
     color = std::move(read).value();
   }
-  return frame_of_images(*depth, color ? &*color : nullptr, camera, depth_scale_mm, depth_path);
+  return frame_of_images(std::move(depth).value(), color ? &*color : nullptr, camera, depth_path);
 }
 
 }  // namespace bpa::io

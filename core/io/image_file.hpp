@@ -26,6 +26,13 @@ struct GrayImage {
   std::vector<std::uint16_t> pixels;
 };
 
+/// A depth image in metres; what is not positive or not finite is no depth.
+struct DepthImage {
+  int width = 0;
+  int height = 0;
+  std::vector<float> metres;
+};
+
 /// Images with a longer side are refused before memory is taken for their pixels.
 inline constexpr int kMaxImageSide = 8192;
 
@@ -46,6 +53,11 @@ Result<ColorImage> decode_color_image(std::string_view bytes, const std::string&
                                       std::size_t max_pixels);
 /// Decodes a PNG in memory that must have 1 channel of 16 bits, else `unsupported`.
 Result<GrayImage> decode_depth_png(std::string_view bytes, const std::string& name);
+/// The depths of an image in units of `scale_mm` millimetres.
+DepthImage depth_of(const GrayImage& image, double scale_mm);
+/// Reads a PNG or PGM of 1 channel of 16 bits, or NumPy's npy of integers, in units of `scale_mm`;
+/// or npy of floats in metres. Of another file the message says how to write it as one of these.
+Result<DepthImage> read_depth(const std::string& path, double scale_mm);
 /// Reads a 1-channel PNG of 8 or 16 bits.
 Result<GrayImage> read_gray_png(const std::string& path);
 /// Reads the header of a PNG only.
@@ -68,12 +80,12 @@ Result<std::string> encode_jpeg(const ColorImage& image, int quality);
 
 /// The frame of a depth image and a colour image registered to it; null: none. `depth_name` stands
 /// for the depth image in messages. The rest is as for read_frame().
-Result<Frame> frame_of_images(const GrayImage& depth, const ColorImage* color, const Camera& camera,
-                              double depth_scale_mm, const std::string& depth_name);
+Result<Frame> frame_of_images(DepthImage depth, const ColorImage* color, const Camera& camera,
+                              const std::string& depth_name);
 
-/// Reads one RGB-D frame: a 16-bit depth PNG registered to an 8-bit colour image of the same size.
-/// An empty `color_path` gives no colour. A camera without a size takes the depth image's. Checks
-/// sizes and camera (messages name file, field and rule); validate(Frame) checks the depths.
+/// Reads one RGB-D frame: a depth image (read_depth) registered to an 8-bit colour image of its
+/// size. An empty `color_path` gives no colour. A camera without a size takes the depth image's.
+/// Checks sizes and camera (messages name file, field and rule); validate(Frame) checks the depths.
 Result<Frame> read_frame(const std::string& depth_path, const std::string& color_path,
                          const Camera& camera, double depth_scale_mm);
 

@@ -118,7 +118,8 @@ Result<Frame> frame_of_pngs(const Request& request) {
     color = std::move(image).value();
   }
   const Camera camera{depth->width, depth->height, values[1], values[2], values[3], values[4]};
-  return io::frame_of_images(*depth, color ? &*color : nullptr, camera, values[5], "of the upload");
+  return io::frame_of_images(io::depth_of(*depth, values[5]), color ? &*color : nullptr, camera,
+                             "of the upload");
 }
 
 }  // namespace

@@ -65,6 +65,20 @@ std::vector<std::string> png_seeds() {
           text_of(support::compressed_color(0).data)};
 }
 
+void run_depth_file(std::string_view bytes) {
+  const auto depth = io::read_depth(file_of(bytes, "depth"), 1);
+  if (!depth.ok()) return;
+  require(depth->metres.size() == static_cast<std::size_t>(depth->width) * depth->height,
+          "a depth image has all its pixels");
+}
+
+std::vector<std::string> depth_file_seeds() {
+  const std::string npy("\x93NUMPY\x01\0\x36\0", 10);
+  return {npy + "{'descr': '<u2', 'fortran_order': False, 'shape': (1, 2)}abcd",
+          npy + "{'descr': '>f4', 'fortran_order': False, 'shape': (1, 1)}abcd",
+          "P5\n# made by hand\n2 1\n65535\nabcd"};
+}
+
 std::vector<std::string> jpeg_seeds() {
   return {text_of(support::compressed_color(0, ".jpg").data)};
 }
@@ -111,6 +125,7 @@ void run_compressed_color(std::string_view bytes) {
 std::vector<Target> image_targets() {
   const char* const image_file = "core/io/image_file.cpp";
   return {{"png", image_file, run_png, png_seeds, 4096, 300},
+          {"depth_file", "core/io/depth_file.cpp", run_depth_file, depth_file_seeds, 1024},
           {"jpeg", image_file, run_compressed_color, jpeg_seeds, 4096, 300},
           {"compressed_depth", "server/convert/compressed.cpp", run_compressed, compressed_seeds,
            8192, 300}};

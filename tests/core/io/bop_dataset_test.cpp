@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/io/bop_dataset.hpp"
 
+#include <filesystem>
+
 #include <gtest/gtest.h>
 
 #include "core/io/image_file.hpp"
@@ -171,6 +173,50 @@ TEST(BopDataset, RealFrames) {
   const auto frame = load_bop_frame(frames->front());
   ASSERT_TRUE(frame.ok()) << frame.status().message;
   EXPECT_TRUE(validate(*frame).ok());
+}
+
+/// Grey images, several cameras and CAD models have names of their own in BOP's industrial sets.
+TEST(BopDataset, ReadsVariantsOfTheLayout) {
+  namespace fs = std::filesystem;
+  const test::TemporaryFolder folder;
+  BopSceneWriter writer(folder.path(), "val", 1);
+  BopInstanceRecord instance;
+  instance.obj_id = 7;
+  instance.camera_from_object = some_pose();
+  ASSERT_TRUE(writer.add(5, some_frame(), {instance}).ok());
+  ASSERT_TRUE(writer.finish().ok());
+  ASSERT_TRUE(write_bop_models(folder.path(), {some_mesh()}).ok());
+  const auto expected = read_bop_frames(folder.path(), "val");
+  ASSERT_TRUE(expected.ok());
+  fs::rename(folder / "models", folder / "models_cad");
+  EXPECT_EQ(read_bop_models(folder.path())->size(), 1u);
+  const std::string scene = folder / "val/000001/";
+  fs::rename(scene + "rgb", scene + "gray");
+  EXPECT_EQ(read_bop_frames(folder.path(), "val")->at(0).color_path, scene + "gray/000005.png");
+  fs::rename(scene + "gray", scene + "rgb_cam1");
+  fs::rename(scene + "depth", scene + "depth_cam1");
+  for (const std::string name : {"scene_camera", "scene_gt", "scene_gt_info"}) {
+    fs::rename(scene + name + ".json", scene + name + "_cam1.json");
+  }
+  const auto frames = read_bop_frames(folder.path(), "val");
+  ASSERT_TRUE(frames.ok()) << frames.status().message;
+  EXPECT_EQ(frames->at(0).color_path, scene + "rgb_cam1/000005.png");
+  EXPECT_EQ(frames->at(0).truth.at(0).obj_id, 7);
+  EXPECT_EQ(load_bop_frame(frames->at(0))->depth, some_frame().depth);
+  test::spill(scene + "info.yml", "0:\n  cam_K: [1]\n");
+  const Status old = read_bop_frames(folder.path(), "val").status();
+  EXPECT_NE(old.message.find("SIXD and LINEMOD"), std::string::npos) << old.message;
+}
+
+/// A matrix that stands column by column, which gave a principal point of zero.
+TEST(BopDataset, ACameraThatIsNoneIsRefusedByItsImage) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_gray_png(folder / "val/000001/depth/000003.png", {2, 1, {1, 2}}).ok());
+  test::spill(folder / "val/000001/scene_camera.json",
+              R"({"3": {"cam_K": [500, 0, 0, 0, 501, 0, 320, 240, 1]}})");
+  const Status status = read_bop_frames(folder.path(), "val").status();
+  EXPECT_NE(status.message.find("scene_camera.json: 3: the third row"), std::string::npos)
+      << status.message;
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/io/image_file.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -203,6 +205,64 @@ TEST(FrameFile, SizesMustAgree) {
   ASSERT_FALSE(wrong.ok());
   EXPECT_NE(wrong.status().message.find("depth"), std::string::npos);
   EXPECT_NE(wrong.status().message.find("40x30"), std::string::npos);
+}
+
+std::string npy(const std::string& type, const std::string& shape, const std::string& data) {
+  const std::string header =
+      "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }\n";
+  return std::string("\x93NUMPY\x01\0", 8) + static_cast<char>(header.size()) +
+         std::string(1, '\0') + header + data;
+}
+
+/// As NumPy and Netpbm write them, of the depths 1, 256 and 2 units, then 0.
+TEST(DepthFile, ReadsNpyAndPgm) {
+  const test::TemporaryFolder folder;
+  const std::string little("\1\0\0\1\2\0\0\0", 8), big("\0\1\1\0\0\2\0\0", 8);
+  const float metres[] = {0.5f, 0.25f, NAN, 0};
+  const double doubles[] = {0.5, 0.25, NAN, 0};
+  const std::string floats(reinterpret_cast<const char*>(metres), sizeof metres);
+  const std::string wide(reinterpret_cast<const char*>(doubles), sizeof doubles);
+  for (const std::string& bytes : {npy("<u2", "(2, 2)", little), npy(">u2", "(2, 2, 1)", big),
+                                   "P5\n# a comment\n2 2\n65535\n" + big, "P5 2 2 1000\n" + big}) {
+    spill(folder / "depth", bytes);
+    const auto depth = read_depth(folder / "depth", 0.5);
+    ASSERT_TRUE(depth.ok()) << depth.status().message;
+    EXPECT_EQ(depth->width, 2);
+    EXPECT_EQ(depth->metres, (std::vector<float>{0.0005f, 0.128f, 0.001f, 0}));
+  }
+  for (const std::string& bytes : {npy("<f4", "(1, 4)", floats), npy("<f8", "(1, 4)", wide)}) {
+    spill(folder / "depth", bytes);
+    const auto depth = read_depth(folder / "depth", 0.5);  // floats are metres whatever the unit
+    ASSERT_TRUE(depth.ok()) << depth.status().message;
+    EXPECT_EQ(depth->width, 4);
+    EXPECT_EQ(depth->metres[1], 0.25f);
+    EXPECT_TRUE(std::isnan(depth->metres[2]));
+  }
+}
+
+TEST(DepthFile, RefusalsSayTheWayOut) {
+  const test::TemporaryFolder folder;
+  const auto refusal = [&](const std::string& name, const std::string& bytes) {
+    spill(folder / name, bytes);
+    const Status status = read_depth(folder / name, 1).status();
+    EXPECT_FALSE(status.ok());
+    return status.message;
+  };
+  const auto says = [&](const std::string& text, const char* words) {
+    EXPECT_NE(text.find(words), std::string::npos) << text;
+  };
+  says(refusal("d.tiff", "II*         "), "numpy.save('depth.npy', cv2.imread('");
+  says(refusal("d.exr", "v/1         "), "OPENCV_IO_ENABLE_OPENEXR=1");
+  says(refusal("d.bag", "#ROSBAG V2.0"), "rs-convert -i");
+  says(refusal("d.mkv", "\x1a\x45\xdf\xa3        "), "azure_kinect_mkv_reader.py");
+  says(refusal("d.pgm", "P5 2 2 255\nabcd"), "must have 16");
+  says(refusal("d.pgm", "P5 2 2 65535\nabcd"), "must have 8");
+  says(refusal("d.npy", npy("<f4", "(3, 4)", "abcd")), "must have 48");
+  says(refusal("d.npy", npy("|u1", "(2, 2)", "abcd")), "\"|u1\"");
+  says(refusal("d.npy", npy("<u2", "(2, 2, 3)", "abcd")), "one image");
+  ASSERT_TRUE(write_mask_png(folder / "d.png", 2, 1, {1, 2}).ok());
+  says(read_depth(folder / "d.png", 1).status().message, "must have 1 of 16: a picture");
+  EXPECT_EQ(read_depth(folder / "none", 1).status().code, StatusCode::not_found);
 }
 
 }  // namespace
