@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,13 +10,8 @@ namespace bpa {
 /// A median depth that no depth camera has, metres: such numbers are millimetres.
 inline constexpr double kMillimetresFrom = 100;
 
-/// The median of some of the depths that are finite and positive; nothing where none is.
-std::optional<double> some_median(const std::vector<float>& depths);
-
-/// What people should know of depths that were taken for millimetres.
-std::string millimetre_note(double median);
-
-/// Depths in metres, of metres or, told by their median, of millimetres. Returns the note then.
+/// Turns depths whose median says that they are millimetres into metres. Returns what people should
+/// know then, else an empty text.
 std::string to_metres(std::vector<float>& depths);
 
 }  // namespace bpa
