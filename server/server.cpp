@@ -25,6 +25,7 @@
 #include "core/base/guarded.hpp"
 #include "core/io/camera_poses_file.hpp"
 #include "idl/wire/participant.hpp"
+#include "server/advice.hpp"
 #include "server/busy.hpp"
 #include "server/diagnostics.hpp"
 #include "server/log_relay.hpp"
@@ -369,7 +370,8 @@ class Running : public Server {
     if (!result.ok()) return log_failure(result.status());
     if (frame != nullptr) {  // else of several views, in the fixed frame
       tracking_->add(*result);
-      feed_.add_result(*frame, *result);
+      const double range = settings_.get()->detector.surface.max_range_m;
+      feed_.add_result(*frame, *result, advice_.on(*frame, *result, range));
     }
     const auto& found = result->interpretations;
     log(log_, LogLevel::debug,
@@ -546,6 +548,7 @@ class Running : public Server {
   std::mutex failure_mutex_;
   std::string last_failure_;       ///< Text of the last failed frame, and
   Clock::time_point last_logged_;  ///< when one was logged: the same is said once in 10 s.
+  Advice advice_{log_};
   std::uint64_t losses_reported_ = 0;
   bool clock_reported_ = false;  ///< That it stands still.
   Busy reporting_;

@@ -3,9 +3,13 @@
 // bpa detect: frames in, ranked interpretations out.
 #include <cstdio>
 #include <optional>
+#include <sstream>
 
+#include "core/base/concat.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/cloud/frame_fusion.hpp"
+#include "core/doctor/frame_check.hpp"
+#include "core/doctor/result_check.hpp"
 #include "core/draw/annotate.hpp"
 #include "core/draw/sheet.hpp"
 #include "core/io/file_bytes.hpp"
@@ -28,6 +32,10 @@ void print_result(const std::string& name, const io::FrameResult& result) {
   if (!result.sensor.empty() && result.sensor != name_of(SensorKind::structured_light))
     std::printf(", %s", result.sensor.c_str());
   if (result.fused_frames > 1) std::printf(", %d frames combined", result.fused_frames);
+  const auto by_color = std::ranges::find(result.plan, "features.use_color", &PlanEntry::name);
+  if (by_color != result.plan.end() && by_color->value == "false") {
+    std::printf(", by shape alone (%s)", by_color->reason.c_str());
+  }
   double missed = 0;
   for (const MissedModel& of_model : result.missed) missed += of_model.expected;
   if (!result.missed.empty()) std::printf(", %.2f objects missed (expected)", missed);
@@ -155,6 +163,7 @@ class DetectRun {
     if (a_.follow) request_.expected = expected_after(scene);
     results_.push_back(reported(scene, input.reported_from_camera, entry, watch.seconds()));
     print_result(input.name, results_.back());
+    if (doctor::says_little(scene)) print_advice(input.frame);
     std::fflush(stdout);
     const std::string file = io::bop_number(entry.scene_id) + "_" + io::bop_number(entry.im_id);
     if (explain_) {
@@ -173,6 +182,16 @@ class DetectRun {
     write_picture(file, sheet_.back().picture);
   }
 
+  /// What is wrong with a frame; the same as of another one is not said again.
+  void print_advice(const Frame& frame) {
+    const double range = detector_.options().surface.max_range_m;
+    const std::string advice =
+        doctor::lines_of(doctor::check_frame(frame, range, a_.common.threads));
+    if (advice.empty() || std::exchange(advice_, advice) == advice) return;
+    std::istringstream lines(advice);
+    for (std::string line; std::getline(lines, line);) std::printf("  %s\n", line.c_str());
+  }
+
   void write_picture(const std::string& name, const io::ColorImage& picture) const {
     or_throw(io::write_color_png(a_.annotate + "/" + name + ".png", picture));
   }
@@ -181,8 +200,9 @@ class DetectRun {
   const Detector& detector_;
   const Given& given_;
   FrameFusion fusion_;
-  int combined_ = 0;   ///< Frames since the last search.
-  int scene_id_ = -1;  ///< Of the frame before.
+  int combined_ = 0;    ///< Frames since the last search.
+  int scene_id_ = -1;   ///< Of the frame before.
+  std::string advice_;  ///< Of the last frame that had some.
   std::optional<ExplainFolder> explain_;
   DetectRequest request_;
   std::vector<io::FrameResult> results_;
@@ -199,11 +219,14 @@ void check_usage(const DetectArguments& a) {
 void detect(const DetectArguments& a) {
   check_usage(a);
   // Frames are checked before the library is loaded, which takes longer.
-  const std::vector<io::BopFrame> entries = list_inputs(a);
-  Input input = read_input(a, entries.front());
+  std::vector<io::BopFrame> entries = list_inputs(a);
+  if (entries.size() == 1) (void)read_input(a, entries.front());
   const Given given = read_given(a);
   if (!a.explain.empty()) or_throw(io::make_folder(a.explain));
   const Detector detector = open_detector(a.detector, a.common.threads);
+  if (!a.dataset.folder.empty()) {
+    number_truth(a.dataset.folder, detector.library(), a.detector.models.empty(), entries);
+  }
   if (a.views > 1) {
     ViewsQuestion question{request_of(a), given.roi, given.mask};
     question.request.priors = given.priors;
@@ -211,14 +234,24 @@ void detect(const DetectArguments& a) {
   }
   DetectRun run(a, detector, given, entries.size() > 1);
   Progress progress("frames", static_cast<int>(entries.size()));
+  int failed = 0;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     progress.show(static_cast<int>(i));
-    if (i > 0) input = read_input(a, entries[i]);
-    progress.clear();
     const bool last = i + 1 == entries.size() || entries[i].scene_id != entries[i + 1].scene_id;
-    run.add(entries[i], std::move(input), last);
+    try {
+      Input input = read_input(a, entries[i]);
+      progress.clear();
+      run.add(entries[i], std::move(input), last);
+    } catch (const Failure& failure) {
+      if (entries.size() == 1 || a.fuse > 1) throw;  // frames that are combined need each other
+      progress.clear();
+      std::fprintf(stderr, "not searched: %s\n", failure.what());
+      ++failed;
+    }
   }
   run.finish();
+  if (failed == 0) return;
+  throw Failure(invalid_argument(failed, " of ", entries.size(), " frames could not be searched"));
 }
 
 void add_inputs(CLI::App& command, DetectArguments& a) {
@@ -265,6 +298,11 @@ void add_question(CLI::App& command, DetectArguments& a) {
              "{\"rotation_wxyz\": [4], \"translation_m\": [3]}, \"position_sigma_m\": S, "
              "\"rotation_sigma_deg\": S, \"weight\": W}]}",
              "FILE");
+  command
+      .add_option("--min-probability", a.detector.min_probability,
+                  "Least presence of an object in the best interpretation; of the settings if not "
+                  "given")
+      ->check(CLI::Range(0.0, 1.0));
   add_option(command, "--top", a.top, "Number of interpretations", "K")->check(CLI::Range(1, 100));
   add_option(command, "--budget-ms", a.budget_ms, "Time for a frame; 0 = no limit", "T")
       ->check(CLI::NonNegativeNumber);

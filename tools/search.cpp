@@ -5,11 +5,16 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
+#include "core/doctor/frame_check.hpp"
+#include "core/doctor/result_check.hpp"
+#include "core/eval/match_names.hpp"
 #include "core/io/camera_file.hpp"
 #include "core/io/model_file.hpp"
 #include "core/io/pcd_file.hpp"
+#include "tools/mesh_input.hpp"
 
 namespace bpa::cli {
 namespace {
@@ -33,7 +38,7 @@ void print_notes(const std::string& path, const std::vector<std::string>& notes)
   for (const std::string& note : notes) std::printf("%s: %s\n", path.c_str(), note.c_str());
 }
 
-Input read_pcd(const std::string& path, Camera camera) {
+Input read_pcd(const std::string& path, Camera camera, double unit) {
   const io::PcdCloud cloud = or_throw(io::read_pcd(path));
   if (camera.width == 0) {
     camera.width = cloud.width;
@@ -41,7 +46,7 @@ Input read_pcd(const std::string& path, Camera camera) {
   }
   const bool known = camera.fx != 0;
   io::OrganisedFrame organised =
-      or_throw(io::frame_from_organised_cloud(cloud, known ? &camera : nullptr), path);
+      or_throw(io::frame_from_organised_cloud(cloud, known ? &camera : nullptr, unit), path);
   print_notes(path, organised.notes);
   return {path, std::move(organised.frame), organised.cloud_from_camera};
 }
@@ -55,8 +60,13 @@ void add_detector_options(CLI::App& command, DetectorArguments& arguments) {
 }
 
 void add_input_options(CLI::App& command, DetectArguments& a) {
-  add_option(command, "--pcd", a.pcd, "Organised PCD clouds; the camera is estimated from them",
-             "FILE...");
+  auto* const pcd =
+      add_option(command, "--pcd", a.pcd, "Organised PCD clouds; the camera is estimated from them",
+                 "FILE...");
+  add_unit_option(command, a.cloud_unit,
+                  "Unit of the clouds; metres if not given, or millimetres where the median depth "
+                  "is over 100")
+      ->needs(pcd);
   auto* const camera = add_option(
       command, "--camera", a.camera,
       "fx fy cx cy or a 3 x 3 matrix: BOP, ROS camera_info, Open3D, librealsense, OpenCV, "
@@ -72,6 +82,10 @@ void add_input_options(CLI::App& command, DetectArguments& a) {
   bop->excludes(camera);
   add_split_options(command, a.dataset);
   command.get_option("--scenes")->needs(bop);
+  add_option(command, "--images", a.images, "Images of each scene, such as 0,7; all if not given",
+             "LIST")
+      ->delimiter(',')
+      ->needs(bop);
 }
 
 int count_inputs(const DetectArguments& a) {
@@ -100,14 +114,20 @@ std::shared_ptr<const ModelLibrary> open_library(const DetectorArguments& a, int
 
 Detector open_detector(const DetectorArguments& a, int num_threads) {
   const auto library = open_library(a, num_threads);
-  return Detector(library, read_detector_options(a.config),
-                  or_throw(library_score_layers(a.library)));
+  DetectorOptions options = read_detector_options(a.config);
+  if (a.min_probability) options.scene.min_probability = *a.min_probability;
+  return Detector(library, options, or_throw(library_score_layers(a.library)));
 }
 
 std::vector<io::BopFrame> list_inputs(const DetectArguments& a) {
   const DatasetOptions& dataset = a.dataset;
   if (!dataset.folder.empty()) {
-    return or_throw(io::read_bop_frames(dataset.folder, dataset.split, dataset.scenes));
+    auto frames = or_throw(io::read_bop_frames(dataset.folder, dataset.split, dataset.scenes));
+    std::erase_if(frames, [&a](const io::BopFrame& frame) {
+      return !a.images.empty() && std::ranges::count(a.images, frame.im_id) == 0;
+    });
+    if (frames.empty()) throw Failure(not_found(dataset.folder, " has none of the --images"));
+    return frames;
   }
   io::BopFrame entry;
   if (!a.camera.empty()) {
@@ -129,7 +149,7 @@ std::vector<io::BopFrame> list_inputs(const DetectArguments& a) {
 Input read_raw_input(const DetectArguments& a, const io::BopFrame& entry) {
   Input input;
   if (!a.pcd.empty()) {
-    input = read_pcd(entry.depth_path, entry.camera);
+    input = read_pcd(entry.depth_path, entry.camera, a.cloud_unit);
   } else {
     input.frame = or_throw(io::load_bop_frame(entry));
     input.frame.frame_id = std::to_string(entry.scene_id);  // one camera takes a scene's images
@@ -143,6 +163,14 @@ Input read_raw_input(const DetectArguments& a, const io::BopFrame& entry) {
 Input read_input(const DetectArguments& a, const io::BopFrame& entry) {
   Input input = read_raw_input(a, entry);
   clean_depth(input.frame);
+  if (Status status = validate(input.frame); !status.ok()) {
+    // The worst of what the doctor says, who sees the depths that were dropped.
+    const doctor::Findings findings = doctor::check_frame(
+        read_raw_input(a, entry).frame, DetectorOptions().surface.max_range_m, a.common.threads);
+    const std::string advice = doctor::lines_of(findings);
+    if (!advice.empty()) status.message = advice.substr(0, advice.find('\n'));
+    or_throw(status, input.name);
+  }
   return input;
 }
 
@@ -150,9 +178,40 @@ DetectRequest request_of(const CommonOptions& common) {
   return {.seed = common.seed, .num_threads = common.threads};
 }
 
+void number_truth(const std::string& dataset, const ModelLibrary& library, bool whole,
+                  std::vector<io::BopFrame>& frames) {
+  eval::ModelNames known, truth;
+  for (const auto& model : library.models()) known[model->number] = model->name;
+  for (const io::BopFrame& frame : frames) {
+    for (const io::BopInstance& instance : frame.truth) truth[instance.obj_id];
+  }
+  const auto models = io::read_bop_models(dataset);  // test sets may come without
+  for (std::size_t i = 0; models.ok() && i < models->size(); ++i) {
+    const auto object = truth.find((*models)[i].obj_id);
+    if (object != truth.end()) object->second = (*models)[i].name;
+  }
+  const std::map<int, int> numbers = eval::matched(truth, known);
+  std::string lacks;
+  for (const auto& [number, name] : truth) {
+    if (numbers.contains(number)) continue;
+    lacks += (lacks.empty() ? "" : ", ") + (name.empty() ? io::bop_object_name(number) : name);
+  }
+  if (whole && !lacks.empty()) {
+    print_warnings(dataset, {"the library lacks objects of its truth: " + lacks});
+  }
+  for (io::BopFrame& frame : frames) {
+    for (io::BopInstance& instance : frame.truth) {
+      const auto number = numbers.find(instance.obj_id);
+      instance.obj_id = number != numbers.end() ? number->second : -1;
+    }
+  }
+}
+
 void read_true_frames(const DatasetOptions& dataset,
-                      const std::function<void(const TrueFrame&)>& use) {
-  const auto frames = or_throw(io::read_bop_frames(dataset.folder, dataset.split, dataset.scenes));
+                      const std::function<void(const TrueFrame&)>& use,
+                      const ModelLibrary* library) {
+  auto frames = or_throw(io::read_bop_frames(dataset.folder, dataset.split, dataset.scenes));
+  if (library != nullptr) number_truth(dataset.folder, *library, true, frames);
   Progress progress("frames", static_cast<int>(frames.size()));
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.show(static_cast<int>(i));
@@ -168,14 +227,17 @@ void search_frames(const Detector& detector, const DatasetOptions& dataset,
   DetectRequest request = request_of(common);
   std::vector<std::string> names;
   for (const auto& model : detector.library().models()) names.push_back(model->name);
-  read_true_frames(dataset, [&](const TrueFrame& frame) {
-    if (max_models > 0 && max_models < std::ssize(names)) {
-      std::ranges::shuffle(names, RandomStream(common.seed, frame.index));
-      request.models.assign(names.begin(), names.begin() + max_models);
-    }
-    FrameTrace trace;
-    use(frame, or_throw(detector.detect(frame.frame, request, &trace)), trace);
-  });
+  read_true_frames(
+      dataset,
+      [&](const TrueFrame& frame) {
+        if (max_models > 0 && max_models < std::ssize(names)) {
+          std::ranges::shuffle(names, RandomStream(common.seed, frame.index));
+          request.models.assign(names.begin(), names.begin() + max_models);
+        }
+        FrameTrace trace;
+        use(frame, or_throw(detector.detect(frame.frame, request, &trace)), trace);
+      },
+      &detector.library());
 }
 
 }  // namespace bpa::cli

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,11 @@ namespace bpa::cli {
 
 /// What a detector is made of.
 struct DetectorArguments {
-  std::string library;              ///< Folder of the models.
-  std::string further;              ///< Folder of models that `library` lacks; empty: none.
-  std::string config;               ///< YAML file of settings; empty: the defaults.
-  std::vector<std::string> models;  ///< Names; empty: all of `library`.
+  std::string library;                    ///< Folder of the models.
+  std::string further;                    ///< Folder of models that `library` lacks; empty: none.
+  std::string config;                     ///< YAML file of settings; empty: the defaults.
+  std::vector<std::string> models;        ///< Names; empty: all of `library`.
+  std::optional<double> min_probability;  ///< In place of scene.min_probability.
 };
 
 /// Adds --library and --config.
@@ -38,8 +40,10 @@ struct DetectArguments {
   CommonOptions common;
   DetectorArguments detector;
   std::vector<std::string> pcd, depth, color;
+  double cloud_unit = 0;  ///< Metres of one unit of --pcd; 0: told from the depths.
   std::string camera;
   DatasetOptions dataset;
+  std::vector<int> images;  ///< im_id, of each scene; empty: all.
   std::string priors, mask;
   std::vector<int> roi;
   int fuse = 1;
@@ -51,7 +55,7 @@ struct DetectArguments {
   std::string csv, json, annotate, explain;
 };
 
-/// Adds --pcd, --depth, --color, --camera, --bop, --split and --scenes.
+/// Adds --pcd, --unit, --depth, --color, --camera, --bop, --split, --scenes and --images.
 void add_input_options(CLI::App& command, DetectArguments& arguments);
 /// How many of --pcd, --depth and --bop are given; throws a ParseError unless there is one colour
 /// image for each depth image, or none.
@@ -82,9 +86,17 @@ struct TrueFrame {
 /// A request for all models.
 DetectRequest request_of(const CommonOptions& common);
 
-/// Reads the frames of a split that have truth, with a progress bar, and hands over each.
+/// Gives the truth of frames the numbers that the library has for its objects, by name where data
+/// set and library have names. Objects that the library lacks get -1, and are named in a warning if
+/// `library` is a whole one.
+void number_truth(const std::string& dataset, const ModelLibrary& library, bool whole,
+                  std::vector<io::BopFrame>& frames);
+
+/// Reads the frames of a split that have truth, with a progress bar, and hands over each; with
+/// a library, their truth is numbered by number_truth().
 void read_true_frames(const DatasetOptions& dataset,
-                      const std::function<void(const TrueFrame&)>& use);
+                      const std::function<void(const TrueFrame&)>& use,
+                      const ModelLibrary* library = nullptr);
 
 /// The same for frames that the detector has searched, each for `max_models` random models of the
 /// library; 0: for all.

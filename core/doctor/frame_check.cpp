@@ -7,6 +7,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/base/median.hpp"
+#include "core/cloud/depth_unit.hpp"
 #include "core/geometry/camera.hpp"
 
 namespace bpa::doctor {
@@ -21,7 +22,6 @@ constexpr double kMaxHoles = 0.6;                      // share of the pixels [0
 constexpr double kMaxFar = 0.6;                        // share of the depths beyond the range [0.2]
 constexpr double kNear_m = 0.2;                        // median; below what sensors measure [0.61]
 constexpr double kMetresGiven_m = 0.02;                // median of depth 1000 times too small
-constexpr double kMillimetresGiven_m = 100;            // median of depth 1000 times too large
 constexpr int kDark = 25, kBright = 235;               // median luminance of 255 [70 to 196]
 constexpr double kMaxClipped = 0.5;                    // share of the pixels [0.33]
 
@@ -68,7 +68,7 @@ bool check_unit(double median_m, Findings& findings) {
   const char* const remedy =
       "Correct the scale: depth_scale of camera.json or scene_camera.json is millimetres for one "
       "unit of the depth image; 16UC1 topics are millimetres, 32FC1 topics metres.";
-  if (median_m > kMillimetresGiven_m) {
+  if (median_m > kMillimetresFrom) {
     findings.push_back(
         {Severity::error, "depth is in the wrong unit",
          concat("its median is ", fixed(median_m, 0), " m: millimetres are taken for metres"),
@@ -177,7 +177,14 @@ Findings check_frame(const Frame& frame, double max_range_m, int num_threads) {
   }
   check_distance(depths, median_m, max_range_m, findings);
   if (clean.color.empty()) return findings;
+  const std::size_t before = findings.size();
   check_exposure(clean.color, findings);
+  if (findings.size() == before && !has_hues(clean)) {  // the dark and the bright have none either
+
+    findings.push_back({Severity::warning, "colour has no hues",
+                        "the image is grey, or of one colour: models are compared by shape alone",
+                        "Give images in colour; without them, objects of one shape are confused."});
+  }
   check_registration(clean, num_threads, findings);
   return findings;
 }

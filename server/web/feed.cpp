@@ -129,14 +129,15 @@ void Feed::keep(std::shared_ptr<KeptResult> kept) {
   results_.erase(std::remove_if(results_.begin(), kept_from, std::not_fn(held)), kept_from);
 }
 
-std::uint64_t Feed::add(const Frame& frame, const SceneInterpretations& result,
-                        std::string origin) {
+std::uint64_t Feed::add(const Frame& frame, const SceneInterpretations& result, std::string origin,
+                        const std::string& advice) {
   auto kept = std::make_shared<KeptResult>();
   kept->origin = std::move(origin);
   kept->camera = frame.camera;
   kept->shown =
       std::make_shared<ShownFrame>([copy = std::make_shared<const Frame>(frame)] { return copy; });
   static_cast<SceneInterpretations&>(kept->result) = result;
+  if (!advice.empty()) kept->result.plan.push_back({"doctor", "true", advice});
   kept->result.seconds = 0.001 * result.total_milliseconds;
   kept->result.server.emplace();  // so that the stamp is written
   keep(kept);
@@ -144,8 +145,9 @@ std::uint64_t Feed::add(const Frame& frame, const SceneInterpretations& result,
   return kept->id;
 }
 
-void Feed::add_result(const Frame& frame, const SceneInterpretations& result) {
-  if (wanted()) add(frame, result, "camera");
+void Feed::add_result(const Frame& frame, const SceneInterpretations& result,
+                      const std::string& advice) {
+  if (wanted()) add(frame, result, "camera", advice);
 }
 
 std::uint64_t Feed::add_asked(const Frame& frame, const SceneInterpretations& result,

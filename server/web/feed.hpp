@@ -76,7 +76,9 @@ class Feed {
   // Of the server; they do nothing while nobody looks.
   void add_frame(std::shared_ptr<SharedFrame> frame, std::int64_t stamp_ns,
                  const std::string& frame_id);
-  void add_result(const Frame& frame, const SceneInterpretations& result);
+  /// `advice` of the doctor stands in the plan, as "doctor"; empty: none.
+  void add_result(const Frame& frame, const SceneInterpretations& result,
+                  const std::string& advice = {});
   void add_tracks(const TrackedFrame& tracks);
 
   /// Keeps the result of what a viewer asked for, for 5 s at least, and returns its id.
@@ -113,7 +115,8 @@ class Feed {
     std::uint64_t held = 0, told = 0;  ///< Results' ids; 0: none.
   };
 
-  std::uint64_t add(const Frame& frame, const SceneInterpretations& result, std::string origin);
+  std::uint64_t add(const Frame& frame, const SceneInterpretations& result, std::string origin,
+                    const std::string& advice = {});
   void keep(std::shared_ptr<KeptResult> kept);
   void changed();
 

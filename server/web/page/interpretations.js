@@ -52,7 +52,7 @@ function showRanks() {
     ? `of result ${view.result.id}, ${view.result.origin}${view.pinned ? ', held' : ''}` : '';
   $('of-result').dataset.id = view.result ? view.result.id : '';
   $('interpretations').replaceChildren(...readings(all, view.models, shown).flatMap((reading) => lines(reading, all[0])));
-  $('meaning').textContent = kMeaning;
+  $('meaning').textContent = view.result?.result.plan?.doctor?.reason || kMeaning;
 }
 
 /** The numbers of the search that are not their defaults, and why. */

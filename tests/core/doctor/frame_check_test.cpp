@@ -148,6 +148,14 @@ TEST(CheckFrame, ColourTooDarkTooBrightAndClipped) {
             Whats{"colour is too bright"});
 }
 
+TEST(CheckFrame, GreyColour) {
+  Frame frame = good();
+  for (std::size_t i = 0; i < frame.color.size(); i += 3) {
+    frame.color[i] = frame.color[i + 2] = frame.color[i + 1];
+  }
+  EXPECT_EQ(found(frame), Whats{"colour has no hues"});
+}
+
 TEST(CheckFrame, IntrinsicsThatDoNotFit) {
   Frame frame = good();
   const Camera right = frame.camera;

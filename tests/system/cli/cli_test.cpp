@@ -130,6 +130,40 @@ TEST_F(BadInput, DepthOfNothingButZero) {
   expect_failure(detect("zero.png"), {"depth", "0 valid pixels", "500"});
 }
 
+TEST_F(BadInput, DepthOfEightBits) {
+  ASSERT_TRUE(
+      io::write_mask_png(folder_ / "m.png", 160, 120, std::vector<std::uint8_t>(160 * 120, 90))
+          .ok());
+  expect_failure(detect("m.png"), {"m.png", "8 bits", "must have 1 of 16"});
+}
+
+TEST_F(BadInput, DepthInAnotherUnitIsSaidWithTheRemedy) {
+  write_depth("units.png", 160, 120, 65000);
+  ASSERT_TRUE(io::write_file(folder_ / "mm.json", io::camera_json(kCamera, 20.0)).ok());
+  expect_failure(detect("units.png", "mm.json"), {"wrong unit", "1300 m", "Correct the scale"});
+  // Legal, but nothing is found so near.
+  write_depth("near.png", 160, 120, 90);
+  const Outcome near = run(detect("near.png"));
+  EXPECT_EQ(near.code, 0) << near.out;
+  EXPECT_NE(near.out.find("the scene is too near: the median depth is 90 mm"), std::string::npos)
+      << near.out;
+}
+
+TEST_F(BadInput, OneFrameOfSeveralDoesNotEndTheList) {
+  spill(folder_ / "cut.png", slurp(folder_ / "d.png").substr(0, 90));
+  const Outcome outcome =
+      run("detect --library " + (folder_ / "L") + " --depth " + (folder_ / "d.png") + " " +
+          (folder_ / "cut.png") + " " + (folder_ / "d.png") + " --camera " +
+          (folder_ / "camera.json") + " --json " + (folder_ / "r.json"));
+  EXPECT_EQ(outcome.code, 1) << outcome.out;
+  EXPECT_NE(outcome.out.find("not searched: " + (folder_ / "cut.png")), std::string::npos);
+  EXPECT_NE(outcome.out.find("1 of 3 frames could not be searched"), std::string::npos);
+  const auto results = io::read_results_json(folder_ / "r.json");
+  ASSERT_TRUE(results.ok());
+  ASSERT_EQ(results->size(), 2u);
+  EXPECT_EQ(results->at(1).im_id, 2);
+}
+
 TEST_F(BadInput, CloudOfNothingButNan) {
   std::ostringstream pcd;
   pcd << "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 40\nHEIGHT 30\n"
@@ -156,7 +190,7 @@ TEST_F(BadInput, MeshInTheWrongUnit) {
   const std::string library = " --name b --library " + (folder_ / "M");
   ASSERT_TRUE(io::write_ply(folder_ / "mm.ply", box(0.06f, 0.04f, 0.09f), 1000).ok());
   expect_failure("model from-mesh " + (folder_ / "mm.ply") + library + " --unit m",
-                 {"mm.ply", "3 m", "scale 0.001"});
+                 {"mm.ply", "3 m", "--unit mm"});
   const Outcome scaled =
       run("model from-mesh " + (folder_ / "mm.ply") + library + " --scale 0.001");
   EXPECT_EQ(scaled.code, 0) << scaled.out;
@@ -399,6 +433,41 @@ TEST(Experiments, SensorBesideAFrame) {
   EXPECT_EQ(outcome.code, 0) << outcome.out;
   EXPECT_TRUE(io::read_color_image(folder / "sheet.png").ok());
   EXPECT_NE(slurp(folder / "sensor.json").find("published_axial_m"), std::string::npos);
+}
+
+/// The library numbers its model otherwise than the data set.
+TEST(Evaluate, ComparesTwoRunsByTheNamesOfModels) {
+  const test::TemporaryFolder folder;
+  io::BopMesh model{1, "box", 0.233, {}, box(0.06f, 0.04f, 0.09f)};
+  ASSERT_TRUE(io::write_bop_models(folder.path(), {model}).ok());
+  io::BopSceneWriter writer(folder.path(), "test", 1);
+  io::BopInstanceRecord truth;
+  truth.obj_id = 1;
+  truth.camera_from_object = box_pose();
+  ASSERT_TRUE(writer.add(4, box_frame(box_pose()), {truth}).ok());
+  ASSERT_TRUE(writer.finish().ok());
+  io::FrameResult result;
+  result.scene_id = 1;
+  result.im_id = 4;
+  result.interpretations.resize(1);
+  ASSERT_TRUE(io::write_results_json(folder / "a.json", {result}).ok());
+  Placement placement;
+  placement.model = "box";
+  placement.model_number = 9;
+  placement.frame_from_object = box_pose();
+  placement.presence = placement.probability = 0.9;
+  result.interpretations[0].placements = {placement};
+  ASSERT_TRUE(io::write_results_json(folder / "b.json", {result}).ok());
+  const std::string command = "evaluate --bop " + folder.path() + " ";
+  const Outcome outcome = run(command + (folder / "a.json") + " " + (folder / "b.json"));
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.out, "scene 1 image 4: gained box; lost -\n" + (folder / "a.json") +
+                             ": found 0/1, right of those reported 0/0\n" + (folder / "b.json") +
+                             ": found 1/1, right of those reported 1/1\n");
+  EXPECT_EQ(run(command + (folder / "a.json")).code, 2);
+  result.interpretations[0].placements[0].model = "drill";
+  ASSERT_TRUE(io::write_results_json(folder / "c.json", {result}).ok());
+  expect_failure(command + "--json " + (folder / "c.json"), {"drill", "another library"});
 }
 
 }  // namespace

@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The bpa authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "core/doctor/finding.hpp"
+#include "core/result/interpretation.hpp"
+
+namespace bpa::doctor {
+
+/// Whether a result is empty or doubtful: it has no placement, or none of a probability of 0.5.
+bool says_little(const SceneInterpretations& result);
+
+/// Findings as one line each, the worst first: "WHAT: WHY. REMEDY".
+std::string lines_of(Findings findings);
+
+}  // namespace bpa::doctor
