@@ -1,10 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // bpa evaluate: results and tracks against truth.
+#include <algorithm>
 #include <cstdio>
+#include <tuple>
 
+#include "core/base/concat.hpp"
 #include "core/draw/report_plots.hpp"
 #include "core/eval/evaluation.hpp"
+#include "core/eval/match_names.hpp"
 #include "core/eval/track_evaluation.hpp"
 #include "core/io/file_bytes.hpp"
 #include "tools/command.hpp"
@@ -16,10 +20,36 @@ struct EvaluateArguments {
   CommonOptions common;
   DatasetOptions dataset;
   std::string csv, json, tracks, json_out, plots;
+  std::vector<std::string> compared;  ///< Results as JSON, earlier and later.
   bool nothing_there = false;
   eval::EvaluationOptions options;
   eval::TrackEvaluationOptions track_options;
 };
+
+/// Gives placements the numbers that the data set has for their models.
+void number_by_name(const eval::EvalObjects& objects, std::vector<io::FrameResult>& results) {
+  eval::ModelNames known, found;
+  for (const auto& [number, object] : objects) known[number] = object.name;
+  const auto for_each = [&](const auto& visit) {
+    for (io::FrameResult& result : results) {
+      for (Interpretation& interpretation : result.interpretations) {
+        std::ranges::for_each(interpretation.placements, visit);
+      }
+    }
+  };
+  for_each([&](const Placement& p) { found[p.model_number] = p.model; });
+  const std::map<int, int> numbers = eval::matched(found, known);
+  for_each([&](Placement& p) {
+    const auto number = numbers.find(p.model_number);
+    if (number == numbers.end() && !p.model.empty()) {
+      throw Failure(invalid_argument("the results have the model ", p.model, " (obj_id ",
+                                     p.model_number,
+                                     "), which the data set does not have: they "
+                                     "are of another library"));
+    }
+    if (number != numbers.end()) p.model_number = number->second;
+  });
+}
 
 eval::EvaluationReport report_on(const EvaluateArguments& a) {
   eval::EvaluationOptions options = a.options;
@@ -30,8 +60,9 @@ eval::EvaluationReport report_on(const EvaluateArguments& a) {
   if (a.nothing_there) return or_throw(eval::evaluate_nothing_there(read_results(), options));
   const auto frames =
       or_throw(io::read_bop_frames(a.dataset.folder, a.dataset.split, a.dataset.scenes));
-  const std::vector<io::FrameResult> results = read_results();
+  std::vector<io::FrameResult> results = read_results();
   const eval::EvalObjects objects = or_throw(eval::load_eval_objects(a.dataset.folder));
+  number_by_name(objects, results);
   Progress progress("evaluate", static_cast<int>(frames.size()));
   progress.show(0);
   return or_throw(eval::evaluate(frames, objects, results, options,
@@ -62,7 +93,45 @@ void evaluate_tracks(const EvaluateArguments& a) {
   if (!a.json_out.empty()) or_throw(io::write_file(a.json_out, eval::track_report_json(report)));
 }
 
+std::string names_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += " " + name;
+  return text.empty() ? " -" : text;
+}
+
+/// What a later run found and an earlier one did not, and the reverse, frame by frame.
+void compare(EvaluateArguments a) {
+  if (a.compared.size() != 2 || a.dataset.folder.empty()) {
+    throw CLI::ValidationError("results", "--bop and two files of results are needed to compare");
+  }
+  a.options.bop_errors = false;
+  std::vector<eval::EvaluationReport> reports;
+  for (const std::string& path : a.compared) {
+    a.json = path;
+    reports.push_back(report_on(a));
+  }
+  const auto& [before, after] = std::tie(reports[0], reports[1]);
+  const eval::EvalObjects objects = or_throw(eval::load_eval_objects(a.dataset.folder));
+  for (std::size_t f = 0; f < before.outcomes.size(); ++f) {
+    const eval::FrameOutcome &was = before.outcomes[f], &is = after.outcomes[f];
+    std::vector<std::string> gained, lost;
+    for (std::size_t t = 0; t < was.truth.size(); ++t) {
+      if (!was.truth[t].counts || was.truth[t].found == is.truth[t].found) continue;
+      (is.truth[t].found ? gained : lost).push_back(objects.at(was.truth[t].obj_id).name);
+    }
+    if (gained.empty() && lost.empty()) continue;
+    std::printf("scene %d image %d: gained%s; lost%s\n", was.scene_id, was.im_id,
+                names_of(gained).c_str(), names_of(lost).c_str());
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::printf("%s: found %d/%d, right of those reported %d/%d\n", a.compared[i].c_str(),
+                reports[i].recall.hits, reports[i].recall.total, reports[i].precision.hits,
+                reports[i].precision.total);
+  }
+}
+
 void evaluate(const EvaluateArguments& a) {
+  if (!a.compared.empty()) return compare(a);
   if (static_cast<int>(a.csv.empty()) + a.json.empty() + a.tracks.empty() != 2) {
     throw CLI::ValidationError("results", "give one of --csv, --json and --tracks");
   }
@@ -92,6 +161,13 @@ void add_evaluate_command(CLI::App& program) {
       "Tracks as JSON, against a sequence. Of results as JSON, the placements of each model are "
       "linked from frame to frame where they are at most 10 cm apart",
       "FILE");
+  add_option(command, "compared", a.compared,
+             "Two files of results as JSON: what the second found and the first did not, and the "
+             "reverse, frame by frame",
+             "A.json B.json")
+      ->expected(2)
+      ->excludes(csv)
+      ->excludes("--json");
   add_options(command, options_of(a.track_options),
               {{"--match", "match_m"}, {"--hidden", "hidden_s"}});
   add_option(command, "--json-out", a.json_out, "Write the report as JSON", "FILE");
