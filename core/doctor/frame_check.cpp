@@ -179,11 +179,12 @@ Findings check_frame(const Frame& frame, double max_range_m, int num_threads) {
   if (clean.color.empty()) return findings;
   const std::size_t before = findings.size();
   check_exposure(clean.color, findings);
-  if (findings.size() == before && !has_hues(clean)) {  // the dark and the bright have none either
-
-    findings.push_back({Severity::warning, "colour has no hues",
-                        "the image is grey, or of one colour: models are compared by shape alone",
-                        "Give images in colour; without them, objects of one shape are confused."});
+  // The dark and the bright have no hues either.
+  if (findings.size() == before && color_content(clean) != ColorContent::hues) {
+    findings.push_back(
+        {Severity::warning, "colour has no hues",
+         "the image is grey, or of one colour: models are compared by shape and outline alone",
+         "Give images in colour; without them, objects of one shape are confused."});
   }
   check_registration(clean, num_threads, findings);
   return findings;
