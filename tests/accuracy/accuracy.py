@@ -203,6 +203,8 @@ def measure(arguments):
     for effort in arguments.effort.split(","):
         seeds = arguments.exhaustive_seeds if effort == "exhaustive" else arguments.seeds
         for domain in chosen(arguments.domains):
+            if effort not in domain.efforts:
+                continue
             if not bench.is_there(domain):
                 report["skipped"].append(f"{domain.name}, {effort}")
                 continue

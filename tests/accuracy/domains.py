@@ -3,6 +3,7 @@
 """The domains that the detector is measured on, a row of the table each."""
 
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,7 @@ class Domain:
     chosen_on: bool = False  # options of the detector were chosen on these frames
     nothing_known: bool = False  # the frames are clouds that hold none of the models
     poses: dict = field(default_factory=dict)  # true (q wxyz, t) in the one cloud, by model
+    efforts: tuple = ("default", "exhaustive")
 
 
 # Searched until a round has nothing left to look at.
@@ -41,6 +43,13 @@ def also_without_colours(domain):
     return [domain, replace(domain, name=domain.name + ", no colours", settings=NO_COLOURS)]
 
 
+def preset(name):
+    """The lines of a file of config/presets."""
+    path = Path(__file__).resolve().parents[2] / "config" / "presets" / f"{name}.yaml"
+    lines = path.read_text(encoding="utf-8").splitlines()
+    return "".join(f"{line}\n" for line in lines if not line.startswith("#"))
+
+
 def piles(name, simulate, **more):
     return simulated(name, "--scenes 8 " + simulate, models="ycbv", **more)
 
@@ -52,6 +61,8 @@ def bins(name, simulate):
 
 DOMAINS = [
     *also_without_colours(Domain("ycbv", "ycbv", folder="ycbv", chosen_on=True)),
+    Domain("ycbv, paper preset", "ycbv", folder="ycbv", settings=preset("paper"),
+           efforts=("default",)),
     *(Domain(f"real {name}", f"real/{name}", folder=f"real/{name}")
       for name in ("bin", "d400", "figure", "flush", "small", "basket", "foreign", "no_depth")),
     Domain("osd_clutter", "ycbv", folder="osd_clutter", nothing_known=True),

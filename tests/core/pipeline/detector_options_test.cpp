@@ -114,6 +114,15 @@ TEST_F(DetectorOptionsFile, MissingFileIsNotFound) {
   EXPECT_EQ(options.status().message, path() + ".not: there is no such file");
 }
 
+TEST(DetectorPresets, ThePaperHasOneRoundOfMatchesWithoutColours) {
+  const auto options = load_detector_options(BPA_SOURCE_DIR "/config/presets/paper.yaml");
+  ASSERT_TRUE(options.ok()) << options.status().message;
+  EXPECT_EQ(options->rounds.max_rounds, 1);
+  EXPECT_EQ(options->features.max_references, 0);
+  EXPECT_FALSE(options->features.use_color);
+  EXPECT_EQ(options->detect.check.points, 500);
+}
+
 // The lines of config/detector.yaml below its heading.
 std::string documented() {
   DetectorOptions defaults;
