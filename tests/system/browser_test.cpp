@@ -42,6 +42,13 @@ TEST_F(Page, ShowsWhatTheServerFound) {
   for (const json& p : result["result"]["interpretations"][0]["placements"])
     found.insert(p["model"]);
   EXPECT_EQ(shown(), found);
+  const auto missed =
+      browser->run("return document.getElementById('missed').textContent;").get<std::string>();
+  ASSERT_FALSE(result["result"]["missed"].empty());
+  for (const json& one : result["result"]["missed"]) {
+    const bool named = missed.find(' ' + one["model"].get<std::string>() + ' ') != missed.npos;
+    EXPECT_EQ(named, one["expected"].get<double>() >= 0.05) << one << missed;
+  }
   // The 3-D view holds the cloud and each object; the pictures are not of one colour.
   EXPECT_TRUE(
       browser->becomes("const d = document.getElementById('space').dataset;"

@@ -55,6 +55,16 @@ function showRanks() {
   $('meaning').textContent = view.result?.result.plan?.doctor?.reason || kMeaning;
 }
 
+/** The models that the search may have missed: what it did not find is not all absent. */
+function showMissed() {
+  const kMentioned = 0.05;  // objects
+  const missed = (view.result?.result.missed || []).filter(({expected}) => expected >= kMentioned)
+    .sort((one, other) => other.expected - one.expected);
+  $('missed').textContent = missed.length
+    ? `Objects in sight that the search expects to have missed: ${missed.map(({model, expected}) => `${model} ${expected.toFixed(2)}`).join(', ')}.`
+    : '';
+}
+
 /** The numbers of the search that are not their defaults, and why. */
 function showPlan() {
   const entries = Object.entries(view.result?.result.plan || {}).filter(([, entry]) => entry.reason !== 'default');
@@ -148,6 +158,7 @@ choosable($('interpretations'));
 on('figures', showTracks);
 on('view', () => {
   showRanks();
+  showMissed();
   showPlan();
   showPlacements();
 });
