@@ -34,7 +34,7 @@ void print_result(const std::string& name, const io::FrameResult& result) {
   if (result.fused_frames > 1) std::printf(", %d frames combined", result.fused_frames);
   const auto by_color = std::ranges::find(result.plan, "features.use_color", &PlanEntry::name);
   if (by_color != result.plan.end() && by_color->value == "false") {
-    std::printf(", by shape alone (%s)", by_color->reason.c_str());
+    std::printf(", without colours (%s)", by_color->reason.c_str());
   }
   double missed = 0;
   for (const MissedModel& of_model : result.missed) missed += of_model.expected;
