@@ -124,8 +124,8 @@ Status read_matrix(Json& known) {
 }
 
 Status check_scale(Json& known) {
-  // Of 16-bit depth, smaller units end at 0.13 m, and larger ones tell no shapes.
-  constexpr double kMin_mm = 0.002, kMax_mm = 20;
+  // Of 16-bit depth, smaller units end at 0.13 m; none is larger than a metre.
+  constexpr double kMin_mm = 0.002, kMax_mm = 1000;
   const double scale = known.value("depth_scale", 1.0);
   if (!std::isfinite(scale) || scale <= 0) {
     return invalid_argument("depth_scale is ", scale, "; it must be positive");
