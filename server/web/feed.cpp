@@ -37,6 +37,7 @@ std::string json_of(const KeptResult& kept) {
   const Camera& camera = kept.camera;
   const Json about = {{"id", kept.id},
                       {"origin", kept.origin},
+                      {"advice", kept.advice},
                       {"came_ns", kept.came_ns},
                       {"camera",
                        {{"width", camera.width},
@@ -133,11 +134,11 @@ std::uint64_t Feed::add(const Frame& frame, const SceneInterpretations& result, 
                         const std::string& advice) {
   auto kept = std::make_shared<KeptResult>();
   kept->origin = std::move(origin);
+  kept->advice = advice;
   kept->camera = frame.camera;
   kept->shown =
       std::make_shared<ShownFrame>([copy = std::make_shared<const Frame>(frame)] { return copy; });
   static_cast<SceneInterpretations&>(kept->result) = result;
-  if (!advice.empty()) kept->result.plan.push_back({"doctor", "true", advice});
   kept->result.seconds = 0.001 * result.total_milliseconds;
   kept->result.server.emplace();  // so that the stamp is written
   keep(kept);

@@ -36,6 +36,7 @@ struct CameraFrame {
 struct KeptResult {
   std::uint64_t id = 0;      ///< From 1, rising.
   std::string origin;        ///< "camera", or what was asked for: "region", "upload", "next frame".
+  std::string advice;        ///< What the doctor says of the frame; empty: nothing.
   std::int64_t came_ns = 0;  ///< When it was there, by the server's clock.
   Camera camera;
   std::shared_ptr<ShownFrame> shown;
@@ -76,7 +77,7 @@ class Feed {
   // Of the server; they do nothing while nobody looks.
   void add_frame(std::shared_ptr<SharedFrame> frame, std::int64_t stamp_ns,
                  const std::string& frame_id);
-  /// `advice` of the doctor stands in the plan, as "doctor"; empty: none.
+  /// `advice` as of KeptResult.
   void add_result(const Frame& frame, const SceneInterpretations& result,
                   const std::string& advice = {});
   void add_tracks(const TrackedFrame& tracks);

@@ -58,6 +58,15 @@ TEST(Feed, KeepsAndDecodesNothingWhileNobodyLooks) {
   EXPECT_EQ(*feed.camera_frame()->shown->depth(), *picture);  // the very same bytes
 }
 
+TEST(Feed, ShowsAdviceBesideTheResultAndNotInItsPlan) {
+  Feed feed(20, [] { return 7; });
+  ASSERT_TRUE(feed.see("viewer", false).ok());
+  feed.add_result(frame_of(64, 48), result_of("mug"), "it is dark");
+  const Json shown = Json::parse(feed.results_after(0).at(0)->json());
+  EXPECT_EQ(shown.at("advice"), "it is dark");
+  EXPECT_EQ(shown.at("result").dump().find("it is dark"), std::string::npos);
+}
+
 TEST(Feed, ForgetsAViewerThatDoesNotAskAgain) {
   Feed feed(20, [] { return 7; });
   ASSERT_TRUE(feed.see("viewer", true).ok());

@@ -52,14 +52,15 @@ function showRanks() {
     ? `of result ${view.result.id}, ${view.result.origin}${view.pinned ? ', held' : ''}` : '';
   $('of-result').dataset.id = view.result ? view.result.id : '';
   $('interpretations').replaceChildren(...readings(all, view.models, shown).flatMap((reading) => lines(reading, all[0])));
-  $('meaning').textContent = view.result?.result.plan?.doctor?.reason || kMeaning;
+  $('meaning').textContent = kMeaning;
 }
 
-/** The models that the search may have missed: what it did not find is not all absent. */
+/** What may be missing, and why: the doctor on the frame, and what the search may have missed. */
 function showMissed() {
   const kMentioned = 0.05;  // objects
   const missed = (view.result?.result.missed || []).filter(({expected}) => expected >= kMentioned)
     .sort((one, other) => other.expected - one.expected);
+  $('advice').textContent = view.result?.advice || '';
   $('missed').textContent = missed.length
     ? `Objects in sight that the search expects to have missed: ${missed.map(({model, expected}) => `${model} ${expected.toFixed(2)}`).join(', ')}.`
     : '';
