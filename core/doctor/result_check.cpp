@@ -10,7 +10,7 @@ bool says_little(const SceneInterpretations& result) {
   constexpr double kSure = 0.5;
   return result.interpretations.empty() ||
          std::ranges::none_of(result.interpretations.front().placements,
-                              [](const Placement& p) { return p.probability >= kSure; });
+                              [](const Placement& p) { return p.presence >= kSure; });
 }
 
 std::string lines_of(Findings findings) {

@@ -9,7 +9,7 @@
 
 namespace bpa::doctor {
 
-/// Whether a result is empty or doubtful: it has no placement, or none of a probability of 0.5.
+/// Whether a result is empty or doubtful: it has no placement, or none of a presence of 0.5.
 bool says_little(const SceneInterpretations& result);
 
 /// Findings as one line each, the worst first: "WHAT: WHY. REMEDY".

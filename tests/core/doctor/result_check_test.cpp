@@ -13,13 +13,13 @@ TEST(ResultCheck, EmptyAndDoubtfulResultsSayLittle) {
   result.interpretations.resize(2);
   EXPECT_TRUE(says_little(result));
   Placement placement;
-  placement.probability = 0.9;
+  placement.presence = 0.9;
   result.interpretations[1].placements = {placement};
   EXPECT_TRUE(says_little(result));  // the best one counts
-  placement.probability = 0.4;
+  placement.presence = 0.4;
   result.interpretations[0].placements = {placement};
   EXPECT_TRUE(says_little(result));
-  placement.probability = 0.6;
+  placement.presence = 0.6;
   result.interpretations[0].placements.push_back(placement);
   EXPECT_FALSE(says_little(result));
 }
