@@ -203,6 +203,7 @@ void add_scenes(CLI::App& simulate) {
                {"--border", "border_share"},
                {"--ambiguous", "ambiguous_share"},
                {"--equal", "equal_share"},
+               {"--kinds", "max_kinds"},
                {"--misregistration", "misregistration"},
                {"--exposure-spread", "exposure_spread"},
                {"--white-balance-spread", "white_balance_spread"},

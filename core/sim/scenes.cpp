@@ -57,6 +57,20 @@ int choose_ambiguous(const Stage& stage, RandomStream& random) {
   return candidates.at(random.index(static_cast<int>(candidates.size())));
 }
 
+// Copies of one to max_kinds objects, of the first ones more than of the last.
+std::vector<int> choose_copies(int wanted, int objects, int max_kinds, RandomStream& random) {
+  std::vector<int> kinds{random.index(objects)};
+  if (max_kinds == 1) return std::vector<int>(wanted, kinds.front());
+  const int count = 1 + random.index(max_kinds);
+  while (std::ssize(kinds) < count) kinds.push_back(random.index(objects));
+  std::vector<int> bodies;
+  while (std::ssize(bodies) < wanted) {
+    const double u = random.uniform();
+    bodies.push_back(kinds[static_cast<std::size_t>(u * u * count)]);
+  }
+  return bodies;
+}
+
 // Meshes of the household objects of a pile, then of its distractors.
 std::vector<int> choose_bodies(const Stage& stage, const SceneOptions& options, SceneKind kind,
                                RandomStream& random) {
@@ -75,7 +89,7 @@ std::vector<int> choose_bodies(const Stage& stage, const SceneOptions& options, 
   if (kind == SceneKind::ambiguous) {
     bodies = {choose_ambiguous(stage, random)};
   } else if (kind == SceneKind::equal) {
-    bodies.assign(wanted, random.index(objects));
+    bodies = choose_copies(wanted, objects, options.max_kinds, random);
   } else {
     bodies = chosen_without_repetition(wanted, objects, random);
   }

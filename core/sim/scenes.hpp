@@ -49,7 +49,8 @@ struct SceneOptions {
   BPA_OPTION(double, ambiguous_share, 0, (0, 1),
              "Share of scenes with one mug whose handle is out of sight.");
   BPA_OPTION(double, equal_share, 0, (0, 1),
-             "Share of scenes whose objects are copies of one, drawn for each scene.");
+             "Share of scenes whose objects are copies of one, or of up to max_kinds.");
+  BPA_OPTION(int, max_kinds, 1, (1, 100), "Most objects that such a scene holds copies of.");
   BPA_OPTION(double, min_focal, 0, (0, 4000), "Shortest focal length, pixels.");
   BPA_OPTION(double, max_focal, 0, (0, 4000), "Longest focal length; 0 = the camera's own.");
   Camera camera{640, 480, 525, 525, 319.5, 239.5};  ///< Of the colour image and the frame.

@@ -177,6 +177,22 @@ TEST(Scenes, AnEqualSceneHoldsCopiesOfOneObject) {
   EXPECT_GT(drawn.size(), 1u);
 }
 
+TEST(Scenes, AnEqualSceneHoldsCopiesOfFewObjects) {
+  SceneOptions options = small_options();
+  options.equal_share = 1;
+  options.max_kinds = 3;
+  options.min_objects = options.max_objects = 8;
+  std::size_t most = 0;
+  for (int i = 0; i < 4; ++i) {
+    std::set<int> objects;
+    const SimulatedScene scene = simulate_scene(stage(), options, scene_seed(22, i), 2);
+    for (const auto& instance : scene.frames[0].instances) objects.insert(instance.object);
+    EXPECT_LE(objects.size(), 3u);
+    most = std::max(most, objects.size());
+  }
+  EXPECT_GT(most, 1u);
+}
+
 // All twelve distractors there are, beside no object: the table shows twelve bodies more.
 TEST(Scenes, ForeignClutterIsAsMuchAsWanted) {
   SceneOptions options = small_options();
