@@ -26,6 +26,7 @@ struct TrainArguments {
   DetectorArguments detector;
   DatasetOptions dataset;                                                  // without its folder
   Folders bop, all_models_bop, round_two_bop, color_bop, calibration_bop;  // see the options
+  std::vector<std::string> only;
   std::string output, made_by = "bpa train";
   int held_out = 5, models_per_frame = 0;
   bool adapt = false;
@@ -85,20 +86,26 @@ detect::Candidates others_of(const Detector& detector, const FrameTrace& trace,
   return out;
 }
 
-// What interpretations choose from. A frame is searched for some models alone, so what others
-// explain is taken from the truth.
-score::ScoreFrame round_three_samples(const Detector& detector, const FrameTrace& trace,
-                                      const TrueFrame& frame, int num_threads) {
-  const double competing = (*detector.score_layers().limits.at(
-      detector.options().detect.score.keep_right, true))[score::Limit::competing];
-  detect::Candidates all = trace.candidates;
+// Measures the candidates given what is in the frame: most of its objects.
+void measure_given_truth(const Detector& detector, const FrameTrace& trace, const TrueFrame& frame,
+                         double competing, int num_threads, detect::Candidates& all) {
   const std::size_t count = all.size();
   std::ranges::move(others_of(detector, trace, frame), std::back_inserter(all));
-  std::vector<bool> present(count, false);
-  present.resize(all.size(), true);
+  scene::Present present(count, 0);
+  present.resize(all.size(), 1);
   scene::measure_given_others(trace.scene, scene::find_overlaps(all, competing), present, all,
                               competing, num_threads);
   all.resize(count);
+}
+
+// What interpretations choose from. In a frame that is searched for all models, the others are
+// those found. Where it is searched for some models alone, they are taken from the truth.
+score::ScoreFrame round_three_samples(const Detector& detector, const FrameTrace& trace,
+                                      const TrueFrame& frame, bool all_models, int num_threads) {
+  const double competing = (*detector.score_layers().limits.at(
+      detector.options().detect.score.keep_right, true))[score::Limit::competing];
+  detect::Candidates all = trace.candidates;
+  if (!all_models) measure_given_truth(detector, trace, frame, competing, num_threads, all);
   score::ScoreFrame out;
   out.competition = scene::competition_of(all, scene::find_overlaps(all, competing));
   for (const detect::Candidate& candidate : all) {
@@ -118,7 +125,9 @@ void collect(const TrainArguments& a, const Detector& detector, const Folders& f
     const auto part = held_out ? &Samples::held_out : &Samples::training;
     if (round_two) (round_two->*part).push_back(round_two_samples(trace, frame.truth));
     if (round_three) {
-      (round_three->*part).push_back(round_three_samples(detector, trace, frame, a.common.threads));
+      (round_three->*part)
+          .push_back(
+              round_three_samples(detector, trace, frame, models_per_frame == 0, a.common.threads));
     }
   };
   for (const std::string& folder : folders) {
@@ -126,6 +135,14 @@ void collect(const TrainArguments& a, const Detector& detector, const Folders& f
     dataset.folder = folder;
     search_frames(detector, dataset, a.common, use, models_per_frame);
   }
+}
+
+std::vector<std::string> learned_components() {
+  std::vector<std::string> out;
+  for (const score::ComponentType& type : score::kScoreComponents) {
+    if (type.learned) out.emplace_back(type.name);
+  }
+  return out;
 }
 
 // Of what a layer was made.
@@ -278,13 +295,39 @@ score::ScoreLayers learn_all(const TrainArguments& a, const Detector& detector,
                                without_color(round_three, score::Needs::depth));
   if (!a.adapt) {
     score::ScoreLayer& layer = layers.without_color;
+    const auto is_outline = [](const auto& type) { return type.needs == score::Needs::outline; };
     layer = or_throw(score::extend_score_layer(
-        layer, score::Needs::outline, without_color(round_three, score::Needs::outline).training));
+        layer, is_outline, without_color(round_three, score::Needs::outline).training));
     layer.provenance += "; outlines after that, from the same frames";
   }
   collect(a, detector, a.color_bop, a.models_per_frame, nullptr, &round_three);
   layers.round_three =
       learn(a, "round three", together(kinds, a.color_bop), start.round_three, round_three);
+  return layers;
+}
+
+// The layers with new curves of some components; all else stays.
+score::ScoreLayers learn_only(const TrainArguments& a, const Detector& detector,
+                              const score::ScoreLayers& start) {
+  Samples samples;
+  collect(a, detector, a.bop, a.models_per_frame, nullptr, &samples);
+  collect(a, detector, a.all_models_bop, 0, nullptr, &samples);
+  const auto is_new = [&a](const score::ComponentType& type) {
+    return std::ranges::find(a.only, type.name) != a.only.end();
+  };
+  score::ScoreLayers layers = start;
+  const std::string how = concat("; ", listed(a.only), " after that by ");
+  const auto extend = [&](const char* name, score::ScoreLayer& layer, const Samples& seen) {
+    std::printf("%s\n", name);
+    print_reliability("before", layer, seen.training);
+    layer = or_throw(score::extend_score_layer(layer, is_new, seen.training));
+    const std::string sets = provenance(a, together(a.bop, a.all_models_bop), seen.training.size());
+    layer.provenance = layer.provenance.substr(0, layer.provenance.find(how)) + how + sets;
+    print_reliability("after", layer, seen.training);
+    print_reliability("held out", layer, seen.held_out);
+  };
+  extend("round three", layers.round_three, samples);
+  extend("without colours", layers.without_color, without_color(samples, score::Needs::outline));
   return layers;
 }
 
@@ -371,13 +414,24 @@ void check_usage(const TrainArguments& a) {
   }
 }
 
+void write(const TrainArguments& a, const score::ScoreLayers& layers) {
+  const std::string path = a.output.empty() ? score_layer_path(a.detector.library) : a.output;
+  or_throw(write_score_layers(path, layers));
+  std::printf("wrote %s\n", path.c_str());
+}
+
 void train(const TrainArguments& a) {
   check_usage(a);
   const auto library = open_library(a.detector, a.common.threads);
   DetectorOptions options = read_detector_options(a.detector.config);
   options.detect.score.stop_early = false;
-  score::ScoreLayers layers = score::default_score_layers();
+  score::ScoreLayers layers = a.only.empty() ? score::default_score_layers()
+                                             : or_throw(library_score_layers(a.detector.library));
   const Detector detector(library, options, layers);
+  if (!a.only.empty()) {
+    write(a, learn_only(a, detector, layers));
+    return;
+  }
   if (!a.bop.empty()) layers = learn_all(a, detector, layers);
   if (!a.calibration_bop.empty()) {
     Samples in_use;
@@ -388,9 +442,7 @@ void train(const TrainArguments& a) {
   }
   layers.limits = learn_limits(a, library, layers);
   layers.yield = learn_yield(a, library, layers);
-  const std::string path = a.output.empty() ? score_layer_path(a.detector.library) : a.output;
-  or_throw(write_score_layers(path, layers));
-  std::printf("wrote %s\n", path.c_str());
+  write(a, layers);
 }
 
 }  // namespace
@@ -430,6 +482,12 @@ void add_train_command(CLI::App& program) {
       "--adapt", a.adapt,
       "Adjust the built-in layers to these frames, where that helps on frames left out; without "
       "it, learn new layers");
+  add_option(command, "--only", a.only,
+             "Learn the curves of these score components anew; all else of the library's layers, "
+             "or of the built-in ones, stays",
+             "LIST")
+      ->delimiter(',')
+      ->check(CLI::IsMember(learned_components()));
   add_option(command, "--output", a.output,
              "Write the layers to this file instead of the library's score_layer.json", "FILE");
   add_option(command, "--made-by", a.made_by, "Command that the file's provenance names", "TEXT");

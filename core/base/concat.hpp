@@ -21,6 +21,13 @@ std::string concat(const Parts&... parts) {
   return text.str();
 }
 
+/// "a, b, c"; empty for none.
+std::string listed(const auto& words) {
+  std::string text;
+  for (const auto& word : words) text += concat(text.empty() ? "" : ", ", word);
+  return text;
+}
+
 /// The pattern filled in as printf does, cut after 255 characters.
 __attribute__((format(printf, 1, 2))) inline std::string format(const char* pattern, ...) {
   char text[256];

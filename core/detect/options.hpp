@@ -95,7 +95,7 @@ struct LayOptions {
 };
 
 struct SelectOptions {
-  BPA_OPTION(int, max_placements, 50, (1, 10000),
+  BPA_OPTION(int, max_placements, 200, (1, 10000),
              "Placements of one model that are returned (section VI).");
 };
 

@@ -12,6 +12,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "core/base/concat.hpp"
 #include "core/geometry/lens.hpp"
 #include "core/io/private/json_file.hpp"
 #include "core/io/yaml_text.hpp"
@@ -164,12 +165,6 @@ Result<CameraFile> camera_of_known(Json& known) {
     known.at("model").get_to(file.distortion_model);
   }
   return file;
-}
-
-std::string listed(const auto& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
 }
 
 Result<CameraFile> only_camera(FoundCameras& found) {

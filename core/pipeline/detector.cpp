@@ -58,7 +58,7 @@ bool compares_colors(const DetectorOptions& options, const Models& models) {
          std::ranges::all_of(models, colored);
 }
 
-// Judges the candidates again, given the others of a first interpretation.
+// Judges the candidates again, given the others of an interpretation.
 void judge_again(const SceneFeatures& scene, const scene::Overlaps& overlaps,
                  const score::ScoreLayers& layers, const SearchPlan& plan,
                  detect::Candidates& candidates) {
@@ -81,7 +81,8 @@ std::vector<Interpretation> interpret_scene(const SceneFeatures& scene,
       scene::find_overlaps(candidates, plan.detect.limits[score::Limit::competing]);
   scene::let_compete(candidates, overlaps);
   if (plan.scene.judge_given_others && plan.detect.score.use_round_three) {
-    judge_again(scene, overlaps, layers, plan, candidates);
+    // Twice: the copies that the first time makes sure of count the second time.
+    for (int time = 0; time < 2; ++time) judge_again(scene, overlaps, layers, plan, candidates);
   }
   const auto observed = static_cast<int>(std::ranges::count(scene.map.searched, 1));
   std::vector<Interpretation> ranked = interpret(candidates, overlaps, observed, plan.scene);

@@ -303,7 +303,7 @@ scene::Overlaps ViewPool::overlaps(const detect::Candidates& joined) const {
   return out;
 }
 
-void ViewPool::judge(const std::vector<bool>& present, const scene::Overlaps& overlaps) {
+void ViewPool::judge(const scene::Present& present, const scene::Overlaps& overlaps) {
   for (std::size_t v = 0; v < views_.size(); ++v) {
     detect::Candidates candidates;
     for (Entry& entry : entries_) candidates.push_back(std::move(entry.in_view[v]));
@@ -311,6 +311,7 @@ void ViewPool::judge(const std::vector<bool>& present, const scene::Overlaps& ov
                                 plan_.limits[score::Limit::competing], request_.num_threads);
     for (std::size_t i = 0; i < entries_.size(); ++i) {
       detect::Candidate& candidate = candidates[i];
+      if (v > 0) candidate.values[score::component("copies")] = score::kNotKnown;  // counts once
       if (candidate.score > kNotSeen) {
         apply_layer(detector_.score_layers().last_for(candidate.values), candidate);
       }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/pipeline/views.hpp"
+#include "core/scene/given_others.hpp"
 
 namespace bpa {
 
@@ -27,7 +28,7 @@ class ViewPool {
   /// Which of joined() share pixels or exclude one another in any view.
   scene::Overlaps overlaps(const detect::Candidates& joined) const;
   /// Judges each placement in each view, given the others that are `present` (joined()).
-  void judge(const std::vector<bool>& present, const scene::Overlaps& overlaps);
+  void judge(const scene::Present& present, const scene::Overlaps& overlaps);
   /// Searched pixels of all views.
   int observed_pixels() const;
   const SearchEffort& effort() const { return effort_; }

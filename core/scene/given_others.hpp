@@ -13,16 +13,17 @@
 
 namespace bpa::scene {
 
-/// The candidates of a first interpretation: by falling probability, those over 0.5 that conflict
-/// with none before.
-std::vector<bool> first_interpretation(const detect::Candidates& candidates,
-                                       const Overlaps& overlaps);
+/// The probability of each candidate that an interpretation holds; 0 for the others.
+using Present = std::vector<double>;
+
+/// By falling probability, the candidates over 0.5 that conflict with none before.
+Present first_interpretation(const detect::Candidates& candidates, const Overlaps& overlaps);
 
 /// Measures the components of Round::others for each candidate of at least
 /// `competing` log odds. The others are
 /// the `present` candidates that it does not conflict with.
 void measure_given_others(const SceneFeatures& scene, const Overlaps& overlaps,
-                          const std::vector<bool>& present, detect::Candidates& candidates,
-                          double competing, int num_threads);
+                          const Present& present, detect::Candidates& candidates, double competing,
+                          int num_threads);
 
 }  // namespace bpa::scene

@@ -17,24 +17,39 @@ constexpr std::size_t kKnots = ScoreLayer::kKnots;
 using Places = std::array<double, kKnots>;
 
 // Evenly spread over the values of right and wrong samples, of which each kind counts for a half.
+// A value that many samples share gets one knot; those that this spares halve the widest gaps.
 Places choose_places(std::vector<std::pair<double, bool>> values) {
   std::erase_if(values, [](const auto& value) { return std::isnan(value.first); });
   if (values.empty()) values.push_back({0, false});
   std::sort(values.begin(), values.end());
   double count[2] = {1e-9, 1e-9};
   for (const auto& value : values) ++count[value.second];
-  Places places{};
+  std::vector<double> chosen;
   double passed = 0;
   std::size_t next = 0;
   for (const auto& [value, right] : values) {
     passed += 0.5 / count[right];
-    const double wanted = 0.005 + 0.99 * static_cast<double>(next) / (kKnots - 1);
-    if (next < kKnots && passed >= wanted) places[next++] = value;
+    while (next < kKnots && passed >= 0.005 + 0.99 * static_cast<double>(next) / (kKnots - 1)) {
+      ++next;
+      chosen.push_back(value);
+    }
   }
-  while (next < kKnots) places[next++] = values.back().first;
-  // A value that many samples share gets a knot, and the next one lies just beyond.
-  const double least = 1e-6 * std::max(1e-6, places.back() - places.front());
-  for (std::size_t k = 1; k < kKnots; ++k) places[k] = std::max(places[k], places[k - 1] + least);
+  chosen.push_back(values.back().first);
+  const double least = 1e-6 * std::max(1e-6, values.back().first - values.front().first);
+  const auto same = [least](double a, double b) { return b - a < least; };
+  chosen.erase(std::unique(chosen.begin(), chosen.end(), same), chosen.end());
+  if (chosen.size() == 1) chosen.push_back(chosen.front() + least);
+  while (chosen.size() < kKnots) {
+    std::size_t widest = 1;
+    for (std::size_t k = 1; k < chosen.size(); ++k) {
+      if (chosen[k] - chosen[k - 1] > chosen[widest] - chosen[widest - 1]) widest = k;
+    }
+    const auto after = chosen.begin() + static_cast<std::ptrdiff_t>(widest);
+    chosen.insert(after, (chosen[widest - 1] + chosen[widest]) / 2);
+  }
+  Places places;
+  std::copy_n(chosen.begin(), kKnots - 1, places.begin());
+  places.back() = chosen.back();
   return places;
 }
 
@@ -302,12 +317,13 @@ Result<ScoreLayer> adapt_score_layer(const ScoreLayer& start, std::span<const Sc
   return fit(start, frames, all);
 }
 
-Result<ScoreLayer> extend_score_layer(const ScoreLayer& start, Needs needs,
+Result<ScoreLayer> extend_score_layer(const ScoreLayer& start,
+                                      const std::function<bool(const ComponentType&)>& is_new,
                                       std::span<const ScoreFrame> frames) {
   ScoreLayer extended = start;
   std::array<bool, kNumComponents> learned{};
   for (std::size_t f = 0; f < kNumComponents; ++f) {
-    learned[f] = kScoreComponents[f].needs == needs;
+    learned[f] = is_new(kScoreComponents[f]);
     if (learned[f]) begin_curve(f, frames, extended);
   }
   Result<ScoreLayer> layer = fit(extended, frames, learned);

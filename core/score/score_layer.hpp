@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -99,9 +100,10 @@ Result<ScoreLayer> train_score_layer(std::span<const ScoreFrame> frames);
 /// on the difference. A few frames with truth of a user's own camera suffice. Errors as above.
 Result<ScoreLayer> adapt_score_layer(const ScoreLayer& start, std::span<const ScoreFrame> frames);
 
-/// `start` with new curves of the components that need this; the other curves and the bias stay. So
-/// the log odds are the same where these components are not known. Errors as above.
-Result<ScoreLayer> extend_score_layer(const ScoreLayer& start, Needs needs,
+/// `start` with new curves of the components for which `is_new` holds; the other curves and the
+/// bias stay. So the log odds are the same where these components are not known. Errors as above.
+Result<ScoreLayer> extend_score_layer(const ScoreLayer& start,
+                                      const std::function<bool(const ComponentType&)>& is_new,
                                       std::span<const ScoreFrame> frames);
 
 /// The layer with its log odds scaled and shifted so that probabilities agree with frequencies on

@@ -48,7 +48,7 @@ RANGES = {
     "texture": (-1, 1), "texture_evidence": (-100, 100), "silhouette": (0, 1),
     "silhouette_contrast": (-1, 1), "below": (1, 0), "gap": (0.2, 0), "balance": (-0.5, 0.5),
     "rivals": (-500, 0), "rivals_color": (-500, 0), "hidden_by_unknown": (1, 0), "left_over": (1, 0),
-    "relative_exposure": (-1, 1),
+    "copies": (-2, 2), "relative_exposure": (-1, 1),
 }
 KNOTS = 8
 

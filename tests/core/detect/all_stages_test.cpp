@@ -200,6 +200,7 @@ TEST_F(SingleObject, WithoutRoundThreeItsComponentsAreNotKnownAndCountNothing) {
                                        "rivals_color",
                                        "hidden_by_unknown",
                                        "left_over",
+                                       "copies",
                                        "relative_exposure"};
   for (const Candidate& candidate : candidates) {
     const score::ScoreLayer& layer = score::default_score_layers().round_two;

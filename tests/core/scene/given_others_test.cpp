@@ -54,7 +54,7 @@ class GivenOthers : public ::testing::Test {
     return {Eigen::Quaterniond::Identity(), {x, y, z}};
   }
   // A component of the brick at the back, given the others.
-  double measured(std::string_view name, const std::vector<bool>& present,
+  double measured(std::string_view name, const Present& present,
                   const Overlaps& overlaps = Overlaps(2)) {
     measure_given_others(scene_, overlaps, present, candidates_, -8, 1);
     for (std::size_t i = 0; i < score::kScoreComponents.size(); ++i) {
@@ -96,6 +96,26 @@ TEST_F(GivenOthers, ExposureIsRelativeToThatOfOthers) {
   EXPECT_TRUE(std::isnan(measured("relative_exposure", {true, true}))) << "a model without colours";
 }
 
+// The brick at the back beside sure others of its model and of another: log((own + 1) / (most +
+// 1)).
+TEST_F(GivenOthers, CopiesCountWhereAModelHasTwo) {
+  const auto other = std::make_shared<ObjectModel>(*brick_);
+  const auto copies = [&](int own, int of_another, double probability) {
+    candidates_.resize(1, candidates_[kBack]);
+    Present present{0};
+    for (int i = 0; i < own + of_another; ++i) {
+      candidates_.push_back({.model = i < own ? brick_.get() : other.get(), .score = -100});
+      present.push_back(probability);
+    }
+    return measured("copies", present, Overlaps(candidates_.size()));
+  };
+  EXPECT_TRUE(std::isnan(copies(0, 0, 0.9)));
+  EXPECT_TRUE(std::isnan(copies(1, 1, 0.9))) << "no model has two";
+  EXPECT_NEAR(copies(2, 1, 0.9), std::log(3.0 / 2), 1e-12);
+  EXPECT_NEAR(copies(0, 4, 0.9), -std::log(5.0), 1e-12);
+  EXPECT_TRUE(std::isnan(copies(4, 0, 0.8))) << "not sure";
+}
+
 // It cannot be there when the placement in question is.
 TEST_F(GivenOthers, ARivalIsNoOther) {
   Overlaps overlaps(2);
@@ -116,12 +136,12 @@ TEST_F(GivenOthers, TheFirstInterpretationHoldsTheMostProbableThatDoNotConflict)
   three[1].probability = 0.8;
   three[2].probability = 0.2;
   Overlaps overlaps(3);
-  EXPECT_EQ(first_interpretation(three, overlaps), (std::vector{true, true, false}));
+  EXPECT_EQ(first_interpretation(three, overlaps), (Present{0.6, 0.8, 0}));
   three[2].probability = 0.55;
   overlaps[0] = {{1, 7, true}};
   overlaps[1] = {{0, 7, true}, {2, 7, false}};
   overlaps[2] = {{1, 7, false}};
-  EXPECT_EQ(first_interpretation(three, overlaps), (std::vector{false, true, true}));
+  EXPECT_EQ(first_interpretation(three, overlaps), (Present{0, 0.8, 0.55}));
 }
 
 }  // namespace

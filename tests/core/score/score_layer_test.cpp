@@ -123,7 +123,8 @@ TEST(ScoreLayer, AnExtendedLayerKnowsMoreAndStaysTheSameWhereItDoesNot) {
   }
   const auto start = train_score_layer(without);
   ASSERT_TRUE(start.ok()) << start.status().message;
-  const auto extended = extend_score_layer(*start, Needs::outline, frames);
+  const auto is_outline = [](const ComponentType& c) { return c.needs == Needs::outline; };
+  const auto extended = extend_score_layer(*start, is_outline, frames);
   ASSERT_TRUE(extended.ok()) << extended.status().message;
   for (const ScoreFrame& frame : without) {
     for (const auto& sample : frame.samples) {
@@ -135,7 +136,7 @@ TEST(ScoreLayer, AnExtendedLayerKnowsMoreAndStaysTheSameWhereItDoesNot) {
   high[kOutline] = 0.8;
   EXPECT_NEAR(extended->log_odds(high) - extended->log_odds(low), 6 * 0.6, 0.5);
   EXPECT_LT(reliability(*extended, frames).log_loss, 0.9 * reliability(*start, without).log_loss);
-  EXPECT_FALSE(extend_score_layer(*start, Needs::outline, {}).ok());
+  EXPECT_FALSE(extend_score_layer(*start, is_outline, {}).ok());
 }
 
 // The law of drawn_frames(), halved and one log odds bolder.
