@@ -22,7 +22,8 @@ std::string concat(const Parts&... parts) {
 }
 
 /// "a, b, c"; empty for none.
-std::string listed(const auto& words) {
+template <class Words>
+std::string listed(const Words& words) {
   std::string text;
   for (const auto& word : words) text += concat(text.empty() ? "" : ", ", word);
   return text;
