@@ -24,7 +24,7 @@ TEST(Advice, IsSaidBesideEmptyResultsAndLoggedOnce) {
   frame.frame_id = "another";  // not asked again so soon
   EXPECT_EQ(advice.on(frame, result, 2.5), "");
   result.interpretations[0].placements.resize(1);
-  result.interpretations[0].placements[0].probability = 0.9;
+  result.interpretations[0].placements[0].presence = 0.9;
   frame.frame_id = "cam";
   EXPECT_EQ(advice.on(frame, result, 2.5), "");
 }
