@@ -487,7 +487,11 @@ void add_train_command(CLI::App& program) {
              "or of the built-in ones, stays",
              "LIST")
       ->delimiter(',')
-      ->check(CLI::IsMember(learned_components()));
+      ->check(CLI::IsMember(learned_components()))
+      ->excludes("--adapt")
+      ->excludes("--round-two-bop")
+      ->excludes("--color-bop")
+      ->excludes("--calibration-bop");
   add_option(command, "--output", a.output,
              "Write the layers to this file instead of the library's score_layer.json", "FILE");
   add_option(command, "--made-by", a.made_by, "Command that the file's provenance names", "TEXT");

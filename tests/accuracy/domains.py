@@ -76,6 +76,7 @@ DOMAINS = [
     *also_without_colours(piles("piles time of flight", "--seed 5003 --sensor time_of_flight")),
     simulated("workshop", "--scenes 8 --seed 5004", models=WORKSHOP),
     bins("bins equal parts", "--seed 5005 --objects 10,16 --equal 1"),
+    bins("bins several parts", "--seed 5013 --objects 10,16 --equal 1 --kinds 4"),
     bins("bins mixed parts", "--seed 5006 --objects 10,16"),
     piles("far and small",
           "--seed 5007 --objects 3,5 --foreign 8,12 --clutter 0.2,0.6 --distance 1,1.6"),
