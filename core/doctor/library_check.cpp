@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
+#include <span>
 
 #include "core/base/concat.hpp"
 #include "core/base/median.hpp"
@@ -40,10 +41,7 @@ double common_colors(const PointCloud& a, const PointCloud& b) {
 /// "a, b and 3 more", of at least one name.
 std::string list_of(const std::vector<std::string>& names) {
   constexpr std::size_t kNamed = 4;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kNamed, names.size()); ++i) {
-    text += (i > 0 ? ", " : "") + names[i];
-  }
+  const std::string text = listed(std::span(names).first(std::min(kNamed, names.size())));
   return names.size() > kNamed ? concat(text, " and ", names.size() - kNamed, " more") : text;
 }
 

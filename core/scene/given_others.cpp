@@ -103,8 +103,8 @@ class Judge {
     return sum / all;
   }
 
-  // How many sure others are of its model, to how many are of the commonest other model. In a bin
-  // of equal parts more copies are likely. Elsewhere, where no model has two, this is not known.
+  // Counts confident detections of this model and of the commonest other model. A bin of equal
+  // parts makes further copies likely. Unknown where no model has two such detections.
   double copies(const detect::Candidates& candidates, const Present& present) const {
     std::map<const ObjectModel*, int> counts;
     for (std::size_t i = 0; i < candidates.size(); ++i) {

@@ -19,9 +19,8 @@ using Present = std::vector<double>;
 /// By falling probability, the candidates over 0.5 that conflict with none before.
 Present first_interpretation(const detect::Candidates& candidates, const Overlaps& overlaps);
 
-/// Measures the components of Round::others for each candidate of at least
-/// `competing` log odds. The others are
-/// the `present` candidates that it does not conflict with.
+/// Measures the components of Round::others for each candidate of at least `competing` log odds.
+/// The others are the `present` candidates that it does not conflict with.
 void measure_given_others(const SceneFeatures& scene, const Overlaps& overlaps,
                           const Present& present, detect::Candidates& candidates, double competing,
                           int num_threads);

@@ -159,7 +159,7 @@ constexpr auto kScoreComponents = std::to_array<ComponentType>({
      "Pixels of its super-pixels that neither it nor another placement explains."},
     {"copies", "log ratio", -7, 7, Round::others, true,
      [](Evidence&) -> double { return kNotKnown; },
-     "Other sure placements of the model, to the most of another; known where one has two."},
+     "Confident detections of this model, to those of the commonest other; unknown below two."},
     {"relative_exposure", "log of the cube root of light", -4.8, 4.8, Round::others, true,
      [](Evidence&) -> double { return kNotKnown; },
      "Component exposure less the median of the other placements.", Needs::colors},
