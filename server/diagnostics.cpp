@@ -146,7 +146,7 @@ std::vector<KeyValue> fusion_values(const Statistics& statistics, int fuse_frame
   return values;
 }
 
-std::string sync_complaint(const SyncCounts& sync, const InputOptions& input) {
+std::string sync_complaint(const ros::SyncCounts& sync, const InputOptions& input) {
   const std::string cause =
       sync.nearest_miss_ns > 0
           ? concat("the nearest one was ", static_cast<double>(sync.nearest_miss_ns) * 1e-6,

@@ -62,7 +62,7 @@ std::vector<std::pair<std::string, std::uint64_t>> drop_counts(const Statistics&
 std::vector<wire::diagnostic_msgs::KeyValue> fusion_values(const Statistics& statistics,
                                                            int fuse_frames);
 /// That depth images had no partner, and why.
-std::string sync_complaint(const SyncCounts& sync, const InputOptions& input);
+std::string sync_complaint(const ros::SyncCounts& sync, const InputOptions& input);
 /// The losses by name; those refused are counted with others.
 std::vector<wire::diagnostic_msgs::KeyValue> loss_values(const RequestLosses& losses);
 

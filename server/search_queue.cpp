@@ -375,11 +375,11 @@ Status SearchQueue::guard(const char* about, const std::function<void()>& work) 
   return status;
 }
 
-DecodedFrame SearchQueue::decoded(Once<DecodedFrame> decode) {
-  std::optional<DecodedFrame> frame;
+ros::DecodedFrame SearchQueue::decoded(Once<ros::DecodedFrame> decode) {
+  std::optional<ros::DecodedFrame> frame;
   const Status status =
       guard("a frame cannot be decoded", [&] { frame.emplace(std::move(decode)()); });
-  if (!status.ok()) return {RejectionCause::frame, status};
+  if (!status.ok()) return {ros::RejectionCause::frame, status};
   if (!frame->note().empty() && !noted_.exchange(true)) {
     log(log_, LogLevel::warning, "frame of " + (*frame)->frame_id + ": " + frame->note());
   }
@@ -448,7 +448,7 @@ void SearchQueue::work_on_frames(const SearchQueueOptions& options,
   std::optional<Frame> frame;  // the newest that can be used
   const IncomingFrame* newest = nullptr;
   for (IncomingFrame& incoming : taken) {
-    DecodedFrame made = decoded(std::move(incoming.decode));
+    ros::DecodedFrame made = decoded(std::move(incoming.decode));
     if (!made.ok()) {
       statistics_.add_rejection(made.cause());
       publish(incoming, nullptr, made.status());
@@ -503,7 +503,7 @@ Result<SceneInterpretations> SearchQueue::search_views(const SearchQueueOptions&
   Status failed;
   std::size_t rejected = 0;
   for (IncomingFrame& one : incoming) {
-    DecodedFrame made = decoded(std::move(one.decode));
+    ros::DecodedFrame made = decoded(std::move(one.decode));
     if (!made.ok()) {
       statistics_.add_rejection(made.cause());
       ++rejected;
@@ -576,7 +576,7 @@ void SearchQueue::work_on_request(DetectJob& job) {
   if (ros_clock_->now() >= job.deadline) {
     return refuse(job, Status(StatusCode::timeout, "its turn came after its time-out"));
   }
-  const DecodedFrame frame = decoded(std::move(job.decode));
+  const ros::DecodedFrame frame = decoded(std::move(job.decode));
   if (!frame.ok()) return refuse(job, frame.status());
   answer(job, *frame, job.request);
 }

@@ -21,8 +21,8 @@
 #include "core/base/status.hpp"
 #include "core/cloud/frame_fusion.hpp"
 #include "idl/wire/endpoint.hpp"
+#include "ros/frames.hpp"
 #include "server/busy.hpp"
-#include "server/convert/frames.hpp"
 #include "server/fair_queue.hpp"
 #include "server/once.hpp"
 #include "server/options.hpp"
@@ -39,7 +39,7 @@ namespace bpa::server {
 
 /// A frame as it came in. Turning it into a Frame is work, so a search thread does it.
 struct IncomingFrame {
-  Once<DecodedFrame> decode;
+  Once<ros::DecodedFrame> decode;
   std::int64_t stamp_ns = 0;
   std::string frame_id;
   std::vector<PosePrior> priors = {};  ///< Of the sender, about its objects.
@@ -52,7 +52,7 @@ struct IncomingFrame {
 /// One detect request that waits for its answer.
 struct DetectJob {
   /// Makes the frame that the request carries; empty: search the next frame that comes in.
-  Once<DecodedFrame> decode;
+  Once<ros::DecodedFrame> decode;
   /// Narrows the next frame down (region, mask); may be empty.
   std::function<Status(Frame&)> restrict_frame;
   DetectRequest request;
@@ -154,7 +154,7 @@ class SearchQueue {
   double wait_ms(const DetectJob& job) const;
   std::vector<DetectJob> take_expired();
   Status guard(const char* about, const std::function<void()>& work);
-  DecodedFrame decoded(Once<DecodedFrame> decode);
+  ros::DecodedFrame decoded(Once<ros::DecodedFrame> decode);
   void hand_over(DetectJob& job, const Frame* frame, const Result<SceneInterpretations>& result);
   void refuse(DetectJob& job, const Status& status);
   void refuse_failed(DetectJob& job, const Status& status);

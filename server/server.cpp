@@ -525,7 +525,7 @@ class Running : public Server {
   }
 
   void report_losses() {
-    const SyncCounts sync = topics_->sync_counts();
+    const ros::SyncCounts sync = topics_->sync_counts();
     const std::uint64_t losses = sync.depth_without_color + sync.depth_without_info;
     // Says it at 10, 100, 1000 ... so that a camera that never fits is heard, and not for ever.
     if (losses < 10 || losses < 10 * losses_reported_) return;

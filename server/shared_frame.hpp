@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/base/guarded.hpp"
-#include "server/convert/frames.hpp"
+#include "ros/frames.hpp"
 #include "server/once.hpp"
 
 namespace bpa::server {
@@ -18,15 +18,15 @@ namespace bpa::server {
 /// the other waits for it. Thread-safe.
 class SharedFrame {
  public:
-  explicit SharedFrame(Once<DecodedFrame> decode) : decode_(std::move(decode)) {}
+  explicit SharedFrame(Once<ros::DecodedFrame> decode) : decode_(std::move(decode)) {}
 
   /// The frame, or why there is none.
-  const DecodedFrame& get() {
+  const ros::DecodedFrame& get() {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!frame_) {
       const Status status =
           guarded("a frame cannot be decoded", [this] { frame_.emplace(std::move(decode_)()); });
-      if (!status.ok()) frame_.emplace(RejectionCause::frame, status);
+      if (!status.ok()) frame_.emplace(ros::RejectionCause::frame, status);
     }
     return *frame_;
   }
@@ -37,8 +37,8 @@ class SharedFrame {
 
  private:
   std::mutex mutex_;
-  Once<DecodedFrame> decode_;
-  std::optional<DecodedFrame> frame_;  ///< Never changed once it is there.
+  Once<ros::DecodedFrame> decode_;
+  std::optional<ros::DecodedFrame> frame_;  ///< Never changed once it is there.
   std::atomic<bool> searched_{false};
 };
 

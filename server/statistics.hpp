@@ -17,7 +17,7 @@
 
 #include "core/base/clock.hpp"
 #include "core/result/interpretation.hpp"
-#include "server/convert/frames.hpp"
+#include "ros/frames.hpp"
 
 namespace bpa::server {
 
@@ -83,7 +83,7 @@ class Statistics {
     return last_age_ns_;
   }
   /// Counts a rejected frame.
-  void add_rejection(RejectionCause cause) {
+  void add_rejection(ros::RejectionCause cause) {
     const std::lock_guard<std::mutex> lock(mutex_);
     ++counts_.frames_rejected;
     ++rejections_[static_cast<std::size_t>(cause)];
@@ -120,7 +120,7 @@ class Statistics {
     const std::lock_guard<std::mutex> lock(mutex_);
     std::vector<std::pair<std::string, std::uint64_t>> counts;
     for (std::size_t i = 0; i < rejections_.size(); ++i) {
-      if (rejections_[i] > 0) counts.emplace_back(kRejectionCauses[i], rejections_[i]);
+      if (rejections_[i] > 0) counts.emplace_back(ros::kRejectionCauses[i], rejections_[i]);
     }
     return counts;
   }
@@ -176,7 +176,7 @@ class Statistics {
   Counts counts_;
   std::optional<WaitableClock::TimePoint> last_frame_;
   std::int64_t last_age_ns_ = 0;
-  std::array<std::uint64_t, std::size(kRejectionCauses)> rejections_{};
+  std::array<std::uint64_t, std::size(ros::kRejectionCauses)> rejections_{};
   std::string fusion_restart_;
   std::vector<Stage> stages_;
   std::deque<double> totals_, rounds_, full_scores_;

@@ -195,7 +195,7 @@ std::optional<Tracking::Refusal> Tracking::try_follow(
     const std::vector<SceneInterpretations>& results, const TrackingOptions& options,
     TrackedFrame& tracked) {
   if (auto refusal = take_camera(item)) return refusal;
-  const DecodedFrame& frame = item.frame->get();
+  const ros::DecodedFrame& frame = item.frame->get();
   if (!frame.ok()) return Refusal{Unfollowed::rejected, frame.status()};
   std::optional<track::CameraPose> camera;
   if (!options.fixed_frame.empty()) {

@@ -7,7 +7,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/base/guarded.hpp"
-#include "server/convert/frames.hpp"
+#include "ros/frames.hpp"
 #include "server/convert/results.hpp"
 #include "server/services/requests.hpp"
 #include "server/services/services.hpp"
@@ -32,7 +32,7 @@ Result<DetectRequest> whole_search_of(const msgs::Detect_Request& request,
     return invalid_argument("timeout_ms is ", request.timeout_ms, "; it must be between 0 and ",
                             kMaxTimeoutMs);
   }
-  auto priors = priors_from_messages(request.frame.priors);
+  auto priors = ros::priors_from_messages(request.frame.priors);
   if (!priors.ok()) return priors.status();
   search->priors = std::move(priors).value();
   return search;
@@ -48,10 +48,12 @@ DetectJob job_of(std::shared_ptr<msgs::Detect_Request> request, const DetectRequ
   job.timeout = std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::duration<double, std::milli>(timeout_ms));
   if (request->has_frame) {
-    job.decode = [request] { return frame_from_message(std::move(request->frame)); };
+    job.decode = [request] { return ros::frame_from_message(std::move(request->frame)); };
   } else if (request->frame.roi.width > 0 || !request->frame.mask.empty() ||
              !request->frame.priors.empty()) {
-    job.restrict_frame = [request](Frame& frame) { return restrict_frame(request->frame, frame); };
+    job.restrict_frame = [request](Frame& frame) {
+      return ros::restrict_frame(request->frame, frame);
+    };
   }
   return job;
 }

@@ -5,7 +5,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/base/guarded.hpp"
-#include "server/convert/frames.hpp"
+#include "ros/frames.hpp"
 #include "server/convert/parts.hpp"
 #include "server/services/services.hpp"
 
@@ -75,9 +75,9 @@ Result<ViewsAsked> decode(msgs::DetectViews_Request& request, const ServerOption
   if (!search.ok()) return search.status();
   asked.search = *std::move(search);
   for (std::size_t k = 0; k < request.frames.size(); ++k) {
-    Result<std::vector<PosePrior>> priors = priors_from_messages(request.frames[k].priors);
+    Result<std::vector<PosePrior>> priors = ros::priors_from_messages(request.frames[k].priors);
     if (!priors.ok()) return priors.status();
-    DecodedFrame frame = frame_from_message(std::move(request.frames[k]));
+    ros::DecodedFrame frame = ros::frame_from_message(std::move(request.frames[k]));
     if (!frame.ok()) {
       return Status(frame.status().code, concat("frames[", k, "]: ", frame.status().message));
     }

@@ -13,10 +13,10 @@ namespace {
 /// By camera::PixelFormat.
 constexpr const char* kEncodings[] = {"16UC1", "32FC1", "rgb8", "mono8"};
 
-std::shared_ptr<const AnyImage> image_message(camera::Image image,
-                                              const wire::std_msgs::Header& header) {
+std::shared_ptr<const ros::AnyImage> image_message(camera::Image image,
+                                                   const wire::std_msgs::Header& header) {
   const auto width = static_cast<std::uint32_t>(image.width);
-  return std::make_shared<const AnyImage>(wire::sensor_msgs::Image{
+  return std::make_shared<const ros::AnyImage>(wire::sensor_msgs::Image{
       .header = header,
       .height = static_cast<std::uint32_t>(image.height),
       .width = width,
@@ -27,7 +27,7 @@ std::shared_ptr<const AnyImage> image_message(camera::Image image,
 
 }  // namespace
 
-CameraImages image_messages(camera::SensorImages images, const std::string& frame_id) {
+ros::CameraImages image_messages(camera::SensorImages images, const std::string& frame_id) {
   const wire::std_msgs::Header header{wire::builtin_interfaces::from_ns(images.stamp_ns), frame_id};
   const Camera& c = images.camera;
   wire::sensor_msgs::CameraInfo info;
@@ -41,7 +41,7 @@ CameraImages image_messages(camera::SensorImages images, const std::string& fram
   info.k = {c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1};
   info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   info.p = {c.fx, 0, c.cx, 0, 0, c.fy, c.cy, 0, 0, 0, 1, 0};
-  CameraImages messages;
+  ros::CameraImages messages;
   messages.depth = image_message(std::move(images.depth), header);
   if (images.color) messages.color = image_message(*std::move(images.color), header);
   messages.info = std::make_shared<const wire::sensor_msgs::CameraInfo>(std::move(info));

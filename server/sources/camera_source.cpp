@@ -44,7 +44,7 @@ class CameraPublisher {
   }
 
   /// Takes the images to publish; those that wait give way to them.
-  void publish(const CameraImages& images) {
+  void publish(const ros::CameraImages& images) {
     if (!color_.wanted() && !depth_.wanted() && !color_info_.wanted() && !depth_info_.wanted() &&
         !points_.wanted()) {
       return;
@@ -56,7 +56,7 @@ class CameraPublisher {
   std::uint64_t dropped() const { return dropped_; }
 
  private:
-  void send(const CameraImages& images) {
+  void send(const ros::CameraImages& images) {
     const auto send_to = [this](auto& output, const auto* message) {
       if (message != nullptr && output.wanted()) output.send(*message, log_, LogLevel::debug);
     };
@@ -65,7 +65,7 @@ class CameraPublisher {
     send_to(depth_, std::get_if<wire::sensor_msgs::Image>(images.depth.get()));
     send_to(color_, std::get_if<wire::sensor_msgs::Image>(images.color.get()));
     if (!points_.wanted()) return;
-    const auto frame = frame_from_images(images, false);
+    const auto frame = ros::frame_from_images(images, false);
     if (frame.ok()) points_.send(cloud_message(*frame), log_, LogLevel::debug);
   }
 
@@ -77,9 +77,9 @@ class CameraPublisher {
   wire::TaskThread sender_;  ///< Last: ends while all else is there.
 };
 
-IncomingFrame incoming(const CameraImages& images) {
-  const wire::std_msgs::Header& header = header_of(*images.depth);
-  return {[images] { return frame_from_images(images, false); }, to_ns(header.stamp),
+IncomingFrame incoming(const ros::CameraImages& images) {
+  const wire::std_msgs::Header& header = ros::header_of(*images.depth);
+  return {[images] { return ros::frame_from_images(images, false); }, to_ns(header.stamp),
           header.frame_id};
 }
 
@@ -153,7 +153,7 @@ class CameraSource : public FrameSource {
              milliseconds(static_cast<int>(options.retry_ms))},
             [this, on_frame = std::move(on_frame), frame_id = options.frame_id,
              search = options.search](camera::SensorImages&& images) {
-              const CameraImages messages = image_messages(std::move(images), frame_id);
+              const ros::CameraImages messages = image_messages(std::move(images), frame_id);
               publisher_.publish(messages);
               if (search) on_frame(incoming(messages));
             },

@@ -13,11 +13,11 @@
 #include "core/cloud/frame.hpp"
 #include "idl/wire/messages.hpp"
 #include "idl/wire/participant.hpp"
+#include "ros/frames.hpp"
+#include "ros/synchronizer.hpp"
 #include "server/busy.hpp"
-#include "server/convert/frames.hpp"
 #include "server/convert/results.hpp"
 #include "server/services/requests.hpp"
-#include "server/sources/synchronizer.hpp"
 #include "server/statistics.hpp"
 
 namespace bpa::server {
@@ -59,7 +59,7 @@ class TopicSource : public FrameSource {
   /// Publishers of the topic of whole frames that are matched now; 0 without that topic.
   virtual std::size_t frame_publishers() const = 0;
   /// What became of the camera's messages.
-  virtual SyncCounts sync_counts() const = 0;
+  virtual ros::SyncCounts sync_counts() const = 0;
 };
 
 /// Subscribes to what the options name. `on_frame` runs on DDS threads; `participant` outlives the
@@ -78,7 +78,7 @@ std::unique_ptr<FrameSource> open_camera_source(const wire::Participant& partici
 
 /// The images of the server's own camera as messages in the frame `frame_id`: 16UC1 or 32FC1 depth,
 /// rgb8 or mono8 colour. Up to 5 coefficients of distortion: plumb_bob; more: rational_polynomial.
-CameraImages image_messages(camera::SensorImages images, const std::string& frame_id);
+ros::CameraImages image_messages(camera::SensorImages images, const std::string& frame_id);
 
 /// A frame as an organised cloud: x y z in metres and rgb, 16 bytes a point; NaN where there is no
 /// depth. Colour is black in a frame without.

@@ -25,7 +25,7 @@ using wire::sensor_msgs::CompressedImage;
 using wire::sensor_msgs::Image;
 using wire::sensor_msgs::PointCloud2;
 
-SynchronizerOptions synchronizer_options(const InputOptions& options) {
+ros::SynchronizerOptions synchronizer_options(const InputOptions& options) {
   return {!options.color.empty(), static_cast<std::int64_t>(options.sync_tolerance_ms * 1e6),
           static_cast<std::size_t>(options.sync_queue)};
 }
@@ -40,22 +40,22 @@ IncomingFrame incoming(auto message, auto convert) {
 }
 
 IncomingFrame incoming(RgbdFrame message) {
-  auto priors = priors_from_messages(message.priors);
-  IncomingFrame frame = incoming(std::move(message), frame_from_message);
+  auto priors = ros::priors_from_messages(message.priors);
+  IncomingFrame frame = incoming(std::move(message), ros::frame_from_message);
   if (priors.ok()) {
     frame.priors = std::move(priors).value();
   } else {
     frame.decode = [status = priors.status()] {
-      return DecodedFrame(RejectionCause::priors, status);
+      return ros::DecodedFrame(ros::RejectionCause::priors, status);
     };
   }
   return frame;
 }
 
-IncomingFrame incoming(CameraImages images, bool rectified) {
-  const wire::std_msgs::Header& header = header_of(*images.depth);
-  return {[images, rectified] { return frame_from_images(images, rectified); }, to_ns(header.stamp),
-          header.frame_id};
+IncomingFrame incoming(ros::CameraImages images, bool rectified) {
+  const wire::std_msgs::Header& header = ros::header_of(*images.depth);
+  return {[images, rectified] { return ros::frame_from_images(images, rectified); },
+          to_ns(header.stamp), header.frame_id};
 }
 
 using Values = std::vector<wire::diagnostic_msgs::KeyValue>;
@@ -111,7 +111,7 @@ class Topics : public TopicSource {
     if (!options_.cloud.empty()) {
       const auto take = [this, unit = options_.cloud_unit_m](PointCloud2&& message) {
         on_frame_(incoming(std::move(message), [unit](const PointCloud2& cloud) {
-          return frame_from_cloud(cloud, unit);
+          return ros::frame_from_cloud(cloud, unit);
         }));
       };
       subscribe<PointCloud2>(options_.cloud, camera, take, cloud_);
@@ -141,7 +141,7 @@ class Topics : public TopicSource {
     return frames_.open() ? frames_.publishers() : 0;
   }
 
-  SyncCounts sync_counts() const override {
+  ros::SyncCounts sync_counts() const override {
     const std::lock_guard<std::mutex> lock(mutex_);
     return synchronizer_.counts();
   }
@@ -164,14 +164,14 @@ class Topics : public TopicSource {
 
   /// Adds a message of the camera and hands on the images that it completes.
   template <class Message>
-  void synchronize(void (Synchronizer::*add)(Message&&), Message message) {
+  void synchronize(void (ros::Synchronizer::*add)(Message&&), Message message) {
     std::unique_lock<std::mutex> lock(mutex_);
     (synchronizer_.*add)(std::move(message));
-    std::vector<CameraImages> complete;
+    std::vector<ros::CameraImages> complete;
     while (auto images = synchronizer_.next()) complete.push_back(*std::move(images));
-    const bool rectified = options_.rectified || named_rectified(info_owner());
+    const bool rectified = options_.rectified || ros::named_rectified(info_owner());
     lock.unlock();
-    for (CameraImages& images : complete) on_frame_(incoming(std::move(images), rectified));
+    for (ros::CameraImages& images : complete) on_frame_(incoming(std::move(images), rectified));
   }
 
   /// The topic whose images the camera info is of.
@@ -182,9 +182,11 @@ class Topics : public TopicSource {
   /// Does nothing when the topic is empty.
   void subscribe_images(const std::string& topic, const std::string& transport,
                         const wire::SubscriberOptions& options,
-                        void (Synchronizer::*add)(AnyImage&&), Topic& place) {
+                        void (ros::Synchronizer::*add)(ros::AnyImage&&), Topic& place) {
     if (topic.empty()) return;
-    const auto take = [this, add](auto&& image) { synchronize(add, AnyImage(std::move(image))); };
+    const auto take = [this, add](auto&& image) {
+      synchronize(add, ros::AnyImage(std::move(image)));
+    };
     if (transport == "raw") return subscribe<Image>(topic, options, take, place);
     // As image_transport does it, the base topic is remapped first.
     const std::string base = or_throw(participant_.resolve(topic));
@@ -192,18 +194,18 @@ class Topics : public TopicSource {
   }
 
   void subscribe_camera(const wire::SubscriberOptions& options) {
-    subscribe_images(options_.color, options_.color_transport, options, &Synchronizer::add_color,
-                     color_);
-    subscribe_images(options_.depth, options_.depth_transport, options, &Synchronizer::add_depth,
-                     depth_);
+    subscribe_images(options_.color, options_.color_transport, options,
+                     &ros::Synchronizer::add_color, color_);
+    subscribe_images(options_.depth, options_.depth_transport, options,
+                     &ros::Synchronizer::add_depth, depth_);
     subscribe<CameraInfo>(
         options_.camera_info, options,
-        [this](CameraInfo&& info) { synchronize(&Synchronizer::add_info, std::move(info)); },
+        [this](CameraInfo&& info) { synchronize(&ros::Synchronizer::add_info, std::move(info)); },
         info_);
     log(log_, LogLevel::info,
         "camera images are taken from " + depth_.name +
             (color_.open() ? ", " + color_.name : " (without colour)") + " and " + info_.name +
-            (named_rectified(info_owner()) ? "; rectified, by their name" : ""));
+            (ros::named_rectified(info_owner()) ? "; rectified, by their name" : ""));
   }
 
   SourceReport whole_report(const std::string& what, const Topic& topic) const {
@@ -264,7 +266,7 @@ class Topics : public TopicSource {
     } else {
       report.message = depth_.silence(*clock_) ? "images come" : "unused";
     }
-    const SyncCounts sync = sync_counts();
+    const ros::SyncCounts sync = sync_counts();
     Values& values = report.values;
     add(values, "publishers of colour images", color_.open() ? color_.publishers() : 0);
     add(values, "publishers of depth images", depth_.publishers());
@@ -304,7 +306,7 @@ class Topics : public TopicSource {
   const LogHook log_;
   mutable std::mutex mutex_;  ///< Guards the options and the synchronizer.
   InputOptions options_;
-  Synchronizer synchronizer_;
+  ros::Synchronizer synchronizer_;
   // Last: they call into the members above until they are destroyed.
   Topic frames_, cloud_, color_, depth_, info_;
 };

@@ -99,7 +99,7 @@ void Feed::add_frame(std::shared_ptr<SharedFrame> frame, std::int64_t stamp_ns,
                      const std::string& frame_id) {
   if (!wanted()) return;
   auto shown = std::make_shared<ShownFrame>([frame]() -> std::shared_ptr<const Frame> {
-    const DecodedFrame& decoded = frame->get();
+    const ros::DecodedFrame& decoded = frame->get();
     return decoded.ok() ? std::shared_ptr<const Frame>(frame, &*decoded) : nullptr;
   });
   {

@@ -76,7 +76,7 @@ Result<DetectJob> job_from(const Json& json, const std::shared_ptr<const Frame>&
   Result<DetectJob> job = detect_job(std::move(request), options);
   if (!job.ok() || !narrowed) return job;
   job->decode = [own = std::make_shared<Frame>(*std::move(narrowed))] {
-    return DecodedFrame(std::move(*own));
+    return ros::DecodedFrame(std::move(*own));
   };
   return job;
 }

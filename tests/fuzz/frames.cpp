@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // Frames, images and clouds of messages, as the server takes them.
-#include "server/convert/frames.hpp"
+#include "ros/frames.hpp"
 
 #include "idl/wire/cdr.hpp"
 #include "server/sources/frame_source.hpp"
@@ -30,7 +30,7 @@ bool decoded(std::string_view bytes, T& message) {
 }
 
 /// What the detector relies on.
-void check(const server::DecodedFrame& frame) {
+void check(const ros::DecodedFrame& frame) {
   if (!frame.ok()) return;
   require(validate(*frame).ok(), "a frame of a message is legal");
   for (const float z : frame->depth) require(z >= 0 && z <= 20, "a depth is 0 to 20 m");
@@ -39,10 +39,10 @@ void check(const server::DecodedFrame& frame) {
 void run_rgbd_frame(std::string_view bytes) {
   msgs::RgbdFrame message;
   if (!decoded(bytes, message)) return;
-  (void)server::priors_from_messages(message.priors);
-  auto frame = server::frame_from_message(message);
+  (void)ros::priors_from_messages(message.priors);
+  auto frame = ros::frame_from_message(message);
   check(frame);
-  if (frame.ok() && server::restrict_frame(message, *frame).ok()) {
+  if (frame.ok() && ros::restrict_frame(message, *frame).ok()) {
     require(validate(*frame).ok(), "a restricted frame is legal");
   }
 }
@@ -92,12 +92,11 @@ struct CameraMessages {
 void run_camera_images(std::string_view bytes) {
   CameraMessages messages;
   if (!decoded(bytes, messages)) return;
-  server::CameraImages images;
+  ros::CameraImages images;
   images.info = std::make_shared<sensor::CameraInfo>(messages.info);
-  images.depth = std::make_shared<server::AnyImage>(messages.depth);
-  if (!messages.color.data.empty())
-    images.color = std::make_shared<server::AnyImage>(messages.color);
-  check(server::frame_from_images(images, messages.rectified));
+  images.depth = std::make_shared<ros::AnyImage>(messages.depth);
+  if (!messages.color.data.empty()) images.color = std::make_shared<ros::AnyImage>(messages.color);
+  check(ros::frame_from_images(images, messages.rectified));
 }
 
 std::vector<std::string> camera_images_seeds() {
@@ -121,11 +120,11 @@ std::vector<std::string> camera_images_seeds() {
 
 void run_point_cloud(std::string_view bytes) {
   sensor::PointCloud2 cloud;
-  if (decoded(bytes, cloud)) check(server::frame_from_cloud(cloud));
+  if (decoded(bytes, cloud)) check(ros::frame_from_cloud(cloud));
 }
 
 std::vector<std::string> point_cloud_seeds() {
-  const auto frame = server::frame_from_message(small_frame());
+  const auto frame = ros::frame_from_message(small_frame());
   require(frame.ok(), "a seed is legal");
   return {encoded(server::cloud_message(*frame))};
 }

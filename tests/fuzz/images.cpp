@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // PNG and JPEG, and image_transport's messages that hold them.
-#include "server/convert/images.hpp"
+#include "ros/images.hpp"
 
 #include <cstring>
 
@@ -24,12 +24,12 @@ void check(const Result<io::ColorImage>& image) {
           "a colour image has all its pixels");
 }
 
-void decode_color(std::string_view bytes) {
+void decode_color_file(std::string_view bytes) {
   check(io::decode_color_image(bytes, "image", kMostPixels));
 }
 
 void decode_png(std::string_view bytes) {
-  decode_color(bytes);
+  decode_color_file(bytes);
   const auto depth = io::decode_depth_png(bytes, "image");
   if (depth.ok()) {
     require(depth->pixels.size() == static_cast<std::size_t>(depth->width) * depth->height,
@@ -91,7 +91,7 @@ void run_compressed(std::string_view bytes) {
   image.format = bytes.substr(0, line);
   const std::string_view data = bytes.substr(line + 1);
   image.data.assign(data.begin(), data.end());
-  const auto depth = server::decode_depth("depth", image);
+  const auto depth = ros::decode_depth("depth", image);
   if (!depth.ok()) return;
   require(depth->pixels.size() == std::size_t{depth->width} * depth->height,
           "a compressed depth image has all its pixels");
@@ -116,7 +116,7 @@ void run_compressed_color(std::string_view bytes) {
   image.format = "rgb8; jpeg compressed rgb8";
   image.data.assign(bytes.begin(), bytes.end());
   if (!io::decode_color_image(bytes, "image", kMostPixels).ok()) return;
-  const auto color = server::decode_color("color", image);
+  const auto color = ros::decode_color("color", image);
   require(color.ok(), "what the core decodes, the server does");
 }
 

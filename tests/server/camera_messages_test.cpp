@@ -19,7 +19,7 @@ TEST(ImageMessages, SayTheFormatSizeCameraAndTime) {
   images.distortion = {0.1, 0.2};
   images.depth = {camera::PixelFormat::depth_mm, 4, 3, std::vector<std::uint8_t>(24, 5)};
   images.color = camera::Image{camera::PixelFormat::grey, 4, 3, std::vector<std::uint8_t>(12, 6)};
-  const CameraImages messages = image_messages(images, "optical");
+  const ros::CameraImages messages = image_messages(images, "optical");
   const auto& depth = std::get<wire::sensor_msgs::Image>(*messages.depth);
   EXPECT_EQ(to_ns(depth.header.stamp), 12'000'000'034);
   EXPECT_EQ(depth.header.frame_id, "optical");
@@ -64,7 +64,7 @@ TEST(CloudMessage, HoldsEveryPixelWhereTheCameraSeesIt) {
   // Our own reader of clouds finds the camera again.
   frame.depth[33] = 1.5f;
   for (std::size_t i = 0; i < frame.depth.size(); ++i) frame.depth[i] += 0.01f * float(i % 7);
-  const auto back = frame_from_cloud(cloud_message(frame));
+  const auto back = ros::frame_from_cloud(cloud_message(frame));
   ASSERT_TRUE(back.ok()) << back.status().message;
   EXPECT_NEAR(back->camera.fx, 30, 0.01);
   EXPECT_EQ(back->color, frame.color);

@@ -190,7 +190,7 @@ TEST_F(SearchQueueTest, AFrameIsSearchedForWhatItsCameraShowedBefore) {
     incoming.decode = [stamp, camera] {
       auto message = support::wall_frame(stamp);
       message.header.frame_id = camera;
-      return frame_from_message(message);
+      return ros::frame_from_message(message);
     };
     return incoming;
   };
@@ -264,7 +264,7 @@ TEST_F(SearchQueueTest, FramesThatWaitAreCombinedAndTheNewestIsSearched) {
   other.decode = [] {
     auto message = support::wall_frame(6);
     message.k[0] = 61;
-    return frame_from_message(message);
+    return ros::frame_from_message(message);
   };
   queue->push(std::move(other));
   ASSERT_TRUE(streamed.wait_for(3));
@@ -343,14 +343,14 @@ TEST_F(SearchQueueTest, WhatThrowsCostsItselfAlone) {
   auto queue = make();
   gate.open();
   IncomingFrame broken = frame(1);
-  broken.decode = []() -> DecodedFrame { throw std::bad_alloc(); };
+  broken.decode = []() -> ros::DecodedFrame { throw std::bad_alloc(); };
   queue->push(std::move(broken));
   ASSERT_TRUE(streamed.wait_for(1));
   EXPECT_EQ(streamed.code(0), StatusCode::unavailable);
   EXPECT_EQ(statistics.counts().frames_rejected, 1U);
 
   DetectJob bomb = job(true);
-  bomb.decode = []() -> DecodedFrame { throw std::bad_alloc(); };
+  bomb.decode = []() -> ros::DecodedFrame { throw std::bad_alloc(); };
   ASSERT_TRUE(queue->push(std::move(bomb)).ok());
   ASSERT_TRUE(answers.wait_for(1));
   EXPECT_EQ(answers.code(0), StatusCode::unavailable);

@@ -62,7 +62,7 @@ class TrackingThread : public testing::Test {
                                     std::shared_future<void> until = {}) {
     auto shared = std::make_shared<SharedFrame>([=] {
       if (until.valid()) until.wait();
-      return DecodedFrame(frame_at(stamp_ns, frame_id));
+      return ros::DecodedFrame(frame_at(stamp_ns, frame_id));
     });
     tracking_->push({shared, stamp_ns, frame_id, std::chrono::steady_clock::now()});
     return shared;
@@ -168,10 +168,10 @@ TEST_F(TrackingThread, EveryFrameIsCountedByWhatBecameOfIt) {
   push(11, "elsewhere");  // another camera, while the first is there
   settled();
   auto broken = std::make_shared<SharedFrame>(
-      [] { return DecodedFrame(RejectionCause::depth, invalid_argument("no depth")); });
+      [] { return ros::DecodedFrame(ros::RejectionCause::depth, invalid_argument("no depth")); });
   tracking_->push({broken, 12, "camera", std::chrono::steady_clock::now()});
-  auto throwing =
-      std::make_shared<SharedFrame>([]() -> DecodedFrame { throw std::runtime_error("boom"); });
+  auto throwing = std::make_shared<SharedFrame>(
+      []() -> ros::DecodedFrame { throw std::runtime_error("boom"); });
   tracking_->push({throwing, 13, "camera", std::chrono::steady_clock::now()});
   settled();
   wanted_ = false;

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import tree
 
-CHECKED_FOLDERS = ("core", "idl", "client", "camera", "server", "tools", "python")
+CHECKED_FOLDERS = ("core", "idl", "client", "ros", "camera", "server", "tools", "python")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 USES = re.compile(r"\bUSES\b([^)]*?)(?=\b(?:SOURCES|PUBLIC_LIBS|PRIVATE_LIBS)\b|\))")
 

@@ -8,7 +8,7 @@ import subprocess
 
 import tree
 
-CHECKED_FOLDERS = ("core", "idl", "client", "camera", "server", "tools", "tests")
+CHECKED_FOLDERS = ("core", "idl", "client", "ros", "camera", "server", "tools", "tests")
 
 
 def clang_format():

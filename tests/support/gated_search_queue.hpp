@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-#include "server/convert/frames.hpp"
+#include "ros/frames.hpp"
 #include "server/search_queue.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/stub_recognition.hpp"
@@ -151,17 +151,18 @@ class SearchQueueTest : public testing::Test {
         LogHook(), clock);
   }
   static IncomingFrame frame(std::int64_t stamp, const std::string& camera = "c") {
-    return {[stamp] { return frame_from_message(support::wall_frame(stamp)); }, stamp, camera};
+    return {[stamp] { return ros::frame_from_message(support::wall_frame(stamp)); }, stamp, camera};
   }
   static IncomingFrame bad_frame() {
-    return {[] { return DecodedFrame(RejectionCause::depth, invalid_argument("too short")); }, 0,
-            "c"};
+    return {
+        [] { return ros::DecodedFrame(ros::RejectionCause::depth, invalid_argument("too short")); },
+        0, "c"};
   }
   DetectJob job(bool with_frame, std::chrono::milliseconds time = std::chrono::milliseconds(5000),
                 std::uint8_t client = 0, std::int64_t stamp = 77) {
     DetectJob job;
     if (with_frame) {
-      job.decode = [stamp] { return frame_from_message(support::wall_frame(stamp)); };
+      job.decode = [stamp] { return ros::frame_from_message(support::wall_frame(stamp)); };
     }
     job.client[0] = client;
     job.timeout = time;

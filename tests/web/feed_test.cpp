@@ -34,9 +34,9 @@ SceneInterpretations result_of(const std::string& model) {
 TEST(Feed, KeepsAndDecodesNothingWhileNobodyLooks) {
   Feed feed(20, [] { return 7; });
   int decoded = 0;
-  const auto shared = std::make_shared<SharedFrame>(Once<DecodedFrame>([&decoded] {
+  const auto shared = std::make_shared<SharedFrame>(Once<ros::DecodedFrame>([&decoded] {
     ++decoded;
-    return DecodedFrame(frame_of(64, 48));
+    return ros::DecodedFrame(frame_of(64, 48));
   }));
   feed.add_frame(shared, 1, "camera");
   feed.add_result(frame_of(64, 48), result_of("mug"));
@@ -143,7 +143,7 @@ TEST(Feed, CountsFramesThatNoViewerHeardOf) {
   ASSERT_TRUE(feed.see("viewer", false).ok());
   for (int i = 0; i < 4; ++i) {
     feed.add_frame(std::make_shared<SharedFrame>(
-                       Once<DecodedFrame>([] { return DecodedFrame(frame_of(64, 48)); })),
+                       Once<ros::DecodedFrame>([] { return ros::DecodedFrame(frame_of(64, 48)); })),
                    i, "camera");
     if (i == 1) (void)feed.camera_frame();
   }

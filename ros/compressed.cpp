@@ -8,9 +8,9 @@
 
 #include "core/base/concat.hpp"
 #include "core/io/image_file.hpp"
-#include "server/convert/images.hpp"
+#include "ros/images.hpp"
 
-namespace bpa::server {
+namespace bpa::ros {
 namespace {
 
 using wire::ByteView;
@@ -167,4 +167,4 @@ Result<Decoded<float>> decode_depth(const char* field, const CompressedImage& im
   return result;
 }
 
-}  // namespace bpa::server
+}  // namespace bpa::ros

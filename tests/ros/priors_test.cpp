@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "server/convert/frames.hpp"
+#include "ros/frames.hpp"
 
-namespace bpa::server {
+namespace bpa::ros {
 namespace {
 
 using wire::bpa_msgs::PosePrior;
@@ -57,4 +57,4 @@ TEST(PriorsFromMessages, OrientationIsItsDistributionsMode) {
 }
 
 }  // namespace
-}  // namespace bpa::server
+}  // namespace bpa::ros

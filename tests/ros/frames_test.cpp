@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/convert/frames.hpp"
+#include "ros/frames.hpp"
 
 #include <functional>
 #include <limits>
@@ -9,7 +9,7 @@
 
 #include "tests/support/wall_messages.hpp"
 
-namespace bpa::server {
+namespace bpa::ros {
 namespace {
 
 using wire::bpa_msgs::RgbdFrame;
@@ -250,4 +250,4 @@ TEST(RestrictFrame, RefusesPriorsInAnotherFrame) {
 }
 
 }  // namespace
-}  // namespace bpa::server
+}  // namespace bpa::ros

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/convert/images.hpp"
+#include "ros/images.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "core/cloud/frame.hpp"
 #include "core/io/image_file.hpp"
 
-namespace bpa::server {
+namespace bpa::ros {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "pixels are copied as they lie");
@@ -119,22 +119,4 @@ Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image) {
                        "\"; it must be rgb8, bgr8, rgba8, bgra8, mono8 or mono16"));
 }
 
-std::vector<std::int32_t> undistortion_map(const Camera& camera, const Lens& lens) {
-  std::vector<std::int32_t> map;
-  map.reserve(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
-  for (int v = 0; v < camera.height; ++v) {
-    for (int u = 0; u < camera.width; ++u) {
-      const Eigen::Vector2d bent =
-          distort(lens, (u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy);
-      const double ud = std::round(bent.x() * camera.fx + camera.cx);
-      const double vd = std::round(bent.y() * camera.fy + camera.cy);
-      const bool inside = ud >= 0 && vd >= 0 && ud < camera.width && vd < camera.height;
-      map.push_back(inside ? static_cast<std::int32_t>(vd) * camera.width +
-                                 static_cast<std::int32_t>(ud)
-                           : -1);
-    }
-  }
-  return map;
-}
-
-}  // namespace bpa::server
+}  // namespace bpa::ros

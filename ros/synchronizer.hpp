@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <deque>
@@ -13,16 +12,15 @@
 
 #include "idl/wire/msg/sensor_msgs.hpp"
 #include "idl/wire/time.hpp"
-#include "server/convert/frames.hpp"
-#include "server/options.hpp"
+#include "ros/frames.hpp"
 
-namespace bpa::server {
+namespace bpa::ros {
 
 struct SynchronizerOptions {
   bool with_color = true;  ///< Wait for a colour image for each depth image.
   /// Largest difference of stamps within one set; 0: equal stamps only.
-  std::int64_t tolerance_ns = std::llround(1e6 * InputOptions().sync_tolerance_ms);
-  std::size_t queue = InputOptions().sync_queue;  ///< Messages of one stream that may wait.
+  std::int64_t tolerance_ns = 10'000'000;
+  std::size_t queue = 10;  ///< Messages of one stream that may wait.
 };
 
 /// What became of the messages so far.
@@ -177,4 +175,4 @@ class Synchronizer {
   Stream<wire::sensor_msgs::CameraInfo> info_;
 };
 
-}  // namespace bpa::server
+}  // namespace bpa::ros

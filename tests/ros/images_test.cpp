@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/convert/images.hpp"
+#include "ros/images.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace bpa::server {
+namespace bpa::ros {
 namespace {
 
 template <class T>
@@ -105,15 +105,5 @@ TEST(ColorErrors, NamesTheEncodingsItKnows) {
   EXPECT_NE(rgb.status().message.find("rgb8, bgr8"), std::string::npos);
 }
 
-TEST(Undistortion, MovesPixelsAlongTheRadius) {
-  const Camera camera{101, 101, 100, 100, 50, 50};
-  // k1 alone: a point at radius r is seen at r (1 + k1 r^2); here r = 0.4, so 40 -> 43.2 pixels.
-  const auto map = undistortion_map(camera, {false, {0.5}});
-  EXPECT_EQ(map[50 * 101 + 50], 50 * 101 + 50);
-  EXPECT_EQ(map[50 * 101 + 90], 50 * 101 + 93);
-  EXPECT_EQ(map[90 * 101 + 50], 93 * 101 + 50);
-  EXPECT_EQ(map[0], -1);  // seen outside
-}
-
 }  // namespace
-}  // namespace bpa::server
+}  // namespace bpa::ros

@@ -8,13 +8,12 @@
 #include <vector>
 
 #include "core/base/status.hpp"
-#include "core/geometry/lens.hpp"
 #include "idl/wire/msg/sensor_msgs.hpp"
 
 // Pixels as messages carry them -> pixels as the core takes them. Every size is checked before a
 // byte is read; failures name the field, its value and the rule.
 
-namespace bpa::server {
+namespace bpa::ros {
 
 /// Refuses images that are empty or have a side of more than 8192 pixels.
 Status check_size(const std::string& what, std::uint32_t width, std::uint32_t height);
@@ -38,10 +37,6 @@ Result<std::vector<float>> depth_from_image(const ImageView& image);
 /// Row-major rgb, 3 bytes a pixel. From rgb8, bgr8, rgba8, bgra8, mono8 and mono16, else
 /// `unsupported`.
 Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image);
-
-/// For every pixel of the undistorted image, the index of the nearest pixel of the distorted one;
-/// -1 outside. The camera matrix stays the same.
-std::vector<std::int32_t> undistortion_map(const Camera& camera, const Lens& lens);
 
 // The same of sensor_msgs/CompressedImage, as ROS 2's image_transport plugins write it. What a file
 // says of its size is checked before anything is decoded.
@@ -73,4 +68,4 @@ Result<Decoded<float>> decode_depth(const char* field,
 bool decode_rvl(const std::uint8_t* data, std::size_t size, std::size_t count,
                 std::vector<std::uint16_t>& values);
 
-}  // namespace bpa::server
+}  // namespace bpa::ros

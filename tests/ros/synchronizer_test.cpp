@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/sources/synchronizer.hpp"
+#include "ros/synchronizer.hpp"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 
 #include "tests/support/wall_messages.hpp"
 
-namespace bpa::server {
+namespace bpa::ros {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -125,4 +125,4 @@ TEST_F(DepthOnly, NeedsNoColor) {
 }
 
 }  // namespace
-}  // namespace bpa::server
+}  // namespace bpa::ros

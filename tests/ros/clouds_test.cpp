@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "server/convert/frames.hpp"
+#include "ros/frames.hpp"
 #include "tests/support/wall_messages.hpp"
 
-namespace bpa::server {
+namespace bpa::ros {
 namespace {
 
 using support::kHeight;
@@ -143,4 +143,4 @@ TEST(FrameFromCloud, RefusesWhatIsNoCamerasCloud) {
 }
 
 }  // namespace
-}  // namespace bpa::server
+}  // namespace bpa::ros

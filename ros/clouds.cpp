@@ -8,10 +8,10 @@
 #include "core/base/concat.hpp"
 #include "core/io/pcd_file.hpp"
 #include "idl/wire/time.hpp"
-#include "server/convert/frames.hpp"
-#include "server/convert/images.hpp"
+#include "ros/frames.hpp"
+#include "ros/images.hpp"
 
-namespace bpa::server {
+namespace bpa::ros {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "points are copied as they lie");
@@ -113,4 +113,4 @@ DecodedFrame frame_from_cloud(const PointCloud2& cloud, double unit) {
   return {std::move(frame), notes.size() > 1 ? notes.back() : ""};
 }
 
-}  // namespace bpa::server
+}  // namespace bpa::ros

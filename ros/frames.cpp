@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-#include "server/convert/frames.hpp"
+#include "ros/frames.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +9,12 @@
 
 #include "core/base/concat.hpp"
 #include "core/cloud/depth_unit.hpp"
-#include "core/geometry/lens.hpp"
+#include "core/cloud/undistortion.hpp"
 #include "core/io/image_file.hpp"
 #include "idl/wire/time.hpp"
-#include "server/convert/images.hpp"
+#include "ros/images.hpp"
 
-namespace bpa::server {
+namespace bpa::ros {
 namespace {
 
 namespace msgs = wire::bpa_msgs;
@@ -72,24 +72,6 @@ Camera camera_of(std::uint32_t width, std::uint32_t height, const double* k, std
           .fy = k[stride + 1],
           .cx = k[2],
           .cy = k[stride + 2]};
-}
-
-template <class Pixel, std::size_t kChannels>
-void remap(const std::vector<std::int32_t>& map, std::vector<Pixel>& pixels) {
-  if (pixels.empty()) return;
-  std::vector<Pixel> out(pixels.size(), Pixel{});
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    if (map[i] < 0) continue;
-    std::copy_n(pixels.begin() + map[i] * kChannels, kChannels, out.begin() + i * kChannels);
-  }
-  pixels = std::move(out);
-}
-
-void undistort(const Lens& lens, Frame& frame) {
-  if (lens.coefficients.empty()) return;
-  const std::vector<std::int32_t> map = undistortion_map(frame.camera, lens);
-  remap<float, 1>(map, frame.depth);
-  remap<std::uint8_t, 3>(map, frame.color);
 }
 
 RegionOfInterest roi_of(const sensor::RegionOfInterest& roi) {
@@ -272,4 +254,4 @@ bool named_rectified(const std::string& topic) {
   return name.find("_rect") != name.npos;
 }
 
-}  // namespace bpa::server
+}  // namespace bpa::ros

@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 
 #include "core/io/file_bytes.hpp"
-#include "server/convert/frames.hpp"
-#include "server/convert/images.hpp"
+#include "ros/frames.hpp"
+#include "ros/images.hpp"
 #include "tests/support/depth_codecs.hpp"
 
-namespace bpa::server {
+namespace bpa::ros {
 namespace {
 
 using support::kHeight;
@@ -227,4 +227,4 @@ TEST(FrameFromCompressedImages, CompressedImagesGiveTheFrameOfRawOnes) {
 }
 
 }  // namespace
-}  // namespace bpa::server
+}  // namespace bpa::ros

@@ -10,14 +10,14 @@
 
 #include "core/base/status.hpp"
 #include "core/cloud/frame.hpp"
-#include "core/detect/pose_prior.hpp"
+#include "core/result/pose_prior.hpp"
 #include "idl/wire/msg/bpa_msgs.hpp"
 #include "idl/wire/msg/sensor_msgs.hpp"
 
 // Messages -> frames that are fit for the detector: sizes, camera and depth are checked here, once,
 // and everything behind may rely on them. Failures name the field, its value and the rule.
 
-namespace bpa::server {
+namespace bpa::ros {
 
 /// The part of a message that kept it from becoming a frame.
 enum class RejectionCause { camera, distortion, depth, color, cloud, priors, frame };
@@ -90,4 +90,4 @@ bool named_rectified(const std::string& topic);
 /// that is not organised.
 DecodedFrame frame_from_cloud(const wire::sensor_msgs::PointCloud2& cloud, double unit = 0);
 
-}  // namespace bpa::server
+}  // namespace bpa::ros
