@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/failure.hpp"
+#include "idl/wire/middleware.hpp"
 
 namespace bpa::server {
 namespace {
@@ -30,6 +31,9 @@ wire::GraphLayout graph_layout_of(const std::string& word) {
 }  // namespace
 
 wire::ParticipantOptions participant_options(const ServerOptions& options, LogHook log) {
+  for (const auto& note : wire::check_middleware(options.network.range == "environment")) {
+    bpa::log(log, LogLevel::warning, wire::line_of(note));
+  }
   wire::ParticipantOptions seat;
   seat.node = {options.node.ros_namespace, options.node.name};
   seat.discovery = discovery_of(options.network);

@@ -9,6 +9,7 @@
 #include "core/base/concat.hpp"
 #include "core/doctor/machine_check.hpp"
 #include "idl/wire/endpoint.hpp"
+#include "idl/wire/middleware.hpp"
 #include "tools/doctor.hpp"
 
 namespace bpa::cli {
@@ -169,7 +170,8 @@ doctor::Finding explain_absence(const Status& status) {
     remedy +=
         " Check that the discovery server of ROS_DISCOVERY_SERVER runs, or unset it for both.";
   }
-  return {doctor::Severity::error, "no server answers", status.message + environment(), remedy};
+  return {doctor::Severity::error, "no server answers",
+          status.message.substr(0, status.message.find('\n')) + environment(), remedy};
 }
 
 doctor::MachineNeeds machine_needs(const ClientOptions& options, bool found) {
@@ -231,6 +233,10 @@ RunningFindings check_running_server(ClientOptions options) {
   }  // the hook is not called any more
   found.server.insert(found.server.end(), complaints.begin(), complaints.end());
   found.machine = doctor::check_machine(machine_needs(options, answered));
+  for (const auto& note : wire::check_middleware(options.range_from_environment)) {
+    found.machine.push_back({note.unreachable ? doctor::Severity::error : doctor::Severity::warning,
+                             note.what, note.why, note.remedy});
+  }
   return found;
 }
 

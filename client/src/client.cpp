@@ -11,6 +11,7 @@
 #include "client/src/convert.hpp"
 #include "core/base/guarded.hpp"
 #include "idl/wire/messages.hpp"
+#include "idl/wire/middleware.hpp"
 #include "idl/wire/participant.hpp"
 #include "idl/wire/publisher.hpp"
 #include "idl/wire/service.hpp"
@@ -269,12 +270,15 @@ Result<Client> Client::connect(const ClientOptions& options) {
     if (!impl.ok()) return impl.status();
     const auto& get_status = (*impl)->get_status.client();
     if (get_status.ok() && !get_status.value().wait_for_service(options.timeout)) {
-      return Status(
-          StatusCode::unavailable,
+      std::string text =
           "no bpa-server answers as " + get_status.value().name() + " in domain " +
-              std::to_string((*impl)->participant.domain_id()) + " within " +
-              std::to_string(options.timeout.count()) +
-              " ms; is it running, with this namespace, domain, discovery range and keystore?");
+          std::to_string((*impl)->participant.domain_id()) + " within " +
+          std::to_string(options.timeout.count()) +
+          " ms; is it running, with this namespace, domain, discovery range and keystore?";
+      for (const auto& note : wire::check_middleware(options.range_from_environment)) {
+        text += "\n" + wire::line_of(note);
+      }
+      return Status(StatusCode::unavailable, text);
     }
     return Client(std::move(impl).value());
   });

@@ -7,7 +7,9 @@
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <nlohmann/json.hpp>
+#include <sys/socket.h>
 
 #include "core/base/clock.hpp"
 #include "core/base/failure.hpp"
@@ -158,6 +160,66 @@ std::vector<std::string> server_words(const std::string& timeout_s = "10") {
           timeout_s};
 }
 
+/// What doctor and bpa-client say in this environment, without a server.
+struct Sayings {
+  std::string doctor, client;
+  explicit Sayings(const std::string& variable) {
+    const auto equals = variable.find('=');
+    setenv(variable.substr(0, equals).c_str(), variable.substr(equals + 1).c_str(), 1);
+    doctor = bpa::doctor(server_words("1")).text;
+    support::run(support::own_command("bpa-client", {"--localhost", "--timeout", "1", "status"}),
+                 scratch("client.log"));
+    client = support::read_text(scratch("client.log"));
+    unsetenv(variable.substr(0, equals).c_str());
+  }
+  bool both_say(const char* words) const {
+    return doctor.find(words) != std::string::npos && client.find(words) != std::string::npos;
+  }
+};
+
+TEST_F(Doctor, SaysWhichMiddlewareIsNotReachable) {
+  const Sayings zenoh("RMW_IMPLEMENTATION=rmw_zenoh_cpp");
+  EXPECT_TRUE(zenoh.both_say("nodes on Zenoh are not reachable")) << zenoh.doctor << zenoh.client;
+  const Sayings plain("RMW_IMPLEMENTATION=rmw_fastrtps_cpp");
+  EXPECT_EQ(plain.doctor.find("RMW_IMPLEMENTATION is"), std::string::npos) << plain.doctor;
+  EXPECT_EQ(plain.client.find('\n'), plain.client.size() - 1) << plain.client;
+}
+
+// Fast DDS itself says which of the variables it reads, by a profile that we warn of.
+TEST_F(Doctor, SaysThatProfilesAreNotReadIfTheyAreNot) {
+  const std::string profile = scratch("profiles.xml");
+  ASSERT_TRUE(io::write_file(profile,
+                             "<dds><profiles><participant profile_name='bpa'><rtps>"
+                             "<useBuiltinTransports>true</useBuiltinTransports>"
+                             "</rtps></participant></profiles></dds>")
+                  .ok());
+  int read = 0;
+  for (const std::string variable :
+       {"FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE"}) {
+    const Sayings say(variable + "=" + profile);
+    const bool is_read = say.doctor.find("XML profile \"bpa\"") != std::string::npos;
+    EXPECT_NE(say.both_say("the Fast DDS profiles are not read"), is_read)
+        << variable << say.client;
+    read += is_read ? 1 : 0;
+  }
+  EXPECT_EQ(read, 1);
+}
+
+TEST_F(Doctor, SaysThatAZenohRouterRuns) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(7447);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const int socket_ = socket(AF_INET, SOCK_STREAM, 0), on = 1;
+  setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  if (bind(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) {
+    ASSERT_EQ(listen(socket_, 1), 0);
+  }  // else one runs here
+  const Sayings say("RMW_IMPLEMENTATION=");
+  close(socket_);
+  EXPECT_TRUE(say.both_say("a Zenoh router runs")) << say.doctor << say.client;
+}
+
 TEST_F(Doctor, SaysThatThereIsNoServer) {
   const DoctorReport outcome = doctor(server_words("1"));
   EXPECT_EQ(outcome.code, 1);
@@ -235,6 +297,13 @@ TEST_F(DoctorOfAServer, SaysNothingWhenFramesComeAndWhenTheyDoNotThatNobodySends
   EXPECT_EQ(ask().whats(), Whats{"the server gets no frames"});
   const DoctorReport outcome = ask_with_camera(milliseconds(0), milliseconds(0));
   EXPECT_EQ(outcome.whats(), Whats{}) << outcome.text << log();
+}
+
+TEST_F(DoctorOfAServer, SaysInItsLogWhichMiddlewareIsNotReachable) {
+  setenv("RMW_IMPLEMENTATION", "rmw_zenoh_cpp", 1);
+  start();
+  unsetenv("RMW_IMPLEMENTATION");
+  EXPECT_NE(log().find("nodes on Zenoh are not reachable"), std::string::npos) << log();
 }
 
 TEST_F(DoctorOfAServer, SaysThatStampsAreApart) {

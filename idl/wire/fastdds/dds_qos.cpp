@@ -224,7 +224,8 @@ std::string incompatible_qos_text(const std::string& dds_topic, bool we_write,
        "subscribe volatile or publish transient_local"},
       {dds::DEADLINE_QOS_POLICY_ID, "deadline", "subscribe without a deadline"},
       {dds::LIVELINESS_QOS_POLICY_ID, "liveliness",
-       "subscribe with automatic liveliness and no lease"}};
+       "subscribe with automatic liveliness and no lease"},
+      {dds::DATAREPRESENTATION_QOS_POLICY_ID, "data representation", "give the peer XCDR1"}};
   std::string name = "policy " + std::to_string(static_cast<int>(policy));
   std::string remedy = "give both the same";
   for (const auto& one : known) {

@@ -140,12 +140,18 @@ class Listener : public dds::DomainParticipantListener {
     peer.topic = data.topic_name.to_string();
     peer.type = data.type_name.to_string();
     const auto& user_data = data.user_data.data_vec();
+    const auto& representation = data.representation.m_value;
 #else
     peer.guid = to_guid(data.guid());
     peer.topic = data.topicName().to_string();
     peer.type = data.typeName().to_string();
     const auto& user_data = data.m_qos.m_userData.data_vec();
+    const auto& representation = data.m_qos.representation.m_value;
 #endif
+    // Empty: XCDR1.
+    peer.only_xcdr2 =
+        !representation.empty() && std::find(representation.begin(), representation.end(),
+                                             dds::XCDR_DATA_REPRESENTATION) == representation.end();
     peer.user_data.assign(user_data.begin(), user_data.end());
     return peer;
   }
@@ -165,6 +171,9 @@ ParticipantImpl::ParticipantImpl(ParticipantOptions options, Discovery discovery
 Status ParticipantImpl::start() {
   avoid_deleted_readers();
   auto* factory = dds::DomainParticipantFactory::get_instance();
+  // Of the environment, which Fast DDS otherwise reads after the profile below is asked for. It
+  // says itself what it cannot read.
+  (void)factory->load_profiles();
   if (!options_.profiles.empty() &&
       !succeeded(factory->load_XML_profiles_file(options_.profiles))) {
     return invalid_argument(options_.profiles + ": not a file of Fast DDS XML profiles");
@@ -362,7 +371,16 @@ void ParticipantImpl::publish_graph() {
 }
 
 void ParticipantImpl::check_type(const Peer& peer, const std::string& ours) const {
-  if (ours.empty() || ours == peer.type) return;
+  if (ours.empty()) return;
+  if (peer.only_xcdr2) {
+    log_peer(
+        LogLevel::warning, peer.guid,
+        concat("topic ", peer.topic, ": a peer's ",
+               peer.is_reader ? "subscriber takes" : "publisher offers",
+               " XCDR2 alone, ours is XCDR1, as in ROS 2; they will not talk: add XCDR1 to the "
+               "peer's data representation, or make its types @final and leave it out"));
+  }
+  if (ours == peer.type) return;
   log_peer(LogLevel::warning, peer.guid,
            concat("topic ", peer.topic, ": a peer's ", peer.is_reader ? "subscriber" : "publisher",
                   " has type ", peer.type, ", ours is ", ours,

@@ -70,6 +70,7 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
   struct Peer {
     enum class Change { came, changed, went } change = Change::went;
     bool is_reader = false;
+    bool only_xcdr2 = false;  ///< Not the encoding of ROS 2, which is ours.
     Guid guid{};
     std::string topic, type, user_data;
   };
@@ -86,7 +87,8 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
   /// it or another type has the name. The caller of both holds endpoint_mutex_.
   dds::Topic* acquire_topic(const EndpointSpec& spec, std::string* error);
   void release_topic(const std::string& dds_topic);
-  /// Says so when a peer uses one of our topics with another type: DDS itself is silent.
+  /// Says so when a peer uses one of our topics with another type or encoding: DDS itself is
+  /// silent.
   void check_type(const Peer& peer, const std::string& ours) const;
   /// Says so when another process offers a service that we offer: clients get two answers.
   void check_servers(const Peer& peer);

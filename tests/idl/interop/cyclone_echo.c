@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
 // A peer on Eclipse Cyclone DDS, made from idl/dds.idl alone: sends back on rt/out/X what comes on
-// rt/in/X. Usage: cyclone_echo DOMAIN; ends when its standard input does, or after two minutes.
+// rt/in/X. Usage: cyclone_echo DOMAIN [xcdr2, for that encoding alone]; ends when its standard input does, or after two minutes.
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,12 +53,14 @@ static void serve(Echo* echo) {
 }
 
 int main(int argc, char** argv) {
-  if (argc != 2) return 2;
+  if (argc != 2 && argc != 3) return 2;
   dds_entity_t participant =
       check(dds_create_participant((dds_domainid_t)atoi(argv[1]), NULL, NULL), "participant");
   dds_qos_t* qos = dds_create_qos();
   dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
   dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 10);
+  const dds_data_representation_id_t xcdr2 = DDS_DATA_REPRESENTATION_XCDR2;
+  if (argc == 3) dds_qset_data_representation(qos, 1, &xcdr2);
   for (int i = 0; i < kEchoes; ++i) {
     Echo* echo = &echoes[i];
     echo->reader = check(

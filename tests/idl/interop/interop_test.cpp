@@ -108,6 +108,31 @@ TEST(Interop, CycloneUnderstandsOurMessagesAndWeItsOwn) {
   EXPECT_EQ(echo.finish(seconds(5)), 0);
 }
 
+TEST(Interop, APeerOfXcdr2AloneIsNamed) {
+  if (!has("cyclone_echo")) GTEST_SKIP() << "built without Eclipse Cyclone DDS";
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::string said;
+  auto participant = test_participant("interop", [&](LogLevel level, std::string_view text) {
+    if (level < LogLevel::warning) return;
+    const std::lock_guard<std::mutex> lock(mutex);
+    said += std::string(text) + "\n";
+    changed.notify_all();
+  });
+  ASSERT_TRUE(participant.ok());
+  const auto publisher = Publisher<sensor_msgs::Image>::create(*participant, "/in/image", {});
+  const auto subscriber = Subscriber<sensor_msgs::Image>::create(
+      *participant, "/out/image", {}, [](sensor_msgs::Image&&, const SampleMeta&) {});
+  ASSERT_TRUE(publisher.ok() && subscriber.ok());
+  ChildProcess echo = peer("cyclone_echo", {"xcdr2"});
+  std::unique_lock<std::mutex> lock(mutex);
+  const auto has_said = [&](const char* words) { return said.find(words) != std::string::npos; };
+  EXPECT_TRUE(changed.wait_for(lock, seconds(10), [&] {
+    return has_said("rt/in/image: a peer's subscriber takes XCDR2 alone") &&
+           has_said("rt/out/image: a peer's publisher offers XCDR2 alone");
+  })) << said;
+}
+
 TEST(Interop, LargeFrameToCycloneAndBack) {
   if (!has("cyclone_echo")) GTEST_SKIP() << "built without Eclipse Cyclone DDS";
   ChildProcess echo = peer("cyclone_echo");
