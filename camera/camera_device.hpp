@@ -46,6 +46,7 @@ std::vector<std::uint8_t> bytes_of(const std::vector<Pixel>& pixels) {
 /// Depth and colour of one moment.
 struct SensorImages {
   std::int64_t stamp_ns = 0;  ///< Time of exposure, Unix time of this machine.
+  std::string frame_id;       ///< Of a recording of ROS 2; else empty.
   Image depth;
   std::optional<Image> color;      ///< Nothing: the camera gave depth alone.
   Camera camera;                   ///< Pinhole camera of both images.

@@ -14,8 +14,9 @@ namespace bpa::camera {
 /// A sensor on this machine, a recording or a data set.
 struct CameraOptions {
   BPA_OPTION(std::string, source, "", (),
-             "openni2 (the first sensor), openni2:URI, a recording FILE.oni, or a data set "
-             "bop:FOLDER; empty: none. With a source, camera topics are not subscribed to.");
+             "openni2 (the first sensor), openni2:URI, a recording FILE.oni, a data set "
+             "bop:FOLDER, or a recording of ROS 2 bag:PATH (its folder, FILE.mcap or FILE.db3); "
+             "empty: none. With a source, camera topics are not subscribed to.");
   BPA_OPTION(std::string, depth_mode, "640x480@30", (), "WIDTHxHEIGHT@RATE of a sensor's depth.");
   BPA_OPTION(std::string, color_mode, "640x480@30", (), "WIDTHxHEIGHT@RATE of a sensor's colour.");
   BPA_OPTION(bool, color, true, (), "Take colour images beside depth.");
@@ -43,6 +44,14 @@ struct CameraOptions {
   BPA_OPTION(
       bool, every_frame, false, (),
       "Recordings and data sets wait with the next frame until the search has taken the last one.");
+  BPA_OPTION(std::string, bag_depth, "", (),
+             "Topic of depth images of a recording of ROS 2; empty: found by their type.");
+  BPA_OPTION(std::string, bag_color, "", (),
+             "Topic of its colour images, registered to depth; empty: those of the depth's frame.");
+  BPA_OPTION(std::string, bag_camera_info, "", (),
+             "Topic of its camera info; empty: the one beside the images.");
+  BPA_OPTION(std::string, bag_cloud, "", (),
+             "Topic of its organised clouds; empty: where there are no depth images.");
   BPA_OPTION(double, timeout_ms, 3000, (100, 60000),
              "Milliseconds without frames after which a sensor is opened again. Driver calls that "
              "take as long are reported.");

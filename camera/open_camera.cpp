@@ -52,24 +52,13 @@ class BopCamera : public CameraDevice {
     auto frame = io::load_bop_frame(frames_[next_]);
     if (!frame.ok()) return Status(frame.status().code, "is damaged: " + frame.status().message);
     ++next_;
-    output.images = images_of(std::move(frame).value());
+    output.images = images_of(std::move(frame).value(), options_.color);
+    output.images->frame_id.clear();  // a data set names no frame of reference
+    output.images->stamp_ns = unix_time_ns();
     return output;
   }
 
  private:
-  SensorImages images_of(Frame frame) const {
-    const int width = frame.camera.width, height = frame.camera.height;
-    SensorImages images;
-    images.stamp_ns = unix_time_ns();
-    images.camera = frame.camera;
-    // Metres keep the data set's depth to the last bit, whatever its unit is.
-    images.depth = {PixelFormat::depth_m, width, height, bytes_of(frame.depth)};
-    if (options_.color && !frame.color.empty()) {
-      images.color = Image{PixelFormat::rgb, width, height, std::move(frame.color)};
-    }
-    return images;
-  }
-
   const std::string name_;
   const std::vector<io::BopFrame> frames_;
   const CameraOptions options_;
@@ -78,6 +67,19 @@ class BopCamera : public CameraDevice {
 };
 
 }  // namespace
+
+SensorImages images_of(Frame frame, bool with_color) {
+  const int width = frame.camera.width, height = frame.camera.height;
+  SensorImages images;
+  images.frame_id = std::move(frame.frame_id);
+  images.camera = frame.camera;
+  // Metres keep the depth to the last bit, whatever its unit was.
+  images.depth = {PixelFormat::depth_m, width, height, bytes_of(frame.depth)};
+  if (with_color && !frame.color.empty()) {
+    images.color = Image{PixelFormat::rgb, width, height, std::move(frame.color)};
+  }
+  return images;
+}
 
 std::optional<VideoMode> parse_video_mode(const std::string& text) {
   VideoMode mode;
@@ -104,9 +106,10 @@ std::string list_of(const std::vector<VideoMode>& modes) {
 Status check(const CameraOptions& options) {
   const std::string& source = options.source;
   if (!source.empty() && source != kOpenni2 && !source.starts_with(kOneOfOpenni2) &&
-      !source.starts_with(kBop) && !is_recording(source)) {
-    return invalid_argument("capture.source is \"" + source +
-                            "\"; it must be openni2, openni2:URI, a FILE.oni, bop:FOLDER or empty");
+      !source.starts_with(kBop) && !source.starts_with(kBagSource) && !is_recording(source)) {
+    return invalid_argument(
+        "capture.source is \"" + source +
+        "\"; it must be openni2, openni2:URI, a FILE.oni, bop:FOLDER, bag:PATH or empty");
   }
   for (const auto& [field, mode] : {std::pair("capture.depth_mode", options.depth_mode),
                                     std::pair("capture.color_mode", options.color_mode)}) {
@@ -120,8 +123,12 @@ Status check(const CameraOptions& options) {
                           "\"; it must be one of auto, device, software, off");
 }
 
-Result<OpenCamera> camera_of(const CameraOptions& options, const LogHook& log) {
+Result<OpenCamera> camera_of(const CameraOptions& options, const LogHook& log,
+                             const OnTransforms& on_transforms) {
   const std::string& source = options.source;
+  if (source.starts_with(kBagSource)) {
+    return OpenCamera([options, on_transforms] { return open_bag_camera(options, on_transforms); });
+  }
   if (source.starts_with(kBop)) {
     const std::string folder = source.substr(kBop.size());
     return OpenCamera([folder, options] { return open_bop_camera(folder, options); });
@@ -157,7 +164,8 @@ Result<std::unique_ptr<CameraDevice>> open_bop_camera(const std::string& folder,
 bool is_recording(const std::string& source) { return source.ends_with(".oni"); }
 
 bool is_paced(const CameraOptions& options) {
-  return options.every_frame && (is_recording(options.source) || options.source.starts_with(kBop));
+  return options.every_frame && (is_recording(options.source) || options.source.starts_with(kBop) ||
+                                 options.source.starts_with(kBagSource));
 }
 
 }  // namespace bpa::camera

@@ -9,11 +9,19 @@
 #include "camera/camera_options.hpp"
 #include "core/base/log.hpp"
 #include "core/base/status.hpp"
+#include "core/cloud/frame.hpp"
+#include "ros/bag_frames.hpp"
 
 namespace bpa::camera {
 
+inline constexpr const char* kBagSource = "bag:";
+
+/// Takes the transforms that a recording of ROS 2 holds, their stamps as of the images.
+using OnTransforms = ros::BagFrames::OnTransforms;
+
 /// What opens the camera that `options.source` names; `invalid_argument` when it names none.
-Result<OpenCamera> camera_of(const CameraOptions& options, const LogHook& log);
+Result<OpenCamera> camera_of(const CameraOptions& options, const LogHook& log,
+                             const OnTransforms& on_transforms = nullptr);
 
 /// Whether capture.every_frame applies: recordings and data sets wait, sensors do not.
 bool is_paced(const CameraOptions& options);
@@ -49,5 +57,12 @@ OpenCamera openni2_camera(const std::string& uri, const CameraOptions& options, 
 /// order, 30 a second times capture.speed.
 Result<std::unique_ptr<CameraDevice>> open_bop_camera(const std::string& folder,
                                                       const CameraOptions& options);
+
+/// A recording of ROS 2, played in its own time times capture.speed.
+Result<std::unique_ptr<CameraDevice>> open_bag_camera(const CameraOptions& options,
+                                                      const OnTransforms& on_transforms);
+
+/// A frame as a camera delivers it, without its stamp.
+SensorImages images_of(Frame frame, bool with_color);
 
 }  // namespace bpa::camera

@@ -56,7 +56,7 @@ void add_options(CLI::App& program, CommandLine& line) {
   } shortcuts[] = {
       {"--library", "detection.library", "folder of the model library"},
       {"--detector", "detection.detector", "file with settings of the detector"},
-      {"--capture", "capture.source", "openni2, openni2:URI, FILE.oni or bop:FOLDER"},
+      {"--capture", "capture.source", "openni2, openni2:URI, FILE.oni, bop:FOLDER or bag:PATH"},
       {"--threads", "detection.threads", "0: one per core"},
       {"--seed", "detection.seed", "same frame, library and seed: same answer"},
       {"--namespace", "node.namespace", "ROS namespace, default /bpa"},

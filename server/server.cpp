@@ -295,7 +295,8 @@ class Running : public Server {
     sources_.push_back(std::move(source));
     if (options.capture.source.empty()) return;
     const auto idle = [this] { return queue_->length() == 0; };
-    sources_.push_back(open_camera_source(*participant_, options.capture, on_frame, idle, log_));
+    sources_.push_back(open_camera_source(*participant_, options.capture, on_frame, idle,
+                                          tracking_->transforms(), log_));
   }
 
   Status apply(const ServerOptions& before, const ServerOptions& after) {

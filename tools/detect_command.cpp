@@ -211,15 +211,61 @@ class DetectRun {
 
 /// What CLI11 cannot say: exactly one source of frames.
 void check_usage(const DetectArguments& a) {
-  if (count_inputs(a) != 1) {
-    throw CLI::ValidationError("frames", "give one of --pcd, --depth (with --camera) and --bop");
+  if (count_inputs(a) + !a.bag.empty() != 1) {
+    throw CLI::ValidationError("frames",
+                               "give one of --pcd, --depth (with --camera), --bop and --bag");
   }
+  if (a.follow && a.dataset.folder.empty() && a.bag.empty()) {
+    throw CLI::ValidationError("--follow", "needs --bop or --bag");
+  }
+}
+
+/// Those that could not be searched, of all.
+struct Losses {
+  int failed = 0;
+  int frames = 0;
+
+  void add(const std::string& why) {
+    std::fprintf(stderr, "not searched: %s\n", why.c_str());
+    ++failed;
+  }
+};
+
+/// Searches a recording's frames as they come, numbered from 0.
+Losses search_bag(const DetectArguments& a, ros::BagFrames& bag, DetectRun& run) {
+  Losses losses;
+  std::optional<std::pair<io::BopFrame, Input>> held;  // whether it is the last one shows later
+  const auto search = [&](bool last) {
+    if (held) run.add(held->first, std::move(held->second), last);
+    held.reset();
+  };
+  while (true) {
+    auto frame = bag.next();
+    if (frame.ok() && !*frame) break;
+    io::BopFrame entry;
+    entry.im_id = losses.frames++;
+    const std::string name = concat(a.bag, " frame ", entry.im_id);
+    if (frame.ok() && (*frame)->ok()) {
+      search(false);
+      held.emplace(entry, Input{name, std::move(**frame).value(), {}});
+      continue;
+    }
+    losses.add(frame.ok() ? name + ": " + (*frame)->status().message : frame.status().message);
+    if (!frame.ok()) break;  // the recording goes no further
+  }
+  search(true);
+  return losses;
 }
 
 void detect(const DetectArguments& a) {
   check_usage(a);
+  std::optional<ros::BagFrames> bag;
+  if (!a.bag.empty()) {
+    bag = or_throw(ros::BagFrames::open(a.bag, a.bag_topics, a.bag_start_s));
+    std::printf("%s: %s\n", a.bag.c_str(), bag->description().c_str());
+  }
   // Frames are checked before the library is loaded, which takes longer.
-  std::vector<io::BopFrame> entries = list_inputs(a);
+  std::vector<io::BopFrame> entries = bag ? std::vector<io::BopFrame>() : list_inputs(a);
   if (entries.size() == 1) (void)read_input(a, entries.front());
   const Given given = read_given(a);
   if (!a.explain.empty()) or_throw(io::make_folder(a.explain));
@@ -232,9 +278,9 @@ void detect(const DetectArguments& a) {
     question.request.priors = given.priors;
     return write_results(a, detect_joined(a, entries, detector, question, print_result));
   }
-  DetectRun run(a, detector, given, entries.size() > 1);
+  DetectRun run(a, detector, given, bag || entries.size() > 1);
   Progress progress("frames", static_cast<int>(entries.size()));
-  int failed = 0;
+  Losses losses = bag ? search_bag(a, *bag, run) : Losses{0, static_cast<int>(entries.size())};
   for (std::size_t i = 0; i < entries.size(); ++i) {
     progress.show(static_cast<int>(i));
     const bool last = i + 1 == entries.size() || entries[i].scene_id != entries[i + 1].scene_id;
@@ -245,26 +291,45 @@ void detect(const DetectArguments& a) {
     } catch (const Failure& failure) {
       if (entries.size() == 1 || a.fuse > 1) throw;  // frames that are combined need each other
       progress.clear();
-      std::fprintf(stderr, "not searched: %s\n", failure.what());
-      ++failed;
+      losses.add(failure.what());
     }
   }
   run.finish();
-  if (failed == 0) return;
-  throw Failure(invalid_argument(failed, " of ", entries.size(), " frames could not be searched"));
+  if (losses.failed == 0) return;
+  throw Failure(
+      invalid_argument(losses.failed, " of ", losses.frames, " frames could not be searched"));
+}
+
+void add_bag(CLI::App& command, DetectArguments& a) {
+  auto* const bag =
+      add_option(command, "--bag", a.bag,
+                 "Recording of ROS 2 (rosbag2): its folder, or a .mcap or .db3 file", "PATH");
+  const auto topic = [&](const char* option, std::string& name, const char* what) {
+    add_option(command, option, name, what, "TOPIC")->needs(bag);
+  };
+  topic("--depth-topic", a.bag_topics.depth, "Its depth images; found by their type if not given");
+  topic("--color-topic", a.bag_topics.color,
+        "Its colour images, registered to depth; those of the depth's frame if not given");
+  topic("--camera-info-topic", a.bag_topics.camera_info,
+        "Its camera info; the one beside the images if not given");
+  topic("--cloud-topic", a.bag_topics.cloud,
+        "Its organised clouds; read where there are no depth images if not given");
+  add_option(command, "--start", a.bag_start_s, "Seconds of the recording to leave out", "S")
+      ->needs(bag)
+      ->check(CLI::NonNegativeNumber);
 }
 
 void add_inputs(CLI::App& command, DetectArguments& a) {
   add_input_options(command, a);
+  add_bag(command, a);
   add_option(command, "--fuse", a.fuse,
              "Combine the depth of N consecutive frames of a scene and search them once; camera "
              "and scene must stand still",
              "N")
       ->check(CLI::Range(1, 30));
-  command
-      .add_flag("--follow", a.follow,
-                "Frames of a scene follow each other: look first for what the one before showed")
-      ->needs("--bop");
+  command.add_flag("--follow", a.follow,
+                   "Frames of a scene or recording follow each other: look first for what the one "
+                   "before showed");
 }
 
 void add_views(CLI::App& command, DetectArguments& a) {
@@ -274,7 +339,8 @@ void add_views(CLI::App& command, DetectArguments& a) {
                  "one that moved; poses are reported in the fixed frame",
                  "N")
           ->check(CLI::Range(2, static_cast<int>(kMostViews)));
-  for (const char* other : {"--fuse", "--follow"}) views->excludes(command.get_option(other));
+  for (const char* other : {"--fuse", "--follow", "--bag"})
+    views->excludes(command.get_option(other));
   add_option(command, "--poses", a.poses,
              "Where the cameras of --views are, in the order of the frames: JSON that bpa "
              "calibrate writes. cam_R_w2c of the data set if not given",

@@ -195,7 +195,7 @@ void add_doctor_command(CLI::App& program) {
       run_doctor);
   add_input_options(command, a.input);
   add_option(command, "--sensor", a.sensor,
-             "Take a frame from openni2, openni2:URI, FILE.oni or bop:FOLDER", "URI");
+             "Take a frame from openni2, openni2:URI, FILE.oni, bop:FOLDER or bag:PATH", "URI");
   add_option(command, "--library", a.library, "Folder of the model library", "DIR");
   add_option(command, "--config", a.config, "Settings of the detector (detector.yaml)", "FILE");
   command.add_flag("--server", a.server, "Ask the running server, beside frames or a library");

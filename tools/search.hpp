@@ -9,6 +9,7 @@
 
 #include "core/io/bop_dataset.hpp"
 #include "core/pipeline/detector.hpp"
+#include "ros/bag_frames.hpp"
 #include "tools/command.hpp"
 
 namespace bpa::cli {
@@ -42,6 +43,9 @@ struct DetectArguments {
   std::vector<std::string> pcd, depth, color;
   double cloud_unit = 0;  ///< Metres of one unit of --pcd; 0: told from the depths.
   std::string camera;
+  std::string bag;  ///< A recording of ROS 2.
+  ros::BagTopics bag_topics;
+  double bag_start_s = 0;
   DatasetOptions dataset;
   std::vector<int> images;  ///< im_id, of each scene; empty: all.
   std::string priors, mask;

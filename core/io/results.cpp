@@ -110,14 +110,14 @@ static void fields(auto& visit, Is<FrameResult> auto& frame) {
   if constexpr (!std::is_const_v<std::remove_reference_t<decltype(frame)>>) {
     if (visit.has("status")) frame.server.emplace();
   }
+  visit("frame_id", frame.frame_id, kOptional);
+  visit("stamp_ns", frame.stamp_ns, kOptional);
   if (!frame.server) {
     visit("sensor", frame.sensor, kOptional);
     visit("effort", frame.effort, kOptional);
     visit("plan", frame.plan, kOptional);
     return;
   }
-  visit("frame_id", frame.frame_id, kOptional);
-  visit("stamp_ns", frame.stamp_ns, kOptional);
   visit("status", frame.server->status.code);
   visit("message", frame.server->status.message, kOptional);
   visit("queue_position", frame.server->queue_position, kOptional);

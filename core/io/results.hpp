@@ -25,7 +25,7 @@ struct FrameResult : SceneInterpretations {
   int scene_id = 0;    ///< 0 for a frame of no data set.
   int im_id = 0;       ///< 0 for a frame of no data set.
   double seconds = 0;  ///< Time spent on the whole frame.
-  /// Empty: the detector ran in this process, and the file has no stamp and frame_id.
+  /// Empty: the detector ran in this process.
   std::optional<ServerAnswer> server;
 };
 

@@ -18,6 +18,7 @@
 #include "server/search_queue.hpp"
 #include "server/services/services.hpp"
 #include "server/sources/frame_source.hpp"
+#include "server/tf_buffer.hpp"
 
 namespace bpa::server {
 namespace {
@@ -144,16 +145,21 @@ class CameraSource : public FrameSource {
  public:
   /// As open_camera_source().
   CameraSource(const wire::Participant& participant, const CaptureOptions& options,
-               OnFrame on_frame, std::function<bool()> idle, LogHook log)
+               OnFrame on_frame, std::function<bool()> idle, TfBuffer& transforms, LogHook log)
       : options_(options),
         publisher_(participant, options, log),
         capture_(
-            or_throw(camera::camera_of(options, log)),
+            or_throw(camera::camera_of(options, log,
+                                       [&transforms](const auto& message, bool is_static) {
+                                         for (const auto& one : message.transforms)
+                                           transforms.add(one, is_static);
+                                       })),
             {milliseconds(static_cast<int>(options.timeout_ms)),
              milliseconds(static_cast<int>(options.retry_ms))},
             [this, on_frame = std::move(on_frame), frame_id = options.frame_id,
              search = options.search](camera::SensorImages&& images) {
-              const ros::CameraImages messages = image_messages(std::move(images), frame_id);
+              const std::string frame = images.frame_id.empty() ? frame_id : images.frame_id;
+              const ros::CameraImages messages = image_messages(std::move(images), frame);
               publisher_.publish(messages);
               if (search) on_frame(incoming(messages));
             },
@@ -202,9 +208,10 @@ void FrameSource::record(const Record::Request&, const Answer<Record>& answer) {
 
 std::unique_ptr<FrameSource> open_camera_source(const wire::Participant& participant,
                                                 const CaptureOptions& options, OnFrame on_frame,
-                                                std::function<bool()> idle, LogHook log) {
+                                                std::function<bool()> idle, TfBuffer& transforms,
+                                                LogHook log) {
   return std::make_unique<CameraSource>(participant, options, std::move(on_frame), std::move(idle),
-                                        std::move(log));
+                                        transforms, std::move(log));
 }
 
 }  // namespace bpa::server

@@ -26,6 +26,7 @@ struct CaptureOptions;
 struct IncomingFrame;
 struct InputOptions;
 struct ServerOptions;
+class TfBuffer;
 
 /// Takes a frame, on a thread of its source.
 using OnFrame = std::function<void(IncomingFrame&&)>;
@@ -71,10 +72,11 @@ std::unique_ptr<TopicSource> open_topic_source(const wire::Participant& particip
 
 /// The server's own camera. Its frames go to the search and to camera topics. A service records it,
 /// and diagnostics report it. The capture thread calls `on_frame` and `idle` (whether no frame
-/// waits for the search). Throws a Failure.
+/// waits for the search); transforms of a recording go to `transforms`. Throws a Failure.
 std::unique_ptr<FrameSource> open_camera_source(const wire::Participant& participant,
                                                 const CaptureOptions& options, OnFrame on_frame,
-                                                std::function<bool()> idle, LogHook log);
+                                                std::function<bool()> idle, TfBuffer& transforms,
+                                                LogHook log);
 
 /// The images of the server's own camera as messages in the frame `frame_id`: 16UC1 or 32FC1 depth,
 /// rgb8 or mono8 colour. Up to 5 coefficients of distortion: plumb_bob; more: rational_polynomial.

@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// Recordings of OpenNI2.
+// Recordings of OpenNI2 and of ROS 2.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "camera/oni_file.hpp"
+#include "ros/bag_frames.hpp"
 #include "tests/fuzz/target.hpp"
+#include "tests/support/wall_bag.hpp"
 
 namespace bpa::fuzz {
 namespace {
@@ -32,10 +34,40 @@ std::vector<std::string> recording_seeds() {
   return {std::string(std::istreambuf_iterator<char>(file), {})};
 }
 
+void run_bag(const std::string& path) {
+  auto bag = ros::BagFrames::open(path, {}, 0, [](const auto&, bool) {});
+  for (int frames = 0; bag.ok() && frames < 20; ++frames) {
+    const auto frame = bag->next();
+    if (!frame.ok() || !*frame) return;
+    require(!(*frame)->ok() || validate(***frame).ok(), "a frame of a recording is legal");
+  }
+}
+
+std::vector<std::string> mcap_seeds() {
+  using support::McapKind;
+  std::vector<std::string> seeds;
+  for (const McapKind kind :
+       {McapKind::no_chunks, McapKind::plain, McapKind::lz4, McapKind::zstd}) {
+    seeds.push_back(support::mcap_of(support::recording(1), kind));
+  }
+  return seeds;
+}
+
+std::vector<std::string> sqlite_seeds() {
+  const std::string path = file_of("", "seed.db3");
+  support::write_db3(path, support::recording(1));
+  std::ifstream file(path, std::ios::binary);
+  return {std::string(std::istreambuf_iterator<char>(file), {})};
+}
+
 }  // namespace
 
 std::vector<Target> recording_targets() {
-  return {{"recording", "camera/oni_file.cpp", run_recording, recording_seeds, 4096}};
+  return {{"recording", "camera/oni_file.cpp", run_recording, recording_seeds, 4096},
+          {"mcap", "ros/mcap_reader.cpp",
+           [](std::string_view bytes) { run_bag(file_of(bytes, "a.mcap")); }, mcap_seeds, 65536},
+          {"sqlite_bag", "ros/sqlite_bag.cpp",
+           [](std::string_view bytes) { run_bag(file_of(bytes, "a.db3")); }, sqlite_seeds, 65536}};
 }
 
 }  // namespace bpa::fuzz
