@@ -30,9 +30,9 @@ constexpr std::pair<double, const char*> kThings[] = {
     {0.01, "a pea"},  {0.03, "a coin"}, {0.08, "an egg"}, {0.15, "a mug"},      {0.3, "a shoe"},
     {0.6, "a crate"}, {1.2, "a table"}, {3.0, "a car"},   {HUGE_VAL, "a house"}};
 
-Eigen::Vector3f size_of(const TriangleMesh& mesh) {
+Eigen::Vector3f size_of(const std::vector<Eigen::Vector3f>& points) {
   Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(vertex);
+  for (const Eigen::Vector3f& point : points) box.extend(point);
   return box.isEmpty() ? Eigen::Vector3f(0, 0, 0) : Eigen::Vector3f(box.sizes());
 }
 
@@ -50,14 +50,16 @@ void check_assumption(const std::string& path, const LengthUnit& unit, double si
   std::string choices;
   for (const LengthUnit& other : kUnits) {
     choices += concat(choices.empty() ? "" : ", ", "--unit ", other.option,
-                      format(" (%.3g mm)", 1000 * other.metres * side));
+                      format(1000 * other.metres * side < 10 ? " (%.2g mm)" : " (%.0f mm)",
+                             1000 * other.metres * side));
   }
   throw Failure(invalid_argument(path, " does not say its unit, and its longest side is ", side,
                                  "; give one of ", choices));
 }
 
-void print_assumption(const std::string& path, const LengthUnit& unit, const TriangleMesh& mesh) {
-  const Eigen::Vector3d mm = (1000 * size_of(mesh)).cast<double>();
+void print_assumption(const std::string& path, const LengthUnit& unit,
+                      const std::vector<Eigen::Vector3f>& points) {
+  const Eigen::Vector3d mm = (1000 * size_of(points)).cast<double>();
   const auto* like = std::ranges::find_if(
       kThings, [&](const auto& thing) { return mm.maxCoeff() <= 1000 * thing.first; });
   std::printf("%s: assuming %s: %.0f x %.0f x %.0f mm, like %s; --unit or --scale says otherwise\n",
@@ -88,6 +90,11 @@ CLI::Option* add_unit_option(CLI::App& command, double& metres, const char* text
       ->check(CLI::IsMember({"m", "cm", "mm", "in"}));
 }
 
+void assume_metres(const std::string& path, const std::vector<Eigen::Vector3f>& points) {
+  check_assumption(path, kMetre, static_cast<double>(size_of(points).maxCoeff()));
+  print_assumption(path, kMetre, points);
+}
+
 double guess_unit(double largest) { return guess(largest).metres; }
 
 std::vector<io::MeshFile> read_meshes(const std::vector<std::string>& paths, double& scale) {
@@ -96,7 +103,7 @@ std::vector<io::MeshFile> read_meshes(const std::vector<std::string>& paths, dou
   std::string path_of_largest;
   for (const std::string& path : paths) {
     files.push_back(or_throw(io::read_mesh_file(path, scale > 0 ? scale : 1.0)));
-    const auto side = static_cast<double>(size_of(files.back().mesh).maxCoeff());
+    const auto side = static_cast<double>(size_of(files.back().mesh.vertices).maxCoeff());
     if (files.back().metres || side <= largest) continue;
     largest = side;
     path_of_largest = path;
@@ -110,7 +117,7 @@ std::vector<io::MeshFile> read_meshes(const std::vector<std::string>& paths, dou
     for (Eigen::Vector3f& vertex : files[i].mesh.vertices) {
       vertex = (scale * vertex.cast<double>()).cast<float>();
     }
-    print_assumption(paths[i], unit, files[i].mesh);
+    print_assumption(paths[i], unit, files[i].mesh.vertices);
   }
   return files;
 }

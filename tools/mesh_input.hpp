@@ -23,6 +23,10 @@ CLI::Option* add_unit_option(CLI::App& command, double& metres, const char* text
 /// millimetres.
 double guess_unit(double largest);
 
+/// Prints that the points of a file, whose format says no unit, are taken to be in metres. Throws a
+/// Failure with the choices where objects are seldom so large.
+void assume_metres(const std::string& path, const std::vector<Eigen::Vector3f>& points);
+
 /// Reads meshes of one unit. If `scale` is 0, it is guessed for those whose format does not fix it
 /// and set; what was assumed is printed. Throws as or_throw() does.
 std::vector<io::MeshFile> read_meshes(const std::vector<std::string>& paths, double& scale);

@@ -143,6 +143,7 @@ ModelSource source_from_file(const ModelArguments& a, int number) {
     }
   }
   const PointCloud cloud = or_throw(io::read_point_cloud(a.input, scale > 0 ? scale : 1.0));
+  if (scale == 0) assume_metres(a.input, cloud.points);
   ModelSource source = or_throw(
       modeling::model_source_from_points(cloud, a.name, number, a.options_with_threads()), a.input);
   if (source.complete) look_at(squares_of(source.surface), a.views, a.common, source);

@@ -77,7 +77,7 @@ def test_arrays_of_a_model_are_no_copies_and_outlive_the_library():
     (("b", CORNERS[:, :2], TRIANGLES), r"vertices is float64 of shape \(8, 2\).* \(n, 3\), metres"),
     (("b", CORNERS, TRIANGLES + 1), "triangles has the index 8; it must be from 0 to 7"),
     (("b", CORNERS, TRIANGLES, RED[:4]), r"colors is uint8 of shape \(4, 3\).* \(8, 3\), rgb"),
-    (("b", 1000 * CORNERS, TRIANGLES), r"123.288 m; it must be between 0.005 and 3 m: say its unit"),
+    (("b", 1000 * CORNERS, TRIANGLES), r"123.288 m; it must be between 0.005 and 3 m. If its unit"),
     (("b", CORNERS * np.nan, TRIANGLES), "NaN or infinite"),
     (("b", "corners", TRIANGLES), "vertices is a str; it must be"),
     (("b", CORNERS, TRIANGLES[:0]), "b")])

@@ -53,12 +53,21 @@ TEST(MeshInput, SizesThatObjectsSeldomHaveNeedAUnit) {
     EXPECT_NE(::testing::internal::GetCapturedStdout(), "");
     return "";
   };
-  EXPECT_NE(refusal(2).find("its longest side is 2; give one of --unit m (2e+03 mm), --unit cm (20 "
-                            "mm), --unit mm (2 mm), --unit in (50.8 mm)"),
+  EXPECT_NE(refusal(2).find("its longest side is 2; give one of --unit m (2000 mm), --unit cm (20 "
+                            "mm), --unit mm (2 mm), --unit in (51 mm)"),
             std::string::npos)
       << refusal(2);
   for (const float side : {0.005f, 1.0f, 2.9f, 900.0f}) EXPECT_NE(refusal(side), "") << side;
   for (const float side : {0.02f, 0.7f, 4.0f, 30.0f, 700.0f}) EXPECT_EQ(refusal(side), "") << side;
+}
+
+TEST(MeshInput, PointsOfAFormatWithoutUnitAreInMetres) {
+  ::testing::internal::CaptureStdout();
+  assume_metres("a.pcd", {{0, 0, 0}, {0.1f, 0.05f, 0.02f}});
+  EXPECT_EQ(
+      ::testing::internal::GetCapturedStdout(),
+      "a.pcd: assuming metres: 100 x 50 x 20 mm, like a mug; --unit or --scale says otherwise\n");
+  EXPECT_THROW(assume_metres("a.pcd", {{0, 0, 0}, {2, 0, 0}}), Failure);
 }
 
 TEST(MeshInput, WhatTheUserSaysIsNotGuessed) {

@@ -301,6 +301,20 @@ TEST(SurfaceSampling, TooManyTrianglesAreRefusedBeforeTheWork) {
             std::string::npos);
 }
 
+/// No two of them are equal: it took minutes.
+TEST(SurfaceSampling, FacesThatNearlyCoincideAreRefusedBeforeTheWork) {
+  TriangleMesh mesh;
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    const float z = 1e-6f * static_cast<float>(i);
+    for (const auto& [x, y] :
+         {std::pair(0.0f, 0.0f), std::pair(0.05f, 0.0f), std::pair(0.0f, 0.05f)})
+      mesh.vertices.emplace_back(x, y, z);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  EXPECT_NE(refusal(mesh).find("2.50 m2 of faces within 0.071 m: they lie over each other"),
+            std::string::npos);
+}
+
 // What time and memory grow with.
 TEST(SurfaceSampling, LargeObjectsHaveNoMorePoints) {
   for (const float side : {1.0f, 1.7f}) {
