@@ -110,8 +110,16 @@ class HeaderLines {
     constexpr const char* kKeys[] = {"VERSION", "FIELDS", "SIZE",   "TYPE", "COUNT",
                                      "WIDTH",   "HEIGHT", "POINTS", "DATA", "VIEWPOINT"};
     if (std::ranges::count(kKeys, key) == 0) {
-      status_ = corrupt(path_, " is not a PCD file: its header has a line that begins with \"",
-                        key.substr(0, 20), "\"");
+      // What cannot be printed stays away from terminals.
+      key = key.substr(0, std::min<std::size_t>(
+                              20, static_cast<std::size_t>(
+                                      std::ranges::find_if_not(
+                                          key, [](unsigned char c) { return c > 32 && c < 127; }) -
+                                      key.begin())));
+      status_ =
+          corrupt(path_, " is not a PCD file: its header has a line that begins with \"", key,
+                  "\". A frame is an organised PCD cloud, which has rows of pixels, or a depth "
+                  "image (--depth FILE --camera FILE)");
     } else if (!lines_.emplace(std::move(key), std::move(words)).second) {
       status_ = corrupt(path_, " has a PCD header with a line twice");
     }

@@ -183,7 +183,8 @@ class Values {
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0;
     const char* const end = word.data() + word.size();
-    ok_ = std::from_chars(word.data(), end, value).ec == std::errc() && ok_;
+    const auto read = std::from_chars(word.data(), end, value);
+    ok_ = read.ec == std::errc() && read.ptr == end && ok_;
     return value;
   }
 

@@ -159,6 +159,8 @@ TEST(PlyFile, RowsAndBytesThatDoNotFitTheHeaderAreRefused) {
             "p.ply has more bytes than its PLY header says");
   EXPECT_EQ(refusal(ply_text("property float nx\n", kIndices, good)).substr(0, 52),
             "p.ply has more numbers in row 1 of PLY element verte");
+  EXPECT_NE(refusal(ply_text("", kIndices, "3 0 1,5 2\n3 0 2 3\n")).find("damaged"),
+            std::string::npos);
   EXPECT_NE(refusal(ply_text("", "property list uchar int corners\n", good)).find("vertex_index"),
             std::string::npos);
   EXPECT_NE(refusal(ply_text("property float f_dc_0\nproperty float rot_0\n", kIndices, good))

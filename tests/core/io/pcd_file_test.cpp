@@ -100,6 +100,17 @@ TEST(PcdFile, BadFilesAreStatuses) {
   const test::TemporaryFolder folder;
   spill(folder / "a.pcd", "hello\n");
   EXPECT_EQ(read_pcd(folder / "a.pcd").status().code, StatusCode::corrupt);
+  spill(folder / "scene.ply", "ply\nformat ascii 1.0\n");
+  EXPECT_NE(
+      read_pcd(folder / "scene.ply")
+          .status()
+          .message.find(
+              "begins with \"ply\". A frame is an organised PCD cloud, which has rows of pixels, "
+              "or a depth image (--depth FILE --camera FILE)"),
+      std::string::npos);
+  spill(folder / "d.npy", "\x93NUMPY\x01\n");
+  EXPECT_NE(read_pcd(folder / "d.npy").status().message.find("begins with \"\"."),
+            std::string::npos);
   spill(folder / "b.pcd",
         "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 9\nHEIGHT 9\n"
         "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 81\nDATA binary\nshort");
