@@ -8,6 +8,7 @@
 #include "core/base/concat.hpp"
 #include "core/base/median.hpp"
 #include "core/cloud/depth_unit.hpp"
+#include "core/doctor/result_check.hpp"
 #include "core/geometry/camera.hpp"
 
 namespace bpa::doctor {
@@ -21,6 +22,7 @@ constexpr double kMaxAspect = 1.05;                    // fx over fy or the reve
 constexpr double kMaxHoles = 0.6;                      // share of the pixels [0.46]
 constexpr double kMaxFar = 0.6;                        // share of the depths beyond the range [0.2]
 constexpr double kNear_m = 0.2;                        // median; below what sensors measure [0.61]
+constexpr double kFarthest_m = 20;                     // median; validate(Frame) allows no more
 constexpr double kMetresGiven_m = 0.02;                // median of depth 1000 times too small
 constexpr int kDark = 25, kBright = 235;               // median luminance of 255 [70 to 196]
 constexpr double kMaxClipped = 0.5;                    // share of the pixels [0.33]
@@ -63,16 +65,47 @@ void check_camera(const Camera& camera, Findings& findings) {
   }
 }
 
+/// Whether depths are of 16 bits whose bytes are swapped: neighbours, which differ by little,
+/// differ by 256 times as much.
+bool bytes_swapped(const Frame& frame) {
+  constexpr double kUnits_mm[] = {1, 0.5, 0.25, 0.2, 0.125, 0.1};
+  constexpr std::size_t kEnough = 500;
+  constexpr float kMuch = 10;  // of 256, where depth is noisy [0.1]
+  const auto units = [](float z, double unit_mm) {
+    return 1000 * static_cast<double>(z) / unit_mm;
+  };
+  const auto* const unit_mm = std::ranges::find_if(kUnits_mm, [&](double mm) {
+    return std::ranges::all_of(frame.depth, [&](float z) {
+      const double u = units(z, mm);
+      return !(z > 0) || (u < 65535.5 && std::abs(u - std::round(u)) < 0.02);
+    });
+  });
+  if (unit_mm == std::end(kUnits_mm)) return false;
+  const auto whole = [&](float z) { return static_cast<int>(std::lround(units(z, *unit_mm))); };
+  const auto swap = [](int u) { return (u >> 8) | ((u & 255) << 8); };
+  std::vector<float> now, swapped;
+  for (std::size_t i = 1; i < frame.depth.size(); ++i) {
+    const float before = frame.depth[i - 1], here = frame.depth[i];
+    if (!(before > 0) || !(here > 0) || before == here) continue;
+    const int a = whole(before), b = whole(here);
+    now.push_back(static_cast<float>(std::abs(a - b)));
+    swapped.push_back(static_cast<float>(std::abs(swap(a) - swap(b))));
+  }
+  return now.size() > kEnough && median(now) > kMuch * median(swapped);
+}
+
 /// Whether the unit of depth is right; nothing else of depth can be judged otherwise.
 bool check_unit(double median_m, Findings& findings) {
   const char* const remedy =
-      "Correct the scale: depth_scale of camera.json or scene_camera.json is millimetres for one "
-      "unit of the depth image; 16UC1 topics are millimetres, 32FC1 topics metres.";
-  if (median_m > kMillimetresFrom) {
-    findings.push_back(
-        {Severity::error, "depth is in the wrong unit",
-         concat("its median is ", fixed(median_m, 0), " m: millimetres are taken for metres"),
-         remedy});
+      "Correct the scale: of clouds --unit; of depth images of whole numbers, depth_scale of "
+      "camera.json or scene_camera.json, millimetres for one unit; 16UC1 topics are millimetres, "
+      "32FC1 topics metres.";
+  if (median_m > kFarthest_m) {
+    findings.push_back({Severity::error, "depth is in the wrong unit",
+                        concat("its median is ", fixed(median_m, 0), " m: ",
+                               median_m > kMillimetresFrom ? "millimetres" : "smaller units",
+                               " are taken for metres"),
+                        remedy});
     return false;
   }
   if (median_m < kMetresGiven_m) {
@@ -161,6 +194,13 @@ Findings check_frame(const Frame& frame, double max_range_m, int num_threads) {
     if (z > 0 && std::isfinite(z)) depths.push_back(z);
   }
   const double median_m = depths.empty() ? 0 : static_cast<double>(median(depths));
+  if (bytes_swapped(frame)) {
+    findings.push_back({Severity::error, "depth has the bytes of its numbers swapped",
+                        "neighbours differ 256 times as much as in the other byte order",
+                        "Write 16-bit PNG and PGM with the higher byte first (OpenCV and Pillow do "
+                        "so from arrays of uint16), and set is_bigendian of topics as it is."});
+    return findings;
+  }
   if (!depths.empty() && !check_unit(median_m, findings)) return findings;
   if (const Status status = validate(clean); !status.ok()) {
     findings.push_back({Severity::error, "the frame cannot be searched", status.message,
@@ -188,6 +228,17 @@ Findings check_frame(const Frame& frame, double max_range_m, int num_threads) {
   }
   check_registration(clean, num_threads, findings);
   return findings;
+}
+
+Status make_searchable(Frame& frame, double max_range_m, int num_threads) {
+  std::vector<float> raw = frame.depth;
+  clean_depth(frame);
+  Status status = validate(frame);
+  if (status.ok()) return status;
+  frame.depth = std::move(raw);
+  const std::string lines = lines_of(check_frame(frame, max_range_m, num_threads));
+  if (!lines.empty()) status.message = lines.substr(0, lines.find('\n'));
+  return status;
 }
 
 }  // namespace bpa::doctor

@@ -32,4 +32,8 @@ std::optional<EdgeOffset> find_edge_offset(const Frame& frame, int num_threads =
 /// `max_range_m`: surface farther away is not searched.
 Findings check_frame(const Frame& frame, double max_range_m, int num_threads = 0);
 
+/// clean_depth() and validate(). Where a frame cannot be searched, the message is the worst of what
+/// check_frame() says, who sees the depths that are dropped.
+Status make_searchable(Frame& frame, double max_range_m, int num_threads = 0);
+
 }  // namespace bpa::doctor

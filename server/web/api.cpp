@@ -8,6 +8,8 @@
 
 #include "core/base/concat.hpp"
 #include "core/base/guarded.hpp"
+#include "core/doctor/frame_check.hpp"
+#include "core/doctor/result_check.hpp"
 #include "core/draw/sheet.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/model_file.hpp"
@@ -342,7 +344,11 @@ void Api::submit_search(const Call& call, Result<DetectJob> job, const std::stri
     job->done = [this, origin, respond = call.respond](const DetectJob&, const Frame* frame,
                                                        const Result<SceneInterpretations>& result) {
       if (!result.ok()) return respond(refusal(result.status()));
-      const std::uint64_t id = feed_.add_asked(*frame, *result, origin);
+      const double range = links_.context.settings.get()->detector.surface.max_range_m;
+      const std::string advice = doctor::says_little(*result)
+                                     ? doctor::lines_of(doctor::check_frame(*frame, range, 1))
+                                     : "";
+      const std::uint64_t id = feed_.add_asked(*frame, *result, origin, advice);
       respond(json_response(concat("{\"ok\":true,\"result\":", id, "}")));
     };
   }
@@ -364,7 +370,8 @@ void Api::search(const Call& call) {
 }
 
 void Api::upload(const Call& call) {
-  Result<Frame> frame = uploaded_frame(call.request);
+  Result<Frame> frame =
+      uploaded_frame(call.request, links_.context.settings.get()->detector.surface.max_range_m);
   if (!frame.ok()) return call.respond(refusal(frame.status()));
   frame->stamp_ns = links_.now_ns();
   submit_search(call,

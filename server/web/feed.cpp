@@ -152,9 +152,9 @@ void Feed::add_result(const Frame& frame, const SceneInterpretations& result,
 }
 
 std::uint64_t Feed::add_asked(const Frame& frame, const SceneInterpretations& result,
-                              std::string origin) {
+                              std::string origin, const std::string& advice) {
   last_seen_ = Clock::now().time_since_epoch().count();
-  return add(frame, result, std::move(origin));
+  return add(frame, result, std::move(origin), advice);
 }
 
 void Feed::add_tracks(const TrackedFrame& tracks) {

@@ -84,7 +84,7 @@ class Feed {
 
   /// Keeps the result of what a viewer asked for, for 5 s at least, and returns its id.
   std::uint64_t add_asked(const Frame& frame, const SceneInterpretations& result,
-                          std::string origin);
+                          std::string origin, const std::string& advice = {});
 
   /// Notes that a viewer asks. The result `held`, 0 for none, is kept until this viewer holds
   /// another or is gone. `busy` when there are as many viewers as may be.

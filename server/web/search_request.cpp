@@ -11,6 +11,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/concat.hpp"
+#include "core/doctor/frame_check.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/pcd_file.hpp"
 #include "server/services/requests.hpp"
@@ -136,7 +137,7 @@ Result<DetectJob> search_job(const std::string& text, const std::shared_ptr<cons
   }
 }
 
-Result<Frame> uploaded_frame(const Request& request) {
+Result<Frame> uploaded_frame(const Request& request, double max_range_m) {
   const std::string kind = request.value("kind");
   if (kind != "png" && kind != "pcd") {
     return invalid_argument("kind is \"", kind, "\"; it must be png or pcd");
@@ -153,8 +154,8 @@ Result<Frame> uploaded_frame(const Request& request) {
   }
   if (!frame.ok()) return frame;
   frame->frame_id = "upload";
-  clean_depth(*frame);
-  if (Status status = validate(*frame); !status.ok()) return status;
+  // One thread: others search meanwhile.
+  if (Status s = doctor::make_searchable(*frame, max_range_m, 1); !s.ok()) return s;
   return frame;
 }
 

@@ -23,7 +23,8 @@ Result<DetectJob> search_job(const std::string& json, const std::shared_ptr<cons
 
 /// The frame of an upload: the query has `kind` "png" or "pcd". A PNG's body is the depth image, of
 /// `depth_bytes`, and the colour image after it, if any; `fx fy cx cy` are its camera,
-/// `depth_scale_mm` millimetres of a unit of depth (1 without). Fails as the readers of files do.
-Result<Frame> uploaded_frame(const Request& request);
+/// `depth_scale_mm` millimetres of a unit of depth (1 without). Fails as the readers of files do,
+/// and as doctor::make_searchable().
+Result<Frame> uploaded_frame(const Request& request, double max_range_m);
 
 }  // namespace bpa::server::web

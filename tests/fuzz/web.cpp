@@ -61,7 +61,7 @@ void run_web_upload(std::string_view bytes) {
   web::Request request;
   request.query = *query;
   request.body = bytes.substr(std::min(end + 1, bytes.size()));
-  const auto frame = web::uploaded_frame(request);
+  const auto frame = web::uploaded_frame(request, 2.5);
   if (frame.ok()) require(validate(*frame).ok(), "an uploaded frame is legal");
 }
 

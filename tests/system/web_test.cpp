@@ -82,6 +82,15 @@ TEST_F(Web, WhatItSavesIsReadByBpaDetect) {
   EXPECT_EQ(uploaded.at("origin"), "upload");
   EXPECT_EQ(objects_of(uploaded.at("result")), objects_of(found.at("result")));
 
+  const json near =
+      search(server,
+             "/api/upload?kind=png&depth_scale_mm=0.1&depth_bytes=" + std::to_string(depth.size()) +
+                 "&fx=" + camera["fx"].dump() + "&fy=" + camera["fy"].dump() +
+                 "&cx=" + camera["cx"].dump() + "&cy=" + camera["cy"].dump(),
+             depth + color);
+  ASSERT_FALSE(near.is_null());
+  EXPECT_NE(near.at("advice").dump().find("the scene is too near"), std::string::npos) << near;
+
   // A region around one object holds that one alone.
   const json& first = found.at("result").at("interpretations").at(0).at("placements").at(0);
   const json outlines = server.get("/api/results/" + uploaded.at("id").dump() + "/outlines");

@@ -101,7 +101,7 @@ class Upload : public testing::Test {
 };
 
 TEST_F(Upload, OfPngsIsTheFrame) {
-  const auto made = uploaded_frame(upload_of(*frame(), depth_png, color_png));
+  const auto made = uploaded_frame(upload_of(*frame(), depth_png, color_png), 2.5);
   ASSERT_TRUE(made.ok()) << made.status().message;
   EXPECT_EQ(made->camera.width, 64);
   EXPECT_EQ(made->camera.cx, 31.5);
@@ -109,7 +109,7 @@ TEST_F(Upload, OfPngsIsTheFrame) {
   for (const float z : made->depth) EXPECT_FLOAT_EQ(z, 1.234f);
   Request half = upload_of(*frame(), depth_png, "");
   half.query["depth_scale_mm"] = "0.5";
-  const auto without = uploaded_frame(half);
+  const auto without = uploaded_frame(half, 2.5);
   ASSERT_TRUE(without.ok());
   EXPECT_TRUE(without->color.empty());
   EXPECT_FLOAT_EQ(without->depth[0], 0.617f);
@@ -130,7 +130,7 @@ TEST_F(Upload, OfACloudIsTheFrame) {
       "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 64\nHEIGHT 48\n"
       "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3072\nDATA ascii\n" +
       points;
-  const auto made = uploaded_frame(request);
+  const auto made = uploaded_frame(request, 2.5);
   ASSERT_TRUE(made.ok()) << made.status().message;
   EXPECT_NEAR(made->camera.fx, 60, 0.1);
   EXPECT_NEAR(made->depth[10], 1.1, 1e-4);
@@ -140,7 +140,7 @@ TEST_F(Upload, RefusesWhatBreaksARule) {
   const Frame like = *frame();
   Request request = upload_of(like, depth_png, color_png);
   const auto refused = [](Request wrong) {
-    const auto made = uploaded_frame(wrong);
+    const auto made = uploaded_frame(wrong, 2.5);
     EXPECT_FALSE(made.ok());
     return made.status().message;
   };
@@ -158,6 +158,10 @@ TEST_F(Upload, RefusesWhatBreaksARule) {
   EXPECT_NE(refused(with("depth_bytes", "20")).find("truncated"), std::string::npos);
   EXPECT_NE(refused(upload_of(like, "no image", "")).find("PNG"), std::string::npos);
   EXPECT_NE(refused(upload_of(like, color_png, "")).find("depth image"), std::string::npos);
+  // Metres for millimetres: no depth is left, and the doctor says why.
+  EXPECT_NE(refused(with("depth_scale_mm", "1000")).find("wrong unit: its median is 1234 m"),
+            std::string::npos)
+      << refused(with("depth_scale_mm", "1000"));
   EXPECT_FALSE(
       refused(upload_of(like,
                         *io::encode_gray_png({64, 48, std::vector<std::uint16_t>(64 * 48, 0)}), ""))

@@ -119,8 +119,35 @@ TEST(CheckFrame, RealDepthThatIsNotRegistered) {
   EXPECT_GE(said, 6) << "of " << frames.size();  // one has more clutter than edges
 }
 
+/// 16 bits as a program wrote them that does not turn them over for PNG.
+TEST(CheckFrame, DepthWithSwappedBytes) {
+  for (const double unit_mm : {1.0, 0.2, 0.1}) {
+    const auto stored = [&](float z) {
+      return static_cast<std::uint16_t>(std::lround(1000 * static_cast<double>(z) / unit_mm));
+    };
+    const auto metres = [&](std::uint16_t u) { return static_cast<float>(0.001 * unit_mm * u); };
+    EXPECT_EQ(found(with_depth([&](float z) { return metres(stored(z)); })), Whats{}) << unit_mm;
+    Frame frame = with_depth([&](float z) { return metres(__builtin_bswap16(stored(z))); });
+    EXPECT_EQ(found(frame), Whats{"depth has the bytes of its numbers swapped"}) << unit_mm;
+    clean_depth(frame);  // as a search has it
+    EXPECT_EQ(found(frame), Whats{"depth has the bytes of its numbers swapped"}) << unit_mm;
+  }
+}
+
+TEST(CheckFrame, WhatCannotBeSearchedIsSaidByItsCause) {
+  Frame centimetres = with_depth([](float z) { return 100 * z; });
+  const Frame before = centimetres;
+  const Status status = make_searchable(centimetres, kRange_m);
+  EXPECT_NE(status.message.find("smaller units are taken for metres. Correct the scale: of clouds "
+                                "--unit"),
+            std::string::npos)
+      << status.message;
+  Frame fine = good();
+  EXPECT_TRUE(make_searchable(fine, kRange_m).ok());
+}
+
 TEST(CheckFrame, DepthInAnotherUnit) {
-  for (const float scale : {1e3f, 1e-3f}) {
+  for (const float scale : {1e3f, 1e2f, 1e-3f}) {
     EXPECT_EQ(found(with_depth([=](float z) { return scale * z; })),
               Whats{"depth is in the wrong unit"})
         << scale;
