@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // bpa detect: frames in, ranked interpretations out.
 #include <cstdio>
+#include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "core/base/concat.hpp"
@@ -12,6 +14,7 @@
 #include "core/doctor/result_check.hpp"
 #include "core/draw/annotate.hpp"
 #include "core/draw/sheet.hpp"
+#include "core/eval/match_names.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/pose_prior_file.hpp"
 #include "core/io/results.hpp"
@@ -93,8 +96,38 @@ DetectRequest request_of(const DetectArguments& a) {
   return request;
 }
 
-void write_results(const DetectArguments& a, const std::vector<io::FrameResult>& results) {
-  if (!a.csv.empty()) or_throw(io::write_results_csv(a.csv, results));
+/// The results with the data set's numbers, which alone stand in its CSV. Models that it lacks are
+/// left out with a warning.
+std::vector<io::FrameResult> numbered_as(const std::string& dataset, const ModelLibrary& library,
+                                         std::vector<io::FrameResult> results) {
+  const auto models = io::read_bop_models(dataset);
+  if (!models.ok()) return results;  // test sets may come without
+  eval::ModelNames known, objects;
+  std::set<std::string> lacks;
+  for (const auto& model : library.models()) known[model->number] = model->name;
+  for (const io::BopModel& model : *models) objects[model.obj_id] = model.name;
+  const std::map<int, int> numbers = eval::matched(known, objects);
+  for (io::FrameResult& result : results) {
+    for (Interpretation& interpretation : result.interpretations) {
+      std::erase_if(interpretation.placements, [&](Placement& p) {
+        const auto number = numbers.find(p.model_number);
+        if (number == numbers.end()) lacks.insert(p.model);
+        if (number != numbers.end()) p.model_number = number->second;
+        return number == numbers.end();
+      });
+    }
+  }
+  if (!lacks.empty()) print_warnings(dataset, {"its CSV leaves out models: " + listed(lacks)});
+  return results;
+}
+
+void write_results(const DetectArguments& a, const ModelLibrary& library,
+                   const std::vector<io::FrameResult>& results) {
+  if (!a.csv.empty()) {
+    const std::string& dataset = a.dataset.folder;
+    or_throw(io::write_results_csv(
+        a.csv, dataset.empty() ? results : numbered_as(dataset, library, results)));
+  }
   if (!a.json.empty()) or_throw(io::write_results_json(a.json, results));
 }
 
@@ -135,7 +168,7 @@ class DetectRun {
   }
 
   void finish() const {
-    write_results(a_, results_);
+    write_results(a_, detector_.library(), results_);
     if (explain_) explain_->finish();
     if (sheet_.empty()) return;
     std::vector<io::ColorImage> all, worst;
@@ -266,7 +299,8 @@ void detect(const DetectArguments& a) {
   }
   // Frames are checked before the library is loaded, which takes longer.
   std::vector<io::BopFrame> entries = bag ? std::vector<io::BopFrame>() : list_inputs(a);
-  if (entries.size() == 1) (void)read_input(a, entries.front());
+  std::optional<Input> only;
+  if (entries.size() == 1) only = read_input(a, entries.front());
   const Given given = read_given(a);
   if (!a.explain.empty()) or_throw(io::make_folder(a.explain));
   const Detector detector = open_detector(a.detector, a.common.threads);
@@ -276,7 +310,8 @@ void detect(const DetectArguments& a) {
   if (a.views > 1) {
     ViewsQuestion question{request_of(a), given.roi, given.mask};
     question.request.priors = given.priors;
-    return write_results(a, detect_joined(a, entries, detector, question, print_result));
+    return write_results(a, detector.library(),
+                         detect_joined(a, entries, detector, question, print_result));
   }
   DetectRun run(a, detector, given, bag || entries.size() > 1);
   Progress progress("frames", static_cast<int>(entries.size()));
@@ -285,7 +320,7 @@ void detect(const DetectArguments& a) {
     progress.show(static_cast<int>(i));
     const bool last = i + 1 == entries.size() || entries[i].scene_id != entries[i + 1].scene_id;
     try {
-      Input input = read_input(a, entries[i]);
+      Input input = only ? std::move(*only) : read_input(a, entries[i]);
       progress.clear();
       run.add(entries[i], std::move(input), last);
     } catch (const Failure& failure) {

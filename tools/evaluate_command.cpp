@@ -26,20 +26,25 @@ struct EvaluateArguments {
   eval::TrackEvaluationOptions track_options;
 };
 
-/// Gives placements the numbers that the data set has for their models.
-void number_by_name(const eval::EvalObjects& objects, std::vector<io::FrameResult>& results) {
+void for_each_model(std::vector<io::FrameResult>& results, const auto& visit) {
+  for (io::FrameResult& result : results) {
+    for (Interpretation& interpretation : result.interpretations) {
+      std::ranges::for_each(interpretation.placements, visit);
+    }
+  }
+}
+
+void for_each_model(std::vector<io::TrackResult>& results, const auto& visit) {
+  for (io::TrackResult& result : results) std::ranges::for_each(result.tracks, visit);
+}
+
+/// Gives placements or tracks the numbers that the data set has for their models.
+void number_by_name(const eval::EvalObjects& objects, auto& results) {
   eval::ModelNames known, found;
   for (const auto& [number, object] : objects) known[number] = object.name;
-  const auto for_each = [&](const auto& visit) {
-    for (io::FrameResult& result : results) {
-      for (Interpretation& interpretation : result.interpretations) {
-        std::ranges::for_each(interpretation.placements, visit);
-      }
-    }
-  };
-  for_each([&](const Placement& p) { found[p.model_number] = p.model; });
+  for_each_model(results, [&](const auto& p) { found[p.model_number] = p.model; });
   const std::map<int, int> numbers = eval::matched(found, known);
-  for_each([&](Placement& p) {
+  for_each_model(results, [&](auto& p) {
     const auto number = numbers.find(p.model_number);
     if (number == numbers.end() && !p.model.empty()) {
       throw Failure(invalid_argument("the results have the model ", p.model, " (obj_id ",
@@ -83,10 +88,11 @@ void evaluate_tracks(const EvaluateArguments& a) {
   eval::TrackEvaluationOptions options = a.track_options;
   options.min_visible_fraction = a.options.min_visible_fraction;
   options.num_threads = a.common.threads;
-  const std::vector<io::TrackResult> tracks = read_tracks(a.tracks);
+  std::vector<io::TrackResult> tracks = read_tracks(a.tracks);
   const auto frames =
       or_throw(io::read_bop_frames(a.dataset.folder, a.dataset.split, a.dataset.scenes));
   const eval::EvalObjects objects = or_throw(eval::load_eval_objects(a.dataset.folder));
+  number_by_name(objects, tracks);
   const eval::TrackReport report =
       or_throw(eval::evaluate_tracks(frames, objects, tracks, options));
   std::fputs(eval::track_report_text(report).c_str(), stdout);
