@@ -9,7 +9,6 @@
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
 #include "core/doctor/frame_check.hpp"
-#include "core/doctor/result_check.hpp"
 #include "core/eval/match_names.hpp"
 #include "core/io/camera_file.hpp"
 #include "core/io/model_file.hpp"
@@ -72,6 +71,12 @@ void add_input_options(CLI::App& command, DetectArguments& a) {
       "fx fy cx cy or a 3 x 3 matrix: BOP, ROS camera_info, Open3D, librealsense, OpenCV, "
       "bare numbers",
       "FILE");
+  command
+      .add_flag(
+          "--rectified", a.rectified,
+          "Images are rectified: take the camera's projection matrix P, if it has one, and no "
+          "distortion")
+      ->needs(camera);
   auto* const depth =
       add_option(command, "--depth", a.depth, "16-bit depth PNGs, registered to colour", "FILE...");
   depth->needs(camera);
@@ -123,17 +128,26 @@ std::vector<io::BopFrame> list_inputs(const DetectArguments& a) {
   const DatasetOptions& dataset = a.dataset;
   if (!dataset.folder.empty()) {
     auto frames = or_throw(io::read_bop_frames(dataset.folder, dataset.split, dataset.scenes));
+    for (const int image : a.images) {
+      if (std::ranges::count(frames, image, &io::BopFrame::im_id) > 0) continue;
+      throw Failure(not_found(dataset.folder, " has no image ", image));
+    }
     std::erase_if(frames, [&a](const io::BopFrame& frame) {
       return !a.images.empty() && std::ranges::count(a.images, frame.im_id) == 0;
     });
-    if (frames.empty()) throw Failure(not_found(dataset.folder, " has none of the --images"));
     return frames;
   }
   io::BopFrame entry;
   if (!a.camera.empty()) {
     const io::CameraFile file = or_throw(io::read_camera(a.camera));
-    print_notes(a.camera, io::notes_of(file));
-    entry.camera = file.camera;
+    const bool undistorted = a.pcd.empty() && !a.rectified;
+    print_notes(a.camera, io::notes_of(file, undistorted ? "is taken out of the images; they are "
+                                                           "rectified already: --rectified"
+                                                         : "is not used"));
+    entry.camera = a.rectified ? file.rectified.value_or(file.camera) : file.camera;
+    if (undistorted) {
+      entry.lens = or_throw(lens_of(file.distortion_model, file.distortion), a.camera);
+    }
     entry.depth_scale_mm = file.depth_scale_mm;
   }
   std::vector<io::BopFrame> entries;
@@ -151,7 +165,9 @@ Input read_raw_input(const DetectArguments& a, const io::BopFrame& entry) {
   if (!a.pcd.empty()) {
     input = read_pcd(entry.depth_path, entry.camera, a.cloud_unit);
   } else {
-    input.frame = or_throw(io::load_bop_frame(entry));
+    std::string note;
+    input.frame = or_throw(io::load_bop_frame(entry, &note));
+    if (!note.empty()) print_notes(entry.depth_path, {note});
     input.frame.frame_id = std::to_string(entry.scene_id);  // one camera takes a scene's images
     input.name = a.dataset.folder.empty() ? entry.depth_path
                                           : "scene " + std::to_string(entry.scene_id) + " image " +
@@ -162,15 +178,9 @@ Input read_raw_input(const DetectArguments& a, const io::BopFrame& entry) {
 
 Input read_input(const DetectArguments& a, const io::BopFrame& entry) {
   Input input = read_raw_input(a, entry);
-  clean_depth(input.frame);
-  if (Status status = validate(input.frame); !status.ok()) {
-    // The worst of what the doctor says, who sees the depths that were dropped.
-    const doctor::Findings findings = doctor::check_frame(
-        read_raw_input(a, entry).frame, DetectorOptions().surface.max_range_m, a.common.threads);
-    const std::string advice = doctor::lines_of(findings);
-    if (!advice.empty()) status.message = advice.substr(0, advice.find('\n'));
-    or_throw(status, input.name);
-  }
+  or_throw(
+      doctor::make_searchable(input.frame, DetectorOptions().surface.max_range_m, a.common.threads),
+      input.name);
   return input;
 }
 
@@ -216,9 +226,14 @@ void read_true_frames(const DatasetOptions& dataset,
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.show(static_cast<int>(i));
     if (!frames[i].has_truth) continue;
-    Frame frame = or_throw(io::load_bop_frame(frames[i]));
-    clean_depth(frame);
-    use({i, frame, frames[i].truth});
+    Result<Frame> frame = io::load_bop_frame(frames[i]);
+    if (!frame.ok()) {
+      progress.clear();
+      print_warnings("left out", {frame.status().message});
+      continue;
+    }
+    clean_depth(*frame);
+    use({i, *frame, frames[i].truth});
   }
 }
 

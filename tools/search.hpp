@@ -46,6 +46,7 @@ struct DetectArguments {
   std::string bag;  ///< A recording of ROS 2.
   ros::BagTopics bag_topics;
   double bag_start_s = 0;
+  bool rectified = false;  ///< The images of --camera are.
   DatasetOptions dataset;
   std::vector<int> images;  ///< im_id, of each scene; empty: all.
   std::string priors, mask;
@@ -97,7 +98,8 @@ void number_truth(const std::string& dataset, const ModelLibrary& library, bool 
                   std::vector<io::BopFrame>& frames);
 
 /// Reads the frames of a split that have truth, with a progress bar, and hands over each; with
-/// a library, their truth is numbered by number_truth().
+/// a library, their truth is numbered by number_truth(). Those that cannot be read are left out
+/// with a warning.
 void read_true_frames(const DatasetOptions& dataset,
                       const std::function<void(const TrueFrame&)>& use,
                       const ModelLibrary* library = nullptr);

@@ -116,24 +116,28 @@ void print_scene(std::span<const io::TrackResult> results) {
       results.front().scene_id, times.size(), tracks, median(times), longest);
 }
 
-// The frames of one scene.
-void follow_scene(const TrackArguments& a, const Detector& detector, track::Tracker& tracker,
-                  std::span<const io::BopFrame> frames, std::vector<io::TrackResult>& results,
-                  std::vector<io::FrameResult>& detections) {
+/// The frames of one scene. Returns how many could not be followed.
+int follow_scene(const TrackArguments& a, const Detector& detector, track::Tracker& tracker,
+                 std::span<const io::BopFrame> frames, std::vector<io::TrackResult>& results,
+                 std::vector<io::FrameResult>& detections) {
   Searches searches(a, detector);
+  int failed = 0;
   Progress progress(concat("scene ", frames.front().scene_id), static_cast<int>(frames.size()));
   const std::size_t first = results.size();
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const io::BopFrame& entry = frames[i];
     progress.show(static_cast<int>(i));
-    const auto frame = std::make_shared<Frame>(or_throw(io::load_bop_frame(entry)));
+    Result<Frame> loaded = io::load_bop_frame(entry);
+    const auto frame = std::make_shared<Frame>(loaded.ok() ? *std::move(loaded) : Frame());
     frame->frame_id = "camera";
     std::optional<track::CameraPose> camera;
     if (entry.camera_from_world && !a.no_poses)
       camera = {"world", entry.camera_from_world->inverse()};
-    Result<TrackedFrame> tracked = tracker.track(frame, camera);
+    Result<TrackedFrame> tracked =
+        loaded.ok() ? tracker.track(frame, camera) : Result<TrackedFrame>(loaded.status());
     progress.clear();
     if (!tracked.ok()) {
+      ++failed;
       std::fprintf(stderr, "warning: %d/%d is not followed: %s\n", entry.scene_id, entry.im_id,
                    tracked.status().message.c_str());
       continue;
@@ -144,6 +148,7 @@ void follow_scene(const TrackArguments& a, const Detector& detector, track::Trac
     detections.push_back(searches.held(results.back()));
   }
   print_scene(std::span(results).subspan(first));
+  return failed;
 }
 
 void follow_frames(const TrackArguments& a) {
@@ -156,16 +161,19 @@ void follow_frames(const TrackArguments& a) {
   or_throw(validate(options));
   std::vector<io::TrackResult> results;
   std::vector<io::FrameResult> detections;
+  int failed = 0;
   for (auto first = frames.begin(); first != frames.end();) {
     const auto last = std::find_if(first, frames.end(), [&](const io::BopFrame& frame) {
       return frame.scene_id != first->scene_id;
     });
     track::Tracker tracker(library, options, detector.score_layers());
-    follow_scene(a, detector, tracker, {first, last}, results, detections);
+    failed += follow_scene(a, detector, tracker, {first, last}, results, detections);
     first = last;
   }
   if (!a.json.empty()) or_throw(io::write_tracks_json(a.json, results));
   if (!a.detections.empty()) or_throw(io::write_results_json(a.detections, detections));
+  if (failed == 0) return;
+  throw Failure(invalid_argument(failed, " of ", frames.size(), " frames could not be followed"));
 }
 
 }  // namespace

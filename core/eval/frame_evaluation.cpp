@@ -110,8 +110,9 @@ Status add_bop_errors(const io::BopFrame& frame, const EvalObjects& objects,
   });
   const Costs mspd = pair_costs(bop.estimates, bop.truth, [&](const auto& e, const auto& t) {
     return max_projection_distance(objects.at(t.obj_id).mesh.vertices, e.frame_from_object,
-                                   t.camera_from_object, symmetries.at(t.obj_id), frame.camera) *
-           640 / frame.camera.width / kMspdPixelsPerThreshold;
+                                   t.camera_from_object, symmetries.at(t.obj_id),
+                                   measured->camera) *
+           640 / measured->camera.width / kMspdPixelsPerThreshold;
   });
   const Costs add = pair_costs(bop.estimates, bop.truth, [&](const auto& e, const auto& t) {
     const EvalObject& object = objects.at(t.obj_id);

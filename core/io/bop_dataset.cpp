@@ -9,6 +9,7 @@
 #include <mutex>
 #include <set>
 
+#include "core/cloud/undistortion.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/mesh_file.hpp"
 #include "core/io/private/json_file.hpp"
@@ -35,7 +36,7 @@ SymmetryGroup read_symmetry(const Json& info) {
 
 /// The image with that number, whatever its extension; empty if there is none.
 std::string find_image(const fs::path& folder, int im_id) {
-  for (const char* extension : {".png", ".jpg", ".jpeg"}) {
+  for (const char* extension : {".png", ".jpg", ".jpeg", ".npy", ".tif", ".tiff"}) {
     const std::string path = (folder / (bop_number(im_id) + extension)).string();
     if (is_file(path)) return path;
   }
@@ -67,30 +68,36 @@ Status read_truth(const Json& gt, const Json& info, const std::string& key, BopF
   return {};
 }
 
-Result<BopFrame> read_frame_entry(const fs::path& folder, const std::string& suffix, int scene_id,
-                                  const std::string& key, const Json& camera) {
+BopFrame read_frame_entry(const fs::path& folder, const std::string& suffix, int scene_id,
+                          const std::string& key, const Json& camera) {
   const auto known =
       camera_of(camera, (folder / ("scene_camera" + suffix + ".json")).string() + ": " + key);
-  if (!known.ok()) return known.status();
   BopFrame frame;
+  frame.unread = known.status();
   frame.scene_id = scene_id;
   frame.im_id = std::stoi(key);
-  frame.camera = known->camera;
-  frame.depth_scale_mm = known->depth_scale_mm;
+  if (known.ok()) {
+    frame.camera = known->camera;
+    frame.depth_scale_mm = known->depth_scale_mm;
+  }
   frame.stamp_ns = whole_number<std::int64_t>(camera, "stamp_ns", 0);
   if (camera.contains("cam_R_w2c")) {
     frame.camera_from_world = pose_of(camera, "cam_R_w2c", "cam_t_w2c");
   }
-  frame.depth_path = (folder / ("depth" + suffix) / (bop_number(frame.im_id) + ".png")).string();
+  const fs::path depth = folder / ("depth" + suffix);
+  frame.depth_path = find_image(depth, frame.im_id);
+  if (frame.depth_path.empty()) {
+    frame.depth_path = (depth / (bop_number(frame.im_id) + ".png")).string();
+  }
   for (const char* images : {"rgb", "gray"}) {
     if (frame.color_path.empty()) {
       frame.color_path = find_image(folder / (images + suffix), frame.im_id);
     }
   }
+  // The images say it; without one, the frame fails when it is loaded.
   const Result<ImageSize> size = read_png_size(frame.depth_path);
-  if (!size.ok()) return size.status();
-  frame.camera.width = size->width;
-  frame.camera.height = size->height;
+  frame.camera.width = size.ok() ? size->width : 0;
+  frame.camera.height = size.ok() ? size->height : 0;
   return frame;
 }
 
@@ -119,13 +126,12 @@ Status read_scene(const fs::path& folder, int scene_id, std::vector<BopFrame>& f
     const Result<Json> info = read_optional_json(path_of("scene_gt_info"));
     if (!info.ok()) return info.status();
     for (const auto& [key, camera] : cameras.items()) {
-      Result<BopFrame> frame = read_frame_entry(folder, suffix, scene_id, key, camera);
-      if (!frame.ok()) return frame.status();
-      frame->has_truth = is_file(gt_path);
+      BopFrame& frame =
+          frames.emplace_back(read_frame_entry(folder, suffix, scene_id, key, camera));
+      frame.has_truth = is_file(gt_path);
       Status status =
-          with_json(gt_path, [&, &of = key]() { return read_truth(*gt, *info, of, *frame); });
+          with_json(gt_path, [&, &of = key]() { return read_truth(*gt, *info, of, frame); });
       if (!status.ok()) return status;
-      frames.push_back(std::move(*frame));
     }
     return {};
   });
@@ -248,7 +254,12 @@ Result<std::vector<BopFrame>> read_bop_frames(const std::string& dataset, const 
   const fs::path folder = fs::path(dataset) / split;
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
-    return not_found(folder.string(), " is not there: the data set has no split \"", split, "\"");
+    std::set<std::string> splits;
+    for (const auto& entry : fs::directory_iterator(dataset, error)) {
+      if (entry.is_directory(error)) splits.insert(entry.path().filename().string());
+    }
+    return not_found(folder.string(), " is not there: the data set has no split \"", split,
+                     "\"; its folders: ", listed(splits), " (--split NAME)");
   }
   std::set<int> found;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
@@ -269,10 +280,12 @@ Result<std::vector<BopFrame>> read_bop_frames(const std::string& dataset, const 
   return frames;
 }
 
-Result<Frame> load_bop_frame(const BopFrame& frame) {
+Result<Frame> load_bop_frame(const BopFrame& frame, std::string* note) {
+  if (!frame.unread.ok()) return frame.unread;
   Result<Frame> loaded =
-      read_frame(frame.depth_path, frame.color_path, frame.camera, frame.depth_scale_mm);
+      read_frame(frame.depth_path, frame.color_path, frame.camera, frame.depth_scale_mm, note);
   if (loaded.ok()) {
+    undistort(frame.lens, *loaded);
     loaded->stamp_ns = frame.stamp_ns;
     loaded->frame_id = std::to_string(frame.scene_id) + "/" + std::to_string(frame.im_id);
   }

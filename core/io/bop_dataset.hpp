@@ -11,6 +11,7 @@
 #include "core/base/status.hpp"
 #include "core/cloud/frame.hpp"
 #include "core/cloud/point_cloud.hpp"
+#include "core/geometry/lens.hpp"
 #include "core/geometry/symmetry.hpp"
 
 // Data sets in the layout of the BOP benchmark (Hodan et al. 2018, bop_toolkit docs/
@@ -46,9 +47,11 @@ struct BopFrame {
   std::int64_t stamp_ns = 0;  ///< Exposure time, UTC; 0: not known.
   Camera camera;
   std::optional<Pose> camera_from_world;  ///< cam_R_w2c and cam_t_w2c.
+  Lens lens;                              ///< Whose distortion is taken out of the images.
   double depth_scale_mm = 1;
   std::string depth_path;
   std::string color_path;  ///< Empty without colour.
+  Status unread;           ///< Why it cannot be loaded: of its camera.
   bool has_truth = false;  ///< Whether scene_gt.json is there.
   std::vector<BopInstance> truth;
 };
@@ -60,12 +63,14 @@ Result<std::vector<BopModel>> read_bop_models(const std::string& dataset);
 Result<std::vector<BopModel>> read_bop_models_folder(const std::string& folder);
 
 /// The frames of a split by (scene_id, im_id); `scenes` selects scene ids, empty = all. Fails with
-/// not_found when the split or a scene asked for is not there, corrupt otherwise.
+/// not_found when the split or a scene asked for is not there, corrupt otherwise. A frame whose
+/// camera or images are bad is among them, and fails when it is loaded.
 Result<std::vector<BopFrame>> read_bop_frames(const std::string& dataset, const std::string& split,
                                               const std::vector<int>& scenes = {});
 
-/// Loads the images; frame_id is "SCENE/IM", the stamp that of the entry.
-Result<Frame> load_bop_frame(const BopFrame& frame);
+/// Loads the images; frame_id is "SCENE/IM", the stamp that of the entry. Fails with `unread`, and
+/// as read_frame() does.
+Result<Frame> load_bop_frame(const BopFrame& frame, std::string* note = nullptr);
 
 /// "000001" for 1, as scenes and images are named.
 std::string bop_number(int number);

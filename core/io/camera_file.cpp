@@ -35,9 +35,11 @@ constexpr std::pair<const char*, const char*> kCameraKeys[] = {
     {"depth_scale", " depthscale "},
     {"distortion", " d distcoeffs distortioncoeffs distortioncoefficients dist distortion coeffs "},
     {"model", " distortionmodel model "},
+    {"projection", " p projectionmatrix "},
+    {"binning", " binningx binningy "},
     {"",
-     " header cameraname cameramodel name r p rectificationmatrix projectionmatrix binningx "
-     "binningy roi classname versionmajor versionminor extrinsic camrw2c camtw2c stampns "}};
+     " header cameraname cameramodel name r rectificationmatrix roi classname versionmajor "
+     "versionminor extrinsic camrw2c camtw2c stampns "}};
 
 /// Null for a key that is not known.
 const char* meaning_of(const std::string& key) {
@@ -55,7 +57,7 @@ const char* meaning_of(const std::string& key) {
 /// The cameras of a file: by our keys, with what stands around them.
 struct FoundCameras {
   std::vector<std::pair<std::string, Json>> cameras;  ///< With the key that each stands under.
-  std::set<std::string> unread;
+  std::set<std::string> unread, all;                  ///< Keys.
 };
 
 void look_for_cameras(const std::string& name, const Json& json, Json known, FoundCameras& found) {
@@ -64,6 +66,7 @@ void look_for_cameras(const std::string& name, const Json& json, Json known, Fou
   for (const auto& [key, value] : json.items()) {
     const Json& data = value.is_object() && value.contains("data") ? value.at("data") : value;
     const char* meaning = meaning_of(key);
+    found.all.insert(key);
     if (data.is_object() && (meaning == nullptr || *meaning != 0)) {
       inner.emplace_back(key, &data);
     } else if (meaning == nullptr) {
@@ -73,7 +76,7 @@ void look_for_cameras(const std::string& name, const Json& json, Json known, Fou
     }
   }
   const auto has = [&](const char* key) { return known.contains(key); };
-  if (has("fx") || has("fy") || has("rows") || has("columns")) {
+  if (has("fx") || has("fy") || has("rows") || has("columns") || has("projection")) {
     found.cameras.emplace_back(name, std::move(known));
     for (const auto& [key, value] : inner) found.unread.insert(key);
     return;
@@ -139,6 +142,20 @@ Status check_scale(Json& known) {
 }
 
 Result<CameraFile> camera_of_known(Json& known) {
+  if (known.value("binning", 1.0) > 1) {
+    return Status(StatusCode::unsupported,
+                  concat("it has a binning of ", known.at("binning").dump(),
+                         "; it must be 0 or 1: give the camera of the "
+                         "images as they are"));
+  }
+  std::optional<Camera> rectified;
+  if (const std::vector<double> p = numbers_of(known.value("projection", Json::array()));
+      p.size() == 12 && p[0] > 0) {
+    rectified = Camera{0, 0, p[0], p[5], p[2], p[6]};
+    const bool alone =
+        !known.contains("fx") && !known.contains("rows") && !known.contains("columns");
+    if (alone) known["rows"] = known.at("projection");
+  }
   if (known.contains("rows") || known.contains("columns")) {
     if (Status status = read_matrix(known); !status.ok()) return status;
   }
@@ -158,6 +175,11 @@ Result<CameraFile> camera_of_known(Json& known) {
   if (camera.width != 0 || camera.height != 0) {
     if (Status status = validate(camera); !status.ok()) return status;
   }
+  if (rectified) {
+    rectified->width = camera.width;
+    rectified->height = camera.height;
+    file.rectified = rectified;
+  }
   if (Status status = check_scale(known); !status.ok()) return status;
   file.depth_scale_mm = known.value("depth_scale", 1.0);
   if (known.contains("distortion")) file.distortion = numbers_of(known.at("distortion"));
@@ -169,7 +191,7 @@ Result<CameraFile> camera_of_known(Json& known) {
 
 Result<CameraFile> only_camera(FoundCameras& found) {
   if (found.cameras.empty()) {
-    return corrupt("it has no fx and no camera matrix; it has: ", listed(found.unread));
+    return corrupt("it has no fx and no camera matrix; it has: ", listed(found.all));
   }
   auto& [name, camera] = found.cameras.front();
   for (const auto& [other, another] : found.cameras) {
@@ -272,11 +294,11 @@ Result<std::vector<double>> plumb_bob_of(const CameraFile& file) {
                     "\"; it must be plumb_bob or rational_polynomial here");
 }
 
-std::vector<std::string> notes_of(const CameraFile& file) {
+std::vector<std::string> notes_of(const CameraFile& file, const char* distortion) {
   std::vector<std::string> notes;
   if (!file.unread.empty()) notes.push_back("does not read: " + listed(file.unread));
   if (std::ranges::any_of(file.distortion, [](double d) { return d != 0; })) {
-    notes.push_back("its distortion is ignored: images must be rectified");
+    notes.push_back(concat("its distortion ", distortion));
   }
   return notes;
 }

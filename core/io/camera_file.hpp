@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,12 @@ namespace bpa::io {
 
 /// What a camera file says.
 struct CameraFile {
-  Camera camera;                    ///< width and height are 0 where the file does not say.
-  double depth_scale_mm = 1;        ///< Millimetres of one unit of a depth image.
-  std::vector<double> distortion;   ///< Lens distortion: k1 k2 p1 p2 k3 ...; empty without.
-  std::string distortion_model;     ///< As the file names it; empty where it does not.
+  Camera camera;  ///< width and height are 0 where the file does not say.
+  std::optional<Camera>
+      rectified;                   ///< Of rectified images: the projection matrix P, if it has one.
+  double depth_scale_mm = 1;       ///< Millimetres of one unit of a depth image.
+  std::vector<double> distortion;  ///< Lens distortion: k1 k2 p1 p2 k3 ...; empty without.
+  std::string distortion_model;    ///< As the file names it; empty where it does not.
   std::vector<std::string> unread;  ///< Keys that nothing here knows.
 };
 
@@ -31,8 +34,9 @@ Result<CameraFile> read_camera(const std::string& path);
 Result<std::vector<double>> plumb_bob_of(const CameraFile& file);
 
 /// What people should know of images that are read with it: keys that are not read, distortion that
-/// is not taken out.
-std::vector<std::string> notes_of(const CameraFile& file);
+/// is not taken out. `distortion`: what becomes of it.
+std::vector<std::string> notes_of(const CameraFile& file,
+                                  const char* distortion = "is ignored: images must be rectified");
 
 /// The BOP form.
 std::string camera_json(const Camera& camera, double depth_scale_mm);

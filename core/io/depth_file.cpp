@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "core/base/concat.hpp"
+#include "core/cloud/depth_unit.hpp"
 #include "core/io/file_bytes.hpp"
 #include "core/io/image_file.hpp"
 
@@ -84,6 +85,7 @@ Result<DepthImage> parse_npy(const std::string& path, std::string_view bytes, do
   if (plain == "i4") image.metres = floats_of<std::int32_t>(bytes, swapped, unit);
   if (plain == "f4") image.metres = floats_of<float>(bytes, swapped, 1);
   if (plain == "f8") image.metres = floats_of<double>(bytes, swapped, 1);
+  if (plain[0] == 'f') image.note = to_metres(image.metres);
   return image;
 }
 

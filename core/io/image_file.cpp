@@ -323,7 +323,11 @@ Result<ColorImage> read_color_image(const std::string& path) {
   };
   const Result<std::string> bytes = read_file(path);
   if (!bytes.ok()) return bytes.status();
-  return decode_color(path, *bytes, check);
+  Result<ColorImage> image = decode_color(path, *bytes, check);
+  if (image.status().code != StatusCode::unsupported) return image;
+  return Status(StatusCode::unsupported,
+                image.status().message + "; write it as one: python3 -c \"import cv2; " +
+                    "cv2.imwrite('color.png', cv2.imread('" + path + "'))\"");
 }
 
 Result<ColorImage> decode_color_image(std::string_view bytes, const std::string& name,
@@ -424,9 +428,10 @@ Result<Frame> frame_of_images(DepthImage depth, const ColorImage* color, const C
 }
 
 Result<Frame> read_frame(const std::string& depth_path, const std::string& color_path,
-                         const Camera& camera, double depth_scale_mm) {
+                         const Camera& camera, double depth_scale_mm, std::string* note) {
   Result<DepthImage> depth = read_depth(depth_path, depth_scale_mm);
   if (!depth.ok()) return depth.status();
+  if (note != nullptr) *note = depth->note;
   std::optional<ColorImage> color;
   if (!color_path.empty()) {
     Result<ColorImage> read = read_color_image(color_path);

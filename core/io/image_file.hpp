@@ -31,6 +31,7 @@ struct DepthImage {
   int width = 0;
   int height = 0;
   std::vector<float> metres;
+  std::string note = {};  ///< What people should know of its unit; empty: nothing.
 };
 
 /// Images with a longer side are refused before memory is taken for their pixels.
@@ -56,7 +57,8 @@ Result<GrayImage> decode_depth_png(std::string_view bytes, const std::string& na
 /// The depths of an image in units of `scale_mm` millimetres.
 DepthImage depth_of(const GrayImage& image, double scale_mm);
 /// Reads a PNG or PGM of 1 channel of 16 bits, or NumPy's npy of integers, in units of `scale_mm`;
-/// or npy of floats in metres. Of another file the message says how to write it as one of these.
+/// or npy of floats in metres, or in millimetres where to_metres() says so. Of another file the
+/// message says how to write it as one of these.
 Result<DepthImage> read_depth(const std::string& path, double scale_mm);
 /// Reads a 1-channel PNG of 8 or 16 bits.
 Result<GrayImage> read_gray_png(const std::string& path);
@@ -86,7 +88,8 @@ Result<Frame> frame_of_images(DepthImage depth, const ColorImage* color, const C
 /// Reads one RGB-D frame: a depth image (read_depth) registered to an 8-bit colour image of its
 /// size. An empty `color_path` gives no colour. A camera without a size takes the depth image's.
 /// Checks sizes and camera (messages name file, field and rule); validate(Frame) checks the depths.
+/// `note`: null, or set to that of the depth image.
 Result<Frame> read_frame(const std::string& depth_path, const std::string& color_path,
-                         const Camera& camera, double depth_scale_mm);
+                         const Camera& camera, double depth_scale_mm, std::string* note = nullptr);
 
 }  // namespace bpa::io

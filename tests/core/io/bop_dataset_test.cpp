@@ -154,6 +154,24 @@ TEST(BopDataset, SaysWhatIsMissing) {
   EXPECT_NE(status.message.find("scene 3"), std::string::npos);
   test::spill(folder / "test/000001/scene_gt.json", R"({"0": [{"obj_id": 1}]})");
   EXPECT_EQ(read_bop_frames(folder.path(), "test").status().code, StatusCode::corrupt);
+  EXPECT_NE(
+      read_bop_frames(folder.path(), "val").status().message.find("its folders: test (--split"),
+      std::string::npos);
+}
+
+/// Formats that are not read are refused with the way out, frame by frame.
+TEST(BopDataset, ImagesOfOtherFormats) {
+  const test::TemporaryFolder folder;
+  test::spill(folder / "val/000001/scene_camera.json",
+              R"({"3": {"cam_K": [500, 0, 320, 0, 501, 240, 0, 0, 1]}})");
+  std::filesystem::create_directories(folder / "val/000001/depth");
+  test::spill(folder / "val/000001/depth/000003.tif", "II*         ");
+  const auto frames = read_bop_frames(folder.path(), "val");
+  ASSERT_TRUE(frames.ok()) << frames.status().message;
+  const std::string said = load_bop_frame(frames->at(0)).status().message;
+  EXPECT_NE(said.find("000003.tif is no depth image in PNG, PGM or npy; write it as npy"),
+            std::string::npos)
+      << said;
 }
 
 TEST(BopDataset, RealFrames) {
@@ -214,7 +232,9 @@ TEST(BopDataset, ACameraThatIsNoneIsRefusedByItsImage) {
   ASSERT_TRUE(write_gray_png(folder / "val/000001/depth/000003.png", {2, 1, {1, 2}}).ok());
   test::spill(folder / "val/000001/scene_camera.json",
               R"({"3": {"cam_K": [500, 0, 0, 0, 501, 0, 320, 240, 1]}})");
-  const Status status = read_bop_frames(folder.path(), "val").status();
+  const auto frames = read_bop_frames(folder.path(), "val");
+  ASSERT_TRUE(frames.ok()) << frames.status().message;
+  const Status status = load_bop_frame(frames->at(0)).status();
   EXPECT_NE(status.message.find("scene_camera.json: 3: the third row"), std::string::npos)
       << status.message;
 }

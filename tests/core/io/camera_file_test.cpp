@@ -114,6 +114,29 @@ TEST(CameraFile, SaysWhatIsNotReadAndThatDistortionIsIgnored) {
   EXPECT_EQ(notes_of(*file).size(), 1U);
 }
 
+/// As calibrators write it: the images as they are have K and D, rectified ones P.
+TEST(CameraFile, ReadsTheCameraOfRectifiedImages) {
+  const test::TemporaryFolder folder;
+  const std::string p = "P: [900, 0, 310, 0, 0, 901, 240, 0, 0, 0, 1, 0]\n";
+  spill(folder / "c", kInfo + "K: " + kRows + "\nD: [0.1, 0, 0, 0, 0]\n" + p);
+  const auto file = read_camera(folder / "c");
+  ASSERT_TRUE(file.ok()) << file.status().message;
+  EXPECT_EQ(file->camera.fx, 1066.778);
+  ASSERT_TRUE(file->rectified);
+  EXPECT_EQ(file->rectified->fx, 900);
+  EXPECT_EQ(file->rectified->fy, 901);
+  EXPECT_EQ(file->rectified->cx, 310);
+  EXPECT_EQ(file->rectified->cy, 240);
+  EXPECT_EQ(file->rectified->width, 640);
+  spill(folder / "c", kInfo + p);
+  EXPECT_EQ(read_camera(folder / "c")->camera.fx, 900);
+  spill(folder / "c", kInfo + "binning_x: 2\nbinning_y: 2\nK: " + kRows + "\n");
+  EXPECT_NE(read_camera(folder / "c").status().message.find("binning of 2"), std::string::npos);
+  spill(folder / "c", "header: {stamp: 1}\nname: cam\n");
+  EXPECT_NE(read_camera(folder / "c").status().message.find("it has: header, name"),
+            std::string::npos);
+}
+
 /// What is refused, with the field, the rule, and the form that would be read.
 TEST(CameraFile, RefusalsShowTheAcceptedFormWithTheNumbersFound) {
   const test::TemporaryFolder folder;

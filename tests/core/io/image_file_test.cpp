@@ -240,6 +240,18 @@ TEST(DepthFile, ReadsNpyAndPgm) {
   }
 }
 
+/// As 32FC1 topics and clouds.
+TEST(DepthFile, FloatsInMillimetresAreSaid) {
+  const test::TemporaryFolder folder;
+  const float depths[] = {631, 0, 900, 1200};
+  spill(folder / "d.npy",
+        npy("<f4", "(2, 2)", {reinterpret_cast<const char*>(depths), sizeof depths}));
+  const auto depth = read_depth(folder / "d.npy", 1);
+  ASSERT_TRUE(depth.ok()) << depth.status().message;
+  EXPECT_FLOAT_EQ(depth->metres[0], 0.631f);
+  EXPECT_EQ(depth->note, "depth is taken for millimetres: its median is 900");
+}
+
 TEST(DepthFile, RefusalsSayTheWayOut) {
   const test::TemporaryFolder folder;
   const auto refusal = [&](const std::string& name, const std::string& bytes) {

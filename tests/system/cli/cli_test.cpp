@@ -19,6 +19,7 @@
 #include "core/io/image_file.hpp"
 #include "core/io/mesh_file.hpp"
 #include "core/io/results.hpp"
+#include "core/io/tracks.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/system/cli/box_scene.hpp"
 
@@ -123,6 +124,83 @@ TEST_F(BadInput, OneFrameOfSeveralDoesNotEndTheList) {
   EXPECT_EQ(results->at(1).im_id, 2);
 }
 
+/// One depth image that is cut short, and one camera that is none, among three.
+TEST_F(BadInput, OneFrameOfADataSetDoesNotEndIt) {
+  io::BopSceneWriter writer(folder_ / "set", "test", 1);
+  for (int image = 0; image < 3; ++image) {
+    Frame frame = box_frame(box_pose());
+    frame.stamp_ns = 1'000'000'000 + 33'000'000 * image;
+    ASSERT_TRUE(writer.add(image, frame, {}).ok());
+  }
+  ASSERT_TRUE(writer.finish().ok());
+  const std::string scene = folder_ / "set/test/000001";
+  spill(scene + "/depth/000001.png", slurp(scene + "/depth/000001.png").substr(0, 20));
+  std::string cameras = slurp(scene + "/scene_camera.json");
+  const std::size_t last = cameras.find("140.0", cameras.find("\"2\""));
+  ASSERT_NE(last, std::string::npos);
+  spill(scene + "/scene_camera.json", cameras.replace(last, 5, "0.0"));
+  const std::string of_set =
+      " --library " + (folder_ / "L") + " --bop " + (folder_ / "set") + " --json ";
+  Outcome outcome = run("detect" + of_set + (folder_ / "r.json"));
+  EXPECT_EQ(outcome.code, 1);
+  for (const char* words : {"000001.png is truncated", "scene_camera.json: 2: fx is 0",
+                            "2 of 3 frames could not be searched"}) {
+    EXPECT_NE(outcome.out.find(words), std::string::npos) << outcome.out;
+  }
+  const auto results = io::read_results_json(folder_ / "r.json");
+  ASSERT_TRUE(results.ok() && results->size() == 1u);
+  outcome = run("track" + of_set + (folder_ / "t.json"));
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.out.find("2 of 3 frames could not be followed"), std::string::npos)
+      << outcome.out;
+  const auto tracks = io::read_tracks_json(folder_ / "t.json");
+  ASSERT_TRUE(tracks.ok() && tracks->size() == 1u);
+  // Only those that are asked for are read; of these, all must be there.
+  EXPECT_EQ(run("detect" + of_set + (folder_ / "r.json") + " --images 0").code, 0);
+  expect_failure("detect" + of_set + (folder_ / "r.json") + " --images 0,77", {"no image 77"});
+}
+
+TEST_F(BadInput, ProbabilityIsAtLeastWhatIsAskedFor) {
+  write_depth("wall.png", 160, 120, 700);
+  for (const char* least : {"1.5", "-0.1"}) {
+    EXPECT_EQ(run(detect("d.png", "camera.json", std::string("--min-probability ") + least)).code,
+              2);
+  }
+  io::GrayImage depth{160, 120, {}};
+  for (const float z : box_frame(box_pose()).depth) {
+    depth.pixels.push_back(static_cast<std::uint16_t>(1000 * z));
+  }
+  ASSERT_TRUE(io::write_gray_png(folder_ / "box.png", depth).ok());
+  const auto found = [&](const char* least) {
+    const Outcome outcome =
+        run(detect("box.png", "camera.json",
+                   "--json " + (folder_ / "r.json") + " --min-probability " + least));
+    EXPECT_EQ(outcome.code, 0) << outcome.out;
+    const auto results = io::read_results_json(folder_ / "r.json");
+    return results.ok() ? results->front().interpretations.front().placements.size() : 99;
+  };
+  EXPECT_GE(found("0.01"), 1u);
+  EXPECT_EQ(found("1"), 0u);
+}
+
+/// As the server does; an unknown lens is refused by its name.
+TEST_F(BadInput, LensesOfCameraFilesAreTakenOut) {
+  const auto said = [&](const std::string& model, const std::string& more) {
+    spill(folder_ / "lens.yaml",
+          "width: 160\nheight: 120\nK: [140, 0, 79.5, 0, 140, 59.5, 0, 0, 1]\n"
+          "distortion_model: " +
+              model + "\nD: [0.1, 0, 0, 0]\n");
+    return run(detect("d.png", "lens.yaml", more));
+  };
+  EXPECT_NE(said("plumb_bob", "").out.find("its distortion is taken out of the images"),
+            std::string::npos);
+  EXPECT_NE(said("plumb_bob", "--rectified").out.find("its distortion is not used"),
+            std::string::npos);
+  const Outcome other = said("panoramic", "");
+  EXPECT_EQ(other.code, 1);
+  EXPECT_NE(other.out.find("panoramic"), std::string::npos) << other.out;
+}
+
 TEST_F(BadInput, CloudOfNothingButNan) {
   std::ostringstream pcd;
   pcd << "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 40\nHEIGHT 30\n"
@@ -149,7 +227,7 @@ TEST_F(BadInput, MeshInTheWrongUnit) {
   const std::string library = " --name b --library " + (folder_ / "M");
   ASSERT_TRUE(io::write_ply(folder_ / "mm.ply", box(0.06f, 0.04f, 0.09f), 1000).ok());
   expect_failure("model from-mesh " + (folder_ / "mm.ply") + library + " --unit m",
-                 {"mm.ply", "3 m", "--unit mm"});
+                 {"mm.ply", "3 m", "If its unit is another", "--unit mm"});
   const Outcome scaled =
       run("model from-mesh " + (folder_ / "mm.ply") + library + " --scale 0.001");
   EXPECT_EQ(scaled.code, 0) << scaled.out;
@@ -401,9 +479,11 @@ TEST(Evaluate, ComparesTwoRunsByTheNamesOfModels) {
   ASSERT_TRUE(io::write_bop_models(folder.path(), {model}).ok());
   io::BopSceneWriter writer(folder.path(), "test", 1);
   io::BopInstanceRecord truth;
-  truth.obj_id = 1;
+  truth.obj_id = truth.instance = 1;
   truth.camera_from_object = box_pose();
-  ASSERT_TRUE(writer.add(4, box_frame(box_pose()), {truth}).ok());
+  Frame frame = box_frame(box_pose());
+  frame.stamp_ns = 1'000'000'000;
+  ASSERT_TRUE(writer.add(4, frame, {truth}).ok());
   ASSERT_TRUE(writer.finish().ok());
   io::FrameResult result;
   result.scene_id = 1;
@@ -424,6 +504,31 @@ TEST(Evaluate, ComparesTwoRunsByTheNamesOfModels) {
                              ": found 0/1, right of those reported 0/0\n" + (folder / "b.json") +
                              ": found 1/1, right of those reported 1/1\n");
   EXPECT_EQ(run(command + (folder / "a.json")).code, 2);
+  // A track of the same.
+  io::TrackResult tracked;
+  tracked.scene_id = 1;
+  tracked.im_id = 4;
+  Track track;
+  track.id = 1;
+  track.model = "box";
+  track.model_number = 9;
+  track.frame_from_object = box_pose();
+  tracked.tracks = {track};
+  ASSERT_TRUE(io::write_tracks_json(folder / "t.json", {tracked}).ok());
+  const Outcome by_name = run(command + "--tracks " + (folder / "t.json"));
+  EXPECT_EQ(by_name.code, 0) << by_name.out;
+  tracked.tracks[0].model_number = 1;
+  ASSERT_TRUE(io::write_tracks_json(folder / "t.json", {tracked}).ok());
+  EXPECT_EQ(by_name.out, run(command + "--tracks " + (folder / "t.json")).out);
+  // CSV has numbers alone: those of the data set.
+  const std::string library = " --library " + (folder / "L");
+  ASSERT_EQ(run("model from-mesh " + (folder / "models/obj_000001.ply") +
+                " --unit mm --views 0 --name box --number 9" + library)
+                .code,
+            0);
+  ASSERT_EQ(run("detect --bop " + folder.path() + library + " --csv " + (folder / "r.csv")).code,
+            0);
+  EXPECT_NE(slurp(folder / "r.csv").find("\n1,4,1,"), std::string::npos) << slurp(folder / "r.csv");
   result.interpretations[0].placements[0].model = "drill";
   ASSERT_TRUE(io::write_results_json(folder / "c.json", {result}).ok());
   expect_failure(command + "--json " + (folder / "c.json"), {"drill", "another library"});
