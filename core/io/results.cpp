@@ -107,11 +107,14 @@ static void fields(auto& visit, Is<FrameResult> auto& frame) {
   visit("missed", frame.missed, kOptional);
   visit("timings", frame.timings, kOptional);
   visit("interpretations", frame.interpretations);
-  if constexpr (!std::is_const_v<std::remove_reference_t<decltype(frame)>>) {
+  constexpr bool kReads = !std::is_const_v<std::remove_reference_t<decltype(frame)>>;
+  if constexpr (kReads) {
     if (visit.has("status")) frame.server.emplace();
   }
-  visit("frame_id", frame.frame_id, kOptional);
-  visit("stamp_ns", frame.stamp_ns, kOptional);
+  if (kReads || frame.server || frame.stamp_ns != 0) {
+    visit("frame_id", frame.frame_id, kOptional);
+    visit("stamp_ns", frame.stamp_ns, kOptional);
+  }
   if (!frame.server) {
     visit("sensor", frame.sensor, kOptional);
     visit("effort", frame.effort, kOptional);
