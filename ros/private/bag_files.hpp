@@ -12,7 +12,7 @@ namespace bpa::ros {
 
 /// Most bytes of a chunk or a message once it is decompressed: two uncompressed images of 8192 x
 /// 8192.
-inline constexpr std::uint64_t kMostDecompressed = std::uint64_t{1} << 29U;
+inline constexpr std::uint64_t kMostDecompressed = 536'870'912;
 
 Result<std::unique_ptr<BagReader>> open_mcap(const std::string& path);
 Result<std::unique_ptr<BagReader>> open_sqlite_bag(const std::string& path);

@@ -132,10 +132,10 @@ std::vector<std::string> point_cloud_seeds() {
 }  // namespace
 
 std::vector<Target> frame_targets() {
-  const char* const frames = "server/convert/frames.cpp server/convert/images.cpp";
+  const char* const frames = "ros/frames.cpp ros/images.cpp";
   return {{"rgbd_frame", frames, run_rgbd_frame, rgbd_frame_seeds, 8192},
           {"camera_images", frames, run_camera_images, camera_images_seeds, 8192},
-          {"point_cloud", "server/convert/clouds.cpp core/io/organised_cloud.cpp", run_point_cloud,
+          {"point_cloud", "ros/clouds.cpp core/io/organised_cloud.cpp", run_point_cloud,
            point_cloud_seeds, 16384}};
 }
 

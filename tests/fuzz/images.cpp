@@ -127,8 +127,7 @@ std::vector<Target> image_targets() {
   return {{"png", image_file, run_png, png_seeds, 4096, 300},
           {"depth_file", "core/io/depth_file.cpp", run_depth_file, depth_file_seeds, 1024},
           {"jpeg", image_file, run_compressed_color, jpeg_seeds, 4096, 300},
-          {"compressed_depth", "server/convert/compressed.cpp", run_compressed, compressed_seeds,
-           8192, 300}};
+          {"compressed_depth", "ros/compressed.cpp", run_compressed, compressed_seeds, 8192, 300}};
 }
 
 }  // namespace bpa::fuzz

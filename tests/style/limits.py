@@ -13,7 +13,7 @@ from pathlib import Path
 import arrows
 import tree
 
-READERS = ("idl/wire/", "server/", "camera/", "client/src/", "core/io/")
+READERS = ("idl/wire/", "server/", "camera/", "client/src/", "core/io/", "ros/")
 DEFINITION = re.compile(r"\bconstexpr\s+[\w:]+\s+(k(?:Max|Most|Longest|Largest)\w*)\s*"
                         r"(?:=\s*|(?=\{))([^;]+);")
 # Of nothing that comes from outside.
@@ -21,8 +21,8 @@ NO_INPUTS = {
     ("core/io/model_parts.cpp", "kMost"),                     # of an integer
     ("core/io/model_parts.cpp", "kMostSigned"),
     ("core/io/organised_cloud.cpp", "kMaxMeanResidual"),      # of a fit, in pixels
-    ("server/convert/compressed.cpp", "kMaxPixels"),          # kMaxImageSide squared
-    ("server/convert/images.cpp", "kMaxSide"),                # kMaxImageSide
+    ("ros/compressed.cpp", "kMaxPixels"),                    # kMaxImageSide squared
+    ("ros/images.cpp", "kMaxSide"),                          # kMaxImageSide
     ("server/log_filter.cpp", "kLongest"),                    # of what tells causes apart
     ("server/ros_clock.cpp", "kLongestStandstill"),           # until it is reported
 }
