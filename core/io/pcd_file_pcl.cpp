@@ -111,11 +111,9 @@ class HeaderLines {
                                      "WIDTH",   "HEIGHT", "POINTS", "DATA", "VIEWPOINT"};
     if (std::ranges::count(kKeys, key) == 0) {
       // What cannot be printed stays away from terminals.
-      key = key.substr(0, std::min<std::size_t>(
-                              20, static_cast<std::size_t>(
-                                      std::ranges::find_if_not(
-                                          key, [](unsigned char c) { return c > 32 && c < 127; }) -
-                                      key.begin())));
+      const auto printable = [](unsigned char c) { return c > 32 && c < 127; };
+      key.erase(std::ranges::find_if_not(key, printable), key.end());
+      key.resize(std::min<std::size_t>(20, key.size()));
       status_ =
           corrupt(path_, " is not a PCD file: its header has a line that begins with \"", key,
                   "\". A frame is an organised PCD cloud, which has rows of pixels, or a depth "
