@@ -4,6 +4,7 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "camera/open_camera.hpp"
 #include "core/base/clock.hpp"
@@ -27,20 +28,15 @@ class BagCamera : public CameraDevice {
 
   /// From the beginning, to be shown from now on.
   Status open() {
-    const ros::BagTopics topics{options_.bag_depth, options_.bag_color, options_.bag_camera_info,
-                                options_.bag_cloud};
-    auto bag = ros::BagFrames::open(path_, topics, 0, [this](auto message, bool is_static) {
-      for (auto& transform : message.transforms) {
-        wire::builtin_interfaces::Time& stamp = transform.header.stamp;
-        stamp = wire::builtin_interfaces::from_ns(played(to_ns(stamp)));
-      }
-      if (on_transforms_) on_transforms_(message, is_static);
-    });
+    first_ns_.reset();
+    early_.clear();
+    auto bag =
+        ros::BagFrames::open(path_, options_.bag_topics, 0, [this](auto message, bool fixed) {
+          if (!first_ns_) return early_.emplace_back(std::move(message), fixed), void();
+          hand_on(std::move(message), fixed);
+        });
     if (!bag.ok()) return bag.status();
     bag_.emplace(std::move(bag).value());
-    first_ns_.reset();
-    begun_ = Clock::now();
-    begun_ns_ = unix_time_ns();
     for (int number = 1;; ++number) {
       auto frame = bag_->next();
       if (!frame.ok()) return frame.status();
@@ -49,11 +45,9 @@ class BagCamera : public CameraDevice {
                                 " has ", number - 1, " frames");
       }
       if (number < options_.start_frame) continue;
-      if ((*frame)->ok()) frame_.emplace(std::move(**frame).value());
-      break;
+      if ((*frame)->ok()) hold(std::move(**frame).value());
+      return {};
     }
-    first_ns_.reset();
-    return {};
   }
 
   const std::string& name() const override { return name_; }
@@ -73,7 +67,7 @@ class BagCamera : public CameraDevice {
       complaint_ = (*next)->status().message;
       output.busy = !(*next)->ok();
       if (output.busy) return output;
-      frame_.emplace(std::move(**next).value());
+      hold(std::move(**next).value());
     }
     const std::int64_t stamp_ns = played(frame_->stamp_ns);
     if (!options_.every_frame) {
@@ -83,15 +77,38 @@ class BagCamera : public CameraDevice {
       output.busy = until < due;
       if (output.busy) return output;
     }
+    std::string frame_id = std::move(frame_->frame_id);
     output.images = images_of(*std::exchange(frame_, std::nullopt), options_.color);
     output.images->stamp_ns = stamp_ns;
+    output.images->frame_id = std::move(frame_id);
     return output;
   }
 
  private:
-  /// When a stamp of the recording is played; the first one now.
-  std::int64_t played(std::int64_t stamp_ns) {
-    if (!first_ns_) first_ns_ = stamp_ns;
+  /// The frame that is shown next. The first one is shown now, and tells when the rest is.
+  void hold(Frame frame) {
+    if (!first_ns_) {
+      first_ns_ = frame.stamp_ns;
+      begun_ = Clock::now();
+      begun_ns_ = unix_time_ns();
+      for (auto& [message, is_static] : std::exchange(early_, {})) {
+        hand_on(std::move(message), is_static);
+      }
+    }
+    frame_.emplace(std::move(frame));
+  }
+
+  void hand_on(wire::tf2_msgs::TFMessage message, bool is_static) {
+    if (!on_transforms_) return;
+    for (auto& transform : message.transforms) {
+      wire::builtin_interfaces::Time& stamp = transform.header.stamp;
+      stamp = wire::builtin_interfaces::from_ns(played(to_ns(stamp)));
+    }
+    on_transforms_(message, is_static);
+  }
+
+  /// When a stamp of the recording is played.
+  std::int64_t played(std::int64_t stamp_ns) const {
     const auto since = static_cast<double>(stamp_ns - *first_ns_) / options_.speed;
     return begun_ns_ + static_cast<std::int64_t>(since);
   }
@@ -101,7 +118,8 @@ class BagCamera : public CameraDevice {
   const OnTransforms on_transforms_;
   std::optional<ros::BagFrames> bag_;
   std::optional<Frame> frame_;            ///< The next one, before it is due.
-  std::optional<std::int64_t> first_ns_;  ///< Of the first stamp.
+  std::optional<std::int64_t> first_ns_;  ///< Stamp of the first frame that was shown.
+  std::vector<std::pair<wire::tf2_msgs::TFMessage, bool>> early_;  ///< Transforms before it.
   Clock::time_point begun_;
   std::int64_t begun_ns_ = 0;
   std::string complaint_;

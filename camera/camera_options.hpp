@@ -8,6 +8,7 @@
 
 #include "core/base/options.hpp"
 #include "core/base/status.hpp"
+#include "ros/bag_topics.hpp"
 
 namespace bpa::camera {
 
@@ -44,14 +45,7 @@ struct CameraOptions {
   BPA_OPTION(
       bool, every_frame, false, (),
       "Recordings and data sets wait with the next frame until the search has taken the last one.");
-  BPA_OPTION(std::string, bag_depth, "", (),
-             "Topic of depth images of a recording of ROS 2; empty: found by their type.");
-  BPA_OPTION(std::string, bag_color, "", (),
-             "Topic of its colour images, registered to depth; empty: those of the depth's frame.");
-  BPA_OPTION(std::string, bag_camera_info, "", (),
-             "Topic of its camera info; empty: the one beside the images.");
-  BPA_OPTION(std::string, bag_cloud, "", (),
-             "Topic of its organised clouds; empty: where there are no depth images.");
+  BPA_INLINE_GROUP(ros::BagTopics, bag_topics);
   BPA_OPTION(double, timeout_ms, 3000, (100, 60000),
              "Milliseconds without frames after which a sensor is opened again. Driver calls that "
              "take as long are reported.");

@@ -53,7 +53,6 @@ class BopCamera : public CameraDevice {
     if (!frame.ok()) return Status(frame.status().code, "is damaged: " + frame.status().message);
     ++next_;
     output.images = images_of(std::move(frame).value(), options_.color);
-    output.images->frame_id.clear();  // a data set names no frame of reference
     output.images->stamp_ns = unix_time_ns();
     return output;
   }
@@ -71,7 +70,6 @@ class BopCamera : public CameraDevice {
 SensorImages images_of(Frame frame, bool with_color) {
   const int width = frame.camera.width, height = frame.camera.height;
   SensorImages images;
-  images.frame_id = std::move(frame.frame_id);
   images.camera = frame.camera;
   // Metres keep the depth to the last bit, whatever its unit was.
   images.depth = {PixelFormat::depth_m, width, height, bytes_of(frame.depth)};

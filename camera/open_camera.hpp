@@ -62,7 +62,7 @@ Result<std::unique_ptr<CameraDevice>> open_bop_camera(const std::string& folder,
 Result<std::unique_ptr<CameraDevice>> open_bag_camera(const CameraOptions& options,
                                                       const OnTransforms& on_transforms);
 
-/// A frame as a camera delivers it, without its stamp.
+/// A frame as a camera delivers it, without its stamp and frame_id.
 SensorImages images_of(Frame frame, bool with_color);
 
 }  // namespace bpa::camera

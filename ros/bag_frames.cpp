@@ -35,6 +35,11 @@ struct Candidate {
 using Candidates = std::vector<Candidate>;
 
 template <class Message>
+bool is_of(const BagTopic& topic) {
+  return topic.type == Message::kType;
+}
+
+template <class Message>
 std::optional<Message> decode(const BagMessage& message) {
   Message decoded;
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(message.bytes.data());
@@ -149,19 +154,18 @@ Status choose_images(const Candidates& all, BagTopics& topics) {
   return {};
 }
 
-/// Names all topics to read; `frames` gets that of whole frames.
-Status choose_topics(const Candidates& all, BagTopics& topics, std::string& frames) {
+/// Names all topics to read; whole frames take the place of clouds.
+Status choose_topics(const Candidates& all, BagTopics& topics) {
   const bool named = !topics.depth.empty() || !topics.cloud.empty();
+  const auto choose_kind = [&](Candidate::Kind kind, const char* what) {
+    return choose(of_kind(all, kind), what, topics.cloud);
+  };
   if (!named) {
-    if (Status s = choose(of_kind(all, Candidate::frames), "whole frames", frames); !s.ok())
-      return s;
+    if (Status s = choose_kind(Candidate::frames, "whole frames"); !s.ok()) return s;
   }
-  if (!frames.empty() || !topics.cloud.empty()) return {};
+  if (!topics.cloud.empty()) return {};
   if (named || !of_kind(all, Candidate::depth).empty()) return choose_images(all, topics);
-  if (Status s = choose(of_kind(all, Candidate::cloud), "organised clouds", topics.cloud);
-      !s.ok()) {
-    return s;
-  }
+  if (Status s = choose_kind(Candidate::cloud, "organised clouds"); !s.ok()) return s;
   if (!topics.cloud.empty()) return {};
   return not_found("it has neither depth images nor organised clouds in the first seconds");
 }
@@ -200,8 +204,7 @@ Result<BagFrames> BagFrames::open(const std::string& path, const BagTopics& topi
     if (candidate) candidates.push_back(*std::move(candidate));
   }
   BagTopics chosen = topics;
-  std::string frames;
-  if (Status status = choose_topics(candidates, chosen, frames); !status.ok()) {
+  if (Status status = choose_topics(candidates, chosen); !status.ok()) {
     status.message = concat(path, ": ", status.message, ". Its topics: ", others);
     return status;
   }
@@ -209,11 +212,8 @@ Result<BagFrames> BagFrames::open(const std::string& path, const BagTopics& topi
   if (!reader.ok()) return reader.status();
   BagFrames bag(std::move(reader).value(), chosen, start_s, std::move(on_transforms));
   bag.rectified_ = named_rectified(chosen.color.empty() ? chosen.depth : chosen.color);
-  if (!frames.empty()) {
-    bag.topics_.cloud = frames;
-    bag.description_ = "frames of " + frames;
-  } else if (!chosen.cloud.empty()) {
-    bag.description_ = "clouds of " + chosen.cloud;
+  if (!chosen.cloud.empty()) {
+    bag.description_ = "frames of " + chosen.cloud;
   } else {
     bag.description_ =
         concat("depth of ", chosen.depth,
@@ -273,19 +273,17 @@ Result<std::optional<DecodedFrame>> BagFrames::next() {
     auto message = reader_->next();
     if (!message.ok()) return message.status();
     if (!*message) {
-      if (frames_ > 0) return std::optional<DecodedFrame>();
+      if (any_frame_) return std::optional<DecodedFrame>();
       const SyncCounts counts = synchronizer_.counts();
       return not_found("it has no frame of ", description_, " after ", start_s_,
                        " s: ", counts.depth_without_color,
                        " depth images without a colour image and ", counts.depth_without_info,
-                       " without a camera info within 10 ms");
+                       " without a camera info within ", kSyncTolerance_ms, " ms");
     }
-    if (!std::exchange(begun_, true)) {
-      start_ns_ = (*message)->time_ns + static_cast<std::int64_t>(start_s_ * 1e9);
-    }
+    if (start_ns_ == 0) start_ns_ = (*message)->time_ns + static_cast<std::int64_t>(start_s_ * 1e9);
     take(**message);
   }
-  ++frames_;
+  any_frame_ = true;
   std::optional<DecodedFrame> frame(std::move(ready_.front()));
   ready_.pop_front();
   return frame;

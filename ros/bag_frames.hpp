@@ -10,18 +10,11 @@
 
 #include "idl/wire/msg/tf2_msgs.hpp"
 #include "ros/bag_reader.hpp"
+#include "ros/bag_topics.hpp"
 #include "ros/frames.hpp"
 #include "ros/synchronizer.hpp"
 
 namespace bpa::ros {
-
-/// The topics of a recording that make frames; an empty name: found by type.
-struct BagTopics {
-  std::string depth;
-  std::string color;        ///< Registered to depth; found: that of the depth's frame, or none.
-  std::string camera_info;  ///< Found: the one beside the images.
-  std::string cloud;        ///< Organised; found: where there are no depth images.
-};
 
 /// Frames of a recording of ROS 2, in their order, as the server makes them of the same topics.
 class BagFrames {
@@ -50,14 +43,13 @@ class BagFrames {
   std::optional<Message> decoded(const BagMessage& message);
 
   std::unique_ptr<BagReader> reader_;
-  BagTopics topics_;  ///< All that are read, by name.
+  BagTopics topics_;  ///< All that are read, by name; `cloud`: of clouds or whole frames.
   OnTransforms on_transforms_;
   std::string description_;
   bool rectified_ = false;
-  std::int64_t start_ns_ = 0;  ///< Of the recording's clock; after the first message.
   double start_s_;
-  bool begun_ = false;
-  std::uint64_t frames_ = 0;
+  std::int64_t start_ns_ = 0;  ///< By the recording's clock, once its first message is read.
+  bool any_frame_ = false;
   Synchronizer synchronizer_;
   std::deque<DecodedFrame> ready_;
 };

@@ -54,8 +54,8 @@ Result<Listing> list_folder(const fs::path& folder) {
         if (!path.ok()) return path.status();
         listing.files.push_back(*std::move(path));
       }
-      listing.messages_compressed = bag["compression_mode"].as<std::string>("") == "MESSAGE" ||
-                                    bag["compression_mode"].as<std::string>("") == "message";
+      const auto mode = bag["compression_mode"].as<std::string>("");
+      listing.messages_compressed = mode == "MESSAGE" || mode == "message";
     } catch (const YAML::Exception& error) {
       return corrupt(metadata, ": ", error.what());
     }

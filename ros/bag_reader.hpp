@@ -39,10 +39,4 @@ class BagReader {
 /// unsupported for ROS 1 and files that are compressed as a whole; the message says what to do.
 Result<std::unique_ptr<BagReader>> open_bag(const std::string& path);
 
-/// Whether a message of this type is `Message`, by its ROS name.
-template <class Message>
-bool is_of(const BagTopic& topic) {
-  return topic.type == Message::kType;
-}
-
 }  // namespace bpa::ros

@@ -99,11 +99,15 @@ class McapReader : public BagReader {
     return corrupt(path_, ": ", what, " is damaged, after ", count_, " messages");
   }
 
+  Status cut_short() const {
+    return corrupt(path_, " is cut short, after ", count_, " messages; `mcap recover` mends it");
+  }
+
   /// Makes the records of the next chunk, or the next record outside of chunks, those to read.
   Result<bool> read_record() {
     char head[9];
     if (left_ < sizeof head || !file_.read(head, sizeof head)) {
-      return corrupt(path_, " is cut short, after ", count_, " messages; `mcap recover` mends it");
+      return cut_short();
     }
     std::uint64_t length = 0;
     std::memcpy(&length, head + 1, sizeof length);
@@ -111,7 +115,7 @@ class McapReader : public BagReader {
     const auto opcode = static_cast<std::uint8_t>(head[0]);
     if (opcode == kDataEnd || opcode == kFooter) return false;
     if (length > left_) {
-      return corrupt(path_, " is cut short, after ", count_, " messages; `mcap recover` mends it");
+      return cut_short();
     }
     left_ -= length;
     if (opcode != kChunk && opcode != kSchema && opcode != kChannel && opcode != kMessage) {

@@ -16,11 +16,14 @@
 
 namespace bpa::ros {
 
+inline constexpr double kSyncTolerance_ms = 10;
+inline constexpr std::size_t kSyncQueue = 10;
+
 struct SynchronizerOptions {
   bool with_color = true;  ///< Wait for a colour image for each depth image.
   /// Largest difference of stamps within one set; 0: equal stamps only.
-  std::int64_t tolerance_ns = 10'000'000;
-  std::size_t queue = 10;  ///< Messages of one stream that may wait.
+  std::int64_t tolerance_ns = static_cast<std::int64_t>(1e6 * kSyncTolerance_ms);
+  std::size_t queue = kSyncQueue;  ///< Messages of one stream that may wait.
 };
 
 /// What became of the messages so far.

@@ -12,6 +12,7 @@
 #include "core/pipeline/detector_options.hpp"
 #include "core/result/interpretation.hpp"
 #include "core/track/tracker.hpp"
+#include "ros/synchronizer.hpp"
 
 // Every setting of the server, in groups. config/server.yaml, --set, --print-config, the ROS 2
 // parameters and the checks all use this.
@@ -88,9 +89,10 @@ struct InputOptions {
              "The camera's images have no lens distortion, so the projection matrix p holds; "
              "false: k and d hold.");
   BPA_OPTION(
-      double, sync_tolerance_ms, 10, (0, 1000).at_run_time(),
+      double, sync_tolerance_ms, ros::kSyncTolerance_ms, (0, 1000).at_run_time(),
       "Largest difference in ms between the stamps of images of one frame; 0: equal stamps only.");
-  BPA_OPTION(int, sync_queue, 10, (2, 100).at_run_time(), "Images of one topic that may wait.");
+  BPA_OPTION(int, sync_queue, ros::kSyncQueue, (2, 100).at_run_time(),
+             "Images of one topic that may wait.");
   BPA_OPTION(double, silence_s, 2, (0.1, 3600).at_run_time(),
              "Seconds without a message after which a camera is reported as lost.");
   BPA_OPTION(

@@ -50,6 +50,26 @@ TEST(BagCamera, PlaysInItsOwnTimeFromNow) {
   EXPECT_GE(unix_time_ns(), second.stamp_ns);
 }
 
+TEST(BagCamera, TransformsKeepTheirTimeBesideTheFrames) {
+  auto messages = support::recording();  // begins with a static one of stamp 0
+  auto moving = support::transform();
+  moving.transforms[0].header.stamp =
+      wire::builtin_interfaces::from_ns(support::kSecond - 30'000'000);
+  messages.insert(messages.begin() + 1, support::recorded("/tf", support::kSecond, moving));
+  const test::TemporaryFolder folder;
+  test::spill(folder / "a.mcap", support::mcap_of(messages, support::McapKind::plain));
+  CameraOptions options;
+  options.source = "bag:" + (folder / "a.mcap");
+  std::vector<std::int64_t> stamps;
+  auto camera = open_bag_camera(options, [&](const auto& message, bool is_static) {
+    if (!is_static) stamps.push_back(to_ns(message.transforms[0].header.stamp));
+  });
+  ASSERT_TRUE(camera.ok()) << camera.status().message;
+  const SensorImages first = images_of(**camera);
+  ASSERT_EQ(stamps.size(), 1U);
+  EXPECT_EQ(first.stamp_ns - stamps[0], 30'000'000);
+}
+
 TEST(BagCamera, BeginsWhereItShouldAndRepeats) {
   const test::TemporaryFolder folder;
   support::write_db3(folder / "a.db3", support::recording(2));
@@ -75,7 +95,7 @@ TEST(BagCamera, TopicsAreChecked) {
   support::write_db3(folder / "a.db3", support::recording());
   CameraOptions options;
   options.source = "bag:" + folder.path();
-  options.bag_depth = "/camera/none";
+  options.bag_topics.depth = "/camera/none";
   const auto camera = open_bag_camera(options, nullptr);
   EXPECT_NE(camera.status().message.find("/camera/none"), std::string::npos);
   EXPECT_NE(camera.status().message.find("/camera/depth (sensor_msgs/msg/Image)"),
