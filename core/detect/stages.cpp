@@ -18,40 +18,40 @@ namespace bpa::detect {
 namespace {
 
 constexpr Stage kStages[] = {
-    {"sample", sample, 0.3,
+    {"sample", sample,
      "Poses drawn by BPA from single FPFH matches, voted for by oriented point pairs, and drawn "
      "from priors."},
-    {"check", check, 0.4,
+    {"check", check,
      "Poses with over 20 % of their points in free space are rejected, and poses without surface. "
      "The best of each place by score stay, then the best of all models.",
      [](const DetectPlan& plan) { return plan.check.max_in_library; },
      score::Limit::checked_behind},
-    {"correct", correct, 0.4,
+    {"correct", correct,
      "Two Gauss-Newton steps move each pose onto the surface, where that improves it."},
-    {"cluster", cluster, 0.6,
+    {"cluster", cluster,
      "Poses within 2.5 cm and pi/16 are a cluster. BPA aligns each one again with the "
      "correspondences of all its poses. The best of all models go on.",
      [](const DetectPlan& plan) { return plan.cluster.max_in_library; },
      score::Limit::clustered_behind},
-    {"round_two", round_two, 0.5,
+    {"round_two", round_two,
      "BPA and Gauss-Newton steps move each pose onto the surface around it. A step is accepted if "
      "the score improves. After non-maximum suppression the best of all models go on.",
      [](const DetectPlan& plan) { return plan.round_two.max_in_library; },
      score::Limit::aligned_behind},
-    {"refine", refine, 0.5,
+    {"refine", refine,
      "The best are aligned once more by gradients. Non-maximum suppression follows.", nullptr,
      score::Limit::refined_behind},
-    {"score", score, 1, "Each is scored with all components (round three)."},
-    {"climb", climb, 0.5,
+    {"score", score, "Each is scored with all components (round three)."},
+    {"climb", climb,
      "The best climb the score by small steps, from where they are and from beside."},
-    {"turn", turn, 0.7,
+    {"turn", turn,
      "The best are tried in near-symmetric poses, those that the view may leave open."},
-    {"lay", lay, 0.7,
+    {"lay", lay,
      "A thin model is laid onto regions that differ from their plane, where its silhouette agrees "
      "best."},
-    {"compare", compare, 1,
+    {"compare", compare,
      "Poses that exclude one another are compared on the pixels where they disagree."},
-    {"select", select, 1,
+    {"select", select,
      "Distinct placements of sufficient score. Interpretations of the scene choose from these."},
 };
 
@@ -62,6 +62,11 @@ consteval std::size_t place_of(std::string_view name) {
 }
 constexpr std::size_t kRoundStages = place_of("score") + 1;  // those that every round runs
 constexpr std::size_t kFirstScoring = place_of("refine");
+
+// Of the time left, what a stage may take where others follow. The plan fits the work in the time
+// before it runs: a stage that is cut here, because its frame is harder, leaves as much to the
+// rest.
+constexpr double kMostOfTimeLeft = 0.5;
 
 // Runs a stage and records its time and what it rejects.
 Candidates timed(const Stage& stage, Search& search, Candidates candidates, ObjectTrace* trace) {
@@ -118,7 +123,7 @@ void run_stages(std::span<const Stage> stages, std::span<Search> searches, int n
   std::vector<std::size_t> order(searches.size());
   std::iota(order.begin(), order.end(), 0);
   for (const Stage& stage : stages) {
-    const Deadline end = deadline.part(stage.time_share);
+    const Deadline end = &stage == &stages.back() ? deadline : deadline.part(kMostOfTimeLeft);
     // A model's share grows with its candidates.
     const auto work = [&](std::size_t i) { return 1 + static_cast<int>(found[i].size()); };
     std::atomic<int> waiting{0};

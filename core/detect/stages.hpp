@@ -72,7 +72,6 @@ Candidates select(const Search& search, Candidates compared);
 struct Stage {
   std::string_view name;  ///< Of its function, its file and its options.
   Candidates (*run)(const Search&, Candidates);
-  double time_share;      ///< Of the time left at its start, where there is a deadline.
   std::string_view text;  ///< What it does, for people.
   /// How many candidates of all models together go on, the best by score; null: all.
   int (*most_in_library)(const DetectPlan&) = nullptr;
