@@ -21,11 +21,6 @@ namespace bpa {
 
 using io::kOptional;
 
-static void fields(auto& visit, io::Is<TrackAlternative> auto& alternative) {
-  visit("pose", alternative.frame_from_object);
-  visit("weight", alternative.weight);
-}
-
 static void fields(auto& visit, io::Is<Track> auto& track) {
   visit("id", track.id);
   visit("name", track.name, kOptional);

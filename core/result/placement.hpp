@@ -16,10 +16,10 @@ struct ScoreComponent {
   double value = 0;
 };
 
-/// Another pose that explains the view nearly as well.
+/// Another pose that explains the view, or what a track has seen, nearly as well.
 struct PoseAlternative {
-  Pose frame_from_object;  ///< In the placement's frame, metres.
-  double weight = 0;       ///< In (0, 1]; the weights of a placement and its alternatives sum to 1.
+  Pose frame_from_object;  ///< In the frame of the placement or track, metres.
+  double weight = 0;       ///< In (0, 1]; with its own weight, all alternatives' sum to 1.
 };
 
 /// Uncertainty of an orientation as a Bingham distribution (paper, appendix): density proportional

@@ -23,12 +23,6 @@ enum class TrackState : std::uint8_t {
 /// "tentative", "confirmed", "occluded" or "lost".
 std::string_view name_of(TrackState state);
 
-/// Another pose that the views so far explain as well.
-struct TrackAlternative {
-  Pose frame_from_object;
-  double weight = 0;  ///< In (0, 1]; the weights of a track and its alternatives sum to 1.
-};
-
 /// One object, followed from frame to frame. Poses, velocities and covariances are about the axes
 /// of TrackedFrame::frame_id.
 struct Track {
@@ -49,7 +43,7 @@ struct Track {
   double unseen_s = 0;          ///< Since it was last seen.
   bool held = false;            ///< Kept however long it is not seen, because a user asked for it.
   double weight = 1;            ///< Of the pose against its alternatives.
-  std::vector<TrackAlternative> alternatives = {};  ///< By falling weight; empty: none is left.
+  std::vector<PoseAlternative> alternatives = {};  ///< By falling weight; empty: none is left.
 };
 
 /// A track that is no more.

@@ -88,7 +88,7 @@ Track report(const Life& life, std::int64_t stamp_ns) {
     out.alternatives.push_back(
         {out.frame_from_object * mode.object_from_mode, std::exp(mode.log_weight) / sum});
   }
-  std::ranges::stable_sort(out.alternatives, std::greater(), &TrackAlternative::weight);
+  std::ranges::stable_sort(out.alternatives, std::greater(), &PoseAlternative::weight);
   return out;
 }
 

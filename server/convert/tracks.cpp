@@ -32,7 +32,7 @@ wire::bpa_msgs::Track track_message(const Track& track) {
       .held = track.held,
       .weight = track.weight,
       .alternatives = {}};
-  for (const TrackAlternative& other : track.alternatives) {
+  for (const PoseAlternative& other : track.alternatives) {
     message.alternatives.push_back({pose_message(other.frame_from_object), other.weight});
   }
   return message;

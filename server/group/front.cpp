@@ -34,9 +34,7 @@ class RunningFront : public Front {
       : topics_(group),
         links_(new Links{.front = new_session(),
                          .members = {participant, group, std::move(log)},
-                         .mailboxes = {},
-                         .cost_mutex = {},
-                         .cost = {}}) {
+                         .mailboxes = {}}) {
     offer_.emplace(or_throw(
         wire::Publisher<msgs::GroupLibrary>::create(participant, topics_.library(), {qos()})));
     files_.emplace(or_throw(wire::ServiceServer<msgs::GetModelFile>::create(

@@ -6,7 +6,6 @@
 
 #include "core/base/concat.hpp"
 #include "server/group/session.hpp"
-#include "server/group/split.hpp"
 
 namespace bpa::server::group {
 namespace {
@@ -15,8 +14,7 @@ namespace msgs = wire::bpa_msgs;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMaxWorkers = 1024;
-constexpr auto kForgetAfter = std::chrono::seconds(30);     // of silence
-constexpr double kUsualMsAModel = SearchCost().ms_a_model;  // of a worker that was not measured
+constexpr auto kForgetAfter = std::chrono::seconds(30);  // of silence
 
 }  // namespace
 
@@ -126,7 +124,7 @@ double Members::ms_a_model(std::uint64_t worker) const {
     sum += member.ms_a_model;
     measured += member.ms_a_model > 0;
   }
-  return measured > 0 ? sum / measured : kUsualMsAModel;
+  return measured > 0 ? sum / measured : 1;
 }
 
 void Members::measured(std::uint64_t worker, double ms_a_model) {

@@ -63,7 +63,7 @@ class Members {
   /// How many searches these take part in now.
   std::size_t searches(const std::vector<std::uint64_t>& workers) const;
 
-  /// Its measured time for a model of a search; before that the mean of others.
+  /// Its measured time for a model of a search; before that the mean of others, or 1 of no unit.
   double ms_a_model(std::uint64_t worker) const;
 
   /// Of one more search.

@@ -11,6 +11,7 @@
 #include "core/base/concat.hpp"
 #include "core/base/stopwatch.hpp"
 #include "server/group/messages.hpp"
+#include "server/group/split.hpp"
 
 namespace bpa::server::group {
 namespace {
@@ -49,8 +50,7 @@ class Search {
     std::vector<std::uint64_t> workers = usable();
     if (workers.empty()) return;
     const std::size_t frames = links_->members.searches(workers) + task_.waiting + 1;
-    const std::lock_guard<std::mutex> lock(links_->cost_mutex);
-    workers.resize(workers_for_frame(links_->cost, models_.size(), frames, workers.size()));
+    workers.resize(workers_for_frame(frames, workers.size()));
     give(workers);
   }
 
@@ -136,7 +136,8 @@ class Search {
     const double busy_ms = answer.busy_ms;
     Result<SearchResult> found = result_from(std::move(answer), models_of(share->models), pixels);
     if (found.ok()) {
-      measure(*share, busy_ms, found->preparation_ms);
+      links_->members.measured(share->worker, std::max(0.0, busy_ms - found->preparation_ms) /
+                                                  static_cast<double>(share->models.size()));
       add(std::move(found).value(), share->models);
     } else {
       log(links_->members.hook(), LogLevel::warning,
@@ -145,15 +146,6 @@ class Search {
       std::ranges::copy(share->models, std::back_inserter(open_));
     }
     shares_.erase(share);
-  }
-
-  void measure(const Share& share, double busy_ms, double preparation_ms) {
-    const double ms_a_model =
-        std::max(0.0, busy_ms - preparation_ms) / static_cast<double>(share.models.size());
-    links_->members.measured(share.worker, ms_a_model);
-    const std::lock_guard<std::mutex> lock(links_->cost_mutex);
-    links_->cost.add(
-        {preparation_ms, ms_a_model, std::max(0.0, share.given.milliseconds() - busy_ms)});
   }
 
   void add(SearchResult found, const std::vector<std::size_t>& models) {

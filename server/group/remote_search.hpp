@@ -15,7 +15,6 @@
 #include "idl/wire/msg/bpa_msgs.hpp"
 #include "server/group/library.hpp"
 #include "server/group/members.hpp"
-#include "server/group/split.hpp"
 
 namespace bpa::server::group {
 
@@ -59,8 +58,6 @@ struct Links {
   std::uint64_t front;
   Members members;
   Mailboxes mailboxes;
-  std::mutex cost_mutex;
-  SearchCost cost;
 };
 
 /// What one search is about. References outlive the search.

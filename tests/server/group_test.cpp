@@ -47,13 +47,11 @@ TEST(Split, SlowestShareIsAsShortAsAnySplitMakesIt) {
 }
 
 TEST(Split, OneFrameGetsAllWorkersManyFramesOneEach) {
-  const SearchCost cost{.preparation_ms = 50, .ms_a_model = 20, .exchange_ms = 20};
-  EXPECT_EQ(workers_for_frame(cost, 100, 1, 4), 4U);
-  EXPECT_EQ(workers_for_frame(cost, 100, 2, 4), 2U);
-  EXPECT_EQ(workers_for_frame(cost, 100, 8, 4), 1U);
-  EXPECT_EQ(workers_for_frame(cost, 100, 1, 0), 1U);
-  // The wire costs more than what can be split.
-  EXPECT_EQ(workers_for_frame({.exchange_ms = 40}, 2, 1, 4), 1U);
+  EXPECT_EQ(workers_for_frame(1, 4), 4U);
+  EXPECT_EQ(workers_for_frame(2, 4), 2U);
+  EXPECT_EQ(workers_for_frame(8, 4), 1U);
+  EXPECT_EQ(workers_for_frame(1, 0), 1U);
+  EXPECT_EQ(workers_for_frame(0, 3), 3U);
 }
 
 TEST(Claims, ExactlyOneOfThoseThatHearOneAnotherServes) {
