@@ -30,7 +30,6 @@ struct SpeedArguments {
   std::vector<int> model_counts = {5, 21, 50, 100, 200};
   double min_visible = 0.1;
   std::string json, plot, compare;
-  CountAllocations allocations = nullptr;
 };
 
 /// The library's models, those of the data set's truth first, then made shapes.
@@ -126,11 +125,7 @@ class Measurement {
     // The first search reads mapped files and does not count.
     if (milliseconds_.empty()) or_throw(detector.detect(frame.frame, request));
     const double cpu = cpu_seconds();
-    const auto instructions = instructions_.count();
-    const std::uint64_t allocations = a_.allocations ? a_.allocations() : 0;
     const auto result = or_throw(detector.detect(frame.frame, request));
-    if (a_.allocations) allocated_ += static_cast<double>(a_.allocations() - allocations);
-    if (instructions) executed_ += static_cast<double>(*instructions_.count() - *instructions);
     cpu_seconds_ += cpu_seconds() - cpu;
     milliseconds_.push_back(result.total_milliseconds);
     effort_ += result.effort;
@@ -142,7 +137,6 @@ class Measurement {
 
   /// Adds what was measured to a row of the report.
   void write(SpeedReport& row) const {
-    const bool counted = instructions_.count().has_value();
     row["right"] = placements_.reported.hits;
     row["reported"] = placements_.reported.total;
     row["found"] = placements_.found.hits;
@@ -152,8 +146,6 @@ class Measurement {
     row["median_ms"] = median(times);
     row["max_ms"] = std::ranges::max(milliseconds_);
     row["cpu_s"] = cpu_seconds_ / frames();
-    row["instructions"] = counted ? SpeedReport(executed_ / frames()) : SpeedReport();
-    row["allocations"] = a_.allocations ? SpeedReport(allocated_ / frames()) : SpeedReport();
     for (const auto& [name, count] : kEffortCounts) {
       row[name] = static_cast<double>(effort_.*count) / frames();
     }
@@ -163,10 +155,9 @@ class Measurement {
 
  private:
   const SpeedArguments& a_;
-  InstructionCounter instructions_;
   RightPlacements placements_;
   std::vector<double> milliseconds_;
-  double cpu_seconds_ = 0, executed_ = 0, allocated_ = 0;
+  double cpu_seconds_ = 0;
   SearchEffort effort_;
   std::vector<PlanEntry> plan_;  // of the last frame
 };
@@ -275,11 +266,10 @@ void bench_speed(const SpeedArguments& a) {
 
 }  // namespace
 
-void add_bench_speed(CLI::App& bench, CountAllocations allocations) {
+void add_bench_speed(CLI::App& bench) {
   const auto [command, a] = add_command(
       bench, "speed", "Recall and time by time budget, time and memory by number of models",
       bench_speed);
-  a.allocations = allocations;
   add_dataset_options(command, a.dataset);
   add_detector_options(command, a.detector);
   add_min_visible_option(command, a.min_visible);

@@ -123,16 +123,12 @@ class Progress {
 void run_all(const std::string& title, int count, int num_threads,
              const std::function<void(int)>& work);
 
-/// Calls of operator new so far, by all threads.
-using CountAllocations = std::uint64_t (*)();
-
 /// Runs the command that the command line chooses. Returns the exit code: 0, 1 after a failure, 2
 /// after wrong usage.
 int run_program(CLI::App& program, int argc, char** argv);
 
-/// The program bpa. Returns as run_program(). Without `allocations`, bpa bench speed does not know
-/// their number.
-int run_bpa(int argc, char** argv, CountAllocations allocations = nullptr);
+/// The program bpa. Returns as run_program().
+int run_bpa(int argc, char** argv);
 
 void add_model_command(CLI::App& program);
 void add_detect_command(CLI::App& program);
@@ -145,6 +141,6 @@ void add_simulate_command(CLI::App& program);
 
 /// The measurements of `bpa bench`.
 void add_bench_accuracy(CLI::App& bench);
-void add_bench_speed(CLI::App& bench, CountAllocations allocations);
+void add_bench_speed(CLI::App& bench);
 
 }  // namespace bpa::cli

@@ -4,11 +4,8 @@
 
 #include <fstream>
 
-#include <linux/perf_event.h>
 #include <malloc.h>
-#include <sys/syscall.h>
 #include <time.h>
-#include <unistd.h>
 
 namespace bpa::cli {
 namespace {
@@ -47,29 +44,6 @@ bool reset_peak_memory() {
 std::string cpu_name() {
   const std::string name = line_of("/proc/cpuinfo", "model name");
   return name.empty() ? "unknown" : name;
-}
-
-InstructionCounter::InstructionCounter() {
-  perf_event_attr event{};
-  event.type = PERF_TYPE_HARDWARE;
-  event.size = sizeof event;
-  event.config = PERF_COUNT_HW_INSTRUCTIONS;
-  event.inherit = 1;
-  event.exclude_kernel = 1;
-  event.exclude_hv = 1;
-  constexpr int kThisThread = 0, kAnyCpu = -1, kNoGroup = -1;
-  file_ = static_cast<int>(
-      syscall(SYS_perf_event_open, &event, kThisThread, kAnyCpu, kNoGroup, PERF_FLAG_FD_CLOEXEC));
-}
-
-InstructionCounter::~InstructionCounter() {
-  if (file_ >= 0) close(file_);
-}
-
-std::optional<std::uint64_t> InstructionCounter::count() const {
-  std::uint64_t count = 0;
-  if (file_ < 0 || read(file_, &count, sizeof count) != sizeof count) return std::nullopt;
-  return count;
 }
 
 }  // namespace bpa::cli

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -21,20 +20,5 @@ bool reset_peak_memory();
 
 /// The processor's name; "unknown" where the kernel does not say.
 std::string cpu_name();
-
-/// Counts instructions of this thread and of those that it starts, outside the kernel.
-class InstructionCounter {
- public:
-  InstructionCounter();
-  ~InstructionCounter();
-  InstructionCounter(const InstructionCounter&) = delete;
-  InstructionCounter& operator=(const InstructionCounter&) = delete;
-
-  /// Since the construction; none where kernel or machine does not allow it.
-  std::optional<std::uint64_t> count() const;
-
- private:
-  int file_;
-};
 
 }  // namespace bpa::cli

@@ -19,7 +19,7 @@ int run_program(CLI::App& program, int argc, char** argv) {
   return 0;
 }
 
-int run_bpa(int argc, char** argv, CountAllocations allocations) {
+int run_bpa(int argc, char** argv) {
   CLI::App program{"bpa: known objects in RGB-D frames, by Bingham Procrustean Alignment", "bpa"};
   program.require_subcommand(1);
   program.set_version_flag("--version", BPA_VERSION);
@@ -34,7 +34,7 @@ int run_bpa(int argc, char** argv, CountAllocations allocations) {
   CLI::App& bench = *program.add_subcommand("bench", "Run an experiment");
   bench.require_subcommand(1);
   add_bench_accuracy(bench);
-  add_bench_speed(bench, allocations);
+  add_bench_speed(bench);
   return run_program(program, argc, argv);
 }
 

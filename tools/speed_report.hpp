@@ -18,8 +18,7 @@
 //
 // A row has the placements "right" of those "reported"; instances "found" in the best
 // interpretation and "found_in_twenty" of all "instances"; "median_ms" and "max_ms" of a frame; and
-// means of a frame: "cpu_s", "instructions", "allocations", and the counts of SearchEffort. What
-// the machine does not tell is null.
+// means of a frame: "cpu_s" and the counts of SearchEffort. What the machine does not tell is null.
 
 namespace bpa::cli {
 
