@@ -29,7 +29,7 @@ struct SpeedArguments {
   std::vector<double> budgets = {0.1, 0.25, 0.5, 1, 2, 0};  // seconds; 0: none
   std::vector<int> model_counts = {5, 21, 50, 100, 200};
   double min_visible = 0.1;
-  std::string json, plot, compare;
+  std::string json, plot;
 };
 
 /// The library's models, those of the data set's truth first, then made shapes.
@@ -230,8 +230,6 @@ void bench_speed(const SpeedArguments& a) {
   if (std::filesystem::equivalent(a.detector.library, a.detector.further, error)) {
     throw Failure(invalid_argument("--shapes is the library itself; it must be another folder"));
   }
-  SpeedReport earlier;
-  if (!a.compare.empty()) earlier = read_speed_report(a.compare);
   const TrueObjects truth = true_objects(a.dataset);
   SpeedReport report = empty_speed_report();
   report["bpa"] = BPA_VERSION;
@@ -259,7 +257,6 @@ void bench_speed(const SpeedArguments& a) {
   }
   report["stages_ms"] = measure_stages(a, detector);
   print_speed_report(report);
-  if (!a.compare.empty()) print_speed_ratios(report, earlier);
   if (!a.json.empty()) or_throw(io::write_file(a.json, report.dump(1) + "\n"));
   if (!a.plot.empty()) plot_recall_over_time(a.plot, report);
 }
@@ -288,8 +285,6 @@ void add_bench_speed(CLI::App& bench) {
              "DIR");
   add_option(command, "--json", a.json, "Write the report as JSON", "FILE");
   add_option(command, "--plot", a.plot, "Write recall over time as PNG", "FILE");
-  add_option(command, "--compare", a.compare, "Print ratios to an earlier report that --json wrote",
-             "FILE");
 }
 
 }  // namespace bpa::cli

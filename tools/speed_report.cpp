@@ -88,33 +88,6 @@ Table table_of(const SpeedReport& report, const TablePart& part) {
   return table;
 }
 
-/// "-" unless both are numbers and the earlier one is not 0.
-std::string ratio(const SpeedReport& now, const SpeedReport& earlier) {
-  if (!now.is_number() || !earlier.is_number() || earlier == 0) return "-";
-  return fixed(now.get<double>() / earlier.get<double>(), 3);
-}
-
-Table ratios_of(const SpeedReport& now, const SpeedReport& earlier, const TablePart& part) {
-  Table table{std::string("now/earlier, ") + part.title, {}, {}};
-  std::vector<std::pair<const SpeedReport*, const SpeedReport*>> pairs;
-  for (const SpeedReport& row : now.at(part.key)) {
-    for (const SpeedReport& other : earlier.at(part.key)) {
-      if (row.at(part.row_key) != other.at(part.row_key)) continue;
-      pairs.emplace_back(&row, &other);
-      table.columns.push_back(row_name(row, part));
-    }
-  }
-  if (pairs.empty()) return table;
-  for (const auto& [key, first] : pairs.front().first->items()) {
-    if (key == part.row_key) continue;
-    auto& cells = table.lines.emplace_back(words(key), std::vector<std::string>()).second;
-    for (const auto& [row, other] : pairs) {
-      cells.push_back(ratio(row->at(key), other->value(key, SpeedReport())));
-    }
-  }
-  return table;
-}
-
 }  // namespace
 
 SpeedReport empty_speed_report() { return {{"format", kFormat}, {"version", kVersion}}; }
@@ -127,42 +100,6 @@ void print_speed_report(const SpeedReport& report) {
   Table stages{"stages", {"mean ms"}, {}};
   for (const auto& [stage, milliseconds] : report.at(kStages).items()) {
     stages.lines.push_back({stage, {text(milliseconds)}});
-  }
-  stages.print();
-}
-
-SpeedReport read_speed_report(const std::string& path) {
-  SpeedReport report = SpeedReport::parse(or_throw(io::read_file(path)), nullptr, false);
-  const auto has_rows = [&report](const TablePart& part) {
-    const SpeedReport rows = report.value(part.key, SpeedReport());
-    return rows.is_array() && std::ranges::all_of(rows, [&part](const SpeedReport& row) {
-             return row.is_object() && row.contains(part.row_key);
-           });
-  };
-  const bool right = report.is_object() && report.value("format", SpeedReport()) == kFormat &&
-                     report.value("version", SpeedReport()) == kVersion &&
-                     std::ranges::all_of(kTables, has_rows) &&
-                     report.value(kStages, SpeedReport()).is_object();
-  if (!right) {
-    throw Failure(
-        {StatusCode::corrupt, concat(path, " is not a report of version ", kVersion,
-                                     "; --compare takes what 'bpa bench speed --json' writes")});
-  }
-  return report;
-}
-
-void print_speed_ratios(const SpeedReport& now, const SpeedReport& earlier) {
-  for (const char* key : {"cpu", "threads", "dataset", "seed", "frames"}) {
-    const SpeedReport other = earlier.value(key, SpeedReport());
-    if (now.at(key) == other) continue;
-    std::printf("earlier, %s was %s; now it is %s\n", key, other.dump().c_str(),
-                now.at(key).dump().c_str());
-  }
-  for (const TablePart& part : kTables) ratios_of(now, earlier, part).print();
-  Table stages{"now/earlier, stages", {"mean ms"}, {}};
-  for (const auto& [stage, milliseconds] : now.at(kStages).items()) {
-    stages.lines.push_back(
-        {stage, {ratio(milliseconds, earlier.at(kStages).value(stage, SpeedReport()))}});
   }
   stages.print();
 }

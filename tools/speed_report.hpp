@@ -30,13 +30,6 @@ SpeedReport empty_speed_report();
 /// For people, to stdout.
 void print_speed_report(const SpeedReport& report);
 
-/// Fails with not_found, or with corrupt where the file is not such a report.
-SpeedReport read_speed_report(const std::string& path);
-
-/// What is now over what was earlier, for each number that both have; says where the reports
-/// differ in CPU, threads, data set, seed or frames. Prints to stdout.
-void print_speed_ratios(const SpeedReport& now, const SpeedReport& earlier);
-
 /// Draws recall over time, from the budgets. Fails with unavailable.
 void plot_recall_over_time(const std::string& path, const SpeedReport& report);
 

@@ -122,49 +122,12 @@ TEST_F(BenchSpeed, FillsUpALibraryWithMadeShapes) {
   EXPECT_EQ(report("r.json").at("models").at(1).at("pose_checks"), row.at("pose_checks"));
 }
 
-TEST_F(BenchSpeed, ComparesWithAnEarlierReport) {
-  const std::vector<std::string> once = {"--budgets", "0", "--model-counts", "1"};
-  auto options = once;
-  options.insert(options.end(), {"--json", folder_ / "r.json"});
-  ASSERT_EQ(run(options).exit_code, 0);
-  Json earlier = report("r.json");
-  Json& row = earlier.at("budgets").at(0);
-  row["full_scores"] = row.at("full_scores").get<double>() / 4;
-  row["pose_checks"] = 0;
-  earlier["cpu"] = "abacus";
-  test::spill(folder_ / "r.json", earlier.dump());
-  options = once;
-  options.insert(options.end(), {"--compare", folder_ / "r.json"});
-  const Run compared = run(options);
-  ASSERT_EQ(compared.exit_code, 0) << compared.error;
-  const std::size_t ratios = compared.out.find("now/earlier, seconds allowed");
-  ASSERT_NE(ratios, std::string::npos);
-  EXPECT_NE(compared.out.find("earlier, cpu was \"abacus\"; now it is "), std::string::npos);
-  const auto line = [&](const std::string& name) {
-    const std::size_t start = compared.out.find("\n" + name, ratios) + 1;
-    return compared.out.substr(start, compared.out.find('\n', start) - start);
-  };
-  EXPECT_NE(line("full scores").find(" 4.000"), std::string::npos) << line("full scores");
-  EXPECT_NE(line("quick scores").find(" 1.000"), std::string::npos) << line("quick scores");
-  EXPECT_EQ(line("pose checks").back(), '-') << line("pose checks");
-}
-
 TEST_F(BenchSpeed, SaysWhatIsWrong) {
   const auto refusal = [&](const std::vector<std::string>& options) {
     const Run failed = run(options);
     EXPECT_EQ(failed.exit_code, 1);
     return failed.error;
   };
-  const std::string wrong = folder_ / "wrong.json";
-  EXPECT_NE(refusal({"--compare", wrong}).find("wrong.json"), std::string::npos);
-  for (const char* text : {"", "[]", R"({"format": "bpa results", "version": 1})",
-                           R"({"format": "bpa speed bench", "version": 1, "budgets": [1]})"}) {
-    test::spill(wrong, text);
-    EXPECT_EQ(refusal({"--compare", wrong}),
-              "bpa: " + wrong +
-                  " is not a report of version 1; --compare takes what 'bpa bench speed --json' "
-                  "writes\n");
-  }
   EXPECT_EQ(run({"--budgets", "-1"}).exit_code, 2);
   EXPECT_EQ(run({"--model-counts", "0"}).exit_code, 2);
   EXPECT_NE(refusal({"--scenes", "7"}).find("has no scene 7"), std::string::npos);
