@@ -78,7 +78,7 @@ detect::Candidates others_of(const Detector& detector, const FrameTrace& trace,
     const bool found = random.uniform() < kFound;
     if (model == models.end() || !found) continue;
     detect::Candidate other{.model = model->get()};
-    other.refinement.camera_from_object = instance.camera_from_object;
+    other.refinement.frame_from_object = instance.camera_from_object;
     other.explained = score::explained_pixels(trace.scene.image, **model, other.pose());
     other.values[score::component("exposure")] = exposure_of(trace.scene, **model, other.pose());
     if (other.explained.size() >= kInSight) out.push_back(std::move(other));

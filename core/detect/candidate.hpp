@@ -21,7 +21,7 @@ enum class Source : std::uint8_t { feature, pairs, prior, region, count };
 /// the later fields.
 struct Candidate {
   const ObjectModel* model = nullptr;  ///< Lives as long as the library.
-  /// The pose (camera_from_object) with the information of the last alignment.
+  /// The pose with the information of the last alignment.
   Refinement refinement = {};
   Source found_by = Source::feature;
   /// Stays whatever its log odds, beside better ones and beyond counts: what the caller's priors or
@@ -38,8 +38,8 @@ struct Candidate {
   score::LowestLogOdds lowest = {};  ///< For measuring limits.
   std::vector<std::uint32_t> explained = {};  ///< Sorted pixels of the reduced image on the model.
 
-  const Pose& pose() const { return refinement.camera_from_object; }
-  /// Where the object's centre is, camera frame.
+  const Pose& pose() const { return refinement.frame_from_object; }
+  /// Where the object's centre is, in the frame of pose().
   Eigen::Vector3d place() const { return pose() * model->centre; }
 };
 using Candidates = std::vector<Candidate>;

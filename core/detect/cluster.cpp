@@ -67,7 +67,7 @@ Candidate best_of(const Search& search, const Cluster& cluster) {
   best.score = score(best.pose());
   const double score_aligned = score(aligned);
   if (score_aligned > best.score) {
-    best.refinement.camera_from_object = aligned;
+    best.refinement.frame_from_object = aligned;
     best.score = score_aligned;
   }
   return best;

@@ -23,7 +23,7 @@ Candidates correct(const Search& search, Candidates checked) {
     Candidate& candidate = checked[i];
     const Pose corrected = search.aligned(candidate.pose(), kCorrection);
     if (check_score(corrected) <= check_score(candidate.pose())) return;
-    candidate.refinement.camera_from_object = corrected;
+    candidate.refinement.frame_from_object = corrected;
     candidate.score = search.quick_score(corrected, kCheckRankPoints);
   });
   sort_by_score(checked);

@@ -12,8 +12,8 @@
 namespace bpa::detect {
 
 struct Refinement {
-  Pose camera_from_object;
-  /// Information (inverse covariance) about the camera's axes, of (translation of the object's
+  Pose frame_from_object;  ///< The frame is the camera's, or the one that several views share.
+  /// Information (inverse covariance) about that frame's axes, of (translation of the object's
   /// origin, rotation), from the correspondences used last. SI units.
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
   int num_correspondences = 0;

@@ -118,7 +118,7 @@ Pose align_to_surface(const SceneFeatures& scene, const ObjectModel& model, cons
 
 Candidates round_two(const Search& search, Candidates clusters) {
   change_each(search, clusters, [&](Candidate& candidate) {
-    candidate.refinement.camera_from_object = aligned(search, candidate.pose());
+    candidate.refinement.frame_from_object = aligned(search, candidate.pose());
     candidate.score = search.quick_score(candidate.pose());
   });
   suppress_duplicates(search, clusters);

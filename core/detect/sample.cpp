@@ -38,7 +38,7 @@ void from_features(const Search& search, Candidates& out) {
                         .model_point = matches[k].index};
     const align::OrientedPair pair = oriented_pair(search, candidate);
     for (int draw = 0; draw < options.draws_per_match; ++draw) {
-      candidate.refinement.camera_from_object = align::bpa_sample_one(pair, random);
+      candidate.refinement.frame_from_object = align::bpa_sample_one(pair, random);
       out.push_back(candidate);
     }
   }
@@ -57,7 +57,7 @@ void add_voted(const Search& search, std::span<const features::VotedPose> poses,
                     features::basis_of(model.normals[m]).transpose();
     pose.translation = scene.points[s] - pose.rotation * model.points[m];
     out.push_back({.model = &search.model,
-                   .refinement = {.camera_from_object = to_pose(pose)},
+                   .refinement = {.frame_from_object = to_pose(pose)},
                    .found_by = Source::pairs,
                    .scene_point = s,
                    .model_point = m});

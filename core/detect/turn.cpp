@@ -22,7 +22,7 @@ Candidates near_symmetric(const Search& search, Candidates& candidates) {
     for (const Pose& motion : search.model.index->near_symmetries) {
       const Pose turned = candidates[i].pose() * motion;
       out.push_back({.model = &search.model,
-                     .refinement = {.camera_from_object = turned},
+                     .refinement = {.frame_from_object = turned},
                      .found_by = candidates[i].found_by,
                      .is_protected = candidates[i].is_protected,
                      .lowest = candidates[i].lowest});

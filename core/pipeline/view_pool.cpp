@@ -183,9 +183,9 @@ void ViewPool::score_in(int view, const ObjectModel& model, SearchEffort& effort
     const Pose start = scene_from_camera_[view].inverse() * joint(entry).scene_from_object;
     if (!((start * model.centre).z() > 0)) continue;  // behind the camera
     detect::Refinement refinement = search.refine(start, near);
-    const PoseError moved = pose_error(refinement.camera_from_object, start);
+    const PoseError moved = pose_error(refinement.frame_from_object, start);
     if (moved.position > options_.same_position_m || moved.angle > options_.same_angle_rad ||
-        search.quick_score(refinement.camera_from_object) < search.quick_score(start)) {
+        search.quick_score(refinement.frame_from_object) < search.quick_score(start)) {
       refinement = search.measured(start);
     }
     const detect::Candidate candidate{

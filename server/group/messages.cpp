@@ -266,7 +266,7 @@ Result<detect::Candidate> candidate_from(msgs::GroupCandidate message, const Obj
   if (message.found_by >= static_cast<std::uint8_t>(detect::Source::count)) {
     return corrupt("a candidate of ", model.name, " has found_by ", int{message.found_by});
   }
-  candidate.refinement.camera_from_object = pose_from(message.pose.data());
+  candidate.refinement.frame_from_object = pose_from(message.pose.data());
   if (!is_valid(candidate.pose())) return corrupt("a candidate of ", model.name, " has no pose");
   candidate.refinement.information =
       Eigen::Map<const Eigen::Matrix<double, 6, 6>>(message.information.data());

@@ -144,7 +144,7 @@ class Draw {
 
   detect::Candidate candidate(const ObjectModel& model, std::size_t pixels) {
     detect::Candidate out{.model = &model};
-    out.refinement.camera_from_object = pose();
+    out.refinement.frame_from_object = pose();
     for (double& entry : out.refinement.information.reshaped()) entry = number(-1e9, 1e9);
     out.refinement.num_correspondences = count(0, 100000);
     out.found_by =

@@ -298,8 +298,8 @@ TEST_F(GroupLibrary, AnswerComesBackWholeOrNotAtAll) {
 TEST_F(GroupLibrary, CandidateComesBackToTheBitOrNotAtAll) {
   const auto front = front_library();
   detect::Candidate candidate{.model = front->find(1).get()};
-  candidate.refinement.camera_from_object = {Eigen::Quaterniond(0.1, 0.7, -0.3, 0.2).normalized(),
-                                             {0.1, 1.0 / 3, 0.7}};
+  candidate.refinement.frame_from_object = {Eigen::Quaterniond(0.1, 0.7, -0.3, 0.2).normalized(),
+                                            {0.1, 1.0 / 3, 0.7}};
   candidate.refinement.information.setRandom();
   candidate.refinement.num_correspondences = 12;
   candidate.found_by = detect::Source::pairs;

@@ -64,7 +64,7 @@ TEST_F(EdgeMatches, AloneSayWhereAFaceIsAcrossTheView) {
     RefinementOptions options;
     options.iterations = 10;
     const auto error = [&] {
-      return pose_error(refine_pose(scene, *brick_, beside(x, -x), options).camera_from_object,
+      return pose_error(refine_pose(scene, *brick_, beside(x, -x), options).frame_from_object,
                         kTruth)
           .position;
     };

@@ -80,7 +80,7 @@ TEST_F(LayFlat, ChangesNoOtherCandidate) {
   const SceneFeatures seen = scene(true);
   const Search search(seen, *card_);
   Candidates others(3, Candidate{.model = card_.get(), .score = 1});
-  others[1].refinement.camera_from_object = test::disturbed(truth_, 0.1, 0.2, 5);
+  others[1].refinement.frame_from_object = test::disturbed(truth_, 0.1, 0.2, 5);
   const Candidates after = lay(search, others);
   ASSERT_GT(after.size(), others.size());
   for (std::size_t i = 0; i < others.size(); ++i) {

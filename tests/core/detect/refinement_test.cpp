@@ -36,7 +36,7 @@ TEST_F(RefinementOf, CleanDataConvergesToTheTruth) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Pose start = test::disturbed(l_truth_, 0.01, 5 * kDegree, seed);
     const Refinement refined = refine_pose(scene, *l_, start, long_run());
-    const PoseError error = pose_error(refined.camera_from_object, l_truth_);
+    const PoseError error = pose_error(refined.frame_from_object, l_truth_);
     EXPECT_LT(error.position, 0.001);
     EXPECT_LT(error.angle, 0.7 * kDegree);
     EXPECT_GT(refined.num_correspondences, 200);
@@ -48,7 +48,7 @@ TEST_F(RefinementOf, NoisyDataComesNear) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Pose start = test::disturbed(l_truth_, 0.01, 5 * kDegree, seed);
     const PoseError error =
-        pose_error(refine_pose(scene, *l_, start, long_run()).camera_from_object, l_truth_);
+        pose_error(refine_pose(scene, *l_, start, long_run()).frame_from_object, l_truth_);
     EXPECT_LT(error.position, 0.002);
     EXPECT_LT(error.angle, 1.5 * kDegree);
   }
@@ -70,8 +70,8 @@ TEST_F(RefinementOf, FarFromEverythingItStaysWhereItIs) {
   start.translation.z() -= 0.3;
   const Refinement refined = refine_pose(scene, *l_, start, {});
   EXPECT_LT(refined.num_correspondences, 6);
-  EXPECT_LT(pose_error(refined.camera_from_object, start).position, 1e-6);
-  EXPECT_TRUE(is_valid(refined.camera_from_object));
+  EXPECT_LT(pose_error(refined.frame_from_object, start).position, 1e-6);
+  EXPECT_TRUE(is_valid(refined.frame_from_object));
   const Pose behind{start.rotation, {0, 0, -1}};
   EXPECT_EQ(refine_pose(scene, *l_, behind, {}).num_correspondences, 0);
   const Pose aligned = align_to_surface(scene, *l_, behind, 0.03f, 0, with_pairs(12));

@@ -25,7 +25,7 @@ detect::Candidate turned(const std::shared_ptr<const ObjectModel>& which, double
                          double odds) {
   detect::Candidate out;
   out.model = which.get();
-  out.refinement.camera_from_object = {
+  out.refinement.frame_from_object = {
       Eigen::Quaterniond(Eigen::AngleAxisd(degrees * M_PI / 180, Eigen::Vector3d::UnitZ())),
       {0, 0, 1}};
   out.score = std::log(odds);
@@ -69,7 +69,7 @@ TEST(Alternatives, WeightsSumToOneWithTheChosenOne) {
 
 TEST(Alternatives, ElsewhereIsAnotherObject) {
   detect::Candidate other = turned(kMug, 90, 4);
-  other.refinement.camera_from_object.translation.x() = 0.5;
+  other.refinement.frame_from_object.translation.x() = 0.5;
   other.explained = {7, 8, 9};
   EXPECT_TRUE(alternatives({turned(kMug, 0, 4), other}, 0).empty());
 }

@@ -32,7 +32,7 @@ class GivenOthers : public ::testing::Test {
     for (const Pose& place : kPlaces) {
       detect::Candidate& candidate = candidates_.emplace_back();
       candidate.model = brick_.get();
-      candidate.refinement.camera_from_object = place;
+      candidate.refinement.frame_from_object = place;
       candidate.probability = 0.9;
       candidate.explained = score::explained_pixels(scene_.image, *brick_, place);
     }

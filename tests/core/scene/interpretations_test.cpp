@@ -34,7 +34,7 @@ detect::Candidate candidate(int number, double probability, std::vector<std::uin
   model->diameter = 0.1;
   detect::Candidate out;
   out.model = model;
-  out.refinement.camera_from_object.translation = {0.3 * number, 0, 1};
+  out.refinement.frame_from_object.translation = {0.3 * number, 0, 1};
   out.probability = probability;
   out.score = std::log(probability / (1 - probability));
   out.explained = std::move(explained);
@@ -261,7 +261,7 @@ TEST(Interpretations, AnObjectIsChosenByItsPresenceAtItsLikeliestPose) {
   std::vector<detect::Candidate> poses;
   for (const double odds : {3.0, 4.0, 2.5}) {
     detect::Candidate& pose = poses.emplace_back(mug);
-    pose.refinement.camera_from_object.rotation =
+    pose.refinement.frame_from_object.rotation =
         Eigen::AngleAxisd(static_cast<double>(poses.size()) * M_PI / 2, Eigen::Vector3d::UnitX());
     pose.score = std::log(odds);
   }

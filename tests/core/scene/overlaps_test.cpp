@@ -18,7 +18,7 @@ class OverlapsOf : public ::testing::Test {
   static detect::Candidate brick_at(double x, double y, std::uint32_t first_pixel) {
     detect::Candidate out;
     out.model = brick_.get();
-    out.refinement.camera_from_object.translation = {x, y, 1};
+    out.refinement.frame_from_object.translation = {x, y, 1};
     for (std::uint32_t k = 0; k < 100; ++k) out.explained.push_back(first_pixel + k);
     return out;
   }
@@ -45,9 +45,9 @@ TEST_F(OverlapsOf, EqualObjectsMayLieNearerThanTheirLength) {
   const double thickness = 2 * static_cast<double>(test::kBrickHalf.z());
   ASSERT_LT(thickness, 0.4 * brick_->diameter);
   detect::Candidate second = brick_at(0, 0, 500);
-  second.refinement.camera_from_object.translation.z() += thickness;
+  second.refinement.frame_from_object.translation.z() += thickness;
   EXPECT_FALSE(conflict(brick_at(0, 0, 0), second)) << "stacked";
-  second.refinement.camera_from_object.translation += Eigen::Vector3d(0.02, 0, -0.5 * thickness);
+  second.refinement.frame_from_object.translation += Eigen::Vector3d(0.02, 0, -0.5 * thickness);
   EXPECT_TRUE(conflict(brick_at(0, 0, 0), second));
 }
 
@@ -59,7 +59,7 @@ TEST_F(OverlapsOf, AThinModelIsInOnePlaceByItsCentre) {
   detect::Candidate first = brick_at(0, 0, 0), second = brick_at(0.02, 0, 500);
   first.model = second.model = model.get();
   EXPECT_TRUE(conflict(first, second)) << "6 mm thick";
-  second.refinement.camera_from_object.translation.x() = 0.1;
+  second.refinement.frame_from_object.translation.x() = 0.1;
   EXPECT_FALSE(conflict(first, second));
 }
 
@@ -84,7 +84,7 @@ TEST_F(OverlapsOf, ThePlaceIsThatOfTheCentreNotOfTheOrigin) {
     detect::Candidate out = candidate;
     out.model = model.get();
     const Pose brick_from_model{Eigen::Quaterniond::Identity(), -shift.cast<double>()};
-    out.refinement.camera_from_object =
+    out.refinement.frame_from_object =
         candidate.pose() * Pose{rotation_from_vector({0, 0, turn}), {0, 0, 0}} * brick_from_model;
     return out;
   };
@@ -103,7 +103,7 @@ TEST_F(OverlapsOf, AThingMayLieOnATray) {
   tray.model = model.get();
   detect::Candidate brick = brick_at(0, 0, 0);
   EXPECT_TRUE(conflict(tray, brick)) << "through the middle of the brick";
-  tray.refinement.camera_from_object.translation.z() +=
+  tray.refinement.frame_from_object.translation.z() +=
       static_cast<double>(test::kBrickHalf.z() + thickness / 2);
   EXPECT_FALSE(conflict(tray, brick));
   ModelSource open = *tray.model;
