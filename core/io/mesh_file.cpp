@@ -75,7 +75,7 @@ void drop_copies(TriangleMesh& mesh) {
       const Eigen::Vector3f& v = mesh.vertices[mesh.triangles[t][k]];
       corners[k] = {v.x(), v.y(), v.z()};
     }
-    std::ranges::rotate(corners, std::ranges::min_element(corners));
+    std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
     all.emplace_back(corners, t);
   }
   std::ranges::sort(all);

@@ -80,7 +80,8 @@ LearnedLimits measure_limits(const std::vector<RightPlacement>& with_color,
                              const LearnedLimits& start) {
   LearnedLimits out;
   for (const double keep_right : kLevels) {
-    LearnedLimits::Level& level = out.levels.emplace_back(keep_right, Limits{}, Limits{});
+    LearnedLimits::Level& level =
+        out.levels.emplace_back(LearnedLimits::Level{keep_right, Limits{}, Limits{}});
     for (const auto& [right, of] :
          {std::pair(&with_color, &LearnedLimits::Level::with_color),
           std::pair(&without_color, &LearnedLimits::Level::without_color)}) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <ranges>
 #include <utility>
 
 #include "core/base/concat.hpp"
@@ -123,9 +122,9 @@ void Feed::keep(std::shared_ptr<KeptResult> kept) {
   }
   const auto kept_from = results_.end() - static_cast<std::ptrdiff_t>(count);
   const auto held = [this](const auto& result) {
-    return std::ranges::any_of(
-        viewers_ | std::views::values,
-        [id = result->id](const Viewer& viewer) { return viewer.held == id || viewer.told == id; });
+    return std::ranges::any_of(viewers_, [id = result->id](const auto& viewer) {
+      return viewer.second.held == id || viewer.second.told == id;
+    });
   };
   results_.erase(std::remove_if(results_.begin(), kept_from, std::not_fn(held)), kept_from);
 }
