@@ -10,17 +10,14 @@
 #include "core/base/concat.hpp"
 #include "core/io/file_bytes.hpp"
 #include "ros/private/bag_files.hpp"
+#include "ros/private/mcap.hpp"
 
-// MCAP as its specification has it (mcap.dev/spec): records of an opcode, a length of 8 bytes and a
-// content, little-endian. Schemas and channels come before the messages that use them, so the file
+// Schemas and channels come before the messages that use them, so the file
 // is read in its order, without its index: a recording that was cut short is read as far as it
 // goes.
 
 namespace bpa::ros {
 namespace {
-
-constexpr std::string_view kMagic = "\x89MCAP0\r\n";
-enum Opcode : std::uint8_t { kFooter = 2, kSchema, kChannel, kMessage, kChunk, kDataEnd = 15 };
 
 /// Reads the fields of a record; after a failure, all are 0 or empty.
 class Fields {

@@ -46,7 +46,7 @@ void wait_until(const std::function<bool()>& done) {
   while (!interrupted() && !done()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
 }
 
-Client Common::connect() const {
+ClientOptions Common::client_options() const {
   ClientOptions all = options;
   all.timeout = std::chrono::milliseconds(static_cast<long>(1000 * timeout_s));
   if (localhost) {
@@ -54,7 +54,9 @@ Client Common::connect() const {
     all.range = DiscoveryRange::localhost;
   }
   all.log = [](const std::string& text) { std::cerr << "bpa-client: " << text << '\n'; };
-  return or_throw(Client::connect(all));
+  return all;
 }
+
+Client Common::connect() const { return or_throw(Client::connect(client_options())); }
 
 }  // namespace bpa::cli

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -27,6 +29,8 @@ struct Common {
   /// Connects to the server or throws a Failure. What a subscription's callback refers to must
   /// outlive the client.
   Client connect() const;
+  /// The SDK's options of these.
+  ClientOptions client_options() const;
 };
 
 /// The options that every subcommand has.
@@ -40,6 +44,14 @@ void add_tracks(CLI::App& program, const Common& common);
 void add_detect(CLI::App& program, const Common& common);
 void add_play(CLI::App& program, const Common& common);
 void add_record(CLI::App& program, const Common& common);
+
+struct BagOptions {
+  std::string path;                 ///< A new .mcap file.
+  std::vector<std::string> topics;  ///< Empty: frames of clients and what a server publishes.
+  double seconds = 0;               ///< 0: until interrupted.
+};
+/// Records topics as they come, with or without a server.
+void record_bag(const Common& common, const BagOptions& options);
 
 /// Has SIGINT and SIGTERM end the program in good order.
 void catch_interrupts();

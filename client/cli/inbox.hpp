@@ -15,14 +15,14 @@
 
 namespace bpa::cli {
 
-/// What a subscription delivers, in order; for messages with a stamp_ns. add() is called by the
-/// SDK's thread.
+/// What a subscription delivers, in order. add() is called by the SDK's thread. Items that are
+/// waited for have a stamp_ns.
 template <class T>
 class Inbox {
  public:
-  void add(const T& item) {
+  void add(T item) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    items_.push_back(item);
+    items_.push_back(std::move(item));
     changed_.notify_all();
   }
   /// Takes out everything that came so far.

@@ -18,10 +18,10 @@
 #include "core/io/file_bytes.hpp"
 #include "core/io/image_file.hpp"
 
-// record and play. Two sources can be recorded. The server's own sensor: the server records every
-// frame as it left the driver, with nothing lost on the network; this program asks it to (--oni).
-// And what clients publish to the server, with what it finds: that is taken down here (--to), and
-// can be played:
+// record and play. Two sources can be recorded, beside topics (--bag). The server's own sensor: the
+// server records every frame as it left the driver, with nothing lost on the network; this program
+// asks it to (--oni). And what clients publish to the server, with what it finds: that is taken
+// down here (--to), and can be played:
 //
 //   FOLDER/test/000001/{rgb,depth}/NNNNNN.png, scene_camera.json
 //                           BOP layout, for `bpa detect --bop`
@@ -43,6 +43,7 @@ constexpr double kFloatUnit_mm = 0.1;
 struct RecordOptions {
   std::string oni;
   std::string folder;
+  BagOptions bag;
   double seconds = 0;  ///< 0: until interrupted.
 };
 
@@ -223,24 +224,34 @@ void play(const Common& common, const PlayOptions& options) {
 
 void add_record(CLI::App& program, const Common& common) {
   CLI::App* command = program.add_subcommand(
-      "record", "record frames and results, or have the server record its camera");
+      "record", "record frames, results and topics, or have the server record its camera");
   auto options = std::make_shared<RecordOptions>();
   auto* oni =
       command->add_option("--oni", options->oni,
                           "new OpenNI2 recording, below the server's capture.record_folder (about "
                           "46 MB a second)");
+  auto* to = command->add_option(
+      "--to", options->folder,
+      "new folder for the results and the frames that clients publish: a BOP data set with times; "
+      "32FC1 depth is rounded to 0.1 mm, at most 6.5 m");
+  auto* bag = command->add_option(
+      "--bag", options->bag.path,
+      "new recording of ROS 2, FILE.mcap, of topics as they are published (bpa detect --bag)");
   command
-      ->add_option("--to", options->folder,
-                   "new folder for the results and the frames that clients publish: a BOP data set "
-                   "with times; 32FC1 depth is rounded to 0.1 mm, at most 6.5 m")
-      ->excludes(oni);
+      ->add_option("--topics", options->bag.topics,
+                   "what --bag records; default: frames of clients, results, tracks, transforms")
+      ->needs(bag)
+      ->delimiter(',');
   command->add_option("--seconds", options->seconds, "how long; default until interrupted")
       ->check(CLI::Range(0.1, kLongest));
-  command->callback([options, &common] {
-    if (options->oni.empty() == options->folder.empty()) {
-      throw CLI::ValidationError("record", "give either --oni FILE or --to FOLDER");
+  command->callback([=, &common] {
+    if (oni->count() + to->count() + bag->count() != 1) {
+      throw CLI::ValidationError("record", "give one of --oni FILE, --to FOLDER, --bag FILE.mcap");
     }
-    if (options->folder.empty()) {
+    if (*bag) {
+      options->bag.seconds = options->seconds;
+      record_bag(common, options->bag);
+    } else if (*oni) {
       record_there(common.connect(), *options);
     } else {
       record_here(common, *options);

@@ -9,6 +9,7 @@
 #include <bpa/client.hpp>
 
 #include "client/src/convert.hpp"
+#include "client/src/join.hpp"
 #include "core/base/guarded.hpp"
 #include "idl/wire/messages.hpp"
 #include "idl/wire/middleware.hpp"
@@ -47,25 +48,6 @@ Result<wire::Discovery> discovery_of(const ClientOptions& options) {
   return discovery;
 }
 
-Result<wire::Participant> join(const ClientOptions& options) {
-  if (options.timeout <= Milliseconds(0)) {
-    return invalid_argument("timeout is " + std::to_string(options.timeout.count()) +
-                            " ms; it must be positive");
-  }
-  auto discovery = discovery_of(options);
-  if (!discovery.ok()) return discovery.status();
-  wire::ParticipantOptions seat;
-  seat.node = {options.server_namespace, "client"};
-  seat.discovery = *discovery;
-  seat.security = {options.keystore, options.enclave};
-  if (options.log) {
-    seat.log = [hook = options.log](LogLevel level, std::string_view text) {
-      if (level != LogLevel::debug) hook(std::string(text));
-    };
-  }
-  return wire::Participant::create(std::move(seat));
-}
-
 /// A failure of the request itself, or the one that the server answered.
 template <class Response>
 Status outcome(const Result<Response>& response) {
@@ -83,6 +65,25 @@ auto guarded(const Call& call) {
 }
 
 }  // namespace
+
+Result<wire::Participant> sdk::join(const ClientOptions& options) {
+  if (options.timeout <= Milliseconds(0)) {
+    return invalid_argument("timeout is " + std::to_string(options.timeout.count()) +
+                            " ms; it must be positive");
+  }
+  auto discovery = discovery_of(options);
+  if (!discovery.ok()) return discovery.status();
+  wire::ParticipantOptions seat;
+  seat.node = {options.server_namespace, "client"};
+  seat.discovery = *discovery;
+  seat.security = {options.keystore, options.enclave};
+  if (options.log) {
+    seat.log = [hook = options.log](LogLevel level, std::string_view text) {
+      if (level != LogLevel::debug) hook(std::string(text));
+    };
+  }
+  return wire::Participant::create(std::move(seat));
+}
 
 struct Client::Impl {
   /// A service, or why our enclave may not call it.
@@ -151,7 +152,7 @@ struct Client::Impl {
 };
 
 Result<std::unique_ptr<Client::Impl>> Client::Impl::create(const ClientOptions& options) {
-  auto participant = join(options);
+  auto participant = sdk::join(options);
   if (!participant.ok()) return participant.status();
   std::unique_ptr<Impl> impl(new Impl{options, std::move(participant).value()});
   Status status = impl->get_status.open(impl->participant, "get_status");

@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The bpa authors
 # SPDX-License-Identifier: Apache-2.0
 """The C++ headers of the messages: one a package; messages.hpp, which includes all;
-and type_descriptions.hpp, what ROS 2's service get_type_description says of the types.
+type_descriptions.hpp, what ROS 2's service get_type_description says of the types; and
+message_definitions.hpp, what recordings say of the messages.
 
 A struct has what idl/wire/field.hpp asks for. ROS names stay, with three exceptions:
 constants become kCamelCase, without the prefix that all of a struct share (PARAMETER_BOOL of
@@ -12,6 +13,7 @@ import json
 import os
 import textwrap
 
+from generator.definitions import definition
 from generator.interfaces import ARRAY, PLAIN
 from generator.type_hash import full_description, type_hash
 
@@ -48,6 +50,7 @@ def headers(structs):
         + ''.join(f'#include "idl/wire/msg/{package}.hpp"\n' for package in packages)
         + '#include "idl/wire/time.hpp"\n')
     result['type_descriptions.hpp'] = descriptions_header(structs)
+    result['message_definitions.hpp'] = definitions_header(structs)
     return result
 
 
@@ -60,6 +63,18 @@ def descriptions_header(structs):
         description = json.dumps(full_description(struct, structs, with_defaults=True))
         text += f'  {{"{struct.name}",\n   "{type_hash(struct, structs)}",\n'
         text += f'   {raw(description)},\n   {raw(struct.source)}}},\n'
+    return text + '};\n\n}  // namespace bpa::wire\n'
+
+
+def definitions_header(structs):
+    text = HEAD.format(source='all .idl files') + '#include "idl/wire/field.hpp"\n'
+    text += '\nnamespace bpa::wire {\n\n'
+    text += '/// All types of messages.\n'
+    text += 'inline constexpr MessageDefinition kMessageDefinitions[] = {\n'
+    for struct in structs.values():
+        if '/msg/' in struct.name:
+            text += (f'  {{"{struct.name}",\n   "{type_hash(struct, structs)}",\n'
+                     f'   {raw(definition(struct, structs))}}},\n')
     return text + '};\n\n}  // namespace bpa::wire\n'
 
 

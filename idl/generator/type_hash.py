@@ -23,6 +23,15 @@ def type_hash(struct, structs):
 
 def full_description(struct, structs, with_defaults=False):
     """The JSON value of a struct and of all that it refers to; defaults are not part of the hash."""
+    return {
+        'type_description': describe(struct, with_defaults),
+        'referenced_type_descriptions': [describe(structs[name], with_defaults)
+                                         for name in references_of(struct, structs)],
+    }
+
+
+def references_of(struct, structs):
+    """The sorted names of all that a struct refers to, itself or through others."""
     referenced = set()
 
     def refer(name):
@@ -33,11 +42,7 @@ def full_description(struct, structs, with_defaults=False):
 
     for name in struct.references():
         refer(name)
-    return {
-        'type_description': describe(struct, with_defaults),
-        'referenced_type_descriptions': [describe(structs[name], with_defaults)
-                                         for name in sorted(referenced)],
-    }
+    return sorted(referenced)
 
 
 def describe(struct, with_defaults):

@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -196,6 +197,11 @@ TaskThread& participant_tasks(const Participant& participant);
 Result<std::unique_ptr<RawWriter>> make_writer(const Participant& participant, EndpointSpec spec);
 Result<std::unique_ptr<RawReader>> make_reader(const Participant& participant, EndpointSpec spec,
                                                RawDecode decode);
+
+/// A topic as its publishers announced it: the type of one of them, the QoS that all offer. None
+/// without a publisher. A subscriber that takes it matches them all.
+std::optional<EndpointSpec> find_published(const Participant& participant,
+                                           const std::string& dds_topic);
 
 }  // namespace detail
 }  // namespace bpa::wire

@@ -44,4 +44,11 @@ struct TypeDescriptionText {
   const char* source;  ///< The text of the .idl file.
 };
 
+/// A type of messages as recordings tell of it.
+struct MessageDefinition {
+  const char* name;  ///< "pkg/msg/Name"
+  const char* hash;
+  const char* text;  ///< Its .msg file and those of all types in it; MCAP's "ros2msg".
+};
+
 }  // namespace bpa::wire

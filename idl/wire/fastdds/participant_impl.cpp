@@ -141,13 +141,23 @@ class Listener : public dds::DomainParticipantListener {
     peer.type = data.type_name.to_string();
     const auto& user_data = data.user_data.data_vec();
     const auto& representation = data.representation.m_value;
+    const auto& reliability = data.reliability;
+    const auto& durability = data.durability;
 #else
     peer.guid = to_guid(data.guid());
     peer.topic = data.topicName().to_string();
     peer.type = data.typeName().to_string();
     const auto& user_data = data.m_qos.m_userData.data_vec();
     const auto& representation = data.m_qos.representation.m_value;
+    const auto& reliability = data.m_qos.m_reliability;
+    const auto& durability = data.m_qos.m_durability;
 #endif
+    if (reliability.kind != dds::RELIABLE_RELIABILITY_QOS) {
+      peer.qos.reliability = Reliability::best_effort;
+    }
+    if (durability.kind != dds::VOLATILE_DURABILITY_QOS) {
+      peer.qos.durability = Durability::transient_local;
+    }
     // Empty: XCDR1.
     peer.only_xcdr2 =
         !representation.empty() && std::find(representation.begin(), representation.end(),
@@ -410,6 +420,19 @@ void ParticipantImpl::on_peer(const Peer& peer) {
   tasks_.run_at(TaskThread::Clock::now(), [this] { publish_graph(); });
 }
 
+std::optional<EndpointSpec> ParticipantImpl::find_published(const std::string& dds_topic) const {
+  const std::lock_guard<std::mutex> lock(discovery_mutex_);
+  std::optional<EndpointSpec> found;
+  for (const auto& [guid, peer] : peers_) {
+    if (peer.is_reader || peer.topic != dds_topic) continue;
+    if (!found) found = EndpointSpec{peer.topic, peer.type, peer.user_data, peer.qos};
+    Qos& all = found->qos;
+    if (peer.qos.reliability == Reliability::best_effort) all.reliability = peer.qos.reliability;
+    if (peer.qos.durability == Durability::volatile_) all.durability = peer.qos.durability;
+  }
+  return found;
+}
+
 }  // namespace detail
 
 namespace {
@@ -490,6 +513,11 @@ Guid guid_of(const Participant& participant) { return participant.impl()->guid()
 
 const LogHook& detail::participant_log(const Participant& participant) {
   return participant.impl()->options().log;
+}
+
+std::optional<detail::EndpointSpec> detail::find_published(const Participant& participant,
+                                                           const std::string& dds_topic) {
+  return participant.impl()->find_published(dds_topic);
 }
 
 TaskThread& detail::participant_tasks(const Participant& participant) {

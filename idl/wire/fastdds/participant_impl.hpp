@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -73,8 +74,11 @@ class ParticipantImpl : public std::enable_shared_from_this<ParticipantImpl> {
     bool only_xcdr2 = false;  ///< Not the encoding of ROS 2, which is ours.
     Guid guid{};
     std::string topic, type, user_data;
+    Qos qos;  ///< Its reliability and durability.
   };
   void on_peer(const Peer& peer);
+  /// As detail::find_published().
+  std::optional<EndpointSpec> find_published(const std::string& dds_topic) const;
 
  private:
   struct TopicEntry {
