@@ -112,6 +112,8 @@ class FolderReader : public BagReader {
 Result<std::string> unzstd(std::string_view bytes, std::optional<std::uint64_t> size) {
   const std::uint64_t content = size ? *size : ZSTD_getFrameContentSize(bytes.data(), bytes.size());
   if (content > kMostDecompressed) return corrupt("no zstd frame of a known size");
+  // Blocks of 128 KiB have 4 bytes or more.
+  if (content / 32768 > bytes.size()) return corrupt("its zstd frame is damaged");
   std::string plain(content, '\0');
   const std::size_t written =
       ZSTD_decompress(plain.data(), plain.size(), bytes.data(), bytes.size());

@@ -53,6 +53,7 @@ class Fields {
 };
 
 std::optional<std::string> unlz4(std::string_view bytes, std::uint64_t size) {
+  if (size / 255 > bytes.size()) return {};  // lz4 cannot pack it so tightly
   LZ4F_dctx* context = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0U) return {};
   std::string out(size, '\0');

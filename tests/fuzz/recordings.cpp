@@ -60,14 +60,18 @@ std::vector<std::string> sqlite_seeds() {
   return {std::string(std::istreambuf_iterator<char>(file), {})};
 }
 
+constexpr int kMostDecompressed_mb = 512 + 1;  // of a chunk or a message
+
 }  // namespace
 
 std::vector<Target> recording_targets() {
   return {{"recording", "camera/oni_file.cpp", run_recording, recording_seeds, 4096},
           {"mcap", "ros/mcap_reader.cpp",
-           [](std::string_view bytes) { run_bag(file_of(bytes, "a.mcap")); }, mcap_seeds, 65536},
+           [](std::string_view bytes) { run_bag(file_of(bytes, "a.mcap")); }, mcap_seeds, 65536,
+           kMostDecompressed_mb},
           {"sqlite_bag", "ros/sqlite_bag.cpp",
-           [](std::string_view bytes) { run_bag(file_of(bytes, "a.db3")); }, sqlite_seeds, 65536}};
+           [](std::string_view bytes) { run_bag(file_of(bytes, "a.db3")); }, sqlite_seeds, 65536,
+           kMostDecompressed_mb}};
 }
 
 }  // namespace bpa::fuzz
