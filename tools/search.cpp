@@ -69,7 +69,7 @@ void add_input_options(CLI::App& command, DetectArguments& a) {
   auto* const camera = add_option(
       command, "--camera", a.camera,
       "fx fy cx cy or a 3 x 3 matrix: BOP, ROS camera_info, Open3D, librealsense, OpenCV, "
-      "bare numbers",
+      "ORB-SLAM, NeRF, ini, bare numbers",
       "FILE");
   command
       .add_flag(

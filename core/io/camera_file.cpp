@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The bpa authors
 // SPDX-License-Identifier: Apache-2.0
-// One reader of all forms. JSON, YAML and bare numbers become JSON; the keys that people write
-// become ours; and these become a camera.
+// One reader of all forms. JSON, YAML, XML, ini and bare numbers become JSON; the keys that people
+// write become ours; and these become a camera.
 #include "core/io/camera_file.hpp"
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -23,23 +24,34 @@ namespace {
 /// What keys mean here, and the keys, in lower case, letters and digits alone. Those without a
 /// meaning say nothing of a pinhole. A matrix of "columns" may stand column by column.
 constexpr std::pair<const char*, const char*> kCameraKeys[] = {
-    {"fx", " fx "},
-    {"fy", " fy "},
+    {"fx", " fx flx "},
+    {"fy", " fy fly "},
     {"cx", " cx ppx "},
     {"cy", " cy ppy "},
-    {"rows", " k camk cameramatrix intrinsics intrinsic mtx "},
+    {"focal", " focallength "},
+    {"principal", " principalpoint "},
+    {"rows", " k camk cameramatrix intrinsics intrinsic mtx params "},
     {"columns", " intrinsicmatrix "},
-    {"width", " width imagewidth "},
-    {"height", " height imageheight "},
+    {"width", " width imagewidth w "},
+    {"height", " height imageheight h "},
     {"size", " resolution imagesize "},
     {"depth_scale", " depthscale "},
+    {"per_metre", " depthmapfactor "},
+    {"k1", " k1 "},
+    {"k2", " k2 "},
+    {"p1", " p1 "},
+    {"p2", " p2 "},
+    {"k3", " k3 "},
+    {"k4", " k4 "},
+    {"lens", " cameramodel type "},
     {"distortion", " d distcoeffs distortioncoeffs distortioncoefficients dist distortion coeffs "},
     {"model", " distortionmodel model "},
-    {"projection", " p projectionmatrix "},
+    {"projection", " p projection projectionmatrix "},
     {"binning", " binningx binningy "},
+    {"roi", " roi "},
     {"",
-     " header cameraname cameramodel name r rectificationmatrix roi classname versionmajor "
-     "versionminor extrinsic camrw2c camtw2c stampns "}};
+     " header cameraname name r rectification rectificationmatrix classname versionmajor "
+     "versionminor extrinsic camrw2c camtw2c stampns rows cols dt typeid "}};
 
 /// Null for a key that is not known.
 const char* meaning_of(const std::string& key) {
@@ -60,28 +72,19 @@ struct FoundCameras {
   std::set<std::string> unread, all;                  ///< Keys.
 };
 
-void look_for_cameras(const std::string& name, const Json& json, Json known, FoundCameras& found) {
-  if (!json.is_object()) return;
-  std::vector<std::pair<std::string, const Json*>> inner;
-  for (const auto& [key, value] : json.items()) {
-    const Json& data = value.is_object() && value.contains("data") ? value.at("data") : value;
-    const char* meaning = meaning_of(key);
-    found.all.insert(key);
-    if (data.is_object() && (meaning == nullptr || *meaning != 0)) {
-      inner.emplace_back(key, &data);
-    } else if (meaning == nullptr) {
-      found.unread.insert(key);
-    } else if (*meaning != 0) {
-      known[meaning] = data;
-    }
+/// Numbers and what stands between them in lists. Nothing for another text.
+std::optional<std::vector<double>> bare_numbers(std::string text) {
+  for (std::size_t at = 0; (at = text.find('#', at)) != text.npos;) {
+    text.erase(at, text.find('\n', at) - at);
   }
-  const auto has = [&](const char* key) { return known.contains(key); };
-  if (has("fx") || has("fy") || has("rows") || has("columns") || has("projection")) {
-    found.cameras.emplace_back(name, std::move(known));
-    for (const auto& [key, value] : inner) found.unread.insert(key);
-    return;
+  for (char& c : text) {
+    if (std::string_view("[](),;").find(c) != std::string_view::npos) c = ' ';
   }
-  for (const auto& [key, value] : inner) look_for_cameras(key, *value, known, found);
+  std::istringstream words(text);
+  std::vector<double> numbers;
+  for (double number = 0; words >> number;) numbers.push_back(number);
+  if (numbers.empty() || !words.eof()) return std::nullopt;
+  return numbers;
 }
 
 void append_numbers(const Json& json, std::vector<double>& numbers) {
@@ -93,6 +96,64 @@ std::vector<double> numbers_of(const Json& json) {
   std::vector<double> numbers;
   append_numbers(json, numbers);
   return numbers;
+}
+
+/// Keeps a value under our key. Numbers may stand as text; pairs are two keys of ours.
+void keep(const std::string& meaning, const Json& data, Json& known) {
+  Json value = data;
+  if (data.is_string()) {
+    const auto numbers = bare_numbers(data.get<std::string>());
+    if (numbers && numbers->size() == 1) value = numbers->front();
+    if (numbers && numbers->size() > 1) value = *numbers;
+  }
+  const bool focal = meaning == "focal";
+  if (!focal && meaning != "principal") {
+    known[meaning] = value;
+    return;
+  }
+  if (!value.is_number() && !value.is_array()) return;
+  const std::vector<double> two = numbers_of(value);
+  if (two.empty() || two.size() > 2) return;
+  known.emplace(focal ? "fx" : "cx", two.front());
+  known.emplace(focal ? "fy" : "cy", two.back());
+}
+
+bool holds_objects(const Json& json) {
+  return json.is_object() || (json.is_array() && !json.empty() && json.front().is_object());
+}
+
+/// Of a key such as Camera.fx (ORB-SLAM): what stands before its last dot, if it is one camera's.
+std::string camera_of_key(const std::string& key, const std::string& meaning) {
+  const std::size_t dot = key.rfind('.');
+  const bool shared = meaning == "width" || meaning == "height" || meaning == "per_metre";
+  return dot == key.npos || shared ? "" : key.substr(0, dot);
+}
+
+void look_for_cameras(const std::string& name, const Json& json, Json known, FoundCameras& found) {
+  if (!holds_objects(json)) return;
+  std::map<std::string, Json> inner;
+  for (const auto& [key, value] : json.items()) {
+    const Json& data = value.is_object() && value.contains("data") ? value.at("data") : value;
+    const char* meaning = json.is_array() ? nullptr : meaning_of(key.substr(key.rfind('.') + 1));
+    if (json.is_object()) found.all.insert(key);
+    const bool is_roi = meaning != nullptr && std::string_view(meaning) == "roi";
+    if (holds_objects(data) && !is_roi) {
+      if (meaning == nullptr || *meaning != 0) inner[key] = data;
+    } else if (meaning == nullptr) {
+      if (json.is_object()) found.unread.insert(key);
+    } else if (const std::string camera = camera_of_key(key, meaning); !camera.empty()) {
+      inner[camera][key.substr(camera.size() + 1)] = data;
+    } else if (*meaning != 0) {
+      keep(meaning, data, known);
+    }
+  }
+  const auto has = [&](const char* key) { return known.contains(key); };
+  if (has("fx") || has("fy") || has("rows") || has("columns") || has("projection")) {
+    found.cameras.emplace_back(name, std::move(known));
+    for (const auto& [key, value] : inner) found.unread.insert(key);
+    return;
+  }
+  for (const auto& [key, value] : inner) look_for_cameras(key, value, known, found);
 }
 
 /// Sets fx, fy, cx and cy of `known` by its matrix, also where that is refused.
@@ -130,6 +191,9 @@ Status read_matrix(Json& known) {
 Status check_scale(Json& known) {
   // Of 16-bit depth, smaller units end at 0.13 m; none is larger than a metre.
   constexpr double kMin_mm = 0.002, kMax_mm = 1000;
+  if (known.contains("per_metre")) {
+    known["depth_scale"] = 1000 / known.at("per_metre").get<double>();
+  }
   const double scale = known.value("depth_scale", 1.0);
   if (!std::isfinite(scale) || scale <= 0) {
     return invalid_argument("depth_scale is ", scale, "; it must be positive");
@@ -141,13 +205,44 @@ Status check_scale(Json& known) {
       scale < kMin_mm ? ": not metres of one unit" : ": not units of one metre");
 }
 
-Result<CameraFile> camera_of_known(Json& known) {
+/// As the server does of a camera_info.
+Status check_whole(const Json& known) {
+  constexpr const char* kRemedy = ": give the camera of the images as they are";
   if (known.value("binning", 1.0) > 1) {
-    return Status(StatusCode::unsupported,
-                  concat("it has a binning of ", known.at("binning").dump(),
-                         "; it must be 0 or 1: give the camera of the "
-                         "images as they are"));
+    return Status(
+        StatusCode::unsupported,
+        concat("it has a binning of ", known.at("binning").dump(), "; it must be 0 or 1", kRemedy));
   }
+  const Json roi = known.value("roi", Json::object());
+  const auto differs = [&](const char* key, const Json& whole) {
+    const Json value = roi.is_object() ? roi.value(key, Json(0)) : Json(0);
+    return value != 0 && value != whole;
+  };
+  if (!differs("x_offset", 0) && !differs("y_offset", 0) &&
+      !differs("width", known.value("width", Json(0))) &&
+      !differs("height", known.value("height", Json(0)))) {
+    return {};
+  }
+  return Status(StatusCode::unsupported, concat("it has the roi ", written(roi),
+                                                "; it must be empty or the whole image", kRemedy));
+}
+
+/// k1 k2 p1 p2 k3, or k1 k2 k3 k4 of a fisheye lens, that stand under keys of their own.
+void gather_distortion(Json& known) {
+  std::string lens = known.contains("lens") ? known.at("lens").dump() : "";
+  std::ranges::transform(lens, lens.begin(), [](unsigned char c) { return std::tolower(c); });
+  const bool fisheye = lens.find("fish") != lens.npos || lens.find("kannala") != lens.npos;
+  if (fisheye) known.emplace("model", "equidistant");
+  if (known.contains("distortion") || !known.contains("k1")) return;
+  for (const char* key : {"k1", "k2", "p1", "p2", "k3", "k4"}) {
+    const bool tangential = *key == 'p';
+    if (fisheye ? tangential : key == std::string_view("k4")) continue;
+    known["distortion"].push_back(known.value(key, 0.0));
+  }
+}
+
+Result<CameraFile> camera_of_known(Json& known) {
+  if (Status status = check_whole(known); !status.ok()) return status;
   std::optional<Camera> rectified;
   if (const std::vector<double> p = numbers_of(known.value("projection", Json::array()));
       p.size() == 12 && p[0] > 0) {
@@ -182,6 +277,7 @@ Result<CameraFile> camera_of_known(Json& known) {
   }
   if (Status status = check_scale(known); !status.ok()) return status;
   file.depth_scale_mm = known.value("depth_scale", 1.0);
+  gather_distortion(known);
   if (known.contains("distortion")) file.distortion = numbers_of(known.at("distortion"));
   if (known.contains("model") && known.at("model").is_string()) {
     known.at("model").get_to(file.distortion_model);
@@ -202,21 +298,6 @@ Result<CameraFile> only_camera(FoundCameras& found) {
   return camera_of_known(camera);
 }
 
-/// Numbers and what stands between them in lists. Nothing for another text.
-std::optional<std::vector<double>> bare_numbers(std::string text) {
-  for (std::size_t at = 0; (at = text.find('#', at)) != text.npos;) {
-    text.erase(at, text.find('\n', at) - at);
-  }
-  for (char& c : text) {
-    if (std::string_view("[](),;").find(c) != std::string_view::npos) c = ' ';
-  }
-  std::istringstream words(text);
-  std::vector<double> numbers;
-  for (double number = 0; words >> number;) numbers.push_back(number);
-  if (numbers.empty() || !words.eof()) return std::nullopt;
-  return numbers;
-}
-
 Json json_of(const YAML::Node& yaml) {
   Json json;
   if (yaml.IsMap()) {
@@ -232,6 +313,69 @@ Json json_of(const YAML::Node& yaml) {
   return json;
 }
 
+/// OpenCV's FileStorage as XML: elements that hold text or elements.
+Json json_of_xml(const std::string& text) {
+  constexpr std::size_t kDeepest = 16;
+  std::vector<std::pair<std::string, Json>> open{{"", Json::object()}};
+  for (std::size_t at = text.find('<'); at != text.npos;) {
+    const std::size_t end = std::min(text.find('>', at), text.size() - 1);
+    const std::size_t next = text.find('<', end + 1);
+    const std::string tag = text.substr(at + 1, end - at - 1);
+    if (tag.starts_with('/') && open.size() > 1) {
+      auto [name, value] = std::move(open.back());
+      open.pop_back();
+      if (!open.back().second.is_object()) open.back().second = Json::object();
+      open.back().second[name] = std::move(value);
+    } else if (tag.find_first_of("/?!") > 0 && !tag.ends_with('/') && open.size() < kDeepest) {
+      open.emplace_back(tag.substr(0, tag.find_first_of(" \t\r\n")),
+                        text.substr(end + 1, next == text.npos ? next : next - end - 1));
+    }
+    at = next;
+  }
+  return open.front().second;
+}
+
+/// Whether a line of a text is a [section], or a key with an equals sign.
+bool is_ini(const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t equals = line.find_first_of("=:{#");
+    if (equals != line.npos && line[equals] == '=') return true;
+    if (line.starts_with('[') && std::isalpha(static_cast<unsigned char>(line[1])) != 0)
+      return true;
+  }
+  return false;
+}
+
+/// Lines of "key = value"; and as ROS calibrators write it, a key alone with lines of numbers
+/// below it. Each section holds its own.
+Json json_of_ini(const std::string& text) {
+  const auto trimmed = [](const std::string& all) {
+    const std::size_t first = all.find_first_not_of(" \t\r\"'");
+    const std::size_t last = all.find_last_not_of(" \t\r\"'");
+    return first == all.npos ? std::string() : all.substr(first, last + 1 - first);
+  };
+  std::string section, key;
+  std::map<std::string, std::map<std::string, std::string>> sections;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    line = trimmed(line.substr(0, line.find_first_of("#;")));
+    const std::size_t equals = line.find('=');
+    if (line.starts_with('[') && line.ends_with(']')) {
+      section = line.substr(1, line.size() - 2);
+    } else if (equals != line.npos) {
+      sections[section][trimmed(line.substr(0, equals))] = trimmed(line.substr(equals + 1));
+    } else if (bare_numbers(line)) {
+      sections[section][key] += line + ' ';
+    } else if (!line.empty()) {
+      key = line;
+    }
+  }
+  Json json = sections;
+  for (const char* shared : {"image", ""}) json.update(json.value(shared, Json::object()));
+  return json;
+}
+
 Result<Json> json_of_text(const std::string& path, std::string text) {
   if (const auto numbers = bare_numbers(text)) {
     // Nine numbers are a matrix, or fx fy cx cy and the distortion of plumb_bob, as of TUM.
@@ -241,6 +385,8 @@ Result<Json> json_of_text(const std::string& path, std::string text) {
                 {"d", std::vector(n.begin() + 4, n.end())}};
   }
   if (text.find_first_not_of(" \t\r\n") == text.find('{')) return parse_json(path, text);
+  if (text.find("<opencv_storage>") != text.npos) return json_of_xml(text);
+  if (is_ini(text)) return json_of_ini(text);
   // OpenCV's first line, which is no YAML.
   if (text.starts_with("%YAML:")) text.erase(0, text.find('\n'));
   return json_of(parse_yaml(text));
@@ -263,8 +409,10 @@ std::string accepted_form(const Json& known) {
 
 Result<CameraFile> camera_of(const Json& json, const std::string& name) {
   FoundCameras found;
-  look_for_cameras("", json, Json::object(), found);
-  Result<CameraFile> file = with_json(name, [&] { return only_camera(found); });
+  Result<CameraFile> file = with_json(name, [&] {
+    look_for_cameras("", json, Json::object(), found);
+    return only_camera(found);
+  });
   if (file.ok()) {
     file->unread.assign(found.unread.begin(), found.unread.end());
     return file;

@@ -22,10 +22,11 @@ struct CameraFile {
   std::vector<std::string> unread;  ///< Keys that nothing here knows.
 };
 
-/// Reads a camera, by its content: fx fy cx cy (also ppx ppy) or a 3 x 3 matrix under one of its
-/// usual names, with width, height and depth_scale where they are, as JSON or YAML. So a BOP
-/// camera.json or scene_camera.json (whose cameras are equal), a ROS camera_info of calibrators and
-/// of `ros2 topic echo`, Open3D, librealsense, OpenCV's FileStorage; and bare numbers: fx fy cx cy,
+/// Reads a camera, by its content: fx fy cx cy or a 3 x 3 matrix under one of their usual names,
+/// with width, height and depth_scale where they are, as JSON, YAML or ini. So a BOP camera.json or
+/// scene_camera.json (whose cameras are equal), a ROS camera_info of calibrators and of `ros2 topic
+/// echo`, Open3D, librealsense, ORB-SLAM, NeRF's transforms.json, OpenCV's FileStorage as YAML or
+/// XML; and bare numbers: fx fy cx cy,
 /// or the matrix row by row. Fails with not_found, corrupt, or invalid_argument naming field and
 /// rule; the message ends with the form that is accepted, filled with the numbers that were found.
 Result<CameraFile> read_camera(const std::string& path);

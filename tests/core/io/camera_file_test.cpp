@@ -88,6 +88,36 @@ const Form kForms[] = {
     {"MatrixInText", "1066.778 0 312.9869\r\n0 1067.487 241.3109\r\n0 0 1.0\r\n", false},
     {"ListInText", kNested, false},
     {"ScanNet", "1066.778 0 312.9869 0\n0 1067.487 241.3109 0\n0 0 1 0\n0 0 0 1\n", false},
+    {"Nerf", R"({"fl_x": 1066.778, "fl_y": 1067.487, "cx": 312.9869, "cy": 241.3109, "w": 640,
+                 "h": 480, "k1": 0, "k2": 0, "p1": 0, "p2": 0, "camera_model": "OPENCV"})"},
+    {"FocalLength", R"({"focal_length": [1066.778, 1067.487], "width": 640, "height": 480,
+                        "principal_point": [312.9869, 241.3109]})"},
+    {"OrbSlam",
+     "%YAML:1.0\n---\nCamera.type: \"PinHole\"\nCamera.fx: 1066.778\nCamera.fy: 1067.487\n"
+     "Camera.cx: 312.9869\nCamera.cy: 241.3109\nCamera.k1: 0.0\nCamera.k2: 0.0\nCamera.p1: 0.0\n"
+     "Camera.p2: 0.0\nCamera.width: 640\nCamera.height: 480\nDepthMapFactor: 5000.0\n"},
+    {"Quoted", R"({"fx": "1066.778", "fy": "1067.487", "cx": "312.9869", "cy": "241.3109",
+                   "width": "640", "height": "480"})"},
+    {"ListOfOne", R"([{"K": )" + kNested + R"(, "width": 640, "height": 480}])"},
+    {"Open3dTrajectory", R"({"class_name": "PinholeCameraTrajectory", "parameters": [
+        {"class_name": "PinholeCameraParameters", "extrinsic": [1, 0],
+         "intrinsic": {"width": 640, "height": 480, "intrinsic_matrix": )" +
+                             kColumns + R"(}, "version_major": 1, "version_minor": 0}]})"},
+    {"CalibratorIni",
+     "# oST version 5.0 parameters\n\n[image]\n\nwidth\n640\n\nheight\n480\n\n[narrow_stereo]\n\n"
+     "camera matrix\n1066.778 0.000000 312.9869\n0.000000 1067.487 241.3109\n"
+     "0.000000 0.000000 1.000000\n\ndistortion\n0.0 0.0 0.0 0.0 0.0\n\nrectification\n1 0 0\n0 1 "
+     "0\n"
+     "0 0 1\n\nprojection\n900 0 310 0\n0 900 240 0\n0 0 1 0\n"},
+    {"KeysOfIni",
+     "; a Kinect\r\nwidth = 640\r\nheight = 480\r\n[RGB]\r\nfx=1066.778\r\nfy=1067.487\r\n"
+     "cx = 312.9869\r\ncy = \"241.3109\"\r\nk1=0.0\r\n"},
+    {"OpenCvXml",
+     "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>640</image_width>\n"
+     "<image_height>480</image_height>\n<camera_matrix type_id=\"opencv-matrix\">\n"
+     "  <rows>3</rows>\n  <cols>3</cols>\n  <dt>d</dt>\n  <data>\n"
+     "    1066.778 0. 312.9869 0. 1067.487\n    241.3109 0. 0. 1.</data></camera_matrix>\n"
+     "</opencv_storage>\n"},
     {"Tum", "# fx fy cx cy\n1066.778 1067.487 312.9869 241.3109\n", false},
 };
 
@@ -100,6 +130,26 @@ TEST(CameraFile, ReadsTheUnitOfDepth) {
   EXPECT_EQ(read_camera(folder / "c")->depth_scale_mm, 0.1);
   spill(folder / "c", R"({"depth_scale": 0.25, "color": {"K": )" + kRows + "}}");
   EXPECT_EQ(read_camera(folder / "c")->depth_scale_mm, 0.25);
+}
+
+/// Coefficients under keys of their own; units of one metre.
+TEST(CameraFile, ReadsTheLensOfSlamAndNerf) {
+  const test::TemporaryFolder folder;
+  const std::string slam =
+      "Camera1.fx: 600\nCamera1.fy: 600\nCamera1.cx: 320\nCamera1.cy: 240\nCamera1.k1: 0.1\n"
+      "Camera1.k2: 0.2\nCamera1.k3: 0.3\nRGBD.DepthMapFactor: 5000.0\n";
+  spill(folder / "c", slam + "Camera1.p1: 0.4\nCamera1.p2: 0.5\n");
+  const auto file = read_camera(folder / "c");
+  ASSERT_TRUE(file.ok()) << file.status().message;
+  EXPECT_EQ(file->distortion, (std::vector<double>{0.1, 0.2, 0.4, 0.5, 0.3}));
+  EXPECT_EQ(file->depth_scale_mm, 0.2);
+  spill(folder / "c", slam + "Camera1.k4: 0.4\nCamera1.camera_model: OPENCV_FISHEYE\n");
+  const auto fisheye = read_camera(folder / "c");
+  EXPECT_EQ(fisheye->distortion, (std::vector<double>{0.1, 0.2, 0.3, 0.4}));
+  EXPECT_EQ(fisheye->distortion_model, "equidistant");
+  spill(folder / "c", slam + "Camera2.fx: 601\nCamera2.fy: 600\nCamera2.cx: 320\nCamera2.cy: 1\n");
+  EXPECT_NE(read_camera(folder / "c").status().message.find("differ (Camera1, Camera2)"),
+            std::string::npos);
 }
 
 TEST(CameraFile, SaysWhatIsNotReadAndThatDistortionIsIgnored) {
@@ -132,6 +182,10 @@ TEST(CameraFile, ReadsTheCameraOfRectifiedImages) {
   EXPECT_EQ(read_camera(folder / "c")->camera.fx, 900);
   spill(folder / "c", kInfo + "binning_x: 2\nbinning_y: 2\nK: " + kRows + "\n");
   EXPECT_NE(read_camera(folder / "c").status().message.find("binning of 2"), std::string::npos);
+  spill(folder / "c",
+        kInfo + "roi: {x_offset: 4, y_offset: 0, width: 320, height: 240}\nK: " + kRows + "\n");
+  EXPECT_NE(read_camera(folder / "c").status().message.find("must be empty or the whole image"),
+            std::string::npos);
   spill(folder / "c", "header: {stamp: 1}\nname: cam\n");
   EXPECT_NE(read_camera(folder / "c").status().message.find("it has: header, name"),
             std::string::npos);
