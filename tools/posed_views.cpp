@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "core/base/random.hpp"
+#include "core/cloud/join_vertices.hpp"
 #include "core/geometry/sphere_directions.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/image_file.hpp"
@@ -91,6 +92,7 @@ void widen(std::vector<std::uint8_t>& mask, int width, int height, int reach) {
 std::vector<std::uint8_t> outline(const TriangleMesh& mesh, const Pose& camera_from_mesh,
                                   const Camera& camera, int reach) {
   std::vector<Eigen::Vector2i> pixels;
+  pixels.reserve(mesh.vertices.size());
   for (const Eigen::Vector3f& v : mesh.vertices) {
     const Eigen::Vector2d p = camera.project(camera_from_mesh * v.cast<double>());
     pixels.emplace_back(p.array().round().cast<int>());
@@ -215,11 +217,12 @@ std::vector<modeling::PosedView> simulate_views(const TriangleMesh& mesh, int co
   constexpr double kScatter = 0.015;  // metres
   const int reach = sim::kLookAround + static_cast<int>(std::ceil(kScatter * kFocal / nearest));
 
+  const TriangleMesh shape = shape_of(mesh);
   std::vector<modeling::PosedView> views(static_cast<std::size_t>(count));
   run_all(title, count, num_threads, [&](int k) {
     const Pose object_from_camera =
         look_from(sphere_direction(k, count), distance, box.center().cast<double>());
-    const auto wanted = outline(mesh, object_from_camera.inverse(), camera, reach);
+    const auto wanted = outline(shape, object_from_camera.inverse(), camera, reach);
     const Frame frame = sim::simulate_depth({scene, shading, camera, object_from_camera, wanted},
                                             kinect, RandomStream(seed, k)(), 0, 1);
     views[k] = modeling::make_posed_view(frame, near(frame, object_from_camera, box),

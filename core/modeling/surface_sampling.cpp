@@ -10,6 +10,7 @@
 #include "core/base/concat.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/random.hpp"
+#include "core/cloud/join_vertices.hpp"
 #include "core/cloud/neighbor_grid.hpp"
 #include "core/cloud/texture.hpp"
 #include "core/geometry/sphere_directions.hpp"
@@ -23,6 +24,7 @@ constexpr double kMinDiameter = 0.005;
 constexpr double kMaxDiameter = 3.0;
 constexpr double kFewPoints = 2000;
 constexpr std::size_t kMostTriangles = 1'500'000;  // all are drawn for each direction
+constexpr std::size_t kMostVertices = 1'000'000;   // closed surfaces have half as many
 // Of the squared length: a ball has 1, a close stack of 15 plates 15. Pixels drawn and samples
 // beside one another grow with it.
 constexpr double kMostArea = 30;
@@ -103,7 +105,6 @@ class TriangleImage {
     height_ = static_cast<int>(box.sizes().y() / pixel) + 1;
     nearest_.assign(width_ * height_, -std::numeric_limits<float>::infinity());
     triangle_.assign(width_ * height_, -1);
-    triangles_.resize(mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) draw(t);
   }
 
@@ -140,7 +141,7 @@ class TriangleImage {
 
   // Whether a triangle lies above p.
   bool covers(int triangle, const Eigen::Vector3f& p) const {
-    const SeenTriangle& t = triangles_[triangle];
+    const SeenTriangle t = seen(triangle);
     if (t.flat()) return false;
     const Eigen::Vector2f w = t.weights(p.x(), p.y());
     constexpr float kSlack = 1e-3f;
@@ -149,8 +150,7 @@ class TriangleImage {
   }
 
   void draw(int triangle) {
-    triangles_[triangle] = seen(triangle);
-    const SeenTriangle& t = triangles_[triangle];
+    const SeenTriangle t = seen(triangle);
     if (t.flat()) return;
     Eigen::AlignedBox2f box;
     for (const std::uint32_t c : mesh_.triangles[triangle]) box.extend(vertices_[c].head<2>());
@@ -179,7 +179,6 @@ class TriangleImage {
   int width_ = 0, height_ = 0;
   std::vector<float> nearest_;
   std::vector<int> triangle_;
-  std::vector<SeenTriangle> triangles_;  // of the mesh
 };
 
 // How many directions see a point of a mesh, or whether any does: before and behind its triangle.
@@ -200,6 +199,7 @@ std::vector<Sides> sides_seen(const TriangleMesh& mesh, const Samples& samples, 
   parallel_for(kNumSeenFrom, num_threads, [&](int k) {
     const Eigen::Matrix3f axes = view_axes(sphere_direction(k, kNumSeenFrom).cast<float>());
     std::vector<Eigen::Vector3f> turned;
+    turned.reserve(mesh.vertices.size());
     for (const Eigen::Vector3f& v : mesh.vertices) turned.push_back(axes * v);
     const TriangleImage image(turned, mesh, pixel);
     std::vector<std::size_t> visible;
@@ -342,7 +342,13 @@ Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::
   if (mesh.vertices.empty() || !(area > 0) || !std::isfinite(area)) {
     return invalid_argument("model " + name + " has no surface; the mesh must have triangles");
   }
-  const double length = largest_distance(mesh.vertices);
+  const TriangleMesh shape = shape_of(mesh);
+  if (shape.vertices.size() > kMostVertices) {
+    return invalid_argument("model ", name, " has ", shape.vertices.size(),
+                            " vertices; it must have at most ", kMostVertices,
+                            ": join them (MeshLab: Merge Close Vertices)");
+  }
+  const double length = largest_distance(shape.vertices);
   if (Status s = check_size(name, length); !s.ok()) return s;
   if (area > kMostArea * length * length) {
     return invalid_argument("model ", name, " has ", fixed(area, 2), " m2 of faces within ",
@@ -354,7 +360,7 @@ Result<ModelSource> model_source_from_mesh(const TriangleMesh& mesh, const std::
   const double spacing = std::max(std::min(options.spacing_m, std::sqrt(area / kFewPoints)),
                                   std::sqrt(area / kMostPoints));
   const Samples samples = sample_triangles(mesh, 6 / (spacing * spacing));
-  const VisibleSurface visible = visible_surface(mesh, samples, spacing, options.num_threads);
+  const VisibleSurface visible = visible_surface(shape, samples, spacing, options.num_threads);
   if (visible.cloud.size() < 100) {
     return invalid_argument("model " + name + " has no surface that can be seen from outside");
   }

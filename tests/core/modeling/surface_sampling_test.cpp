@@ -301,6 +301,19 @@ TEST(SurfaceSampling, TooManyTrianglesAreRefusedBeforeTheWork) {
             std::string::npos);
 }
 
+/// Scans of most formats have vertices of their own for each corner: those count once.
+TEST(SurfaceSampling, TooManyVerticesAreRefusedBeforeTheWork) {
+  TriangleMesh mesh = test::box_mesh(kBoxHalf);
+  const Eigen::Vector3f corner = mesh.vertices[0];
+  mesh.vertices.resize(1'500'000, corner);
+  EXPECT_FALSE(source_of(mesh).surface.points.empty());
+  for (std::size_t i = 8; i < mesh.vertices.size(); ++i) {
+    mesh.vertices[i] = corner * (1 - 1e-7f * static_cast<float>(i));
+  }
+  EXPECT_NE(refusal(mesh).find("vertices; it must have at most 1000000: join them"),
+            std::string::npos);
+}
+
 /// No two of them are equal: it took minutes.
 TEST(SurfaceSampling, FacesThatNearlyCoincideAreRefusedBeforeTheWork) {
   TriangleMesh mesh;
