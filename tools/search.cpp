@@ -80,7 +80,9 @@ void add_input_options(CLI::App& command, DetectArguments& a) {
   auto* const depth =
       add_option(command, "--depth", a.depth, "16-bit depth PNGs, registered to colour", "FILE...");
   depth->needs(camera);
-  add_option(command, "--color", a.color, "8-bit colour PNGs of the same size", "FILE...")
+  add_option(command, "--color", a.color,
+             "Colour PNGs or JPEGs of the same size; grey ones are not compared by colour",
+             "FILE...")
       ->needs(depth);
   auto* const bop =
       add_option(command, "--bop", a.dataset.folder, "Folder of a BOP data set", "DIR");

@@ -377,6 +377,9 @@ Json json_of_ini(const std::string& text) {
 }
 
 Result<Json> json_of_text(const std::string& path, std::string text) {
+  if (const std::string content = content_of(text); !content.empty()) {
+    return corrupt(path, " is no camera file, but ", content);
+  }
   if (const auto numbers = bare_numbers(text)) {
     // Nine numbers are a matrix, or fx fy cx cy and the distortion of plumb_bob, as of TUM.
     const std::vector<double>& n = *numbers;

@@ -113,18 +113,30 @@ Result<DepthImage> parse_pgm(const std::string& path, std::string_view bytes, do
 }
 
 /// How other files become ones that are read.
-Status refused_depth(const std::string& path) {
+Status refused_depth(const std::string& path, std::string_view bytes) {
   const std::string extension = lower_extension(path);
-  std::string way =
-      "write it as npy: python3 -c \"import cv2, numpy; numpy.save('depth.npy', "
-      "cv2.imread('" +
-      path + "', -1))\"";
-  if (extension == "exr") way += ", with OPENCV_IO_ENABLE_OPENEXR=1";
-  if (extension == "bag") {
+  const auto is = [&](std::initializer_list<const char*> all) {
+    return std::ranges::count(all, extension) > 0;
+  };
+  const auto python = [](const std::string& modules, const std::string& array) {
+    return "write it as npy: python3 -c \"import " + modules + "; numpy.save('depth.npy', " +
+           array + ")\"";
+  };
+  std::string way = "give one of these";
+  if (const std::string content = content_of(bytes); !content.empty()) {
+    way = "it is " + content;
+    if (content.ends_with("JPEG image")) way += ", whose 8 bits hold no depths";
+    if (content.ends_with("PLY file"))
+      way += ": a mesh or cloud. Of clouds an organised PCD is read (--pcd)";
+  } else if (is({"tif", "tiff", "exr", "pfm", "hdr", "jp2", "pgm", "pnm"})) {
+    way = python("cv2, numpy", "cv2.imread('" + path + "', -1)");
+    if (extension == "exr") way += ", with OPENCV_IO_ENABLE_OPENEXR=1";
+  } else if (is({"raw", "bin", "dat", "depth"})) {
+    way = python("numpy", "numpy.fromfile('" + path + "', 'u2').reshape(HEIGHT, WIDTH)");
+  } else if (extension == "bag") {
     way = "write its images: rs-convert -i " + path +
           " -p OUT (RealSense), or play it to bpa-server (ros2 bag play)";
-  }
-  if (extension == "mkv") {
+  } else if (extension == "mkv") {
     way = "write its images: python3 azure_kinect_mkv_reader.py --input " + path +
           " --output OUT (Open3D's examples)";
   }
@@ -149,7 +161,7 @@ Result<DepthImage> read_depth(const std::string& path, double scale_mm) {
   const Result<GrayImage> image = decode_depth_png(*bytes, path);
   if (image.ok()) return depth_of(*image, scale_mm);
   if (bytes->starts_with("\x89PNG") || bytes->size() < 8) return image.status();
-  return refused_depth(path);
+  return refused_depth(path, *bytes);
 }
 
 }  // namespace bpa::io

@@ -156,4 +156,29 @@ std::string lower_extension(const std::string& path) {
   return extension;
 }
 
+std::string content_of(std::string_view bytes) {
+  constexpr std::pair<std::string_view, const char*> kContents[] = {
+      {"version https://git-lfs",
+       "a pointer of Git LFS, not the file itself: git lfs pull gets it"},
+      {"<!doctype html", "a web page: its download failed"},
+      {"<html", "a web page: its download failed"},
+      {"pk\3\4", "a zip archive: unpack it"},
+      {"\x1f\x8b", "compressed: unpack it with gunzip"},
+      {"iso-10303-21", "a STEP file"},
+      {"ply", "a PLY file"},
+      {"gltf", "a GLB file"},
+      {"\xff\xd8\xff", "a JPEG image"},
+      {"\x89png", "a PNG image"},
+      {"\x93numpy", "a NumPy array"}};
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+  std::string head(bytes.substr(std::min(first, bytes.size()), 32));
+  std::ranges::transform(head, head.begin(), [](unsigned char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 'a' - 'A') : static_cast<char>(c);
+  });
+  for (const auto& [begin, content] : kContents) {
+    if (head.starts_with(begin)) return content;
+  }
+  return "";
+}
+
 }  // namespace bpa::io

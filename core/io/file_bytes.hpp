@@ -55,4 +55,7 @@ std::uint64_t xxh64(std::string_view bytes);
 /// The lower-case extension without its dot: "png" for "a/B.PNG".
 std::string lower_extension(const std::string& path);
 
+/// What bytes are by how they begin, such as "a JPEG image"; empty where that tells nothing.
+std::string content_of(std::string_view bytes);
+
 }  // namespace bpa::io

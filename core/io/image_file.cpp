@@ -7,6 +7,7 @@
 #include "core/io/image_file.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <csetjmp>
 #include <fstream>
 #include <memory>
@@ -194,8 +195,10 @@ Result<ImageSize> checked_size(const std::string& path, std::string_view bytes, 
   const bool jpeg = jpeg_too && bytes.starts_with(kJpegSignature);
   if (!jpeg && !bytes.starts_with(kPngSignature)) {
     if (kPngSignature.starts_with(bytes)) return corrupt(path, " is truncated");
-    return Status(StatusCode::unsupported,
-                  path + (jpeg_too ? " is not a PNG or JPEG image" : " is not a PNG image"));
+    const std::string content = content_of(bytes);
+    return Status(content.empty() ? StatusCode::unsupported : StatusCode::corrupt,
+                  path + (jpeg_too ? " is not a PNG or JPEG image" : " is not a PNG image") +
+                      (content.empty() ? "" : ", but " + content));
   }
   Result<ImageSize> size = jpeg ? parse_jpeg_header(path, bytes) : parse_png_header(path, bytes);
   if (!size.ok()) return size;
@@ -209,6 +212,17 @@ Result<ColorImage> decode_color(const std::string& path, std::string_view bytes,
   if (!size.ok()) return size.status();
   if (bytes.starts_with(kJpegSignature)) return decode_jpeg(path, bytes, *size);
   ColorImage image{size->width, size->height, {}};
+  if (size->bit_depth == 16 && size->channels == 1) {
+    std::vector<std::uint16_t> grey;
+    Status status = decode_png(path, bytes, *size, PNG_FORMAT_LINEAR_Y, grey);
+    if (!status.ok()) return status;
+    // Cameras have 10 to 16 bits.
+    const int shift = std::max(0, std::bit_width(*std::ranges::max_element(grey)) - 8);
+    for (const std::uint16_t value : grey) {
+      image.pixels.insert(image.pixels.end(), 3, static_cast<std::uint8_t>(value >> shift));
+    }
+    return image;
+  }
   const bool alpha = size->channels == 2 || size->channels == 4;
   Status status =
       decode_png(path, bytes, *size, alpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB, image.pixels);
@@ -316,14 +330,9 @@ Result<ImageSize> read_png_size(const std::string& path) {
 }
 
 Result<ColorImage> read_color_image(const std::string& path) {
-  const auto check = [&path](const ImageSize& size) -> Status {
-    if (size.bit_depth == 8) return {};
-    return invalid_argument(path, " has ", size.bit_depth,
-                            " bits a channel; a colour image must have 8");
-  };
   const Result<std::string> bytes = read_file(path);
   if (!bytes.ok()) return bytes.status();
-  Result<ColorImage> image = decode_color(path, *bytes, check);
+  Result<ColorImage> image = decode_color(path, *bytes, [](const ImageSize&) { return Status(); });
   if (image.status().code != StatusCode::unsupported) return image;
   return Status(StatusCode::unsupported,
                 image.status().message + "; write it as one: python3 -c \"import cv2; " +

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
 
 #include "core/base/concat.hpp"
 #include "core/cloud/normals.hpp"
@@ -34,6 +35,9 @@ void drop_textures(const std::string& reason, MeshFile& file) {
 MeshFile with_textures(PlyFile ply, const std::string& path) {
   MeshFile file{std::move(ply.mesh), {}, false};
   TriangleMesh& mesh = file.mesh;
+  if (!ply.unread_color.empty() && ply.textures.empty()) {
+    drop_colors("has colours in " + ply.unread_color + ", which is not read", file);
+  }
   if (mesh.uv.empty() && ply.textures.empty()) return file;
   if (mesh.uv.empty() || ply.textures.empty()) {
     const char* reason = mesh.uv.empty() ? "names a texture, but has no texture coordinates"
@@ -94,6 +98,26 @@ void drop_copies(TriangleMesh& mesh) {
   if (textured) mesh.texture_of.resize(kept);
 }
 
+/// The first mesh of a URDF or SDF; an included model is none.
+std::string mesh_named_in(const std::string& text) {
+  for (std::size_t at = 0; (at = text.find("<mesh", at)) != text.npos; ++at) {
+    const std::size_t end = text.find('>', at);
+    const std::size_t attribute = text.find("filename", at);
+    std::size_t from = text.find("<uri>", at);
+    const char* close = "<";
+    if (attribute < end) {
+      from = text.find_first_of("\"'", attribute);
+      if (from == text.npos) continue;
+      close = text[from] == '"' ? "\"" : "'";
+    } else if (from > text.find("</mesh>", at)) {
+      continue;
+    }
+    from += attribute < end ? 1 : std::string_view("<uri>").size();
+    return text.substr(from, text.find(close, from) - from);
+  }
+  return "";
+}
+
 /// How a file of another format becomes a mesh.
 std::string way_to_a_mesh(const std::string& path, const std::string& extension) {
   const auto is = [&](std::initializer_list<const char*> all) {
@@ -105,19 +129,32 @@ std::string way_to_a_mesh(const std::string& path, const std::string& extension)
            "MeshPart.meshFromShape(Shape=Part.read('" +
            path + "'), LinearDeflection=0.1).write('" + to + "')\"";
   }
-  if (is({"3mf", "fbx", "3ds", "x3d", "blend"}))
+  if (is({"3mf", "fbx", "3ds", "x3d", "blend", "off", "amf", "dxf"})) {
     return "; convert it: assimp export " + path + ' ' + to;
+  }
   if (is({"usd", "usda", "usdc", "usdz"})) return "; export it from Blender as GLB";
+  if (is({"wrl", "vrml"})) return "; export it from MeshLab as PLY";
+  if (is({"sldprt", "sldasm", "ipt", "iam", "f3d", "prt", "catpart", "jt", "3dm", "x_t", "dwg"})) {
+    return "; export it as STL or GLB from the CAD program that wrote it";
+  }
   if (!is({"sdf", "urdf", "xacro"})) return "";
   const Result<std::string> text = read_file(path);
-  std::string named;
-  for (const auto& [begin, end] : {std::pair("<mesh filename=\"", '"'), std::pair("<uri>", '<')}) {
-    const std::size_t at = text.ok() ? text->find(begin) : std::string::npos;
-    if (at == std::string::npos || !named.empty()) continue;
-    const std::size_t from = at + std::string_view(begin).size();
-    named = text->substr(from, text->find(end, from) - from);
-  }
+  const std::string named = text.ok() ? mesh_named_in(*text) : "";
   return "; give the mesh that it names" + (named.empty() ? "" : ": " + named);
+}
+
+/// A name that promises another content than there is would end in the words of its parser.
+Status check_content(const std::string& path, const std::string& extension) {
+  std::string head(32, '\0');
+  std::ifstream(path, std::ios::binary).read(head.data(), std::ssize(head));
+  const std::string content = content_of(head);
+  if (content.empty() || (extension == "ply" && content == "a PLY file") ||
+      (extension == "glb" && content == "a GLB file")) {
+    return {};
+  }
+  const bool step = content == "a STEP file";
+  return Status(StatusCode::unsupported, path + " is not what its name says, but " + content +
+                                             (step ? way_to_a_mesh(path, "step") : ""));
 }
 
 Result<MeshFile> read_any(const std::string& path, double scale, bool colored) {
@@ -129,6 +166,7 @@ Result<MeshFile> read_any(const std::string& path, double scale, bool colored) {
                       ".dae" +
                       way_to_a_mesh(path, extension));
   }
+  if (Status status = check_content(path, extension); !status.ok()) return status;
   Result<MeshFile> file = MeshFile{};
   if (extension == "ply") {
     Result<PlyFile> ply = read_ply(path, scale);
@@ -136,6 +174,7 @@ Result<MeshFile> read_any(const std::string& path, double scale, bool colored) {
     if (!colored) {
       clear_textures(ply->mesh);
       ply->textures.clear();
+      ply->unread_color.clear();
     }
     file = with_textures(std::move(*ply), path);
   } else {

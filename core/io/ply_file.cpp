@@ -104,7 +104,10 @@ Result<Header> parse_header(std::string_view bytes, const std::string& name) {
     header.size = end + (bytes.substr(end, 2) == "\r\n" ? 2 : 1);
     key.clear();
     words >> key;
-    if (first && key != "ply") return corrupt(name, " is not a PLY file");
+    if (first && key != "ply") {
+      const std::string content = content_of(bytes);
+      return corrupt(name, " is not a PLY file", content.empty() ? "" : ", but " + content);
+    }
     if (key == "format") {
       words >> header.format;
       if (header.format != "ascii" && header.format != "binary_little_endian" &&
@@ -193,19 +196,25 @@ class Values {
   bool ok_ = true;
 };
 
-/// Where the numbers of a vertex stand in its row: position, normal, colour, texture coordinates;
-/// -1 for none.
-using Columns = std::array<int, 11>;
+/// Where the numbers of a vertex stand in its row: position, normal, colour, texture coordinates,
+/// packed colour; -1 for none.
+using Columns = std::array<int, 12>;
 
 Columns find_columns(const Element& element) {
-  constexpr std::string_view kNames[] = {"x",   "y",     "z",    "nx",        "ny",       "nz",
-                                         "red", "green", "blue", "texture_u", "texture_v"};
+  constexpr std::string_view kNames[] = {"x",   "y",     "z",    "nx",        "ny",        "nz",
+                                         "red", "green", "blue", "texture_u", "texture_v", "rgba"};
   Columns columns;
   columns.fill(-1);
   for (std::size_t p = 0; p < element.properties.size(); ++p) {
     std::string_view property = element.properties[p].name;
     if (property == "s" || property == "u") property = "texture_u";  // of Blender; of PCL
     if (property == "t" || property == "v") property = "texture_v";
+    if (property.starts_with("diffuse_")) property.remove_prefix(8);
+    if (property == "r") property = "red";
+    if (property == "g") property = "green";
+    if (property == "b") property = "blue";
+    if (property == "rgb") property = "rgba";  // of PCL, in one whole number
+    if (property == "rgba" && element.properties[p].type->real) continue;
     const auto name = std::find(std::begin(kNames), std::end(kNames), property);
     if (name == std::end(kNames) || element.properties[p].count_type) continue;
     columns[name - std::begin(kNames)] = static_cast<int>(p);
@@ -223,6 +232,13 @@ std::uint8_t color_byte(double value, const NumberType& type) {
 std::optional<std::array<std::uint8_t, 3>> color_of(const Element& element, const Columns& columns,
                                                     const Row& row) {
   std::array<std::uint8_t, 3> color{};
+  if (const int p = columns[11]; p >= 0) {
+    const auto packed = static_cast<std::uint32_t>(static_cast<std::int64_t>(row[p].front()));
+    for (std::size_t k = 0; k < 3; ++k) {
+      color[k] = static_cast<std::uint8_t>(packed >> (16 - 8 * k));
+    }
+    return color;
+  }
   for (std::size_t k = 0; k < 3; ++k) {
     const int p = columns[6 + k];
     if (p < 0) return std::nullopt;
@@ -328,6 +344,18 @@ void split_corners(const FaceValues& values, TriangleMesh& mesh) {
   }
 }
 
+/// A property whose name promises colours; empty without one.
+std::string color_property(const Header& header) {
+  for (const Element& element : header.elements) {
+    for (const Property& property : element.properties) {
+      for (const char* word : {"color", "colour", "rgb", "red", "material"}) {
+        if (property.name.find(word) != std::string::npos) return property.name;
+      }
+    }
+  }
+  return "";
+}
+
 /// What a header promises that cannot be kept.
 Status check_elements(const Header& header, const std::string& name) {
   for (const Element& element : header.elements) {
@@ -368,7 +396,7 @@ Result<PlyFile> parse_ply_file(std::string_view bytes, const std::string& name, 
   if (!header.ok()) return header.status();
   if (Status status = check_elements(*header, name); !status.ok()) return status;
   Values values(bytes.substr(header->size), header->format);
-  PlyFile file{{}, header->textures};
+  PlyFile file{{}, header->textures, ""};
   TriangleMesh& mesh = file.mesh;
   FaceValues of_faces;
   Row row;
@@ -400,6 +428,7 @@ Result<PlyFile> parse_ply_file(std::string_view bytes, const std::string& name, 
   if (of_faces.colors.size() != triangles || !mesh.colors.empty()) of_faces.colors.clear();
   if (!of_faces.uv.empty() || !of_faces.colors.empty()) split_corners(of_faces, mesh);
   if (mesh.uv.empty()) mesh.texture_of.clear();
+  if (mesh.colors.empty()) file.unread_color = color_property(*header);
   return file;
 }
 

@@ -17,6 +17,7 @@ namespace bpa::io {
 struct PlyFile {
   TriangleMesh mesh;
   std::vector<std::string> textures;  ///< Names of image files, in the order of their indices.
+  std::string unread_color;           ///< A property of a mesh without colours that may hold some.
 };
 
 /// As parse_ply().

@@ -183,17 +183,77 @@ TEST(MeshFile, OtherFormatsAreRefusedWithTheWayOut) {
   const test::TemporaryFolder folder;
   spill(folder / "a.urdf",
         R"(<robot><mesh filename="package://x/cup.dae" scale="1 1 1"/></robot>)");
-  spill(folder / "a.sdf", "<sdf><mesh><uri>model://cup/cup.obj</uri></mesh></sdf>");
+  spill(folder / "b.urdf", "<robot><mesh scale='1 1 1' filename='cup.stl'/></robot>");
+  spill(folder / "a.sdf",
+        "<sdf><include><uri>model://sun</uri></include>"
+        "<mesh><uri>model://cup/cup.obj</uri></mesh></sdf>");
+  spill(folder / "b.sdf", "<sdf><include><uri>model://sun</uri></include></sdf>");
   for (const auto& [name, words] : {std::pair("a.STEP", "freecadcmd"),
                                     {"a.3mf", "assimp export"},
                                     {"a.fbx", "assimp export"},
                                     {"a.usdz", "Blender"},
+                                    {"a.off", "assimp export"},
+                                    {"a.wrl", "MeshLab"},
+                                    {"a.sldprt", "the CAD program"},
+                                    {"b.urdf", "names: cup.stl"},
+                                    {"b.sdf", "the mesh that it names"},
                                     {"a.urdf", "names: package://x/cup.dae"},
                                     {"a.sdf", "names: model://cup/cup.obj"},
                                     {"a.txt", "use .ply"}}) {
     const Status status = read_mesh(folder / name).status();
     EXPECT_EQ(status.code, StatusCode::unsupported);
     EXPECT_NE(status.message.find(words), std::string::npos) << status.message;
+  }
+}
+
+TEST(MeshFile, ContentsThatDoNotFitTheNameAreNamed) {
+  const test::TemporaryFolder folder;
+  for (const auto& [name, content, words] :
+       {std::tuple("a.stl", "ISO-10303-21;\nHEADER;", "a STEP file; mesh it: freecadcmd"),
+        {"a.obj", "version https://git-lfs.github.com/spec/v1\noid sha256:1", "git lfs pull"},
+        {"a.glb", "PK\3\4\24", "a zip archive"},
+        {"a.dae", "\x1f\x8b\x08", "gunzip"},
+        {"a.ply", "\n <!DOCTYPE html>\n<html>", "a web page: its download failed"},
+        {"b.stl", "ply\nformat ascii 1.0\n", "a PLY file"}}) {
+    spill(folder / name, content);
+    const Status status = read_mesh(folder / name).status();
+    EXPECT_NE(status.message.find(words), std::string::npos) << status.message;
+    EXPECT_EQ(status.message.find('\n'), std::string::npos);
+  }
+}
+
+/// Each names a colour in another way; what is not read is said.
+TEST(PlyFile, ColoursOfOtherNamesAreReadOrSaid) {
+  const test::TemporaryFolder folder;
+  const auto read = [&](const std::string& properties, const std::string& values) {
+    std::string text =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+        "property float y\nproperty float z\n" +
+        properties + "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    for (const char* point : {"0 0 0 ", "1 0 0 ", "0 1 0 "}) text += point + values + "\n";
+    spill(folder / "a.ply", text + "3 0 1 2\n");
+    const Result<MeshFile> file = read_mesh_file(folder / "a.ply");
+    EXPECT_TRUE(file.ok()) << file.status().message;
+    return file.ok() ? *file : MeshFile{};
+  };
+  const std::array<std::uint8_t, 3> color{200, 100, 50};
+  const auto three = [](const std::string& r, const std::string& g, const std::string& b) {
+    return "property uchar " + r + "\nproperty uchar " + g + "\nproperty uchar " + b + "\n";
+  };
+  for (const MeshFile& file :
+       {read(three("diffuse_red", "diffuse_green", "diffuse_blue"), "200 100 50"),
+        read(three("r", "g", "b"), "200 100 50"), read("property uint rgba\n", "4291322930"),
+        read("property int rgb\n", "13132850")}) {
+    ASSERT_EQ(file.mesh.colors.size(), 3U);
+    EXPECT_EQ(file.mesh.colors[0], color);
+    EXPECT_TRUE(file.warnings.empty());
+  }
+  for (const char* property : {"float rgb", "uchar specular_red", "int material_index"}) {
+    const MeshFile file = read("property " + std::string(property) + "\n", "1");
+    EXPECT_TRUE(file.mesh.colors.empty());
+    ASSERT_EQ(file.warnings.size(), 1U) << property;
+    EXPECT_NE(file.warnings[0].find("which is not read: the model has no colour"),
+              std::string::npos);
   }
 }
 
