@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // bpa detect: frames in, ranked interpretations out.
 #include <cstdio>
-#include <map>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -98,35 +97,22 @@ DetectRequest request_of(const DetectArguments& a) {
 
 /// The results with the data set's numbers, which alone stand in its CSV. Models that it lacks are
 /// left out with a warning.
-std::vector<io::FrameResult> numbered_as(const std::string& dataset, const ModelLibrary& library,
+std::vector<io::FrameResult> numbered_as(const std::string& dataset,
                                          std::vector<io::FrameResult> results) {
   const auto models = io::read_bop_models(dataset);
   if (!models.ok()) return results;  // test sets may come without
-  eval::ModelNames known, objects;
-  std::set<std::string> lacks;
-  for (const auto& model : library.models()) known[model->number] = model->name;
+  eval::ModelNames objects;
   for (const io::BopModel& model : *models) objects[model.obj_id] = model.name;
-  const std::map<int, int> numbers = eval::matched(known, objects);
-  for (io::FrameResult& result : results) {
-    for (Interpretation& interpretation : result.interpretations) {
-      std::erase_if(interpretation.placements, [&](Placement& p) {
-        const auto number = numbers.find(p.model_number);
-        if (number == numbers.end()) lacks.insert(p.model);
-        if (number != numbers.end()) p.model_number = number->second;
-        return number == numbers.end();
-      });
-    }
-  }
+  const std::set<std::string> lacks = eval::number_by_name(objects, results);
   if (!lacks.empty()) print_warnings(dataset, {"its CSV leaves out models: " + listed(lacks)});
   return results;
 }
 
-void write_results(const DetectArguments& a, const ModelLibrary& library,
-                   const std::vector<io::FrameResult>& results) {
+void write_results(const DetectArguments& a, const std::vector<io::FrameResult>& results) {
   if (!a.csv.empty()) {
     const std::string& dataset = a.dataset.folder;
-    or_throw(io::write_results_csv(
-        a.csv, dataset.empty() ? results : numbered_as(dataset, library, results)));
+    or_throw(
+        io::write_results_csv(a.csv, dataset.empty() ? results : numbered_as(dataset, results)));
   }
   if (!a.json.empty()) or_throw(io::write_results_json(a.json, results));
 }
@@ -168,7 +154,7 @@ class DetectRun {
   }
 
   void finish() const {
-    write_results(a_, detector_.library(), results_);
+    write_results(a_, results_);
     if (explain_) explain_->finish();
     if (sheet_.empty()) return;
     std::vector<io::ColorImage> all, worst;
@@ -310,8 +296,7 @@ void detect(const DetectArguments& a) {
   if (a.views > 1) {
     ViewsQuestion question{request_of(a), given.roi, given.mask};
     question.request.priors = given.priors;
-    return write_results(a, detector.library(),
-                         detect_joined(a, entries, detector, question, print_result));
+    return write_results(a, detect_joined(a, entries, detector, question, print_result));
   }
   DetectRun run(a, detector, given, bag || entries.size() > 1);
   Progress progress("frames", static_cast<int>(entries.size()));

@@ -3,6 +3,7 @@
 // bpa evaluate: results and tracks against truth.
 #include <algorithm>
 #include <cstdio>
+#include <set>
 #include <tuple>
 
 #include "core/base/concat.hpp"
@@ -26,34 +27,14 @@ struct EvaluateArguments {
   eval::TrackEvaluationOptions track_options;
 };
 
-void for_each_model(std::vector<io::FrameResult>& results, const auto& visit) {
-  for (io::FrameResult& result : results) {
-    for (Interpretation& interpretation : result.interpretations) {
-      std::ranges::for_each(interpretation.placements, visit);
-    }
-  }
-}
-
-void for_each_model(std::vector<io::TrackResult>& results, const auto& visit) {
-  for (io::TrackResult& result : results) std::ranges::for_each(result.tracks, visit);
-}
-
 /// Gives placements or tracks the numbers that the data set has for their models.
-void number_by_name(const eval::EvalObjects& objects, auto& results) {
-  eval::ModelNames known, found;
+void number_as(const eval::EvalObjects& objects, auto& results) {
+  eval::ModelNames known;
   for (const auto& [number, object] : objects) known[number] = object.name;
-  for_each_model(results, [&](const auto& p) { found[p.model_number] = p.model; });
-  const std::map<int, int> numbers = eval::matched(found, known);
-  for_each_model(results, [&](auto& p) {
-    const auto number = numbers.find(p.model_number);
-    if (number == numbers.end() && !p.model.empty()) {
-      throw Failure(invalid_argument("the results have the model ", p.model, " (obj_id ",
-                                     p.model_number,
-                                     "), which the data set does not have: they "
-                                     "are of another library"));
-    }
-    if (number != numbers.end()) p.model_number = number->second;
-  });
+  const std::set<std::string> lacks = eval::number_by_name(known, results);
+  if (lacks.empty()) return;
+  throw Failure(invalid_argument("the results have models that the data set does not have: ",
+                                 listed(lacks), ". They are of another library"));
 }
 
 eval::EvaluationReport report_on(const EvaluateArguments& a) {
@@ -67,7 +48,7 @@ eval::EvaluationReport report_on(const EvaluateArguments& a) {
       or_throw(io::read_bop_frames(a.dataset.folder, a.dataset.split, a.dataset.scenes));
   std::vector<io::FrameResult> results = read_results();
   const eval::EvalObjects objects = or_throw(eval::load_eval_objects(a.dataset.folder));
-  number_by_name(objects, results);
+  number_as(objects, results);
   Progress progress("evaluate", static_cast<int>(frames.size()));
   progress.show(0);
   return or_throw(eval::evaluate(frames, objects, results, options,
@@ -92,17 +73,50 @@ void evaluate_tracks(const EvaluateArguments& a) {
   const auto frames =
       or_throw(io::read_bop_frames(a.dataset.folder, a.dataset.split, a.dataset.scenes));
   const eval::EvalObjects objects = or_throw(eval::load_eval_objects(a.dataset.folder));
-  number_by_name(objects, tracks);
+  number_as(objects, tracks);
   const eval::TrackReport report =
       or_throw(eval::evaluate_tracks(frames, objects, tracks, options));
   std::fputs(eval::track_report_text(report).c_str(), stdout);
   if (!a.json_out.empty()) or_throw(io::write_file(a.json_out, eval::track_report_json(report)));
 }
 
-std::string names_of(const std::vector<std::string>& names) {
+/// Fails where frames were left out, once the others are reported.
+void check_all_judged(const eval::EvaluationReport& report) {
+  if (report.left_out.empty()) return;
+  print_warnings("left out", report.left_out);
+  throw Failure(invalid_argument(report.left_out.size(), " of ",
+                                 report.frames + report.left_out.size(),
+                                 " frames could not be evaluated"));
+}
+
+/// Names of models, one for each object.
+using Names = std::multiset<std::string>;
+
+/// Those of `all` that are not in `other`.
+std::string difference(const Names& all, const Names& other) {
   std::string text;
-  for (const std::string& name : names) text += " " + name;
+  Names rest = other;
+  for (const std::string& name : all) {
+    if (const auto same = rest.find(name); same != rest.end()) {
+      rest.erase(same);
+    } else {
+      text += " " + name;
+    }
+  }
   return text.empty() ? " -" : text;
+}
+
+/// What a frame's result found, or its false positives.
+Names names_in(const eval::FrameOutcome& frame, const eval::EvalObjects& objects, bool found) {
+  Names names;
+  for (const eval::TruthOutcome& truth : frame.truth) {
+    if (found && truth.counts && truth.found) names.insert(objects.at(truth.obj_id).name);
+  }
+  for (const eval::EstimateOutcome& estimate : frame.estimates) {
+    if (found || estimate.truth >= 0 || estimate.ignored) continue;
+    names.insert(objects.at(estimate.obj_id).name);
+  }
+  return names;
 }
 
 /// What a later run found and an earlier one did not, and the reverse, frame by frame.
@@ -120,14 +134,21 @@ void compare(EvaluateArguments a) {
   const eval::EvalObjects objects = or_throw(eval::load_eval_objects(a.dataset.folder));
   for (std::size_t f = 0; f < before.outcomes.size(); ++f) {
     const eval::FrameOutcome &was = before.outcomes[f], &is = after.outcomes[f];
-    std::vector<std::string> gained, lost;
-    for (std::size_t t = 0; t < was.truth.size(); ++t) {
-      if (!was.truth[t].counts || was.truth[t].found == is.truth[t].found) continue;
-      (is.truth[t].found ? gained : lost).push_back(objects.at(was.truth[t].obj_id).name);
+    const std::string frame = concat("scene ", was.scene_id, " image ", was.im_id);
+    if (was.reported != is.reported) {
+      std::printf("%s: not searched in %s\n", frame.c_str(), a.compared[was.reported].c_str());
     }
-    if (gained.empty() && lost.empty()) continue;
-    std::printf("scene %d image %d: gained%s; lost%s\n", was.scene_id, was.im_id,
-                names_of(gained).c_str(), names_of(lost).c_str());
+    if (!was.reported || !is.reported) continue;
+    const auto changes = [&](bool found) {
+      const Names earlier = names_in(was, objects, found), later = names_in(is, objects, found);
+      if (earlier == later) return std::string();
+      return concat(found ? ": gained" : ": false positives gained", difference(later, earlier),
+                    "; lost", difference(earlier, later));
+    };
+    for (const bool found : {true, false}) {
+      const std::string line = changes(found);
+      if (!line.empty()) std::printf("%s%s\n", frame.c_str(), line.c_str());
+    }
   }
   for (std::size_t i = 0; i < 2; ++i) {
     std::printf("%s: found %d/%d, right of those reported %d/%d\n", a.compared[i].c_str(),
@@ -149,6 +170,7 @@ void evaluate(const EvaluateArguments& a) {
   std::fputs(eval::report_text(report).c_str(), stdout);
   if (!a.json_out.empty()) or_throw(io::write_file(a.json_out, eval::report_json(report)));
   if (!a.plots.empty()) or_throw(draw::write_plots(a.plots, report));
+  check_all_judged(report);
 }
 
 }  // namespace

@@ -152,9 +152,9 @@ int follow_scene(const TrackArguments& a, const Detector& detector, track::Track
 }
 
 void follow_frames(const TrackArguments& a) {
-  const auto frames =
-      or_throw(io::read_bop_frames(a.dataset.folder, a.dataset.split, a.dataset.scenes));
+  auto frames = or_throw(io::read_bop_frames(a.dataset.folder, a.dataset.split, a.dataset.scenes));
   const Detector detector = open_detector(a.detector, a.common.threads);
+  number_truth(a.dataset.folder, detector.library(), a.detector.models.empty(), frames);
   const auto library = std::make_shared<ModelLibrary>(detector.library());
   track::TrackerOptions options = a.tracker;
   options.num_threads = a.common.threads;

@@ -295,9 +295,12 @@ Result<EvaluationReport> evaluate(const std::vector<io::BopFrame>& frames,
     if (progress) progress(done);
   });
   Draft draft = empty_draft();
-  draft.report.frames = static_cast<int>(frames.size());
   for (auto& outcome : outcomes) {
-    if (!outcome->ok()) return outcome->status();
+    if (!outcome->ok()) {
+      draft.report.left_out.push_back(outcome->status().message);
+      continue;
+    }
+    ++draft.report.frames;
     add_frame(**outcome, draft);
     draft.report.outcomes.push_back(std::move(**outcome));
   }

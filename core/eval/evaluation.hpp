@@ -179,6 +179,7 @@ struct EvaluationReport {
   double median_visible_fraction = 0;
   TimeStatistics time;
   std::vector<FrameOutcome> outcomes;
+  std::vector<std::string> left_out;  ///< Frames whose depth cannot be read: why. Nothing counts.
 };
 
 /// Precision and recall at each threshold, ascending, from what is known of each frame. A result
@@ -201,7 +202,7 @@ using EvaluationProgress = std::function<void(int)>;
 
 /// Compares results with the truth of `frames`. A frame without a result counts as an empty result.
 /// Fails with invalid_argument when a result names an unknown frame or object, or a frame has no
-/// truth. VSD also has the errors of loading depth.
+/// truth. Frames whose depth cannot be read, which VSD needs, are `left_out`.
 Result<EvaluationReport> evaluate(const std::vector<io::BopFrame>& frames,
                                   const EvalObjects& objects,
                                   const std::vector<io::FrameResult>& results,

@@ -482,27 +482,38 @@ TEST(Evaluate, ComparesTwoRunsByTheNamesOfModels) {
   truth.obj_id = truth.instance = 1;
   truth.camera_from_object = box_pose();
   Frame frame = box_frame(box_pose());
-  frame.stamp_ns = 1'000'000'000;
-  ASSERT_TRUE(writer.add(4, frame, {truth}).ok());
+  for (const int image : {4, 5}) {
+    frame.stamp_ns = image * 1'000'000'000LL;
+    ASSERT_TRUE(writer.add(image, frame, {truth}).ok());
+  }
   ASSERT_TRUE(writer.finish().ok());
   io::FrameResult result;
   result.scene_id = 1;
   result.im_id = 4;
   result.interpretations.resize(1);
-  ASSERT_TRUE(io::write_results_json(folder / "a.json", {result}).ok());
+  io::FrameResult other = result;
+  other.im_id = 5;
+  ASSERT_TRUE(io::write_results_json(folder / "a.json", {result, other}).ok());
   Placement placement;
   placement.model = "box";
   placement.model_number = 9;
   placement.frame_from_object = box_pose();
   placement.presence = placement.probability = 0.9;
-  result.interpretations[0].placements = {placement};
+  Placement wrong = placement;
+  wrong.frame_from_object.translation.x() += 0.3;
+  result.interpretations[0].placements = {placement, wrong};
   ASSERT_TRUE(io::write_results_json(folder / "b.json", {result}).ok());
+  result.interpretations[0].placements = {placement};
   const std::string command = "evaluate --bop " + folder.path() + " ";
   const Outcome outcome = run(command + (folder / "a.json") + " " + (folder / "b.json"));
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_EQ(outcome.out, "scene 1 image 4: gained box; lost -\n" + (folder / "a.json") +
-                             ": found 0/1, right of those reported 0/0\n" + (folder / "b.json") +
-                             ": found 1/1, right of those reported 1/1\n");
+  EXPECT_EQ(outcome.out,
+            "scene 1 image 4: gained box; lost -\n"
+            "scene 1 image 4: false positives gained box; lost -\n"
+            "scene 1 image 5: not searched in " +
+                (folder / "b.json") + "\n" + (folder / "a.json") +
+                ": found 0/2, right of those reported 0/0\n" + (folder / "b.json") +
+                ": found 1/2, right of those reported 1/2\n");
   EXPECT_EQ(run(command + (folder / "a.json")).code, 2);
   // A track of the same.
   io::TrackResult tracked;
@@ -532,6 +543,24 @@ TEST(Evaluate, ComparesTwoRunsByTheNamesOfModels) {
   result.interpretations[0].placements[0].model = "drill";
   ASSERT_TRUE(io::write_results_json(folder / "c.json", {result}).ok());
   expect_failure(command + "--json " + (folder / "c.json"), {"drill", "another library"});
+  // A library of other models.
+  ASSERT_EQ(run("model from-mesh " + (folder / "models/obj_000001.ply") +
+                " --unit mm --views 0 --name mug --library " + (folder / "M"))
+                .code,
+            0);
+  EXPECT_NE(run("track --bop " + folder.path() + " --library " + (folder / "M"))
+                .out.find("the library lacks objects of its truth: box"),
+            std::string::npos);
+  // Depth that VSD needs and that cannot be read.
+  const std::string depth = folder / "test/000001/depth/000005.png";
+  spill(depth, slurp(depth).substr(0, 90));
+  other.interpretations[0].placements = {placement};
+  result.interpretations[0].placements[0].model = "box";
+  ASSERT_TRUE(io::write_results_json(folder / "d.json", {result, other}).ok());
+  const Outcome partly = run(command + "--json " + (folder / "d.json"));
+  EXPECT_EQ(partly.code, 1) << partly.out;
+  EXPECT_NE(partly.out.find("1 of 2 frames could not be evaluated"), std::string::npos);
+  EXPECT_NE(partly.out.find("1 frames, 1 instances that count"), std::string::npos) << partly.out;
 }
 
 }  // namespace
