@@ -44,10 +44,10 @@ struct ImageSize {
   int channels = 0;
 };
 
-/// Reads a PNG or JPEG of 1, 3 or 4 channels as rgb; alpha is dropped. Of 16 bits the upper 8 count;
-/// of grey ones, those of the largest value. All readers fail with
-/// not_found, corrupt (the message names the file), invalid_argument (wrong kind of image, or too
-/// large) or unsupported (another format, or a JPEG of more than 32 scans).
+/// Reads a PNG or JPEG of 1, 3 or 4 channels as rgb; alpha is dropped. Of 16 bits the upper 8
+/// count; of grey ones, those of the largest value. All readers fail with not_found, corrupt (the
+/// message names the file), invalid_argument (wrong kind of image, or too large) or unsupported
+/// (another format, or a JPEG of more than 32 scans).
 Result<ColorImage> read_color_image(const std::string& path);
 /// The same of an image in memory, of at most `max_pixels`; `name` is for
 /// messages.
