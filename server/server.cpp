@@ -365,14 +365,17 @@ class Running : public Server {
   void on_result(const IncomingFrame& incoming, const Frame* frame,
                  const Result<SceneInterpretations>& result) {
     const int models = static_cast<int>(recognition_->models().size());
+    const auto settings = settings_.get();
+    const bool of_one_view = result.ok() && frame != nullptr;  // else in the fixed frame
+    const std::string advice =
+        of_one_view ? advice_.on(*frame, *result, settings->detector.surface.max_range_m) : "";
     publisher_->publish(
         frame, result,
-        {incoming.stamp_ns, incoming.frame_id, models, settings_.get()->detection.seed});
+        {incoming.stamp_ns, incoming.frame_id, models, settings->detection.seed, advice});
     if (!result.ok()) return log_failure(result.status());
-    if (frame != nullptr) {  // else of several views, in the fixed frame
+    if (of_one_view) {
       tracking_->add(*result);
-      const double range = settings_.get()->detector.surface.max_range_m;
-      feed_.add_result(*frame, *result, advice_.on(*frame, *result, range));
+      feed_.add_result(*frame, *result, advice);
     }
     const auto& found = result->interpretations;
     log(log_, LogLevel::debug,

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/doctor/frame_check.hpp"
+
 namespace bpa::doctor {
 
 bool says_little(const SceneInterpretations& result) {
@@ -21,6 +23,10 @@ std::string lines_of(Findings findings) {
         (lines.empty() ? "" : "\n") + finding.what + ": " + finding.why + ". " + finding.remedy;
   }
   return lines;
+}
+
+std::string advice_on(const Frame& frame, const SceneInterpretations& result, double max_range_m) {
+  return says_little(result) ? lines_of(check_frame(frame, max_range_m, 1)) : "";
 }
 
 }  // namespace bpa::doctor

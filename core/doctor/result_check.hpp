@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "core/cloud/frame.hpp"
 #include "core/doctor/finding.hpp"
 #include "core/result/interpretation.hpp"
 
@@ -14,5 +15,8 @@ bool says_little(const SceneInterpretations& result);
 
 /// Findings as one line each, the worst first: "WHAT: WHY. REMEDY".
 std::string lines_of(Findings findings);
+
+/// What check_frame() finds in a frame whose result says little, as lines; else empty.
+std::string advice_on(const Frame& frame, const SceneInterpretations& result, double max_range_m);
 
 }  // namespace bpa::doctor

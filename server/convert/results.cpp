@@ -74,6 +74,7 @@ msgs::SceneInterpretations interpretations_message(const Result<SceneInterpretat
   message.models_searched = static_cast<std::uint32_t>(context.models_searched);
   message.seed = context.seed;
   if (!result.ok()) return message;
+  message.status.message = context.advice;
   for (const Interpretation& interpretation : result->interpretations) {
     msgs::Interpretation ranked{static_cast<std::uint32_t>(interpretation.rank),
                                 interpretation.score,

@@ -27,6 +27,7 @@ struct ResultContext {
   std::string frame_id;
   int models_searched = 0;
   std::uint64_t seed = 0;
+  std::string advice = {};  ///< Of the doctor, where little is found.
 };
 
 wire::bpa_msgs::Status to_message(const Status& status);

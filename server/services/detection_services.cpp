@@ -7,6 +7,7 @@
 
 #include "core/base/concat.hpp"
 #include "core/base/guarded.hpp"
+#include "core/doctor/result_check.hpp"
 #include "ros/frames.hpp"
 #include "server/convert/results.hpp"
 #include "server/services/requests.hpp"
@@ -59,7 +60,7 @@ DetectJob job_of(std::shared_ptr<msgs::Detect_Request> request, const DetectRequ
 }
 
 /// `refusal` is what the response is without a frame.
-msgs::Detect_Response answer_of(const Recognition& recognition, const DetectJob& job,
+msgs::Detect_Response answer_of(const ServiceContext& context, const DetectJob& job,
                                 const Frame* frame, const Result<SceneInterpretations>& result,
                                 msgs::Detect_Response refusal) {
   msgs::Detect_Response response = std::move(refusal);
@@ -67,9 +68,11 @@ msgs::Detect_Response answer_of(const Recognition& recognition, const DetectJob&
   response.queue_position = static_cast<std::uint32_t>(job.position);
   if (frame == nullptr) return response;
   const auto& named = job.request.models;
-  const auto models = named.empty() ? recognition.models().size() : named.size();
+  const auto models = named.empty() ? context.recognition->models().size() : named.size();
+  const double range = context.settings.get()->detector.surface.max_range_m;
   response.result = interpretations_message(
-      result, {frame->stamp_ns, frame->frame_id, static_cast<int>(models), job.request.seed});
+      result, {frame->stamp_ns, frame->frame_id, static_cast<int>(models), job.request.seed,
+               result.ok() ? doctor::advice_on(*frame, *result, range) : ""});
   return response;
 }
 
@@ -193,13 +196,12 @@ void add_detect(const ServiceContext& context, ServiceSet& services) {
         Result<DetectJob> job = detect_job(std::move(request), context.settings.get()->detection);
         if (job.ok()) {
           job->client = reply.client();
-          job->done = [recognition = context.recognition, reply](
-                          const DetectJob& done, const Frame* frame,
-                          const Result<SceneInterpretations>& result) {
+          job->done = [context, reply](const DetectJob& done, const Frame* frame,
+                                       const Result<SceneInterpretations>& result) {
             const Status& status = result.status();
             if (!status.ok()) log(reply.log(), LogLevel::info, "detect failed: " + status.message);
             reply.guard([&] {
-              reply.send(answer_of(*recognition, done, frame, result, reply.refusal(status)));
+              reply.send(answer_of(context, done, frame, result, reply.refusal(status)));
             });
           };
         }

@@ -345,9 +345,7 @@ void Api::submit_search(const Call& call, Result<DetectJob> job, const std::stri
                                                        const Result<SceneInterpretations>& result) {
       if (!result.ok()) return respond(refusal(result.status()));
       const double range = links_.context.settings.get()->detector.surface.max_range_m;
-      const std::string advice = doctor::says_little(*result)
-                                     ? doctor::lines_of(doctor::check_frame(*frame, range, 1))
-                                     : "";
+      const std::string advice = doctor::advice_on(*frame, *result, range);
       const std::uint64_t id = feed_.add_asked(*frame, *result, origin, advice);
       respond(json_response(concat("{\"ok\":true,\"result\":", id, "}")));
     };

@@ -80,6 +80,12 @@ TEST(Results, InterpretationsKeepEveryField) {
   EXPECT_EQ(first.alternatives.at(0).weight, 0.25);
 }
 
+TEST(Results, AdviceIsBesideAnAnswer) {
+  const auto message = interpretations_message(SceneInterpretations(), {5, "cam", 1, 0, "too far"});
+  EXPECT_EQ(message.status.code, 0);
+  EXPECT_EQ(message.status.message, "too far");
+}
+
 TEST(Results, AFailureCarriesItsReason) {
   const auto message = interpretations_message(invalid_argument("fx is 0"), {5, "cam", 0, 0});
   EXPECT_EQ(message.status.code, 1);

@@ -90,6 +90,22 @@ TEST_F(Web, WhatItSavesIsReadByBpaDetect) {
              depth + color);
   ASSERT_FALSE(near.is_null());
   EXPECT_NE(near.at("advice").dump().find("the scene is too near"), std::string::npos) << near;
+  // Who asks over DDS is told the same.
+  const std::vector<std::uint16_t> too_near(640 * 480, 90);
+  FrameView view;
+  view.width = 640;
+  view.height = 480;
+  view.depth_mm = too_near.data();
+  view.fx = view.fy = 525;
+  view.cx = 319.5;
+  view.cy = 239.5;
+  auto client = Client::connect(support::client_options());
+  ASSERT_TRUE(client.ok()) << client.status().message;
+  const auto nothing = client->detect_in(view);
+  ASSERT_TRUE(nothing.ok()) << nothing.status().message;
+  EXPECT_TRUE(nothing->status.ok());
+  EXPECT_NE(nothing->status.message.find("the scene is too near"), std::string::npos)
+      << nothing->status.message;
 
   // A region around one object holds that one alone.
   const json& first = found.at("result").at("interpretations").at(0).at("placements").at(0);

@@ -84,8 +84,9 @@ struct MissedObjects {
 struct DetectionSet {
   std::int64_t stamp_ns = 0;  ///< Exposure time of the frame that was searched, UTC.
   std::string frame_id;       ///< Name of its camera frame.
-  /// Why the frame could not be searched; ok when it was. Its message then names models that were
-  /// not searched for, as a worker of the server's group was lost.
+  /// Why the frame could not be searched; ok when it was. Its message then says what keeps the
+  /// server from finding more in such frames (wrong unit, colour that is not registered), or which
+  /// models were not searched for, as a worker of the server's group was lost.
   Status status;
   std::vector<RankedInterpretation> interpretations;  ///< Best first.
   std::vector<StageTime> stage_times;                 ///< In the order in which the stages ran.
