@@ -7,6 +7,7 @@
 #include "client/cli/convert.hpp"
 #include "core/base/concat.hpp"
 #include "core/base/failure.hpp"
+#include "core/geometry/lens.hpp"
 #include "core/io/camera_file.hpp"
 #include "core/io/image_file.hpp"
 #include "core/io/pose_prior_file.hpp"
@@ -65,11 +66,12 @@ std::vector<io::BopFrame> list_frames(const FrameFiles& files) {
     return or_throw(io::read_bop_frames(files.bop, files.split, files.scenes));
   }
   const io::CameraFile camera = or_throw(io::read_camera(files.camera));
-  for (const std::string& note : io::notes_of(camera)) {
+  for (const std::string& note : io::notes_of(camera, "is taken out of the images")) {
     std::cerr << files.camera << ": " << note << '\n';
   }
   io::BopFrame frame;
   frame.camera = camera.camera;
+  frame.lens = or_throw(lens_of(camera.distortion_model, camera.distortion), files.camera);
   frame.depth_scale_mm = camera.depth_scale_mm;
   frame.depth_path = files.depth;
   frame.color_path = files.color;

@@ -34,10 +34,9 @@ Result<CameraFile> read_camera(const std::string& path);
 /// k1 k2 p1 p2 k3 ... of its lens. Fails as lens_of() does, and with unsupported for equidistant.
 Result<std::vector<double>> plumb_bob_of(const CameraFile& file);
 
-/// What people should know of images that are read with it: keys that are not read, distortion that
-/// is not taken out. `distortion`: what becomes of it.
-std::vector<std::string> notes_of(const CameraFile& file,
-                                  const char* distortion = "is ignored: images must be rectified");
+/// What people should know of images that are read with it: keys that are not read, and what
+/// becomes of its distortion, such as "is taken out of the images".
+std::vector<std::string> notes_of(const CameraFile& file, const char* distortion);
 
 /// The BOP form.
 std::string camera_json(const Camera& camera, double depth_scale_mm);

@@ -36,7 +36,8 @@ def read_frame(depth: Path, color: Optional[Path], camera: Path) -> Tuple[Depth,
     """Reads files as `bpa detect --depth --color --camera` does: what Detector.detect() takes.
 
     depth: a 16-bit PNG, registered to `color`, a PNG or JPEG. camera: BOP's camera.json, which may have
-    a depth_scale, or ROS's camera_info YAML. Returns depth in float32 metres, colours and camera.
+    a depth_scale, or ROS's camera_info YAML; its lens distortion is taken out of depth and colours (nearest
+    pixel). Returns depth in float32 metres, colours and camera.
     """
     pixels, colors, numbers = _bpa.read_frame(os.fspath(depth), os.fspath(color or ""), os.fspath(camera))
     return pixels, colors, Camera(*numbers)

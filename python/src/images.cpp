@@ -6,6 +6,8 @@
 #include <pybind11/eigen.h>
 
 #include "core/base/concat.hpp"
+#include "core/cloud/undistortion.hpp"
+#include "core/geometry/lens.hpp"
 #include "core/io/camera_file.hpp"
 #include "python/src/bind.hpp"
 
@@ -79,7 +81,9 @@ Images images_of(const py::object& depth, const py::object& color, const py::obj
 py::tuple read_frame(const std::string& depth, const std::string& color,
                      const std::string& camera) {
   const io::CameraFile file = or_throw(io::read_camera(camera));
+  const Lens lens = or_throw(lens_of(file.distortion_model, file.distortion), camera);
   Frame frame = or_throw(io::read_frame(depth, color, file.camera, file.depth_scale_mm));
+  undistort(lens, frame);
   const auto& [width, height, fx, fy, cx, cy] = frame.camera;
   py::object colors = py::none();
   if (!color.empty()) colors = moved(io::ColorImage{width, height, std::move(frame.color)});

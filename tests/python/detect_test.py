@@ -90,6 +90,22 @@ def test_picture_is_that_of_the_program(folder, library, frame, result):
         bpa.draw(result, library, *frame, rank=30)
 
 
+def test_lens_distortion_is_taken_out(folder, frame, tmp_path):
+    k1, f, cx, cy = 0.1, 525, 319.5, 239.5
+    (tmp_path / "camera.yaml").write_text(f"width: 640\nheight: 480\nK: [{f}, 0, {cx}, 0, {f}, {cy}, 0, 0, 1]\n"
+                                          f"distortion_model: plumb_bob\nD: [{k1}, 0, 0, 0, 0]\n")
+    depth, color, _ = bpa.read_frame(folder / "depth.png", folder / "color.png", tmp_path / "camera.yaml")
+    y, x = (np.indices((480, 640)) - np.array([cy, cx])[:, None, None]) / f
+    factor = 1 + k1 * (x * x + y * y)
+    u, v = (np.rint(f * one * factor + c).astype(int) for one, c in ((x, cx), (y, cy)))
+    inside = (u >= 0) & (u < 640) & (v >= 0) & (v < 480)
+    for taken, given in ((depth, frame[0]), (color, frame[1])):
+        expected = np.where(inside.reshape(inside.shape + (1,) * (given.ndim - 2)),
+                            given[v.clip(0, 479), u.clip(0, 639)], 0)
+        assert np.mean(taken != expected) < 1e-3
+    assert np.mean(depth != frame[0]) > 0.1
+
+
 def test_rounds_are_reported_and_what_the_function_raises_ends_the_search(library, frame):
     detector = bpa.Detector(library)
     rounds = []

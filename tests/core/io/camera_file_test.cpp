@@ -45,7 +45,7 @@ TEST_P(Forms, AreTheSameCameraToTheBit) {
   EXPECT_EQ(file->camera.cy, 241.3109);
   EXPECT_EQ(file->camera.width, GetParam().sized ? 640 : 0);
   EXPECT_EQ(file->camera.height, GetParam().sized ? 480 : 0);
-  EXPECT_TRUE(notes_of(*file).empty()) << notes_of(*file).front();
+  EXPECT_TRUE(notes_of(*file, "is taken out").empty()) << notes_of(*file, "is taken out").front();
 }
 
 const std::string kRows = "[1066.778, 0, 312.9869, 0, 1067.487, 241.3109, 0, 0, 1]";
@@ -155,13 +155,13 @@ TEST(CameraFile, ReadsTheLensOfSlamAndNerf) {
 TEST(CameraFile, SaysWhatIsNotReadAndThatDistortionIsIgnored) {
   const test::TemporaryFolder folder;
   spill(folder / "c", R"({"K": )" + kRows + R"(, "factor_depth": 10000, "units": {"m": 1}})");
-  EXPECT_EQ(notes_of(*read_camera(folder / "c")),
+  EXPECT_EQ(notes_of(*read_camera(folder / "c"), "is taken out"),
             std::vector<std::string>{"does not read: factor_depth, units"});
   spill(folder / "c", "1066.778 1067.487 312.9869 241.3109 0.2 -0.1 0 0 0.3\n");
   const Result<CameraFile> file = read_camera(folder / "c");
   ASSERT_TRUE(file.ok()) << file.status().message;
   EXPECT_EQ(file->distortion, (std::vector<double>{0.2, -0.1, 0, 0, 0.3}));
-  EXPECT_EQ(notes_of(*file).size(), 1U);
+  EXPECT_EQ(notes_of(*file, "is taken out").size(), 1U);
 }
 
 /// As calibrators write it: the images as they are have K and D, rectified ones P.
